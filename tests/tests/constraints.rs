@@ -179,6 +179,13 @@ fn constraints_that_cannot_hold_are_named() {
         redundant.contains("`again` is redundant") && redundant.contains("`rod`"),
         "{redundant}"
     );
+    for twice in [
+        "x^2 + y^2 - l^2\" }\nagain = { zero = \"x^2 + y^2 - 4*l^2",
+        "x^2 + y^2 - l^2\" }\nagain = { zero = \"2*x^2 + 2*y^2 + l^2",
+    ] {
+        let other = refusal(&changed("x^2 + y^2 - l^2", twice));
+        assert!(other.contains("`again` contradicts `rod`"), "{other}");
+    }
     let flat = refusal(&changed("initial = \"l\"", "initial = 0"));
     assert!(flat.contains("`rod` holds nothing"), "{flat}");
 }

@@ -21,6 +21,10 @@ const MOST_AT_THE_START: usize = 100;
 /// A derivative is a combination of others if this part of it is left beside them.
 const INDEPENDENT: f64 = 1e-9;
 
+/// A constraint that follows from others contradicts them if so much of the residuals is left when
+/// theirs are taken away; less may be their curvature where a motion does not begin on them.
+const CONTRADICTION: f64 = 0.1;
+
 impl Instance<'_> {
     /// The model as the general solver sees it, with an evaluator of it: states stay on its
     /// constraints, and bodies hit at its impacts. A motion of its own, as contacts are remembered.
@@ -121,45 +125,66 @@ impl Instance<'_> {
         )))
     }
 
-    /// Which constraint has no derivative of its own, if one has none.
+    /// Which constraint has no derivative of its own, if one has none, and whether it contradicts
+    /// those that it follows.
     fn dependent(&self, t: f64, state: &[f64], inputs: &[f64]) -> Result<Option<String>, Error> {
         let gradients = self.gradients(t, state, inputs)?;
+        let residuals = self.residuals(t, state, inputs)?;
         let constraints = &self.model().model().constraints;
-        let mut independent: Vec<(usize, Vec<f64>)> = Vec::new();
-        for (place, gradient) in gradients.iter().enumerate() {
-            let name = &constraints[place].name;
-            let mut rest = gradient.clone();
+        let mut independent: Vec<Independent> = Vec::new();
+        for (place, gradient) in gradients.into_iter().enumerate() {
+            let constraint = &constraints[place];
+            let size = norm(&gradient);
+            if size == 0.0 {
+                return Ok(Some(format!(
+                    "the constraint `{}` holds nothing at the initial state: its derivatives are all 0 \
+                     there; start elsewhere (--initial), or write it so that it changes its sign",
+                    constraint.name
+                )));
+            }
+            let mut rest = Independent {
+                place,
+                direction: gradient,
+                residual: residuals[place],
+            };
             let mut held = Vec::new();
-            for (other, direction) in &independent {
-                let along: f64 = rest.iter().zip(direction).map(|(a, b)| a * b).sum();
-                if along.abs() > INDEPENDENT * norm(gradient) {
-                    held.push(constraints[*other].name.as_str());
-                }
-                for (entry, part) in rest.iter_mut().zip(direction) {
-                    *entry -= along * part;
+            for other in &independent {
+                if rest.take_away(other).abs() > INDEPENDENT * size {
+                    held.push(other.place);
                 }
             }
-            let left = norm(&rest);
-            if norm(gradient) == 0.0 {
-                return Ok(Some(format!(
-                    "the constraint `{name}` holds nothing at the initial state: its derivatives are \
-                     all 0 there; start elsewhere (--initial), or write it so that it changes its sign"
-                )));
+            let left = norm(&rest.direction);
+            if left.is_nan() || left <= INDEPENDENT * size {
+                let follows = Follows {
+                    constraint,
+                    of: held.iter().map(|other| &constraints[*other]).collect(),
+                    apart: rest.residual,
+                    scale: held.iter().fold(residuals[place].abs(), |most, other| {
+                        most.max(residuals[*other].abs())
+                    }),
+                };
+                return Ok(Some(follows.reason()));
             }
-            if left.is_nan() || left <= INDEPENDENT * norm(gradient) {
-                return Ok(Some(format!(
-                    "the constraint `{name}` is redundant at the initial state: its derivative is made \
-                     of that of {}; leave one of them out",
-                    held.iter()
-                        .map(|name| format!("`{name}`"))
-                        .collect::<Vec<_>>()
-                        .join(", ")
-                )));
-            }
-            rest.iter_mut().for_each(|entry| *entry /= left);
-            independent.push((place, rest));
+            rest.direction.iter_mut().for_each(|entry| *entry /= left);
+            rest.residual /= left;
+            independent.push(rest);
         }
         Ok(None)
+    }
+
+    /// What every constraint is away from zero, in SI.
+    fn residuals(&self, t: f64, state: &[f64], inputs: &[f64]) -> Result<Vec<f64>, Error> {
+        let mut own = self.evaluator()?;
+        let mut observables = vec![0.0; own.program().observables.len()];
+        own.observables(Point { t, state, inputs }, &mut observables);
+        let model = self.model().model();
+        let residual = |constraint: &Constraint| {
+            let name = format!("{RESIDUAL}{}", constraint.name);
+            let mut known = model.observables.iter();
+            let place = known.position(|observable| observable.name == name);
+            place.map_or(f64::NAN, |place| observables[place])
+        };
+        Ok(model.constraints.iter().map(residual).collect())
     }
 
     /// The derivative of every constraint by the coordinates, or by the rates of a nonholonomic one,
@@ -195,30 +220,80 @@ impl Instance<'_> {
 
     /// Which constraints are not kept.
     fn not_kept(&self, t: f64, state: &[f64], inputs: &[f64]) -> Result<Error, Error> {
-        let mut own = self.evaluator()?;
-        let mut observables = vec![0.0; own.program().observables.len()];
-        own.observables(Point { t, state, inputs }, &mut observables);
-        let model = self.model().model();
-        let mut left = Vec::new();
-        for constraint in &model.constraints {
-            let residual = format!("{RESIDUAL}{}", constraint.name);
-            let place = model
-                .observables
-                .iter()
-                .position(|known| known.name == residual);
-            let value = place.map_or(f64::NAN, |place| observables[place]);
-            if value.abs() > f64::EPSILON {
-                left.push(format!(
-                    "`{}` stays at {value:.3e} {}",
+        let constraints = &self.model().model().constraints;
+        let residuals = self.residuals(t, state, inputs)?;
+        let left: Vec<String> = constraints
+            .iter()
+            .zip(residuals)
+            .filter(|(_, residual)| residual.abs() > f64::EPSILON)
+            .map(|(constraint, residual)| {
+                format!(
+                    "`{}` stays at {residual:.3e} {}",
                     constraint.name, constraint.unit
-                ));
-            }
-        }
+                )
+            })
+            .collect();
         Ok(Error::Request(format!(
             "no state near the initial one keeps the constraints: {}; one of them may never be zero, or \
              contradict another; check them, or start nearer (--initial)",
             left.join(", ")
         )))
+    }
+}
+
+/// A direction that a constraint holds and none before it.
+struct Independent {
+    /// Which constraint.
+    place: usize,
+    /// Its derivative, without what those before it hold.
+    direction: Vec<f64>,
+    /// The constraint's residual, combined as the direction is.
+    residual: f64,
+}
+
+impl Independent {
+    /// Takes away what of this the other holds, and says how much that was.
+    fn take_away(&mut self, other: &Self) -> f64 {
+        let pairs = self.direction.iter().zip(&other.direction);
+        let along: f64 = pairs.map(|(a, b)| a * b).sum();
+        for (entry, part) in self.direction.iter_mut().zip(&other.direction) {
+            *entry -= along * part;
+        }
+        self.residual -= along * other.residual;
+        along
+    }
+}
+
+/// A constraint whose derivative is made of that of others.
+struct Follows<'a> {
+    constraint: &'a Constraint,
+    of: Vec<&'a Constraint>,
+    /// Its residual less the same combination of theirs.
+    apart: f64,
+    /// The largest residual of them all.
+    scale: f64,
+}
+
+impl Follows<'_> {
+    /// Redundant where its residual is made of theirs as its derivative is, else it asks for
+    /// something else in a direction that is held already.
+    fn reason(&self) -> String {
+        let names: Vec<String> = self.of.iter().map(|of| format!("`{}`", of.name)).collect();
+        let (name, others) = (&self.constraint.name, names.join(", "));
+        let kind = self.constraint.is_nonholonomic;
+        let of_one_kind = self.of.iter().all(|of| of.is_nonholonomic == kind);
+        if of_one_kind && self.apart.abs() > CONTRADICTION * self.scale {
+            return format!(
+                "the constraint `{name}` contradicts {others} at the initial state: it holds what they \
+                 hold, and asks for {:.3e} {} more; leave one of them out, or correct it",
+                self.apart.abs(),
+                self.constraint.unit
+            );
+        }
+        format!(
+            "the constraint `{name}` is redundant at the initial state: its derivative is made of that \
+             of {others}; leave one of them out"
+        )
     }
 }
 

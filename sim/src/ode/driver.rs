@@ -266,20 +266,21 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     /// Samples from `begin` (s) to here, brings the state back onto what the motion keeps, and enters
     /// the regime found here.
     fn accept(&mut self, begin: f64) -> Result<(), SolveError> {
-        self.check_finite(begin)?;
+        check_finite(begin, &self.stepper.here().y)?;
         self.trajectory.work.steps += 1;
         self.watched.arrive();
         let t = self.stepper.here().t;
         while let Some(sample) = self.next_sample().filter(|sample| *sample < t) {
             let mut state = self.inside(sample)?;
             self.watched.project(sample, &mut state);
+            check_finite(begin, &state)?;
             self.trajectory.times.push(sample);
             self.trajectory.states.push(state);
         }
         let mut point = self.stepper.here().clone();
         if self.watched.project(t, &mut point.y) {
+            check_finite(begin, &point.y)?;
             self.stepper.restart(point, self.stepper.step());
-            self.check_finite(begin)?;
         }
         while let Some(sample) = self.next_sample().filter(|sample| *sample <= t) {
             self.trajectory.times.push(sample);
@@ -290,14 +291,6 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
 
     fn next_sample(&self) -> Option<f64> {
         self.samples.get(self.trajectory.times.len()).copied()
-    }
-
-    /// Whether the state here is made of numbers, after a step from `begin`.
-    fn check_finite(&self, begin: f64) -> Result<(), SolveError> {
-        match self.stepper.here().y.iter().position(|y| !y.is_finite()) {
-            Some(state) => Err(SolveError::NotFinite { t: begin, state }),
-            None => Ok(()),
-        }
     }
 
     /// Takes note of the switching functions that changed sign.
@@ -314,6 +307,14 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             self.check_switch_rate(t, guard)?;
         }
         Ok(())
+    }
+}
+
+/// Whether a state is made of numbers, after a step from `begin` (s).
+fn check_finite(begin: f64, state: &[f64]) -> Result<(), SolveError> {
+    match state.iter().position(|entry| !entry.is_finite()) {
+        Some(state) => Err(SolveError::NotFinite { t: begin, state }),
+        None => Ok(()),
     }
 }
 

@@ -9,6 +9,7 @@
 //! to zero.
 
 mod complementarity;
+mod impulses;
 
 use std::collections::VecDeque;
 
@@ -16,20 +17,11 @@ use eomgen_codegen::program::evaluator::{Evaluator, ImpactAt, Point};
 
 use complementarity::{balance, complementary};
 
-/// A flight that is this short beside the time since the start is rest.
-const SHORTEST_FLIGHT: f64 = 1e-8;
-
 /// A distance this small beside the largest coordinate is rounding.
 const ROUNDING: f64 = 1e-11;
 
-/// A rate that an impact leaves negative is wrong if it is this large beside those before.
-const UNSOLVED: f64 = 1e-6;
-
 /// Rounding of a distance, beside the largest coordinate and how far that has come.
 const OF_A_DISTANCE: f64 = 64.0 * f64::EPSILON;
-
-/// A flight no higher than so many times the rounding of its distance is rest.
-const LOWEST_FLIGHT: f64 = 1000.0;
 
 /// A distance this far below zero, beside the largest that a coordinate was, is no error of a step.
 const OVERLAP: f64 = 1e-6;
@@ -50,6 +42,8 @@ pub(crate) struct Contacts {
     closed: Vec<usize>,
     /// What is added to each distance, so that one that leaves from zero is positive.
     offsets: Vec<f64>,
+    /// What is added to the force of each that is closed: rounding of accelerations makes no pull.
+    allowances: Vec<f64>,
     /// The impacts where they were last looked at.
     at: Vec<ImpactAt>,
     /// The largest that any coordinate has been.
@@ -81,6 +75,7 @@ impl Contacts {
             start: None,
             closed: Vec::new(),
             offsets: vec![0.0; count],
+            allowances: vec![0.0; count],
             at: Vec::new(),
             size: 0.0,
             recent: VecDeque::with_capacity(MOST_IN_A_ROW),
@@ -112,7 +107,7 @@ impl Contacts {
         }
         if !self.closed.is_empty() {
             for (place, force) in self.closed.iter().zip(self.forces()) {
-                out[*place] = force;
+                out[*place] = force + self.allowances[*place];
             }
         }
     }
@@ -162,125 +157,12 @@ impl Contacts {
             self.push(&self.closed, &corrections, rates);
         }
         own.impacts(Point { t, state, inputs }, &mut self.at);
-        if self.forces().iter().any(|force| *force < 0.0) {
+        let pulls = |(place, force): (&usize, f64)| force + self.allowances[*place] < 0.0;
+        if self.closed.iter().zip(self.forces()).any(pulls) {
             let touching = std::mem::take(&mut self.closed);
             self.close(&touching, rounding_of(state, degrees, t));
         }
         CORRECTIONS as u64 + 1
-    }
-
-    /// What happens where the motion goes over a surface, from a state `before` to one just beyond,
-    /// at the time `t`: bodies that hit jump.
-    pub fn cross(
-        &mut self,
-        own: &mut Evaluator,
-        inputs: &[f64],
-        (t_before, before): (f64, &[f64]),
-        t: f64,
-        state: &mut [f64],
-    ) {
-        let count = self.names.len();
-        let degrees = own.program().degrees_of_freedom();
-        let (mut near, mut beyond) = (vec![0.0; count], vec![0.0; count]);
-        own.distances(Point { t, state, inputs }, &mut beyond);
-        let is_hit = |place: &usize, contacts: &Self| {
-            !contacts.closed.contains(place) && beyond[*place] + contacts.offsets[*place] < 0.0
-        };
-        let Some(first) = (0..count).find(|place| is_hit(place, self)) else {
-            return;
-        };
-        let point = Point {
-            t: t_before,
-            state: before,
-            inputs,
-        };
-        own.distances(point, &mut near);
-        own.impacts(Point { t, state, inputs }, &mut self.at);
-        let shortest = SHORTEST_FLIGHT * (t - self.start.unwrap_or(t));
-        let touching: Vec<usize> = (0..count)
-            .filter(|place| {
-                let impact = &self.at[*place];
-                self.closed.contains(place)
-                    || is_hit(place, self)
-                    || impact.distance + self.offsets[*place] <= -impact.rate * shortest
-            })
-            .collect();
-        // How long ago the first of them hit.
-        let ago = |place: &usize| {
-            let (from, to) = (near[*place] + self.offsets[*place], beyond[*place]);
-            let to = to + self.offsets[*place];
-            (t - t_before) * (to / (to - from)).clamp(0.0, 1.0)
-        };
-        let hits = touching.iter().filter(|place| is_hit(place, self));
-        let ago = hits.map(ago).fold(0.0, f64::max);
-        let wanted = |place: &usize| {
-            let impact = &self.at[*place];
-            match self.closed.contains(place) {
-                true => impact.rate,
-                false => (1.0 + impact.restitution) * (impact.rate - ago * impact.acceleration),
-            }
-        };
-        let rates: Vec<f64> = touching.iter().map(wanted).collect();
-        let delassus = self.delassus(&touching);
-        let impulses = complementary(&delassus, &rates);
-        let rounding = rounding_of(before, degrees, t);
-        if impulses.iter().all(|impulse| *impulse == 0.0) && rates.iter().all(|rate| *rate >= 0.0) {
-            // Nothing hit: what leaves slowly went below zero by rounding.
-            self.leave(&touching, rounding);
-            return;
-        }
-        if !solves(&delassus, &rates, &impulses) || self.without_end(t, shortest) {
-            self.overlap = Some(first);
-            state.fill(f64::NAN);
-            return;
-        }
-        let (coordinates, rates) = state.split_at_mut(degrees);
-        self.push(&touching, &impulses, rates);
-        let moved: Vec<f64> = impulses.iter().map(|impulse| impulse * ago).collect();
-        self.push(&touching, &moved, coordinates);
-        own.impacts(Point { t, state, inputs }, &mut self.at);
-        // Where a distance was located to rounding, so that this does not add up.
-        let mut below = touching.clone();
-        below.retain(|place| self.at[*place].distance < 0.0);
-        let corrections = self.balanced(&below, |impact| impact.distance);
-        self.push(&below, &corrections, &mut state[..degrees]);
-        own.impacts(Point { t, state, inputs }, &mut self.at);
-        self.settle(&touching, shortest, LOWEST_FLIGHT * rounding);
-    }
-
-    /// Whether impacts follow each other faster than the shortest flights, s.
-    fn without_end(&mut self, t: f64, shortest: f64) -> bool {
-        let first = match self.recent.len() < MOST_IN_A_ROW {
-            true => None,
-            false => self.recent.pop_front(),
-        };
-        self.recent.push_back(t);
-        first.is_some_and(|first| t - first < MOST_IN_A_ROW as f64 * shortest)
-    }
-
-    /// Closes those that touch and would fly for a shorter time than this, s, or not as high.
-    fn settle(&mut self, touching: &[usize], shortest: f64, lowest: f64) {
-        self.closed.clear();
-        loop {
-            let forces = self.forces();
-            let rests = |place: &&usize| {
-                let impact = &self.at[**place];
-                let held = self.closed.iter().zip(&forces);
-                let pushed: f64 = held
-                    .map(|(other, force)| impact.delassus[*other] * force)
-                    .sum();
-                let acceleration = impact.acceleration + pushed;
-                !self.closed.contains(place)
-                    && acceleration < 0.0
-                    && (2.0 * impact.rate <= -acceleration * shortest
-                        || impact.rate * impact.rate <= -2.0 * acceleration * lowest)
-            };
-            let Some(next) = touching.iter().find(rests) else {
-                break;
-            };
-            self.closed.push(*next);
-        }
-        self.leave(touching, f64::MIN_POSITIVE);
     }
 
     /// Closes those of the contacts that touch which then push.
@@ -292,6 +174,9 @@ impl Contacts {
             .zip(forces)
             .filter(|(_, force)| *force > 0.0);
         self.closed = pushing.map(|(place, _)| *place).collect();
+        for place in &self.closed {
+            self.allowances[*place] = 0.0;
+        }
         // They leave without speed: for a while rounding of the state moves them more.
         self.leave(touching, rounding);
     }
@@ -345,6 +230,14 @@ impl Contacts {
         }
     }
 
+    /// The most that one of these impulses changes a rate by.
+    fn largest_push(&self, places: &[usize], impulses: &[f64]) -> f64 {
+        let pushes = places.iter().zip(impulses);
+        let pushes =
+            pushes.map(|(place, impulse)| impulse.abs() * largest(&self.at[*place].column));
+        pushes.fold(0.0, f64::max)
+    }
+
     /// Delassus' matrix of these contacts.
     fn delassus(&self, places: &[usize]) -> Vec<Vec<f64>> {
         let row = |place: &usize| {
@@ -353,17 +246,6 @@ impl Contacts {
         };
         places.iter().map(row).collect()
     }
-}
-
-/// Whether impulses leave no rate negative.
-fn solves(delassus: &[Vec<f64>], rates: &[f64], impulses: &[f64]) -> bool {
-    let worst = rates
-        .iter()
-        .fold(0.0_f64, |most, rate| most.max(rate.abs()));
-    delassus.iter().zip(rates).all(|(row, rate)| {
-        let pushed: f64 = row.iter().zip(impulses).map(|(w, p)| w * p).sum();
-        pushed + rate >= -UNSOLVED * worst
-    })
 }
 
 /// By how much rounding of state and time changes distances.

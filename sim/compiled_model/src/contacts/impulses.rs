@@ -1,0 +1,222 @@
+//! Bodies that hit: which contacts touch together, how rates jump there, and what rests afterwards.
+
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
+
+use super::complementarity::complementary;
+use super::{Contacts, MOST_IN_A_ROW, OF_A_DISTANCE, largest, rounding_of};
+
+/// A flight that is this short beside the time since the start is rest.
+const SHORTEST_FLIGHT: f64 = 1e-8;
+
+/// A rate that an impact leaves negative is wrong if it is this large beside those before.
+const UNSOLVED: f64 = 1e-6;
+
+/// A flight no higher than so many times the rounding of its distance is rest.
+const LOWEST_FLIGHT: f64 = 1000.0;
+
+/// Which flights after an impact are none.
+struct Flight {
+    /// Those that are this short, s.
+    shortest: f64,
+    /// Those that are this low.
+    lowest: f64,
+    /// Rates that are rounding.
+    still: f64,
+    /// Accelerations that are rounding, without what contacts push.
+    even: f64,
+}
+
+impl Contacts {
+    /// What happens where the motion goes over a surface, from a state `before` to one just beyond,
+    /// at the time `t`: bodies that hit jump.
+    pub fn cross(
+        &mut self,
+        own: &mut Evaluator,
+        inputs: &[f64],
+        (t_before, before): (f64, &[f64]),
+        t: f64,
+        state: &mut [f64],
+    ) {
+        let count = self.names.len();
+        let degrees = own.program().degrees_of_freedom();
+        let (mut near, mut beyond) = (vec![0.0; count], vec![0.0; count]);
+        own.distances(Point { t, state, inputs }, &mut beyond);
+        let is_hit = |place: &usize, contacts: &Self| {
+            !contacts.closed.contains(place) && beyond[*place] + contacts.offsets[*place] < 0.0
+        };
+        let Some(first) = (0..count).find(|place| is_hit(place, self)) else {
+            return;
+        };
+        let point = Point {
+            t: t_before,
+            state: before,
+            inputs,
+        };
+        own.distances(point, &mut near);
+        own.impacts(Point { t, state, inputs }, &mut self.at);
+        let shortest = SHORTEST_FLIGHT * (t - self.start.unwrap_or(t));
+        let rounding = rounding_of(before, degrees, t);
+        // What touches without a speed, as a body that falls together with the one below it, is hit
+        // by the jump of the other.
+        let touching: Vec<usize> = (0..count)
+            .filter(|place| {
+                let impact = &self.at[*place];
+                let within = rounding.max(-impact.rate * shortest);
+                self.closed.contains(place)
+                    || is_hit(place, self)
+                    || impact.distance + self.offsets[*place] <= within
+            })
+            .collect();
+        // How long ago the first of them hit.
+        let ago = |place: &usize| {
+            let (from, to) = (near[*place] + self.offsets[*place], beyond[*place]);
+            let to = to + self.offsets[*place];
+            (t - t_before) * (to / (to - from)).clamp(0.0, 1.0)
+        };
+        let hits = touching.iter().filter(|place| is_hit(place, self));
+        let ago = hits.map(ago).fold(0.0, f64::max);
+        if self.nothing_hits(&touching, ago) {
+            // What leaves slowly went below zero by rounding.
+            self.leave(&touching, rounding);
+            return;
+        }
+        let jumped = match self.without_end(t, shortest) {
+            false => self.jump(own, (t, inputs), state, touching, ago),
+            true => None,
+        };
+        let Some((touching, still)) = jumped else {
+            self.overlap = Some(first);
+            state.fill(f64::NAN);
+            return;
+        };
+        let flight = Flight {
+            shortest,
+            lowest: LOWEST_FLIGHT * rounding,
+            still,
+            even: OF_A_DISTANCE * largest_acceleration(own, Point { t, state, inputs }),
+        };
+        self.settle(&touching, &flight);
+    }
+
+    /// Whether no contact that touches needs an impulse.
+    fn nothing_hits(&self, touching: &[usize], ago: f64) -> bool {
+        let mut all = touching.iter();
+        all.all(|place| self.to_be_stopped(*place, ago) >= 0.0)
+    }
+
+    /// The rate of a contact that hit so long `ago` (s), for which impulses must make up.
+    fn to_be_stopped(&self, place: usize, ago: f64) -> f64 {
+        let impact = &self.at[place];
+        let rate = impact.rate - ago * impact.acceleration;
+        match self.closed.contains(&place) {
+            true => impact.rate,
+            // What already leaves must not be pulled back.
+            false => rate + impact.restitution * rate.min(0.0),
+        }
+    }
+
+    /// Has the rates of a state jump by the impulses of what touches and hit so long `ago` (s), and of what
+    /// this brings to touch in turn. Returns all that touched and how far rounding takes a rate from zero;
+    /// nothing where no impulses keep the bodies apart.
+    fn jump(
+        &mut self,
+        own: &mut Evaluator,
+        (t, inputs): (f64, &[f64]),
+        state: &mut [f64],
+        mut touching: Vec<usize>,
+        mut ago: f64,
+    ) -> Option<(Vec<usize>, f64)> {
+        let degrees = own.program().degrees_of_freedom();
+        let mut still = 0.0_f64;
+        loop {
+            let stopped = touching.iter().map(|place| self.to_be_stopped(*place, ago));
+            let stopped: Vec<f64> = stopped.collect();
+            let delassus = self.delassus(&touching);
+            let impulses = complementary(&delassus, &stopped);
+            if !solves(&delassus, &stopped, &impulses) {
+                return None;
+            }
+            let (coordinates, rates) = state[..2 * degrees].split_at_mut(degrees);
+            let most = largest(rates) + self.largest_push(&touching, &impulses);
+            still = still.max(OF_A_DISTANCE * most);
+            self.push(&touching, &impulses, rates);
+            let moved: Vec<f64> = impulses.iter().map(|impulse| impulse * ago).collect();
+            self.push(&touching, &moved, coordinates);
+            own.impacts(Point { t, state, inputs }, &mut self.at);
+            // Where a distance was located to rounding, so that this does not add up.
+            let mut below = touching.clone();
+            below.retain(|place| self.at[*place].distance < 0.0);
+            let corrections = self.balanced(&below, |impact| impact.distance);
+            self.push(&below, &corrections, &mut state[..degrees]);
+            own.impacts(Point { t, state, inputs }, &mut self.at);
+            let touched = |place: &usize| {
+                let distance = self.at[*place].distance + self.offsets[*place];
+                !touching.contains(place) && distance < 0.0
+            };
+            let more: Vec<usize> = (0..self.names.len()).filter(touched).collect();
+            if more.is_empty() {
+                return Some((touching, still));
+            }
+            touching.extend(more);
+            ago = 0.0;
+        }
+    }
+
+    /// Whether impacts follow each other faster than the shortest flights, s.
+    fn without_end(&mut self, t: f64, shortest: f64) -> bool {
+        let first = match self.recent.len() < MOST_IN_A_ROW {
+            true => None,
+            false => self.recent.pop_front(),
+        };
+        self.recent.push_back(t);
+        first.is_some_and(|first| t - first < MOST_IN_A_ROW as f64 * shortest)
+    }
+
+    /// Closes those that touch and would not fly in earnest, or that move on together as bodies do
+    /// that fall side by side.
+    fn settle(&mut self, touching: &[usize], flight: &Flight) {
+        self.closed.clear();
+        loop {
+            let forces = self.forces();
+            let even = flight.even + OF_A_DISTANCE * self.largest_push(&self.closed, &forces);
+            let rests = |place: &&usize| {
+                let impact = &self.at[**place];
+                let held = self.closed.iter().zip(&forces);
+                let pushed: f64 = held
+                    .map(|(other, force)| impact.delassus[*other] * force)
+                    .sum();
+                let acceleration = impact.acceleration + pushed;
+                let is_short = 2.0 * impact.rate <= -acceleration * flight.shortest;
+                let is_low = impact.rate * impact.rate <= -2.0 * acceleration * flight.lowest;
+                let is_together = impact.rate <= flight.still && acceleration <= even;
+                !self.closed.contains(place)
+                    && (acceleration < 0.0 && (is_short || is_low) || is_together)
+            };
+            let Some(next) = touching.iter().find(rests) else {
+                break;
+            };
+            self.closed.push(*next);
+            self.allowances[*next] = even / self.at[*next].delassus[*next];
+        }
+        self.leave(touching, f64::MIN_POSITIVE);
+    }
+}
+
+/// Whether impulses leave no rate negative.
+fn solves(delassus: &[Vec<f64>], rates: &[f64], impulses: &[f64]) -> bool {
+    let worst = rates
+        .iter()
+        .fold(0.0_f64, |most, rate| most.max(rate.abs()));
+    delassus.iter().zip(rates).all(|(row, rate)| {
+        let pushed: f64 = row.iter().zip(impulses).map(|(w, p)| w * p).sum();
+        pushed + rate >= -UNSOLVED * worst
+    })
+}
+
+/// The largest acceleration of a coordinate, without what contacts push.
+fn largest_acceleration(own: &mut Evaluator, point: Point<'_>) -> f64 {
+    let degrees = own.program().degrees_of_freedom();
+    let mut rates = vec![0.0; point.state.len()];
+    own.rates(point, &mut rates);
+    largest(&rates[degrees..2 * degrees])
+}
