@@ -4,6 +4,7 @@ use eomgen_model_spec::ids::ParameterId;
 use std::collections::HashMap;
 use std::hash::{Hash, Hasher};
 
+use super::association::Association;
 use crate::mechanics::equations::Equations;
 use crate::mechanics::rows::RowNodes;
 use crate::program::{
@@ -59,6 +60,8 @@ pub(super) struct Lowering<'g> {
     table_places: HashMap<usize, usize>,
     /// How often the accelerations read each node, while these are lowered.
     pub(super) uses: HashMap<NodeId, usize>,
+    /// In which order factors are multiplied.
+    pub(super) association: Association,
 }
 
 impl<'g> Lowering<'g> {
@@ -85,6 +88,7 @@ impl<'g> Lowering<'g> {
             tables: Vec::new(),
             table_places: HashMap::new(),
             uses: HashMap::new(),
+            association: Association::default(),
         }
     }
 
