@@ -10,7 +10,7 @@ use crate::symbolic::graph::{Graph, NodeId, Operation, Shape};
 
 /// What is multiplied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub(super) enum Factor {
+pub(crate) enum Factor {
     /// A prepared factor, by its place in the list of them.
     Coefficient(usize),
     /// A node.
@@ -21,9 +21,9 @@ pub(super) enum Factor {
 
 /// A number times powers of nodes of parameters alone.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct PreparedFactor {
-    pub(super) number: f64,
-    pub(super) powers: Vec<(NodeId, i32)>,
+pub(crate) struct PreparedFactor {
+    pub(crate) number: f64,
+    pub(crate) powers: Vec<(NodeId, i32)>,
 }
 
 /// A product of a sum or of its own: magnitude of the number in front, and the node.
@@ -31,7 +31,7 @@ type ProductKey = (u64, NodeId);
 
 /// The orders that were chosen.
 #[derive(Default)]
-pub(super) struct Association {
+pub(crate) struct Association {
     coefficients: Vec<PreparedFactor>,
     coefficient_places: HashMap<ProductPowers, usize>,
     pairs: Vec<(Factor, Factor)>,
@@ -46,24 +46,47 @@ const LARGEST_EXPONENT: i32 = 3;
 
 impl Association {
     /// The factors of a product, if it shares any with others.
-    pub(super) fn factors(&self, magnitude: f64, product: NodeId) -> Option<&[Factor]> {
+    pub(crate) fn factors(&self, magnitude: f64, product: NodeId) -> Option<&[Factor]> {
         let factors = self.products.get(&(magnitude.to_bits(), product))?;
         Some(factors)
     }
 
     /// A prepared factor.
-    pub(super) fn coefficient(&self, place: usize) -> &PreparedFactor {
+    pub(crate) fn coefficient(&self, place: usize) -> &PreparedFactor {
         &self.coefficients[place]
     }
 
     /// The two factors of a pair.
-    pub(super) fn pair(&self, place: usize) -> (Factor, Factor) {
+    pub(crate) fn pair(&self, place: usize) -> (Factor, Factor) {
         self.pairs[place]
+    }
+
+    /// How many multiplications the products that were met take per call, each pair once.
+    fn multiplications(&self, graph: &Graph) -> usize {
+        let own = self.seen.iter().map(|&(bits, product)| {
+            if let Some(factors) = self.products.get(&(bits, product)) {
+                return factors.len() - 1;
+            }
+            let powers = match graph.operation(product) {
+                Operation::Product(powers) => powers.to_vec(),
+                _ => vec![(product, 1)],
+            };
+            let (prepared, live): (Vec<_>, Vec<_>) = powers
+                .into_iter()
+                .partition(|(id, _)| graph.dependence(*id).is_parameter_only());
+            let number = f64::from_bits(bits);
+            let prepared = usize::from(number != 1.0 || !prepared.is_empty());
+            let live = live
+                .iter()
+                .map(|(_, exponent)| exponent.unsigned_abs() as usize);
+            (live.sum::<usize>() + prepared).saturating_sub(1)
+        });
+        own.sum::<usize>() + self.pairs.len()
     }
 
     /// Chooses the orders of all products that `roots` are computed from and that were not met
     /// before.
-    pub(super) fn extend(&mut self, graph: &Graph, roots: &[NodeId]) {
+    pub(crate) fn extend(&mut self, graph: &Graph, roots: &[NodeId]) {
         let keys = product_keys(graph, roots);
         let mut found: Vec<(ProductKey, Vec<Factor>)> = Vec::new();
         for key in keys {
@@ -127,6 +150,33 @@ impl Association {
         }
         (factors.len() > 1).then_some(factors)
     }
+}
+
+/// What a sine or a cosine counts for: they come in pairs, and wait for little.
+const TURN: usize = 20;
+
+/// How many operations nodes of scalars take per call, with what products share: by this the
+/// cheaper of two forms is told.
+pub(crate) fn shared_operations(graph: &Graph, roots: &[NodeId]) -> usize {
+    let mut association = Association::default();
+    association.extend(graph, roots);
+    let others = graph.reachable(roots).into_iter().map(|id| {
+        if graph.dependence(id).is_parameter_only() {
+            return 0;
+        }
+        match graph.operation(id) {
+            Operation::Sum(terms) => {
+                let prepared =
+                    |(_, term): &&(_, NodeId)| graph.dependence(*term).is_parameter_only();
+                let live = terms.len() - terms.iter().filter(prepared).count();
+                live - usize::from(live == terms.len())
+            }
+            Operation::Call(Function::Sin | Function::Cos, _) => TURN,
+            Operation::Call(..) | Operation::Power(..) | Operation::Select { .. } => 1,
+            _ => 0,
+        }
+    });
+    others.sum::<usize>() + association.multiplications(graph)
 }
 
 /// The products that stand in sums, with their numbers, and those that stand elsewhere.

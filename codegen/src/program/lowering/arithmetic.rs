@@ -2,9 +2,9 @@
 
 use eomgen_model_spec::model::Function;
 
-use super::association::Factor;
 use super::values::Lowering;
 use crate::program::{Extent, Op, ValueId};
+use crate::symbolic::association::Factor;
 use crate::symbolic::graph::{Bits, NodeId, Operation, Shape};
 
 impl Lowering<'_> {

@@ -6,7 +6,6 @@
 
 mod affine;
 mod arithmetic;
-mod association;
 mod outputs;
 mod quantities;
 mod values;

@@ -4,12 +4,12 @@ use eomgen_model_spec::ids::ParameterId;
 use std::collections::HashMap;
 use std::hash::{Hash, Hasher};
 
-use super::association::Association;
 use crate::mechanics::equations::Equations;
 use crate::mechanics::rows::RowNodes;
 use crate::program::{
     Extent, Impact, MassBlocks, Op, ProgramTable, RowValues, ScaledValue, Value, ValueId,
 };
+use crate::symbolic::association::Association;
 use crate::symbolic::graph::{Assembly, Graph, NodeId, Operation, Shape, Variable};
 
 /// An operation and its extent, to be found again: numbers are compared by their bits.
