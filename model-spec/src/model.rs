@@ -359,6 +359,17 @@ pub struct Force {
     pub span: Span,
 }
 
+impl Force {
+    /// The name as the specification writes it: that of the vector for a component.
+    pub(crate) fn written_name(&self, source: &Source) -> &str {
+        let written = source.text.get(self.span.start..self.span.end);
+        match written {
+            Some(text) if self.name.starts_with(text) => &self.name[..text.len()],
+            _ => &self.name,
+        }
+    }
+}
+
 /// An expression that stays zero along the motion. Its force on the coordinates is A^T lambda, A
 /// the derivative of the expression by the coordinates or, of a nonholonomic one, by their rates.
 #[derive(Clone, Debug)]

@@ -27,6 +27,8 @@ pub struct Document {
     pub fields: Vec<RawField>,
     /// `[definitions]`
     pub definitions: Vec<RawTerm>,
+    /// Those of `[definitions]` that are vectors; their components are among the definitions.
+    pub vectors: Vec<Name>,
     /// `[frames.NAME]`
     pub frames: Vec<RawFrame>,
     /// `[bodies.NAME]`
@@ -265,8 +267,8 @@ pub struct RawFrame {
     pub name: Name,
     /// `in`: the frame it is placed in; the fixed axes if absent.
     pub parent: Option<Written>,
-    /// `origin`: three components along the parent's axes.
-    pub origin: Option<Vec<Quantity>>,
+    /// `origin`: a vector along the parent's axes.
+    pub origin: Option<Quantity>,
     /// `rotation`: from its own axes to the parent's.
     pub rotation: Option<Written>,
     /// `doc`
@@ -282,8 +284,8 @@ pub struct RawBody {
     pub frame: Written,
     /// `mass`; a body without one has inertia only.
     pub mass: Option<Quantity>,
-    /// `centre`: three components along the frame's axes.
-    pub centre: Option<Vec<Quantity>>,
+    /// `centre`: a vector along the frame's axes.
+    pub centre: Option<Quantity>,
     /// `inertia`: three principal moments or six elements, about the centre of mass.
     pub inertia: Option<Vec<Quantity>>,
     /// `doc`

@@ -1,7 +1,7 @@
 //! Where effects may sit in a model: axes, angles, meshes with play, flexible bodies and springs,
 //! with the arguments that fill the placeholders of an effect there.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use eomgen_model_spec::ast::BinaryOperator;
 use eomgen_model_spec::dimension::Dimension;
@@ -43,13 +43,19 @@ pub fn sites(model: &Model) -> Vec<Site> {
 #[derive(Default)]
 struct Parts {
     coordinates: Vec<CoordinateId>,
+    /// Definitions that were written out: one of vectors is used again and again.
+    definitions: BTreeSet<usize>,
     other: bool,
 }
 
 fn parts(model: &Model, expr: &Expr, into: &mut Parts) {
     expr.visit(&mut |part| match part.kind {
         ExprKind::Coordinate(id) => into.coordinates.push(id),
-        ExprKind::Definition(id) => parts(model, &model.definitions[id].value, into),
+        ExprKind::Definition(id) => {
+            if into.definitions.insert(id.index()) {
+                parts(model, &model.definitions[id].value, into);
+            }
+        }
         ExprKind::Dot(_)
         | ExprKind::Field(_)
         | ExprKind::ModeCoordinate(_)

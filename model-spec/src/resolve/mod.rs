@@ -17,7 +17,7 @@ use crate::model::{
     State, Term,
 };
 use crate::names::{Names, Symbol};
-use crate::order::{Reference, order};
+use crate::order::{Reference, circular, order};
 use crate::rate_order::{WrittenOut, rate_order};
 use crate::raw::{
     Document, RawBasis, RawCoordinate, RawField, RawInput, RawParameter, RawRange, RawSensor,
@@ -39,6 +39,8 @@ pub struct Resolved {
     pub declared: Vec<Option<Unit>>,
     /// Quantities of short forms, each with its unit and what it is.
     pub demanded: Vec<(Expr, Dimension, String)>,
+    /// Components of vectors, which must have one unit.
+    pub alike: Vec<Vec<Expr>>,
     /// Inertias of bodies.
     pub inertias: Vec<Inertia<Expr>>,
 }
@@ -112,6 +114,7 @@ impl Builder {
             model,
             declared,
             demanded: Vec::new(),
+            alike: Vec::new(),
             inertias: Vec::new(),
         }
     }
@@ -126,6 +129,11 @@ impl Builder {
                 let demanded = (value, demand.dimension, demand.subject);
                 resolved.demanded.push(demanded);
             }
+        }
+        for vector in demands.alike {
+            let mut component = |value: &Quantity| self.expression(value, Scope::Motion);
+            let components: Option<Vec<Expr>> = vector.iter().map(&mut component).collect();
+            resolved.alike.extend(components);
         }
         for inertia in demands.inertias {
             let mut constant = |value: &Quantity| self.expression(value, Scope::Parameters);
@@ -248,7 +256,7 @@ impl Builder {
                 let unit = unit.as_ref()?;
                 ParameterValue::Number(self.in_si(unit, *number)?)
             }
-            Quantity::Expression(_) | Quantity::Expansion(_) => {
+            Quantity::Expression(_) | Quantity::Listed(..) | Quantity::Expansion(_) => {
                 ParameterValue::Expression(self.expression(&raw.value, Scope::Parameters)?)
             }
         };
@@ -568,26 +576,6 @@ fn definition_references(definition: &Definition) -> Vec<Reference> {
         }
     });
     list
-}
-
-fn circular<'n>(kind: &str, circle: &[Reference], named: impl Fn(usize) -> &'n str) -> Diagnostic {
-    let Some((&(first, place), rest)) = circle.split_first() else {
-        return Diagnostic::error(format!("a {kind} refers to itself"));
-    };
-    let mut chain: Vec<&str> = circle.iter().map(|(index, _)| named(*index)).collect();
-    chain.push(named(first));
-    // A circle of hundreds is shown by its beginning.
-    if chain.len() > 8 {
-        chain.truncate(7);
-        chain.push("...");
-    }
-    let message = format!("the {kind} `{}` refers to itself", named(first));
-    let mut diagnostic =
-        Diagnostic::error(message).at(place, format!("here: {}", chain.join(" -> ")));
-    for &(index, place) in rest.iter().take(4) {
-        diagnostic = diagnostic.also(place, format!("in `{}`", named(index)));
-    }
-    diagnostic.help("break the circle: one of them must be known without the others")
 }
 
 /// A unit per s, or per s^2; none if its dimension cannot be told.

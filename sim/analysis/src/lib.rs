@@ -14,8 +14,10 @@
 //! [`poincare`] describes a stroboscopic section, [`exponent`] averages logarithmic growth,
 //! and [`classify`] weighs these against each other by a stated rule. [`modes`] says which
 //! mode of a flexible body carries the motion, [`course`] has single numbers of a course over time, [`natural_modes`] which modes a
-//! linearised machine has, [`constrained_modes`] which one with constraints has.
+//! linearised machine has, [`constrained_modes`] which one with constraints has, whose [`allowed_motions`]
+//! have matrices of their own.
 
+pub mod allowed_motions;
 pub mod classify;
 pub mod constrained_modes;
 pub mod course;
