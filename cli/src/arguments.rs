@@ -424,6 +424,10 @@ pub struct Modes {
     /// of 0 and t = 0 where nothing is said (repeatable).
     #[arg(long, value_name = "NAME=VALUE")]
     pub at: Vec<String>,
+    /// An SVG file to draw the lowest modes in: shapes of fields over their lengths, coordinates as
+    /// bars.
+    #[arg(long, value_name = "FILE.svg")]
+    pub plot: Option<PathBuf>,
     /// Print one JSON document.
     #[arg(long)]
     pub json: bool,
