@@ -30,6 +30,7 @@ mod parquet_file;
 mod progress;
 mod ranges;
 mod regime;
+mod sample_statistics;
 mod samples;
 mod settings;
 mod sweep_files;
