@@ -70,7 +70,7 @@ pub enum Command {
     Discover(Discover),
     /// Measure the motion over a grid of parameters.
     #[command(
-        after_help = "Examples:\n  eomgen sweep model-spec/models/planetary_arm.toml --vary b_sp,b_pr=0:100e-6:50 --vary omega=10:60:50 --measure lyapunov,poincare --out map\n  eomgen sweep SPEC --vary b_sp,b_pr=0:100e-6:200 --vary omega=10:40:200 --measure poincare --out DIR --shard 2/3\n  eomgen sweep SPEC --vary k=10:1e5:50:log --measure max:tip,rms:tip --until 2 --out DIR\n  eomgen sweep SPEC --vary k=1:9:200 --measure poincare:y_dot --section x=0:up --until 500 --out DIR\n  eomgen sweep SPEC --vary omega=10:40:1000 --measure poincare --out DIR --engine slurm --shards 100\nA run that was interrupted goes on where it was. Shards may run one after the other or\nat once, in one folder or with their files in `parts` collected in one; then `eomgen merge DIR`."
+        after_help = "Examples:\n  eomgen sweep model-spec/models/planetary_arm.toml --vary b_sp,b_pr=0:100e-6:50 --vary omega=10:60:50 --measure lyapunov,poincare --out map\n  eomgen sweep SPEC --vary b_sp,b_pr=0:100e-6:200 --vary omega=10:40:200 --measure poincare --out DIR --shard 2/3\n  eomgen sweep SPEC --vary k=10:1e5:50:log --measure max:tip,rms:tip --until 2 --out DIR\n  eomgen sweep SPEC --vary k=1:9:200 --measure poincare:y_dot --section x=0:up --until 500 --out DIR\n  eomgen sweep SPEC --vary omega=10:40:1000 --measure poincare --out DIR --engine slurm --shards 100\n  eomgen sweep SPEC --samples 1000 --seed 1 --measure max:tip --until 2 --out DIR\nA run that was interrupted goes on where it was. Shards may run one after the other or\nat once, in one folder or with their files in `parts` collected in one; then `eomgen merge DIR`."
     )]
     Sweep(Sweep),
     /// Put the shards of a sweep together; refuses where some are missing.
@@ -424,6 +424,10 @@ pub struct Modes {
     /// of 0 and t = 0 where nothing is said (repeatable).
     #[arg(long, value_name = "NAME=VALUE")]
     pub at: Vec<String>,
+    /// An SVG file to draw the lowest modes in: shapes of fields over their lengths, coordinates as
+    /// bars.
+    #[arg(long, value_name = "FILE.svg")]
+    pub plot: Option<PathBuf>,
     /// Print one JSON document.
     #[arg(long)]
     pub json: bool,
@@ -468,9 +472,23 @@ pub struct Sweep {
     #[arg(
         long,
         value_name = "NAME[,NAME...]=FROM:TO:COUNT[:log]",
-        required = true
+        required_unless_present = "samples",
+        conflicts_with = "samples"
     )]
     pub vary: Vec<String>,
+    /// So many random samples of all parameters for which the specification declares an uncertainty, in
+    /// place of --vary.
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub samples: Option<usize>,
+    /// Which sequence of random samples.
+    #[arg(
+        long,
+        value_name = "SEED",
+        default_value_t = 1,
+        requires = "samples",
+        conflicts_with = "vary"
+    )]
+    pub seed: u64,
     /// What is measured: `lyapunov`, the largest Lyapunov exponent; `poincare` or
     /// `poincare:NAME`, the first or another coordinate or a rate once per forcing period, or
     /// on `--section`; `max:NAME`, `rms:NAME`, `final:NAME`, a number of what an observable, a

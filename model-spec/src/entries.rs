@@ -7,11 +7,13 @@ use crate::model::Basis;
 use crate::raw::{
     RawBasis, RawBody, RawCoefficient, RawCoefficientKind, RawCoordinate, RawField, RawFrame,
     RawInput, RawLine, RawParameter, RawPoint, RawRange, RawSensor, RawState, RawTerm,
+    RawUncertainty,
 };
 use crate::suggest::did_you_mean;
 use crate::table::{Entry, Name, Quantity, Record, Written, unknown_key};
 
 const PARAMETER_EXAMPLE: &str = "{ value = 0.5, unit = \"m\" }";
+const UNCERTAINTY_EXAMPLE: &str = "{ relative = 0.02 }";
 const COORDINATE_EXAMPLE: &str = "{ unit = \"rad\", initial = 0 }";
 const STATE_EXAMPLE: &str = "{ unit = \"N\", rate = \"(k*x - z)/tau\", initial = 0 }";
 const FORCE_EXAMPLE: &str = "{ on = \"theta\", value = \"-c*dot(theta)\" }";
@@ -42,8 +44,41 @@ pub fn parameter(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawParame
         origin: record.text("source", found),
         min: record.number("min", found),
         max: record.number("max", found),
+        uncertainty: uncertainty(&record, found),
         value: found.keep(value)?,
     })
+}
+
+/// The `uncertainty` of a parameter, if it has one.
+fn uncertainty(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawUncertainty> {
+    let entry = record.get("uncertainty")?;
+    let record = entry.record(&keys::UNCERTAINTY, UNCERTAINTY_EXAMPLE, found)?;
+    let given: Vec<&Entry<'_>> = keys::UNCERTAINTY
+        .iter()
+        .filter_map(|key| record.get(key))
+        .collect();
+    let [one] = given[..] else {
+        let message = format!("an uncertainty is said in one way, not in {}", given.len());
+        found.push(
+            Diagnostic::error(message)
+                .at(entry.span(), "expected one of relative, sd, between")
+                .help(format!("write uncertainty = {UNCERTAINTY_EXAMPLE}")),
+        );
+        return None;
+    };
+    let raw = match &*one.name.text {
+        "relative" => one.number().map(RawUncertainty::Relative),
+        "sd" => one.number().map(RawUncertainty::StandardDeviation),
+        _ => one.pair().and_then(|[low, high]| match (low, high) {
+            (Quantity::Number(low), Quantity::Number(high)) => {
+                Ok(RawUncertainty::Between([low, high]))
+            }
+            _ => Err(Diagnostic::error("the ends of an uncertainty are numbers")
+                .at(one.span(), "no expression stands here")
+                .help("write them in the parameter's unit, as { between = [1, 2] }")),
+        }),
+    };
+    found.keep(raw)
 }
 
 /// An entry of `[coordinates]`.

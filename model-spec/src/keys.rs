@@ -6,7 +6,17 @@ use crate::model::{Basis, End};
 /// Keys of `[model]`.
 pub const MODEL: [&str; 3] = ["name", "title", "gravity"];
 /// Keys of an entry of `[parameters]`.
-pub const PARAMETER: [&str; 6] = ["value", "unit", "doc", "source", "min", "max"];
+pub const PARAMETER: [&str; 7] = [
+    "value",
+    "unit",
+    "doc",
+    "source",
+    "min",
+    "max",
+    "uncertainty",
+];
+/// Keys of the `uncertainty` of a parameter, of which it has one.
+pub const UNCERTAINTY: [&str; 3] = ["relative", "sd", "between"];
 /// Keys of an entry of `[coordinates]`.
 pub const COORDINATE: [&str; 5] = ["unit", "doc", "initial", "initial_rate", "range"];
 /// Keys of an entry of `[inputs]`.

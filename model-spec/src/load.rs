@@ -72,6 +72,7 @@ pub fn check(source: Source) -> Result<Checked, Diagnostics> {
     check_drawing(&model, &mut found);
     if found.is_empty() {
         found.keep(model.check_numbers().map_err(ModelError::diagnostic));
+        found.keep(model.spreads().map_err(ModelError::diagnostic));
     }
     if found.is_empty() {
         check_tables(&model, &mut found);

@@ -147,8 +147,21 @@ pub struct Parameter {
     pub min: Option<f64>,
     /// Largest admissible value in SI, if stated.
     pub max: Option<f64>,
+    /// What is not known of its value, if stated.
+    pub uncertainty: Option<Uncertainty>,
     /// Where its name stands.
     pub span: Span,
+}
+
+/// What is not known of a parameter's value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Uncertainty {
+    /// It is normal, with this standard deviation as a part of the value.
+    Relative(f64),
+    /// It is normal, with this standard deviation in SI.
+    StandardDeviation(f64),
+    /// It lies between these ends, in SI, anywhere alike.
+    Between([f64; 2]),
 }
 
 /// The value of a parameter.

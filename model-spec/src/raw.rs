@@ -78,6 +78,7 @@ impl Document {
             origin: "0: not at all".to_owned(),
             min: None,
             max: None,
+            uncertainty: None,
         });
     }
 }
@@ -128,6 +129,19 @@ pub struct RawParameter {
     pub min: Option<Number>,
     /// `max`
     pub max: Option<Number>,
+    /// `uncertainty`
+    pub uncertainty: Option<RawUncertainty>,
+}
+
+/// The `uncertainty` of a parameter.
+#[derive(Debug)]
+pub enum RawUncertainty {
+    /// `relative`
+    Relative(Number),
+    /// `sd`
+    StandardDeviation(Number),
+    /// `between`
+    Between([Number; 2]),
 }
 
 /// An entry of `[coordinates]`.

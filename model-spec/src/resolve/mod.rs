@@ -14,14 +14,14 @@ use crate::ids::{ConstraintId, DefinitionId, InputId, ParameterId};
 use crate::model::{
     Basis, Constraint, Coordinate, Definition, Expr, ExprKind, Field, Force, Impact, Input,
     MAX_ORDER, MULTIPLIER, Model, Observable, Parameter, ParameterValue, RESIDUAL, Range, Sensor,
-    State, Term,
+    State, Term, Uncertainty,
 };
 use crate::names::{Names, Symbol};
 use crate::order::{Reference, circular, order};
 use crate::rate_order::{WrittenOut, rate_order};
 use crate::raw::{
     Document, RawBasis, RawCoordinate, RawField, RawInput, RawParameter, RawRange, RawSensor,
-    RawState, RawTerm,
+    RawState, RawTerm, RawUncertainty,
 };
 use crate::shape_table::ShapeTable;
 use crate::source::Source;
@@ -271,6 +271,9 @@ impl Builder {
                     .at(number.span, "max is less than min"),
             );
         }
+        let uncertainty = raw
+            .uncertainty
+            .and_then(|raw| self.uncertainty(&unit, &raw));
         Some(Parameter {
             name: raw.name.text,
             unit,
@@ -279,7 +282,20 @@ impl Builder {
             value,
             min,
             max,
+            uncertainty,
             span: raw.name.span,
+        })
+    }
+
+    fn uncertainty(&mut self, unit: &Unit, raw: &RawUncertainty) -> Option<Uncertainty> {
+        Some(match *raw {
+            RawUncertainty::Relative(part) => Uncertainty::Relative(part.value),
+            RawUncertainty::StandardDeviation(sd) => {
+                Uncertainty::StandardDeviation(self.in_si(unit, sd)?)
+            }
+            RawUncertainty::Between([low, high]) => {
+                Uncertainty::Between([self.in_si(unit, low)?, self.in_si(unit, high)?])
+            }
         })
     }
 
