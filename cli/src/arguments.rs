@@ -58,6 +58,12 @@ pub enum Command {
         after_help = "Examples:\n  eomgen trim model-spec/models/pendulum.toml\n  eomgen trim model-spec/models/furuta_pendulum.toml --fix u=0 --fix phi=0.5\nCoordinates are free, inputs 0. Where coordinates are fixed, inputs that are not are free."
     )]
     Trim(Trim),
+    /// Propose a dataset file for a record: how its numbers stand, which columns are what, how
+    /// much noise they hold, with every guess marked.
+    #[command(
+        after_help = "Example:\n  eomgen dataset train.csv my_machine.toml --out proposed.toml\nWhat it guesses stands beside each key as a comment; docs/discovery.md has all keys."
+    )]
+    Dataset(Dataset),
     /// Say where a model and its measurements disagree.
     #[command(
         after_help = "Example:\n  eomgen compare my_machine.toml dataset.toml --out compared"
@@ -129,6 +135,21 @@ pub enum Format {
     Latex,
     /// One JSON document.
     Json,
+}
+
+/// Options of `dataset`.
+#[derive(Args)]
+pub struct Dataset {
+    /// The record: text or Parquet.
+    pub record: PathBuf,
+    /// The specification of the machine.
+    pub spec: PathBuf,
+    /// The dataset file, in the record's folder or above it; on stdout if absent.
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+    /// Print one JSON document.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// Options of `compare`.

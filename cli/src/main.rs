@@ -56,6 +56,7 @@ fn main() -> ExitCode {
         Command::Linearise(options) => commands::linearise::run(&options),
         Command::Modes(options) => commands::modes::run(&options),
         Command::Trim(options) => commands::trim::run(&options),
+        Command::Dataset(options) => commands::dataset::run(&options),
         Command::Compare(options) => commands::discover::compare(&options),
         Command::Discover(options) => commands::discover::discover(&options),
         Command::Sweep(options) => commands::sweep::run(&options),

@@ -422,8 +422,10 @@ fn coefficient_kind(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawC
 /// A `[sensors.CHANNEL]`.
 pub fn sensor(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawSensor> {
     let record = entry.record(&keys::SENSOR, "{ gain = 1, bias = 0 }", found)?;
+    let observable = record.written("observable", found);
     let mut number = |key, absent| record.number(key, found).map_or(absent, |n| n.value);
     Some(RawSensor {
+        observable,
         channel: entry.name.clone(),
         gain: number("gain", 1.0),
         bias: number("bias", 0.0),

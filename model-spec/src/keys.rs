@@ -52,7 +52,7 @@ pub const OBSERVABLE: [&str; 4] = ["value", "unit", "doc", "source"];
 /// Keys of an entry of `[coefficients]`.
 pub const COEFFICIENT: [&str; 6] = ["value", "of", "by", "times", "each", "doc"];
 /// Keys of a `[sensors.CHANNEL]`.
-pub const SENSOR: [&str; 3] = ["gain", "bias", "delay"];
+pub const SENSOR: [&str; 4] = ["observable", "gain", "bias", "delay"];
 
 /// Keys of `[drawing]`.
 pub const DRAWING: [&str; 2] = ["points", "lines"];

@@ -477,15 +477,17 @@ pub enum CoefficientKind {
 /// A measured channel: measured(t) = gain * quantity(t - delay) + bias.
 #[derive(Clone, Debug)]
 pub struct Sensor {
-    /// A coordinate, a rate (`NAME_dot`), an observable, `energy` or `power`.
+    /// Its name.
     pub channel: String,
+    /// What it measures: a coordinate, a rate (`NAME_dot`), an observable, `energy` or `power`.
+    pub observable: String,
     /// Dimensionless, 1 for a true sensor.
     pub gain: f64,
     /// In the channel's SI unit.
     pub bias: f64,
-    /// In s, not negative.
+    /// In s, negative where the channel is early.
     pub delay: f64,
-    /// Where the channel's name stands.
+    /// Where what it measures is said.
     pub span: Span,
 }
 

@@ -335,10 +335,12 @@ pub enum RawCoefficientKind {
 pub struct RawSensor {
     /// The channel.
     pub channel: Name,
+    /// What it measures, where that is not its name.
+    pub observable: Option<Written>,
     /// `gain`, 1 if absent.
     pub gain: f64,
     /// `bias` in the channel's unit, 0 if absent.
     pub bias: f64,
-    /// `delay` in s, 0 if absent.
+    /// `delay` in s, negative where it is early; 0 if absent.
     pub delay: f64,
 }

@@ -97,7 +97,7 @@ impl Builder {
             impacts: self.all(document.impacts, Self::impact),
             observables,
             coefficients: self.coefficients(document.coefficients),
-            sensors: self.all(document.sensors, Self::sensor),
+            sensors: document.sensors.into_iter().map(sensor).collect(),
             drawing,
             parameter_order: Vec::new(),
             definition_order: Vec::new(),
@@ -511,22 +511,20 @@ impl Builder {
         };
         Some((observable, declared))
     }
+}
 
-    fn sensor(&mut self, raw: RawSensor) -> Option<Sensor> {
-        if raw.delay < 0.0 {
-            self.found.push(
-                Diagnostic::error("a sensor cannot be ahead of time")
-                    .at(raw.channel.span, "its delay is negative")
-                    .help("a delay is in s and at least 0"),
-            );
-        }
-        Some(Sensor {
-            channel: raw.channel.text,
-            gain: raw.gain,
-            bias: raw.bias,
-            delay: raw.delay,
-            span: raw.channel.span,
-        })
+fn sensor(raw: RawSensor) -> Sensor {
+    let (observable, span) = match raw.observable {
+        Some(written) => (written.text, written.span),
+        None => (raw.channel.text.clone(), raw.channel.span),
+    };
+    Sensor {
+        channel: raw.channel.text,
+        observable,
+        gain: raw.gain,
+        bias: raw.bias,
+        delay: raw.delay,
+        span,
     }
 }
 
