@@ -211,6 +211,8 @@ fn equations(model: &Model) -> Vec<Equation> {
         let is_mesh = site.kind == SiteKind::Mesh;
         let unit = match site.kind {
             SiteKind::Mesh => Some("m"),
+            // A force between both ends of a spring is in the equations of what it joins.
+            SiteKind::Spring => None,
             _ => site.arguments.get("unit").and_then(|text| unit(text)),
         };
         if let (Some(unit), Some(on)) = (unit, site.arguments.get("on")) {
