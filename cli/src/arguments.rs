@@ -58,6 +58,12 @@ pub enum Command {
         after_help = "Examples:\n  eomgen trim model-spec/models/pendulum.toml\n  eomgen trim model-spec/models/furuta_pendulum.toml --fix u=0 --fix phi=0.5\nCoordinates are free, inputs 0. Where coordinates are fixed, inputs that are not are free."
     )]
     Trim(Trim),
+    /// Propose a dataset file for a record: how its numbers stand, which columns are what, how
+    /// much noise they hold, with every guess marked.
+    #[command(
+        after_help = "Example:\n  eomgen dataset train.csv my_machine.toml --out proposed.toml\nWhat it guesses stands beside each key as a comment; docs/discovery.md has all keys."
+    )]
+    Dataset(Dataset),
     /// Say where a model and its measurements disagree.
     #[command(
         after_help = "Example:\n  eomgen compare my_machine.toml dataset.toml --out compared"
@@ -70,7 +76,7 @@ pub enum Command {
     Discover(Discover),
     /// Measure the motion over a grid of parameters.
     #[command(
-        after_help = "Examples:\n  eomgen sweep model-spec/models/planetary_arm.toml --vary b_sp,b_pr=0:100e-6:50 --vary omega=10:60:50 --measure lyapunov,poincare --out map\n  eomgen sweep SPEC --vary b_sp,b_pr=0:100e-6:200 --vary omega=10:40:200 --measure poincare --out DIR --shard 2/3\n  eomgen sweep SPEC --vary k=10:1e5:50:log --measure max:tip,rms:tip --until 2 --out DIR\n  eomgen sweep SPEC --vary k=1:9:200 --measure poincare:y_dot --section x=0:up --until 500 --out DIR\n  eomgen sweep SPEC --vary omega=10:40:1000 --measure poincare --out DIR --engine slurm --shards 100\nA run that was interrupted goes on where it was. Shards may run one after the other or\nat once, in one folder or with their files in `parts` collected in one; then `eomgen merge DIR`."
+        after_help = "Examples:\n  eomgen sweep model-spec/models/planetary_arm.toml --vary b_sp,b_pr=0:100e-6:50 --vary omega=10:60:50 --measure lyapunov,poincare --out map\n  eomgen sweep SPEC --vary b_sp,b_pr=0:100e-6:200 --vary omega=10:40:200 --measure poincare --out DIR --shard 2/3\n  eomgen sweep SPEC --vary k=10:1e5:50:log --measure max:tip,rms:tip --until 2 --out DIR\n  eomgen sweep SPEC --vary k=1:9:200 --measure poincare:y_dot --section x=0:up --until 500 --out DIR\n  eomgen sweep SPEC --vary omega=10:40:1000 --measure poincare --out DIR --engine slurm --shards 100\n  eomgen sweep SPEC --samples 1000 --seed 1 --measure max:tip --until 2 --out DIR\nA run that was interrupted goes on where it was. Shards may run one after the other or\nat once, in one folder or with their files in `parts` collected in one; then `eomgen merge DIR`."
     )]
     Sweep(Sweep),
     /// Put the shards of a sweep together; refuses where some are missing.
@@ -129,6 +135,21 @@ pub enum Format {
     Latex,
     /// One JSON document.
     Json,
+}
+
+/// Options of `dataset`.
+#[derive(Args)]
+pub struct Dataset {
+    /// The record: text or Parquet.
+    pub record: PathBuf,
+    /// The specification of the machine.
+    pub spec: PathBuf,
+    /// The dataset file, in the record's folder or above it; on stdout if absent.
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+    /// Print one JSON document.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// Options of `compare`.
@@ -424,6 +445,10 @@ pub struct Modes {
     /// of 0 and t = 0 where nothing is said (repeatable).
     #[arg(long, value_name = "NAME=VALUE")]
     pub at: Vec<String>,
+    /// An SVG file to draw the lowest modes in: shapes of fields over their lengths, coordinates as
+    /// bars.
+    #[arg(long, value_name = "FILE.svg")]
+    pub plot: Option<PathBuf>,
     /// Print one JSON document.
     #[arg(long)]
     pub json: bool,
@@ -468,9 +493,23 @@ pub struct Sweep {
     #[arg(
         long,
         value_name = "NAME[,NAME...]=FROM:TO:COUNT[:log]",
-        required = true
+        required_unless_present = "samples",
+        conflicts_with = "samples"
     )]
     pub vary: Vec<String>,
+    /// So many random samples of all parameters for which the specification declares an uncertainty, in
+    /// place of --vary.
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub samples: Option<usize>,
+    /// Which sequence of random samples.
+    #[arg(
+        long,
+        value_name = "SEED",
+        default_value_t = 1,
+        requires = "samples",
+        conflicts_with = "vary"
+    )]
+    pub seed: u64,
     /// What is measured: `lyapunov`, the largest Lyapunov exponent; `poincare` or
     /// `poincare:NAME`, the first or another coordinate or a rate once per forcing period, or
     /// on `--section`; `max:NAME`, `rms:NAME`, `final:NAME`, a number of what an observable, a

@@ -8,7 +8,7 @@ use eomgen_sweep::{Column, Description, Job, Table};
 /// A picture of each measure as PNG, with the measure's name; none where not one or two
 /// axes have several values.
 pub fn draw(job: &Job, table: &Table) -> Vec<(String, Result<Vec<u8>, PlotError>)> {
-    let axes = job.grid().axes();
+    let axes = job.points().axes();
     let wide: Vec<usize> = (0..axes.len())
         .filter(|axis| axes.get(*axis).is_some_and(|axis| axis.count > 1))
         .collect();
@@ -118,7 +118,7 @@ struct Line {
 
 impl Line {
     fn of(job: &Job, axis: usize) -> Option<Self> {
-        let axis = job.grid().axes().get(axis)?;
+        let axis = job.points().axes().get(axis)?;
         let parameters = &job.plan().parameters;
         let of = |name: &String| parameters.iter().find(|column| column.name == *name);
         let first = of(axis.names.first()?)?;
@@ -153,13 +153,15 @@ impl Line {
 }
 
 /// A column's unit in SI, which is what figures put prefixes on.
-struct Shown {
+pub struct Shown {
     declared: Option<Unit>,
-    unit: String,
+    /// The unit; empty for a number.
+    pub unit: String,
 }
 
 impl Shown {
-    fn new(column: &Column) -> Self {
+    /// That of a column.
+    pub fn new(column: &Column) -> Self {
         let declared = Unit::parse(&column.unit).ok();
         let unit = match &declared {
             Some(unit) if !unit.is_coherent() => Unit::coherent(unit.dimension).text,
@@ -169,7 +171,8 @@ impl Shown {
         Self { declared, unit }
     }
 
-    fn si(&self, value: f64) -> f64 {
+    /// A number of the column in it.
+    pub fn si(&self, value: f64) -> f64 {
         self.declared
             .as_ref()
             .map_or(value, |unit| unit.to_si(value))

@@ -1,14 +1,19 @@
 //! A linearisation written down: as a JSON document, and as arrays of NumPy.
 
+use eomgen_analysis::allowed_motions::{AllowedMotions, row_by_row};
 use eomgen_compiled_model::{CompiledModel, Linearisation, OperatingPoint};
 use serde_json::{Value, json};
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::npz::{Array, archive};
 use crate::operating_point::{head, inputs, named};
 
 /// One document with the point, names, units and matrices.
-pub fn document(compiled: &CompiledModel, at: &OperatingPoint, found: &Linearisation) -> Value {
+pub fn document(
+    compiled: &CompiledModel,
+    at: &OperatingPoint,
+    found: &Linearisation,
+) -> Result<Value> {
     let (inputs, input_units) = inputs(compiled);
     let states = compiled.state_names();
     let outputs = compiled.observable_names();
@@ -38,7 +43,43 @@ pub fn document(compiled: &CompiledModel, at: &OperatingPoint, found: &Linearisa
         ("C".to_owned(), of(&found.c, l, n)),
         ("D".to_owned(), of(&found.d, l, m)),
     ]);
-    Value::Object(document)
+    if let Some(minimal) = minimal(compiled, found)? {
+        let k = minimal.count;
+        document.extend([
+            ("N".to_owned(), of(&minimal.n, n, k)),
+            ("A_allowed".to_owned(), of(&minimal.a, k, k)),
+            ("B_allowed".to_owned(), of(&minimal.b, k, m)),
+            ("C_allowed".to_owned(), of(&minimal.c, l, k)),
+        ]);
+    }
+    Ok(Value::Object(document))
+}
+
+/// The matrices of the motions that constraints allow: x = N y.
+struct Minimal {
+    count: usize,
+    n: Vec<f64>,
+    a: Vec<f64>,
+    b: Vec<f64>,
+    c: Vec<f64>,
+}
+
+/// Those of a model with constraints; none without.
+fn minimal(compiled: &CompiledModel, found: &Linearisation) -> Result<Option<Minimal>> {
+    let held = found.held(compiled);
+    if held.is_empty() {
+        return Ok(None);
+    }
+    let allowed = AllowedMotions::new(&held, found.rates.len())
+        .map_err(|error| Error::input(error.to_string()))?;
+    let (inputs, _) = inputs(compiled);
+    Ok(Some(Minimal {
+        count: allowed.count(),
+        n: row_by_row(allowed.basis()),
+        a: allowed.of_states(&found.a),
+        b: allowed.of_inputs(&found.b, inputs.len()),
+        c: allowed.of_outputs(&found.c, found.observables.len()),
+    }))
 }
 
 /// The bytes of an archive of NumPy's with the same: the matrices, the point, names and units.
@@ -51,22 +92,35 @@ pub fn arrays(
     let inputs: Vec<String> = inputs.into_iter().map(str::to_owned).collect();
     let (states, outputs) = (compiled.state_names(), compiled.observable_names());
     let (n, m, l) = (states.len(), inputs.len(), outputs.len());
-    archive(&[
+    let (time, state_units) = ([at.t], compiled.state_units());
+    let output_units = output_units(compiled);
+    let mut all = vec![
         ("A", Array::Matrix(&found.a, [n, n])),
         ("B", Array::Matrix(&found.b, [n, m])),
         ("C", Array::Matrix(&found.c, [l, n])),
         ("D", Array::Matrix(&found.d, [l, m])),
-        ("t", Array::Vector(&[at.t])),
+        ("t", Array::Vector(&time)),
         ("x", Array::Vector(&at.state)),
         ("u", Array::Vector(&at.inputs)),
         ("rates", Array::Vector(&found.rates)),
         ("states", Array::Names(&states)),
         ("inputs", Array::Names(&inputs)),
         ("outputs", Array::Names(&outputs)),
-        ("state_units", Array::Names(&compiled.state_units())),
+        ("state_units", Array::Names(&state_units)),
         ("input_units", Array::Names(&input_units)),
-        ("output_units", Array::Names(&output_units(compiled))),
-    ])
+        ("output_units", Array::Names(&output_units)),
+    ];
+    let minimal = minimal(compiled, found)?;
+    if let Some(minimal) = &minimal {
+        let k = minimal.count;
+        all.extend([
+            ("N", Array::Matrix(&minimal.n, [n, k])),
+            ("A_allowed", Array::Matrix(&minimal.a, [k, k])),
+            ("B_allowed", Array::Matrix(&minimal.b, [k, m])),
+            ("C_allowed", Array::Matrix(&minimal.c, [l, k])),
+        ]);
+    }
+    archive(&all)
 }
 
 fn output_units(compiled: &CompiledModel) -> Vec<String> {

@@ -19,6 +19,7 @@ mod figures;
 mod fmu;
 mod history;
 mod linearisation;
+mod mode_figure;
 mod model;
 mod motion;
 mod npz;
@@ -28,6 +29,8 @@ mod page;
 mod parquet_file;
 mod progress;
 mod ranges;
+mod regime;
+mod sample_statistics;
 mod samples;
 mod settings;
 mod sweep_files;
@@ -53,6 +56,7 @@ fn main() -> ExitCode {
         Command::Linearise(options) => commands::linearise::run(&options),
         Command::Modes(options) => commands::modes::run(&options),
         Command::Trim(options) => commands::trim::run(&options),
+        Command::Dataset(options) => commands::dataset::run(&options),
         Command::Compare(options) => commands::discover::compare(&options),
         Command::Discover(options) => commands::discover::discover(&options),
         Command::Sweep(options) => commands::sweep::run(&options),

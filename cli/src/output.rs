@@ -24,11 +24,30 @@ impl Destination {
     /// # Errors
     /// A folder, a pipe or a place that cannot be, and stdout where `json` takes it.
     pub fn of(path: &Path, json: bool) -> Result<Self> {
+        Self::named("--out", path, json)
+    }
+
+    /// The same for a figure beside it, which has a place of its own.
+    ///
+    /// # Errors
+    /// As [`Destination::of`], and the place of the other file.
+    pub fn of_figure(figure: &Path, beside: Option<&Path>, json: bool) -> Result<Self> {
+        let place = |path: &Path| std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        if beside.is_some_and(|other| place(other) == place(figure)) && !is_device(figure) {
+            let shown = figure.display();
+            return Err(Error::input(format!(
+                "--out {shown} and --plot {shown} are one place: give --plot another"
+            )));
+        }
+        Self::named("--plot", figure, json)
+    }
+
+    fn named(option: &str, path: &Path, json: bool) -> Result<Self> {
         if path == Path::new("-") {
             return if json {
-                Err(Error::input(
-                    "--json and --out - both write to stdout: give --out the name of a file",
-                ))
+                Err(Error::input(format!(
+                    "--json and {option} - both write to stdout: give {option} the name of a file"
+                )))
             } else {
                 Ok(Self::Stdout)
             };

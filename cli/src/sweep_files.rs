@@ -1,4 +1,5 @@
-//! The final files of a sweep: one table and a figure for each measure.
+//! The final files of a sweep: one table and a figure for each measure; of random samples their
+//! statistics as well.
 
 use std::path::PathBuf;
 
@@ -9,6 +10,7 @@ use crate::error::{Error, Result, warn};
 use crate::figures::draw;
 use crate::output::write_file;
 use crate::parquet_file::encode;
+use crate::sample_statistics::{Statistics, statistics};
 
 /// The final files of a sweep.
 pub struct Finished {
@@ -16,6 +18,8 @@ pub struct Finished {
     points: usize,
     /// Points without a number, by measure.
     failed: Vec<(String, usize)>,
+    /// Of random samples.
+    statistics: Option<Statistics>,
 }
 
 /// Writes the final files.
@@ -27,9 +31,20 @@ pub fn finish(folder: &Folder) -> Result<Finished> {
     let table = merge(folder).map_err(|error| Error::input(error.to_string()))?;
     let mut finished = Finished {
         files: Vec::new(),
-        points: job.grid().points(),
+        points: job.points().count(),
         failed: failures(job, &table),
+        statistics: statistics(job, &table),
     };
+    if let Some(statistics) = &finished.statistics {
+        for (name, svg) in statistics.figures() {
+            let path = folder.path().join(name);
+            write_file(&path, svg.as_bytes())?;
+            finished.files.push(path);
+        }
+        let path = folder.path().join("statistics.json");
+        write_file(&path, format!("{:#}\n", statistics.json()).as_bytes())?;
+        finished.files.push(path);
+    }
     for (measure, picture) in draw(job, &table) {
         match picture {
             Ok(bytes) => {
@@ -68,11 +83,15 @@ impl Finished {
     pub fn json(&self) -> Value {
         let files = self.files.iter().map(|file| file.display().to_string());
         let failed = self.failed.iter().cloned();
-        json!({
+        let mut document = json!({
             "points": self.points,
             "failed": failed.collect::<std::collections::BTreeMap<_, _>>(),
             "files": files.collect::<Vec<_>>(),
-        })
+        });
+        if let Some(statistics) = &self.statistics {
+            document["statistics"] = statistics.json();
+        }
+        document
     }
 
     /// For people.
@@ -84,6 +103,9 @@ impl Finished {
                     "{measure}: {failed} points without a number; their status says why\n"
                 );
             }
+        }
+        if let Some(statistics) = &self.statistics {
+            text += &statistics.text();
         }
         for file in &self.files {
             text += &format!("{}\n", file.display());

@@ -1,4 +1,4 @@
-//! What a sweep is asked for: its grid, model, measures and job.
+//! What a sweep is asked for: its points, model, measures and job.
 
 use eomgen_compiled_model::{CompiledModel, Orders};
 use eomgen_model_spec::model::Model;
@@ -6,12 +6,13 @@ use eomgen_sweep::job::Plan;
 use eomgen_sweep::over_time::forms;
 use eomgen_sweep::parameters::columns;
 use eomgen_sweep::{
-    Axis, Grid, Job, Lyapunov, Measure, OverTime, Poincare, Section, Span, SweepError, Window,
+    Axis, Grid, Job, Lyapunov, Measure, OverTime, Poincare, Points, Samples, Section, Span,
+    SweepError, Window,
 };
 
 use crate::arguments::Sweep;
 use crate::error::{Error, Result};
-use crate::model::{load, orders};
+use crate::model::orders;
 use crate::settings::warn_of_inputs;
 
 /// What can be measured beside numbers of a course over time.
@@ -32,15 +33,16 @@ fn unknown(name: &str) -> Error {
     ))
 }
 
-/// The grid that is asked for.
-pub fn grid(options: &Sweep) -> Result<Grid> {
+/// The points that are asked for, of a model in which some parameters are set.
+pub fn points(options: &Sweep, declared: &Model, set: &[(&str, f64)]) -> Result<Points> {
+    if let Some(count) = options.samples {
+        let model = with_parameters(declared, set)?;
+        let samples = Samples::new(&model, count, options.seed).map_err(refused)?;
+        return Ok(Points::Samples(samples));
+    }
     let axes = options.vary.iter().map(|text| Axis::parse(text));
     let axes = axes.collect::<Result<Vec<_>, _>>().map_err(refused)?;
-    Grid::new(axes).map_err(refused)
-}
-
-/// The model derived at the grid's first point, where all varied parameters are numbers.
-pub fn model(options: &Sweep, grid: &Grid, set: &[(&str, f64)]) -> Result<CompiledModel> {
+    let grid = Grid::new(axes).map_err(refused)?;
     if let Some((name, _)) = set
         .iter()
         .find(|(name, _)| grid.names().any(|varied| varied == *name))
@@ -49,13 +51,22 @@ pub fn model(options: &Sweep, grid: &Grid, set: &[(&str, f64)]) -> Result<Compil
             "`{name}` is both set and varied; give one of --set and --vary"
         )));
     }
-    let model = load(&options.spec)?.model;
+    Ok(Points::Grid(grid))
+}
+
+/// The model derived at the first point, where all parameters that differ are numbers.
+pub fn model(
+    options: &Sweep,
+    declared: &Model,
+    points: &Points,
+    set: &[(&str, f64)],
+) -> Result<CompiledModel> {
     let at = |point: usize| {
-        let settings = [set, &grid.settings(point)].concat();
-        with_parameters(&model, &settings)
+        let settings = [set, &points.settings(point)].concat();
+        with_parameters(declared, &settings)
     };
     // Bounds are intervals: what both ends of the ranges admit, all between admit.
-    at(grid.points() - 1)?;
+    at(points.count() - 1)?;
     let first = at(0)?;
     warn_of_inputs(&first);
     let orders = orders(&first, options.order.as_deref())?;
@@ -75,9 +86,9 @@ fn with_parameters(model: &Model, settings: &[(&str, f64)]) -> Result<Model> {
 pub fn measures<'a>(
     options: &Sweep,
     model: &'a CompiledModel,
-    grid: &Grid,
+    points: &Points,
 ) -> Result<Vec<Box<dyn Measure + 'a>>> {
-    let lines = grid.axes().iter().filter(|axis| axis.count > 1).count();
+    let lines = points.axes().iter().filter(|axis| axis.count > 1).count();
     let span = Span {
         transient: options.transient,
         periods: options.periods,
@@ -115,7 +126,7 @@ pub fn measures<'a>(
 /// All of it as data.
 pub fn job(
     compiled: &CompiledModel,
-    grid: &Grid,
+    points: &Points,
     set: &[(&str, f64)],
     measures: &[Box<dyn Measure + '_>],
 ) -> Result<Job> {
@@ -125,8 +136,8 @@ pub fn job(
         &model.name,
         orders,
         set,
-        columns(model, grid).map_err(refused)?,
-        grid,
+        columns(model, points).map_err(refused)?,
+        points,
         measures.iter().map(|measure| measure.describe()).collect(),
     );
     Job::new(plan).map_err(refused)

@@ -20,8 +20,8 @@ pub const INITIAL_STATE_PRIOR: f64 = 0.02;
 /// it does goes with the candidate's parameter, which is not known yet.
 pub const ADDED_STATE: f64 = 10.0;
 
-/// A shape, such as the speed at which friction has fallen, is searched within these factors
-/// of its usual size, a tenth of the usual speed. What has not fallen at a third of that speed
+/// A shape, such as the speed at which friction has fallen or the deflection at which a stop is met, is
+/// searched within these factors of its usual size, for friction a tenth of the usual speed. What has not fallen at a third of that speed
 /// is no friction near rest: it would take over what another friction does at every speed.
 pub const SHAPE_RANGE: Interval = Interval::new(0.02, 3.0);
 
@@ -104,6 +104,10 @@ pub const FITS_AT_ONCE: usize = 2;
 /// A pair is fitted if screening promises that it leaves this part of the squares that the best
 /// single one does.
 pub const PAIR_PROMISE: f64 = 0.8;
+
+/// Two effects cancel if what either does is this many times what both do together: with less noise
+/// neither would be there.
+pub const CANCELS: f64 = 3.0;
 
 /// Effects that repeat with an angle, a dozen for every angle, are screened only where no
 /// other promises this part of the gap. What promises so much is fitted, however little of it is
@@ -349,6 +353,13 @@ pub const LARGEST_EFFECTS_FILE: u64 = 1 << 20;
 /// teeth: those of unbalance, joints, small pinions and the poles of motors.
 pub const SHAFT_ORDERS: [u32; 8] = [1, 2, 3, 4, 6, 8, 12, 24];
 
+/// The highest order of which a wave is sought in the residual force over an angle: more than twice the
+/// poles of the usual motors.
+pub const HIGHEST_ORDER: u32 = 48;
+
+/// So many orders of that spectrum, per angle, are candidates beside the usual ones.
+pub const MOST_ORDERS: usize = 4;
+
 // Screening.
 
 /// A candidate is linearised at a size that changes accelerations by this part of their own size,
@@ -444,6 +455,17 @@ pub const MOST_DEGREE: u32 = 3;
 pub const STEEP: f64 = 0.03;
 
 // The report.
+
+/// What leaves more floors than this, in any channel, may be something else than what it is called: it
+/// is provisional. A bump stop that came out as friction and a spring left 41.
+pub const MAY_STAND_IN: f64 = 3.0;
+
+/// The most a right model leaves, in floors of a channel: noise is drawn anew in each record.
+pub const ONE_FLOOR: f64 = 1.5;
+
+/// A nuisance from this part of `SHIFTED` on stands at its bound: an estimate ends within rounding
+/// of it.
+pub const AT_BOUND: f64 = 0.99;
 
 /// Where nothing was found, a parameter or a sensor is written back if its estimate moved by this
 /// part of its standard deviation. With an effect all are: they were estimated together.

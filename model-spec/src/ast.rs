@@ -37,10 +37,44 @@ pub enum SyntaxKind {
         /// The arguments in order.
         arguments: Vec<Syntax>,
     },
+    /// `[a, b, c]`, a vector by its components.
+    Vector(Vec<Syntax>),
+    /// `of.member`: a component of a vector, or what a frame has.
+    Member {
+        /// What has the member.
+        of: Box<Syntax>,
+        /// The member's name.
+        member: String,
+        /// Where the member's name stands.
+        member_span: Span,
+    },
     /// `-operand`.
     Negate(Box<Syntax>),
     /// `left operator right`.
     Binary(BinaryOperator, Box<Syntax>, Box<Syntax>),
+}
+
+impl Syntax {
+    /// Sees this expression and all that it is made of.
+    pub fn visit(&self, see: &mut impl FnMut(&Syntax)) {
+        see(self);
+        match &self.kind {
+            SyntaxKind::Number(_) | SyntaxKind::Name(_) | SyntaxKind::Element { .. } => {}
+            SyntaxKind::Call {
+                arguments: parts, ..
+            }
+            | SyntaxKind::Vector(parts) => {
+                for part in parts {
+                    part.visit(see);
+                }
+            }
+            SyntaxKind::Member { of: part, .. } | SyntaxKind::Negate(part) => part.visit(see),
+            SyntaxKind::Binary(_, left, right) => {
+                left.visit(see);
+                right.visit(see);
+            }
+        }
+    }
 }
 
 /// The binary operators; `^` binds tightest and to the right, above unary minus.

@@ -34,9 +34,9 @@ pub fn check_sensors(model: &Model, found: &mut Diagnostics) {
     channels.extend(rates);
     channels.extend(model.states.iter().map(|state| state.name.clone()));
     for sensor in &model.sensors {
-        if !channels.contains(&sensor.channel) {
-            let message = format!("no quantity {} to be measured", quoted(&sensor.channel));
-            let near = did_you_mean(&sensor.channel, channels.iter().map(String::as_str));
+        if !channels.contains(&sensor.observable) {
+            let message = format!("no quantity {} to be measured", quoted(&sensor.observable));
+            let near = did_you_mean(&sensor.observable, channels.iter().map(String::as_str));
             let rule = "a channel is an observable, a coordinate, a rate (NAME_dot) or a state";
             found.push(
                 Diagnostic::error(message)

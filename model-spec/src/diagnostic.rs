@@ -181,7 +181,8 @@ impl Diagnostics {
     pub fn push(&mut self, diagnostic: Diagnostic) {
         if self.is_full() {
             self.omitted += 1;
-        } else {
+        // What is wrong with a vector is wrong with each of its components.
+        } else if !self.list.contains(&diagnostic) {
             self.list.push(diagnostic);
         }
     }
@@ -434,11 +435,21 @@ mod tests {
     #[test]
     fn thousands_of_findings_are_counted_not_listed() {
         let mut diagnostics = Diagnostics::new(Source::new("arm.toml", "a"));
-        for _ in 0..1000 {
-            diagnostics.push(Diagnostic::error("wrong").at(Span::new(0, 1), ""));
+        for number in 0..1000 {
+            let message = format!("wrong {number}");
+            diagnostics.push(Diagnostic::error(message).at(Span::new(0, 1), ""));
         }
         assert_eq!(diagnostics.list().len(), MAX_LISTED);
         assert!(diagnostics.render(false).ends_with("and 980 more"));
+    }
+
+    #[test]
+    fn the_same_finding_is_said_once() {
+        let mut diagnostics = Diagnostics::new(Source::new("arm.toml", "a"));
+        for place in [0, 1, 0] {
+            diagnostics.push(Diagnostic::error("wrong").at(Span::new(place, 1), ""));
+        }
+        assert_eq!(diagnostics.list().len(), 2);
     }
 
     #[test]

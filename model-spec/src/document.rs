@@ -6,8 +6,8 @@ use toml_edit::Document as Toml;
 
 use crate::diagnostic::{Diagnostic, Diagnostics, quoted};
 use crate::entries::{
-    body, coefficient, constraint, coordinate, field, force, frame, impact, input, line, name_of,
-    observable, parameter, point, sensor, state, term,
+    body, coefficient, constraint, coordinate, definition, field, force, frame, impact, input,
+    line, name_of, observable, parameter, point, sensor, state, term,
 };
 use crate::keys;
 use crate::raw::{Document, RawDrawing, RawInput};
@@ -65,7 +65,8 @@ impl<'d> Reader<'d> {
                 .collect(),
             states: self.collect("states", state),
             fields: self.collect("fields", field),
-            definitions: self.collect("definitions", term),
+            definitions: self.collect("definitions", definition),
+            vectors: Vec::new(),
             frames: self.collect("frames", frame),
             bodies: self.collect("bodies", body),
             gravity: self.gravity(),

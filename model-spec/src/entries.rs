@@ -7,11 +7,13 @@ use crate::model::Basis;
 use crate::raw::{
     RawBasis, RawBody, RawCoefficient, RawCoefficientKind, RawCoordinate, RawField, RawFrame,
     RawInput, RawLine, RawParameter, RawPoint, RawRange, RawSensor, RawState, RawTerm,
+    RawUncertainty,
 };
 use crate::suggest::did_you_mean;
 use crate::table::{Entry, Name, Quantity, Record, Written, unknown_key};
 
 const PARAMETER_EXAMPLE: &str = "{ value = 0.5, unit = \"m\" }";
+const UNCERTAINTY_EXAMPLE: &str = "{ relative = 0.02 }";
 const COORDINATE_EXAMPLE: &str = "{ unit = \"rad\", initial = 0 }";
 const STATE_EXAMPLE: &str = "{ unit = \"N\", rate = \"(k*x - z)/tau\", initial = 0 }";
 const FORCE_EXAMPLE: &str = "{ on = \"theta\", value = \"-c*dot(theta)\" }";
@@ -42,8 +44,41 @@ pub fn parameter(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawParame
         origin: record.text("source", found),
         min: record.number("min", found),
         max: record.number("max", found),
+        uncertainty: uncertainty(&record, found),
         value: found.keep(value)?,
     })
+}
+
+/// The `uncertainty` of a parameter, if it has one.
+fn uncertainty(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawUncertainty> {
+    let entry = record.get("uncertainty")?;
+    let record = entry.record(&keys::UNCERTAINTY, UNCERTAINTY_EXAMPLE, found)?;
+    let given: Vec<&Entry<'_>> = keys::UNCERTAINTY
+        .iter()
+        .filter_map(|key| record.get(key))
+        .collect();
+    let [one] = given[..] else {
+        let message = format!("an uncertainty is said in one way, not in {}", given.len());
+        found.push(
+            Diagnostic::error(message)
+                .at(entry.span(), "expected one of relative, sd, between")
+                .help(format!("write uncertainty = {UNCERTAINTY_EXAMPLE}")),
+        );
+        return None;
+    };
+    let raw = match &*one.name.text {
+        "relative" => one.number().map(RawUncertainty::Relative),
+        "sd" => one.number().map(RawUncertainty::StandardDeviation),
+        _ => one.pair().and_then(|[low, high]| match (low, high) {
+            (Quantity::Number(low), Quantity::Number(high)) => {
+                Ok(RawUncertainty::Between([low, high]))
+            }
+            _ => Err(Diagnostic::error("the ends of an uncertainty are numbers")
+                .at(one.span(), "no expression stands here")
+                .help("write them in the parameter's unit, as { between = [1, 2] }")),
+        }),
+    };
+    found.keep(raw)
 }
 
 /// An entry of `[coordinates]`.
@@ -126,7 +161,7 @@ pub fn state(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawState> {
 pub fn constraint(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawTerm> {
     let record = entry.record(&keys::CONSTRAINT, CONSTRAINT_EXAMPLE, found)?;
     let help = "give the expression that stays zero: zero = \"x^2 + y^2 - l^2\"";
-    let zero = record.require("zero", help, found)?.quantity();
+    let zero = record.require("zero", help, found)?.scalar_or_vector();
     Some(RawTerm {
         name: entry.name.clone(),
         value: found.keep(zero)?,
@@ -223,24 +258,40 @@ fn basis_named(written: &Written) -> Result<Basis, Diagnostic> {
     })
 }
 
-/// An entry of `[definitions]`, of an energy or of the dissipation.
+/// How the value of a term is read.
+type Read<'d> = fn(&Entry<'d>) -> Result<Quantity, Diagnostic>;
+
+/// An entry of an energy or of the dissipation.
 pub fn term(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawTerm> {
+    named_expression(entry, Entry::quantity, found)
+}
+
+/// An entry of `[definitions]`.
+pub fn definition(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawTerm> {
+    named_expression(entry, Entry::scalar_or_vector, found)
+}
+
+fn named_expression<'d>(
+    entry: &Entry<'d>,
+    read: Read<'d>,
+    found: &mut Diagnostics,
+) -> Option<RawTerm> {
     if !entry.is_table() {
         return Some(RawTerm {
             name: entry.name.clone(),
-            value: found.keep(entry.quantity())?,
+            value: found.keep(read(entry))?,
             doc: String::new(),
             origin: String::new(),
         });
     }
     let record = entry.record(&keys::TERM, "\"1/2*m*dot(x)^2\"", found)?;
-    term_of(&record, found)
+    term_of(&record, read, found)
 }
 
 /// The named expression of a table with at least `value`.
-fn term_of(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawTerm> {
+fn term_of<'d>(record: &Record<'d>, read: Read<'d>, found: &mut Diagnostics) -> Option<RawTerm> {
     let help = "give an expression: value = \"...\"";
-    let value = record.require("value", help, found)?.quantity();
+    let value = read(record.require("value", help, found)?);
     Some(RawTerm {
         name: record.owner().clone(),
         value: found.keep(value)?,
@@ -253,8 +304,10 @@ fn term_of(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawTerm> {
 pub fn force(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<(RawTerm, Quantity)> {
     let record = entry.record(&keys::FORCE, FORCE_EXAMPLE, found)?;
     let help = "say what the force does work on: on = \"theta\"";
-    let on = record.require("on", help, found).map(Entry::quantity);
-    let term = term_of(&record, found);
+    let on = record
+        .require("on", help, found)
+        .map(Entry::scalar_or_vector);
+    let term = term_of(&record, Entry::scalar_or_vector, found);
     Some((term?, found.keep(on?)?))
 }
 
@@ -264,18 +317,18 @@ pub fn observable(
     found: &mut Diagnostics,
 ) -> Option<(RawTerm, Option<Written>)> {
     if !entry.is_table() {
-        return Some((term(entry, found)?, None));
+        return Some((definition(entry, found)?, None));
     }
     let record = entry.record(&keys::OBSERVABLE, "\"at(w, l)\"", found)?;
     let unit = record.written("unit", found);
-    Some((term_of(&record, found)?, unit))
+    Some((term_of(&record, Entry::scalar_or_vector, found)?, unit))
 }
 
 /// A `[frames.NAME]`.
 pub fn frame(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawFrame> {
     let record = entry.record(&keys::FRAME, FRAME_EXAMPLE, found)?;
     let origin = record.get("origin");
-    let origin = origin.map(|entry| entry.quantities(&[3], "[0, 0, \"d\"]"));
+    let origin = origin.map(|entry| entry.vector("[0, 0, \"d\"]"));
     Some(RawFrame {
         name: entry.name.clone(),
         parent: record.written("in", found),
@@ -292,8 +345,10 @@ pub fn body(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawBody> {
         let list = record.get(key)?.quantities(counts, example);
         found.keep(list)
     };
-    let centre = list("centre", &[3], "[0, 0, \"c\"]");
     let inertia = list("inertia", &[3, 6], "[\"I_x\", \"I_y\", \"I_z\"]");
+    let centre = record.get("centre");
+    let centre = centre.map(|entry| entry.vector("[0, 0, \"c\"]"));
+    let centre = centre.and_then(|centre| found.keep(centre));
     let help = "name the frame it is fixed to: frame = \"link_1\"";
     let frame = record.require("frame", help, found).map(Entry::written);
     let frame = frame.and_then(|frame| found.keep(frame));
@@ -367,8 +422,10 @@ fn coefficient_kind(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawC
 /// A `[sensors.CHANNEL]`.
 pub fn sensor(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawSensor> {
     let record = entry.record(&keys::SENSOR, "{ gain = 1, bias = 0 }", found)?;
+    let observable = record.written("observable", found);
     let mut number = |key, absent| record.number(key, found).map_or(absent, |n| n.value);
     Some(RawSensor {
+        observable,
         channel: entry.name.clone(),
         gain: number("gain", 1.0),
         bias: number("bias", 0.0),

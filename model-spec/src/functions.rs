@@ -30,6 +30,18 @@ const FUNCTIONS: [(&str, Function, &[&str]); 20] = [
 /// The forms that are no functions of scalars.
 pub const FORMS: [&str; 5] = ["dot", "diff", "at", "integral", "sum"];
 
+/// The functions of vectors and rotations, which become scalars before names are looked up: they take
+/// no name from anything else.
+pub const VECTOR_FUNCTIONS: [&str; 7] = [
+    "cross",
+    "norm",
+    "rotation",
+    "rotation_x",
+    "rotation_y",
+    "rotation_z",
+    "transpose",
+];
+
 /// Words with a meaning of their own that are not called.
 const CONSTANTS: [&str; 4] = ["t", "pi", "energy", "power"];
 

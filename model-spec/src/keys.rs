@@ -6,7 +6,17 @@ use crate::model::{Basis, End};
 /// Keys of `[model]`.
 pub const MODEL: [&str; 3] = ["name", "title", "gravity"];
 /// Keys of an entry of `[parameters]`.
-pub const PARAMETER: [&str; 6] = ["value", "unit", "doc", "source", "min", "max"];
+pub const PARAMETER: [&str; 7] = [
+    "value",
+    "unit",
+    "doc",
+    "source",
+    "min",
+    "max",
+    "uncertainty",
+];
+/// Keys of the `uncertainty` of a parameter, of which it has one.
+pub const UNCERTAINTY: [&str; 3] = ["relative", "sd", "between"];
 /// Keys of an entry of `[coordinates]`.
 pub const COORDINATE: [&str; 5] = ["unit", "doc", "initial", "initial_rate", "range"];
 /// Keys of an entry of `[inputs]`.
@@ -42,7 +52,7 @@ pub const OBSERVABLE: [&str; 4] = ["value", "unit", "doc", "source"];
 /// Keys of an entry of `[coefficients]`.
 pub const COEFFICIENT: [&str; 6] = ["value", "of", "by", "times", "each", "doc"];
 /// Keys of a `[sensors.CHANNEL]`.
-pub const SENSOR: [&str; 3] = ["gain", "bias", "delay"];
+pub const SENSOR: [&str; 4] = ["observable", "gain", "bias", "delay"];
 
 /// Keys of `[drawing]`.
 pub const DRAWING: [&str; 2] = ["points", "lines"];

@@ -40,6 +40,8 @@ pub enum TokenKind {
     CloseIndex,
     /// `,`
     Comma,
+    /// `.` with no digit behind it
+    Point,
 }
 
 impl TokenKind {
@@ -58,6 +60,7 @@ impl TokenKind {
             Self::OpenIndex => "`[`".to_owned(),
             Self::CloseIndex => "`]`".to_owned(),
             Self::Comma => "`,`".to_owned(),
+            Self::Point => "`.`".to_owned(),
         }
     }
 }
@@ -73,6 +76,7 @@ pub fn tokens(text: &str, place: impl Fn(usize, usize) -> Span) -> Result<Vec<To
     while let Some(first) = text[start..].chars().next() {
         let rest = &text[start..];
         let length = match first {
+            '.' if !starts_with_digit(&rest[1..]) => 1,
             ' ' | '\t' | '\n' | '\r' => {
                 start += 1;
                 continue;
@@ -91,6 +95,7 @@ pub fn tokens(text: &str, place: impl Fn(usize, usize) -> Span) -> Result<Vec<To
 
 fn token(text: &str, first: char, span: Span, rest: &str) -> Result<TokenKind, Diagnostic> {
     Ok(match first {
+        '.' if text == "." => TokenKind::Point,
         '0'..='9' | '.' => TokenKind::Number(number(text, span)?),
         'a'..='z' | 'A'..='Z' | '_' => TokenKind::Name(text.to_owned()),
         '+' => TokenKind::Plus,
@@ -129,6 +134,12 @@ fn stray(letter: char, span: Span) -> Diagnostic {
     Diagnostic::error(format!("{shown} is not part of an expression"))
         .at(span, "unexpected character")
         .help(help)
+}
+
+fn starts_with_digit(text: &str) -> bool {
+    text.bytes()
+        .next()
+        .is_some_and(|byte| byte.is_ascii_digit())
 }
 
 fn name_length(text: &str) -> usize {
@@ -206,10 +217,24 @@ mod tests {
 
     #[test]
     fn numbers_out_of_range_are_refused() {
-        for text in ["1e999", "1e-999", "."] {
+        for text in ["1e999", "1e-999"] {
             assert!(tokens(text, Span::new).is_err(), "{text}");
         }
         assert_eq!(kinds("0e-999"), [TokenKind::Number(0.0)]);
+    }
+
+    #[test]
+    fn a_point_between_names_belongs_to_no_number() {
+        let name = |text: &str| TokenKind::Name(text.to_owned());
+        assert_eq!(kinds("r.x"), [name("r"), TokenKind::Point, name("x")]);
+        assert_eq!(
+            kinds("2.*.5"),
+            [
+                TokenKind::Number(2.0),
+                TokenKind::Star,
+                TokenKind::Number(0.5)
+            ]
+        );
     }
 
     #[test]

@@ -25,7 +25,7 @@
 //!
 //! The pipeline, one file each: `source` (text and places), [`lexer`], [`parser`] (tokens
 //! to [`ast`]), `document` (TOML tables to raw entries), `names`, `expression` and `resolve` (names),
-//! `rate_order` (rates of states that lead to no circle), `motion` (what may stand where), `units_check` and `infer` (units of every expression), `checks`,
+//! `rate_order` (rates of states that lead to no circle), `motion` (what may stand where), `units_check` and `infer` (units of every expression), `checks`, `uncertainty` (how values are spread),
 //! [`model`] (the result; [`mod@ids`] say which entry of its lists is meant). [`load()`] and [`check`] go all the way. What is wrong is said by
 //! [`diagnostic`]; [`shape_table`] reads mode shapes from a file beside it; [`edit`] changes a specification and keeps its comments; [`variant`] sets numbers.
 //! [`toml_file`] and [`mod@table`] read other files of TOML with their places as well. [`models`] are
@@ -66,6 +66,7 @@ pub mod span;
 pub mod suggest;
 pub mod table;
 pub mod toml_file;
+pub mod uncertainty;
 pub mod unit;
 mod units_check;
 pub mod variant;

@@ -4,7 +4,7 @@ use std::io::Read;
 use std::path::Path;
 
 use crate::checks::{check_drawing, check_sensors, check_tables, warn_unused};
-use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::diagnostic::{Declared, Diagnostic, Diagnostics};
 use crate::document;
 use crate::model::Model;
 use crate::motion;
@@ -61,7 +61,8 @@ pub fn check(source: Source) -> Result<Checked, Diagnostics> {
         return Err(Diagnostics::one(source, too_large(size)));
     }
     let mut document = document::read(&source)?;
-    let demands = space::expand(&mut document, &source)?;
+    let mut demands = space::expand(&mut document, &source)?;
+    let unused = std::mem::take(&mut demands.unused);
     let mut resolved = resolve(document, demands, &source)?;
     let mut found = Diagnostics::new(source.clone());
     motion::check(&mut resolved.model, &mut found);
@@ -71,6 +72,7 @@ pub fn check(source: Source) -> Result<Checked, Diagnostics> {
     check_drawing(&model, &mut found);
     if found.is_empty() {
         found.keep(model.check_numbers().map_err(ModelError::diagnostic));
+        found.keep(model.spreads().map_err(ModelError::diagnostic));
     }
     if found.is_empty() {
         check_tables(&model, &mut found);
@@ -86,6 +88,10 @@ pub fn check(source: Source) -> Result<Checked, Diagnostics> {
     }
     let mut warnings = Diagnostics::new(source);
     warn_unused(&model, &mut warnings);
+    for vector in unused {
+        let name = &vector.text;
+        warnings.push(Diagnostic::unused(Declared::Definition, name, vector.span));
+    }
     Ok(Checked { model, warnings })
 }
 

@@ -147,8 +147,21 @@ pub struct Parameter {
     pub min: Option<f64>,
     /// Largest admissible value in SI, if stated.
     pub max: Option<f64>,
+    /// What is not known of its value, if stated.
+    pub uncertainty: Option<Uncertainty>,
     /// Where its name stands.
     pub span: Span,
+}
+
+/// What is not known of a parameter's value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Uncertainty {
+    /// It is normal, with this standard deviation as a part of the value.
+    Relative(f64),
+    /// It is normal, with this standard deviation in SI.
+    StandardDeviation(f64),
+    /// It lies between these ends, in SI, anywhere alike.
+    Between([f64; 2]),
 }
 
 /// The value of a parameter.
@@ -359,6 +372,17 @@ pub struct Force {
     pub span: Span,
 }
 
+impl Force {
+    /// The name as the specification writes it: that of the vector for a component.
+    pub(crate) fn written_name(&self, source: &Source) -> &str {
+        let written = source.text.get(self.span.start..self.span.end);
+        match written {
+            Some(text) if self.name.starts_with(text) => &self.name[..text.len()],
+            _ => &self.name,
+        }
+    }
+}
+
 /// An expression that stays zero along the motion. Its force on the coordinates is A^T lambda, A
 /// the derivative of the expression by the coordinates or, of a nonholonomic one, by their rates.
 #[derive(Clone, Debug)]
@@ -453,15 +477,17 @@ pub enum CoefficientKind {
 /// A measured channel: measured(t) = gain * quantity(t - delay) + bias.
 #[derive(Clone, Debug)]
 pub struct Sensor {
-    /// A coordinate, a rate (`NAME_dot`), an observable, `energy` or `power`.
+    /// Its name.
     pub channel: String,
+    /// What it measures: a coordinate, a rate (`NAME_dot`), an observable, `energy` or `power`.
+    pub observable: String,
     /// Dimensionless, 1 for a true sensor.
     pub gain: f64,
     /// In the channel's SI unit.
     pub bias: f64,
-    /// In s, not negative.
+    /// In s, negative where the channel is early.
     pub delay: f64,
-    /// Where the channel's name stands.
+    /// Where what it measures is said.
     pub span: Span,
 }
 

@@ -103,8 +103,14 @@ pub const CHAPLYGIN_SLEIGH: ShippedModel = ShippedModel {
     text: include_str!("../models/chaplygin_sleigh.toml"),
 };
 
+/// A quadrotor with a load on a rope, in vectors.
+pub const QUADROTOR_SLUNG_LOAD: ShippedModel = ShippedModel {
+    name: "quadrotor_slung_load",
+    text: include_str!("../models/quadrotor_slung_load.toml"),
+};
+
 /// All of them, by name.
-pub const ALL: [ShippedModel; 14] = [
+pub const ALL: [ShippedModel; 15] = [
     CART_TWO_ARMS,
     CHAPLYGIN_SLEIGH,
     CRANE,
@@ -117,6 +123,7 @@ pub const ALL: [ShippedModel; 14] = [
     PLANETARY_ARM,
     PLANETARY_ARM_RIG,
     PUMA_560,
+    QUADROTOR_SLUNG_LOAD,
     SHAFT_AND_DISC,
     TWO_LINK_ARM,
 ];

@@ -180,8 +180,9 @@ impl Checker<'_, '_> {
                 None
             };
             if let Some((place, why)) = problem {
+                let name = force.written_name(&self.model.source);
                 self.found.push(
-                    Diagnostic::error(format!("the force `{}` can do no work here", force.name))
+                    Diagnostic::error(format!("the force `{name}` can do no work here"))
                         .at(place, why)
                         .help("`on` is a coordinate, or an expression of coordinates"),
                 );

@@ -35,6 +35,8 @@ pub enum Symbol {
     Position,
     /// A definition.
     Definition(DefinitionId),
+    /// A definition whose components are definitions.
+    Vector,
     /// A coefficient.
     Coefficient(CoefficientId),
     /// The multiplier of a constraint.
@@ -55,6 +57,7 @@ impl Symbol {
             Self::Modes(_) => "a field's mode coordinates",
             Self::Position => "a field's position",
             Self::Definition(_) => "a definition",
+            Self::Vector => "a vector",
             Self::Coefficient(_) => "a coefficient",
             Self::Multiplier(_) => "the multiplier of a constraint",
             Self::Residual(_) => "the residual of a constraint",
@@ -100,6 +103,9 @@ impl Names {
                 Symbol::Definition(DefinitionId::new(index)),
                 found,
             );
+        }
+        for vector in &document.vectors {
+            names.add(vector, Symbol::Vector, found);
         }
         for (index, coefficient) in document.coefficients.iter().enumerate() {
             names.add(
@@ -241,7 +247,8 @@ impl Names {
             found.keep(identifier(name));
             self.observables.insert(name.text.clone());
             match self.symbols.get(&name.text) {
-                None | Some((Symbol::Definition(_) | Symbol::Coefficient(_), _)) => {}
+                None
+                | Some((Symbol::Definition(_) | Symbol::Vector | Symbol::Coefficient(_), _)) => {}
                 Some((other, place)) => {
                     let owner = format!("{} has it", other.kind());
                     found.push(taken(name, &owner).also(*place, "here"));

@@ -1,6 +1,7 @@
 //! In which order things that refer to each other can be worked out, and where they go
 //! round in a circle. Iterative: a chain may be as long as a specification.
 
+use crate::diagnostic::Diagnostic;
 use crate::span::Span;
 
 /// One reference: to which entry, and where it stands.
@@ -19,6 +20,31 @@ pub fn order(references: &[Vec<Reference>]) -> Result<Vec<usize>, Vec<Reference>
         }
     }
     Ok(sorted)
+}
+
+/// The finding that things of a kind refer to each other in a circle.
+pub fn circular<'n>(
+    kind: &str,
+    circle: &[Reference],
+    named: impl Fn(usize) -> &'n str,
+) -> Diagnostic {
+    let Some((&(first, place), rest)) = circle.split_first() else {
+        return Diagnostic::error(format!("a {kind} refers to itself"));
+    };
+    let mut chain: Vec<&str> = circle.iter().map(|(index, _)| named(*index)).collect();
+    chain.push(named(first));
+    // A circle of hundreds is shown by its beginning.
+    if chain.len() > 8 {
+        chain.truncate(7);
+        chain.push("...");
+    }
+    let message = format!("the {kind} `{}` refers to itself", named(first));
+    let mut diagnostic =
+        Diagnostic::error(message).at(place, format!("here: {}", chain.join(" -> ")));
+    for &(index, place) in rest.iter().take(4) {
+        diagnostic = diagnostic.also(place, format!("in `{}`", named(index)));
+    }
+    diagnostic.help("break the circle: one of them must be known without the others")
 }
 
 #[derive(Clone, Copy, PartialEq)]

@@ -83,7 +83,40 @@ impl<'t> Parser<'t> {
         Ok(left)
     }
 
+    /// An operand with its members: `r`, `r.x`, `arm.origin.x`.
     fn operand(&mut self) -> Parsed {
+        let minus = self.peek().is_some_and(|t| t.kind == TokenKind::Minus);
+        let mut tree = self.atom()?;
+        // What belongs to the operand of a minus is taken with it.
+        while !minus && self.peek().is_some_and(|t| t.kind == TokenKind::Point) {
+            self.next += 1;
+            tree = self.member(tree)?;
+        }
+        Ok(tree)
+    }
+
+    fn member(&mut self, of: Tree) -> Parsed {
+        let (member, member_span) = match self.take() {
+            Some(Token {
+                kind: TokenKind::Name(member),
+                span,
+            }) => (member.clone(), *span),
+            other => {
+                let place = other.map_or(self.end, |token| token.span);
+                return Err(Diagnostic::error("a name is missing behind the `.`")
+                    .at(place, "expected a component, as x in r.x"));
+            }
+        };
+        let span = of.syntax.span.join(member_span);
+        let kind = SyntaxKind::Member {
+            of: Box::new(of.syntax),
+            member,
+            member_span,
+        };
+        deeper(Syntax { kind, span }, of.depth)
+    }
+
+    fn atom(&mut self) -> Parsed {
         let Some(token) = self.take() else {
             let what = if self.tokens.is_empty() {
                 "is empty"
@@ -97,6 +130,13 @@ impl<'t> Parser<'t> {
             TokenKind::Number(value) => Ok(leaf(SyntaxKind::Number(*value), token.span)),
             TokenKind::Name(name) => self.named(name, token.span),
             TokenKind::Minus => self.negated(token.span),
+            TokenKind::OpenIndex => {
+                let (components, depth) = self.list(&TokenKind::CloseIndex)?;
+                let close = self.closing(&TokenKind::CloseIndex, token.span)?;
+                let kind = SyntaxKind::Vector(components);
+                let span = token.span.join(close);
+                deeper(Syntax { kind, span }, depth)
+            }
             TokenKind::Open => {
                 let inner = self.expression(ADDITIVE)?;
                 let close = self.closing(&TokenKind::Close, token.span)?;
@@ -130,22 +170,7 @@ impl<'t> Parser<'t> {
 
     fn call(&mut self, function: &str, function_span: Span) -> Parsed {
         let open = self.take().map_or(self.end, |token| token.span);
-        let mut arguments = Vec::new();
-        let mut depth = 0;
-        if self
-            .peek()
-            .is_none_or(|token| token.kind != TokenKind::Close)
-        {
-            loop {
-                let argument = self.expression(ADDITIVE)?;
-                depth = depth.max(argument.depth);
-                arguments.push(argument.syntax);
-                match self.peek() {
-                    Some(token) if token.kind == TokenKind::Comma => self.next += 1,
-                    _ => break,
-                }
-            }
-        }
+        let (arguments, depth) = self.list(&TokenKind::Close)?;
         let close = self.closing(&TokenKind::Close, open)?;
         let kind = SyntaxKind::Call {
             function: function.to_owned(),
@@ -154,6 +179,23 @@ impl<'t> Parser<'t> {
         };
         let span = function_span.join(close);
         deeper(Syntax { kind, span }, depth)
+    }
+
+    /// Expressions between commas up to a closing bracket, and the depth of the deepest.
+    fn list(&mut self, close: &TokenKind) -> Result<(Vec<Syntax>, usize), Diagnostic> {
+        let (mut list, mut depth) = (Vec::new(), 0);
+        if self.peek().is_some_and(|token| token.kind == *close) {
+            return Ok((list, depth));
+        }
+        loop {
+            let tree = self.expression(ADDITIVE)?;
+            depth = depth.max(tree.depth);
+            list.push(tree.syntax);
+            match self.peek() {
+                Some(token) if token.kind == TokenKind::Comma => self.next += 1,
+                _ => return Ok((list, depth)),
+            }
+        }
     }
 
     fn element(&mut self, name: &str, span: Span) -> Parsed {
@@ -167,7 +209,9 @@ impl<'t> Parser<'t> {
                 let place = other.map_or(self.end, |token| token.span);
                 return Err(Diagnostic::error("the index of a mode is a name")
                     .at(place, "expected a name")
-                    .help("modes appear inside a sum: sum(i, w, q[i]^2)"));
+                    .help(
+                        "modes appear inside a sum: sum(i, w, q[i]^2); components are written r.x",
+                    ));
             }
         };
         let close = self.closing(&TokenKind::CloseIndex, open)?;
@@ -290,6 +334,11 @@ mod tests {
                 let arguments: Vec<_> = arguments.iter().map(bracketed).collect();
                 format!("{function}({})", arguments.join(","))
             }
+            SyntaxKind::Vector(components) => {
+                let components: Vec<_> = components.iter().map(bracketed).collect();
+                format!("[{}]", components.join(","))
+            }
+            SyntaxKind::Member { of, member, .. } => format!("{}.{member}", bracketed(of)),
             SyntaxKind::Negate(operand) => format!("(-{})", bracketed(operand)),
             SyntaxKind::Binary(operator, left, right) => {
                 let sign = match operator {
@@ -324,6 +373,10 @@ mod tests {
             ("(a+b)*c", "((a+b)*c)"),
             ("sum(i, w, q[i]^2)", "sum(i,w,(q[i]^2))"),
             ("f()", "f()"),
+            ("-a.x^2", "(-(a.x^2))"),
+            ("2*a.b.c", "(2*a.b.c)"),
+            ("[x, y+1].x", "[x,(y+1)].x"),
+            ("m*[x, -y, 0]", "(m*[x,(-y),0])"),
         ] {
             assert_eq!(bracketed(&parsed(text).unwrap()), expected, "{text}");
         }
@@ -343,6 +396,10 @@ mod tests {
             ("1,5", "comma", 1),
             ("f(a,)", "unexpected `)`", 4),
             ("+a", "unexpected `+`", 0),
+            ("a.", "a name is missing", 2),
+            ("a.1", "operator is missing", 1),
+            ("[a, b", "`]` is missing", 5),
+            (".", "unexpected `.`", 0),
         ] {
             let diagnostic = parsed(text).expect_err(text);
             assert!(

@@ -27,6 +27,8 @@ pub struct Document {
     pub fields: Vec<RawField>,
     /// `[definitions]`
     pub definitions: Vec<RawTerm>,
+    /// Those of `[definitions]` that are vectors; their components are among the definitions.
+    pub vectors: Vec<Name>,
     /// `[frames.NAME]`
     pub frames: Vec<RawFrame>,
     /// `[bodies.NAME]`
@@ -76,6 +78,7 @@ impl Document {
             origin: "0: not at all".to_owned(),
             min: None,
             max: None,
+            uncertainty: None,
         });
     }
 }
@@ -126,6 +129,19 @@ pub struct RawParameter {
     pub min: Option<Number>,
     /// `max`
     pub max: Option<Number>,
+    /// `uncertainty`
+    pub uncertainty: Option<RawUncertainty>,
+}
+
+/// The `uncertainty` of a parameter.
+#[derive(Debug)]
+pub enum RawUncertainty {
+    /// `relative`
+    Relative(Number),
+    /// `sd`
+    StandardDeviation(Number),
+    /// `between`
+    Between([Number; 2]),
 }
 
 /// An entry of `[coordinates]`.
@@ -265,8 +281,8 @@ pub struct RawFrame {
     pub name: Name,
     /// `in`: the frame it is placed in; the fixed axes if absent.
     pub parent: Option<Written>,
-    /// `origin`: three components along the parent's axes.
-    pub origin: Option<Vec<Quantity>>,
+    /// `origin`: a vector along the parent's axes.
+    pub origin: Option<Quantity>,
     /// `rotation`: from its own axes to the parent's.
     pub rotation: Option<Written>,
     /// `doc`
@@ -282,8 +298,8 @@ pub struct RawBody {
     pub frame: Written,
     /// `mass`; a body without one has inertia only.
     pub mass: Option<Quantity>,
-    /// `centre`: three components along the frame's axes.
-    pub centre: Option<Vec<Quantity>>,
+    /// `centre`: a vector along the frame's axes.
+    pub centre: Option<Quantity>,
     /// `inertia`: three principal moments or six elements, about the centre of mass.
     pub inertia: Option<Vec<Quantity>>,
     /// `doc`
@@ -319,10 +335,12 @@ pub enum RawCoefficientKind {
 pub struct RawSensor {
     /// The channel.
     pub channel: Name,
+    /// What it measures, where that is not its name.
+    pub observable: Option<Written>,
     /// `gain`, 1 if absent.
     pub gain: f64,
     /// `bias` in the channel's unit, 0 if absent.
     pub bias: f64,
-    /// `delay` in s, 0 if absent.
+    /// `delay` in s, negative where it is early; 0 if absent.
     pub delay: f64,
 }

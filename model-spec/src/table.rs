@@ -48,6 +48,8 @@ pub enum Quantity {
     Number(Number),
     /// A TOML string.
     Expression(Written),
+    /// A TOML array: a vector by its components.
+    Listed(Vec<Quantity>, Span),
     /// What a short form stands for.
     Expansion(Box<Syntax>),
 }
@@ -96,6 +98,13 @@ impl Quantity {
                 span: number.span,
             }),
             Self::Expression(written) => written.syntax(),
+            Self::Listed(components, span) => {
+                let components = components.iter().map(Self::syntax);
+                Ok(Syntax {
+                    kind: SyntaxKind::Vector(components.collect::<Result<_, _>>()?),
+                    span: *span,
+                })
+            }
             Self::Expansion(syntax) => Ok(syntax.as_ref().clone()),
         }
     }
@@ -105,6 +114,7 @@ impl Quantity {
         match self {
             Self::Number(number) => number.span,
             Self::Expression(written) => written.span,
+            Self::Listed(_, span) => *span,
             Self::Expansion(syntax) => syntax.span,
         }
     }
@@ -294,6 +304,39 @@ impl<'d> Entry<'d> {
             .unwrap_or_else(|| {
                 Err(self.mismatch("a number or an expression in quotes", "\"m*g*a\""))
             })
+    }
+
+    /// The scalar or the vector that is this entry's value: a number, an expression or an array of
+    /// components.
+    ///
+    /// # Errors
+    /// If it is none of them.
+    pub fn scalar_or_vector(&self) -> Result<Quantity, Diagnostic> {
+        match self.value() {
+            Some(Value::Array(_)) => {
+                let components = self.list("[\"x\", \"y\", 0]")?;
+                let components = components.iter().map(Entry::quantity);
+                Ok(Quantity::Listed(
+                    components.collect::<Result<_, _>>()?,
+                    self.span(),
+                ))
+            }
+            _ => self.quantity(),
+        }
+    }
+
+    /// The vector that is this entry's value: an array of three components or an expression.
+    ///
+    /// # Errors
+    /// If it is neither.
+    pub fn vector(&self, example: &str) -> Result<Quantity, Diagnostic> {
+        match self.written() {
+            Ok(written) => Ok(Quantity::Expression(written)),
+            Err(_) => Ok(Quantity::Listed(
+                self.quantities(&[3], example)?,
+                self.span(),
+            )),
+        }
     }
 
     /// The two numbers or expressions of the array that is this entry's value.

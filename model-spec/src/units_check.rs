@@ -26,7 +26,7 @@ pub fn check(resolved: &mut Resolved, found: &mut Diagnostics) {
     units.coordinates();
     units.inputs();
     units.fields();
-    if units.definitions() && units.short_forms(&resolved.demanded) {
+    if units.definitions() && units.short_forms(&resolved.demanded, &resolved.alike) {
         units.states();
         units.energies();
         units.forces();
@@ -164,7 +164,8 @@ impl Units<'_, '_> {
             let Some(expected) = Dimension::ENERGY.over(on) else {
                 continue;
             };
-            let subject = format!("the force `{}`", force.name);
+            let name = force.written_name(&self.model.source);
+            let subject = format!("the force `{name}`");
             let works = match force.on.kind {
                 ExprKind::Coordinate(index) => self.model.coordinates[index].unit.to_string(),
                 _ => on.to_string(),
@@ -267,11 +268,17 @@ impl Units<'_, '_> {
         }
     }
 
-    /// A quantity for which a bare number is in SI.
     /// Whether the quantities of short forms have their units; the energies made of one that has
     /// not would only say it again.
-    fn short_forms(&mut self, demanded: &[(Expr, Dimension, String)]) -> bool {
+    fn short_forms(
+        &mut self,
+        demanded: &[(Expr, Dimension, String)],
+        vectors: &[Vec<Expr>],
+    ) -> bool {
         let clean = self.found.is_empty();
+        for vector in vectors {
+            self.alike(vector);
+        }
         for (value, dimension, subject) in demanded {
             let expected = format!("expected {}", Words(*dimension));
             self.expect(value, *dimension, subject, &expected);
@@ -279,6 +286,32 @@ impl Units<'_, '_> {
         !clean || self.found.is_empty()
     }
 
+    /// The components of a vector have one unit.
+    fn alike(&mut self, components: &[Expr]) {
+        let mut first: Option<(Dimension, &Expr)> = None;
+        for component in components {
+            let inferred = self.known.infer(component);
+            let Some(own) = self.found.keep(inferred).flatten() else {
+                continue;
+            };
+            match first {
+                None => first = Some((own, component)),
+                Some((dimension, _)) if dimension == own => {}
+                Some((dimension, other)) => {
+                    let message = "the components of a vector have different units";
+                    self.found.push(
+                        Diagnostic::error(message)
+                            .at(component.span, Words(own).to_string())
+                            .also(other.span, Words(dimension).to_string())
+                            .help_if(difference(own, dimension)),
+                    );
+                    return;
+                }
+            }
+        }
+    }
+
+    /// A quantity for which a bare number is in SI.
     fn expect_quantity(&mut self, expr: &Expr, expected: Dimension, subject: &str) {
         if !matches!(expr.kind, ExprKind::Number(_)) {
             self.expect(

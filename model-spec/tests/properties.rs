@@ -39,6 +39,11 @@ fn written(syntax: &Syntax) -> (String, u8) {
             let arguments: Vec<_> = arguments.iter().map(|a| written(a).0).collect();
             (format!("{function}({})", arguments.join(", ")), 5)
         }
+        SyntaxKind::Vector(components) => {
+            let components: Vec<_> = components.iter().map(|c| written(c).0).collect();
+            (format!("[{}]", components.join(", ")), 5)
+        }
+        SyntaxKind::Member { of, member, .. } => (format!("{}.{member}", bracketed(of, 5)), 5),
         SyntaxKind::Negate(operand) => (format!("-{}", bracketed(operand, 3)), 3),
         SyntaxKind::Binary(operator, left, right) => {
             let (sign, own) = match operator {
@@ -74,6 +79,14 @@ fn shape(syntax: &Syntax) -> Syntax {
             index: index.clone(),
             index_span: span,
         },
+        SyntaxKind::Vector(components) => {
+            SyntaxKind::Vector(components.iter().map(shape).collect())
+        }
+        SyntaxKind::Member { of, member, .. } => SyntaxKind::Member {
+            of: Box::new(shape(of)),
+            member: member.clone(),
+            member_span: span,
+        },
         SyntaxKind::Negate(operand) => SyntaxKind::Negate(Box::new(shape(operand))),
         SyntaxKind::Binary(operator, left, right) => {
             SyntaxKind::Binary(*operator, Box::new(shape(left)), Box::new(shape(right)))
@@ -104,7 +117,18 @@ fn syntax() -> impl Strategy<Value = Syntax> {
             Just(BinaryOperator::Power),
         ];
         let call = ("[a-z]{1,4}", prop::collection::vec(inner.clone(), 0..3));
+        let vector = prop::collection::vec(inner.clone(), 1..4);
+        let vector = vector.prop_map(|components| node(SyntaxKind::Vector(components)));
+        let member = (vector.clone(), "[a-z]{1,4}").prop_map(|(of, member)| {
+            node(SyntaxKind::Member {
+                of: Box::new(of),
+                member,
+                member_span: Span::default(),
+            })
+        });
         prop_oneof![
+            vector,
+            member,
             (operator, inner.clone(), inner.clone())
                 .prop_map(|(o, l, r)| node(SyntaxKind::Binary(o, Box::new(l), Box::new(r)))),
             inner.prop_map(|operand| node(SyntaxKind::Negate(Box::new(operand)))),

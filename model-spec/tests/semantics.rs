@@ -56,7 +56,7 @@ stiffness = { of = "q", by = "q", times = "h" }
 
 [sensors.theta_dot]
 gain = 1.01
-delay = 0.001
+delay = -0.001
 "#;
 
 fn checked(text: &str) -> Checked {
@@ -390,7 +390,7 @@ fn provenance_and_sensors_are_kept() {
             sensor.bias,
             sensor.delay
         ),
-        ("theta_dot", 1.01, 0.0, 0.001)
+        ("theta_dot", 1.01, 0.0, -0.001)
     );
 }
 

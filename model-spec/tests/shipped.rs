@@ -26,6 +26,9 @@ fn value(model: &Model, name: &str) -> f64 {
 #[path = "shipped/bodies.rs"]
 mod bodies;
 
+#[path = "shipped/vectors.rs"]
+mod vectors;
+
 #[test]
 fn every_shipped_specification_loads_without_a_warning() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");

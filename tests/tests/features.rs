@@ -71,6 +71,7 @@ features! {
         shorter_functions: [0];
         pendulum_chain: [0];
         heavy_top: [0];
+        vectors: [0, 1, 3];
         states_of_first_order: [0, 1, 3];
         piecewise_linear_states: [0];
     }
@@ -79,6 +80,7 @@ features! {
     also_by_differences {
         prescribed_motion: [0, 2];
         moving_constraints: [0];
+        ball_joint: [0];
         flexible_coupler: [0, 1, 4];
         rolling_disc: [0];
         bicycle: [0];

@@ -49,7 +49,7 @@ fn shipped_models_are_what_their_physics_says() {
             "planetary_arm" | "planetary_arm_rig" => Some("piecewise linear"),
             // The inertia that moves with the length of the rope.
             "crane" => Some("m*l^2"),
-            "chaplygin_sleigh" => Some("with constraints"),
+            "chaplygin_sleigh" | "quadrotor_slung_load" => Some("with constraints"),
             "emps" | "hub_beam_tip_mass" | "loudspeaker" | "shaft_and_disc" => Some("linear"),
             _ => None,
         };

@@ -1,5 +1,6 @@
 //! Wrong use of the program: exit status 2 and a message that says what would be right.
 
+use eomgen_tests::measured::Measured;
 use eomgen_tests::models::path;
 use eomgen_tests::program::{accepted, eomgen, refused};
 
@@ -93,7 +94,10 @@ fn commands_and_options_that_do_not_exist_are_refused() {
 fn help_has_an_example_and_succeeds() {
     assert!(accepted(&["--help"]).contains("simulate"));
     assert!(accepted(&["--version"]).starts_with("eomgen "));
-    for command in COMMANDS.into_iter().chain(["sweep", "merge", "tour"]) {
+    for command in COMMANDS
+        .into_iter()
+        .chain(["dataset", "sweep", "merge", "tour"])
+    {
         let help = accepted(&[command, "--help"]);
         // The line of the usage names the command too.
         let example = help.split_once("Example").map(|(_, example)| example);
@@ -102,6 +106,32 @@ fn help_has_an_example_and_succeeds() {
             "{command}: {help}"
         );
     }
+}
+
+#[test]
+fn a_proposed_dataset_file_is_written_whole_beside_its_record_or_not_at_all() {
+    let measured = Measured::stage(0.0);
+    let record = measured.file("train.csv").display().to_string();
+    let out = measured.file("proposed.toml").display().to_string();
+    accepted(&["dataset", &record, &spec("emps"), "--out", &out]);
+    assert!(measured.read("proposed.toml").contains("[inputs.force]"));
+    let printed = accepted(&["dataset", &record, &spec("emps")]);
+    assert_eq!(printed, measured.read("proposed.toml"));
+    let json: serde_json::Value =
+        serde_json::from_str(&accepted(&["dataset", &record, &spec("emps"), "--json"]))
+            .expect("JSON");
+    assert_eq!(json["dataset"], printed);
+    let elsewhere = tempfile::tempdir().expect("a folder");
+    let outside = elsewhere.path().join("a.toml");
+    let text = outside.display().to_string();
+    let found = refused(&["dataset", &record, &spec("emps"), "--out", &text]);
+    assert!(
+        found.contains("in the folder of its records or above it"),
+        "{found}"
+    );
+    assert!(!outside.exists());
+    let found = refused(&["dataset", &record, &spec("double_pendulum")]);
+    assert!(found.contains("no column is an observable"), "{found}");
 }
 
 #[test]

@@ -28,9 +28,15 @@ fn print(as_json: bool, result: &Value, out: &Path) -> Result {
         out.display(),
         result["verdict"].as_str().unwrap_or("")
     );
+    text += &format!("  {}\n", result["summary"].as_str().unwrap_or(""));
     for effect in result["effects"].as_array().into_iter().flatten() {
         let word = |key: &str| effect[key].as_str().unwrap_or("").to_owned();
-        text += &format!("  {} on {}\n", word("effect"), word("on"));
+        text += &format!(
+            "  {} on {}, {}\n",
+            word("effect"),
+            word("on"),
+            word("status")
+        );
     }
     for (name, gap) in result["gap"].as_object().into_iter().flatten() {
         let number = |value: &Value| {

@@ -22,14 +22,14 @@ pub fn run(options: &Linearise) -> Result {
         run.operating_point(&assignments("--at", &options.at)?)?,
     )?;
     let found = linearised(&run, &at)?;
-    let text = || format!("{:#}\n", document(&compiled, &at, &found));
+    let text = || document(&compiled, &at, &found).map(|document| format!("{document:#}\n"));
     let Some(destination) = destination else {
-        return say(&text());
+        return say(&text()?);
     };
     let extension = options.out.as_deref().and_then(|out| out.extension());
     let contents = match extension.is_some_and(|extension| extension == "npz") {
         true => arrays(&compiled, &at, &found)?,
-        false => text().into_bytes(),
+        false => text()?.into_bytes(),
     };
     destination.write(&contents)?;
     destination.summarise(&summary(options, &compiled))

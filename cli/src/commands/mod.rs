@@ -2,6 +2,7 @@
 
 pub mod check;
 pub mod completions;
+pub mod dataset;
 pub mod derive;
 pub mod discover;
 pub mod generate;

@@ -7,12 +7,18 @@ use serde_json::{Value, json};
 
 use crate::arguments::Modes;
 use crate::error::{Error, Result, say};
+use crate::mode_figure::figure;
 use crate::operating_point::{
     assignments, consistent, head, linearised, model, named, shape_names,
 };
+use crate::output::Destination;
+use crate::regime::{Side, regime};
 
 /// Runs the command.
 pub fn run(options: &Modes) -> Result {
+    let drawing = options.plot.as_deref();
+    let drawing = drawing.map(|plot| Destination::of_figure(plot, None, options.json));
+    let drawing = drawing.transpose()?;
     let compiled = model(&options.spec, options.order.as_deref(), &options.set)?;
     let run = compiled.at_declared()?;
     let at = consistent(
@@ -23,12 +29,19 @@ pub fn run(options: &Modes) -> Result {
     let degrees = compiled.program().degrees_of_freedom();
     let modes = constrained_modes(&found.a, &found.held(&compiled), degrees)
         .map_err(|error| Error::input(error.to_string()))?;
+    let regime = regime(&run, &at)?;
+    if let Some(drawing) = &drawing {
+        drawing.write(figure(&run, &regime, &modes)?.as_bytes())?;
+    }
     if !options.json {
-        return say(&table(&compiled, &modes));
+        let text = table(&compiled, &modes) + &sides(&regime);
+        return drawing.map_or_else(|| say(&text), |drawing| drawing.summarise(&text));
     }
     let mut document = head(&compiled);
     document.insert("at".to_owned(), named(&compiled, &at));
     document.insert("coordinates".to_owned(), json!(shape_names(&compiled)));
+    let regime = regime.iter().map(Side::json);
+    document.insert("regime".to_owned(), regime.collect());
     document.insert("modes".to_owned(), modes.iter().map(record).collect());
     say(&format!("{:#}\n", Value::Object(document)))
 }
@@ -43,6 +56,17 @@ fn record(mode: &NaturalMode) -> Value {
         "shape": real,
         "shape_imaginary": imaginary,
     })
+}
+
+/// Where a piecewise model is linearised.
+fn sides(regime: &[Side]) -> String {
+    match regime {
+        [] => String::new(),
+        sides => {
+            let sides: Vec<String> = sides.iter().map(Side::to_string).collect();
+            format!("regime: {}\n", sides.join(", "))
+        }
+    }
 }
 
 /// The coordinates of a mode that a table names.

@@ -21,7 +21,7 @@ pub fn run(options: &Simulate) -> Result {
     let figure = options
         .plot
         .as_deref()
-        .map(|plot| Destination::of(plot, options.json));
+        .map(|plot| Destination::of_figure(plot, Some(&options.out), options.json));
     let figure = figure.transpose()?;
     let model = with_inputs(load(&options.spec)?.model, &options.input)?;
     let model = with_settings(model, &options.set)?;

@@ -1,4 +1,4 @@
-//! `eomgen sweep`: something measured over a grid of parameters, in parallel and in parts.
+//! `eomgen sweep`: something measured over a grid or random samples of parameters, in parallel and in parts.
 
 use eomgen_sweep::{Folder, Shard};
 use serde_json::{Value, json};
@@ -6,10 +6,11 @@ use serde_json::{Value, json};
 use crate::arguments::Sweep;
 use crate::engines::{self, Submitted};
 use crate::error::{Result, say};
+use crate::model::load;
 use crate::progress::Bar;
 use crate::settings::setting;
 use crate::sweep_files::finish;
-use crate::sweep_job::{grid, job, measures, model, refused};
+use crate::sweep_job::{job, measures, model, points, refused};
 
 /// Runs the command.
 pub fn run(options: &Sweep) -> Result {
@@ -19,15 +20,16 @@ pub fn run(options: &Sweep) -> Result {
         .as_deref()
         .map_or(Ok(Shard::WHOLE), Shard::parse);
     let shard = shard.map_err(refused)?;
-    let grid = grid(options)?;
     let set = options
         .set
         .iter()
         .map(|assignment| setting(assignment))
         .collect::<Result<Vec<_>>>()?;
-    let model = model(options, &grid, &set)?;
-    let measures = measures(options, &model, &grid)?;
-    let job = job(&model, &grid, &set, &measures)?;
+    let declared = load(&options.spec)?.model;
+    let points = points(options, &declared, &set)?;
+    let model = model(options, &declared, &points, &set)?;
+    let measures = measures(options, &model, &points)?;
+    let job = job(&model, &points, &set, &measures)?;
     let folder = Folder::open(&options.out, job).map_err(refused)?;
     if let Some(engine) = options.engine {
         let Submitted { document, text } = engines::submit(engine, options)?;

@@ -36,6 +36,10 @@ impl Commands {
         for vary in &options.vary {
             add("--vary", vary);
         }
+        if let Some(samples) = options.samples {
+            add("--samples", &samples.to_string());
+            add("--seed", &options.seed.to_string());
+        }
         for set in &options.set {
             add("--set", set);
         }

@@ -1,6 +1,9 @@
 //! Expressions and statements as marked text of C, with parentheses only where the order of
 //! evaluation needs them.
 
+use std::collections::BTreeSet;
+
+use super::sine_and_cosine::{SineAndCosine, partner};
 use eomgen_elementary::ROUNDING_ALIGNER;
 
 use crate::program::{PARTIAL_SUMS, Program};
@@ -49,7 +52,33 @@ impl Writer {
 
     /// The statements, a line each or more.
     pub(super) fn statements(&self, statements: &[Statement]) -> String {
-        statements.iter().map(|one| self.statement(one)).collect()
+        let mut text = String::new();
+        let mut together = BTreeSet::new();
+        for (place, statement) in statements.iter().enumerate() {
+            if together.contains(&place) {
+                continue;
+            }
+            match partner(&statements[place..]) {
+                Some((ahead, sine_and_cosine)) => {
+                    together.insert(place + ahead);
+                    text += &self.sine_and_cosine(&sine_and_cosine);
+                }
+                None => text += &self.statement(statement),
+            }
+        }
+        text
+    }
+
+    /// Sine and cosine of the same, named at once.
+    fn sine_and_cosine(&self, both: &SineAndCosine) -> String {
+        let [sine, cosine] = [both.sine, both.cosine];
+        let declared = format!("{} {sine}, {cosine};\n", self.real);
+        let argument = self.expression(both.argument);
+        declared
+            + &self.called(
+                "sin_cos",
+                &[argument, format!("&{sine}"), format!("&{cosine}")],
+            )
     }
 
     fn statement(&self, statement: &Statement) -> String {

@@ -14,11 +14,18 @@ pub(super) fn functions(program: &Program, needed: &Needed, stages: &str) -> Str
     if needed.cholesky || needed.cholesky_of_matrix {
         elementary.insert(Elementary::Sqrt);
     }
-    let kernels: String = elementary
-        .into_iter()
-        .map(|function| elementary_function(program, function))
-        .collect();
-    let mut text = kernels;
+    let mut text = String::new();
+    for function in elementary {
+        let call = named(program, &format!("NAME_{}(", function.name()));
+        // What all stages take with its partner has no function of its own.
+        let paired = matches!(function, Elementary::Sin | Elementary::Cos);
+        if !paired || stages.contains(&call) {
+            text += &elementary_function(program, function);
+        }
+    }
+    if stages.contains(&named(program, "NAME_sin_cos(")) {
+        text += &sine_and_cosine(program);
+    }
     for (needed, item) in [
         (needed.deadzone, DEADZONE),
         (needed.contact, CONTACT),
@@ -64,7 +71,7 @@ fn elementary_function(program: &Program, function: Elementary) -> String {
     let kernel = KernelStatements::new(function, arguments);
     let writer = Writer::double(program);
     let mut lines = writer.statements(&kernel.computed);
-    if let Some(value) = &kernel.value {
+    if let Some(value) = kernel.value() {
         lines += &format!("return {};\n", writer.expression(value));
     }
     let head = format!(
@@ -83,6 +90,22 @@ fn elementary_function(program: &Program, function: Elementary) -> String {
     comment(&[describe_elementary(function).to_owned()])
         + &block(&named(program, &head), &lines, "}")
         + &block(&named(program, &outer), &named(program, &rounded), "}")
+}
+
+/// Sine and cosine at once, with the bits of each.
+fn sine_and_cosine(program: &Program) -> String {
+    let kernel = KernelStatements::sine_and_cosine("x");
+    let writer = Writer::double(program);
+    let mut lines = writer.statements(&kernel.computed);
+    for (name, value) in ["sine", "cosine"].iter().zip(kernel.values()) {
+        lines += &named(
+            program,
+            &format!("*{name} = (NAME_real)({});\n", writer.expression(value)),
+        );
+    }
+    let head = "static void NAME_sin_cos(double x, NAME_real *NAME_RESTRICT sine, NAME_real *NAME_RESTRICT cosine) {";
+    comment(&["Sine and cosine for |x| up to 1e9, NaN beyond.".to_owned()])
+        + &block(&named(program, head), &lines, "}")
 }
 
 /// Numbers as bits and back.

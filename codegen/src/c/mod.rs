@@ -15,6 +15,7 @@ mod header;
 mod jacobians;
 mod names;
 mod regimes;
+mod sine_and_cosine;
 mod stages;
 mod types;
 

@@ -10,10 +10,12 @@ use crate::mechanics::constraints::{Constraints, reaction_power};
 use crate::mechanics::forces::{applied_forces, guards, power};
 use crate::mechanics::guard::Guard;
 use crate::mechanics::impacts::{Impact, impacts};
-use crate::mechanics::lagrange::{GradientBy, Variables};
+use crate::mechanics::kinetic::KineticRows;
+use crate::mechanics::lagrange::Variables;
 use crate::mechanics::mass_matrix::{MassMatrix, ModalMassBlock};
 use crate::mechanics::rows::RowNodes;
 use crate::mechanics::solve::{Accelerations, solve};
+use crate::mechanics::sweeps::Momenta;
 use crate::mechanics::translate::{Derived, Translator};
 use crate::symbolic::graph::{Graph, NodeId};
 
@@ -35,6 +37,8 @@ pub struct Equations {
     pub mass: MassMatrix,
     /// Velocity terms c of M q'' + c = f: what is quadratic in the rates and not a force.
     pub velocity_terms: RowNodes,
+    /// The momenta by a sweep over the velocities, where there are no fields.
+    pub(crate) sweep: Option<Momenta>,
     /// Generalised forces f: -dV/dq - dR/dq' + Q.
     pub forces: RowNodes,
     /// The accelerations and how they were solved for.
@@ -85,10 +89,13 @@ pub fn derive(model: &Model, orders: &[usize]) -> Derived<Equations> {
     let potential = total_of(&mut translator, &model.potential, "V", &mut terms)?;
     let dissipation = total_of(&mut translator, &model.dissipation, "R", &mut terms)?;
     let variables = Variables::new(model, orders);
-    let momenta = variables.gradient(&mut translator.graph, kinetic, GradientBy::Rates);
-    let mass = variables.mass_matrix(&mut translator.graph, &momenta);
+    let KineticRows {
+        momenta,
+        mass,
+        velocity_terms,
+        sweep,
+    } = KineticRows::cheapest(&mut translator.graph, &variables, kinetic, potential);
     name_mass_matrix(&mut translator.graph, model, &mass);
-    let velocity_terms = variables.velocity_terms(&mut translator.graph, kinetic, &momenta);
     let applied = applied_forces(&mut translator, &variables, dissipation, &mut terms)?;
     let forces = variables.with_potential(&mut translator.graph, &applied, potential);
     let right_side = variables.difference(&mut translator.graph, &forces, &velocity_terms);
@@ -152,6 +159,7 @@ pub fn derive(model: &Model, orders: &[usize]) -> Derived<Equations> {
         potential,
         mass,
         velocity_terms,
+        sweep,
         forces,
         accelerations,
         multipliers,

@@ -7,10 +7,13 @@ use eomgen_model_spec::model::Model;
 use crate::mechanics::mass_matrix::MassMatrix;
 use crate::mechanics::rows::RowNodes;
 use crate::mechanics::translate::along_motion;
+use crate::symbolic::association::shared_operations;
 use crate::symbolic::differentiate::{ModalDerivative, by_scalar};
 use crate::symbolic::expand::{MOST_EXPANSIONS, expand_once};
+use crate::symbolic::factor::cheaper;
 use crate::symbolic::graph::{Graph, NodeId, Operation, Space};
 use crate::symbolic::operation_count::count_operations;
+use crate::symbolic::trigonometry::with_sums_of_angles;
 
 /// What a gradient is taken by.
 pub(crate) enum GradientBy {
@@ -20,8 +23,8 @@ pub(crate) enum GradientBy {
 
 /// Which variables there are.
 pub(crate) struct Variables {
-    coordinates: usize,
-    fields: usize,
+    pub(crate) coordinates: usize,
+    pub(crate) fields: usize,
 }
 
 impl Variables {
@@ -135,7 +138,10 @@ impl Variables {
         applied: &RowNodes,
         potential: NodeId,
     ) -> RowNodes {
-        let gradient = self.gradient(graph, potential, GradientBy::Coordinates);
+        let mut gradient = self.gradient(graph, potential, GradientBy::Coordinates);
+        if self.fields == 0 {
+            gradient.scalars = cheapest_slopes(graph, gradient.scalars);
+        }
         self.combine(graph, &[(1.0, applied.clone()), (-1.0, gradient)])
     }
 
@@ -174,6 +180,21 @@ impl Variables {
             terms.push((1.0, graph.total_over(Space::Modes(field), product)));
         }
         graph.combine(&terms)
+    }
+}
+
+/// The slopes of a potential as they are, with common factors taken out, or multiplied out with
+/// terms collected: what takes fewest operations.
+fn cheapest_slopes(graph: &mut Graph, slopes: Vec<NodeId>) -> Vec<NodeId> {
+    let apart: Vec<NodeId> = slopes
+        .iter()
+        .map(|slope| with_sums_of_angles(graph, *slope))
+        .collect();
+    let slopes = cheaper(graph, slopes);
+    if shared_operations(graph, &apart) < shared_operations(graph, &slopes) {
+        apart
+    } else {
+        slopes
     }
 }
 

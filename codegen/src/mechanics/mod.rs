@@ -1,7 +1,8 @@
 //! From a checked model to its equations of motion.
 //!
-//! `translate` with `fields` (expressions to nodes), `lagrange` and `forces` (the rows of
-//! Lagrange's equations, of `rows`, `mass_matrix` and `guard`s), `constraints` (what stays zero),
+//! `translate` with `fields` (expressions to nodes), `lagrange`, `sweeps` and `forces` (the rows of
+//! Lagrange's equations, of `rows`, `mass_matrix` and `guard`s), `kinetic` (the cheapest form of
+//! those of a kinetic energy), `constraints` (what stays zero),
 //! `solve` (the accelerations), `impacts` (what impulses do),
 //! `coefficients` (names as in Eq. (22)), `equations` (all of it), `outputs` (what is derived on
 //! request), `linearity` (whether a model is linear between its switches), `affine` (its
@@ -16,10 +17,12 @@ mod forces;
 pub mod guard;
 pub mod impacts;
 pub(crate) mod inertia;
+mod kinetic;
 mod lagrange;
 pub mod linearity;
 pub mod mass_matrix;
 pub mod outputs;
 pub mod rows;
 pub mod solve;
+mod sweeps;
 pub mod translate;

@@ -43,7 +43,7 @@ pub(super) fn elementary_function(function: Elementary) -> String {
 fn lines(kernel: &KernelStatements) -> String {
     let mut writer = Writer::default();
     let mut lines = writer.statements(&kernel.computed);
-    if let Some(value) = &kernel.value {
+    if let Some(value) = kernel.value() {
         lines.push_str(&writer.expression(value));
         lines.push('\n');
     }

@@ -2,7 +2,7 @@
 
 use super::expression::Expression;
 use super::statement::Statement;
-use eomgen_elementary::{Function as Elementary, Kernel, Operation};
+use eomgen_elementary::{Function as Elementary, Kernel, Operation, sin_cos_kernel};
 
 /// What an elementary function is, for people.
 pub fn describe_elementary(function: Elementary) -> &'static str {
@@ -37,15 +37,23 @@ const EXPRESSION_SIZE: usize = 6;
 pub struct KernelStatements {
     /// The named operations.
     pub computed: Vec<Statement>,
-    /// The value.
-    pub value: Option<Expression>,
+    /// The values.
+    values: Vec<Expression>,
 }
 
 impl KernelStatements {
     /// Of a function with these names for its arguments.
     pub fn new(function: Elementary, arguments: &[&str]) -> Self {
-        let kernel = function.kernel();
-        let uses = uses(&kernel);
+        Self::of(&function.kernel(), arguments)
+    }
+
+    /// Of the sine and the cosine of an argument of this name, in this order.
+    pub fn sine_and_cosine(argument: &str) -> Self {
+        Self::of(&sin_cos_kernel(), &[argument])
+    }
+
+    fn of(kernel: &Kernel, arguments: &[&str]) -> Self {
+        let uses = uses(kernel);
         let mut expressions: Vec<Expression> = Vec::new();
         let mut computed = Vec::new();
         for (index, operation) in kernel.operations.iter().enumerate() {
@@ -59,11 +67,21 @@ impl KernelStatements {
                 expressions.push(Expression::Name(name));
             }
         }
-        let output = kernel.outputs.first();
+        let outputs = kernel.outputs.iter();
         Self {
             computed,
-            value: output.map(|output| expressions[*output].clone()),
+            values: outputs.map(|output| expressions[*output].clone()).collect(),
         }
+    }
+
+    /// The value, of a function that has one.
+    pub fn value(&self) -> Option<&Expression> {
+        self.values.first()
+    }
+
+    /// The values, one for each result.
+    pub fn values(&self) -> &[Expression] {
+        &self.values
     }
 }
 

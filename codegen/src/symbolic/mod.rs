@@ -4,12 +4,16 @@
 //! `operation` (of `arguments`) and `graph` (the nodes), `simplify` (the algebraic laws, applied
 //! by the constructors), `tables` and `table_text` (constants of a basis), `matrix` and
 //! `differentiate` (derivatives that keep their structure), `substitute`, `expand`, `degree` and
-//! `operation_count` (walks over nodes), `formula` (for people).
+//! `operation_count` (walks over nodes), `association` (which factors are multiplied first), `factor`
+//! and `trigonometry` (other forms of sums, for whoever compares what they cost), `formula` (for
+//! people).
 
 pub(crate) mod arguments;
+pub(crate) mod association;
 pub(crate) mod degree;
 pub mod differentiate;
 pub(crate) mod expand;
+pub(crate) mod factor;
 pub mod formula;
 pub mod graph;
 pub mod matrix;
@@ -19,3 +23,4 @@ mod simplify;
 pub(crate) mod substitute;
 pub(crate) mod table_text;
 pub mod tables;
+pub(crate) mod trigonometry;

@@ -64,8 +64,8 @@ fn of_kernel(function: Elementary) -> Option<Helper> {
     Some(Helper {
         name: function.name(),
         arguments,
+        value: kernel.value()?.clone(),
         computed: kernel.computed,
-        value: kernel.value?,
     })
 }
 

@@ -10,6 +10,7 @@ use eomgen_model_spec::source::Source;
 use crate::catalogue::effect::{Change, Effect, SiteKind};
 use crate::catalogue::sites::Site;
 use crate::catalogue::template::{edits, free_name, instantiated, terms};
+use crate::catalogue::usual_motion::UsualMotion;
 use crate::error::DiscoverError;
 use crate::interval::Interval;
 use crate::model::estimation_model::is_linear;
@@ -124,6 +125,11 @@ impl Candidate {
         }
     }
 
+    /// Whether it is the same effect at the same place, of whatever order.
+    pub fn is_same_as(&self, other: &Self) -> bool {
+        (&self.effect, &self.on) == (&other.effect, &other.on)
+    }
+
     /// A specification's text with this effect, at these values of its parameters.
     ///
     /// # Errors
@@ -167,13 +173,12 @@ impl Candidate {
     }
 }
 
-/// All candidates for a model. `rates`: the usual rate of an axis by its name, where it is
-/// known.
+/// All candidates for a model. `motion`: how its places move, as far as it is known.
 pub fn candidates(
     model: &Model,
     effects: &[Effect],
     sites: &[Site],
-    rates: &BTreeMap<String, f64>,
+    motion: &UsualMotion,
 ) -> Vec<Candidate> {
     let angles: Vec<&Site> = sites
         .iter()
@@ -189,11 +194,20 @@ pub fn candidates(
                 false => &[],
             };
             if !effect.orders {
-                found.extend(candidate(model, effect, site, None, rates));
+                found.extend(candidate(model, effect, site, None, motion));
             }
             for angle in turning {
-                for order in orders(model) {
-                    found.extend(candidate(model, effect, site, Some((*angle, order)), rates));
+                for order in orders(model, motion.orders(angle)) {
+                    if !motion.covers(angle, order) {
+                        continue;
+                    }
+                    found.extend(candidate(
+                        model,
+                        effect,
+                        site,
+                        Some((*angle, order)),
+                        motion,
+                    ));
                 }
             }
         }
@@ -205,9 +219,10 @@ fn fits(wanted: SiteKind, there: SiteKind) -> bool {
     wanted == there || (wanted == SiteKind::Axis && there == SiteKind::Angle)
 }
 
-/// The usual shaft orders and the model's own numbers of teeth: whole numbers without a unit.
-fn orders(model: &Model) -> Vec<u32> {
-    let mut orders = thresholds::SHAFT_ORDERS.to_vec();
+/// The usual shaft orders, those seen in the residual force, and the model's own numbers of teeth:
+/// whole numbers without a unit.
+fn orders(model: &Model, seen: &[u32]) -> Vec<u32> {
+    let mut orders = [&thresholds::SHAFT_ORDERS[..], seen].concat();
     for parameter in &model.parameters {
         if let ParameterValue::Number(value) = parameter.value
             && parameter.unit.text == "1"
@@ -227,7 +242,7 @@ fn candidate(
     effect: &Effect,
     site: &Site,
     order: Option<(&Site, u32)>,
-    rates: &BTreeMap<String, f64>,
+    motion: &UsualMotion,
 ) -> Option<Candidate> {
     let mut arguments: BTreeMap<String, String> = site
         .arguments
@@ -243,13 +258,14 @@ fn candidate(
     for parameter in &effect.parameters {
         let name = free_name(&parameter.name, &site.name, &mut taken);
         arguments.insert(parameter.name.clone(), name.clone());
-        let rate = rates.get(&site.name).copied().unwrap_or(1.0);
         parameters.push(CandidateParameter {
             name,
             unit: plain_unit(&instantiated(&parameter.unit, &arguments)?),
             positive: parameter.positive,
             inverse: parameter.inverse,
-            shape: parameter.share.map(|share| share * rate),
+            shape: parameter
+                .shape
+                .map(|shape| shape.share * motion.scale(shape.scale, site)),
             offset: None,
             doc: parameter.doc.clone(),
         });
@@ -368,5 +384,8 @@ pub(crate) fn names(model: &Model) -> Vec<String> {
 
 /// `N m s` for `N m s/rad`: an angle counts as a number.
 fn plain_unit(unit: &str) -> String {
-    unit.replace("/rad^2", "").replace("/rad", "")
+    let powers = ["/rad^3", "/rad^2", "/rad"];
+    powers
+        .iter()
+        .fold(unit.to_owned(), |unit, power| unit.replace(power, ""))
 }

@@ -35,10 +35,11 @@ enum Replaced {
     Measured,
 }
 
-const REPLACED: [(&str, Replaced); 4] = [
+const REPLACED: [(&str, Replaced); 5] = [
     ("kinetic", Replaced::Kinetic),
     ("mesh", Replaced::Site(SiteKind::Mesh)),
     ("arm", Replaced::Site(SiteKind::Arm)),
+    ("spring", Replaced::Site(SiteKind::Spring)),
     ("measured", Replaced::Measured),
 ];
 

@@ -48,8 +48,8 @@ impl SiteKind {
         ("spring", Self::Spring),
     ];
 
-    /// The placeholders that a site of this kind fills; `{root}` and `{stiffness}` where it has
-    /// them.
+    /// The placeholders that a site of this kind fills; `{root}`, `{stiffness}` and a spring's `{k}`
+    /// where it has them.
     pub fn placeholders(self) -> &'static [&'static str] {
         match self {
             Self::Axis | Self::Angle => &["on", "unit", "force"],
@@ -64,7 +64,7 @@ impl SiteKind {
                 "root",
                 "stiffness",
             ],
-            Self::Spring => &["on", "p", "k"],
+            Self::Spring => &["on", "p", "unit", "force", "k"],
         }
     }
 }
@@ -82,9 +82,31 @@ pub struct EffectParameter {
     pub doc: String,
     /// The effect is absent where it is infinite, not where it is 0.
     pub inverse: bool,
-    /// The part of the site's usual rate that it is as large as, where it shapes the effect without
-    /// scaling it.
-    pub share: Option<f64>,
+    /// How large it is at first, where it shapes the effect without scaling it.
+    pub shape: Option<Shape>,
+}
+
+/// A parameter that shapes an effect: a part of how the site moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shape {
+    /// Of what of the motion.
+    pub scale: Scale,
+    /// So much.
+    pub share: f64,
+}
+
+/// What of a site's motion a shape is a part of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scale {
+    /// Its usual rate.
+    Rate,
+    /// How far it goes from 0.
+    Travel,
+}
+
+impl Scale {
+    /// The scales by their words in a file.
+    pub const WORDS: [(&'static str, Self); 2] = [("rate", Self::Rate), ("travel", Self::Travel)];
 }
 
 /// One change of the specification.
@@ -140,7 +162,8 @@ pub enum Change {
 pub enum Within {
     /// These terms of the kinetic energy.
     Kinetic(Vec<String>),
-    /// All terms of a pair of teeth, or of the kinetic energy of a body and of what it carries.
+    /// All terms of a pair of teeth, that of a spring, or of the kinetic energy of a body and of what it
+    /// carries.
     Site,
     /// All definitions and observables.
     Measured,

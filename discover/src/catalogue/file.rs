@@ -8,7 +8,7 @@ use eomgen_model_spec::table::{Entry, Name, Record, Written};
 use eomgen_model_spec::toml_file;
 
 use super::change::change;
-use super::effect::{Effect, EffectParameter, SiteKind};
+use super::effect::{Effect, EffectParameter, Scale, Shape, SiteKind};
 use super::fields::{new_name, some, text};
 use super::placeholders::Placeholders;
 
@@ -146,16 +146,17 @@ fn parameter(
         positive: positive?,
         doc: doc?.text,
         inverse: inverse?,
-        share: share(&record, found),
+        shape: shape(&record, found),
     })
 }
 
-/// The part of the usual rate that a shape is as large as.
-fn share(record: &Record<'_>, found: &mut Diagnostics) -> Option<f64> {
+/// Of what of a site's motion a parameter is a part, and how large that is.
+fn shape(record: &Record<'_>, found: &mut Diagnostics) -> Option<Shape> {
     let (scale, share) = (record.get("scale"), record.get("share"));
-    if let Some(scale) = scale {
-        found.keep(scale.word(&[("rate", ())]))?;
-    }
+    let word = match scale {
+        Some(scale) => Some(found.keep(scale.clone().word(&Scale::WORDS))?),
+        None => None,
+    };
     let (scale, share) = match (scale, share) {
         (Some(scale), Some(share)) => (scale, share),
         (None, None) => return None,
@@ -176,5 +177,8 @@ fn share(record: &Record<'_>, found: &mut Diagnostics) -> Option<f64> {
                 .also(scale.span(), "of this"),
         );
     }
-    Some(part.value)
+    word.map(|scale| Shape {
+        scale,
+        share: part.value,
+    })
 }

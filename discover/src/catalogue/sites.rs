@@ -1,7 +1,7 @@
 //! Where effects may sit in a model: axes, angles, meshes with play, flexible bodies and springs,
 //! with the arguments that fill the placeholders of an effect there.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use eomgen_model_spec::ast::BinaryOperator;
 use eomgen_model_spec::dimension::Dimension;
@@ -10,6 +10,7 @@ use eomgen_model_spec::ids::{CoordinateId, FieldId};
 use eomgen_model_spec::model::{Expr, ExprKind, Function, Model, Term};
 
 use crate::catalogue::effect::SiteKind;
+use crate::catalogue::springs::springs;
 
 /// A place for effects.
 #[derive(Clone, Debug)]
@@ -20,7 +21,7 @@ pub struct Site {
     pub name: String,
     /// What fills the placeholders.
     pub arguments: BTreeMap<&'static str, String>,
-    /// The terms that make up a mesh, or those of the kinetic energy that move with a body.
+    /// The terms that make up a mesh or hold a spring, or those of the kinetic energy that move with a body.
     pub terms: Vec<(Section, Vec<String>)>,
 }
 
@@ -30,12 +31,7 @@ pub fn sites(model: &Model) -> Vec<Site> {
     let mut found = axes(model, &meshes);
     found.extend(meshes.iter().filter_map(|place| mesh(model, *place)));
     found.extend(arms(model));
-    found.extend(
-        model
-            .potential
-            .iter()
-            .filter_map(|term| spring(model, term)),
-    );
+    found.extend(springs(model));
     found
 }
 
@@ -43,13 +39,19 @@ pub fn sites(model: &Model) -> Vec<Site> {
 #[derive(Default)]
 struct Parts {
     coordinates: Vec<CoordinateId>,
+    /// Definitions that were written out: one of vectors is used again and again.
+    definitions: BTreeSet<usize>,
     other: bool,
 }
 
 fn parts(model: &Model, expr: &Expr, into: &mut Parts) {
     expr.visit(&mut |part| match part.kind {
         ExprKind::Coordinate(id) => into.coordinates.push(id),
-        ExprKind::Definition(id) => parts(model, &model.definitions[id].value, into),
+        ExprKind::Definition(id) => {
+            if into.definitions.insert(id.index()) {
+                parts(model, &model.definitions[id].value, into);
+            }
+        }
         ExprKind::Dot(_)
         | ExprKind::Field(_)
         | ExprKind::ModeCoordinate(_)
@@ -233,44 +235,6 @@ fn half_play(model: &Model, coordinate: CoordinateId) -> Option<String> {
     play
 }
 
-/// A spring: a term of the potential energy that is a stiffness, one parameter and numbers, times
-/// the square of something that moves.
-fn spring(model: &Model, term: &Term) -> Option<Site> {
-    let moves =
-        |part: &Expr| matches!(part.kind, ExprKind::Coordinate(_) | ExprKind::Definition(_));
-    let base = squared(&term.value, &moves)?;
-    let factor = factor_of_square(&term.value, &moves)?;
-    let (mut parameters, mut powers, mut is_plain) = (Vec::new(), 0, true);
-    factor.visit(&mut |part| {
-        if let ExprKind::Parameter(id) = part.kind {
-            parameters.push(id);
-        }
-    });
-    term.value.visit(&mut |part| match &part.kind {
-        ExprKind::Binary(BinaryOperator::Power, _, exponent) => {
-            powers += 1;
-            is_plain &= exponent.kind == ExprKind::Number(2.0);
-        }
-        ExprKind::Call(..) | ExprKind::Integral { .. } | ExprKind::Sum { .. } => is_plain = false,
-        _ => {}
-    });
-    let ([stiffness], 1, true) = (&parameters[..], powers, is_plain) else {
-        return None;
-    };
-    let deflection = text(model, base);
-    let arguments = [
-        ("on", deflection.clone()),
-        ("p", deflection),
-        ("k", model.parameters[*stiffness].name.clone()),
-    ];
-    Some(Site {
-        kind: SiteKind::Spring,
-        name: term.name.clone(),
-        arguments: arguments.into(),
-        terms: Vec::new(),
-    })
-}
-
 fn arms(model: &Model) -> Vec<Site> {
     let arm = |term: &Term| {
         // What is spread along the body; a mass at its end is none.
@@ -389,7 +353,7 @@ fn factor_of_square<'m>(expr: &'m Expr, wanted: &dyn Fn(&Expr) -> bool) -> Optio
 }
 
 /// An expression as the specification writes it.
-fn text(model: &Model, expr: &Expr) -> String {
+pub(super) fn text(model: &Model, expr: &Expr) -> String {
     let span = expr.span;
     let written = model
         .source

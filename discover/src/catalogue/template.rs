@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use eomgen_model_spec::edit::{Edit, NewCoordinate, NewForce, NewTerm, Section, Substitution};
 use eomgen_model_spec::model::{Expr, Model};
 
-use crate::catalogue::effect::{Change, Within};
+use crate::catalogue::effect::{Change, SiteKind, Within};
 use crate::catalogue::sites::Site;
 
 /// The edits that a change of the catalogue comes to with these arguments;
@@ -121,6 +121,10 @@ fn measured(model: &Model, find: &str) -> Vec<(Section, Vec<String>)> {
 
 /// The site's terms that hold a name.
 fn holding(model: &Model, site: &Site, name: &str) -> Vec<(Section, Vec<String>)> {
+    // What deflects may be any expression, and a spring's term holds it.
+    if site.kind == SiteKind::Spring {
+        return site.terms.clone();
+    }
     let text = |section: Section, term: &str| {
         let span = match section {
             Section::Definitions => {

@@ -1,13 +1,12 @@
 //! A user's effects at the places of a specification: what they add must be a specification, and
 //! one that has no place there is said, because it will not be tried.
 
-use std::collections::BTreeMap;
-
 use eomgen_model_spec::source::Source;
 
 use crate::catalogue::candidate::{CandidateParameter, candidates};
 use crate::catalogue::effect::Effect;
 use crate::catalogue::sites::sites;
+use crate::catalogue::usual_motion::UsualMotion;
 use crate::error::DiscoverError;
 
 /// Writes each of the user's effects into a specification wherever it has a place; returns those
@@ -24,7 +23,12 @@ pub fn check(effects: &[Effect], path: &str, text: &str) -> Result<Vec<String>, 
     let mut homeless = Vec::new();
     for effect in effects.iter().filter(|effect| effect.is_own) {
         let effect_alone = std::slice::from_ref(effect);
-        let mut found = candidates(&model, effect_alone, &sites(&model), &BTreeMap::new());
+        let mut found = candidates(
+            &model,
+            effect_alone,
+            &sites(&model),
+            &UsualMotion::default(),
+        );
         // Orders are but numbers in it.
         found.dedup_by(|a, b| a.on == b.on);
         for candidate in &found {

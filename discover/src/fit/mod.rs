@@ -20,4 +20,5 @@ pub mod residual_spectrum;
 pub mod residuals;
 pub mod sensitivity;
 pub mod shooting;
+pub mod travels;
 pub mod variable_projection;

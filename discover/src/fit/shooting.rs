@@ -100,20 +100,13 @@ impl<'a> Shooting<'a> {
 
     /// The sensors at these unknowns.
     pub fn sensors(&self, theta: &[f64]) -> Sensors {
-        let channels = self.channels();
+        // What is expected of a sensor holds until it is estimated.
+        let expected = || self.model.sensors.iter();
         let mut sensors = Sensors {
-            gain: vec![1.0; channels],
-            bias: vec![0.0; channels],
-            delay: vec![0.0; channels],
+            gain: expected().map(|sensor| sensor.gain).collect(),
+            bias: expected().map(|sensor| sensor.bias).collect(),
+            delay: expected().map(|sensor| sensor.delay).collect(),
         };
-        for sensor in &self.model.specification().sensors {
-            // What the specification itself says of a sensor holds until it is estimated.
-            if let Some(channel) = self.model.channel(&sensor.channel) {
-                sensors.gain[channel] = sensor.gain;
-                sensors.bias[channel] = sensor.bias;
-                sensors.delay[channel] = sensor.delay;
-            }
-        }
         for (unknown, value) in self.unknowns.iter().zip(theta) {
             match unknown.what {
                 What::Parameter(_) | What::Inverse(_) => {}

@@ -15,6 +15,7 @@ use crate::model::measured_outputs::MeasuredOutputs;
 use crate::model::nonlinear_remainder::NonlinearRemainder;
 use crate::model::simulation::Simulation;
 use crate::model::stop::Stop;
+use crate::model::unknowns::ExpectedSensor;
 use crate::thresholds;
 use eomgen_records::dataset::Channel;
 use eomgen_records::record::Record;
@@ -36,6 +37,8 @@ pub struct EstimationModel {
     linear: Option<LinearPart>,
     pub(crate) measured: MeasuredOutputs,
     channels: Vec<String>,
+    /// What is expected of each channel's sensor.
+    pub sensors: Vec<ExpectedSensor>,
     /// Runge-Kutta steps from sample to sample, where the motion has no linear part; none
     /// where a solver decides.
     pub(crate) steps: Option<usize>,
@@ -108,6 +111,10 @@ impl EstimationModel {
             channels: channels
                 .iter()
                 .map(|channel| channel.name.clone())
+                .collect(),
+            sensors: channels
+                .iter()
+                .map(|channel| ExpectedSensor::of(channel, compiled.model()))
                 .collect(),
             parameters,
             values: program.default_parameters(),

@@ -87,7 +87,7 @@ mod tests {
 
     use crate::model::estimation_model::EstimationModel;
     use crate::model::simulation::NeighbourDrives;
-    use eomgen_records::dataset::{Channel, Quantity};
+    use eomgen_records::dataset::{Channel, Quantity, TransducerPriors};
     use eomgen_records::record::Record;
     use eomgen_sim::exponential::Free;
 
@@ -110,9 +110,11 @@ mod tests {
         let (rig, with) = texts();
         let channels = [Channel {
             name: "x_sp".to_owned(),
+            observable: "x_sp".to_owned(),
             quantity: Quantity::Coordinate(0),
             unit: "m".to_owned(),
             noise: 1e-7,
+            priors: TransducerPriors::default(),
         }];
         let times: Vec<f64> = (0..400).map(|k| f64::from(k) * 5e-4).collect();
         let torque = times.iter().map(|t| 2.0 * (20.0 * t).sin() + 0.5);

@@ -6,7 +6,7 @@ use crate::interval::Interval;
 use eomgen_model_spec::model::{Model, Parameter};
 
 use crate::thresholds;
-use eomgen_records::dataset::{Channel, Dataset};
+use eomgen_records::dataset::{Channel, Dataset, Expected};
 use eomgen_records::record::Record;
 use eomgen_records::samples::typical_step;
 use eomgen_records::windows::{LONGEST_DELAY, LONGEST_LEAD};
@@ -119,29 +119,78 @@ pub fn of_null_model(dataset: &Dataset, model: &Model, values: &[(String, f64)])
         .map_or(0.0, |record: &Record| typical_step(&record.times));
     let ids = ChannelId::first(dataset.channels.len());
     for (id, channel) in ids.zip(&dataset.channels) {
-        unknowns.extend(of_sensor(id, channel, step));
+        unknowns.extend(of_sensor(id, channel, model, step));
     }
     unknowns
 }
 
-/// The unknowns of one sensor, with the priors of a channel that says nothing else.
-pub fn of_sensor(id: ChannelId, channel: &Channel, step: f64) -> [Unknown; 3] {
-    let gain = thresholds::GAIN_PRIOR;
-    let bias = thresholds::BIAS_PRIOR * channel.noise;
-    let delay = thresholds::DELAY_PRIOR * step;
+/// The unknowns of one sensor, with the priors of its channel, or the usual ones where that says
+/// nothing. What is known for certain is none of them.
+pub fn of_sensor(id: ChannelId, channel: &Channel, model: &Model, step: f64) -> Vec<Unknown> {
+    let expected = ExpectedSensor::of(channel, model);
+    let sd = |said: Option<Expected>, usual: f64| said.map_or(usual, |said| said.sd);
+    let gain = sd(channel.priors.gain, thresholds::GAIN_PRIOR);
+    let bias = sd(channel.priors.bias, thresholds::BIAS_PRIOR * channel.noise);
+    let delay = sd(channel.priors.delay, thresholds::DELAY_PRIOR * step);
     let free = Interval::ALL;
     let late = Interval::new(-LONGEST_LEAD * step, LONGEST_DELAY * step);
     let prior = |mean: f64, sd: f64| NormalPrior { mean, sd };
     let called = |what: What, fault: &str| (what, format!("the {fault} of `{}`", channel.name));
-    [
-        Unknown::declared(called(What::Gain(id), "gain"), prior(1.0, gain), free),
-        Unknown::declared(called(What::Bias(id), "bias"), prior(0.0, bias), free),
+    let unknowns = [
+        Unknown::declared(
+            called(What::Gain(id), "gain"),
+            prior(expected.gain, gain),
+            free,
+        ),
+        Unknown::declared(
+            called(What::Bias(id), "bias"),
+            prior(expected.bias, bias),
+            free,
+        ),
         // What no prior holds is late: no sensor sees ahead.
         Unknown {
-            limits: Interval::new(0.0, late.high),
-            ..Unknown::declared(called(What::Delay(id), "delay"), prior(0.0, delay), late)
+            limits: Interval::new(expected.delay.min(0.0), late.high),
+            ..Unknown::declared(
+                called(What::Delay(id), "delay"),
+                prior(expected.delay, delay),
+                late,
+            )
         },
-    ]
+    ];
+    let is_open = |unknown: &Unknown| unknown.scale > 0.0;
+    unknowns.into_iter().filter(is_open).collect()
+}
+
+/// What is expected of a sensor before anything is fitted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExpectedSensor {
+    /// Its gain.
+    pub gain: f64,
+    /// Its bias, SI.
+    pub bias: f64,
+    /// Its delay, s.
+    pub delay: f64,
+}
+
+impl ExpectedSensor {
+    /// As the specification says, else as the dataset does, else that of a true sensor: what a fit
+    /// wrote into the specification is where the next one begins.
+    pub fn of(channel: &Channel, model: &Model) -> Self {
+        let written = model.sensors.iter().find(|s| s.channel == channel.name);
+        let said = |prior: Option<Expected>| prior.and_then(|prior| prior.mean);
+        match written {
+            Some(sensor) => Self {
+                gain: sensor.gain,
+                bias: sensor.bias,
+                delay: sensor.delay,
+            },
+            None => Self {
+                gain: said(channel.priors.gain).unwrap_or(1.0),
+                bias: said(channel.priors.bias).unwrap_or(0.0),
+                delay: said(channel.priors.delay).unwrap_or(0.0),
+            },
+        }
+    }
 }
 
 /// A parameter keeps its sign, and the bounds of the specification.

@@ -10,6 +10,7 @@ use crate::fit::fitted::Fit;
 use crate::fit::noise_floor::NoiseFloor;
 use crate::model::problem::EstimationProblem;
 use crate::model::unknowns::{Unknown, What};
+use crate::report::quantity::{estimate, quantity};
 use crate::report::result::{
     ChannelGap, EffectAt, Estimated, FoundEffect, Nuisance, OnRecords, RejectedEffect, Sensor,
     ShaftOrder, Status, Step,
@@ -35,8 +36,13 @@ pub(crate) fn gap(
     })
 }
 
-/// The effects that were accepted, by decreasing gap closed.
-pub(crate) fn effects(problem: &EstimationProblem<'_>, found: &Found) -> Vec<FoundEffect> {
+/// The effects that were accepted, by decreasing gap closed. `is_sure`: whether what is left and what
+/// was fitted beside them speak for nothing else.
+pub(crate) fn effects(
+    problem: &EstimationProblem<'_>,
+    found: &Found,
+    is_sure: bool,
+) -> Vec<FoundEffect> {
     let mut order: Vec<&Accepted> = found.accepted.iter().collect();
     order.sort_by(|a, b| {
         // Squares add up: what one effect closes of them hardly depends on what came before.
@@ -46,7 +52,7 @@ pub(crate) fn effects(problem: &EstimationProblem<'_>, found: &Found) -> Vec<Fou
     });
     let effects = order.into_iter();
     effects
-        .map(|effect| found_effect(problem, found.best(), effect))
+        .map(|effect| found_effect(problem, found.best(), effect, is_sure))
         .collect()
 }
 
@@ -54,6 +60,15 @@ pub(crate) fn effects(problem: &EstimationProblem<'_>, found: &Found) -> Vec<Fou
 pub(crate) fn rejected(found: &Found, not_testable: bool) -> Vec<RejectedEffect> {
     let such = found.rejected.iter();
     let such = such.filter(|rejected| rejected.not_testable == not_testable);
+    // What is accepted, or may be meant by what is, is not rejected too: a later round knows it as
+    // one more of the same.
+    let is_believed = |of: &Rejected| {
+        let accepted = found.accepted.iter();
+        let mut believed = accepted
+            .flat_map(|effect| std::iter::once(&effect.candidate).chain(&effect.equivalent));
+        believed.any(|known| known.is_same_as(&of.candidate))
+    };
+    let such = such.filter(|rejected| !is_believed(rejected));
     such.map(|of| RejectedEffect {
         at: EffectAt {
             effect: of.candidate.effect.clone(),
@@ -101,7 +116,12 @@ pub(crate) fn closure(before: &Fit, after: &Fit, floor: &NoiseFloor) -> OnRecord
     }
 }
 
-fn found_effect(problem: &EstimationProblem<'_>, fit: &Fit, effect: &Accepted) -> FoundEffect {
+fn found_effect(
+    problem: &EstimationProblem<'_>,
+    fit: &Fit,
+    effect: &Accepted,
+    is_sure: bool,
+) -> FoundEffect {
     let candidate = &effect.candidate;
     let theta = &fit.train.estimate.theta;
     let mut term = candidate.term.clone();
@@ -142,10 +162,11 @@ fn found_effect(problem: &EstimationProblem<'_>, fit: &Fit, effect: &Accepted) -
             on: candidate.on.clone(),
         },
         says: candidate.says.clone(),
-        status: match (candidate.effect.as_str(), has_equivalent) {
-            (EMPIRICAL, _) => Status::Empirical,
-            (_, false) => Status::Named,
-            (_, true) => Status::Class,
+        status: match (candidate.effect.as_str(), has_equivalent, is_sure) {
+            (EMPIRICAL, _, _) => Status::Empirical,
+            (_, true, _) => Status::Class,
+            (_, false, true) => Status::Named,
+            (_, false, false) => Status::Provisional,
         },
         equivalent: equivalent.collect(),
         parameters,
@@ -182,6 +203,24 @@ pub(crate) fn nuisances(problem: &EstimationProblem<'_>, fit: &Fit) -> Vec<Nuisa
         })
     };
     fit.unknowns().filter_map(of).collect()
+}
+
+/// Nuisances that stand at their bounds, in words.
+pub(crate) fn bound_notes(nuisances: &[Nuisance]) -> Vec<String> {
+    let at_bound = nuisances.iter().filter(|of| of.is_at_bound());
+    let note = |of: &Nuisance| {
+        let (mean, sd) = of.declared;
+        let unit = &of.fitted.unit;
+        format!(
+            "{} came out as {}, {:.1} standard deviations from what was declared ({}) and as far off as the fit \
+             admits: often the best sign that something else is wrong",
+            of.name(),
+            quantity(of.fitted.value, 4, unit),
+            of.deviations().abs(),
+            estimate(mean, sd, unit),
+        )
+    };
+    at_bound.map(note).collect()
 }
 
 /// What an unknown of the null model is called, the number of its units that one SI unit is, and

@@ -8,6 +8,7 @@ use crate::report::result::{
     ChannelGap, Compared, Comparison, Discovery, EffectAt, Estimated, FoundEffect, OnRecords,
     RejectedEffect, Sensor,
 };
+use crate::report::summary::Summary;
 
 /// The version of both documents.
 const SCHEMA: u32 = 1;
@@ -33,6 +34,7 @@ impl Comparison {
         };
         let mut document = common(&self.compared, gap);
         document["verdict"] = json!(self.verdict());
+        document["summary"] = json!(Summary::of_comparison(self).text());
         document
     }
 }
@@ -53,6 +55,7 @@ impl Discovery {
         let rejected = self.rejected.iter().map(|r| rejected(r, false));
         let not_testable = self.not_testable.iter().map(|r| self::rejected(r, true));
         document["verdict"] = json!(self.verdict.word());
+        document["summary"] = json!(Summary::of_discovery(self).text());
         document["effects"] = json!(effects);
         document["rejected"] = Value::Array(rejected.collect());
         document["not_testable"] = Value::Array(not_testable.collect());

@@ -1,11 +1,12 @@
 //! From records to a result: the whole way ([`run`]) from what is handed in ([`origin`]), the typed
 //! [`result`] put together in `discovery`, where model and records disagree ([`location`]), the
-//! specification with what was found ([`write_back`]) run again ([`mod@resimulation`]); documents
-//! (`json`) and the page (`page`) with its `pictures` and what was measured over what is simulated
+//! specification with what was found ([`write_back`]) run again ([`mod@resimulation`]); how sure it is
+//! (`left`) and the answer in two sentences (`summary`); documents (`json`) and the page (`page`) with its `pictures` and what was measured over what is simulated
 //! (`overlay`), how numbers are written there (`quantity`), and what was found, to be moved in the page (`playback`).
 
 mod discovery;
 mod json;
+mod left;
 pub mod location;
 pub mod origin;
 mod overlay;
@@ -16,4 +17,5 @@ mod quantity;
 pub mod resimulation;
 pub mod result;
 pub mod run;
+mod summary;
 pub mod write_back;

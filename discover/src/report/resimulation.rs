@@ -8,7 +8,6 @@ use crate::fit::prior::InitialStatePrior;
 use crate::fit::residuals::Residuals;
 use crate::fit::shooting::Shooting;
 use crate::model::problem::EstimationProblem;
-use crate::model::unknowns::{Unknown, What};
 use eomgen_records::windows::Windows;
 
 /// What a specification leaves, root mean squares over all channels, in standard deviations.
@@ -21,7 +20,7 @@ pub struct Resimulation {
 }
 
 /// Runs a specification's text with its own numbers on the windows of a fit, from where that begins
-/// them, seen by the sensors that it found.
+/// them, seen by the sensors that the text describes.
 ///
 /// # Errors
 /// What is wrong with the text.
@@ -31,14 +30,9 @@ pub fn resimulated(
     text: &str,
 ) -> Result<Resimulation, DiscoverError> {
     let model = problem.model(text, Some(&fit.texts.linear))?;
-    let all = fit.unknowns.iter().zip(&fit.train.estimate.theta);
-    let (sensors, theta): (Vec<Unknown>, Vec<f64>) = all
-        .filter(|(unknown, _)| !matches!(unknown.what, What::Parameter(_) | What::Inverse(_)))
-        .map(|(unknown, value)| (unknown.clone(), *value))
-        .unzip();
     let ranges = fit.mapped(&model, &fit.ranges);
     let rms = |windows: &Windows<'_>, estimate: &Estimate| {
-        let shooting = Shooting::new(problem, &model, windows, &sensors, &ranges);
+        let shooting = Shooting::new(problem, &model, windows, &[], &ranges);
         let initial_states = estimate.initial_states.iter();
         let initial_states = initial_states
             .map(|start| fit.mapped(&model, start))
@@ -46,7 +40,7 @@ pub fn resimulated(
         let estimate = evaluated(
             &shooting,
             &InitialStatePrior::default(),
-            theta.clone(),
+            Vec::new(),
             initial_states,
         );
         Residuals::of(&shooting, estimate).whole().rms

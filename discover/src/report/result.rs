@@ -9,6 +9,7 @@ use crate::report::origin::Origin;
 use crate::report::playback::Playback;
 use crate::report::resimulation::Resimulation;
 use crate::search::acceptance::TestStatistics;
+use crate::thresholds;
 
 /// A root mean square of each set of records.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,6 +96,19 @@ impl Nuisance {
     pub fn deviations(&self) -> f64 {
         let (mean, sd) = self.declared;
         (self.fitted.value - mean) / sd
+    }
+
+    /// Whether it is as far from what was declared as the fit admits.
+    pub fn is_at_bound(&self) -> bool {
+        self.deviations().abs() >= thresholds::AT_BOUND * thresholds::SHIFTED
+    }
+
+    /// What it is called in a sentence.
+    pub(crate) fn name(&self) -> String {
+        match self.fault {
+            Some(fault) => format!("the {fault} of {}", self.of),
+            None => self.of.clone(),
+        }
     }
 }
 
@@ -183,6 +197,9 @@ pub struct EffectAt {
 pub enum Status {
     /// It is this effect.
     Named,
+    /// It explains the records best of all that was tried, and much is left, or a nuisance stands at
+    /// its bound: it may stand in for something else.
+    Provisional,
     /// It is this one or another of its equivalence class.
     Class,
     /// It is an expression outside the catalogue.
@@ -194,6 +211,7 @@ impl Status {
     pub fn word(self) -> &'static str {
         match self {
             Self::Named => "named",
+            Self::Provisional => "provisional",
             Self::Class => "class",
             Self::Empirical => "empirical",
         }

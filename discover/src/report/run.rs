@@ -13,15 +13,16 @@ use crate::model::channel_checks;
 use crate::model::problem::EstimationProblem;
 use crate::model::stop::Stop;
 use crate::report::discovery::{
-    closure, effects, gap, nuisances, refitted, rejected, sensors, steps,
+    bound_notes, closure, effects, gap, nuisances, refitted, rejected, sensors, steps,
 };
+use crate::report::left::{Left, Stage};
 use crate::report::location::located;
 use crate::report::origin::{Origin, Specification};
 use crate::report::overlay::overlay;
 use crate::report::pictures::{figures, force_section};
 use crate::report::playback::Playback;
 use crate::report::resimulation::resimulated;
-use crate::report::result::{Compared, Comparison, Discovery, Pictures, Verdict};
+use crate::report::result::{Compared, Comparison, Discovery, Nuisance, Pictures, Verdict};
 use crate::report::write_back::extended;
 use crate::residual_force::residual_force;
 use crate::residual_force::types::ResidualForce;
@@ -61,6 +62,7 @@ pub fn compare(
             (equation, force_section(force, None))
         }),
     };
+    let nuisances = nuisances(&problem, &fit);
     Ok(Comparison {
         has_gap: !fit.is_at_floor(floor.rms),
         compared: Compared {
@@ -69,8 +71,8 @@ pub fn compare(
             refitted: refitted(&fit, &[]),
             sensors: sensors(&problem, &fit),
             location: located(&problem, &fit, force.as_ref()),
-            notes: dataset.notes.clone(),
-            nuisances: nuisances(&problem, &fit),
+            notes: [dataset.notes.clone(), bound_notes(&nuisances)].concat(),
+            nuisances,
             origin: Origin::of(specification, dataset, seed),
             pictures,
         },
@@ -150,13 +152,17 @@ pub fn discover_until(
             (equation, force_section(force, after.as_ref()))
         }),
     };
+    let gap = gap(&problem, null, Some(best), &floor);
+    let nuisances = nuisances(&problem, best);
+    let is_sure =
+        !Left::of(&gap, Stage::After).is_much() && !nuisances.iter().any(Nuisance::is_at_bound);
     Ok(Discovery {
         verdict: match (found.accepted.is_empty(), best.is_at_floor(floor.rms)) {
             (false, _) => Verdict::EffectsFound,
             (true, true) => Verdict::NoSignificantGap,
             (true, false) => Verdict::Unexplained,
         },
-        effects: effects(&problem, &found),
+        effects: effects(&problem, &found, is_sure),
         rejected: rejected(&found, false),
         not_testable: rejected(&found, true),
         closure: closure(null, best, &floor),
@@ -167,12 +173,12 @@ pub fn discover_until(
         extended,
         compared: Compared {
             title: problem.dataset.title.clone(),
-            gap: gap(&problem, null, Some(best), &floor),
+            gap,
             refitted: refitted(best, &found.accepted),
             sensors: sensors(&problem, best),
             location,
-            notes: problem.dataset.notes.clone(),
-            nuisances: nuisances(&problem, best),
+            notes: [problem.dataset.notes.clone(), bound_notes(&nuisances)].concat(),
+            nuisances,
             origin: Origin::of(specification, problem.dataset, seed),
             pictures,
         },

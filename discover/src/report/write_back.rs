@@ -111,10 +111,10 @@ fn sensors(problem: &EstimationProblem<'_>, fit: &Fit, at_all: bool) -> Vec<Edit
         .map(|(id, channel)| {
             Edit::SetSensor(SetSensor {
                 channel: channel.name.clone(),
+                observable: channel.observable.clone(),
                 gain: sensors.gain[id],
                 bias: sensors.bias[id],
-                // A specification knows no sensor that sees ahead.
-                delay: sensors.delay[id].max(0.0),
+                delay: sensors.delay[id],
             })
         })
         .collect()

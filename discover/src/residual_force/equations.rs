@@ -211,6 +211,8 @@ fn equations(model: &Model) -> Vec<Equation> {
         let is_mesh = site.kind == SiteKind::Mesh;
         let unit = match site.kind {
             SiteKind::Mesh => Some("m"),
+            // A force between both ends of a spring is in the equations of what it joins.
+            SiteKind::Spring => None,
             _ => site.arguments.get("unit").and_then(|text| unit(text)),
         };
         if let (Some(unit), Some(on)) = (unit, site.arguments.get("on")) {
@@ -222,12 +224,13 @@ fn equations(model: &Model) -> Vec<Equation> {
             });
         }
     }
+    let bending = bending(model);
     for observable in &model.observables {
         let ExprKind::Definition(number) = observable.value.kind else {
             continue;
         };
         let definition = &model.definitions[number];
-        if bends(model, &definition.value) == Some(true)
+        if bending[number.index()] == Some(true)
             && let Some(unit) = unit(&observable.unit.text)
         {
             found.push(Equation {
@@ -241,17 +244,24 @@ fn equations(model: &Model) -> Vec<Equation> {
     found
 }
 
+/// Of every definition whether it holds a field; none if it holds more than positions.
+fn bending(model: &Model) -> Vec<Option<bool>> {
+    let mut known = vec![None; model.definitions.len()];
+    for &definition in &model.definition_order {
+        known[definition.index()] = bends(&known, &model.definitions[definition].value);
+    }
+    known
+}
+
 /// Whether an expression holds a field; none if it holds more than positions.
-fn bends(model: &Model, expr: &Expr) -> Option<bool> {
+fn bends(known: &[Option<bool>], expr: &Expr) -> Option<bool> {
     let (mut bends, mut is_position) = (false, true);
     expr.visit(&mut |part| match &part.kind {
         ExprKind::Field(_) => bends = true,
-        ExprKind::Definition(definition) => {
-            match self::bends(model, &model.definitions[*definition].value) {
-                Some(inner) => bends |= inner,
-                None => is_position = false,
-            }
-        }
+        ExprKind::Definition(definition) => match known[definition.index()] {
+            Some(inner) => bends |= inner,
+            None => is_position = false,
+        },
         ExprKind::Dot(_)
         | ExprKind::Time
         | ExprKind::Input(_)

@@ -4,7 +4,7 @@
 //! `basis_functions` that it may be a sum of, `force_response` (what these do to the outputs;
 //! `finite_difference_response`, where no neighbouring motions come along) and `regression` (how
 //! much of each there is), `family_regression` (families of them), `ranking` (equations compared),
-//! `profiles` (one of them in detail), `wording` and `figures`; `types` is what is told.
+//! `ripple_orders` (waves over an angle compared), `profiles` (one of them in detail), `wording` and `figures`; `types` is what is told.
 
 pub mod basis_functions;
 pub mod equations;
@@ -15,6 +15,7 @@ pub mod force_response;
 pub mod profiles;
 pub mod ranking;
 pub mod regression;
+pub mod ripple_orders;
 pub mod types;
 pub mod wording;
 

@@ -2,14 +2,17 @@
 //! effect on the next, and which of them is fitted better may be chance of where it began. What may
 //! be meant instead is fitted once more from where the answer ended.
 
+use std::collections::BTreeMap;
+
 use crate::catalogue::candidate::{Candidate, candidates};
-use crate::catalogue::effect::Effect;
-use crate::catalogue::sites::sites;
+use crate::catalogue::effect::{Effect, SiteKind};
+use crate::catalogue::sites::{Site, sites};
+use crate::catalogue::usual_motion::UsualMotion;
 use crate::fit::preliminary::{PreliminaryFit, WarmStart};
 use crate::ids::{CandidateId, FittedId, ResponseId};
-use crate::model::usual_rates::usual_rates;
 use crate::search::fitted::{FittedHypothesis, full_fits};
 use crate::search::hypothesis::{Hypothesis, warm_started};
+use crate::search::motion_of_fit::motion_of;
 use crate::search::pool::Pool;
 use crate::search::screening::{Prediction, screening};
 use crate::thresholds;
@@ -93,12 +96,12 @@ fn in_model(
         return Default::default();
     }
     let model = fitted.fit.model.specification();
-    let known = candidates(
-        model,
-        effects,
-        &sites(model),
-        &usual_rates(pool.context.problem.dataset, model),
-    );
+    let sites = sites(model);
+    let motion = UsualMotion {
+        orders: orders(pool, rivals, &sites),
+        ..motion_of(pool.context.problem, &fitted.fit, &sites)
+    };
+    let known = candidates(model, effects, &sites, &motion);
     let shape_ratio = shape_ratio(pool, fitted).unwrap_or(1.0);
     let again = |rival: &ResponseId| {
         let label = pool.candidate(*rival).label();
@@ -109,6 +112,17 @@ fn in_model(
         Some((*rival, found))
     };
     rivals.iter().filter_map(again).unzip()
+}
+
+/// The rivals' orders, at each angle.
+fn orders(pool: &Pool<'_>, rivals: &[ResponseId], sites: &[Site]) -> BTreeMap<String, Vec<u32>> {
+    let orders = rivals
+        .iter()
+        .filter_map(|rival| Some(pool.candidate(*rival).order.as_ref()?.1));
+    let orders: Vec<u32> = orders.collect();
+    let angles = sites.iter().filter(|site| site.kind == SiteKind::Angle);
+    let on = angles.filter_map(|site| site.arguments.get("on"));
+    on.map(|on| (on.clone(), orders.clone())).collect()
 }
 
 /// What a candidate promises.

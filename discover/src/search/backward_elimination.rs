@@ -1,12 +1,13 @@
 //! What was accepted, one effect less: a later effect may do what an earlier one was taken for.
 
+use crate::catalogue::candidate::Candidate;
 use crate::error::DiscoverError;
 use crate::fit::fitted::Fit;
 use crate::fit::full;
 use crate::fit::preliminary::{self, WarmStart};
 use crate::ids::{EffectId, UnknownId};
 use crate::model::problem::EstimationProblem;
-use crate::search::found::{Accepted, Found};
+use crate::search::found::{Accepted, Found, Rejected};
 use crate::thresholds;
 
 /// Takes away effects without which the records are explained as well, the least needed first.
@@ -28,7 +29,21 @@ pub fn eliminate_backwards(
         };
         let label = found.accepted[effect_id].candidate.label();
         progress(&format!("  {label} is needed no more"));
-        renumber(&mut found.accepted, effect_id);
+        let reason = format!(
+            "beside what was found later it is not needed: {:.2} standard deviations of the noise are left without it in \
+             test, {:.2} with it",
+            fit.test.rms,
+            found.best().test.rms
+        );
+        let candidate = renumber(&mut found.accepted, effect_id);
+        found
+            .rejected
+            .retain(|known| known.candidate.label() != label);
+        found.rejected.push(Rejected {
+            candidate,
+            reason,
+            not_testable: false,
+        });
         found.last = Some(fit);
     }
 }
@@ -77,10 +92,10 @@ fn without(
 }
 
 /// Takes an effect off the list; the unknowns of those behind it move up.
-fn renumber(accepted: &mut Vec<Accepted>, effect_id: EffectId) {
+fn renumber(accepted: &mut Vec<Accepted>, effect_id: EffectId) -> Candidate {
     let gone = accepted.remove(effect_id.index());
     if gone.candidate.dropped_prior.is_some() {
-        return;
+        return gone.candidate;
     }
     for effect in accepted {
         for id in &mut effect.unknowns {
@@ -88,4 +103,5 @@ fn renumber(accepted: &mut Vec<Accepted>, effect_id: EffectId) {
             *id = UnknownId::new(id.index() - before);
         }
     }
+    gone.candidate
 }

@@ -3,10 +3,10 @@
 //!
 //! The files, in the order in which they read each other: [`response`] by
 //! [`mod@variational_response`] or [`mod@perturbed_response`] ([`mod@responses`] chooses),
-//! [`screening`], [`acceptance`]; [`context`], [`pool`], [`hypothesis`], [`fitted`];
+//! [`screening`], [`acceptance`]; `motion_of_fit`, [`context`], [`pool`], [`hypothesis`], [`fitted`];
 //! `shape_restarts`, `singles`, `pairs`; [`tested`], [`parameter_offsets`], [`selected`],
 //! `alternatives`; `excitation_window`, `dropped_priors`, `round`, `joint`, `answer`; [`found`],
-//! [`backward_elimination`].
+//! `rejected`, [`backward_elimination`].
 
 pub mod acceptance;
 mod alternatives;
@@ -19,10 +19,12 @@ pub mod fitted;
 pub mod found;
 pub mod hypothesis;
 mod joint;
+mod motion_of_fit;
 mod pairs;
 pub mod parameter_offsets;
 pub mod perturbed_response;
 pub mod pool;
+mod rejected;
 pub mod rejection;
 pub mod response;
 pub mod responses;
@@ -34,21 +36,19 @@ mod singles;
 pub mod tested;
 pub mod variational_response;
 
-use crate::catalogue::candidate::Candidate;
 use crate::catalogue::effect::Effect;
 use crate::error::DiscoverError;
 use crate::fit::fitted::Fit;
-use crate::ids::{EffectId, ResponseId};
+use crate::ids::EffectId;
 use crate::model::problem::EstimationProblem;
 use crate::search::acceptance::test_statistics;
 use crate::search::answer::answer;
 use crate::search::backward_elimination::eliminate_backwards;
 use crate::search::context::Context;
-use crate::search::found::{Accepted, Found, Rejected, TestGap};
+use crate::search::found::{Accepted, Found, TestGap};
+use crate::search::rejected::note_rejected;
 use crate::search::round::Round;
-use crate::search::screening::NotExcited;
 use crate::search::selected::Selected;
-use crate::search::tested::TestedPool;
 use crate::thresholds;
 
 /// Searches for what a model lacks. `floor`: the gap that a right model would leave, in standard
@@ -86,9 +86,7 @@ pub fn search(
             effects,
         };
         let tested = round.round();
-        for tested in &tested {
-            note_rejected(&mut found.rejected, tested);
-        }
+        note_rejected(&mut found.rejected, &tested);
         let Some(selected) = answer(&round, tested) else {
             break;
         };
@@ -96,49 +94,6 @@ pub fn search(
         eliminate_backwards(problem, &mut found, progress);
     }
     Ok(found)
-}
-
-fn note_rejected(rejected: &mut Vec<Rejected>, tested: &TestedPool) {
-    let TestedPool {
-        candidates,
-        screening,
-        fitted_hypotheses,
-    } = tested;
-    let mut note = |candidate: &Candidate, reason: String, not_testable: bool| {
-        rejected.retain(|known: &Rejected| known.candidate.label() != candidate.label());
-        rejected.push(Rejected {
-            candidate: candidate.clone(),
-            reason,
-            not_testable,
-        });
-    };
-    for NotExcited { candidate, reason } in &screening.not_excited {
-        note(&candidates[*candidate], reason.to_string(), true);
-    }
-    let ids = ResponseId::first(screening.responses.len());
-    for (id, response) in ids.zip(&screening.responses) {
-        let candidate = &candidates[response.candidate];
-        let alone = fitted_hypotheses
-            .iter()
-            .find(|fitted| fitted.responses == [id]);
-        match alone.map(|fitted| &fitted.verdict) {
-            Some(Err(reason)) => note(candidate, reason.to_string(), false),
-            Some(Ok(_)) => {}
-            None if response.unexplained_fraction <= thresholds::UNEXPLAINED_FRACTION => note(
-                candidate,
-                format!(
-                    "{:.1} % of what it does can be done by initial states, refitted parameters and sensors as well",
-                    100.0 * (1.0 - response.unexplained_fraction)
-                ),
-                true,
-            ),
-            None => note(
-                candidate,
-                "others explain the difference better".to_owned(),
-                false,
-            ),
-        }
-    }
 }
 
 /// Takes what is named over, with the candidates that are indistinguishable from it.
@@ -177,13 +132,5 @@ fn accept(found: &mut Found, selected: Selected) {
         accepted.reverse();
     }
     found.accepted.extend(accepted);
-    let is_accepted = |known: &Candidate| {
-        let same =
-            |of: &Accepted| (&of.candidate.effect, &of.candidate.on) == (&known.effect, &known.on);
-        found.accepted.iter().any(same)
-    };
-    found
-        .rejected
-        .retain(|known| !is_accepted(&known.candidate));
     found.last = Some(best.fit);
 }

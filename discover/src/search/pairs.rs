@@ -78,7 +78,10 @@ fn best_pairs(pool: &Pool<'_>, ranking: &[ResponseId], at_limit: &[ResponseId]) 
                 // What replaces a term is far from where it was linearised: it is not held
                 // to a promise.
                 let promising = deleted.is_some() || cost < thresholds::PAIR_PROMISE * single;
-                if promising && sizes.iter().all(|v| *v != 0.0) {
+                if promising
+                    && sizes.iter().all(|v| *v != 0.0)
+                    && !screening.cancels(&responses, &sizes)
+                {
                     let hypothesis = Hypothesis {
                         responses,
                         deleted,

@@ -6,6 +6,7 @@ use crate::fit::fitted::Fit;
 use crate::ids::{CandidateId, ResponseId};
 use crate::model::unknowns::{Unknown, What};
 use crate::search::context::Context;
+use crate::search::dropped_priors::dropped_prior;
 use crate::search::pool::Pool;
 use crate::search::screening::{ScreenedResponse, screening};
 use crate::search::singles::similar;
@@ -34,18 +35,24 @@ pub fn offsets(fit: &Fit) -> Vec<Candidate> {
     free.filter_map(candidate::offset_of).collect()
 }
 
-/// Parameters that look like what was named, fitted in its place: those that explain the records.
-/// None where nothing looks like it, and where what was named is such a parameter: it was screened
-/// with all others. The context's fit is what was fitted before anything was named.
+/// Parameters that look like what was named, fitted in its place: those that explain the records; and
+/// where what was named is such a parameter itself, sensors and declared parameters that look like
+/// it: a gain and a number of the model may be two names of one thing. None where nothing looks like
+/// it. The context's fit is what was fitted before anything was named.
 pub fn similar_offsets(context: Context<'_>, selected: &Candidate) -> Option<SimilarOffsets> {
     let offsets = offsets(context.fit);
-    let is_named =
-        |offset: &Candidate| (&offset.effect, &offset.on) == (&selected.effect, &selected.on);
-    if offsets.is_empty() || offsets.iter().any(is_named) {
+    let (offsets, called) = match offsets.iter().any(|offset| offset.is_same_as(selected)) {
+        true => (
+            dropped_prior(context.problem, context.fit),
+            "sensors and declared parameters",
+        ),
+        false => (offsets, "parameters of the model"),
+    };
+    if offsets.is_empty() {
         return None;
     }
     (context.progress)(&format!(
-        "screening {} parameters of the model beside {}",
+        "screening {} {called} beside {}",
         offsets.len(),
         selected.label()
     ));

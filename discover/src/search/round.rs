@@ -5,13 +5,15 @@
 use crate::catalogue::candidate::{Candidate, candidates};
 use crate::catalogue::effect::Effect;
 use crate::catalogue::sites::sites;
+use crate::catalogue::usual_motion::UsualMotion;
 use crate::fit::fitted::Fit;
 use crate::ids::CandidateId;
-use crate::model::usual_rates::usual_rates;
+use crate::residual_force::ripple_orders::ripple_orders;
 use crate::search::context::Context;
 use crate::search::dropped_priors::dropped_prior;
 use crate::search::excitation_window::{ExcitationWindow, without_play};
 use crate::search::fitted::FittedHypothesis;
+use crate::search::motion_of_fit::motion_of;
 use crate::search::pairs::pairs;
 use crate::search::parameter_offsets::offsets;
 use crate::search::pool::Pool;
@@ -67,14 +69,22 @@ impl Round<'_> {
                 break;
             }
         }
-        if !is_any(&tested, &|fitted| self.is_enough(fitted)) {
+        // One unknown before two: a number that is off is a rival of the first effect, and of any pair.
+        if self.is_first && !has_offsets && !is_any(&tested, &|fitted| self.is_near_floor(fitted)) {
+            tested.push(self.offsets());
+            has_offsets = true;
+        }
+        let is_explained = |fitted: &FittedHypothesis| self.is_enough(fitted);
+        let is_explained_by_offset = has_offsets
+            && tested.last().is_some_and(|offsets| {
+                let mut fitted = offsets.fitted_hypotheses.iter();
+                fitted.any(|fitted| self.is_near_floor(fitted))
+            });
+        if !is_explained_by_offset && !is_any(&tested, &is_explained) {
             self.add_pairs(&seen, &mut tested);
         }
-        let is_open = match is_any(&tested, &|fitted| fitted.verdict.is_ok()) {
-            true => self.is_first && !is_any(&tested, &|fitted| self.is_close(fitted)),
-            false => self.is_first || !self.context.is_near(),
-        };
-        if is_open && !has_offsets {
+        let is_accepted = |fitted: &FittedHypothesis| fitted.verdict.is_ok();
+        if !has_offsets && !self.context.is_near() && !is_any(&tested, &is_accepted) {
             tested.push(self.offsets());
             has_offsets = true;
         }
@@ -109,6 +119,12 @@ impl Round<'_> {
     /// Whether a fitted hypothesis is accepted and leaves little.
     fn is_close(&self, fitted: &FittedHypothesis) -> bool {
         fitted.verdict.is_ok() && self.context.explains_most(&fitted.fit)
+    }
+
+    /// Whether a fitted hypothesis is accepted and leaves little more than a right model would.
+    fn is_near_floor(&self, fitted: &FittedHypothesis) -> bool {
+        let little = thresholds::CLOSE * self.context.floor;
+        fitted.verdict.is_ok() && fitted.fit.leaves_less(little)
     }
 
     /// Whether a fitted hypothesis is accepted and leaves no more than a right model would.
@@ -236,12 +252,12 @@ impl Round<'_> {
             window != ExcitationWindow::BacklashRemoved,
         );
         let model = fit.model.specification();
-        let mut all = candidates(
-            model,
-            self.effects,
-            &sites(model),
-            &usual_rates(problem.dataset, model),
-        );
+        let sites = sites(model);
+        let motion = UsualMotion {
+            orders: ripple_orders(problem, fit),
+            ..motion_of(problem, fit, &sites)
+        };
+        let mut all = candidates(model, self.effects, &sites, &motion);
         all.extend(dropped_prior(problem, fit));
         all.retain(|c| (c.order.is_none() || c.on_mesh != has_play) && (has_play || c.on_mesh));
         all.into_iter()
@@ -260,7 +276,8 @@ impl Round<'_> {
     }
 }
 
-/// What nobody doubts, which stands last, is off only if nothing else that is accepted comes near.
+/// What nobody doubts, which stands last, is off only if no other single effect that is accepted comes
+/// near, and no pair leaves clearly less; a pair that does not gives way to it.
 fn keep_clear(tested: &mut [TestedPool]) {
     let Some((offsets, tested)) = tested.split_last_mut() else {
         return;
@@ -268,9 +285,21 @@ fn keep_clear(tested: &mut [TestedPool]) {
     let others = tested.iter().flat_map(|tested| &tested.fitted_hypotheses);
     let others: Vec<&FittedHypothesis> = others.filter(|fitted| fitted.verdict.is_ok()).collect();
     offsets.fitted_hypotheses.retain(|fitted| {
-        let is_clear = |other: &&FittedHypothesis| fitted.fit.leaves_clearly_less(&other.fit);
+        let is_clear = |other: &&FittedHypothesis| match other.responses.len() {
+            1 => fitted.fit.leaves_clearly_less(&other.fit),
+            _ => !other.fit.leaves_clearly_less(&fitted.fit),
+        };
         fitted.verdict.is_err() || others.iter().all(is_clear)
     });
+    let accepted = offsets.fitted_hypotheses.iter();
+    let accepted: Vec<&FittedHypothesis> =
+        accepted.filter(|fitted| fitted.verdict.is_ok()).collect();
+    for tested in tested {
+        tested.fitted_hypotheses.retain(|fitted| {
+            fitted.responses.len() == 1
+                || (accepted.iter()).all(|offset| fitted.fit.leaves_clearly_less(&offset.fit))
+        });
+    }
 }
 
 /// Whether any fitted hypothesis is such.

@@ -321,6 +321,31 @@ impl Screening {
         }
     }
 
+    /// Whether what responses do at these sizes cancels, nuisances taken out: each does much more than
+    /// all of them together.
+    pub fn cancels(&self, responses: &[ResponseId], sizes: &[f64]) -> bool {
+        let dropped = self.without_priors(responses);
+        let count = dropped.products.ncols();
+        let mut sizes = sizes.iter();
+        let directions = responses.iter().map(|response| {
+            let mut direction = DVector::zeros(count);
+            for (column, size) in self.columns(*response).zip(sizes.by_ref()) {
+                direction[column] = *size;
+            }
+            direction
+        });
+        let directions: Vec<DVector<f64>> = directions.collect();
+        let square = |direction: &DVector<f64>| {
+            let square = self.without_nuisances(&dropped, direction, direction);
+            square.max(0.0)
+        };
+        let least = directions.iter().map(square).fold(f64::INFINITY, f64::min);
+        let sum = directions
+            .iter()
+            .fold(DVector::zeros(count), |sum, direction| sum + direction);
+        least > thresholds::CANCELS.powi(2) * square(&sum)
+    }
+
     /// Where a response's columns stand, if only as those of a nuisance that it drops the prior of.
     fn columns(&self, response: ResponseId) -> std::ops::Range<usize> {
         let response = &self.responses[response];
@@ -506,6 +531,22 @@ mod tests {
             screening.similarity(response(0), response(2)) < 1e-6
                 && screening.similarity(response(1), response(2)) < 1e-6
         );
+    }
+
+    #[test]
+    fn responses_that_take_each_other_back_cancel() {
+        // Nearly the same twice, and something else.
+        let columns = DMatrix::from_row_slice(2, 4, &[1.0, 1.0, 0.0, 1.0, 0.0, 0.1, 1.0, 1.0]);
+        let of: [(std::ops::Range<usize>, &[f64]); 3] =
+            [(0..1, &[1.0]), (1..2, &[1.0]), (2..3, &[1.0])];
+        let screening = screening(&columns, &of);
+        let cancels = |a: usize, b: usize, sizes: [f64; 2]| {
+            screening.cancels(&[response(a), response(b)], &sizes)
+        };
+        assert!(cancels(0, 1, [10.0, -10.0]));
+        assert!(!cancels(0, 1, [10.0, 10.0]), "they add up");
+        assert!(!cancels(0, 1, [10.0, -3.0]), "most of one stays");
+        assert!(!cancels(0, 2, [10.0, -10.0]), "they differ");
     }
 
     #[test]

@@ -100,11 +100,13 @@ pub struct SetParameter {
 pub struct SetSensor {
     /// Its channel.
     pub channel: String,
+    /// What it measures.
+    pub observable: String,
     /// Dimensionless.
     pub gain: f64,
     /// In the channel's SI unit.
     pub bias: f64,
-    /// In s, not negative.
+    /// In s, negative where the channel is early.
     pub delay: f64,
 }
 

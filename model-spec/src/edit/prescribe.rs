@@ -67,13 +67,9 @@ fn is_named(document: &DocumentMut, name: &str) -> bool {
 }
 
 fn mentions_time(tree: &Syntax) -> bool {
-    match &tree.kind {
-        SyntaxKind::Name(name) => name == "t",
-        SyntaxKind::Number(_) | SyntaxKind::Element { .. } => false,
-        SyntaxKind::Call { arguments, .. } => arguments.iter().any(mentions_time),
-        SyntaxKind::Negate(operand) => mentions_time(operand),
-        SyntaxKind::Binary(_, left, right) => mentions_time(left) || mentions_time(right),
-    }
+    let mut mentions = false;
+    tree.visit(&mut |part| mentions |= part.kind == SyntaxKind::Name("t".to_owned()));
+    mentions
 }
 
 /// Takes an input out of a document, and gives its unit and whether its rates are given.
@@ -95,14 +91,15 @@ fn remove(document: &mut DocumentMut, name: &str) -> Option<(String, bool)> {
 
 /// Whether there is nothing with a unit in an expression but the time.
 fn is_of_numbers(tree: &Syntax) -> bool {
-    match &tree.kind {
-        SyntaxKind::Number(_) => true,
-        SyntaxKind::Name(name) => name == "t" || name == "pi",
-        SyntaxKind::Element { .. } => false,
-        SyntaxKind::Call { arguments, .. } => arguments.iter().all(is_of_numbers),
-        SyntaxKind::Negate(operand) => is_of_numbers(operand),
-        SyntaxKind::Binary(_, left, right) => is_of_numbers(left) && is_of_numbers(right),
-    }
+    let mut of_numbers = true;
+    tree.visit(&mut |part| {
+        of_numbers &= match &part.kind {
+            SyntaxKind::Name(name) => name == "t" || name == "pi",
+            SyntaxKind::Element { .. } | SyntaxKind::Vector(_) | SyntaxKind::Member { .. } => false,
+            _ => true,
+        }
+    });
+    of_numbers
 }
 
 /// A name that begins so and stands nowhere in a document.

@@ -47,6 +47,9 @@ pub fn sensor(document: &mut DocumentMut, edit: &SetSensor) -> Result<(), EditEr
         });
     };
     let mut table = Table::new();
+    if edit.observable != edit.channel {
+        table.insert("observable", Item::Value(edit.observable.as_str().into()));
+    }
     for (key, value) in [
         ("gain", edit.gain),
         ("bias", edit.bias),

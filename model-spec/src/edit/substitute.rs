@@ -104,11 +104,15 @@ impl<'e> Replacement<'e> {
         }
         match &tree.kind {
             SyntaxKind::Number(_) | SyntaxKind::Name(_) | SyntaxKind::Element { .. } => {}
-            SyntaxKind::Call { arguments, .. } => {
-                for argument in arguments {
-                    self.places(argument, false, found);
+            SyntaxKind::Call {
+                arguments: parts, ..
+            }
+            | SyntaxKind::Vector(parts) => {
+                for part in parts {
+                    self.places(part, false, found);
                 }
             }
+            SyntaxKind::Member { of, .. } => self.places(of, true, found),
             SyntaxKind::Negate(operand) => self.places(operand, true, found),
             SyntaxKind::Binary(_, left, right) => {
                 self.places(left, true, found);
@@ -171,6 +175,17 @@ fn same(one: &Syntax, other: &Syntax) -> bool {
                     .zip(other_arguments)
                     .all(|(a, b)| same(a, b))
         }
+        (SyntaxKind::Vector(one), SyntaxKind::Vector(other)) => {
+            one.len() == other.len() && one.iter().zip(other).all(|(a, b)| same(a, b))
+        }
+        (
+            SyntaxKind::Member { of, member, .. },
+            SyntaxKind::Member {
+                of: other_of,
+                member: other_member,
+                ..
+            },
+        ) => member == other_member && same(of, other_of),
         (SyntaxKind::Negate(one), SyntaxKind::Negate(other)) => same(one, other),
         (SyntaxKind::Binary(one, a, b), SyntaxKind::Binary(other, c, d)) => {
             one == other && same(a, c) && same(b, d)

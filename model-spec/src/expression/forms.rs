@@ -203,7 +203,8 @@ impl Resolver<'_> {
     /// Fields named in an expression, and fields along whose position it uses.
     fn fields_of(&self, syntax: &Syntax, named: &mut Vec<FieldId>, positions: &mut Vec<FieldId>) {
         match &syntax.kind {
-            SyntaxKind::Number(_) => {}
+            // Vectors are scalars by now, or refused.
+            SyntaxKind::Number(_) | SyntaxKind::Vector(_) | SyntaxKind::Member { .. } => {}
             SyntaxKind::Name(name) => match self.names.get(name) {
                 Some(Symbol::Field(field)) => named.push(field),
                 Some(Symbol::Position) => {

@@ -6,7 +6,7 @@ mod forms;
 
 use crate::ast::{Syntax, SyntaxKind};
 use crate::diagnostic::{Diagnostic, quoted};
-use crate::functions::{FORMS, callable};
+use crate::functions::{FORMS, VECTOR_FUNCTIONS, callable};
 use crate::ids::{CoefficientId, FieldId};
 use crate::model::{Expr, ExprKind, Function};
 use crate::names::{Names, Symbol};
@@ -83,6 +83,9 @@ impl<'n> Resolver<'n> {
                 function_span,
                 arguments,
             } => self.call(function, *function_span, span, arguments)?,
+            SyntaxKind::Vector(_) | SyntaxKind::Member { .. } => {
+                return Err(vectors_elsewhere(span));
+            }
             SyntaxKind::Negate(operand) => ExprKind::Negate(Box::new(self.resolve(operand)?)),
             SyntaxKind::Binary(operator, left, right) => {
                 let left = Box::new(self.resolve(left)?);
@@ -315,16 +318,29 @@ impl<'n> Resolver<'n> {
                 .at(span, "called like a function")
                 .help(format!("products are written out: {name}*(...)"));
         }
+        if VECTOR_FUNCTIONS.contains(&name) {
+            return vectors_elsewhere(span);
+        }
         let help = match name {
             "log" => Some("the natural logarithm is ln".to_owned()),
             "pow" => Some("a power is written x^2".to_owned()),
             "ddt" | "der" | "derivative" => Some("a rate is written dot(x)".to_owned()),
-            _ => did_you_mean(name, callable()),
+            _ => did_you_mean(name, callable().chain(VECTOR_FUNCTIONS)),
         };
         Diagnostic::error(format!("unknown function {}", quoted(name)))
             .at(span, "not known")
             .help_if(help)
     }
+}
+
+/// The finding that there are no vectors here.
+fn vectors_elsewhere(span: Span) -> Diagnostic {
+    Diagnostic::error("a vector cannot be used here")
+        .at(span, "expected a scalar")
+        .help(
+            "vectors stand in [definitions], energies, [forces], [constraints], [observables], \
+             [frames] and [bodies]",
+        )
 }
 
 /// The finding that a call has the wrong number of arguments.

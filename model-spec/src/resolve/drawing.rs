@@ -24,8 +24,10 @@ impl Known<'_> {
         let written = match quantity {
             Quantity::Number(number) => return Ok(Ordinate::Number(number.value)),
             Quantity::Expression(written) => written,
-            Quantity::Expansion(syntax) => {
-                return Err(Diagnostic::error("a point is placed by a name").at(syntax.span, ""));
+            Quantity::Listed(..) | Quantity::Expansion(_) => {
+                return Err(
+                    Diagnostic::error("a point is placed by a name").at(quantity.span(), "")
+                );
             }
         };
         let place = |names: &[&str]| names.iter().position(|name| *name == written.text);

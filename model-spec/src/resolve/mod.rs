@@ -14,14 +14,14 @@ use crate::ids::{ConstraintId, DefinitionId, InputId, ParameterId};
 use crate::model::{
     Basis, Constraint, Coordinate, Definition, Expr, ExprKind, Field, Force, Impact, Input,
     MAX_ORDER, MULTIPLIER, Model, Observable, Parameter, ParameterValue, RESIDUAL, Range, Sensor,
-    State, Term,
+    State, Term, Uncertainty,
 };
 use crate::names::{Names, Symbol};
-use crate::order::{Reference, order};
+use crate::order::{Reference, circular, order};
 use crate::rate_order::{WrittenOut, rate_order};
 use crate::raw::{
     Document, RawBasis, RawCoordinate, RawField, RawInput, RawParameter, RawRange, RawSensor,
-    RawState, RawTerm,
+    RawState, RawTerm, RawUncertainty,
 };
 use crate::shape_table::ShapeTable;
 use crate::source::Source;
@@ -39,6 +39,8 @@ pub struct Resolved {
     pub declared: Vec<Option<Unit>>,
     /// Quantities of short forms, each with its unit and what it is.
     pub demanded: Vec<(Expr, Dimension, String)>,
+    /// Components of vectors, which must have one unit.
+    pub alike: Vec<Vec<Expr>>,
     /// Inertias of bodies.
     pub inertias: Vec<Inertia<Expr>>,
 }
@@ -95,7 +97,7 @@ impl Builder {
             impacts: self.all(document.impacts, Self::impact),
             observables,
             coefficients: self.coefficients(document.coefficients),
-            sensors: self.all(document.sensors, Self::sensor),
+            sensors: document.sensors.into_iter().map(sensor).collect(),
             drawing,
             parameter_order: Vec::new(),
             definition_order: Vec::new(),
@@ -112,6 +114,7 @@ impl Builder {
             model,
             declared,
             demanded: Vec::new(),
+            alike: Vec::new(),
             inertias: Vec::new(),
         }
     }
@@ -126,6 +129,11 @@ impl Builder {
                 let demanded = (value, demand.dimension, demand.subject);
                 resolved.demanded.push(demanded);
             }
+        }
+        for vector in demands.alike {
+            let mut component = |value: &Quantity| self.expression(value, Scope::Motion);
+            let components: Option<Vec<Expr>> = vector.iter().map(&mut component).collect();
+            resolved.alike.extend(components);
         }
         for inertia in demands.inertias {
             let mut constant = |value: &Quantity| self.expression(value, Scope::Parameters);
@@ -248,7 +256,7 @@ impl Builder {
                 let unit = unit.as_ref()?;
                 ParameterValue::Number(self.in_si(unit, *number)?)
             }
-            Quantity::Expression(_) | Quantity::Expansion(_) => {
+            Quantity::Expression(_) | Quantity::Listed(..) | Quantity::Expansion(_) => {
                 ParameterValue::Expression(self.expression(&raw.value, Scope::Parameters)?)
             }
         };
@@ -263,6 +271,9 @@ impl Builder {
                     .at(number.span, "max is less than min"),
             );
         }
+        let uncertainty = raw
+            .uncertainty
+            .and_then(|raw| self.uncertainty(&unit, &raw));
         Some(Parameter {
             name: raw.name.text,
             unit,
@@ -271,7 +282,20 @@ impl Builder {
             value,
             min,
             max,
+            uncertainty,
             span: raw.name.span,
+        })
+    }
+
+    fn uncertainty(&mut self, unit: &Unit, raw: &RawUncertainty) -> Option<Uncertainty> {
+        Some(match *raw {
+            RawUncertainty::Relative(part) => Uncertainty::Relative(part.value),
+            RawUncertainty::StandardDeviation(sd) => {
+                Uncertainty::StandardDeviation(self.in_si(unit, sd)?)
+            }
+            RawUncertainty::Between([low, high]) => {
+                Uncertainty::Between([self.in_si(unit, low)?, self.in_si(unit, high)?])
+            }
         })
     }
 
@@ -487,22 +511,20 @@ impl Builder {
         };
         Some((observable, declared))
     }
+}
 
-    fn sensor(&mut self, raw: RawSensor) -> Option<Sensor> {
-        if raw.delay < 0.0 {
-            self.found.push(
-                Diagnostic::error("a sensor cannot be ahead of time")
-                    .at(raw.channel.span, "its delay is negative")
-                    .help("a delay is in s and at least 0"),
-            );
-        }
-        Some(Sensor {
-            channel: raw.channel.text,
-            gain: raw.gain,
-            bias: raw.bias,
-            delay: raw.delay,
-            span: raw.channel.span,
-        })
+fn sensor(raw: RawSensor) -> Sensor {
+    let (observable, span) = match raw.observable {
+        Some(written) => (written.text, written.span),
+        None => (raw.channel.text.clone(), raw.channel.span),
+    };
+    Sensor {
+        channel: raw.channel.text,
+        observable,
+        gain: raw.gain,
+        bias: raw.bias,
+        delay: raw.delay,
+        span,
     }
 }
 
@@ -568,26 +590,6 @@ fn definition_references(definition: &Definition) -> Vec<Reference> {
         }
     });
     list
-}
-
-fn circular<'n>(kind: &str, circle: &[Reference], named: impl Fn(usize) -> &'n str) -> Diagnostic {
-    let Some((&(first, place), rest)) = circle.split_first() else {
-        return Diagnostic::error(format!("a {kind} refers to itself"));
-    };
-    let mut chain: Vec<&str> = circle.iter().map(|(index, _)| named(*index)).collect();
-    chain.push(named(first));
-    // A circle of hundreds is shown by its beginning.
-    if chain.len() > 8 {
-        chain.truncate(7);
-        chain.push("...");
-    }
-    let message = format!("the {kind} `{}` refers to itself", named(first));
-    let mut diagnostic =
-        Diagnostic::error(message).at(place, format!("here: {}", chain.join(" -> ")));
-    for &(index, place) in rest.iter().take(4) {
-        diagnostic = diagnostic.also(place, format!("in `{}`", named(index)));
-    }
-    diagnostic.help("break the circle: one of them must be known without the others")
 }
 
 /// A unit per s, or per s^2; none if its dimension cannot be told.

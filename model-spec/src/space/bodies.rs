@@ -1,11 +1,13 @@
 //! The energies of a body: 1/2 m v.v + 1/2 omega.I omega with v the velocity of its centre of
 //! mass, and -m g.p by gravity with p the centre's position.
 
-use super::frames::{Frame, Frames, along};
-use super::moving::Moving;
-use super::scalar::{add, half, is, multiply, negate, number, square};
+use super::definitions::Owner;
+use super::demands::{Inertia, UnitDemand};
+use super::expression::Reader;
+use super::frames::Motion;
+use super::known::Space;
+use super::scalar::{add, expansion, half, is, multiply, negate, number, square};
 use super::vector::{Vector, cross, inner, sum, zero};
-use super::{Demands, Inertia, UnitDemand, expansion};
 use crate::ast::Syntax;
 use crate::diagnostic::{Diagnostic, Diagnostics, quoted};
 use crate::dimension::Dimension;
@@ -17,13 +19,7 @@ use crate::table::Quantity;
 const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)];
 
 /// Adds the energies of all bodies to the document.
-pub fn expand(
-    document: &mut Document,
-    frames: &Frames,
-    moving: &Moving,
-    demands: &mut Demands,
-    found: &mut Diagnostics,
-) {
+pub fn expand(document: &mut Document, space: &mut Space, found: &mut Diagnostics) {
     for body in std::mem::take(&mut document.bodies) {
         if found.is_full() {
             return;
@@ -39,10 +35,14 @@ pub fn expand(
             );
             continue;
         }
-        let Some(frame) = found.keep(frames.get(&body.frame)) else {
+        if found.keep(space.frames.get(&body.frame)).is_none() {
+            continue;
+        }
+        let Some(parts) = parts(&body, space, found) else {
             continue;
         };
-        let Some(parts) = parts(&body, moving, demands, found) else {
+        let frames = &space.frames;
+        let Some(motion) = frames.named(&body.frame.text).map(|frame| &frame.motion) else {
             continue;
         };
         let term = |value: Syntax| RawTerm {
@@ -51,12 +51,12 @@ pub fn expand(
             doc: body.doc.clone(),
             origin: body.origin.clone(),
         };
-        let kinetic = kinetic(&parts, frame);
+        let kinetic = kinetic(&parts, motion);
         if !is(&kinetic, 0.0) {
             document.kinetic.push(term(kinetic));
         }
         if frames.gravity {
-            let way = add(frame.depth.clone(), inner(&frame.down, &parts.centre));
+            let way = add(motion.depth.clone(), inner(&motion.down, &parts.centre));
             let weight = match &frames.strength {
                 Some(strength) => multiply(parts.mass.clone(), strength.clone()),
                 None => parts.mass.clone(),
@@ -77,16 +77,12 @@ struct Parts {
     span: Span,
 }
 
-fn parts(
-    body: &RawBody,
-    moving: &Moving,
-    demands: &mut Demands,
-    found: &mut Diagnostics,
-) -> Option<Parts> {
+fn parts(body: &RawBody, space: &mut Space, found: &mut Diagnostics) -> Option<Parts> {
     let own = &body.name;
+    let owner = Owner::new(own, &body.doc);
     let mass = match &body.mass {
         Some(mass) => {
-            demands.units.push(UnitDemand {
+            space.demands.units.push(UnitDemand {
                 value: mass.clone(),
                 dimension: Dimension::MASS,
                 subject: format!("the mass of `{}`", own.text),
@@ -97,20 +93,22 @@ fn parts(
     };
     let subject = format!("the centre of `{}`", own.text);
     let centre = match &body.centre {
-        Some(centre) => along(centre, &subject, Dimension::LENGTH, demands, found)?,
+        Some(centre) => {
+            found.keep(Reader::new(space, &owner).demanded(centre, &subject, Dimension::LENGTH))?
+        }
         None => zero(own.span),
     };
     let mut inertia = Vec::new();
     for value in body.inertia.iter().flatten() {
         inertia.push(found.keep(value.syntax())?);
-        demands.units.push(UnitDemand {
+        space.demands.units.push(UnitDemand {
             value: value.clone(),
             dimension: Dimension::of([1, 2, 0, 0]),
             subject: format!("the inertia of `{}`", own.text),
         });
     }
     for part in centre.iter().chain(&inertia).chain([&mass]) {
-        if moving.holds(part) {
+        if space.definitions.moving.holds(part) {
             found.push(
                 Diagnostic::error(format!("the body {} changes", quoted(&own.text)))
                     .at(part.span, "this moves")
@@ -121,7 +119,7 @@ fn parts(
     }
     let elements = body.inertia.clone().unwrap_or_default();
     let span = elements.iter().map(Quantity::span).reduce(Span::join);
-    demands.inertias.push(Inertia {
+    space.demands.inertias.push(Inertia {
         body: own.clone(),
         mass: body.mass.clone(),
         elements,
@@ -135,9 +133,9 @@ fn parts(
     })
 }
 
-fn kinetic(parts: &Parts, frame: &Frame) -> Syntax {
-    let omega = &frame.omega;
-    let velocity = sum(frame.velocity.clone(), cross(omega, &parts.centre));
+fn kinetic(parts: &Parts, motion: &Motion) -> Syntax {
+    let omega = &motion.omega;
+    let velocity = sum(motion.velocity.clone(), cross(omega, &parts.centre));
     let [x, y, z] = velocity.map(square);
     let translation = half(multiply(parts.mass.clone(), add(add(x, y), z)));
     let mut rotation = number(0.0, parts.span);

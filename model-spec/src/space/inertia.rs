@@ -2,7 +2,7 @@
 //! semidefinite, or no motion has its energy, and no principal moment exceeds the sum of the other
 //! two, as follows from I_xx + I_yy - I_zz = 2 times the integral of z^2 over the mass.
 
-use super::Inertia;
+use super::demands::Inertia;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::evaluate::evaluate;
 use crate::model::Expr;

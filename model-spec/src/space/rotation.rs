@@ -1,19 +1,77 @@
-//! Rotations as written: a product of turns about the axes, `rotation_x(pi/2)*rotation_z(q)`.
-//! Each turn is about an axis of the frame that those before it have made.
+//! Rotations: of frames a product of turns about the axes, `rotation_x(pi/2)*rotation_z(q)`, each about an
+//! axis of the frame that those before it have made; of vectors also turns about any axis and the
+//! matrices of frames.
 
 use super::scalar::{add, call, multiply, negate, number};
-use super::vector::Vector;
+use super::vector::{Rows, Vector, cross, inner, scaled, sum, turned};
 use crate::ast::{BinaryOperator, Syntax, SyntaxKind};
 use crate::diagnostic::Diagnostic;
 use crate::span::Span;
 
 /// A turn about an axis.
+#[derive(Clone, Debug)]
 pub struct Turn {
     /// 0, 1, 2 for x, y, z.
     pub axis: usize,
     /// The angle, by the right hand.
     pub angle: Syntax,
 }
+
+/// One factor of a rotation of vectors.
+#[derive(Clone, Debug)]
+pub enum Factor {
+    /// A turn about a fixed axis.
+    Turn(Turn),
+    /// A turn about a direction, a vector of length 1, with the cosine and the sine of the angle.
+    About(Box<(Vector, Syntax, Syntax)>),
+    /// From a frame's axes to the fixed ones.
+    Frame(Box<Rows>),
+    /// From the fixed axes to a frame's.
+    IntoFrame(Box<Rows>),
+}
+
+impl Factor {
+    /// The rotation back.
+    pub fn transposed(self) -> Self {
+        match self {
+            Self::Turn(turn) => Self::Turn(turn.back()),
+            Self::About(about) => {
+                let (direction, cosine, sine) = *about;
+                Self::About(Box::new((direction, cosine, negate(sine))))
+            }
+            Self::Frame(rows) => Self::IntoFrame(rows),
+            Self::IntoFrame(rows) => Self::Frame(rows),
+        }
+    }
+
+    /// The vector turned; `name` gives a name to what is used more than once.
+    ///
+    /// # Errors
+    /// Those of `name`.
+    pub fn turn(&self, vector: &Vector, name: &mut Naming<'_>) -> Result<Vector, Diagnostic> {
+        let [x, y, z] = vector.clone();
+        let vector = [name(x)?, name(y)?, name(z)?];
+        Ok(match self {
+            Self::Turn(turn) => turn.back().of(&vector),
+            Self::Frame(rows) => turned(rows, &vector),
+            Self::IntoFrame(rows) => {
+                let columns = [0, 1, 2].map(|j| [0, 1, 2].map(|i| rows[i][j].clone()));
+                turned(&columns, &vector)
+            }
+            Self::About(about) => {
+                let (n, cosine, sine) = about.as_ref();
+                // The formula of Rodrigues: v cos + n x v sin + n (n.v)(1 - cos).
+                let rest = add(number(1.0, cosine.span), negate(cosine.clone()));
+                let along = name(multiply(inner(n, &vector), rest))?;
+                let across = sum(scaled(&vector, cosine), scaled(&cross(n, &vector), sine));
+                sum(across, scaled(n, &along))
+            }
+        })
+    }
+}
+
+/// Gives a name to an expression.
+pub type Naming<'n> = dyn FnMut(Syntax) -> Result<Syntax, Diagnostic> + 'n;
 
 /// The turns of a rotation, from the parent's axes on.
 ///
@@ -63,6 +121,14 @@ fn turn(syntax: &Syntax) -> Result<Turn, Diagnostic> {
 }
 
 impl Turn {
+    /// The turn back.
+    pub fn back(&self) -> Self {
+        Self {
+            axis: self.axis,
+            angle: negate(self.angle.clone()),
+        }
+    }
+
     /// The components of a vector along the turned axes.
     pub fn of(&self, vector: &Vector) -> Vector {
         let (k, i, j) = (self.axis, (self.axis + 1) % 3, (self.axis + 2) % 3);
@@ -77,7 +143,7 @@ impl Turn {
     }
 
     /// Quarter turns are exact, so that axes that coincide do so in the equations.
-    fn cosine_and_sine(&self) -> (Syntax, Syntax) {
+    pub fn cosine_and_sine(&self) -> (Syntax, Syntax) {
         let span = self.angle.span;
         let quarters = quarters(&self.angle).filter(|q| q.fract() == 0.0 && q.abs() < 1e9);
         let values = quarters.map(|quarters| match quarters.rem_euclid(4.0) as u8 {
@@ -88,10 +154,16 @@ impl Turn {
         });
         match values {
             Some((cosine, sine)) => (number(cosine, span), number(sine, span)),
-            None => (
-                call("cos", self.angle.clone()),
-                call("sin", self.angle.clone()),
-            ),
+            None => match &self.angle.kind {
+                SyntaxKind::Negate(angle) => (
+                    call("cos", angle.as_ref().clone()),
+                    negate(call("sin", angle.as_ref().clone())),
+                ),
+                _ => (
+                    call("cos", self.angle.clone()),
+                    call("sin", self.angle.clone()),
+                ),
+            },
         }
     }
 }

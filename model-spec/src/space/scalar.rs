@@ -2,6 +2,12 @@
 
 use crate::ast::{BinaryOperator, Syntax, SyntaxKind};
 use crate::span::Span;
+use crate::table::Quantity;
+
+/// What stands for a quantity that the file does not write.
+pub fn expansion(syntax: Syntax) -> Quantity {
+    Quantity::Expansion(Box::new(syntax))
+}
 
 /// A literal.
 pub fn number(value: f64, span: Span) -> Syntax {
@@ -17,6 +23,26 @@ pub fn name(text: &str, span: Span) -> Syntax {
         kind: SyntaxKind::Name(text.to_owned()),
         span,
     }
+}
+
+/// The same expression, said to stand elsewhere.
+pub fn placed(mut syntax: Syntax, span: Span) -> Syntax {
+    syntax.span = span;
+    match &mut syntax.kind {
+        SyntaxKind::Negate(operand) => **operand = placed((**operand).clone(), span),
+        SyntaxKind::Call {
+            function_span,
+            arguments,
+            ..
+        } => {
+            *function_span = span;
+            for argument in arguments {
+                *argument = placed(argument.clone(), span);
+            }
+        }
+        _ => {}
+    }
+    syntax
 }
 
 /// A function of one argument.

@@ -7,6 +7,10 @@ use crate::span::Span;
 /// Components along x, y, z.
 pub type Vector = [Syntax; 3];
 
+/// The fixed axes x, y and z, each along a frame's axes: the rows of the matrix that turns
+/// components along the frame into those along the fixed axes.
+pub type Rows = [Vector; 3];
+
 /// The axes, as names end.
 pub const AXES: [&str; 3] = ["x", "y", "z"];
 
@@ -18,6 +22,13 @@ pub fn zero(span: Span) -> Vector {
 /// `a + b`
 pub fn sum([ax, ay, az]: Vector, [bx, by, bz]: Vector) -> Vector {
     [add(ax, bx), add(ay, by), add(az, bz)]
+}
+
+/// `by * a`
+pub fn scaled(vector: &Vector, by: &Syntax) -> Vector {
+    vector
+        .clone()
+        .map(|component| multiply(by.clone(), component))
 }
 
 /// The vector product.
@@ -37,4 +48,9 @@ pub fn cross([ax, ay, az]: &Vector, [bx, by, bz]: &Vector) -> Vector {
 pub fn inner([ax, ay, az]: &Vector, [bx, by, bz]: &Vector) -> Syntax {
     let product = |a: &Syntax, b: &Syntax| multiply(a.clone(), b.clone());
     add(add(product(ax, bx), product(ay, by)), product(az, bz))
+}
+
+/// A vector along a frame's axes, along the fixed axes.
+pub fn turned(rows: &Rows, vector: &Vector) -> Vector {
+    [0, 1, 2].map(|axis| inner(&rows[axis], vector))
 }

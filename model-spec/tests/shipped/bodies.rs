@@ -6,7 +6,7 @@ use eomgen_model_spec::model::{Expr, ExprKind, Function, Model, Term};
 
 use super::{shipped, value};
 
-type Matrix = [[f64; 4]; 4];
+pub type Matrix = [[f64; 4]; 4];
 
 fn times(a: &Matrix, b: &Matrix) -> Matrix {
     let mut product = [[0.0; 4]; 4];
@@ -30,7 +30,7 @@ fn joint(q: f64, d: f64, a: f64, alpha: f64) -> Matrix {
     ]
 }
 
-fn links(q: &[f64; 6]) -> Vec<Matrix> {
+pub fn links(q: &[f64; 6]) -> Vec<Matrix> {
     let half = std::f64::consts::FRAC_PI_2;
     let rows = [
         (0.0, 0.0, half),
@@ -49,7 +49,7 @@ fn links(q: &[f64; 6]) -> Vec<Matrix> {
 }
 
 /// Kinetic and potential energy of the arm.
-fn energies(q: &[f64; 6], rates: &[f64; 6]) -> (f64, f64) {
+pub fn energies(q: &[f64; 6], rates: &[f64; 6]) -> (f64, f64) {
     let masses = [0.0, 17.4, 4.8, 0.82, 0.34, 0.09];
     let centres = [
         [0.0; 3],
@@ -96,8 +96,11 @@ fn energies(q: &[f64; 6], rates: &[f64; 6]) -> (f64, f64) {
     (kinetic, potential)
 }
 
+/// Coordinates and rates.
+pub type State<'s> = (&'s [f64; 6], &'s [f64; 6]);
+
 /// The value of an expression and its rate.
-fn evaluate(model: &Model, state: (&[f64; 6], &[f64; 6]), expr: &Expr) -> (f64, f64) {
+pub fn evaluate(model: &Model, state: State<'_>, expr: &Expr) -> (f64, f64) {
     let of = |expr: &Expr| evaluate(model, state, expr);
     match &expr.kind {
         ExprKind::Number(value) => (*value, 0.0),
@@ -116,6 +119,7 @@ fn evaluate(model: &Model, state: (&[f64; 6], &[f64; 6]), expr: &Expr) -> (f64, 
                 BinaryOperator::Add => (a + b, da + db),
                 BinaryOperator::Subtract => (a - b, da - db),
                 BinaryOperator::Multiply => (a * b, da * b + a * db),
+                BinaryOperator::Divide => (a / b, (da - a / b * db) / b),
                 BinaryOperator::Power if b == 2.0 => (a * a, 2.0 * a * da),
                 _ => panic!("not in this model"),
             }
@@ -125,6 +129,7 @@ fn evaluate(model: &Model, state: (&[f64; 6], &[f64; 6]), expr: &Expr) -> (f64, 
             match function {
                 Function::Sin => (x.sin(), x.cos() * rate),
                 Function::Cos => (x.cos(), -x.sin() * rate),
+                Function::Sqrt => (x.sqrt(), rate / (2.0 * x.sqrt())),
                 _ => panic!("not in this model"),
             }
         }

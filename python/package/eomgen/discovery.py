@@ -22,8 +22,9 @@ class Discovery:
     """What a search came to.
 
     verdict: "effects_found", "no_significant_gap" or "unexplained". effects: what was accepted, by
-    decreasing gap closed, each a dictionary with `effect`, `on`, `status`, `equivalent`,
-    `parameters` (names to `value`, `sd`, `unit`), `term`. document: all of `discovery.json`.
+    decreasing gap closed, each a dictionary with `effect`, `on`, `status` ("named", "class",
+    "provisional" or "empirical"), `equivalent`, `parameters` (names to `value`, `sd`, `unit`),
+    `term`. document: all of `discovery.json`.
     extended: the text of the specification with what was found; report: the page for people, HTML.
     """
 
@@ -40,6 +41,16 @@ class Discovery:
     def effects(self) -> List[Dict[str, Any]]:
         """What was accepted."""
         return list(self.document["effects"])
+
+    @property
+    def summary(self) -> str:
+        """The answer in words; where much is left, the first sentence says so."""
+        return str(self.document["summary"])
+
+    @property
+    def notes(self) -> List[str]:
+        """What is worth a remark: of the records, and of what was fitted as far off as it may be."""
+        return list(self.document["notes"])
 
     @property
     def gap(self) -> Mapping[str, Any]:

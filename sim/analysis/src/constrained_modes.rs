@@ -1,12 +1,11 @@
 //! Natural modes of a linearised machine with constraints: those of the motions that they allow.
 //!
-//! With the constraints linearised too, C x = 0, and N an orthonormal basis of what they allow,
-//! x = N y moves by y' = N^T A N y (E. Eich-Soellner, C. Fuehrer, *Numerical Methods in Multibody
-//! Dynamics*, 2.6). The eigenvalue 0 is counted by null spaces, as in
+//! They are the modes of N^T A N, with N from [`allowed_motions`](crate::allowed_motions). The eigenvalue 0 is counted by null spaces, as in
 //! [`natural_modes`](crate::natural_modes).
 
 use nalgebra::{Complex, DMatrix, DVector, Schur};
 
+use crate::allowed_motions::AllowedMotions;
 use crate::error::AnalysisError;
 use crate::natural_modes::{MOST_STEPS, NaturalMode, natural_modes, null_space, zero_eigenvalues};
 
@@ -29,19 +28,12 @@ pub fn constrained_modes(
         let (expected, given) = (states * states, matrix.len());
         return Err(AnalysisError::Lengths { expected, given });
     }
-    let all = matrix.iter().chain(held);
-    if let Some(sample) = all.clone().position(|entry| !entry.is_finite()) {
+    if let Some(sample) = matrix.iter().position(|entry| !entry.is_finite()) {
         return Err(AnalysisError::NotFinite { sample });
     }
-    let mut held = DMatrix::from_row_slice(held.len() / states, states, held);
-    for mut row in held.row_iter_mut() {
-        let size = row.amax();
-        if size > 0.0 {
-            row /= size;
-        }
-    }
-    let allowed = null_space(&(held.transpose() * held));
-    let reduced = allowed.transpose() * DMatrix::from_row_slice(states, states, matrix) * &allowed;
+    let allowed = AllowedMotions::new(held, states)?;
+    let allowed = allowed.basis();
+    let reduced = allowed.transpose() * DMatrix::from_row_slice(states, states, matrix) * allowed;
     let schur = Schur::try_new(reduced.clone(), f64::EPSILON, MOST_STEPS * states.max(1));
     let schur = schur.ok_or(AnalysisError::NotConverged)?;
     let mut eigenvalues: Vec<Complex<f64>> = schur.complex_eigenvalues().iter().copied().collect();

@@ -13,9 +13,11 @@
 //! [`spectrum`] estimates power spectral densities, [`zero_one`] tests a series for chaos,
 //! [`poincare`] describes a stroboscopic section, [`exponent`] averages logarithmic growth,
 //! and [`classify`] weighs these against each other by a stated rule. [`modes`] says which
-//! mode of a flexible body carries the motion, [`course`] has single numbers of a course over time, [`natural_modes`] which modes a
-//! linearised machine has, [`constrained_modes`] which one with constraints has.
+//! mode of a flexible body carries the motion, [`course`] has single numbers of a course over time, [`statistics`] numbers of many values, [`natural_modes`] which modes a
+//! linearised machine has, [`constrained_modes`] which one with constraints has, whose [`allowed_motions`]
+//! have matrices of their own.
 
+pub mod allowed_motions;
 pub mod classify;
 pub mod constrained_modes;
 pub mod course;
@@ -25,6 +27,7 @@ pub mod modes;
 pub mod natural_modes;
 pub mod poincare;
 pub mod spectrum;
+pub mod statistics;
 pub mod zero_one;
 
 #[cfg(test)]

@@ -19,7 +19,7 @@ const PAPER_SCALES: (f64, f64) = (3.0885e4, 25e-6);
 
 /// The specifications that were written out by hand. A model of the same name may follow
 /// other conventions; only what has the very equations of one of them is the same machine.
-const SHIPPED: [&str; 13] = [
+const SHIPPED: [&str; 14] = [
     models::PLANETARY_ARM.text,
     models::DOUBLE_PENDULUM.text,
     models::CART_TWO_ARMS.text,
@@ -31,6 +31,7 @@ const SHIPPED: [&str; 13] = [
     models::PENDULUM.text,
     models::EMPS.text,
     models::PUMA_560.text,
+    models::QUADROTOR_SLUNG_LOAD.text,
     models::SHAFT_AND_DISC.text,
     models::TWO_LINK_ARM.text,
 ];

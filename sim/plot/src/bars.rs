@@ -40,7 +40,7 @@ const HEIGHT: f64 = 330.0;
 const MARGINS: ((f64, f64), (f64, f64)) = ((78.0, 24.0), (54.0, 62.0));
 /// The height of a row of shares and of the bar in it, px.
 const ROW: (f64, f64) = (20.0, 14.0);
-const COLUMN: &str = "#56a0d3";
+pub(super) const COLUMN: &str = "#56a0d3";
 /// Two strong colours for what counts, grey and a pale one for the rest; all differ in
 /// lightness too.
 const PARTS: [&str; 4] = ["#0b4f86", "#56a0d3", "#c4c4c4", "#f2cfae"];
@@ -151,7 +151,7 @@ pub fn shares(of: &Shares) -> Result<String, PlotError> {
     Ok(canvas.document(&of.title, WIDTH, bottom + 56.0))
 }
 
-fn draw_level(canvas: &mut Canvas, tick: &Tick, up: &Axis, (left, right): (f64, f64)) {
+pub(super) fn draw_level(canvas: &mut Canvas, tick: &Tick, up: &Axis, (left, right): (f64, f64)) {
     let y = up.pixel(tick.place);
     canvas.segments(&[((left, y), (right, y))], GRID);
     let at = (left - 7.0, y + 0.35 * TICK_SIZE);
@@ -159,7 +159,7 @@ fn draw_level(canvas: &mut Canvas, tick: &Tick, up: &Axis, (left, right): (f64, 
 }
 
 /// Upright lines with their names above the frame, each beginning where the last has ended.
-fn draw_marks(canvas: &mut Canvas, marks: &[Reference], along: &Axis, up: &Axis) {
+pub(super) fn draw_marks(canvas: &mut Canvas, marks: &[Reference], along: &Axis, up: &Axis) {
     let mut free_from = along.pixels.0;
     for mark in marks {
         let x = along.pixel(mark.value);
@@ -180,13 +180,13 @@ fn draw_legend(canvas: &mut Canvas, parts: &[String], (mut x, y): (f64, f64)) {
     }
 }
 
-fn outline(canvas: &mut Canvas, (left, right): (f64, f64), (bottom, top): (f64, f64)) {
+pub(super) fn outline(canvas: &mut Canvas, (left, right): (f64, f64), (bottom, top): (f64, f64)) {
     let corners = [(left, top), (right, top), (right, bottom), (left, bottom)];
     let around = corners.into_iter().chain([(left, top)]);
     canvas.lines(&[around.collect()], FRAME);
 }
 
-fn write(canvas: &mut Canvas, text: &str, at: (f64, f64), anchor: Anchor) {
+pub(super) fn write(canvas: &mut Canvas, text: &str, at: (f64, f64), anchor: Anchor) {
     canvas.text(Text {
         text,
         at,
@@ -196,7 +196,7 @@ fn write(canvas: &mut Canvas, text: &str, at: (f64, f64), anchor: Anchor) {
     });
 }
 
-fn label(canvas: &mut Canvas, text: &str, at: (f64, f64), angle: f64) {
+pub(super) fn label(canvas: &mut Canvas, text: &str, at: (f64, f64), angle: f64) {
     let text = Text {
         text,
         at,
@@ -207,7 +207,7 @@ fn label(canvas: &mut Canvas, text: &str, at: (f64, f64), angle: f64) {
     canvas.turned_text(text, angle);
 }
 
-fn title(canvas: &mut Canvas, text: &str, at: (f64, f64)) {
+pub(super) fn title(canvas: &mut Canvas, text: &str, at: (f64, f64)) {
     canvas.text(Text {
         text,
         at,

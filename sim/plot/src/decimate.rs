@@ -1,6 +1,8 @@
 //! Many samples to few points that look the same: of the samples over one column of pixels
 //! only the first, the lowest, the highest and the last are kept.
 
+use std::collections::BTreeSet;
+
 /// A point in pixels.
 pub(super) type Point = (f64, f64);
 
@@ -75,6 +77,43 @@ pub(super) fn polylines(samples: impl Iterator<Item = Point>, width: f64) -> Vec
     lines
 }
 
+/// How far a line in a plane goes from point to point at least, px.
+const STEP: f64 = 1.0;
+/// Points nearer to each other than this cannot be told apart, px.
+const APART: f64 = 0.5;
+
+/// The lines through samples that lead anywhere, without those that are next to the last one kept. A
+/// sample with a coordinate that is not finite interrupts the line.
+pub(super) fn thinned(samples: impl Iterator<Item = Point>) -> Vec<Vec<Point>> {
+    let mut lines: Vec<Vec<Point>> = Vec::new();
+    let mut line: Vec<Point> = Vec::new();
+    for (x, y) in samples {
+        if !(x.is_finite() && y.is_finite()) {
+            lines.push(std::mem::take(&mut line));
+            continue;
+        }
+        let is_near = |last: &Point| (last.0 - x).hypot(last.1 - y) < STEP;
+        if !line.last().is_some_and(is_near) {
+            line.push((x, y));
+        }
+    }
+    lines.push(line);
+    lines.retain(|line| !line.is_empty());
+    lines
+}
+
+/// Each sample by itself, one of those that cannot be told apart.
+pub(super) fn apart(samples: impl Iterator<Item = Point>) -> Vec<Vec<Point>> {
+    let mut taken = BTreeSet::new();
+    // In pixels, thus small.
+    let cell = |at: f64| (at / APART).round() as i64;
+    samples
+        .filter(|(x, y)| x.is_finite() && y.is_finite())
+        .filter(|(x, y)| taken.insert((cell(*x), cell(*y))))
+        .map(|point| vec![point])
+        .collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -98,6 +137,38 @@ mod tests {
             .map(|p| p.1)
             .collect();
         assert_eq!(kept, [0.0, 5.0, -7.0, 3.0]);
+    }
+
+    #[test]
+    fn an_orbit_leaves_out_what_is_next_to_what_is_kept() {
+        let samples = [
+            (0.0, 0.0),
+            (0.3, 0.3),
+            (2.0, 0.0),
+            (f64::NAN, 0.0),
+            (0.0, 0.0),
+            (0.0, 5.0),
+        ];
+        let lines = thinned(samples.into_iter());
+        assert_eq!(
+            lines,
+            [vec![(0.0, 0.0), (2.0, 0.0)], vec![(0.0, 0.0), (0.0, 5.0)]]
+        );
+    }
+
+    #[test]
+    fn points_that_look_alike_are_drawn_once() {
+        let samples = [
+            (1.0, 1.0),
+            (1.01, 1.0),
+            (f64::NAN, 1.0),
+            (4.0, 1.0),
+            (1.0, 1.02),
+        ];
+        assert_eq!(
+            apart(samples.into_iter()),
+            [vec![(1.0, 1.0)], vec![(4.0, 1.0)]]
+        );
     }
 
     #[test]

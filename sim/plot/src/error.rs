@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::figure::{Panel, Series};
+use super::figure::{Drawn, Panel, Series};
 
 /// Why a figure could not be drawn. Panels and samples are counted from 0.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -117,8 +117,8 @@ pub(super) fn is_drawable(value: f64) -> bool {
     value.abs() < 1e100
 }
 
-/// Checks all that can be said before the axes are known.
-pub(super) fn check(panels: &[Panel<'_>]) -> Result<(), PlotError> {
+/// Checks all that can be said before the axes are known; `drawn` says it of each panel.
+pub(super) fn check(panels: &[Panel<'_>], drawn: impl Fn(usize) -> Drawn) -> Result<(), PlotError> {
     if panels.is_empty() {
         return Err(PlotError::NoPanels);
     }
@@ -127,13 +127,13 @@ pub(super) fn check(panels: &[Panel<'_>]) -> Result<(), PlotError> {
             return Err(PlotError::NoSeries { panel });
         }
         for series in &content.series {
-            check_series(panel, series)?;
+            check_series(panel, series, drawn(panel))?;
         }
     }
     Ok(())
 }
 
-fn check_series(panel: usize, series: &Series<'_>) -> Result<(), PlotError> {
+fn check_series(panel: usize, series: &Series<'_>, drawn: Drawn) -> Result<(), PlotError> {
     let (abscissae, values) = (series.abscissa.len(), series.values.len());
     if abscissae != values {
         return Err(PlotError::Lengths {
@@ -145,7 +145,8 @@ fn check_series(panel: usize, series: &Series<'_>) -> Result<(), PlotError> {
     }
     let mut previous = f64::NEG_INFINITY;
     for (sample, &abscissa) in series.abscissa.iter().enumerate() {
-        if !is_drawable(abscissa) || abscissa < previous {
+        let goes_back = drawn == Drawn::Curve && abscissa < previous;
+        if !is_drawable(abscissa) || goes_back {
             return Err(PlotError::Abscissa {
                 panel,
                 series: series.label.clone(),

@@ -34,6 +34,18 @@ pub enum FrequencyAxis {
     Logarithmic,
 }
 
+/// What is drawn through the samples of a series.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Drawn {
+    /// A curve over its abscissa, which never decreases.
+    #[default]
+    Curve,
+    /// A line from sample to sample, wherever it leads: a motion in a plane.
+    Orbit,
+    /// A point for each sample.
+    Points,
+}
+
 /// One frame with its curves.
 #[derive(Clone, Debug, Default)]
 pub struct Panel<'a> {
@@ -55,7 +67,7 @@ pub struct Panel<'a> {
 pub struct Series<'a> {
     /// Its name in the legend.
     pub label: String,
-    /// Times in s or frequencies in Hz; finite, never decreasing.
+    /// Times in s or frequencies in Hz; finite, and of a curve never decreasing.
     pub abscissa: &'a [f64],
     /// As many values in the panel's unit; one that is not finite leaves a gap.
     pub values: &'a [f64],

@@ -3,7 +3,7 @@
 
 use super::axis::{Axis, Range, Scale, Tick, ticks};
 use super::error::{PlotError, is_drawable};
-use super::figure::{Panel, Series};
+use super::figure::{Drawn, Panel, Series};
 use super::lettering::{fitted, width};
 use super::quantity::Quantity;
 
@@ -49,6 +49,8 @@ pub(super) struct Format {
     pub headroom: f64,
     /// Whether later curves are dashed, so that what is below them shows.
     pub overlaid: bool,
+    /// What is drawn through the samples.
+    pub drawn: Drawn,
 }
 
 impl Format {
@@ -66,6 +68,7 @@ impl Format {
             margins: (0.0, 22.0),
             headroom: 0.0,
             overlaid: false,
+            drawn: Drawn::Curve,
         }
     }
 }
@@ -82,6 +85,8 @@ pub(super) struct Layout {
     pub column: f64,
     /// Whether later curves are dashed.
     pub overlaid: bool,
+    /// What is drawn through the samples.
+    pub drawn: Drawn,
 }
 
 /// Where a panel's parts are, px.
@@ -119,6 +124,10 @@ impl Layout {
             .map(|(index, panel)| Ordinate::new(index, panel, (abscissa.scale, scale), up))
             .collect::<Result<Vec<_>, _>>()?;
         let (range, quantity) = shared_range(panels, abscissa);
+        let range = match format.drawn {
+            Drawn::Curve => range,
+            Drawn::Orbit | Drawn::Points => range.padded(0.04),
+        };
         let edges = (
             left_edge(&ordinates, format.margins.0),
             right_edge(panels, format),
@@ -145,6 +154,7 @@ impl Layout {
             height: (top + 40.0).ceil(),
             column: (span * COLUMN_CHARACTERS * curves as f64 / CURVE_CHARACTERS).max(1.0),
             overlaid: format.overlaid,
+            drawn: format.drawn,
         })
     }
 }

@@ -28,7 +28,7 @@
 //! prefixes and axis labels), `axis` (positions and ticks), `decimate` (many samples to few
 //! points), `layout` (where everything goes), `panel` (drawing it), `canvas` (SVG elements);
 //! `symbol` and `lettering` write names and text. [`mod@plate`] sets frames with axes of their
-//! own side by side. [`bars`] has histograms and shares, [`map`] the pictures made of pixels.
+//! own side by side. [`bars`] has histograms and shares, [`mod@distribution`] how numbers are spread, [`mod@modes`] shapes of natural modes, [`map`] the pictures made of pixels, and [`mod@drawing`] draws what is no graph.
 //! What is drawn, and why, is the caller's business: nothing here knows of a model.
 //!
 //! The SVG has no script, no style sheet, no identifiers and refers to nothing outside, so
@@ -39,11 +39,14 @@ mod axis;
 pub mod bars;
 mod canvas;
 mod decimate;
+pub mod distribution;
+pub mod drawing;
 mod error;
 pub mod figure;
 mod layout;
 mod lettering;
 pub mod map;
+pub mod modes;
 mod panel;
 pub mod plate;
 mod quantity;
@@ -53,7 +56,7 @@ mod symbol;
 mod tests;
 
 pub use error::PlotError;
-pub use figure::{FrequencyAxis, Panel, Reference, Series, Spectrum, TimeHistory};
+pub use figure::{Drawn, FrequencyAxis, Panel, Reference, Series, Spectrum, TimeHistory};
 pub use map::{map_png, scatter_png};
 pub use plate::{Axes, Frame, Plate, plate};
 pub use quantity::scaled_unit;
@@ -105,7 +108,7 @@ fn draw(
     abscissa: &Abscissa,
     ordinate: Scale,
 ) -> Result<String, PlotError> {
-    error::check(panels)?;
+    error::check(panels, |_| Drawn::Curve)?;
     let layout = Layout::new(panels, abscissa, ordinate, Format::stacked(panels.len()))?;
     let mut canvas = canvas::Canvas::default();
     for (panel, place) in panels.iter().zip(&layout.places) {

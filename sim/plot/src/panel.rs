@@ -3,9 +3,9 @@
 
 use super::axis::{Axis, Scale, Tick};
 use super::canvas::{Anchor, Canvas, Stroke, Text};
-use super::decimate::{Point, polylines};
+use super::decimate::{Point, apart, polylines, thinned};
 use super::error::is_drawable;
-use super::figure::{Panel, Reference, Series};
+use super::figure::{Drawn, Panel, Reference, Series};
 use super::layout::{
     LABEL_SIZE, LEGEND_LINE, LEGEND_ROW, Layout, Place, TICK_SIZE, TITLE_SIZE, reference_label,
 };
@@ -46,7 +46,12 @@ pub(super) fn draw(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, layout
     draw_references(canvas, panel, place, layout);
     for (index, series) in panel.series.iter().enumerate() {
         let samples = samples(series, place, layout);
-        canvas.lines(&polylines(samples, layout.column), curve(index, layout));
+        let lines = match layout.drawn {
+            Drawn::Curve => polylines(samples, layout.column),
+            Drawn::Orbit => thinned(samples),
+            Drawn::Points => apart(samples),
+        };
+        canvas.lines(&lines, curve(index, layout));
     }
     draw_frame(canvas, place, layout);
     draw_text(canvas, panel, place, layout);
@@ -123,7 +128,11 @@ fn curve(index: usize, layout: &Layout) -> Stroke {
     };
     Stroke {
         colour: COLOURS[index % COLOURS.len()],
-        width: 1.2,
+        width: match layout.drawn {
+            Drawn::Curve => 1.2,
+            Drawn::Orbit => 0.7,
+            Drawn::Points => 1.8,
+        },
         dashes: DASHES[dashes % DASHES.len()],
     }
 }

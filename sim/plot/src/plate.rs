@@ -4,7 +4,7 @@
 use super::axis::Scale;
 use super::canvas::Canvas;
 use super::error::{PlotError, check};
-use super::figure::{Panel, Reference};
+use super::figure::{Drawn, Panel, Reference};
 use super::layout::{Abscissa, Format, Layout};
 use super::panel;
 
@@ -16,6 +16,7 @@ const FORMAT: Format = Format {
     margins: (82.0, 36.0),
     headroom: 0.0,
     overlaid: false,
+    drawn: Drawn::Curve,
 };
 /// The share of a frame with marks that their names take.
 const NAMES_OF_MARKS: f64 = 0.09;
@@ -43,6 +44,8 @@ pub struct Frame<'a> {
     /// Whether curves may lie on each other: then each later one is dashed, and what is below
     /// shows through.
     pub overlaid: bool,
+    /// What is drawn through the samples.
+    pub drawn: Drawn,
 }
 
 /// The axes of a frame.
@@ -91,7 +94,9 @@ impl Axes {
 /// As for [`super::time_history`], panels counted row by row.
 pub fn plate(plate: &Plate<'_>) -> Result<String, PlotError> {
     let panels: Vec<Panel<'_>> = plate.frames.iter().map(|f| f.panel.clone()).collect();
-    check(&panels)?;
+    check(&panels, |place| {
+        plate.frames.get(place).map_or(Drawn::Curve, |f| f.drawn)
+    })?;
     let columns = plate.columns.max(1);
     let mut canvas = Canvas::default();
     let mut top = 0.0;
@@ -118,6 +123,7 @@ fn draw(frame: &Frame<'_>) -> Result<(Canvas, f64), PlotError> {
             _ => NAMES_OF_MARKS,
         },
         overlaid: frame.overlaid,
+        drawn: frame.drawn,
         ..FORMAT
     };
     let layout = Layout::new(panels, &abscissa, scale, format)?;

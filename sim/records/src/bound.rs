@@ -1,14 +1,17 @@
 //! What a dataset file says, bound to a model: names looked up, units and numbers checked.
 
-use crate::description::{ChannelColumn, Description, InitialState};
+use crate::description::Description;
+use crate::description::columns::{ChannelColumn, ColumnKey, Prior};
+use crate::description::motion::InitialState;
 use crate::units::unit;
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
+use eomgen_model_spec::dimension::Dimension;
 use eomgen_model_spec::model::{Model, ParameterValue};
 use eomgen_model_spec::suggest::did_you_mean;
-use eomgen_model_spec::table::{Name, Number, Written};
+use eomgen_model_spec::table::{Name, Number};
 use eomgen_model_spec::unit::Unit;
 
-use crate::dataset::{Channel, Initial, Quantity, Uncertain};
+use crate::dataset::{Channel, Expected, Initial, Quantity, TransducerPriors, Uncertain};
 
 /// What is taken for the relative standard deviation of a parameter: a smaller one is exact, a
 /// larger one says nothing.
@@ -19,7 +22,7 @@ pub struct Bound<'d> {
     /// The unit of the time's column.
     pub time: Unit,
     /// For each input of the model its column and the column's unit.
-    pub inputs: Vec<Option<(&'d Written, Unit)>>,
+    pub inputs: Vec<Option<(&'d ColumnKey, Unit)>>,
     /// The channels.
     pub channels: Vec<Channel>,
     /// The unit of each channel's column.
@@ -70,7 +73,7 @@ pub fn bound<'d>(description: &'d Description, model: &Model) -> Result<Bound<'d
 /// # Errors
 /// What is no unit of time.
 pub fn time_unit(description: &Description) -> Result<Unit, Diagnostic> {
-    unit(&description.time.unit, "s")
+    unit(&description.time.column.unit, "s")
 }
 
 /// For each input of the model its column and the column's unit.
@@ -78,7 +81,7 @@ pub fn inputs<'d>(
     description: &'d Description,
     model: &Model,
     found: &mut Diagnostics,
-) -> Vec<Option<(&'d Written, Unit)>> {
+) -> Vec<Option<(&'d ColumnKey, Unit)>> {
     let of = |input: &eomgen_model_spec::model::Input| {
         let mut columns = description.inputs.iter();
         // Rates of prescribed motion are those of the curve through its samples.
@@ -142,13 +145,28 @@ fn channel(entry: &ChannelColumn, model: &Model) -> Result<(Channel, Unit), Diag
             ),
         );
     }
+    let one = Unit::coherent(Dimension::NONE);
     let channel = Channel {
         name: entry.name.text.clone(),
+        observable: asked.clone(),
         quantity,
         unit: expected,
         noise,
+        priors: TransducerPriors {
+            gain: entry.gain.map(|gain| known_before(gain, &one)),
+            bias: entry.bias.map(|bias| known_before(bias, &unit)),
+            delay: entry.delay.map(|delay| known_before(delay, &one)),
+        },
     };
     Ok((channel, unit))
+}
+
+/// What is known of a part of a sensor, SI.
+fn known_before(prior: Prior, unit: &Unit) -> Expected {
+    Expected {
+        mean: prior.mean.map(|mean| unit.to_si(mean.value)),
+        sd: unit.to_si(prior.sd.value),
+    }
 }
 
 /// A quantity of the model by name, and its SI unit.

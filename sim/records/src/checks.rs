@@ -7,7 +7,9 @@ use crate::coverage::{self, STILL, span};
 use crate::dataset::Dataset;
 use crate::record::Record;
 use crate::refusal::Refusal;
-use crate::samples::typical_step;
+use crate::samples::{JITTER, typical_step};
+use crate::windows::{LONGEST_DELAY, LONGEST_LEAD};
+use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 
 /// A channel of which more than this part is missing is refused.
 const MOST_MISSING: f64 = 0.5;
@@ -15,9 +17,6 @@ const MOST_MISSING: f64 = 0.5;
 /// A channel that spans more standard deviations of its noise has a wrong unit or a wrong noise:
 /// no sensor resolves so much.
 const MOST_STANDARD_DEVIATIONS: f64 = 1e10;
-
-/// Steps that differ from the usual one by more than this part of it are jitter.
-const JITTER: f64 = 0.1;
 
 /// A channel that stands at its largest or smallest value for this part of the samples, more
 /// than once in a row, is clipped.
@@ -47,6 +46,7 @@ pub fn examine(dataset: &Dataset, description: &Description) -> Result<Vec<Strin
         }
         different_channels(dataset, record)?;
     }
+    delays(dataset, description)?;
     notes.extend(coverage::check(dataset, description)?);
     for test in &dataset.test {
         for train in &dataset.train {
@@ -54,6 +54,30 @@ pub fn examine(dataset: &Dataset, description: &Description) -> Result<Vec<Strin
         }
     }
     Ok(notes)
+}
+
+/// Expected delays are within what windows leave room for.
+fn delays(dataset: &Dataset, description: &Description) -> Result<(), Refusal> {
+    let step = typical_step(&dataset.train[0].times);
+    for channel in &description.channels {
+        let Some(mean) = channel.delay.and_then(|delay| delay.mean) else {
+            continue;
+        };
+        let samples = mean.value / step;
+        if !(-LONGEST_LEAD..=LONGEST_DELAY).contains(&samples) {
+            let wrong = Diagnostic::error(format!(
+                "a delay of {} s is {samples:.1} samples of the records",
+                mean.value
+            ))
+            .at(
+                mean.span,
+                format!("expected {} to {LONGEST_DELAY} samples", -LONGEST_LEAD),
+            )
+            .help("shift the column in the record, or keep fewer samples: [time] every");
+            return Err(Diagnostics::one(description.source.clone(), wrong).into());
+        }
+    }
+    Ok(())
 }
 
 /// Remarks on the times of a record.
@@ -161,11 +185,13 @@ fn different_channels(dataset: &Dataset, record: &Record) -> Result<(), Refusal>
 /// A test record is not a training record again, later or earlier, of either sign.
 fn different_records(dataset: &Dataset, train: &Record, test: &Record) -> Result<(), Refusal> {
     let file = |record: &Record| record.path.canonicalize().ok();
-    if file(train).is_some() && file(train) == file(test) {
+    let ends = |record: &Record| (record.times[0], record.times[record.times.len() - 1]);
+    let (a, b) = (ends(train), ends(test));
+    if file(train).is_some() && file(train) == file(test) && a.0 <= b.1 && b.0 <= a.1 {
         return Err(Refusal::file(
             &test.path,
             format!(
-                "{} and {} are one file; expected another measurement",
+                "{} and {} are one file; expected another measurement, or stretches that do not overlap",
                 test.name, train.name
             ),
         ));

@@ -20,12 +20,37 @@ pub enum Quantity {
 pub struct Channel {
     /// Its name in the dataset.
     pub name: String,
+    /// What it measures, as the model calls it.
+    pub observable: String,
     /// What it measures.
     pub quantity: Quantity,
     /// The quantity's SI unit.
     pub unit: String,
     /// One standard deviation of its noise, SI.
     pub noise: f64,
+    /// What the dataset says of the sensor.
+    pub priors: TransducerPriors,
+}
+
+/// What a dataset says of a sensor: measured(t) = gain * quantity(t - delay) + bias. None where it
+/// says nothing, and the usual holds.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TransducerPriors {
+    /// Of the gain.
+    pub gain: Option<Expected>,
+    /// Of the bias, SI.
+    pub bias: Option<Expected>,
+    /// Of the delay, s.
+    pub delay: Option<Expected>,
+}
+
+/// What is expected of a number, SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Expected {
+    /// Its mean, where the dataset says it.
+    pub mean: Option<f64>,
+    /// One standard deviation; 0 where it is known.
+    pub sd: f64,
 }
 
 /// A parameter of the model that may be refitted.

@@ -6,12 +6,13 @@ use eomgen_model_spec::diagnostic::Diagnostic;
 use eomgen_model_spec::table::Written;
 
 use crate::description::Description;
+use crate::description::records::Stretch;
 
 /// The file of `train[0]`.
 ///
 /// # Errors
 /// There is no such record.
-pub fn numbered<'d>(description: &'d Description, record: &str) -> Result<&'d Written, String> {
+pub fn numbered<'d>(description: &'d Description, record: &str) -> Result<&'d Stretch, String> {
     let records = &description.records;
     let none = || {
         format!(

@@ -9,6 +9,7 @@ use eomgen_sim::inputs::HeldInputs;
 
 use crate::bound;
 use crate::checks::held_inputs;
+use crate::decimation::Decimation;
 use crate::description::Description;
 use crate::files::numbered;
 use crate::record::Columns;
@@ -41,6 +42,7 @@ pub fn read_inputs(
         inputs: &inputs,
         channels: &[],
         model,
+        decimation: &Decimation::new(description.time.every, description.time.filter),
         fewest: FEWEST_OF_INPUTS,
     };
     let record = columns.record(record, file)?;

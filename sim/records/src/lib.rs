@@ -2,10 +2,10 @@
 //! used.
 //!
 //! The pipeline: a [`description`] is the dataset file by itself, `bound` its names and units
-//! looked up in a model; `files` and `columns` (CSV, and Parquet by `parquet_file`) bring the
-//! numbers of a [`record`], checked by [`samples`]; all records are a [`dataset`], examined by
+//! looked up in a model; `files` and `columns` (text by `csv_file`, Parquet by `parquet_file`) bring
+//! the numbers of a [`record`], of which `decimation` may leave some, checked by [`samples`]; all records are a [`dataset`], examined by
 //! [`checks`] and `coverage`, cut into [`windows`]. [`inputs`] are read alone for a simulation.
-//! What is wrong is a [`refusal`]. Nothing here is simulated or fitted.
+//! A [`proposal`] is a dataset file for a record that has none. What is wrong is a [`refusal`]. Nothing here is simulated or fitted.
 //!
 //! ```
 //! use eomgen_records::read_dataset;
@@ -44,12 +44,15 @@ mod bound;
 pub mod checks;
 mod columns;
 mod coverage;
+mod csv_file;
 pub mod dataset;
+mod decimation;
 pub mod description;
 mod files;
 mod header;
 pub mod inputs;
 mod parquet_file;
+pub mod proposal;
 mod read;
 pub mod record;
 pub mod refusal;
@@ -58,5 +61,6 @@ mod units;
 pub mod windows;
 
 pub use inputs::read_inputs;
+pub use proposal::proposed;
 pub use read::read_dataset;
 pub use refusal::Refusal;

@@ -9,14 +9,15 @@ use parquet::file::metadata::{ColumnChunkMetaData, ParquetMetaData};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
 
-use crate::header::{MOST_SAMPLES, places, too_many};
+use crate::description::columns::ColumnKey;
+use crate::header::{MOST_SAMPLES, Table, places, too_many};
 use crate::refusal::Refusal;
 
 /// Reads these columns; a missing number is NaN.
 ///
 /// # Errors
 /// A file that is not whole, a column that is not there or holds no numbers.
-pub fn read(path: &Path, bytes: Vec<u8>, wanted: &[&str]) -> Result<Vec<Vec<f64>>, Refusal> {
+pub fn read(path: &Path, bytes: Vec<u8>, wanted: &[&ColumnKey]) -> Result<Table, Refusal> {
     // Some damage that the crate does not look for makes it panic.
     let said = std::panic::take_hook();
     std::panic::set_hook(Box::new(|_| {}));
@@ -30,7 +31,33 @@ pub fn read(path: &Path, bytes: Vec<u8>, wanted: &[&str]) -> Result<Vec<Vec<f64>
     })
 }
 
-fn decoded(path: &Path, bytes: Vec<u8>, wanted: &[&str]) -> Result<Vec<Vec<f64>>, Refusal> {
+/// The names of a file's columns of numbers, in their order, with their numbers from 1.
+///
+/// # Errors
+/// A file that is not whole.
+pub(crate) fn names(path: &Path, bytes: Vec<u8>) -> Result<Vec<(usize, String)>, Refusal> {
+    let reader = SerializedFileReader::new(Bytes::from(bytes)).map_err(|error| {
+        Refusal::file(
+            path,
+            format!("is not a Parquet file that can be read: {error}"),
+        )
+    })?;
+    let schema = reader.metadata().file_metadata().schema_descr_ptr();
+    let columns = (1..).zip(schema.columns());
+    let numbers = columns.filter(|(_, column)| is_number(column.physical_type()));
+    Ok(numbers
+        .map(|(number, column)| (number, column.name().to_owned()))
+        .collect())
+}
+
+fn is_number(kind: Physical) -> bool {
+    matches!(
+        kind,
+        Physical::DOUBLE | Physical::FLOAT | Physical::INT32 | Physical::INT64
+    )
+}
+
+fn decoded(path: &Path, bytes: Vec<u8>, wanted: &[&ColumnKey]) -> Result<Table, Refusal> {
     let broken = |error: ParquetError| {
         Refusal::file(
             path,
@@ -57,15 +84,13 @@ fn decoded(path: &Path, bytes: Vec<u8>, wanted: &[&str]) -> Result<Vec<Vec<f64>>
             "has columns inside columns; expected one number per column and row",
         ));
     }
-    let there: Vec<&str> = columns.iter().map(|column| column.name()).collect();
-    let places = places(path, &there, wanted)?;
+    let there = columns.iter().map(|column| column.name().to_owned());
+    let there: Vec<String> = there.collect();
+    let places = places(path, 1, &there, wanted)?;
     for place in &places {
         let kind = columns[*place].physical_type();
-        if !matches!(
-            kind,
-            Physical::DOUBLE | Physical::FLOAT | Physical::INT32 | Physical::INT64
-        ) {
-            let name = there[*place];
+        if !is_number(kind) {
+            let name = &there[*place];
             return Err(Refusal::file(
                 path,
                 format!("the column `{name}` holds {kind}; expected numbers"),
@@ -75,15 +100,22 @@ fn decoded(path: &Path, bytes: Vec<u8>, wanted: &[&str]) -> Result<Vec<Vec<f64>>
     let mut values = vec![Vec::new(); wanted.len()];
     for row in reader.get_row_iter(None).map_err(broken)? {
         let row = row.map_err(broken)?;
-        if values[0].len() == MOST_SAMPLES {
+        if values
+            .first()
+            .is_some_and(|column| column.len() == MOST_SAMPLES)
+        {
             return Err(too_many(path));
         }
         for (column, place) in values.iter_mut().zip(&places) {
             let field = row.get_column_iter().nth(*place).map(|(_, field)| field);
-            column.push(field.map_or(Ok(f64::NAN), |field| number(path, there[*place], field))?);
+            column.push(field.map_or(Ok(f64::NAN), |field| number(path, &there[*place], field))?);
         }
     }
-    Ok(values)
+    let lines = (0..values.first().map_or(0, Vec::len) as u64).map(|row| row + 2);
+    Ok(Table {
+        lines: lines.collect(),
+        columns: values,
+    })
 }
 
 /// Whether all that a file tells of lies inside it: the reader takes that for granted.
@@ -142,7 +174,14 @@ mod tests {
     use parquet::file::writer::SerializedFileWriter;
     use parquet::schema::types::Type;
 
-    use super::read;
+    use eomgen_model_spec::span::Span;
+    use eomgen_model_spec::table::Written;
+
+    use super::{ColumnKey, read};
+
+    fn named(names: [&str; 2]) -> [ColumnKey; 2] {
+        names.map(|name| ColumnKey::Name(Written::inferred(name, Span::default())))
+    }
 
     /// Columns `t` (double, compressed) and `n` (integers, some missing).
     fn file(rows: i64) -> Vec<u8> {
@@ -181,7 +220,9 @@ mod tests {
 
     #[test]
     fn compressed_columns_and_missing_integers_are_read() {
-        let columns = read(Path::new("a.parquet"), file(10), &["n", "t"]).expect("a record");
+        let [n, t] = named(["n", "t"]);
+        let table = read(Path::new("a.parquet"), file(10), &[&n, &t]).expect("a record");
+        let columns = table.columns;
         assert!(columns[0][0].is_nan() && columns[0][3].is_nan());
         assert_eq!(columns[0][1..3], [1.0, 2.0]);
         assert_eq!(
@@ -193,8 +234,9 @@ mod tests {
     #[test]
     fn no_damage_makes_it_panic() {
         let whole = file(40);
+        let [t, n] = named(["t", "n"]);
         for place in 0..whole.len() {
-            let answer = |bytes| read(Path::new("a.parquet"), bytes, &["t", "n"]);
+            let answer = |bytes| read(Path::new("a.parquet"), bytes, &[&t, &n]);
             assert!(answer(whole[..place].to_vec()).is_err());
             for damage in [0x01, 0x80, 0xff] {
                 let mut bytes = whole.clone();

@@ -3,12 +3,13 @@
 use std::path::Path;
 
 use eomgen_model_spec::model::Model;
-use eomgen_model_spec::table::Written;
 
 use crate::bound::bound;
 use crate::checks::examine;
 use crate::dataset::{Dataset, Start};
+use crate::decimation::Decimation;
 use crate::description::Description;
+use crate::description::records::Stretch;
 use crate::inputs::notes_of_inputs;
 use crate::record::{Columns, Record};
 use crate::refusal::Refusal;
@@ -61,6 +62,10 @@ pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
         uncertain: bound.uncertain,
         notes: notes_of_inputs(&description, model),
     };
+    let decimation = Decimation::new(description.time.every, description.time.filter);
+    for channel in &mut dataset.channels {
+        channel.noise *= decimation.noise();
+    }
     let columns = Columns {
         description: &description,
         path,
@@ -68,9 +73,10 @@ pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
         inputs: &bound.inputs,
         channels: &bound.channel_units,
         model,
+        decimation: &decimation,
         fewest: FEWEST_SAMPLES,
     };
-    let read = |kind: &str, files: &[Written]| -> Result<Vec<Record>, Refusal> {
+    let read = |kind: &str, files: &[Stretch]| -> Result<Vec<Record>, Refusal> {
         let files = files.iter().enumerate();
         files
             .map(|(place, file)| columns.record(&format!("{kind}[{place}]"), file))

@@ -4,16 +4,20 @@ use std::path::{Path, PathBuf};
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::model::Model;
-use eomgen_model_spec::table::Written;
+use eomgen_model_spec::table::Number;
 use eomgen_model_spec::unit::Unit;
 use eomgen_sim::cubic_spline::CubicSpline;
 use eomgen_sim::inputs::HeldInputs;
 
 use crate::columns;
+use crate::decimation::Decimation;
 use crate::description::Description;
+use crate::description::columns::ColumnKey;
+use crate::description::records::Stretch;
 use crate::files::beside;
+use crate::header::Table;
 use crate::refusal::Refusal;
-use crate::samples::{check_input, check_times};
+use crate::samples::{JITTER, check_input, check_times, typical_step};
 
 /// A record in SI.
 #[derive(Clone, Debug)]
@@ -40,48 +44,34 @@ pub(crate) struct Columns<'d> {
     /// The time's unit.
     pub time: &'d Unit,
     /// For each input of the model its column and unit, if there is one.
-    pub inputs: &'d [Option<(&'d Written, Unit)>],
+    pub inputs: &'d [Option<(&'d ColumnKey, Unit)>],
     /// The unit of each channel's column.
     pub channels: &'d [Unit],
     pub model: &'d Model,
+    /// How one of several samples is kept.
+    pub decimation: &'d Decimation,
     /// The fewest samples of a record.
     pub fewest: usize,
 }
 
 impl Columns<'_> {
     /// Reads one record.
-    pub fn record(&self, name: &str, file: &Written) -> Result<Record, Refusal> {
+    pub fn record(&self, name: &str, stretch: &Stretch) -> Result<Record, Refusal> {
         let wrong =
             |diagnostic: Diagnostic| Diagnostics::one(self.description.source.clone(), diagnostic);
-        let place = beside(self.path, file).map_err(wrong)?;
-        let mut wanted = vec![self.description.time.column.text.as_str()];
-        let mut units = vec![self.time];
-        for (column, unit) in self.inputs.iter().flatten() {
-            wanted.push(&column.text);
-            units.push(unit);
-        }
-        let first_channel = wanted.len();
-        for (channel, unit) in self.description.channels.iter().zip(self.channels) {
-            wanted.push(&channel.column.column.text);
-            units.push(unit);
-        }
-        let mut columns = columns::read(&place, &wanted)?;
-        for (column, unit) in columns.iter_mut().zip(&units) {
-            for value in column.iter_mut() {
-                // What is too large for a number in SI is as good as missing.
-                *value = Some(unit.to_si(*value))
-                    .filter(|v| v.is_finite())
-                    .unwrap_or(f64::NAN);
-            }
-        }
-        let channels = columns.split_off(first_channel);
-        let mut columns = columns.into_iter();
+        let place = beside(self.path, &stretch.file).map_err(wrong)?;
+        let mut table = self.table(&place)?;
+        self.cut(&place, stretch, &mut table)?;
+        self.decimate(&place, &mut table)?;
+        let first_channel = 1 + self.inputs.iter().flatten().count();
+        let channels = table.columns.split_off(first_channel);
+        let mut columns = table.columns.into_iter();
         let times = columns.next().unwrap_or_default();
         let input_columns: Vec<Vec<f64>> = (self.inputs.iter())
             .map(|fed| fed.as_ref().and_then(|_| columns.next()))
             .map(|column| column.unwrap_or_else(|| vec![0.0; times.len()]))
             .collect();
-        check_times(&place, &times, self.fewest)?;
+        check_times(&place, &times, &table.lines, self.fewest)?;
         for (input, column) in self.model.inputs.iter().zip(&input_columns) {
             check_input(&place, &input.name, column)?;
         }
@@ -93,6 +83,115 @@ impl Columns<'_> {
             input_columns,
             channels,
         })
+    }
+
+    /// Time, the inputs that have columns, and the channels, in SI.
+    fn table(&self, place: &Path) -> Result<Table, Refusal> {
+        let mut wanted = vec![&self.description.time.column.column];
+        let mut units = vec![self.time];
+        for (column, unit) in self.inputs.iter().flatten() {
+            wanted.push(column);
+            units.push(unit);
+        }
+        for (channel, unit) in self.description.channels.iter().zip(self.channels) {
+            wanted.push(&channel.column.column);
+            units.push(unit);
+        }
+        let mut table = columns::read(place, &self.description.format, &wanted)?;
+        for (column, unit) in table.columns.iter_mut().zip(&units) {
+            for value in column.iter_mut() {
+                // What is too large for a number in SI is as good as missing.
+                *value = Some(unit.to_si(*value))
+                    .filter(|v| v.is_finite())
+                    .unwrap_or(f64::NAN);
+            }
+        }
+        Ok(table)
+    }
+
+    /// Leaves what lies between two times, where a dataset file gives them.
+    fn cut(&self, place: &Path, stretch: &Stretch, table: &mut Table) -> Result<(), Refusal> {
+        if stretch.from.is_none() && stretch.to.is_none() {
+            return Ok(());
+        }
+        // A part of the file is looked at, all of its times must be in order.
+        check_times(place, &table.columns[0], &table.lines, 1)?;
+        let end = |number: Option<Number>, open: f64| {
+            number.map_or(open, |number| self.time.to_si(number.value))
+        };
+        let (from, to) = (
+            end(stretch.from, f64::NEG_INFINITY),
+            end(stretch.to, f64::INFINITY),
+        );
+        let times = &table.columns[0];
+        let kept = times.partition_point(|t| *t < from)..times.partition_point(|t| *t < to);
+        if kept.is_empty() {
+            let (first, last) = (times[0], times[times.len() - 1]);
+            let span = stretch
+                .from
+                .or(stretch.to)
+                .map_or(stretch.file.span, |n| n.span);
+            let nothing = Diagnostic::error(format!(
+                "\"{}\" holds nothing there: it goes from {} to {} {}",
+                stretch.file.text,
+                self.time.from_si(first),
+                self.time.from_si(last),
+                self.description.time.column.unit.text
+            ));
+            return Err(Diagnostics::one(
+                self.description.source.clone(),
+                nothing.at(
+                    span,
+                    "expected a time of the record, in the unit of its column",
+                ),
+            )
+            .into());
+        }
+        table.lines = table.lines[kept.clone()].to_vec();
+        for column in &mut table.columns {
+            *column = column[kept.clone()].to_vec();
+        }
+        Ok(())
+    }
+
+    /// Leaves one of several samples, where a dataset file says so.
+    fn decimate(&self, place: &Path, table: &mut Table) -> Result<(), Refusal> {
+        let decimation = self.decimation;
+        if decimation.is_idle() {
+            return Ok(());
+        }
+        check_times(place, &table.columns[0], &table.lines, 1)?;
+        let step = typical_step(&table.columns[0]);
+        let mut steps = table.columns[0].windows(2).map(|pair| pair[1] - pair[0]);
+        let uneven = steps.position(|s| (s - step).abs() > JITTER * step);
+        if let Some(sample) = uneven.filter(|_| decimation.is_filtered()) {
+            return Err(Refusal::line(
+                place,
+                table.lines[sample + 1],
+                "the low-pass of [time] every takes even steps of time, and this one is another; \
+                 expected filter = \"none\", or stretches that are even",
+            ));
+        }
+        let inputs = 1 + self.inputs.iter().flatten().count();
+        for (number, column) in table.columns.iter_mut().enumerate() {
+            *column = match number {
+                0 => decimation.taken(column),
+                number if number < inputs && !self.is_prescribed(number - 1) => {
+                    decimation.held(column)
+                }
+                _ => decimation.measured(column),
+            };
+        }
+        table.lines = decimation.taken(&table.lines);
+        Ok(())
+    }
+
+    /// Whether the input of a column is prescribed motion: no samples of it are held.
+    fn is_prescribed(&self, column: usize) -> bool {
+        let fed = self.model.inputs.iter().zip(self.inputs);
+        let mut fed = fed.filter(|(_, column)| column.is_some());
+        fed.nth(column)
+            .is_some_and(|(input, _)| input.rate.is_some())
     }
 
     /// Inputs held from sample to sample, prescribed motion on a spline through its samples.

@@ -13,24 +13,30 @@ pub const FEWEST_OF_INPUTS: usize = 2;
 /// An input is held over what is missing of it; more than this part is refused.
 const MOST_HELD: f64 = 0.1;
 
-/// Times are finite and ascend, and are `fewest` or more.
+/// Steps that differ from the usual one by more than this part of it are jitter.
+pub(crate) const JITTER: f64 = 0.1;
+
+/// Times are finite and ascend, and are `fewest` or more. `lines`: that of each sample.
 ///
 /// # Errors
 /// The first line where they do not.
-pub fn check_times(path: &Path, times: &[f64], fewest: usize) -> Result<(), Refusal> {
-    // The first line holds the names.
-    let line = |sample: usize| sample as u64 + 2;
+pub fn check_times(
+    path: &Path,
+    times: &[f64],
+    lines: &[u64],
+    fewest: usize,
+) -> Result<(), Refusal> {
     if let Some(sample) = times.iter().position(|t| !t.is_finite()) {
         return Err(Refusal::line(
             path,
-            line(sample),
+            lines[sample],
             "the time is missing; expected a number",
         ));
     }
     if let Some(sample) = times.windows(2).position(|pair| pair[0] >= pair[1]) {
         return Err(Refusal::line(
             path,
-            line(sample + 1),
+            lines[sample + 1],
             "the time does not increase; expected samples in order, each once",
         ));
     }

@@ -8,6 +8,8 @@ use serde::{Deserialize, Serialize};
 use super::error::SweepError;
 use super::grid::{Axis, Grid};
 use super::measure::{Column, Description, Failure};
+use super::points::Points;
+use super::samples::Samples;
 
 /// The form of plans, parts and their cutting into chunks.
 const SCHEMA: u32 = 1;
@@ -31,8 +33,11 @@ pub struct Plan {
     pub orders: Vec<usize>,
     /// Parameters set to other values than the specification's, in declared units.
     pub set: Vec<(String, f64)>,
-    /// What is varied, the last fastest.
+    /// What is varied, the last fastest; nothing where there are samples.
     pub vary: Vec<Axis>,
+    /// Random samples in place of a grid.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub samples: Option<Samples>,
     /// The varied parameters as columns, with the units that the specification declares.
     pub parameters: Vec<Column>,
     /// What is measured.
@@ -50,7 +55,7 @@ impl Plan {
         orders: &[usize],
         set: &[(&str, f64)],
         parameters: Vec<Column>,
-        vary: &Grid,
+        points: &Points,
         measures: Vec<Description>,
     ) -> Self {
         Self {
@@ -63,7 +68,8 @@ impl Plan {
                 .iter()
                 .map(|(name, value)| ((*name).to_owned(), *value))
                 .collect(),
-            vary: vary.axes().to_vec(),
+            vary: points.axes().to_vec(),
+            samples: points.samples().cloned(),
             parameters,
             measures,
             statuses: Failure::CODES
@@ -86,6 +92,7 @@ impl Plan {
             ("--order", self.orders == other.orders),
             ("--set", self.set == other.set),
             ("--vary", self.vary == other.vary),
+            ("--samples or --seed", self.samples == other.samples),
             ("--measure or its options", self.measures == other.measures),
         ];
         let different = same.iter().filter(|(_, same)| !same);
@@ -97,7 +104,7 @@ impl Plan {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Job {
     plan: Plan,
-    grid: Grid,
+    points: Points,
     hash: String,
 }
 
@@ -115,17 +122,24 @@ impl Job {
         if plan.measures.is_empty() {
             return refused("nothing is measured".to_owned());
         }
-        let grid = Grid::new(plan.vary.clone())?;
-        if !grid
-            .names()
-            .eq(plan.parameters.iter().map(|column| column.name.as_str()))
-        {
+        let points = match &plan.samples {
+            None => Points::Grid(Grid::new(plan.vary.clone())?),
+            Some(_) if !plan.vary.is_empty() => {
+                return refused("either a grid is measured or samples are".to_owned());
+            }
+            Some(samples) => {
+                samples.check()?;
+                Points::Samples(samples.clone())
+            }
+        };
+        let columns = plan.parameters.iter().map(|column| column.name.as_str());
+        if !columns.eq(points.names()) {
             return refused("what is varied and the columns for it do not agree".to_owned());
         }
         let text = serde_json::to_string(&plan)
             .map_err(|error| SweepError::Request(format!("the plan cannot be written: {error}")))?;
         let hash = Source::new("plan", text).hash();
-        let job = Self { plan, grid, hash };
+        let job = Self { plan, points, hash };
         let columns = job.columns();
         for (place, column) in columns.iter().enumerate() {
             if columns[..place]
@@ -146,9 +160,9 @@ impl Job {
         &self.plan
     }
 
-    /// What is varied.
-    pub fn grid(&self) -> &Grid {
-        &self.grid
+    /// Where the parameters are set to.
+    pub fn points(&self) -> &Points {
+        &self.points
     }
 
     /// SHA-256 of the plan's compact JSON, 64 hexadecimal digits.
@@ -179,17 +193,17 @@ impl Job {
 
     /// How many chunks there are.
     pub fn chunks(&self) -> usize {
-        self.grid.points().div_ceil(self.chunk_points())
+        self.points.count().div_ceil(self.chunk_points())
     }
 
     /// The points of a chunk.
     pub fn chunk(&self, chunk: usize) -> Range<usize> {
-        let (size, points) = (self.chunk_points(), self.grid.points());
+        let (size, points) = (self.chunk_points(), self.points.count());
         (chunk * size).min(points)..((chunk + 1) * size).min(points)
     }
 
     fn chunk_points(&self) -> usize {
-        self.grid.points().div_ceil(MOST_CHUNKS)
+        self.points.count().div_ceil(MOST_CHUNKS)
     }
 }
 
@@ -217,7 +231,7 @@ pub(super) mod tests {
             &[],
             &[("y", 0.1)],
             vec![Column::new("x", "m", "varied")],
-            &grid,
+            &Points::Grid(grid),
             vec![description],
         );
         Job::new(plan).expect("a job")

@@ -1,7 +1,7 @@
 //! Maps over parameters: a grid of parameter values, something measured at every point, in
 //! parallel, in parts that survive a kill and can be computed on several machines.
 //!
-//! The pipeline: [`grid`] (what is varied, [`parameters`] of the model), [`measure`] (what is
+//! The pipeline: [`points`] of a [`grid`] (what is varied, [`parameters`] of the model) or of random [`samples`], [`measure`] (what is
 //! measured; `forcing` is its period, [`span`] and [`window`] say how long is looked; [`poincare`],
 //! [`lyapunov`] and [`over_time`] are measures), [`job`] (all of that as data, with a
 //! hash that names it), [`folder`] and `part` (the job and its finished chunks as files),
@@ -10,12 +10,12 @@
 //!
 //! ```
 //! use eomgen_compiled_model::{CompiledModel, Orders};
-//! use eomgen_sweep::{Axis, Folder, Grid, Job, Lyapunov, Measure, Shard, Span, Window, merge, run};
+//! use eomgen_sweep::{Axis, Folder, Grid, Job, Lyapunov, Measure, Points, Shard, Span, Window, merge, run};
 //! use eomgen_sweep::{job::Plan, parameters};
 //!
 //! let shipped = eomgen_model_spec::models::PLANETARY_ARM;
 //! let model = CompiledModel::of_text("planetary_arm.toml", shipped.text, Orders::All(0))?;
-//! let grid = Grid::new(vec![Axis::parse("b_sp=10e-6:50e-6:3")?])?;
+//! let grid = Points::Grid(Grid::new(vec![Axis::parse("b_sp=10e-6:50e-6:3")?])?);
 //! let span = Span { transient: 2, periods: 20 };
 //! let window = Window::Periods { forcing: "omega".to_owned(), span };
 //! let measures: [Box<dyn Measure + '_>; 1] = [Box::new(Lyapunov::new(&model, &window)?)];
@@ -57,7 +57,9 @@ pub mod over_time;
 pub mod parameters;
 mod part;
 pub mod poincare;
+pub mod points;
 pub mod run;
+pub mod samples;
 pub mod shard;
 pub mod span;
 pub mod window;
@@ -71,7 +73,9 @@ pub use measure::{Column, Description, Failure, Measure, Worker};
 pub use merge::{Table, merge};
 pub use over_time::OverTime;
 pub use poincare::{Poincare, Section};
+pub use points::Points;
 pub use run::{Done, run};
+pub use samples::{Sampled, Samples};
 pub use shard::Shard;
 pub use span::Span;
 pub use window::Window;

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::error::SweepError;
 use super::folder::Folder;
 
-/// The result of a sweep, in the order of the grid.
+/// The result of a sweep, in the order of its points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
     /// The names of [`Job::columns`](super::Job::columns).
@@ -29,14 +29,14 @@ impl Table {
 /// cannot be read.
 pub fn merge(folder: &Folder) -> Result<Table, SweepError> {
     let job = folder.job();
-    let (grid, measured) = (job.grid(), job.measured());
+    let (all, measured) = (job.points(), job.measured());
     let varied = job.plan().parameters.len();
     let names: Vec<String> = job
         .columns()
         .into_iter()
         .map(|column| column.name)
         .collect();
-    let mut columns = vec![Vec::with_capacity(grid.points()); names.len()];
+    let mut columns = vec![Vec::with_capacity(all.count()); names.len()];
     let mut missing: Vec<Range<usize>> = Vec::new();
     for chunk in 0..job.chunks() {
         let points = job.chunk(chunk);
@@ -45,7 +45,7 @@ pub fn merge(folder: &Folder) -> Result<Table, SweepError> {
             continue;
         };
         for (point, row) in points.zip(numbers.chunks(measured)) {
-            for (column, (_, value)) in columns.iter_mut().zip(grid.settings(point)) {
+            for (column, (_, value)) in columns.iter_mut().zip(all.settings(point)) {
                 column.push(value);
             }
             for (column, value) in columns.iter_mut().skip(varied).zip(row) {
@@ -57,7 +57,7 @@ pub fn merge(folder: &Folder) -> Result<Table, SweepError> {
         return Err(SweepError::Gaps {
             folder: folder.path().to_owned(),
             missing,
-            points: grid.points(),
+            points: all.count(),
         });
     }
     folder.tidy()?;

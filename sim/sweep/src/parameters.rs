@@ -3,14 +3,14 @@
 use eomgen_model_spec::model::Model;
 
 use crate::error::SweepError;
-use crate::grid::Grid;
 use crate::measure::Column;
+use crate::points::Points;
 
-/// The parameters that a grid varies as columns, in declared units.
+/// The parameters that differ from point to point as columns, in declared units.
 ///
 /// # Errors
 /// A name that is no parameter of the model.
-pub fn columns(model: &Model, grid: &Grid) -> Result<Vec<Column>, SweepError> {
+pub fn columns(model: &Model, points: &Points) -> Result<Vec<Column>, SweepError> {
     let column = |name: &str| {
         let mut known = model.parameters.iter();
         let parameter = known
@@ -22,5 +22,5 @@ pub fn columns(model: &Model, grid: &Grid) -> Result<Vec<Column>, SweepError> {
             &parameter.doc,
         ))
     };
-    grid.names().map(column).collect()
+    points.names().into_iter().map(column).collect()
 }

@@ -107,7 +107,7 @@ fn compute(
     let points = job.chunk(chunk);
     let mut numbers = vec![f64::NAN; points.len() * job.measured()];
     for (point, row) in points.zip(numbers.chunks_mut(job.measured())) {
-        let settings = job.grid().settings(point);
+        let settings = job.points().settings(point);
         for (place, worker) in workers.iter_mut() {
             let outcome = worker.measure(&settings, &mut row[place.clone()]);
             if outcome.is_err() {

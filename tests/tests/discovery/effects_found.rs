@@ -9,6 +9,7 @@ use std::time::Duration;
 use eomgen_discover::catalogue::candidate::{Candidate, candidates};
 use eomgen_discover::catalogue::effects;
 use eomgen_discover::catalogue::sites::sites;
+use eomgen_discover::catalogue::usual_motion::UsualMotion;
 use eomgen_model_spec::edit::{self, Edit, SetParameter};
 use eomgen_model_spec::source::Source;
 use eomgen_tests::program;
@@ -256,6 +257,48 @@ theta_2 = { value = "theta_2", unit = "rad" }
     samples: 700,
 };
 
+/// A mass on a spring that a force drives.
+const OSCILLATOR: Machine = Machine {
+    name: "oscillator",
+    specification: r#"
+[model]
+name = "oscillator"
+
+[parameters]
+m = { value = 1, unit = "kg", min = 0 }
+k = { value = 400, unit = "N/m", min = 0 }
+c = { value = 4, unit = "N s/m", min = 0 }
+
+[coordinates]
+x = { unit = "m" }
+
+[inputs]
+u = { unit = "N" }
+
+[kinetic]
+mass = "1/2*m*dot(x)^2"
+
+[potential]
+spring = "1/2*k*x^2"
+
+[dissipation]
+damper = "1/2*c*dot(x)^2"
+
+[forces]
+drive = { on = "x", value = "u" }
+"#,
+    channels: &[("x", "m", 1e-5)],
+    uncertain: "m = { relative = 0.02 }",
+    unit: "N",
+    input: |t, again| {
+        let turn = if again { 1.0 } else { 0.0 };
+        18.0 * (11.0 * t + turn).cos() - 9.0 * (23.0 * t * (1.0 + 0.2 * turn)).sin()
+    },
+    sample: 0.005,
+    window: 0.5,
+    samples: 400,
+};
+
 impl Machine {
     /// The dataset file.
     fn description(&self) -> String {
@@ -345,7 +388,8 @@ impl Machine {
             .filter(|effect| effect.name == hidden.effect);
         let effect = named.nth(entry).expect("an effect");
         let one = std::slice::from_ref(effect);
-        let mut found = candidates(&model, one, &sites(&model), &BTreeMap::new()).into_iter();
+        let mut found =
+            candidates(&model, one, &sites(&model), &UsualMotion::default()).into_iter();
         let is =
             |c: &Candidate| c.on == hidden.on && c.order.as_ref().map(|(_, order)| *order) == order;
         found.find(is).expect("the effect has a place")
@@ -488,6 +532,26 @@ fn what_may_be_wrong_with_teeth_is_found_between_them() {
         by: By::Entry(0, Some(2), &[0.2, -0.15]),
         ..hidden("stiffness_variation", "x", &[])
     });
+}
+
+#[test]
+fn what_may_be_wrong_with_a_spring_is_found_on_it() {
+    for (entry, hidden) in [
+        (1, hidden("stiffness_nonlinearity", "spring", &[])),
+        (0, hidden("backlash", "spring", &[])),
+        (0, hidden("end_stop", "spring", &[])),
+        (2, hidden("end_stop", "spring", &[])),
+        (0, hidden("spring_saturation", "spring", &[])),
+    ] {
+        let by = match hidden.effect {
+            "stiffness_nonlinearity" => By::Entry(entry, None, &[6e4]),
+            "backlash" => By::Entry(entry, None, &[3e-3]),
+            "end_stop" if entry == 0 => By::Entry(0, None, &[900.0, 0.03]),
+            "end_stop" => By::Entry(2, None, &[900.0, 0.03]),
+            _ => By::Entry(entry, None, &[250.0, 0.03]),
+        };
+        OSCILLATOR.shows(&Hidden { by, ..hidden });
+    }
 }
 
 #[test]

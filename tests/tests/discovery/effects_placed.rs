@@ -8,13 +8,14 @@ use eomgen_discover::catalogue::candidate::{Candidate, candidates};
 use eomgen_discover::catalogue::effect::{Effect, SiteKind};
 use eomgen_discover::catalogue::effects;
 use eomgen_discover::catalogue::sites::sites;
+use eomgen_discover::catalogue::usual_motion::UsualMotion;
 use eomgen_model_spec::source::Source;
 use eomgen_tests::models::shipped;
 
 /// The candidates of an effect in a model, of each place and angle the first order alone.
 fn placed(model: &eomgen_model_spec::model::Model, effect: &Effect) -> Vec<Candidate> {
     let one = std::slice::from_ref(effect);
-    let mut found = candidates(model, one, &sites(model), &BTreeMap::new());
+    let mut found = candidates(model, one, &sites(model), &UsualMotion::default());
     let key = |c: &Candidate| {
         (
             c.on.clone(),
@@ -72,7 +73,7 @@ fn every_effect_leaves_every_shipped_specification_sound() {
     assert_eq!(of_axis, shipped().len(), "{homes:?}");
 }
 
-/// A user's effect on springs, of which the catalogue has none.
+/// A user's effect on springs.
 const ON_SPRINGS: &str = r#"
 [[effect]]
 name = "hardening"
@@ -103,6 +104,55 @@ both = "1/2*m*(dot(p)^2 + dot(q)^2)"
 spring = "1/2*k*(p - q)^2"
 stop = "1/4*k_4*p^4"
 "#;
+
+/// Springs as they are written in more than one way, and what looks like one and is none.
+const SPRINGS: &str = r#"
+[model]
+name = "springs"
+
+[parameters]
+m = { value = 1.5, unit = "kg" }
+J = { value = 0.1, unit = "kg m^2" }
+r = { value = 0.2, unit = "m" }
+k_1 = { value = 400, unit = "N/m" }
+k_2 = { value = 300, unit = "N/m" }
+k_t = { value = 5, unit = "N m" }
+
+[coordinates]
+p = { unit = "m" }
+theta = { unit = "rad" }
+phi = { unit = "rad" }
+
+[definitions]
+rim = "r*theta - p"
+
+[kinetic]
+mass = "1/2*m*dot(p)^2"
+discs = "1/2*J*(dot(theta)^2 + dot(phi)^2)"
+
+[potential]
+both = "1/2*k_1*p^2 + k_2*rim^2/2"
+shaft = "0.5*k_t*(theta - phi)^2"
+other = "k_1*p*p - 1/2*k_1*p^2"
+"#;
+
+#[test]
+fn springs_are_found_however_they_are_written() {
+    let checked = eomgen_model_spec::check(Source::new("springs.toml", SPRINGS));
+    let model = checked.unwrap_or_else(|found| panic!("{found}")).model;
+    let springs = sites(&model)
+        .into_iter()
+        .filter(|site| site.kind == SiteKind::Spring);
+    let springs: Vec<[String; 3]> = springs
+        .map(|site| [&site.name, &site.arguments["p"], &site.arguments["unit"]].map(Clone::clone))
+        .collect();
+    let expected = [
+        ["both_k_1", "p", "m"],
+        ["both_k_2", "rim", "m"],
+        ["shaft", "theta - phi", "rad"],
+    ];
+    assert_eq!(springs, expected.map(|words| words.map(str::to_owned)));
+}
 
 #[test]
 fn springs_have_room_for_a_users_effect() {

@@ -5,3 +5,4 @@ mod effects_files;
 mod effects_found;
 mod effects_placed;
 mod nothing_compared;
+mod off_the_list;

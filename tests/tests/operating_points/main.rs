@@ -1,6 +1,7 @@
 //! `linearise`, `modes`, `trim`, and what drives and starts `simulate`, against closed forms.
 
 mod bases;
+mod drawn_modes;
 mod tables;
 
 use std::f64::consts::{PI, TAU};

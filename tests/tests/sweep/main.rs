@@ -5,6 +5,7 @@ mod exponents;
 mod over_time;
 mod place;
 mod refusals;
+mod samples;
 mod sections;
 
 use std::f64::consts::TAU;

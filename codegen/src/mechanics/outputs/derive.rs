@@ -14,7 +14,9 @@ use super::types::{Jacobian, Outputs, Products};
 use crate::mechanics::equations::Equations;
 use crate::mechanics::rows::RowNodes;
 use crate::mechanics::translate::along_motion;
+use crate::symbolic::association::shared_operations;
 use crate::symbolic::differentiate::Direction;
+use crate::symbolic::factor::cheaper;
 use crate::symbolic::graph::{Argument, Graph, NodeId, Operation, Shape, Space, Variable};
 use crate::symbolic::matrix::StructuredMatrix;
 use eomgen_model_spec::ids::{CoordinateId, FieldId};
@@ -100,8 +102,34 @@ fn bias_forces(equations: &mut Equations) -> RowNodes {
     }
 }
 
-/// The rows of M a + bias, with a from the argument.
+/// The rows of M a + bias, with a from the argument: by a sweep with these accelerations, which
+/// forms no mass matrix, where that takes fewer operations.
 fn inverse_dynamics(equations: &mut Equations, bias: &RowNodes) -> RowNodes {
+    let by_mass = inverse_dynamics_by_mass(equations, bias);
+    let Some(momenta) = equations.sweep.clone() else {
+        return by_mass;
+    };
+    let graph = &mut equations.graph;
+    let rows = momenta.rates(graph, &|graph, index| {
+        let variable = Variable::Coordinate(index);
+        graph.intern(Operation::Argument(Argument::Accelerations, variable))
+    });
+    let rows: Vec<NodeId> = cheaper(graph, rows)
+        .iter()
+        .zip(&equations.forces.scalars)
+        .map(|(row, force)| graph.combine(&[(1.0, *row), (-1.0, *force)]))
+        .collect();
+    if shared_operations(graph, &rows) < shared_operations(graph, &by_mass.scalars) {
+        RowNodes {
+            scalars: rows,
+            modal: Vec::new(),
+        }
+    } else {
+        by_mass
+    }
+}
+
+fn inverse_dynamics_by_mass(equations: &mut Equations, bias: &RowNodes) -> RowNodes {
     let (graph, mass) = (&mut equations.graph, &equations.mass);
     let argument = |graph: &mut Graph, variable| {
         graph.intern(Operation::Argument(Argument::Accelerations, variable))

@@ -4,6 +4,7 @@ use eomgen_model_spec::model::Function;
 
 use super::values::Lowering;
 use crate::program::{Extent, Op, ValueId};
+use crate::symbolic::association::Factor;
 use crate::symbolic::graph::{Bits, NodeId, Operation, Shape};
 
 impl Lowering<'_> {
@@ -82,6 +83,10 @@ impl Lowering<'_> {
     pub(super) fn term(&mut self, factor: f64, id: NodeId) -> (bool, ValueId) {
         let graph = self.graph;
         let (negative, magnitude) = (factor < 0.0, factor.abs());
+        if let Some(factors) = self.association.factors(magnitude, id) {
+            let factors = factors.to_vec();
+            return (negative, self.associated(&factors));
+        }
         let factors = match graph.operation(id) {
             Operation::Product(factors) => factors.to_vec(),
             Operation::Constant(bits) => {
@@ -105,6 +110,45 @@ impl Lowering<'_> {
             (None, None) => self.constant(1.0),
         };
         (negative, value)
+    }
+
+    /// The product of factors, in their order, a prepared one last.
+    fn associated(&mut self, factors: &[Factor]) -> ValueId {
+        let mut product: Option<ValueId> = None;
+        let (prepared, live): (Vec<Factor>, Vec<Factor>) = factors
+            .iter()
+            .partition(|factor| matches!(factor, Factor::Coefficient(_)));
+        for factor in live {
+            let value = self.factor(factor);
+            product = Some(match product {
+                Some(product) => self.binary(Op::Multiply, product, value),
+                None => value,
+            });
+        }
+        match (prepared.first(), product) {
+            (Some(prepared), Some(product)) => {
+                let coefficient = self.factor(*prepared);
+                self.binary(Op::Multiply, coefficient, product)
+            }
+            (Some(only), None) => self.factor(*only),
+            (None, Some(product)) => product,
+            (None, None) => self.constant(1.0),
+        }
+    }
+
+    fn factor(&mut self, factor: Factor) -> ValueId {
+        match factor {
+            Factor::Node(id) => self.value(id),
+            Factor::Pair(place) => {
+                let (a, b) = self.association.pair(place);
+                self.associated(&[a, b])
+            }
+            Factor::Coefficient(place) => {
+                let prepared = self.association.coefficient(place).clone();
+                let value = self.powers(prepared.number, &prepared.powers);
+                value.unwrap_or_else(|| self.constant(1.0))
+            }
+        }
     }
 
     /// A prepared factor times a sum over modes of prepared factors times others: the factor

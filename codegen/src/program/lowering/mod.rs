@@ -40,6 +40,9 @@ pub fn lower_with_outputs(
         &equations.parameter_names,
     );
     lowering.uses = equations.graph.uses(&equations.rate_nodes());
+    for roots in functions(equations, outputs) {
+        lowering.association.extend(&equations.graph, &roots);
+    }
     let accelerations = lowering.rows(&equations.accelerations.rows);
     let first_order_rates = equations
         .state_rates
@@ -128,4 +131,23 @@ pub fn lower_with_outputs(
         coefficient_values,
         outputs,
     }
+}
+
+/// What the functions of a program are computed from, each by itself, the rates first: what shares
+/// factors is multiplied so that it pays within a function.
+fn functions(equations: &Equations, outputs: &Outputs<NodeId, RowNodes>) -> Vec<Vec<NodeId>> {
+    let mass = &equations.mass;
+    let scalars = mass.scalars.iter().flatten().copied().collect();
+    let mut functions = vec![
+        equations.rate_nodes(),
+        scalars,
+        equations.velocity_terms.nodes(),
+        equations.forces.nodes(),
+        equations.observables.clone(),
+        vec![equations.kinetic, equations.potential],
+        vec![equations.power],
+    ];
+    let rows = [&outputs.bias_forces, &outputs.inverse_dynamics];
+    functions.extend(rows.into_iter().flatten().map(RowNodes::nodes));
+    functions
 }

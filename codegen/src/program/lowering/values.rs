@@ -9,6 +9,7 @@ use crate::mechanics::rows::RowNodes;
 use crate::program::{
     Extent, Impact, MassBlocks, Op, ProgramTable, RowValues, ScaledValue, Value, ValueId,
 };
+use crate::symbolic::association::Association;
 use crate::symbolic::graph::{Assembly, Graph, NodeId, Operation, Shape, Variable};
 
 /// An operation and its extent, to be found again: numbers are compared by their bits.
@@ -59,6 +60,8 @@ pub(super) struct Lowering<'g> {
     table_places: HashMap<usize, usize>,
     /// How often the accelerations read each node, while these are lowered.
     pub(super) uses: HashMap<NodeId, usize>,
+    /// In which order factors are multiplied.
+    pub(super) association: Association,
 }
 
 impl<'g> Lowering<'g> {
@@ -85,6 +88,7 @@ impl<'g> Lowering<'g> {
             tables: Vec::new(),
             table_places: HashMap::new(),
             uses: HashMap::new(),
+            association: Association::default(),
         }
     }
 

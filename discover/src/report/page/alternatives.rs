@@ -4,9 +4,9 @@
 use eomgen_page::{section, table};
 use maud::{Markup, html};
 
-use crate::report::page::verdict::words;
 use crate::report::quantity::readable;
 use crate::report::result::{EffectAt, RejectedEffect};
+use crate::report::summary::words;
 
 /// More rows than this are folded.
 const SHOWN: usize = 8;

@@ -3,9 +3,9 @@
 use eomgen_page::{section, table};
 use maud::{Markup, html};
 
-use crate::report::page::verdict::words;
 use crate::report::quantity::{estimate, percent, plain};
 use crate::report::result::{Discovery, FoundEffect, Status, Step};
+use crate::report::summary::words;
 
 /// The effects; nothing where there are none, as the verdict says so.
 pub(super) fn effects(effects: &[FoundEffect]) -> Markup {
@@ -29,6 +29,10 @@ fn effect(effect: &FoundEffect) -> Markup {
             @if !effect.says.is_empty() { (capitalised(&effect.says)) ". " }
             @match effect.status {
                 Status::Named => { "Nothing else that was tried does the same." },
+                Status::Provisional => {
+                    "It may stand in for something else: much is left, or what was fitted beside it is as far off as "
+                    "the fit admits."
+                },
                 Status::Class => {
                     "The records do not tell it from "
                     (effect.equivalent.iter().map(words).collect::<Vec<String>>().join(", or from ")) "."

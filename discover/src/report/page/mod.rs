@@ -124,7 +124,7 @@ fn closing(compared: &Compared) -> Markup {
         }
         (nuisances::fitted(compared))
         @if !compared.notes.is_empty() {
-            (section("Notes on the records", &html! {
+            (section("Notes", &html! {
                 ul { @for note in &compared.notes { li { (readable(note)) } } }
             }))
         }

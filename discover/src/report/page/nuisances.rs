@@ -6,16 +6,12 @@ use maud::{Markup, html};
 use crate::report::quantity::{estimate, to_tenths};
 use crate::report::result::{Compared, Nuisance};
 
-/// From so many standard deviations on something is worth a remark: three is the most that a fit
-/// allows.
-const REMARKABLE: f64 = 2.9;
-
 pub(super) fn fitted(compared: &Compared) -> Markup {
     let all = &compared.nuisances;
     if all.is_empty() {
         return html! {};
     }
-    let far = all.iter().filter(|of| is_far(of)).count();
+    let far = all.iter().filter(|of| of.is_at_bound()).count();
     let rows = html! { @for of in all { (row(of)) } };
     section(
         "What was fitted beside it",
@@ -36,14 +32,10 @@ pub(super) fn fitted(compared: &Compared) -> Markup {
     )
 }
 
-fn is_far(of: &Nuisance) -> bool {
-    of.deviations().abs() >= REMARKABLE
-}
-
 fn row(of: &Nuisance) -> Markup {
     let (mean, sd) = of.declared;
     let unit = &of.fitted.unit;
-    let class = is_far(of).then_some("failed");
+    let class = of.is_at_bound().then_some("failed");
     let off = of.deviations();
     html! {
         tr {

@@ -150,6 +150,51 @@ fn text_from_outside_stays_text() {
 }
 
 #[test]
+fn what_leaves_much_is_said_to_be_uncertain_first() {
+    let mut found = discovery("x");
+    found.effects[0].status = Status::Named;
+    found.closure.test = Some(0.6);
+    found.compared.nuisances[0].fitted.value = 1.0;
+    let summary = |found: &Discovery| found.to_json()["summary"].as_str().unwrap_or("").to_owned();
+    assert!(
+        summary(&found).starts_with("Found: x on x"),
+        "{}",
+        summary(&found)
+    );
+    let gap = found
+        .compared
+        .gap
+        .get_mut("x")
+        .and_then(|gap| gap.after.as_mut());
+    gap.expect("a gap").test = 41e-6;
+    let first = "What was found closes 60 % of the gap between model and measurement on records that were held out; \
+                 41 noise floors are left: what is named may stand in for something else.";
+    assert!(summary(&found).starts_with(first), "{}", summary(&found));
+    assert!(found.page().contains(first), "{}", found.page());
+}
+
+#[test]
+fn a_nuisance_at_its_bound_makes_an_answer_uncertain() {
+    let mut found = discovery("x");
+    found.compared.nuisances[0].fitted.value = 1.03;
+    found.compared.nuisances[0].fitted.unit = "1".to_owned();
+    let json = found.to_json();
+    let summary = json["summary"].as_str().unwrap_or("");
+    assert!(
+        summary.contains(
+            "with the gain of x as far off as the fit admits: what is named may stand in"
+        ),
+        "{summary}"
+    );
+    let notes = crate::report::discovery::bound_notes(&found.compared.nuisances);
+    assert_eq!(notes.len(), 1, "{notes:?}");
+    assert!(
+        notes[0].starts_with("the gain of x came out as 1.030, 3.0 standard deviations"),
+        "{notes:?}"
+    );
+}
+
+#[test]
 fn nothing_refers_to_the_outside() {
     let page = discovery("x").page();
     for forbidden in ["http", "//", "<script", "<link", "src=", "url(", "href"] {

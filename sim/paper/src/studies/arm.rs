@@ -9,6 +9,7 @@ use eomgen_model_spec::source::Source;
 
 use super::error::StudyError;
 use crate::reference::mode_shapes::ModeShape;
+use eomgen_analysis::natural_modes::{NaturalMode, natural_modes};
 use eomgen_compiled_model::{CompiledModel, Orders};
 use eomgen_sim::piecewise_linear::Propagator;
 
@@ -150,6 +151,10 @@ impl Arm {
     /// # Errors
     /// An order that was not derived, or values that no machine has.
     pub fn propagator(&self, case: &Case) -> Result<Propagator, StudyError> {
+        Ok(self.compiled(case)?.with(&settings(case))?.propagator()?)
+    }
+
+    fn compiled(&self, case: &Case) -> Result<&CompiledModel, StudyError> {
         let derived = self.derived.iter().find(|(order, _)| *order == case.order);
         let Some((_, compiled)) = derived else {
             return Err(StudyError::Request(format!(
@@ -157,7 +162,7 @@ impl Arm {
                 case.order
             )));
         };
-        Ok(compiled.with(&settings(case))?.propagator()?)
+        Ok(compiled)
     }
 
     /// The value that the specification gives a parameter, SI.
@@ -165,6 +170,23 @@ impl Arm {
         let place = self.names.iter().position(|known| known == name);
         let value = place.and_then(|place| self.values.get(place));
         value.copied().unwrap_or(f64::NAN)
+    }
+
+    /// The natural frequencies of the machine with both meshes in contact on one side, Hz: what swings
+    /// while no tooth leaves its flank.
+    ///
+    /// # Errors
+    /// An order that was not derived, or values that no machine has.
+    pub fn closed(&self, case: &Case) -> Result<Vec<f64>, StudyError> {
+        let compiled = self.compiled(case)?;
+        let instance = compiled.with(&settings(case))?;
+        // Beyond every backlash of the paper; where the point lies in the regime makes no difference.
+        let beyond = 2.0 * case.backlash + 1e-3;
+        let at = instance.operating_point(&[("x_sp", beyond), ("x_pr", beyond)])?;
+        let linear = instance.linearise(at.point())?;
+        let modes = natural_modes(&linear.a, compiled.program().degrees_of_freedom())?;
+        let swinging = modes.iter().filter(|mode| mode.eigenvalue.im > 0.0);
+        Ok(swinging.map(NaturalMode::frequency).collect())
     }
 
     /// The lengths of a case.

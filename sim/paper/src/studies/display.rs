@@ -7,6 +7,7 @@ use eomgen_sim::inputs::HeldInputs;
 use super::arm::{Arm, Case};
 use super::case::Record;
 use super::error::StudyError;
+use super::series::{FIRST_MODE, X_SP};
 
 /// Samples per second: twice what the meshes' own vibration of 5 kHz needs.
 const RATE: f64 = 20_480.0;
@@ -16,6 +17,8 @@ const RECORDED: f64 = 40.0;
 const SEGMENT: usize = 10;
 /// The time histories of the figures show so much, s: 5 or 10 forcing periods.
 pub(super) const WINDOW: f64 = 2.0;
+/// Numbers of a point of the section.
+const SECTION: usize = 4;
 /// The spectra show this band, Hz: from below the forcing to above the meshes.
 pub(super) const BAND: (f64, f64) = (1.0, 1e4);
 
@@ -24,10 +27,15 @@ pub(super) const BAND: (f64, f64) = (1.0, 1e4);
 pub struct Display {
     /// What was run.
     pub case: Case,
-    /// The natural frequencies of the clamped arm, Hz.
+    /// The natural frequencies of the machine with both meshes closed, Hz.
     pub natural: Vec<f64>,
     /// The series over the window that the figures show; times from the start at rest.
     pub history: Record,
+    /// The rate of x_sp over the same window, m/s.
+    pub x_sp_dot: Vec<f64>,
+    /// The stroboscopic section: points of x_sp, x_pr and their rates, once per forcing period; m and
+    /// m/s. Empty where none was taken.
+    pub section: Vec<f64>,
     /// The spectrum of x_sp, m^2/Hz, over the band that the figures show.
     pub x_sp: PowerSpectrum,
     /// That of f_la.
@@ -42,24 +50,46 @@ impl Display {
     /// # Errors
     /// Values that no machine has, switches without end.
     pub fn of(arm: &Arm, case: &Case, transient: f64) -> Result<Self, StudyError> {
-        let per_period = (RATE * case.period()).round();
+        let per_period = samples_per_period(case);
         let step = case.period() / per_period;
         let periods = (RECORDED / case.period()).round();
         let times = even_times(transient, step, (periods * per_period) as usize);
-        let record = sampled(arm, case, &times)?;
+        let (record, x_sp_dot) = with_rate(arm, case, &times)?;
+        let shown = (WINDOW / step).ceil() as usize + 1;
         let segment = SEGMENT * per_period as usize;
         let spectrum = |values: &[f64]| -> Result<PowerSpectrum, StudyError> {
             Ok(in_band(welch(values, step, segment, Trend::Mean)?))
         };
         Ok(Self {
             case: *case,
-            natural: arm.lengths(case).natural,
+            natural: arm.closed(case)?,
             x_sp: spectrum(&record.x_sp)?,
             f_la: spectrum(&record.f_la)?,
             dr: spectrum(&record.dr)?,
-            history: first(record, (WINDOW / step).ceil() as usize + 1),
+            history: first(record, shown),
+            x_sp_dot: x_sp_dot.into_iter().take(shown).collect(),
+            section: Vec::new(),
         })
     }
+}
+
+impl Display {
+    /// A number of every point of the section: x_sp, x_pr, or their rates.
+    pub(super) fn section_column(&self, place: usize) -> Vec<f64> {
+        let points = self.section.chunks_exact(SECTION);
+        points
+            .filter_map(|point| point.get(place).copied())
+            .collect()
+    }
+
+    /// Samples in a forcing period.
+    pub(super) fn per_period(&self) -> usize {
+        samples_per_period(&self.case) as usize
+    }
+}
+
+fn samples_per_period(case: &Case) -> f64 {
+    (RATE * case.period()).round()
 }
 
 /// Times `step` s apart.
@@ -69,13 +99,21 @@ pub(super) fn even_times(begin: f64, step: f64, steps: usize) -> Vec<f64> {
 
 /// The series of a case, started from rest at zero, at these times in s.
 pub(super) fn sampled(arm: &Arm, case: &Case, times: &[f64]) -> Result<Record, StudyError> {
+    Ok(with_rate(arm, case, times)?.0)
+}
+
+/// The same with the rate of x_sp, m/s.
+fn with_rate(arm: &Arm, case: &Case, times: &[f64]) -> Result<(Record, Vec<f64>), StudyError> {
     let mut propagator = arm.propagator(case)?;
     let end = times.last().copied().unwrap_or_default();
     let initial = vec![0.0; propagator.states()];
     let none = HeldInputs::zero(0);
     let trajectory = propagator.simulate(&initial, (0.0, end), times, &none, &mut |_| {})?;
-    let lengths = arm.lengths(case);
-    Ok(Record::of(times, &trajectory.states, &lengths))
+    let record = Record::of(times, &trajectory.states, &arm.lengths(case));
+    let rate = FIRST_MODE + case.order + X_SP;
+    let rates = trajectory.states.iter();
+    let rates = rates.map(|state| state.get(rate).copied().unwrap_or_default());
+    Ok((record, rates.collect()))
 }
 
 fn in_band(spectrum: PowerSpectrum) -> PowerSpectrum {

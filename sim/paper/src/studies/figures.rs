@@ -8,6 +8,7 @@ use eomgen_plot::{Axes, Frame, Panel, Plate, Reference, Series, plate};
 
 use super::display::Display;
 use super::error::StudyError;
+use super::planes::{orbit, section};
 use super::report::{Figure, id};
 
 /// Densities below this part of the greatest are rounding or leakage of the window; they are
@@ -28,6 +29,14 @@ pub(super) struct Row<'a> {
     pub quantity: Quantity,
     /// With their names in the legend.
     pub cases: Vec<(String, &'a Display)>,
+}
+
+/// What a figure shows, from top to bottom.
+pub(super) enum Shown<'a> {
+    /// A time history and its power spectrum.
+    Course(Row<'a>),
+    /// A phase plane of the mesh and its stroboscopic section, with their letter.
+    Planes(&'static str, &'a Display),
 }
 
 impl Quantity {
@@ -64,15 +73,34 @@ pub(super) struct Heading {
     pub caption: String,
 }
 
-/// Draws rows of time history and spectrum.
-pub(super) fn rows(heading: Heading, rows: &[Row<'_>]) -> Result<Figure, StudyError> {
+/// Draws rows of two frames.
+pub(super) fn rows(heading: Heading, rows: &[Shown<'_>]) -> Result<Figure, StudyError> {
     let drawn: Vec<Vec<Vec<f64>>> = rows.iter().map(densities).collect();
-    let frames = rows.iter().zip(&drawn);
-    let frames = frames.flat_map(|(row, drawn)| [history(row), spectrum(row, drawn)]);
-    let shown = rows.iter().flat_map(|row| &row.cases);
-    let mut cases: Vec<String> = shown.map(|(_, display)| id(&display.case)).collect();
+    let sections: Vec<[Vec<f64>; 2]> = rows.iter().map(section_columns).collect();
+    let frames = rows.iter().zip(drawn.iter().zip(&sections));
+    let frames = frames.flat_map(|(row, (drawn, columns))| match row {
+        Shown::Course(row) => [history(row), spectrum(row, drawn)],
+        Shown::Planes(letter, display) => [orbit(letter, display), section(display, columns)],
+    });
+    let mut cases: Vec<String> = rows.iter().flat_map(ids).collect();
+    cases.sort();
     cases.dedup();
     figure(heading, cases, frames.collect())
+}
+
+fn ids(row: &Shown<'_>) -> Vec<String> {
+    match row {
+        Shown::Course(row) => row.cases.iter().map(|(_, of)| id(&of.case)).collect(),
+        Shown::Planes(_, display) => vec![id(&display.case)],
+    }
+}
+
+/// The section's points as abscissae and ordinates.
+fn section_columns(row: &Shown<'_>) -> [Vec<f64>; 2] {
+    match row {
+        Shown::Course(_) => [Vec::new(), Vec::new()],
+        Shown::Planes(_, display) => [0, 2].map(|place| display.section_column(place)),
+    }
 }
 
 /// Draws frames, two side by side.
@@ -101,7 +129,10 @@ pub(super) fn figure(
 }
 
 /// The densities of a row's cases as drawn.
-fn densities(row: &Row<'_>) -> Vec<Vec<f64>> {
+fn densities(row: &Shown<'_>) -> Vec<Vec<f64>> {
+    let Shown::Course(row) = row else {
+        return Vec::new();
+    };
     let spectra = row.cases.iter().map(|(_, d)| row.quantity.spectrum(d));
     spectra
         .map(|spectrum| above_floor(&spectrum.density))
@@ -172,13 +203,13 @@ pub(super) fn density_panel<'a>(of: &str, series: Vec<Series<'a>>) -> Panel<'a> 
     }
 }
 
-/// The forcing and the first four natural frequencies of the clamped arm.
+/// The forcing and the natural frequencies of the machine with both meshes closed.
 pub(super) fn marks(display: &Display) -> Vec<Reference> {
     let forcing = Reference {
         label: "ω/2π".to_owned(),
         value: display.case.omega / TAU,
     };
-    let natural = display.natural.iter().take(4).enumerate();
+    let natural = display.natural.iter().enumerate();
     let natural = natural.map(|(mode, frequency)| Reference {
         label: format!("f_{}", mode + 1),
         value: *frequency,

@@ -6,9 +6,10 @@
 //! states them with their rules, [`judge`] decides, `evidence` says on what grounds.
 //! [`sets`] spreads the undisclosed values over plausible ranges, [`search`] judges all
 //! claims at each, [`tally`] counts what holds together, [`charts`] draws it. `display` samples cases for
-//! `figures`; [`responses`] and [`order`] are the paper's studies as `report` hands them out.
+//! `figures` and `planes`, `bifurcation` goes over the backlash, `machine` draws what it is all about; [`responses`] and [`order`] are the paper's studies as `report` hands them out.
 
 pub mod arm;
+mod bifurcation;
 pub mod case;
 pub mod charts;
 pub mod claims;
@@ -19,8 +20,10 @@ mod evidence;
 mod figures;
 pub mod judge;
 mod kind;
+mod machine;
 mod neighbours;
 pub mod order;
+mod planes;
 pub mod reading;
 pub mod report;
 pub mod responses;

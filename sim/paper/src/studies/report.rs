@@ -109,6 +109,7 @@ pub(super) fn tables(display: &Display) -> [Columns; 2] {
     let mut columns = vec![
         column("t", &history.times),
         column("x_sp", &history.x_sp),
+        column("x_sp_dot", &display.x_sp_dot),
         column("x_pr", &history.x_pr),
         column("l_dtheta", &history.transmission),
         column("dr", &history.dr),

@@ -8,12 +8,14 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use super::arm::{Arm, Case, Undisclosed};
+use super::bifurcation::{Bifurcation, figure as bifurcation_figure};
 use super::case::{Length, measure};
 use super::claims::BACKLASHES;
 use super::display::Display;
 use super::error::StudyError;
-use super::figures::{Heading, Quantity, Row, rows};
-use super::report::{Figure, Study, case, tables};
+use super::figures::{Heading, Quantity, Row, Shown, rows};
+use super::machine::machine;
+use super::report::{Columns, Figure, Study, case, id, tables};
 
 /// The paper's truncation order.
 const ORDER: usize = 4;
@@ -58,12 +60,14 @@ pub fn flexibility(progress: Progress<'_>) -> Result<(Study, Arm), StudyError> {
         };
         let caption = format!(
             "Transmission error x_sp with the rigid arm (a) and, for comparison, with the \
-             flexible arm, S = {ORDER} (b); {}",
+             flexible arm, S = {ORDER} (b), and both in the plane of x_sp and its rate (c, d); {}",
             conditions(&rigid.case)
         );
         let drawn = [
-            row("(a) rigid arm", rigid),
-            row("(b) flexible arm", flexible),
+            Shown::Course(row("(a) rigid arm", rigid)),
+            Shown::Course(row("(b) flexible arm", flexible)),
+            Shown::Planes("(c) rigid arm,", rigid),
+            Shown::Planes("(d) flexible arm,", flexible),
         ];
         let heading = Heading {
             file: format!("fig_{:02}.svg", 16 + place),
@@ -72,7 +76,18 @@ pub fn flexibility(progress: Progress<'_>) -> Result<(Study, Arm), StudyError> {
         };
         study.figures.push(rows(heading, &drawn)?);
     }
+    let found = [0, ORDER].map(|order| Bifurcation::of(&arm, order, 10.0 * PI));
+    let [rigid, flexible] = found;
+    add(&mut study, &[rigid?, flexible?])?;
     Ok((study, arm))
+}
+
+/// Adds what is over the backlash, and the drawing of the machine.
+fn add(study: &mut Study, found: &[Bifurcation]) -> Result<(), StudyError> {
+    study.figures.push(bifurcation_figure(found)?);
+    study.figures.push(machine());
+    study.tables.extend(found.iter().map(Bifurcation::table));
+    Ok(())
 }
 
 /// A case of the paper at what is assumed.
@@ -101,6 +116,7 @@ fn responses(
     let file = if backlash { "fig_10.svg" } else { "dr.svg" };
     let with_play = displays.get(1..).unwrap_or_default();
     study.figures.push(deflections(paper, file, with_play)?);
+    add(&mut study, &[Bifurcation::of(&arm, ORDER, omega)?])?;
     Ok((study, arm))
 }
 
@@ -113,12 +129,14 @@ fn response(number: usize, display: &Display) -> Result<Figure, StudyError> {
     };
     let caption = format!(
         "Dynamic response of the system with flexible arm, S = {ORDER}: transmission error x_sp \
-         (a) and positioning error f_la (b); {}",
+         (a), positioning error f_la (b), and x_sp over its rate in a forcing period and once per \
+         period (c); {}",
         conditions(&display.case)
     );
     let drawn = [
-        row("(a) x_sp", Quantity::MeshDeflection),
-        row("(b) f_la", Quantity::PositioningError),
+        Shown::Course(row("(a) x_sp", Quantity::MeshDeflection)),
+        Shown::Course(row("(b) f_la", Quantity::PositioningError)),
+        Shown::Planes("(c)", display),
     ];
     let heading = Heading {
         file: format!("fig_{number:02}.svg"),
@@ -131,19 +149,18 @@ fn response(number: usize, display: &Display) -> Result<Figure, StudyError> {
 /// dr of several cases, one below the other.
 fn deflections(paper: &str, file: &str, displays: &[Display]) -> Result<Figure, StudyError> {
     let letters = ["(a)", "(b)", "(c)", "(d)"];
-    let drawn: Vec<Row<'_>> = displays
-        .iter()
-        .zip(letters)
-        .map(|(display, letter)| Row {
+    let mut drawn = Vec::with_capacity(displays.len());
+    for (display, letter) in displays.iter().zip(letters) {
+        drawn.push(Shown::Course(Row {
             title: format!("{letter} {}", brief(&display.case)),
             quantity: Quantity::ArmDeflection,
             cases: vec![(String::new(), display)],
-        })
-        .collect();
+        }));
+    }
     let omega = displays.first().map_or(0.0, |d| d.case.omega / PI);
     let caption = format!(
         "Flexible deformation dr = w(l, t) of the arm's end, omega = {omega:.0} pi rad/s, after \
-         the transient; f_1 to f_4 are the clamped arm's natural frequencies"
+         the transient; f_1 to f_6 are the natural frequencies with both meshes closed"
     );
     let heading = Heading {
         file: file.to_owned(),
@@ -162,7 +179,7 @@ fn brief(case: &Case) -> String {
 fn conditions(case: &Case) -> String {
     format!(
         "b = {:.0} um, omega = {:.0} pi rad/s; after the transient, time from the start at \
-         rest; f_1 to f_4 are the clamped arm's natural frequencies",
+         rest; f_1, f_2, .. are the natural frequencies with both meshes closed",
         case.backlash * 1e6,
         case.omega / PI
     )
@@ -179,9 +196,13 @@ pub(super) fn run(
     let step = || progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / whole);
     let found = cases.par_iter().map(|each| {
         // Only the wait and the numbers are kept of the long record: it is a hundred MB.
-        let (transient, report) = measured(arm, each)?;
+        let (transient, section, mut report) = measured(arm, each)?;
         step();
-        let display = Display::of(arm, each, transient)?;
+        let display = Display {
+            section,
+            ..Display::of(arm, each, transient)?
+        };
+        report["natural_frequencies"] = json!(display.natural);
         step();
         Ok((display, report))
     });
@@ -189,24 +210,46 @@ pub(super) fn run(
     let (displays, cases): (Vec<Display>, Vec<Value>) = found.into_iter().unzip();
     let study = Study {
         figures: Vec::new(),
-        tables: displays.iter().flat_map(tables).collect(),
+        tables: displays.iter().flat_map(all_tables).collect(),
         cases,
         more: vec![("notes", json!(NOTES))],
     };
     Ok((displays, study))
 }
 
-fn measured(arm: &Arm, each: &Case) -> Result<(f64, Value), StudyError> {
+/// The wait, the section and the numbers of a case.
+fn measured(arm: &Arm, each: &Case) -> Result<(f64, Vec<f64>, Value), StudyError> {
     let measured = measure(arm, each, &Length::FULL)?;
-    Ok((measured.transient, case(&measured)))
+    let mut report = case(&measured);
+    report["section"] = json!(section_table(each));
+    Ok((measured.transient, measured.section, report))
+}
+
+fn section_table(each: &Case) -> String {
+    format!("{}_section.parquet", id(each))
+}
+
+/// The series, the spectra and the section of a case.
+fn all_tables(display: &Display) -> Vec<Columns> {
+    let names = ["x_sp", "x_pr", "x_sp_dot", "x_pr_dot"]
+        .into_iter()
+        .enumerate();
+    let columns = names.map(|(place, name)| (name.to_owned(), display.section_column(place)));
+    let section = Columns {
+        file: section_table(&display.case),
+        columns: columns.collect(),
+    };
+    tables(display).into_iter().chain([section]).collect()
 }
 
 /// What the numbers are.
-const NOTES: [&str; 6] = [
+const NOTES: [&str; 8] = [
     "lengths in m, times in s, exponents in 1/s, densities in m^2/Hz; t = 0 is the start at rest",
     "rms is about the mean; peak is the greatest magnitude",
     "numbers are taken over 400 forcing periods after the transient, spectra of the figures over 40 s, the figures show 2 s",
     "the figures draw densities below 1e-13 of the greatest at that level",
     "f_la is Eq. (24) as printed, l dtheta + dr; trend is the logarithm of the ratio of its rms in the second half of the record to that in the first",
+    "natural_frequencies are those with both meshes in contact on one side, Hz; dominant_band is by the clamped arm's, which are lower",
+    "the section has a point per forcing period; bifurcation tables have x_sp and dr at 80 forcing periods after 160 from rest, for each b",
     "dominant_mode vibrates most at the arm's end, frequencies below the first mode's band left out; dominant_mode_with_static counts everything",
 ];

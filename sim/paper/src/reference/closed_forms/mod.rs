@@ -17,6 +17,7 @@ mod linear_system;
 mod loudspeaker;
 mod pendulum;
 mod puma_560;
+mod quadrotor_slung_load;
 mod shaft_and_disc;
 mod two_link_arm;
 
@@ -77,6 +78,7 @@ pub fn find(name: &str) -> Option<ClosedForm> {
         "loudspeaker" => Some(loudspeaker::accelerations),
         "pendulum" => Some(pendulum::accelerations),
         "puma_560" => Some(puma_560::accelerations),
+        "quadrotor_slung_load" => Some(quadrotor_slung_load::accelerations),
         "shaft_and_disc" => Some(shaft_and_disc::accelerations),
         "two_link_arm" => Some(two_link_arm::accelerations),
         _ => None,

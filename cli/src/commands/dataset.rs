@@ -1,0 +1,73 @@
+//! `eomgen dataset`: a dataset file for a record that has none.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::json;
+
+use crate::arguments::Dataset;
+use crate::error::{Error, Result, say, warn};
+use crate::model::load;
+use crate::output::write_file;
+
+/// Runs the command.
+pub fn run(options: &Dataset) -> Result {
+    let model = load(&options.spec)?.model;
+    let name = name(options)?;
+    let text = eomgen_records::proposed(&options.record, &name, &model).map_err(Error::records)?;
+    if let Some(out) = &options.out {
+        write_file(out, text.as_bytes())?;
+        // What is guessed may be wrong: whoever reads it will say so, and so does this.
+        match eomgen_records::read_dataset(out, &model) {
+            Ok(dataset) => dataset
+                .notes
+                .iter()
+                .for_each(|n| warn(&format!("note: {n}"))),
+            Err(refusal) => warn(&format!("note: as it stands it will be refused: {refusal}")),
+        }
+    }
+    match (&options.out, options.json) {
+        (out, true) => say(&format!(
+            "{:#}\n",
+            json!({ "schema": 1, "out": out, "dataset": text })
+        )),
+        (Some(out), false) => say(&format!("{}: look at what is guessed\n", out.display())),
+        (None, false) => say(&text),
+    }
+}
+
+/// The record's path from the folder of the dataset file: where that is to be written, or beside
+/// the record.
+fn name(options: &Dataset) -> Result<String> {
+    let record = &options.record;
+    let beside = record
+        .file_name()
+        .map(|name| name.to_string_lossy().into_owned());
+    let beside = beside.ok_or_else(|| Error::input("the record has no name; give a file"))?;
+    let Some(out) = &options.out else {
+        return Ok(beside);
+    };
+    let folder = match out.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    };
+    let whole = |path: &Path| -> Result<PathBuf> {
+        path.canonicalize()
+            .map_err(|error| Error::file("read", path, &error))
+    };
+    let record = whole(record)?;
+    let inside = folder.canonicalize().ok().and_then(|folder| {
+        let inside = record.strip_prefix(folder).ok()?;
+        let parts: Vec<String> = inside
+            .iter()
+            .map(|part| part.to_string_lossy().into_owned())
+            .collect();
+        Some(parts.join("/"))
+    });
+    inside.ok_or_else(|| {
+        Error::input(format!(
+            "--out {}: a dataset file stands in the folder of its records or above it; expected a file in {} or above",
+            out.display(),
+            record.parent().unwrap_or(Path::new("/")).display()
+        ))
+    })
+}

@@ -1,0 +1,182 @@
+//! What random samples of a sweep say: how each number is spread, and with which parameter it goes.
+
+use eomgen_analysis::statistics::{Summary, rank_correlation};
+use eomgen_plot::Reference;
+use eomgen_plot::distribution::{Distribution, distribution};
+use eomgen_sweep::{Column, Job, Samples, Table};
+use serde_json::{Map, Value, json};
+
+use crate::error::warn;
+use crate::figures::Shown;
+
+/// The parts below which quantiles are given.
+const PARTS: [f64; 7] = [0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99];
+
+/// The statistics of a sweep over random samples.
+pub struct Statistics {
+    model: String,
+    samples: Samples,
+    measured: Vec<Measured>,
+}
+
+/// A column of numbers.
+struct Measured {
+    column: Column,
+    /// What a figure calls it; none where it has no figure.
+    drawn: Option<String>,
+    /// None where no sample has a number.
+    summary: Option<Summary>,
+    /// How the ranks go with those of each parameter, in their order.
+    correlations: Vec<Option<f64>>,
+}
+
+/// The statistics of a sweep, if it is one over random samples.
+pub fn statistics(job: &Job, table: &Table) -> Option<Statistics> {
+    let samples = job.points().samples()?;
+    let mut measured = Vec::new();
+    for measure in &job.plan().measures {
+        for column in &measure.columns {
+            let values = table.column(&column.name).unwrap_or_default();
+            let parameters = samples
+                .names()
+                .map(|name| table.column(name).unwrap_or_default());
+            let is_drawn = measure.drawn.first() == Some(&column.name);
+            measured.push(Measured {
+                column: column.clone(),
+                drawn: is_drawn.then(|| measure.quantity.clone()),
+                summary: Summary::of(values),
+                correlations: parameters.map(|of| rank_correlation(of, values)).collect(),
+            });
+        }
+    }
+    Some(Statistics {
+        model: job.plan().model.clone(),
+        samples: samples.clone(),
+        measured,
+    })
+}
+
+impl Statistics {
+    /// One document.
+    pub fn json(&self) -> Value {
+        let of = |measured: &Measured| {
+            let mut entry = json!({
+                "unit": measured.column.unit,
+                "about": measured.column.about,
+                "count": measured.summary.as_ref().map_or(0, |summary| summary.count),
+            });
+            if let Some(summary) = &measured.summary {
+                let quantiles = PARTS.map(|part| (part.to_string(), json!(summary.quantile(part))));
+                entry["mean"] = json!(summary.mean);
+                entry["sd"] = json!(summary.sd);
+                entry["standard_error"] = json!(summary.standard_error);
+                entry["least"] = json!(summary.quantile(0.0));
+                entry["greatest"] = json!(summary.quantile(1.0));
+                entry["quantiles"] = Value::Object(quantiles.into_iter().collect());
+                let pairs = self.samples.names().zip(&measured.correlations);
+                let pairs = pairs.map(|(name, found)| (name.to_owned(), json!(found)));
+                entry["rank_correlations"] = Value::Object(pairs.collect());
+            }
+            (measured.column.name.clone(), entry)
+        };
+        let measured: Map<String, Value> = self.measured.iter().map(of).collect();
+        json!({
+            "schema": 1,
+            "model": self.model,
+            "samples": self.samples.count,
+            "seed": self.samples.seed,
+            "parameters": self.samples.parameters,
+            "measured": measured,
+        })
+    }
+
+    /// A line for every column that is drawn.
+    pub fn text(&self) -> String {
+        let drawn = self
+            .measured
+            .iter()
+            .filter(|measured| measured.drawn.is_some());
+        drawn.map(|measured| self.line(measured)).collect()
+    }
+
+    fn line(&self, measured: &Measured) -> String {
+        let Column { name, unit, .. } = &measured.column;
+        let Some(summary) = &measured.summary else {
+            return format!("{name}: no sample has a number\n");
+        };
+        let unit = if unit == "1" {
+            String::new()
+        } else {
+            format!(" {unit}")
+        };
+        let error = summary.standard_error.unwrap_or(f64::NAN);
+        let sd = summary.sd.unwrap_or(f64::NAN);
+        let [low, middle, high] = [0.05, 0.5, 0.95].map(|part| summary.quantile(part));
+        let pairs = self.samples.names().zip(&measured.correlations);
+        let mut pairs: Vec<(&str, f64)> = pairs.filter_map(|(n, c)| Some((n, (*c)?))).collect();
+        pairs.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+        let ranks: Vec<String> = pairs
+            .iter()
+            .map(|(name, c)| format!("{name} {c:.2}"))
+            .collect();
+        format!(
+            "{name}: mean {:.6e} +- {error:.1e}{unit}, standard deviation {sd:.3e}, median {middle:.4e}, 5 % to 95 % {low:.4e} to {high:.4e}\n  \
+             rank correlations: {}\n",
+            summary.mean,
+            ranks.join(", ")
+        )
+    }
+
+    /// A histogram for every column that is drawn, with the file's name. The numbers are good without
+    /// one.
+    pub fn figures(&self) -> Vec<(String, String)> {
+        let mut figures = Vec::new();
+        for measured in &self.measured {
+            match self.figure(measured) {
+                Some(Ok(figure)) => figures.push(figure),
+                Some(Err(error)) => warn(&format!(
+                    "warning: no picture of {}: {error}",
+                    measured.column.name
+                )),
+                None => {}
+            }
+        }
+        figures
+    }
+
+    fn figure(
+        &self,
+        measured: &Measured,
+    ) -> Option<Result<(String, String), eomgen_plot::PlotError>> {
+        let (quantity, summary) = (measured.drawn.as_ref()?, measured.summary.as_ref()?);
+        let shown = Shown::new(&measured.column);
+        let sorted: Vec<f64> = summary
+            .sorted
+            .iter()
+            .map(|value| shown.si(*value))
+            .collect();
+        let mut marks: Vec<Reference> = [("5 %", 0.05), ("median", 0.5), ("95 %", 0.95)]
+            .map(|(label, part)| Reference {
+                label: label.to_owned(),
+                value: shown.si(summary.quantile(part)),
+            })
+            .into();
+        marks.push(Reference {
+            label: "mean".to_owned(),
+            value: shown.si(summary.mean),
+        });
+        marks.sort_by(|a, b| a.value.total_cmp(&b.value));
+        let svg = distribution(&Distribution {
+            title: format!(
+                "{}: {}, {} samples",
+                self.model, measured.column.about, summary.count
+            ),
+            quantity: quantity.clone(),
+            unit: shown.unit,
+            sorted: &sorted,
+            marks,
+        });
+        let file = format!("samples_{}.svg", measured.column.name.replace(':', "_"));
+        Some(svg.map(|svg| (file, svg)))
+    }
+}

@@ -1,0 +1,43 @@
+//! Which statements name the sine and the cosine of the same: one call computes both.
+
+use crate::statements::{Expression, Statement};
+
+/// The names of the sine and the cosine of an argument.
+pub(super) struct SineAndCosine<'s> {
+    pub(super) sine: &'s str,
+    pub(super) cosine: &'s str,
+    pub(super) argument: &'s Expression,
+}
+
+/// If the first statement names a sine or a cosine: how far ahead its partner is named.
+pub(super) fn partner(statements: &[Statement]) -> Option<(usize, SineAndCosine<'_>)> {
+    let (first, rest) = statements.split_first()?;
+    let (function, name, argument) = turned(first)?;
+    let mut rest = rest.iter().enumerate();
+    rest.find_map(|(place, statement)| {
+        let (other, other_name, other_argument) = turned(statement)?;
+        if other == function || other_argument != argument {
+            return None;
+        }
+        let (sine, cosine) = match function {
+            "sin" => (name, other_name),
+            _ => (other_name, name),
+        };
+        let both = SineAndCosine {
+            sine,
+            cosine,
+            argument,
+        };
+        Some((place + 1, both))
+    })
+}
+
+/// The function, the name and the argument of a named sine or cosine.
+fn turned(statement: &Statement) -> Option<(&'static str, &str, &Expression)> {
+    match statement {
+        Statement::Let(name, Expression::Call(function @ ("sin" | "cos"), arguments)) => {
+            Some((*function, name, arguments.first()?))
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,142 @@
+//! The rows of a kinetic energy: mass matrix and velocity terms, in the form that takes fewest
+//! operations.
+
+use eomgen_model_spec::ids::CoordinateId;
+
+use crate::mechanics::lagrange::{GradientBy, Variables};
+use crate::mechanics::mass_matrix::MassMatrix;
+use crate::mechanics::rows::RowNodes;
+use crate::mechanics::sweeps::{Momenta, Velocities};
+use crate::symbolic::association::shared_operations;
+use crate::symbolic::degree::is_quadratic_in_rates;
+use crate::symbolic::factor::cheaper;
+use crate::symbolic::graph::{Graph, NodeId, Operation};
+use crate::symbolic::trigonometry::with_sums_of_angles;
+
+/// What Lagrange's equations take from a kinetic energy.
+pub(crate) struct KineticRows {
+    /// dT/dq'.
+    pub(crate) momenta: RowNodes,
+    pub(crate) mass: MassMatrix,
+    /// d/dt(dT/dq') without accelerations, minus dT/dq.
+    pub(crate) velocity_terms: RowNodes,
+    /// The momenta by a sweep, where there are no fields.
+    pub(crate) sweep: Option<Momenta>,
+}
+
+impl KineticRows {
+    /// The rows of a kinetic energy. Without fields they come by sweeps as well, and both ways of
+    /// the quadratic form with sums of angles too; what takes fewest operations beside the slopes of
+    /// the potential is kept.
+    pub(crate) fn cheapest(
+        graph: &mut Graph,
+        variables: &Variables,
+        kinetic: NodeId,
+        potential: NodeId,
+    ) -> Self {
+        let swept = match variables.fields {
+            0 => Self::swept(graph, variables, kinetic),
+            _ => None,
+        };
+        let Some(swept) = swept else {
+            return Self::differentiated(graph, variables, kinetic);
+        };
+        let beside = variables.gradient(graph, potential, GradientBy::Coordinates);
+        let sweep = swept.sweep.clone();
+        let mut forms = vec![Self::differentiated(graph, variables, kinetic), swept];
+        if is_quadratic_in_rates(graph, kinetic) {
+            let entries = &forms[1].mass.scalars.clone();
+            if let Some(other) = quadratic_form(graph, entries).filter(|other| *other != kinetic) {
+                forms.push(Self::differentiated(graph, variables, other));
+                forms.extend(Self::swept(graph, variables, other));
+            }
+        }
+        let operations = |form: &Self| form.operations(graph, &beside.scalars);
+        let counts: Vec<usize> = forms.iter().map(operations).collect();
+        let fewest = (0..forms.len()).min_by_key(|place| counts[*place]);
+        let mut best = forms.swap_remove(fewest.unwrap_or(0));
+        best.sweep = best.sweep.or(sweep);
+        best
+    }
+
+    fn differentiated(graph: &mut Graph, variables: &Variables, kinetic: NodeId) -> Self {
+        let momenta = variables.gradient(graph, kinetic, GradientBy::Rates);
+        let mass = variables.mass_matrix(graph, &momenta);
+        let mut velocity_terms = variables.velocity_terms(graph, kinetic, &momenta);
+        if variables.fields == 0 {
+            velocity_terms.scalars = cheaper(graph, velocity_terms.scalars);
+        }
+        Self {
+            momenta,
+            mass,
+            velocity_terms,
+            sweep: None,
+        }
+    }
+
+    fn swept(graph: &mut Graph, variables: &Variables, kinetic: NodeId) -> Option<Self> {
+        let velocities = Velocities::of(graph, kinetic)?;
+        let size = variables.coordinates;
+        let mut scalars = velocities.mass_matrix(graph, size)?;
+        let momenta = velocities.momenta(graph, size);
+        let rows = momenta.rates(graph, &|graph, _| graph.zero());
+        let rows = cheaper(graph, rows);
+        let upper = (0..size).flat_map(|row| scalars[row][row..].to_vec());
+        let mut entries = cheaper(graph, upper.collect()).into_iter();
+        for row in 0..size {
+            for (column, entry) in (row..size).zip(entries.by_ref()) {
+                scalars[row][column] = entry;
+                scalars[column][row] = entry;
+            }
+        }
+        Some(Self {
+            momenta: RowNodes {
+                scalars: momenta.momenta.clone(),
+                modal: Vec::new(),
+            },
+            mass: MassMatrix {
+                scalars,
+                coupling: vec![Vec::new(); size],
+                modal: Vec::new(),
+            },
+            velocity_terms: RowNodes {
+                scalars: rows,
+                modal: Vec::new(),
+            },
+            sweep: Some(momenta),
+        })
+    }
+
+    /// How many operations they take beside other nodes.
+    fn operations(&self, graph: &Graph, beside: &[NodeId]) -> usize {
+        let mut nodes = self.velocity_terms.nodes();
+        nodes.extend(beside);
+        for (row, entries) in self.mass.scalars.iter().enumerate() {
+            nodes.extend(&entries[row..]);
+        }
+        shared_operations(graph, &nodes)
+    }
+}
+
+/// More coordinates are not multiplied out.
+const MOST_COORDINATES: usize = 4;
+
+/// 1/2 q' M q' with sums of angles in the entries of M; `None` of too many coordinates.
+fn quadratic_form(graph: &mut Graph, mass: &[Vec<NodeId>]) -> Option<NodeId> {
+    if mass.len() > MOST_COORDINATES {
+        return None;
+    }
+    let rates: Vec<NodeId> = CoordinateId::first(mass.len())
+        .map(|index| graph.intern(Operation::Rate(index)))
+        .collect();
+    let mut terms = Vec::new();
+    for (row, entries) in mass.iter().enumerate() {
+        for (column, entry) in entries.iter().enumerate().skip(row) {
+            let other = with_sums_of_angles(graph, *entry);
+            let factor = if row == column { 0.5 } else { 1.0 };
+            let product = graph.product(&[(other, 1), (rates[row], 1), (rates[column], 1)]);
+            terms.push((factor, product));
+        }
+    }
+    Some(graph.combine(&terms))
+}

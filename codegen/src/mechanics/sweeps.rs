@@ -1,0 +1,310 @@
+//! Lagrange's rows by sweeps over the rate-dependent part of a kinetic energy, for models without
+//! fields.
+//!
+//! What of the kinetic energy depends on the rates is a graph of velocities, each of those before
+//! it. One sweep back over it gives the derivative of the energy by every velocity, the momenta
+//! among them, and the same momenta serve the energy's slope by the coordinates. Their rate is one
+//! tangent along the motion. With velocities from frame to frame this is the recursion of Newton
+//! and Euler, with the accelerations outward and forces inward (Luh, Walker and Paul, 1980: J. Dyn.
+//! Sys. Meas. Control 102, 69-76).
+//!
+//! The mass matrix is the Hessian by the rates, pushed back over the same graph from velocity to
+//! velocity (Gower and Mello, 2012: Optim. Methods Softw. 27, 251-269). What stands between the
+//! velocities of a frame on the way is the inertia of all that it carries: composite rigid bodies
+//! (Walker and Orin, 1982: J. Dyn. Sys. Meas. Control 104, 205-211).
+
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+use eomgen_model_spec::ids::CoordinateId;
+
+use crate::mechanics::translate::along_motion;
+use crate::symbolic::differentiate::Direction;
+use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation};
+
+/// The velocities of a kinetic energy, and how each is made of those before it.
+pub(crate) struct Velocities {
+    /// The energy first, each before those it is made of.
+    units: Vec<Unit>,
+    /// What the rates have received of the energy's derivative.
+    received: HashMap<NodeId, Vec<(f64, NodeId)>>,
+}
+
+/// A rate-dependent node with the products of its sum opened: its derivatives by what these hold.
+struct Unit {
+    node: NodeId,
+    /// Rate-dependent nodes that it is made of.
+    operands: Vec<NodeId>,
+    /// The derivative by each of them.
+    partials: Vec<NodeId>,
+    /// The energy's derivative by the node.
+    adjoint: NodeId,
+}
+
+/// What a sweep back over the velocities gives.
+#[derive(Clone, Debug)]
+pub(crate) struct Momenta {
+    /// dT/dq' of every coordinate.
+    pub(crate) momenta: Vec<NodeId>,
+    /// dT/dq of every coordinate.
+    slopes: Vec<NodeId>,
+}
+
+impl Momenta {
+    /// d/dt(dT/dq') - dT/dq with these accelerations.
+    pub(crate) fn rates(
+        &self,
+        graph: &mut Graph,
+        acceleration: &dyn Fn(&mut Graph, CoordinateId) -> NodeId,
+    ) -> Vec<NodeId> {
+        let tangent = |graph: &mut Graph, leaf: NodeId| match *graph.operation(leaf) {
+            Operation::Rate(index) => acceleration(graph, index),
+            _ => along_motion(graph, leaf),
+        };
+        let mut direction = Direction::new(&tangent);
+        let rows = self
+            .momenta
+            .iter()
+            .zip(&self.slopes)
+            .map(|(momentum, slope)| {
+                let rate = direction.derivative(graph, *momentum);
+                graph.combine(&[(1.0, rate), (-1.0, *slope)])
+            });
+        rows.collect()
+    }
+}
+
+impl Velocities {
+    /// The velocities of a kinetic energy; `None` if it does not depend on the rates.
+    pub(crate) fn of(graph: &mut Graph, kinetic: NodeId) -> Option<Self> {
+        if !is_velocity(graph, kinetic) {
+            return None;
+        }
+        let mut velocities = Self {
+            units: Vec::new(),
+            received: HashMap::from([(kinetic, vec![(1.0, graph.one())])]),
+        };
+        let mut waiting = BTreeSet::from([kinetic]);
+        // An operand is older than what is computed from it.
+        while let Some(node) = waiting.pop_last() {
+            let operands = rate_dependent_parts(graph, node);
+            if operands.is_empty() {
+                continue;
+            }
+            waiting.extend(&operands);
+            velocities.push(graph, node, operands);
+        }
+        Some(velocities)
+    }
+
+    /// Hands the energy's derivative by a node down to what it is made of.
+    fn push(&mut self, graph: &mut Graph, node: NodeId, operands: Vec<NodeId>) {
+        let received = self.received.remove(&node).unwrap_or_default();
+        let adjoint = graph.combine(&received);
+        let mut partials = Vec::with_capacity(operands.len());
+        for &operand in &operands {
+            let partial = partial(graph, node, &operands, operand);
+            let part = graph.multiply(partial, adjoint);
+            self.received.entry(operand).or_default().push((1.0, part));
+            partials.push(partial);
+        }
+        self.units.push(Unit {
+            node,
+            operands,
+            partials,
+            adjoint,
+        });
+    }
+
+    /// The momenta and the slopes of the energy, of this many coordinates.
+    pub(crate) fn momenta(&self, graph: &mut Graph, coordinates: usize) -> Momenta {
+        let mut slopes: Vec<Vec<(f64, NodeId)>> = vec![Vec::new(); coordinates];
+        for unit in &self.units {
+            for (index, slope) in unit.slopes(graph, coordinates) {
+                slopes[index].push((1.0, graph.multiply(slope, unit.adjoint)));
+            }
+        }
+        let momenta = CoordinateId::first(coordinates)
+            .map(|index| {
+                let rate = graph.intern(Operation::Rate(index));
+                let received = self.received.get(&rate).map_or(&[][..], Vec::as_slice);
+                graph.combine_flat(received)
+            })
+            .collect();
+        let slopes = slopes.iter().map(|terms| graph.combine_flat(terms));
+        Momenta {
+            momenta,
+            slopes: slopes.collect(),
+        }
+    }
+
+    /// The Hessian by the rates of this many coordinates; `None` if it depends on the rates.
+    pub(crate) fn mass_matrix(
+        &self,
+        graph: &mut Graph,
+        coordinates: usize,
+    ) -> Option<Vec<Vec<NodeId>>> {
+        let mut inertia = Inertia::default();
+        for unit in &self.units {
+            inertia.push(graph, unit);
+            unit.add_curvature(graph, &mut inertia)?;
+        }
+        let rates: Vec<NodeId> = CoordinateId::first(coordinates)
+            .map(|index| graph.intern(Operation::Rate(index)))
+            .collect();
+        let mut matrix = Vec::with_capacity(coordinates);
+        for a in &rates {
+            let row: Vec<NodeId> = rates
+                .iter()
+                .map(|b| inertia.between(graph, *a, *b))
+                .collect();
+            if row.iter().any(|entry| is_velocity(graph, *entry)) {
+                return None;
+            }
+            matrix.push(row);
+        }
+        Some(matrix)
+    }
+}
+
+impl Unit {
+    /// The derivatives by coordinates, with what it is made of held.
+    fn slopes(&self, graph: &mut Graph, coordinates: usize) -> Vec<(usize, NodeId)> {
+        let held: BTreeSet<NodeId> = self.operands.iter().copied().collect();
+        let mut moving = BTreeSet::new();
+        let mut waiting = vec![self.node];
+        let mut seen = BTreeSet::new();
+        while let Some(node) = waiting.pop() {
+            if held.contains(&node) || !seen.insert(node) {
+                continue;
+            }
+            if let Operation::Coordinate(_) = graph.operation(node) {
+                moving.insert(node);
+            }
+            waiting.extend(graph.operands(graph.operation(node)));
+        }
+        let mut found = Vec::new();
+        for (place, index) in CoordinateId::first(coordinates).enumerate() {
+            let variable = graph.intern(Operation::Coordinate(index));
+            if moving.contains(&variable) {
+                found.push((place, partial(graph, self.node, &self.operands, variable)));
+            }
+        }
+        found
+    }
+
+    /// Adds the second derivatives of the node itself times its adjoint; `None` if they depend on
+    /// the rates.
+    fn add_curvature(&self, graph: &mut Graph, inertia: &mut Inertia) -> Option<()> {
+        for (place, &first) in self.operands.iter().enumerate() {
+            if !is_velocity(graph, self.partials[place]) {
+                continue;
+            }
+            for &second in &self.operands[..=place] {
+                let curvature = partial(graph, self.partials[place], &self.operands, second);
+                let value = graph.multiply(curvature, self.adjoint);
+                if is_velocity(graph, value) {
+                    return None;
+                }
+                inertia.add(graph, first, second, value);
+            }
+        }
+        Some(())
+    }
+}
+
+/// The Hessian between velocities that have not been taken apart yet: for each both ways.
+#[derive(Default)]
+struct Inertia {
+    terms: HashMap<NodeId, BTreeMap<NodeId, Vec<(f64, NodeId)>>>,
+}
+
+impl Inertia {
+    fn add(&mut self, graph: &Graph, a: NodeId, b: NodeId, value: NodeId) {
+        if graph.is_zero(value) {
+            return;
+        }
+        for (from, to) in [(a, b), (b, a)] {
+            let entry = self.terms.entry(from).or_default().entry(to).or_default();
+            entry.push((1.0, value));
+            if a == b {
+                return;
+            }
+        }
+    }
+
+    fn between(&self, graph: &mut Graph, a: NodeId, b: NodeId) -> NodeId {
+        match self.terms.get(&a).and_then(|row| row.get(&b)) {
+            Some(terms) => graph.combine_flat(terms),
+            None => graph.zero(),
+        }
+    }
+
+    /// Takes a velocity apart: what is between it and others passes to what it is made of.
+    fn push(&mut self, graph: &mut Graph, unit: &Unit) {
+        let Some(row) = self.terms.remove(&unit.node) else {
+            return;
+        };
+        let parts: Vec<(NodeId, NodeId)> = unit
+            .operands
+            .iter()
+            .copied()
+            .zip(unit.partials.iter().copied())
+            .collect();
+        for (other, terms) in row {
+            let value = graph.combine(&terms);
+            if other == unit.node {
+                for (place, &(a, by_a)) in parts.iter().enumerate() {
+                    for &(b, by_b) in &parts[..=place] {
+                        let product = graph.product(&[(by_a, 1), (by_b, 1), (value, 1)]);
+                        self.add(graph, a, b, product);
+                    }
+                }
+                continue;
+            }
+            if let Some(others) = self.terms.get_mut(&other) {
+                others.remove(&unit.node);
+            }
+            for &(a, by_a) in &parts {
+                let factor = if a == other { 2.0 } else { 1.0 };
+                let product = graph.multiply(by_a, value);
+                let product = graph.scale(factor, product);
+                self.add(graph, a, other, product);
+            }
+        }
+    }
+}
+
+fn is_velocity(graph: &Graph, node: NodeId) -> bool {
+    graph.dependence(node).has(Dependence::RATE)
+}
+
+/// The rate-dependent nodes that a node is made of: operands, and factors of the products that it
+/// is a sum of.
+fn rate_dependent_parts(graph: &Graph, node: NodeId) -> Vec<NodeId> {
+    let mut parts = BTreeSet::new();
+    for operand in graph.operands(graph.operation(node)) {
+        match (graph.operation(node), graph.operation(operand)) {
+            (Operation::Sum(_), Operation::Product(factors)) => {
+                parts.extend(factors.iter().map(|(factor, _)| *factor));
+            }
+            _ => {
+                parts.insert(operand);
+            }
+        }
+    }
+    parts
+        .into_iter()
+        .filter(|part| is_velocity(graph, *part))
+        .collect()
+}
+
+/// The derivative of a node by one of its parts, or by a coordinate, the other parts held.
+fn partial(graph: &mut Graph, node: NodeId, held: &[NodeId], by: NodeId) -> NodeId {
+    let (zero, one) = (graph.zero(), graph.one());
+    let mut direction = Direction::default();
+    for &part in held {
+        direction.seed(part, zero);
+    }
+    direction.seed(by, one);
+    direction.derivative(graph, node)
+}

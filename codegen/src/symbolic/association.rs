@@ -1,0 +1,300 @@
+//! In which order the factors of products are multiplied: pairs that several products share come
+//! first, the pair that most of them share before all others, so that each is multiplied once. A
+//! product that shares nothing keeps the order of its factors.
+
+use std::collections::{BTreeSet, BinaryHeap, HashMap};
+
+use eomgen_model_spec::model::Function;
+
+use crate::symbolic::graph::{Graph, NodeId, Operation, Shape};
+
+/// What is multiplied.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub(crate) enum Factor {
+    /// A prepared factor, by its place in the list of them.
+    Coefficient(usize),
+    /// A node.
+    Node(NodeId),
+    /// The product of two of these, by its place in the list of them.
+    Pair(usize),
+}
+
+/// A number times powers of nodes of parameters alone.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct PreparedFactor {
+    pub(crate) number: f64,
+    pub(crate) powers: Vec<(NodeId, i32)>,
+}
+
+/// A product of a sum or of its own: magnitude of the number in front, and the node.
+type ProductKey = (u64, NodeId);
+
+/// The orders that were chosen.
+#[derive(Default)]
+pub(crate) struct Association {
+    coefficients: Vec<PreparedFactor>,
+    coefficient_places: HashMap<ProductPowers, usize>,
+    pairs: Vec<(Factor, Factor)>,
+    products: HashMap<ProductKey, Vec<Factor>>,
+    seen: BTreeSet<ProductKey>,
+}
+
+type ProductPowers = (u64, Vec<(NodeId, i32)>);
+
+/// Beyond this a power is left to squarings.
+const LARGEST_EXPONENT: i32 = 3;
+
+impl Association {
+    /// The factors of a product, if it shares any with others.
+    pub(crate) fn factors(&self, magnitude: f64, product: NodeId) -> Option<&[Factor]> {
+        let factors = self.products.get(&(magnitude.to_bits(), product))?;
+        Some(factors)
+    }
+
+    /// A prepared factor.
+    pub(crate) fn coefficient(&self, place: usize) -> &PreparedFactor {
+        &self.coefficients[place]
+    }
+
+    /// The two factors of a pair.
+    pub(crate) fn pair(&self, place: usize) -> (Factor, Factor) {
+        self.pairs[place]
+    }
+
+    /// How many multiplications the products that were met take per call, each pair once.
+    fn multiplications(&self, graph: &Graph) -> usize {
+        let own = self.seen.iter().map(|&(bits, product)| {
+            if let Some(factors) = self.products.get(&(bits, product)) {
+                return factors.len() - 1;
+            }
+            let powers = match graph.operation(product) {
+                Operation::Product(powers) => powers.to_vec(),
+                _ => vec![(product, 1)],
+            };
+            let (prepared, live): (Vec<_>, Vec<_>) = powers
+                .into_iter()
+                .partition(|(id, _)| graph.dependence(*id).is_parameter_only());
+            let number = f64::from_bits(bits);
+            let prepared = usize::from(number != 1.0 || !prepared.is_empty());
+            let live = live
+                .iter()
+                .map(|(_, exponent)| exponent.unsigned_abs() as usize);
+            (live.sum::<usize>() + prepared).saturating_sub(1)
+        });
+        own.sum::<usize>() + self.pairs.len()
+    }
+
+    /// Chooses the orders of all products that `roots` are computed from and that were not met
+    /// before.
+    pub(crate) fn extend(&mut self, graph: &Graph, roots: &[NodeId]) {
+        let keys = product_keys(graph, roots);
+        let mut found: Vec<(ProductKey, Vec<Factor>)> = Vec::new();
+        for key in keys {
+            if self.seen.insert(key)
+                && let Some(factors) = self.factors_of(graph, key)
+            {
+                found.push((key, factors));
+            }
+        }
+        let mut sharing = Sharing::of(found.iter().map(|(_, factors)| factors.clone()).collect());
+        sharing.run(&mut self.pairs);
+        for ((key, before), after) in found.into_iter().zip(sharing.products) {
+            if before != after {
+                self.products.insert(key, after);
+            }
+        }
+    }
+
+    fn factors_of(&mut self, graph: &Graph, (bits, product): ProductKey) -> Option<Vec<Factor>> {
+        let powers = match graph.operation(product) {
+            Operation::Product(powers) => powers.to_vec(),
+            _ => vec![(product, 1)],
+        };
+        let (prepared, live): (Vec<_>, Vec<_>) = powers
+            .into_iter()
+            .partition(|(id, _)| graph.dependence(*id).is_parameter_only());
+        let mut factors = Vec::new();
+        if !prepared.is_empty() || bits != 1.0_f64.to_bits() {
+            if prepared
+                .iter()
+                .any(|(id, _)| graph.shape(*id) != Shape::Scalar)
+            {
+                return None;
+            }
+            let number = f64::from_bits(bits);
+            let next = self.coefficients.len();
+            let place = *self
+                .coefficient_places
+                .entry((bits, prepared.clone()))
+                .or_insert(next);
+            if place == next {
+                self.coefficients.push(PreparedFactor {
+                    number,
+                    powers: prepared,
+                });
+            }
+            factors.push(Factor::Coefficient(place));
+        }
+        for (id, exponent) in live {
+            let stays = matches!(
+                graph.operation(id),
+                Operation::Total(_) | Operation::Call(Function::Contact, _)
+            );
+            if stays
+                || graph.shape(id) != Shape::Scalar
+                || !(1..=LARGEST_EXPONENT).contains(&exponent)
+            {
+                return None;
+            }
+            factors.extend((0..exponent).map(|_| Factor::Node(id)));
+        }
+        (factors.len() > 1).then_some(factors)
+    }
+}
+
+/// What a sine or a cosine counts for: they come in pairs, and wait for little.
+const TURN: usize = 20;
+
+/// How many operations nodes of scalars take per call, with what products share: by this the
+/// cheaper of two forms is told.
+pub(crate) fn shared_operations(graph: &Graph, roots: &[NodeId]) -> usize {
+    let mut association = Association::default();
+    association.extend(graph, roots);
+    let others = graph.reachable(roots).into_iter().map(|id| {
+        if graph.dependence(id).is_parameter_only() {
+            return 0;
+        }
+        match graph.operation(id) {
+            Operation::Sum(terms) => {
+                let prepared =
+                    |(_, term): &&(_, NodeId)| graph.dependence(*term).is_parameter_only();
+                let live = terms.len() - terms.iter().filter(prepared).count();
+                live - usize::from(live == terms.len())
+            }
+            Operation::Call(Function::Sin | Function::Cos, _) => TURN,
+            Operation::Call(..) | Operation::Power(..) | Operation::Select { .. } => 1,
+            _ => 0,
+        }
+    });
+    others.sum::<usize>() + association.multiplications(graph)
+}
+
+/// The products that stand in sums, with their numbers, and those that stand elsewhere.
+fn product_keys(graph: &Graph, roots: &[NodeId]) -> Vec<ProductKey> {
+    let one = 1.0_f64.to_bits();
+    let mut keys = BTreeSet::new();
+    let is_product = |id: NodeId| matches!(graph.operation(id), Operation::Product(_));
+    for id in graph.reachable(roots) {
+        if graph.dependence(id).is_parameter_only() {
+            continue;
+        }
+        match graph.operation(id) {
+            Operation::Sum(terms) => {
+                let live = terms
+                    .iter()
+                    .filter(|(_, term)| !graph.dependence(*term).is_parameter_only());
+                keys.extend(live.map(|(c, term)| (c.value().abs().to_bits(), *term)));
+            }
+            operation => {
+                let operands = graph.operands(operation).into_iter();
+                keys.extend(operands.filter(|a| is_product(*a)).map(|a| (one, a)));
+            }
+        }
+    }
+    keys.extend(
+        roots
+            .iter()
+            .filter(|id| is_product(**id))
+            .map(|id| (one, *id)),
+    );
+    keys.into_iter()
+        .filter(|(_, id)| !graph.dependence(*id).is_parameter_only())
+        .collect()
+}
+
+type Pair = (Factor, Factor);
+
+/// Which products hold which pairs.
+struct Sharing {
+    products: Vec<Vec<Factor>>,
+    holders: HashMap<Pair, BTreeSet<usize>>,
+}
+
+impl Sharing {
+    fn of(products: Vec<Vec<Factor>>) -> Self {
+        let mut sharing = Self {
+            products,
+            holders: HashMap::new(),
+        };
+        for place in 0..sharing.products.len() {
+            for pair in pairs_of(&sharing.products[place]) {
+                sharing.holders.entry(pair).or_default().insert(place);
+            }
+        }
+        sharing
+    }
+
+    /// Multiplies the pair that most products share, as long as two of them do.
+    fn run(&mut self, pairs: &mut Vec<Pair>) {
+        let mut queue: BinaryHeap<(usize, std::cmp::Reverse<Pair>)> = self
+            .holders
+            .iter()
+            .filter(|(_, holders)| holders.len() > 1)
+            .map(|(pair, holders)| (holders.len(), std::cmp::Reverse(*pair)))
+            .collect();
+        while let Some((count, std::cmp::Reverse(pair))) = queue.pop() {
+            let holders = self.holders.get(&pair).map_or(0, BTreeSet::len);
+            if holders != count {
+                if holders > 1 && holders < count {
+                    queue.push((holders, std::cmp::Reverse(pair)));
+                }
+                continue;
+            }
+            let made = Factor::Pair(pairs.len());
+            pairs.push(pair);
+            let holders = self.holders.remove(&pair).unwrap_or_default();
+            let mut raised = BTreeSet::new();
+            for place in holders {
+                raised.extend(self.replace(place, pair, made));
+            }
+            for pair in raised {
+                let holders = self.holders.get(&pair).map_or(0, BTreeSet::len);
+                if holders > 1 {
+                    queue.push((holders, std::cmp::Reverse(pair)));
+                }
+            }
+        }
+    }
+
+    /// Puts a pair in the place of its two factors; the pairs that the product now holds.
+    fn replace(&mut self, place: usize, pair: Pair, made: Factor) -> BTreeSet<Pair> {
+        for held in pairs_of(&self.products[place]) {
+            if let Some(holders) = self.holders.get_mut(&held) {
+                holders.remove(&place);
+            }
+        }
+        let product = &mut self.products[place];
+        for factor in [pair.0, pair.1] {
+            if let Some(at) = product.iter().position(|other| *other == factor) {
+                product.remove(at);
+            }
+        }
+        product.push(made);
+        let now = pairs_of(product);
+        for held in &now {
+            self.holders.entry(*held).or_default().insert(place);
+        }
+        now
+    }
+}
+
+/// Every pair of factors that a product holds.
+fn pairs_of(product: &[Factor]) -> BTreeSet<Pair> {
+    let mut pairs = BTreeSet::new();
+    for (place, &a) in product.iter().enumerate() {
+        for &b in &product[..place] {
+            pairs.insert((a.min(b), a.max(b)));
+        }
+    }
+    pairs
+}

@@ -1,0 +1,154 @@
+//! Sums with common factors taken out. What is needed once is opened into the sum that it stands in
+//! first, so that equal terms meet.
+
+use std::collections::{BTreeMap, HashMap};
+
+use eomgen_model_spec::model::Function;
+
+use crate::symbolic::association::shared_operations;
+use crate::symbolic::graph::{Graph, NodeId, Operation, Shape};
+use crate::symbolic::substitute::substitute;
+
+/// Terms of a sum.
+type Terms = Vec<(f64, NodeId)>;
+
+/// The nodes with common factors of sums taken out, if they take fewer operations so.
+pub(crate) fn cheaper(graph: &mut Graph, roots: Vec<NodeId>) -> Vec<NodeId> {
+    let other = factored(graph, &roots);
+    if shared_operations(graph, &other) < shared_operations(graph, &roots) {
+        other
+    } else {
+        roots
+    }
+}
+
+/// The nodes with common factors of sums taken out, in all that they are computed from.
+fn factored(graph: &mut Graph, roots: &[NodeId]) -> Vec<NodeId> {
+    let mut uses = graph.uses(roots);
+    for root in roots {
+        *uses.entry(*root).or_insert(0) += 2;
+    }
+    let mut known: HashMap<NodeId, NodeId> = HashMap::new();
+    let mut opened: HashMap<NodeId, Terms> = HashMap::new();
+    for id in graph.reachable(roots) {
+        if graph.dependence(id).is_parameter_only() {
+            known.insert(id, id);
+            continue;
+        }
+        let result = match graph.operation(id).clone() {
+            Operation::Sum(terms) if graph.shape(id) == Shape::Scalar => {
+                let mut all = Terms::new();
+                for (factor, term) in terms {
+                    match opened.get(&term) {
+                        Some(inner) => {
+                            all.extend(inner.iter().map(|(c, term)| (factor.value() * c, *term)));
+                        }
+                        None => all.push((factor.value(), known[&term])),
+                    }
+                }
+                if uses.get(&id) == Some(&1) {
+                    opened.insert(id, all.clone());
+                }
+                sum(graph, &all)
+            }
+            _ => substitute(graph, id, &|_, _| None, &mut known),
+        };
+        known.insert(id, result);
+    }
+    roots.iter().map(|root| known[root]).collect()
+}
+
+/// A sum of terms, those that differ in parameters and numbers alone collected: a x + b x = (a + b) x.
+pub(crate) fn collected(graph: &mut Graph, terms: &[(f64, NodeId)]) -> NodeId {
+    let mut by_live: BTreeMap<NodeId, Terms> = BTreeMap::new();
+    for &(c, term) in terms {
+        let (prepared, live) = match graph.operation(term).clone() {
+            Operation::Product(factors) => {
+                let prepared = |(id, _): &(NodeId, i32)| graph.dependence(*id).is_parameter_only();
+                let (prepared, live): (Vec<_>, Vec<_>) = factors.iter().partition(|f| prepared(f));
+                (graph.product(&prepared), graph.product(&live))
+            }
+            _ if graph.dependence(term).is_parameter_only() => (term, graph.one()),
+            _ => (graph.one(), term),
+        };
+        by_live.entry(live).or_default().push((c, prepared));
+    }
+    let terms: Terms = by_live
+        .into_iter()
+        .map(|(live, prepared)| match prepared.as_slice() {
+            [(c, prepared)] => (*c, graph.multiply(*prepared, live)),
+            several => {
+                let factor = graph.combine(several);
+                (1.0, graph.multiply(factor, live))
+            }
+        })
+        .collect();
+    graph.combine(&terms)
+}
+
+/// A sum of terms, the factor that most of them share taken out first.
+fn sum(graph: &mut Graph, terms: &[(f64, NodeId)]) -> NodeId {
+    let combined = graph.combine(terms);
+    let Operation::Sum(terms) = graph.operation(combined).clone() else {
+        return combined;
+    };
+    let terms: Terms = terms.iter().map(|(c, term)| (c.value(), *term)).collect();
+    let combined = collected(graph, &terms);
+    let mut terms: Terms = match graph.operation(combined) {
+        Operation::Sum(terms) => terms.iter().map(|(c, term)| (c.value(), *term)).collect(),
+        _ => return combined,
+    };
+    while let Some(factor) = most_common_factor(graph, &terms) {
+        let mut rests = Terms::new();
+        let mut others = Terms::new();
+        for (c, term) in terms {
+            if live_factors(graph, term).contains(&factor) {
+                rests.push((c, graph.divide(term, factor)));
+            } else {
+                others.push((c, term));
+            }
+        }
+        let inner = sum(graph, &rests);
+        let product = graph.multiply(factor, inner);
+        others.push((1.0, product));
+        terms = others;
+    }
+    graph.combine(&terms)
+}
+
+/// The factor that stands in most terms, in two at least; of equals sines and cosines first: both
+/// rows of a rotation then hold the same sums.
+fn most_common_factor(graph: &Graph, terms: &[(f64, NodeId)]) -> Option<NodeId> {
+    let mut counts: BTreeMap<NodeId, usize> = BTreeMap::new();
+    for (_, term) in terms {
+        for factor in live_factors(graph, *term) {
+            *counts.entry(factor).or_insert(0) += 1;
+        }
+    }
+    let turns = |id| {
+        matches!(
+            graph.operation(id),
+            Operation::Call(Function::Sin | Function::Cos, _)
+        )
+    };
+    counts
+        .into_iter()
+        .filter(|(_, count)| *count > 1)
+        .max_by_key(|(id, count)| (*count, turns(*id), std::cmp::Reverse(*id)))
+        .map(|(id, _)| id)
+}
+
+/// The scalar factors of a term that depend on the state and have a positive exponent.
+fn live_factors(graph: &Graph, term: NodeId) -> Vec<NodeId> {
+    let live =
+        |id: NodeId| graph.shape(id) == Shape::Scalar && !graph.dependence(id).is_parameter_only();
+    match graph.operation(term) {
+        Operation::Product(factors) => factors
+            .iter()
+            .filter(|(id, exponent)| *exponent > 0 && live(*id))
+            .map(|(id, _)| *id)
+            .collect(),
+        _ if live(term) => vec![term],
+        _ => Vec::new(),
+    }
+}

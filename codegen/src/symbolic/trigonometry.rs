@@ -1,0 +1,116 @@
+//! Sums of products of sines and cosines as those of sums and differences of angles:
+//! cos a cos b + sin a sin b = cos(a - b) and its kin. Nothing here is a law of the constructors:
+//! it multiplies out, and whoever asks compares what the two forms cost.
+
+use std::collections::BTreeMap;
+
+use eomgen_model_spec::model::Function;
+
+use crate::symbolic::expand::expand_once;
+use crate::symbolic::factor::collected;
+use crate::symbolic::graph::{Graph, NodeId, Operation};
+
+/// How many levels are multiplied out.
+const MOST_LEVELS: usize = 12;
+
+/// A node multiplied out, with the addition theorems applied to its terms.
+pub(crate) fn with_sums_of_angles(graph: &mut Graph, node: NodeId) -> NodeId {
+    let mut expanded = node;
+    for _ in 0..MOST_LEVELS {
+        match expand_once(graph, expanded) {
+            Some(next) => expanded = next,
+            None => break,
+        }
+    }
+    let mut terms: BTreeMap<NodeId, f64> = match graph.operation(expanded) {
+        Operation::Sum(terms) => terms.iter().map(|(c, term)| (*term, c.value())).collect(),
+        _ => return node,
+    };
+    while let Some((first, second, merged)) = merging_pair(graph, &terms) {
+        terms.remove(&first);
+        terms.remove(&second);
+        let mut all: Vec<(f64, NodeId)> = terms.iter().map(|(term, c)| (*c, *term)).collect();
+        all.push(merged);
+        let sum = graph.combine_flat(&all);
+        terms = match graph.operation(sum) {
+            Operation::Sum(terms) => terms.iter().map(|(c, term)| (*term, c.value())).collect(),
+            _ => return sum,
+        };
+    }
+    let terms: Vec<(f64, NodeId)> = terms.iter().map(|(term, c)| (*c, *term)).collect();
+    collected(graph, &terms)
+}
+
+/// Two terms that an addition theorem makes one, and that one.
+fn merging_pair(
+    graph: &mut Graph,
+    terms: &BTreeMap<NodeId, f64>,
+) -> Option<(NodeId, NodeId, (f64, NodeId))> {
+    for (&term, &factor) in terms {
+        let Operation::Product(factors) = graph.operation(term).clone() else {
+            continue;
+        };
+        let turns: Vec<(NodeId, Function, NodeId)> = factors
+            .iter()
+            .filter(|(_, exponent)| *exponent > 0)
+            .filter_map(|(id, _)| match graph.operation(*id) {
+                Operation::Call(function @ (Function::Sin | Function::Cos), arguments) => {
+                    Some((*id, *function, arguments[0]))
+                }
+                _ => None,
+            })
+            .collect();
+        for (place, &first) in turns.iter().enumerate() {
+            for &second in &turns[place + 1..] {
+                if first.2 == second.2 {
+                    continue;
+                }
+                let rest = graph.product(&[(term, 1), (first.0, -1), (second.0, -1)]);
+                let partners = [partner(graph, first), partner(graph, second)];
+                let partner = graph.product(&[(rest, 1), (partners[0], 1), (partners[1], 1)]);
+                let Some(&other) = terms.get(&partner) else {
+                    continue;
+                };
+                if other.abs() != factor.abs() {
+                    continue;
+                }
+                let (sign, angle) = merged(graph, (factor, other), first, second);
+                let value = graph.multiply(rest, angle);
+                return Some((term, partner, (sign, value)));
+            }
+        }
+    }
+    None
+}
+
+/// The cosine for a sine and the other way round.
+fn partner(graph: &mut Graph, (_, function, angle): (NodeId, Function, NodeId)) -> NodeId {
+    let other = match function {
+        Function::Sin => Function::Cos,
+        _ => Function::Sin,
+    };
+    graph.call(other, &[angle])
+}
+
+/// What two terms are together: factor times first times second, plus other times their partners.
+fn merged(
+    graph: &mut Graph,
+    (factor, other): (f64, f64),
+    (_, first, a): (NodeId, Function, NodeId),
+    (_, second, b): (NodeId, Function, NodeId),
+) -> (f64, NodeId) {
+    let same = factor == other;
+    // sin a sin b and cos a cos b of one sign: cos(a - b); of two, cos(a + b) with the sign of
+    // the cosines. sin a cos b and cos a sin b: sin(a + b), or sin(a - b) with the sign of the first.
+    let alike = first == second;
+    let sum = alike != same;
+    let angle = graph.combine_flat(&[(1.0, a), (if sum { 1.0 } else { -1.0 }, b)]);
+    let function = if alike { Function::Cos } else { Function::Sin };
+    let sign = match (alike, first) {
+        (true, Function::Sin) => other,
+        (true, _) => factor,
+        (false, Function::Sin) => factor,
+        (false, _) => other,
+    };
+    (sign, graph.call(function, &[angle]))
+}

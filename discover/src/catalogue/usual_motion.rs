@@ -1,0 +1,51 @@
+//! How what effects act on moves in the records: what their shapes are measured by.
+
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+use crate::catalogue::effect::Scale;
+use crate::catalogue::sites::Site;
+use crate::interval::Interval;
+
+/// How places of a model move, as far as it is known.
+#[derive(Clone, Debug, Default)]
+pub struct UsualMotion {
+    /// The root mean square of the rate of an axis, by its name, SI.
+    pub rates: BTreeMap<String, f64>,
+    /// Where what an effect acts on goes, by its expression, SI.
+    pub travels: BTreeMap<String, Interval>,
+    /// Orders, per turn, of which there is most in the residual force over an angle, by its
+    /// expression.
+    pub orders: BTreeMap<String, Vec<u32>>,
+}
+
+impl UsualMotion {
+    /// What a shape at a site is a part of; 1 where that is not known.
+    pub(super) fn scale(&self, scale: Scale, site: &Site) -> f64 {
+        let known = match scale {
+            Scale::Rate => self.rates.get(&site.name).copied(),
+            Scale::Travel => self
+                .travel(site)
+                .map(|travel| travel.low.abs().max(travel.high.abs())),
+        };
+        known.filter(|scale| *scale > 0.0).unwrap_or(1.0)
+    }
+
+    /// Whether an angle goes through a period of an order; it does where nobody knows how far it
+    /// goes.
+    pub(super) fn covers(&self, angle: &Site, order: u32) -> bool {
+        let covers = |travel: &Interval| f64::from(order) * (travel.high - travel.low) >= TAU;
+        self.travel(angle).is_none_or(covers)
+    }
+
+    /// The orders of the residual force over an angle.
+    pub(super) fn orders(&self, angle: &Site) -> &[u32] {
+        let on = angle.arguments.get("on");
+        let orders = on.and_then(|on| self.orders.get(on));
+        orders.map_or(&[], Vec::as_slice)
+    }
+
+    fn travel(&self, site: &Site) -> Option<&Interval> {
+        self.travels.get(site.arguments.get("on")?)
+    }
+}

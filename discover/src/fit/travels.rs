@@ -1,0 +1,94 @@
+//! How far expressions of a model go along a fit's motions.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use eomgen_codegen::program::evaluator::Point;
+use eomgen_model_spec::edit::{self, Edit, NewTerm, Section};
+use eomgen_model_spec::source::Source;
+
+use crate::fit::fitted::Fit;
+use crate::fit::shooting::Shooting;
+use crate::ids::{ObservableId, WindowId};
+use crate::interval::Interval;
+use crate::model::estimation_model::EstimationModel;
+use crate::model::problem::EstimationProblem;
+use crate::thresholds;
+
+/// The smallest and the largest value of each expression along the training windows of a fit, SI;
+/// nothing of what cannot be followed.
+pub fn travels(
+    problem: &EstimationProblem<'_>,
+    fit: &Fit,
+    expressions: &BTreeSet<String>,
+) -> BTreeMap<String, Interval> {
+    let Some((model, shown)) = with_observables(problem, fit, expressions) else {
+        return BTreeMap::new();
+    };
+    let theta = &fit.train.estimate.theta;
+    let whole = Shooting::new(problem, &model, &problem.train, &fit.unknowns, &fit.ranges);
+    let mut evaluator = model.evaluator(&whole.values(theta));
+    let values = fit.shooting(problem).values(theta);
+    let Ok(mut simulation) = fit.model.simulation(&values) else {
+        return BTreeMap::new();
+    };
+    let nothing = Interval::new(f64::INFINITY, f64::NEG_INFINITY);
+    let mut found = vec![nothing; shown.len()];
+    let mut observables = model.measured.observables();
+    let all = problem.train.list.len();
+    let count = all.min(thresholds::MOST_WINDOWS);
+    for window in (0..count).map(|k| WindowId::new(k * all / count)) {
+        let initial = &fit.train.estimate.initial_states[window];
+        let window = &problem.train.list[window];
+        let inputs = problem.train.inputs(window);
+        let states = simulation.states(initial, &window.times, inputs);
+        for (t, state) in window.times.iter().zip(states.unwrap_or_default()) {
+            let point = Point {
+                t: *t,
+                state: &state,
+                inputs: inputs.held_at(*t),
+            };
+            evaluator.observables(point, &mut observables);
+            for (travel, observable) in found.iter_mut().zip(&shown) {
+                let value = observables[*observable];
+                *travel = Interval::new(travel.low.min(value), travel.high.max(value));
+            }
+        }
+    }
+    let found = expressions.iter().cloned().zip(found);
+    found
+        .filter(|(_, travel)| travel.low.is_finite() && travel.high.is_finite())
+        .collect()
+}
+
+/// A fit's equations with an observable for each expression; none if one cannot be written.
+fn with_observables(
+    problem: &EstimationProblem<'_>,
+    fit: &Fit,
+    expressions: &BTreeSet<String>,
+) -> Option<(EstimationModel, Vec<ObservableId>)> {
+    let name = |number: usize| format!("travel_of_place_{number}");
+    let edits = expressions.iter().enumerate().map(|(number, expression)| {
+        Edit::AddTerm(NewTerm {
+            section: Section::Observables,
+            name: name(number),
+            value: expression.clone(),
+            doc: String::new(),
+            source: String::new(),
+        })
+    });
+    let edits: Vec<Edit> = edits.collect();
+    let source = Source::new(problem.path.as_str(), fit.texts.whole.as_str());
+    let text = edit::apply(&source, &edits).ok()?;
+    let model = EstimationModel::equations(&text, &problem.path, problem.order, &[]).ok()?;
+    if model.states != fit.model.states {
+        return None;
+    }
+    let observable = |number: usize| {
+        let mut observables = model.specification().observables.iter();
+        let position = observables.position(|observable| observable.name == name(number));
+        position.map(ObservableId::new)
+    };
+    let shown = (0..edits.len()).map(observable).collect::<Option<Vec<_>>>();
+    let shown = shown?;
+    Some((model, shown))
+}

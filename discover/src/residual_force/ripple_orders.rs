@@ -1,0 +1,70 @@
+//! The residual force over angles as a spectrum: the orders, per turn, of which there is most.
+
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+use crate::fit::fitted::Fit;
+use crate::fit::linearised::{Linearisation, LinearisedFit};
+use crate::ids::{EquationId, FamilyId};
+use crate::model::problem::EstimationProblem;
+use crate::residual_force::basis_functions::{Family, Over, Range};
+use crate::residual_force::equations::{Equations, OperatingPoint};
+use crate::residual_force::family_regression::FamilyRegression;
+use crate::residual_force::force_response::operating_points;
+use crate::thresholds;
+use eomgen_records::samples::typical_step;
+
+/// For each angle, by its expression, the orders whose waves explain most of what a fit leaves, the
+/// best first: those of which the motion goes through a period, and which its samples resolve.
+/// Nothing where neighbouring motions cannot be followed.
+pub fn ripple_orders(problem: &EstimationProblem<'_>, fit: &Fit) -> BTreeMap<String, Vec<u32>> {
+    spectrum(problem, fit).unwrap_or_default()
+}
+
+fn spectrum(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<BTreeMap<String, Vec<u32>>> {
+    let equations = Equations::of(problem, fit)?;
+    let at = LinearisedFit::of(problem, fit, 1.0).with_few_windows();
+    let of = Linearisation {
+        at: &at,
+        problem,
+        fit,
+    };
+    let operating_points = operating_points(of, &equations);
+    let step = typical_step(&problem.dataset.train[0].times);
+    let angles = EquationId::first(equations.list.len());
+    let angles = angles.filter(|id| equations.list[*id].unit == "rad");
+    let families = angles.flat_map(|equation| {
+        let own = operating_points.iter().flatten().map(|all| all[equation]);
+        let range = Range::of(&own.collect::<Vec<OperatingPoint>>());
+        let is_seen = move |order: &u32| {
+            let order = f64::from(*order);
+            order * range.width() >= TAU
+                && order * range.usual.1 * step * thresholds::PERIOD_SAMPLES < TAU
+        };
+        (1..=thresholds::HIGHEST_ORDER)
+            .filter(is_seen)
+            .map(move |order| Family::wave(equation, Over::Order(order)))
+    });
+    let families: Vec<Family> = families.collect();
+    if families.is_empty() {
+        return None;
+    }
+    let regressed = FamilyRegression::at(of, &equations, families)?;
+    let mut explained: BTreeMap<String, Vec<(f64, u32)>> = BTreeMap::new();
+    for id in FamilyId::first(regressed.families.len()) {
+        let family = &regressed.families[id];
+        if let Over::Order(order) = family.over {
+            let on = equations.list[family.equation].on.clone();
+            explained
+                .entry(on)
+                .or_default()
+                .push((regressed.part(id), order));
+        }
+    }
+    let best = explained.into_iter().map(|(on, mut orders)| {
+        orders.sort_by(|a, b| b.0.total_cmp(&a.0));
+        orders.truncate(thresholds::MOST_ORDERS);
+        (on, orders.into_iter().map(|(_, order)| order).collect())
+    });
+    Some(best.collect())
+}

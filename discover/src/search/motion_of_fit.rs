@@ -1,0 +1,30 @@
+//! How the places of a model move at a fit.
+
+use std::collections::BTreeSet;
+
+use crate::catalogue::effect::SiteKind;
+use crate::catalogue::sites::Site;
+use crate::catalogue::usual_motion::UsualMotion;
+use crate::fit::fitted::Fit;
+use crate::fit::travels::travels;
+use crate::model::problem::EstimationProblem;
+use crate::model::usual_rates::usual_rates;
+
+/// The usual rates and the travels of a model's places; of orders nothing.
+pub fn motion_of(problem: &EstimationProblem<'_>, fit: &Fit, sites: &[Site]) -> UsualMotion {
+    let moving = sites
+        .iter()
+        .filter(|site| matches!(site.kind, SiteKind::Angle | SiteKind::Spring));
+    let expressions: BTreeSet<String> = moving
+        .filter_map(|site| site.arguments.get("on").cloned())
+        .collect();
+    let travels = match expressions.is_empty() {
+        true => Default::default(),
+        false => travels(problem, fit, &expressions),
+    };
+    UsualMotion {
+        rates: usual_rates(problem.dataset, fit.model.specification()),
+        travels,
+        orders: Default::default(),
+    }
+}

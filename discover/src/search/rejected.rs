@@ -1,0 +1,107 @@
+//! What a round did not take, each with what failed and its figure.
+
+use crate::catalogue::candidate::Candidate;
+use crate::ids::ResponseId;
+use crate::search::fitted::FittedHypothesis;
+use crate::search::found::Rejected;
+use crate::search::screening::NotExcited;
+use crate::search::tested::TestedPool;
+use crate::thresholds;
+
+/// A reason, and whether it comes from a fit: that says more than what screening promised.
+struct Reason {
+    text: String,
+    not_testable: bool,
+    is_of_fit: bool,
+}
+
+/// Notes what a round did not take, in the place of what an earlier round said of it. Within a round
+/// what came of a fit stays.
+pub fn note_rejected(rejected: &mut Vec<Rejected>, round: &[TestedPool]) {
+    let mut fitted: Vec<String> = Vec::new();
+    for tested in round {
+        for (candidate, reason) in reasons(tested) {
+            let label = candidate.label();
+            if fitted.contains(&label) && !reason.is_of_fit {
+                continue;
+            }
+            rejected.retain(|known| known.candidate.label() != label);
+            rejected.push(Rejected {
+                candidate: candidate.clone(),
+                reason: reason.text,
+                not_testable: reason.not_testable,
+            });
+            if reason.is_of_fit {
+                fitted.push(label);
+            }
+        }
+    }
+}
+
+/// Why each candidate of a pool was not taken; what is taken in the end is in it, too.
+fn reasons(tested: &TestedPool) -> Vec<(&Candidate, Reason)> {
+    let screening = &tested.screening;
+    let not_excited = screening.not_excited.iter();
+    let mut found: Vec<(&Candidate, Reason)> = not_excited
+        .map(|NotExcited { candidate, reason }| {
+            let reason = Reason {
+                text: reason.to_string(),
+                not_testable: true,
+                is_of_fit: false,
+            };
+            (&tested.candidates[*candidate], reason)
+        })
+        .collect();
+    for (id, response) in ResponseId::first(screening.responses.len()).zip(&screening.responses) {
+        let mut hypotheses = tested.fitted_hypotheses.iter();
+        let alone = hypotheses.find(|fitted| fitted.responses == [id]);
+        let reason = match alone {
+            Some(fitted) => of_fit(fitted),
+            None => of_screening(tested, id),
+        };
+        found.push((&tested.candidates[response.candidate], reason));
+    }
+    found
+}
+
+fn of_fit(fitted: &FittedHypothesis) -> Reason {
+    let text = match &fitted.verdict {
+        Err(reason) => reason.to_string(),
+        Ok(_) => format!(
+            "alone it would be accepted, and leaves {:.2} standard deviations of the noise in training and {:.2} in test: \
+             what is named was preferred",
+            fitted.fit.train.rms, fitted.fit.test.rms
+        ),
+    };
+    Reason {
+        text,
+        not_testable: false,
+        is_of_fit: true,
+    }
+}
+
+fn of_screening(tested: &TestedPool, id: ResponseId) -> Reason {
+    let screening = &tested.screening;
+    let response = &screening.responses[id];
+    let not_testable = response.unexplained_fraction <= thresholds::UNEXPLAINED_FRACTION;
+    let text = if not_testable {
+        format!(
+            "{:.1} % of what it does can be done by initial states, refitted parameters and sensors as well",
+            100.0 * (1.0 - response.unexplained_fraction)
+        )
+    } else {
+        let alone = screening.predicted(&[]).cost;
+        let most = screening.responses.iter();
+        let most = most.map(|other| other.decrease).fold(0.0, f64::max);
+        format!(
+            "it promises to take {:.1} % of the squares that are left, the best {:.1} %",
+            100.0 * response.decrease / alone,
+            100.0 * most / alone
+        )
+    };
+    Reason {
+        text,
+        not_testable,
+        is_of_fit: false,
+    }
+}

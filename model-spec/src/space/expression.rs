@@ -1,0 +1,336 @@
+//! From an expression with vectors in it to scalars: what each part is worth, and which parts do not
+//! go together. What is used more than once gets a name, so that products of products do not
+//! double with every level.
+
+use super::definitions::{Owner, is_plain};
+use super::demands::UnitDemand;
+use super::known::Space;
+use super::rotation::Factor;
+use super::scalar::{expansion, negate, placed};
+use super::value::{Dimensions, Value};
+use super::vector::{AXES, Vector, zero};
+use crate::ast::{Syntax, SyntaxKind};
+use crate::diagnostic::{Diagnostic, quoted};
+use crate::dimension::Dimension;
+use crate::span::Span;
+use crate::suggest::did_you_mean;
+use crate::table::Quantity;
+
+/// What belongs to every frame.
+pub const MEMBERS: [&str; 7] = [
+    "origin",
+    "velocity",
+    "angular_velocity",
+    "rotation",
+    "x",
+    "y",
+    "z",
+];
+
+/// How much may be repeated where nothing can be named: inside integrals and sums.
+const MAX_REPEATED: usize = 10_000;
+
+/// Works out the expressions of one entry.
+pub struct Reader<'s> {
+    pub(super) space: &'s mut Space,
+    pub(super) owner: &'s Owner,
+    /// How many integrals, sums and places along fields are open.
+    pub(super) inside: usize,
+}
+
+pub(super) type Read = Result<Value, Diagnostic>;
+
+impl<'s> Reader<'s> {
+    /// A reader for an entry.
+    pub fn new(space: &'s mut Space, owner: &'s Owner) -> Self {
+        Self {
+            space,
+            owner,
+            inside: 0,
+        }
+    }
+
+    /// What an expression is worth.
+    ///
+    /// # Errors
+    /// Where scalars, vectors and rotations do not go together, and members that there are none of.
+    pub fn value(&mut self, syntax: &Syntax) -> Read {
+        let span = syntax.span;
+        match &syntax.kind {
+            SyntaxKind::Number(_) | SyntaxKind::Element { .. } => Ok(Value::Scalar(syntax.clone())),
+            SyntaxKind::Name(name) => self.name(name, syntax),
+            SyntaxKind::Vector(components) => self.literal(components, span),
+            SyntaxKind::Member {
+                of,
+                member,
+                member_span,
+            } => self.member(of, (member, *member_span), span),
+            SyntaxKind::Negate(operand) => match self.value(operand)? {
+                Value::Scalar(operand) => Ok(Value::Scalar(Syntax {
+                    kind: SyntaxKind::Negate(Box::new(operand)),
+                    span,
+                })),
+                Value::Vector(vector, dimensions) => {
+                    Ok(Value::Vector(vector.map(negate), dimensions))
+                }
+                rotation @ Value::Rotation(..) => Err(Diagnostic::error("minus a rotation")
+                    .at(span, rotation.kind())
+                    .help("the rotation back is transpose(R)")),
+            },
+            SyntaxKind::Binary(operator, left, right) => {
+                let (left, right) = (
+                    (self.value(left)?, left.span),
+                    (self.value(right)?, right.span),
+                );
+                self.binary(*operator, left, right, span)
+            }
+            SyntaxKind::Call {
+                function,
+                function_span,
+                arguments,
+            } => self.call((function, *function_span), arguments, span),
+        }
+    }
+
+    /// The scalar that an expression is worth.
+    ///
+    /// # Errors
+    /// As `value`, and if it is none: `subject` says what it is.
+    pub fn scalar(
+        &mut self,
+        quantity: &Quantity,
+        subject: &str,
+        help: &str,
+    ) -> Result<Syntax, Diagnostic> {
+        let syntax = quantity.syntax()?;
+        match self.value(&syntax)? {
+            Value::Scalar(scalar) => Ok(scalar),
+            other => Err(Diagnostic::error(format!("{subject} is {}", other.kind()))
+                .at(syntax.span, "expected a scalar")
+                .help(help)),
+        }
+    }
+
+    /// The expression by a name, if it is more than one.
+    pub(super) fn named(&mut self, value: Syntax) -> Result<Syntax, Diagnostic> {
+        if is_plain(&value) {
+            return Ok(value);
+        }
+        if self.inside > 0 || self.is_reported(&value) {
+            // What is along a field has no name outside it, and what a constraint does none outside
+            // observables.
+            let mut size = 0;
+            value.visit(&mut |_| size += 1);
+            return match size > MAX_REPEATED {
+                true => Err(Diagnostic::error("this grows too large")
+                    .at(value.span, "repeated with every product")
+                    .help("name vectors that do not depend on the place in [definitions]")),
+                false => Ok(value),
+            };
+        }
+        let part = self.space.definitions.part(self.owner);
+        Ok(self.space.definitions.named(self.owner, &part, value))
+    }
+
+    fn is_reported(&self, value: &Syntax) -> bool {
+        let mut reported = false;
+        value.visit(&mut |part| {
+            if let SyntaxKind::Name(name) = &part.kind {
+                reported |= self.space.reported.contains(name);
+            }
+        });
+        reported
+    }
+
+    pub(super) fn name_each(&mut self, [x, y, z]: Vector) -> Result<Vector, Diagnostic> {
+        Ok([self.named(x)?, self.named(y)?, self.named(z)?])
+    }
+
+    fn name(&self, name: &str, syntax: &Syntax) -> Read {
+        match self.space.vectors.get(name) {
+            Some(Value::Vector(vector, dimensions)) => {
+                let at = |component: &Syntax| placed(component.clone(), syntax.span);
+                return Ok(Value::Vector(vector.each_ref().map(at), *dimensions));
+            }
+            Some(rotation) => return Ok(rotation.clone()),
+            None => {}
+        }
+        if self.space.frames.named(name).is_some() && !self.space.definitions.is_declared(name) {
+            return Err(
+                Diagnostic::error(format!("the frame `{name}` is no quantity"))
+                    .at(syntax.span, "a frame")
+                    .help(format!(
+                        "it has {}: write {name}.origin",
+                        MEMBERS.join(", ")
+                    )),
+            );
+        }
+        Ok(Value::Scalar(syntax.clone()))
+    }
+
+    /// A vector of three components; whoever asks demands their units.
+    ///
+    /// # Errors
+    /// As `value`, and if it is none.
+    pub fn in_space(&mut self, syntax: &Syntax, subject: &str) -> Result<Vector, Diagnostic> {
+        let read = match &syntax.kind {
+            SyntaxKind::Vector(components) => self.components(components, syntax.span)?,
+            _ => self.value(syntax)?,
+        };
+        match read {
+            Value::Vector(vector, Dimensions::Three) => Ok(vector),
+            other => Err(Diagnostic::error(format!("{subject} is {}", other.kind()))
+                .at(syntax.span, "expected a vector of 3 components")
+                .help("write [x, y, z]")),
+        }
+    }
+
+    /// The components of a vector in space, which must have this unit.
+    ///
+    /// # Errors
+    /// As `in_space`.
+    pub fn demanded(
+        &mut self,
+        written: &Quantity,
+        subject: &str,
+        dimension: Dimension,
+    ) -> Result<Vector, Diagnostic> {
+        let syntax = written.syntax()?;
+        let vector = self.in_space(&syntax, subject)?;
+        for (component, axis) in vector.iter().zip(AXES) {
+            self.space.demands.units.push(UnitDemand {
+                value: expansion(component.clone()),
+                dimension,
+                subject: format!("the {axis} component of {subject}"),
+            });
+        }
+        Ok(vector)
+    }
+
+    fn literal(&mut self, components: &[Syntax], span: Span) -> Read {
+        let read = self.components(components, span)?;
+        if let Value::Vector(vector, _) = &read {
+            self.alike(vector);
+        }
+        Ok(read)
+    }
+
+    fn components(&mut self, components: &[Syntax], span: Span) -> Read {
+        let dimensions = match components.len() {
+            2 => Dimensions::Two,
+            3 => Dimensions::Three,
+            count => {
+                let plural = if count == 1 { "" } else { "s" };
+                return Err(
+                    Diagnostic::error(format!("a vector of {count} component{plural}"))
+                        .at(span, "expected 2 or 3")
+                        .help("write [x, y, z], or [x, y] in the plane"),
+                );
+            }
+        };
+        let mut vector = zero(span);
+        for (own, component) in vector.iter_mut().zip(components) {
+            *own = match self.value(component)? {
+                Value::Scalar(scalar) => scalar,
+                other => {
+                    return Err(Diagnostic::error("a component is a scalar")
+                        .at(component.span, format!("this is {}", other.kind())));
+                }
+            };
+        }
+        Ok(Value::Vector(vector, dimensions))
+    }
+
+    /// Demands that components have one unit.
+    pub(super) fn alike(&mut self, vector: &Vector) {
+        if self.inside == 0 {
+            let components = vector.iter().map(|c| expansion(c.clone()));
+            self.space.demands.alike.push(components.collect());
+        }
+    }
+
+    fn member(&mut self, of: &Syntax, (member, place): (&str, Span), span: Span) -> Read {
+        if let SyntaxKind::Name(name) = &of.kind
+            && !self.space.vectors.contains_key(name)
+        {
+            if self.space.frames.named(name).is_some() {
+                return self.of_frame(name, member, place, span);
+            }
+            if !self.space.definitions.is_declared(name) {
+                return Err(self.unknown_owner(name, of.span));
+            }
+        }
+        match self.value(of)? {
+            Value::Vector(vector, dimensions) => {
+                let axes = &AXES[..dimensions.count()];
+                match axes.iter().position(|axis| *axis == member) {
+                    Some(axis) => Ok(Value::Scalar(placed(vector[axis].clone(), span))),
+                    None => Err(Diagnostic::error(format!(
+                        "a vector has no component {}",
+                        quoted(member)
+                    ))
+                    .at(place, "not known")
+                    .help(format!("its components are {}", axes.join(", ")))),
+                }
+            }
+            other => Err(Diagnostic::error(format!(
+                "{} has no component {}",
+                other.kind(),
+                quoted(member)
+            ))
+            .at(of.span, format!("this is {}", other.kind()))),
+        }
+    }
+
+    fn unknown_owner(&self, name: &str, span: Span) -> Diagnostic {
+        let vectors = self.space.vectors.keys().map(String::as_str);
+        let known = vectors.chain(self.space.frame_names.iter().map(String::as_str));
+        Diagnostic::error(format!("unknown name {}", quoted(name)))
+            .at(span, "neither a vector nor a frame")
+            .help_if(did_you_mean(name, known))
+    }
+
+    /// What a frame has, along the fixed axes.
+    fn of_frame(&mut self, name: &str, member: &str, place: Span, span: Span) -> Read {
+        let Space {
+            frames,
+            definitions,
+            placements,
+            ..
+        } = &mut *self.space;
+        let Some(frame) = frames.named(name) else {
+            return Err(self.unknown_owner(name, span));
+        };
+        let vector = match member {
+            "origin" => placements.origin(frame, frames, definitions),
+            "velocity" => placements.velocity(frame, frames, definitions),
+            "angular_velocity" => placements.angular_velocity(frame, frames, definitions),
+            "rotation" => {
+                let rows = placements.rows(frame, frames, definitions);
+                let factor = Factor::Frame(Box::new(rows));
+                return Ok(Value::Rotation(vec![factor], Dimensions::Three));
+            }
+            _ => match AXES.iter().position(|axis| *axis == member) {
+                Some(axis) => {
+                    let rows = placements.rows(frame, frames, definitions);
+                    rows.map(|row| row[axis].clone())
+                }
+                None => {
+                    let known = format!("a frame has {}", MEMBERS.join(", "));
+                    return Err(
+                        Diagnostic::error(format!("a frame has no {}", quoted(member)))
+                            .at(place, "not known")
+                            .help(did_you_mean(member, MEMBERS).unwrap_or(known)),
+                    );
+                }
+            },
+        };
+        Ok(spatial(vector, span))
+    }
+}
+
+/// A vector of three components that is used at this place.
+fn spatial(vector: Vector, span: Span) -> Value {
+    let at = |component| placed(component, span);
+    Value::Vector(vector.map(at), Dimensions::Three)
+}

@@ -1,0 +1,285 @@
+//! Functions of vectors and rotations, and which functions take scalars alone.
+
+use super::expression::{Read, Reader};
+use super::operations::{scalar_product, standing};
+use super::rotation::{Factor, Turn};
+use super::scalar::{call, is, number};
+use super::value::{Dimensions, Value};
+use super::vector::{Vector, cross};
+use crate::ast::{BinaryOperator, Syntax, SyntaxKind};
+use crate::diagnostic::{Diagnostic, quoted};
+use crate::functions::VECTOR_FUNCTIONS;
+use crate::span::Span;
+
+impl Reader<'_> {
+    /// What a call is worth.
+    pub(super) fn call(
+        &mut self,
+        (function, place): (&str, Span),
+        arguments: &[Syntax],
+        span: Span,
+    ) -> Read {
+        let made = match (function, arguments) {
+            ("dot", [a, b]) => self.dot_product(a, b, span)?,
+            ("dot", [operand]) => match self.value(operand)? {
+                Value::Vector(vector, dimensions) => Value::Vector(self.rates(vector)?, dimensions),
+                Value::Scalar(operand) => Value::Scalar(rebuilt(function, place, vec![operand])),
+                rotation @ Value::Rotation(..) => {
+                    return Err(Diagnostic::error("the rate of a rotation")
+                        .at(operand.span, rotation.kind())
+                        .help("a frame turns with FRAME.angular_velocity"));
+                }
+            },
+            ("cross", [a, b]) => self.cross_product(a, b)?,
+            ("norm", [of]) => Value::Scalar(self.norm(of)?),
+            ("transpose", [of]) => self.transposed(of)?,
+            ("rotation", [angle]) => {
+                let turn = self.turn(2, angle)?;
+                Value::Rotation(vec![turn], Dimensions::Two)
+            }
+            ("rotation", [axis, angle]) => {
+                let factor = self.about(axis, angle)?;
+                Value::Rotation(vec![factor], Dimensions::Three)
+            }
+            ("rotation_x" | "rotation_y" | "rotation_z", [angle]) => {
+                let axis = match function {
+                    "rotation_x" => 0,
+                    "rotation_y" => 1,
+                    _ => 2,
+                };
+                Value::Rotation(vec![self.turn(axis, angle)?], Dimensions::Three)
+            }
+            _ if VECTOR_FUNCTIONS.contains(&function) => {
+                return Err(usage(function, arguments, span));
+            }
+            _ => Value::Scalar(self.of_scalars((function, place), arguments)?),
+        };
+        Ok(standing(made, span))
+    }
+
+    /// A function that takes scalars, with its arguments worked out.
+    fn of_scalars(
+        &mut self,
+        (function, place): (&str, Span),
+        arguments: &[Syntax],
+    ) -> Result<Syntax, Diagnostic> {
+        let is_along = matches!(function, "integral" | "sum" | "at");
+        self.inside += usize::from(is_along);
+        let mut scalars = Vec::with_capacity(arguments.len());
+        for argument in arguments {
+            match self.value(argument)? {
+                Value::Scalar(scalar) => scalars.push(scalar),
+                other => {
+                    let help = match function {
+                        "abs" | "sqrt" => "the length of a vector is norm(v)",
+                        _ => "take a component, v.x, the length, norm(v), or a product, dot(a, b)",
+                    };
+                    let message = format!("{} takes scalars", quoted(function));
+                    return Err(Diagnostic::error(message)
+                        .at(argument.span, format!("this is {}", other.kind()))
+                        .help(help));
+                }
+            }
+        }
+        self.inside -= usize::from(is_along);
+        Ok(rebuilt(function, place, scalars))
+    }
+
+    fn dot_product(&mut self, a: &Syntax, b: &Syntax, span: Span) -> Read {
+        let (left, right) = (self.value(a)?, self.value(b)?);
+        match (left, right) {
+            (Value::Vector(left, one), Value::Vector(right, other)) if one == other => {
+                Ok(Value::Scalar(scalar_product(left, right)))
+            }
+            (left, right) => Err(two_vectors(
+                "dot(a, b)",
+                (&left, a.span),
+                (&right, b.span),
+                span,
+            )),
+        }
+    }
+
+    fn cross_product(&mut self, a: &Syntax, b: &Syntax) -> Read {
+        let (left, right) = (self.value(a)?, self.value(b)?);
+        match (left, right) {
+            (Value::Vector(left, dimensions), Value::Vector(right, other))
+                if dimensions == other =>
+            {
+                let (left, right) = (self.name_each(left)?, self.name_each(right)?);
+                let product = cross(&left, &right);
+                let [_, _, z] = &product;
+                Ok(match dimensions {
+                    Dimensions::Two => Value::Scalar(z.clone()),
+                    Dimensions::Three => Value::Vector(product, dimensions),
+                })
+            }
+            (left, right) => Err(two_vectors(
+                "cross(a, b)",
+                (&left, a.span),
+                (&right, b.span),
+                a.span.join(b.span),
+            )),
+        }
+    }
+
+    fn norm(&mut self, of: &Syntax) -> Result<Syntax, Diagnostic> {
+        match self.value(of)? {
+            Value::Vector(vector, _) => {
+                let vector = self.name_each(vector)?;
+                Ok(call("sqrt", scalar_product(vector.clone(), vector)))
+            }
+            other => Err(Diagnostic::error("`norm` takes a vector")
+                .at(of.span, format!("this is {}", other.kind()))
+                .help("the magnitude of a scalar is abs(x)")),
+        }
+    }
+
+    fn transposed(&mut self, of: &Syntax) -> Read {
+        match self.value(of)? {
+            Value::Rotation(factors, dimensions) => {
+                let back = factors.into_iter().rev().map(Factor::transposed);
+                Ok(Value::Rotation(back.collect(), dimensions))
+            }
+            other => Err(Diagnostic::error("`transpose` takes a rotation")
+                .at(of.span, format!("this is {}", other.kind()))
+                .help(
+                    "for example transpose(FRAME.rotation)*v, the components of v along the frame",
+                )),
+        }
+    }
+
+    fn turn(&mut self, axis: usize, angle: &Syntax) -> Result<Factor, Diagnostic> {
+        let mut angle = self.angle(angle)?;
+        // A constant angle may be a quarter turn, which is exact.
+        if self.space.definitions.moving.holds(&angle) {
+            angle = self.named(angle)?;
+        }
+        Ok(Factor::Turn(Turn { axis, angle }))
+    }
+
+    fn angle(&mut self, angle: &Syntax) -> Result<Syntax, Diagnostic> {
+        match self.value(angle)? {
+            Value::Scalar(scalar) => Ok(scalar),
+            other => Err(Diagnostic::error("an angle is a scalar")
+                .at(angle.span, format!("this is {}", other.kind()))
+                .help("write rotation_z(ANGLE), or rotation(AXIS, ANGLE)")),
+        }
+    }
+
+    /// The rotation about a direction, which may have any length but 0.
+    fn about(&mut self, axis: &Syntax, angle: &Syntax) -> Result<Factor, Diagnostic> {
+        let direction = match self.value(axis)? {
+            Value::Vector(direction, Dimensions::Three) => direction,
+            other => {
+                return Err(Diagnostic::error("an axis is a vector")
+                    .at(axis.span, format!("this is {}", other.kind()))
+                    .help("for example rotation([0, 0, 1], ANGLE)"));
+            }
+        };
+        let angle = self.angle(angle)?;
+        let (cosine, sine) = Turn { axis: 2, angle }.cosine_and_sine();
+        let direction = self.unit(direction, axis.span)?;
+        let (cosine, sine) = (self.named(cosine)?, self.named(sine)?);
+        Ok(Factor::About(Box::new((direction, cosine, sine))))
+    }
+
+    /// The vector divided by its length.
+    fn unit(&mut self, vector: Vector, span: Span) -> Result<Vector, Diagnostic> {
+        let numbers = vector.each_ref().map(|component| match &component.kind {
+            SyntaxKind::Number(value) => Some(*value),
+            SyntaxKind::Negate(operand) => match operand.kind {
+                SyntaxKind::Number(value) => Some(-value),
+                _ => None,
+            },
+            _ => None,
+        });
+        if let [Some(x), Some(y), Some(z)] = numbers {
+            let length = x.hypot(y).hypot(z);
+            if length == 0.0 {
+                return Err(
+                    Diagnostic::error("an axis without a direction").at(span, "its length is 0")
+                );
+            }
+            return Ok([x, y, z].map(|component| number(component / length, span)));
+        }
+        let vector = self.name_each(vector)?;
+        let square = scalar_product(vector.clone(), vector.clone());
+        let length = self.named(call("sqrt", square))?;
+        self.name_each(vector.map(|component| match is(&component, 0.0) {
+            true => component,
+            false => Syntax {
+                kind: SyntaxKind::Binary(
+                    BinaryOperator::Divide,
+                    Box::new(component),
+                    Box::new(length.clone()),
+                ),
+                span,
+            },
+        }))
+    }
+
+    /// The rates of components.
+    fn rates(&mut self, [x, y, z]: Vector) -> Result<Vector, Diagnostic> {
+        Ok([self.rate(x)?, self.rate(y)?, self.rate(z)?])
+    }
+
+    fn rate(&mut self, component: Syntax) -> Result<Syntax, Diagnostic> {
+        let span = component.span;
+        if !self.space.definitions.moving.holds(&component) {
+            return Ok(number(0.0, span));
+        }
+        if self.inside > 0 {
+            return Ok(call("dot", component));
+        }
+        let part = self.space.definitions.part(self.owner);
+        let definitions = &mut self.space.definitions;
+        Ok(definitions.rate(self.owner, &part, component))
+    }
+}
+
+fn rebuilt(function: &str, place: Span, arguments: Vec<Syntax>) -> Syntax {
+    Syntax {
+        kind: SyntaxKind::Call {
+            function: function.to_owned(),
+            function_span: place,
+            arguments,
+        },
+        span: place,
+    }
+}
+
+fn two_vectors(
+    what: &str,
+    (left, left_place): (&Value, Span),
+    (right, right_place): (&Value, Span),
+    span: Span,
+) -> Diagnostic {
+    let finding = Diagnostic::error(format!("{what} takes two vectors of as many components"));
+    let help = match (left, right) {
+        (Value::Scalar(_), Value::Scalar(_)) => "the product of scalars is a*b",
+        _ => "take vectors on both sides, [x, y, z] or [x, y]",
+    };
+    finding
+        .at(span, "not of these")
+        .also(left_place, left.kind())
+        .also(right_place, right.kind())
+        .help(help)
+}
+
+fn usage(function: &str, arguments: &[Syntax], span: Span) -> Diagnostic {
+    let written = match function {
+        "cross" => "cross(a, b)",
+        "norm" => "norm(v)",
+        "transpose" => "transpose(R)",
+        "rotation" => "rotation(AXIS, ANGLE), or rotation(ANGLE) in the plane",
+        _ => "one angle, as rotation_z(q)",
+    };
+    let count = arguments.len();
+    let plural = if count == 1 { "" } else { "s" };
+    Diagnostic::error(format!(
+        "`{function}` does not take {count} argument{plural}"
+    ))
+    .at(span, "here")
+    .help(format!("write {written}"))
+}

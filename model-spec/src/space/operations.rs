@@ -1,0 +1,188 @@
+//! Sums, products and quotients of scalars, vectors and rotations.
+
+use super::expression::{Read, Reader};
+use super::scalar::{add, multiply, negate};
+use super::value::Value;
+use super::vector::{Vector, scaled, sum};
+use crate::ast::{BinaryOperator, Syntax, SyntaxKind};
+use crate::diagnostic::Diagnostic;
+use crate::span::Span;
+
+/// An operand and where it stands.
+type Operand = (Value, Span);
+
+impl Reader<'_> {
+    /// What two operands make.
+    pub(super) fn binary(
+        &mut self,
+        operator: BinaryOperator,
+        left: Operand,
+        right: Operand,
+        span: Span,
+    ) -> Read {
+        match (left.0, right.0) {
+            (Value::Scalar(left), Value::Scalar(right)) => {
+                let kind = SyntaxKind::Binary(operator, Box::new(left), Box::new(right));
+                Ok(Value::Scalar(Syntax { kind, span }))
+            }
+            (one, other) => {
+                let (left, right) = ((one, left.1), (other, right.1));
+                let made = match operator {
+                    BinaryOperator::Add => self.sum(left, right, false)?,
+                    BinaryOperator::Subtract => self.sum(left, right, true)?,
+                    BinaryOperator::Multiply => self.product(left, right, span)?,
+                    BinaryOperator::Divide => self.quotient(left, right)?,
+                    BinaryOperator::Power => return Err(power(&left, &right)),
+                };
+                Ok(standing(made, span))
+            }
+        }
+    }
+
+    fn sum(&mut self, left: Operand, right: Operand, minus: bool) -> Read {
+        match (left, right) {
+            ((Value::Vector(a, one), _), (Value::Vector(b, other), _)) if one == other => {
+                let b = match minus {
+                    true => b.map(negate),
+                    false => b,
+                };
+                let total = sum(a, b);
+                self.alike(&total);
+                Ok(Value::Vector(total, one))
+            }
+            (left, right) => Err(mixed(&left, &right)),
+        }
+    }
+
+    fn product(&mut self, left: Operand, right: Operand, span: Span) -> Read {
+        match (left, right) {
+            ((Value::Scalar(by), _), (Value::Vector(vector, dimensions), _))
+            | ((Value::Vector(vector, dimensions), _), (Value::Scalar(by), _)) => {
+                let by = self.named(by)?;
+                Ok(Value::Vector(scaled(&vector, &by), dimensions))
+            }
+            ((Value::Rotation(mut first, one), _), (Value::Rotation(then, other), _))
+                if one == other =>
+            {
+                first.extend(then);
+                Ok(Value::Rotation(first, one))
+            }
+            ((Value::Rotation(factors, one), _), (Value::Vector(vector, other), _))
+                if one == other =>
+            {
+                Ok(Value::Vector(self.rotated(&factors, vector)?, one))
+            }
+            (left @ (Value::Vector(..), _), right @ (Value::Vector(..), _)) => {
+                Err(Diagnostic::error("which product of two vectors?")
+                    .at(span, "`*` is of scalars")
+                    .also(left.1, left.0.kind())
+                    .also(right.1, right.0.kind())
+                    .help("write dot(a, b) for the scalar product, cross(a, b) for the vector product"))
+            }
+            (left @ (Value::Vector(..), _), right @ (Value::Rotation(..), _)) => {
+                Err(mismatch(&left, &right)
+                    .help("a rotation stands before the vector that it turns: R*v"))
+            }
+            (left, right) => Err(mismatch(&left, &right)
+                .help("a rotation turns a vector, R*v, or another rotation, R*S")),
+        }
+    }
+
+    fn quotient(&mut self, left: Operand, right: Operand) -> Read {
+        match (left, right) {
+            ((Value::Vector(vector, dimensions), _), (Value::Scalar(by), span)) => {
+                let by = self.named(by)?;
+                let divided = vector.map(|component| divided(component, &by, span));
+                Ok(Value::Vector(divided, dimensions))
+            }
+            (left, right) => {
+                Err(mismatch(&left, &right).help("a vector is divided by a scalar: v/m"))
+            }
+        }
+    }
+
+    /// The vector turned by all factors, the last first.
+    pub(super) fn rotated(
+        &mut self,
+        factors: &[super::rotation::Factor],
+        vector: Vector,
+    ) -> Result<Vector, Diagnostic> {
+        let mut turned = vector;
+        for factor in factors.iter().rev() {
+            turned = factor.turn(&turned, &mut |value| self.named(value))?;
+        }
+        Ok(turned)
+    }
+}
+
+/// What was made stands where the operation is written.
+pub fn standing(value: Value, span: Span) -> Value {
+    let here = |component: Syntax| Syntax { span, ..component };
+    match value {
+        Value::Scalar(scalar) => Value::Scalar(here(scalar)),
+        Value::Vector(vector, dimensions) => Value::Vector(vector.map(here), dimensions),
+        rotation => rotation,
+    }
+}
+
+fn divided(component: Syntax, by: &Syntax, span: Span) -> Syntax {
+    if super::scalar::is(&component, 0.0) {
+        return component;
+    }
+    let kind = SyntaxKind::Binary(
+        BinaryOperator::Divide,
+        Box::new(component),
+        Box::new(by.clone()),
+    );
+    Syntax { kind, span }
+}
+
+/// The finding that these cannot be added.
+pub fn mixed(left: &Operand, right: &Operand) -> Diagnostic {
+    let message = format!("{} and {} cannot be added", left.0.kind(), right.0.kind());
+    let help = match (&left.0, &right.0) {
+        (Value::Vector(..), Value::Vector(..)) => {
+            "both have 2 components or both have 3: write [x, y, 0]"
+        }
+        (Value::Rotation(..), _) | (_, Value::Rotation(..)) => "rotations are multiplied: R*S",
+        _ => "write the scalar as a vector, such as [x, 0, 0], or take a component, v.x",
+    };
+    Diagnostic::error(message)
+        .at(right.1, format!("this is {}", right.0.kind()))
+        .also(left.1, left.0.kind())
+        .help(help)
+}
+
+fn mismatch(left: &Operand, right: &Operand) -> Diagnostic {
+    let message = format!(
+        "{} and {} do not go together here",
+        left.0.kind(),
+        right.0.kind()
+    );
+    Diagnostic::error(message)
+        .at(right.1, format!("this is {}", right.0.kind()))
+        .also(left.1, left.0.kind())
+}
+
+fn power(left: &Operand, right: &Operand) -> Diagnostic {
+    let (value, place) = match &left.0 {
+        Value::Scalar(_) => right,
+        _ => left,
+    };
+    Diagnostic::error(format!("{} in a power", value.kind()))
+        .at(*place, "a power is of scalars")
+        .help("the square of a vector is dot(v, v), its length norm(v)")
+}
+
+/// `a_x b_x + ...`, with a square where both are the same name.
+pub fn scalar_product([ax, ay, az]: Vector, [bx, by, bz]: Vector) -> Syntax {
+    let product = |a: Syntax, b: Syntax| match a.kind == b.kind && is_name(&a) {
+        true => super::scalar::square(a),
+        false => multiply(a, b),
+    };
+    add(add(product(ax, bx), product(ay, by)), product(az, bz))
+}
+
+fn is_name(syntax: &Syntax) -> bool {
+    matches!(syntax.kind, SyntaxKind::Name(_))
+}

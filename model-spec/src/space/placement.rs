@@ -1,0 +1,127 @@
+//! Where frames are, along the fixed axes: the directions of their axes, the positions of their
+//! origins and how these move. Worked out for frames that are asked, and for those they stand in.
+
+use std::collections::HashMap;
+
+use super::definitions::Definitions;
+use super::frames::{Frame, Frames, stems};
+use super::scalar::{add, number};
+use super::vector::{AXES, Rows, Vector, turned, zero};
+use crate::span::Span;
+
+/// What was worked out so far.
+#[derive(Default)]
+pub struct Placements {
+    rows: HashMap<String, Rows>,
+    origins: HashMap<String, Vector>,
+    motions: HashMap<(String, &'static str), Vector>,
+}
+
+/// The rows of the fixed axes themselves.
+fn identity(span: Span) -> Rows {
+    [0, 1, 2].map(|axis| {
+        let mut row = zero(span);
+        row[axis] = number(1.0, span);
+        row
+    })
+}
+
+impl Placements {
+    /// The directions of a frame's axes.
+    pub fn rows(&mut self, frame: &Frame, frames: &Frames, definitions: &mut Definitions) -> Rows {
+        let owner = &frame.owner;
+        if let Some(rows) = self.rows.get(&owner.name.text) {
+            return rows.clone();
+        }
+        let mut rows = self.parent_rows(frame, frames, definitions);
+        for (turn, stem) in frame.turns.iter().zip(stems(frame.turns.len())) {
+            rows = rows.map(|row| turn.of(&row));
+            for (row, fixed) in rows.iter_mut().zip(AXES) {
+                for (element, own) in row.iter_mut().zip(AXES) {
+                    // The frame's axis has components along the fixed axes.
+                    let what = format!("{stem}{own}_{fixed}");
+                    *element = definitions.named(owner, &what, element.clone());
+                }
+            }
+        }
+        self.rows.insert(owner.name.text.clone(), rows.clone());
+        rows
+    }
+
+    /// The position of a frame's origin, in m.
+    pub fn origin(
+        &mut self,
+        frame: &Frame,
+        frames: &Frames,
+        definitions: &mut Definitions,
+    ) -> Vector {
+        let owner = &frame.owner;
+        if let Some(origin) = self.origins.get(&owner.name.text) {
+            return origin.clone();
+        }
+        let parent = frame.parent.as_deref().and_then(|name| frames.named(name));
+        let before = match parent {
+            Some(parent) => self.origin(parent, frames, definitions),
+            None => zero(owner.name.span),
+        };
+        let rows = self.parent_rows(frame, frames, definitions);
+        let [x, y, z] = turned(&rows, &frame.origin);
+        let [bx, by, bz] = before;
+        let origin = [add(bx, x), add(by, y), add(bz, z)];
+        let origin = definitions.name_each(owner, "origin", origin);
+        self.origins.insert(owner.name.text.clone(), origin.clone());
+        origin
+    }
+
+    /// The velocity of a frame's origin, in m/s.
+    pub fn velocity(
+        &mut self,
+        frame: &Frame,
+        frames: &Frames,
+        definitions: &mut Definitions,
+    ) -> Vector {
+        let own = &frame.motion.velocity;
+        self.motion("velocity", own, frame, frames, definitions)
+    }
+
+    /// The angular velocity of a frame, in 1/s.
+    pub fn angular_velocity(
+        &mut self,
+        frame: &Frame,
+        frames: &Frames,
+        definitions: &mut Definitions,
+    ) -> Vector {
+        let own = &frame.motion.omega;
+        self.motion("angular_velocity", own, frame, frames, definitions)
+    }
+
+    fn motion(
+        &mut self,
+        what: &'static str,
+        own: &Vector,
+        frame: &Frame,
+        frames: &Frames,
+        definitions: &mut Definitions,
+    ) -> Vector {
+        let key = (frame.owner.name.text.clone(), what);
+        if let Some(known) = self.motions.get(&key) {
+            return known.clone();
+        }
+        let rows = self.rows(frame, frames, definitions);
+        let motion = definitions.name_each(&frame.owner, what, turned(&rows, own));
+        self.motions.insert(key, motion.clone());
+        motion
+    }
+
+    fn parent_rows(
+        &mut self,
+        frame: &Frame,
+        frames: &Frames,
+        definitions: &mut Definitions,
+    ) -> Rows {
+        match frame.parent.as_deref().and_then(|name| frames.named(name)) {
+            Some(parent) => self.rows(parent, frames, definitions),
+            None => identity(frame.owner.name.span),
+        }
+    }
+}

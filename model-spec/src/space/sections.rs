@@ -1,0 +1,280 @@
+//! A specification section by section: definitions and frames in their order, then all that uses
+//! them.
+
+use std::collections::HashSet;
+
+use super::definitions::{Definitions, Owner, is_plain};
+use super::demands::{Demands, UnitDemand};
+use super::expression::Reader;
+use super::frames::Frames;
+use super::known::{Space, is_spatial};
+use super::placement::Placements;
+use super::references::{Entry, Expressions, FrameExpressions, in_order};
+use super::rotation::{Turn, turns};
+use super::scalar::{expansion, name, number};
+use super::value::{Dimensions, Value};
+use super::vector::{AXES, Vector};
+use super::{bodies, terms};
+use crate::ast::{Syntax, SyntaxKind};
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::dimension::Dimension;
+use crate::raw::{Document, RawFrame, RawTerm};
+use crate::table::{Name, Quantity};
+
+/// Whether a specification has vectors, frames or bodies.
+pub fn are_spatial(document: &Document) -> bool {
+    let has_frames = !document.frames.is_empty() || !document.bodies.is_empty();
+    // What cannot be read is reported where names are looked up.
+    let mut read = quantities(document).filter_map(|quantity| quantity.syntax().ok());
+    has_frames || document.gravity.is_some() || read.any(|syntax| is_spatial(&syntax))
+}
+
+/// The expressions that may hold vectors.
+fn quantities(document: &Document) -> impl Iterator<Item = &Quantity> {
+    let terms = document.definitions.iter().chain(&document.kinetic);
+    let terms = terms
+        .chain(&document.potential)
+        .chain(&document.dissipation);
+    let terms = terms.chain(&document.constraints);
+    let terms = terms.chain(document.impacts.iter().map(|(term, _)| term));
+    let terms = terms.chain(document.observables.iter().map(|(term, _)| term));
+    let forces = document.forces.iter();
+    let forces = forces.flat_map(|(term, on)| [&term.value, on]);
+    let rates = document.states.iter().map(|state| &state.rate);
+    terms.map(|term| &term.value).chain(forces).chain(rates)
+}
+
+/// Replaces all vectors, frames and bodies; none where definitions cannot be put in order.
+pub fn expand(document: &mut Document, found: &mut Diagnostics) -> Option<Demands> {
+    let expressions = Expressions::read(document, found)?;
+    let order = in_order(document, &expressions, found)?;
+    let mentioned = mentioned(document);
+    let mut space = Space {
+        vectors: Default::default(),
+        frames: Frames::under(None, document.name.span),
+        frame_names: document
+            .frames
+            .iter()
+            .map(|f| f.name.text.clone())
+            .collect(),
+        placements: Placements::default(),
+        definitions: Definitions::of(document),
+        demands: Demands::default(),
+        reported: HashSet::new(),
+        broken: HashSet::new(),
+    };
+    if let Some(gravity) = document.gravity.take() {
+        let owner = Owner::new(&document.name, "");
+        let span = document.name.span;
+        let written = Quantity::Listed(gravity, span);
+        let dimension = Dimension::of([0, 1, -2, 0]);
+        let along = Reader::new(&mut space, &owner).demanded(&written, "gravity", dimension);
+        space.frames = Frames::under(Some(found.keep(along)?), span);
+    }
+    let mut replaced: Vec<Vec<RawTerm>> = Vec::new();
+    replaced.resize_with(document.definitions.len(), Vec::new);
+    let mut raw: Vec<Option<RawTerm>> = document.definitions.drain(..).map(Some).collect();
+    for entry in order {
+        if found.is_full() {
+            return None;
+        }
+        match entry {
+            Entry::Definition(index) => {
+                if let Some(term) = raw[index].take() {
+                    let syntax = &expressions.definitions[index];
+                    replaced[index] = definition(&mut space, document, term, syntax, found);
+                }
+            }
+            Entry::Frame(index) => {
+                let own = &expressions.frames[index];
+                frame(&mut space, &document.frames[index], own, found);
+            }
+        }
+    }
+    document.definitions = replaced.into_iter().flatten().collect();
+    terms::expand(document, &mut space, found);
+    if found.is_empty() {
+        bodies::expand(document, &mut space, found);
+    }
+    document.frames.clear();
+    document.definitions.extend(space.definitions.take());
+    let is_unused = |vector: &&Name| {
+        let component = |axis: &&str| mentioned.contains(&format!("{}_{axis}", vector.text));
+        !mentioned.contains(&vector.text) && !AXES.iter().any(component)
+    };
+    space.demands.unused = document.vectors.iter().filter(is_unused).cloned().collect();
+    Some(space.demands)
+}
+
+/// All names that expressions hold.
+fn mentioned(document: &Document) -> HashSet<String> {
+    let mut names = HashSet::new();
+    let frames = document.frames.iter();
+    let frames = frames.filter_map(|frame| frame.origin.as_ref());
+    let angles = document.frames.iter().filter_map(|f| f.rotation.as_ref());
+    let centres = document.bodies.iter().filter_map(|b| b.centre.as_ref());
+    let quantities = quantities(document).chain(frames).chain(centres);
+    let read = quantities.filter_map(|quantity| quantity.syntax().ok());
+    for syntax in read.chain(angles.filter_map(|angle| angle.syntax().ok())) {
+        syntax.visit(&mut |part| {
+            if let SyntaxKind::Name(name) = &part.kind {
+                names.insert(name.clone());
+            }
+        });
+    }
+    names
+}
+
+/// The definitions of scalars that stand for a definition.
+fn definition(
+    space: &mut Space,
+    document: &mut Document,
+    term: RawTerm,
+    syntax: &Syntax,
+    found: &mut Diagnostics,
+) -> Vec<RawTerm> {
+    let name = &term.name.text;
+    if space.is_broken(syntax) {
+        space.broken.insert(name.clone());
+        return vec![];
+    }
+    if !space.touches(syntax) {
+        space.definitions.moving.learn(name, syntax);
+        return vec![term];
+    }
+    let owner = Owner::new(&term.name, &term.doc);
+    let read = Reader::new(space, &owner).value(syntax);
+    let Some(value) = found.keep(read) else {
+        space.broken.insert(name.clone());
+        return vec![];
+    };
+    let (vector, dimensions) = match value {
+        Value::Scalar(scalar) => {
+            space.definitions.moving.learn(name, &scalar);
+            let value = expansion(scalar);
+            return vec![RawTerm { value, ..term }];
+        }
+        Value::Vector(vector, dimensions) => (vector, dimensions),
+        rotation => {
+            document.vectors.push(term.name.clone());
+            space.vectors.insert(name.clone(), rotation);
+            return vec![];
+        }
+    };
+    if let Some(frame) = document.frames.iter().find(|f| f.name.text == *name) {
+        found.push(
+            Diagnostic::error(format!("the name `{name}` is taken"))
+                .at(term.name.span, "a frame has it, and both have members")
+                .also(frame.name.span, "here")
+                .help("choose another name"),
+        );
+    }
+    document.vectors.push(term.name.clone());
+    let (written, vector) = by_components(space, &term, vector, dimensions);
+    space
+        .vectors
+        .insert(name.clone(), Value::Vector(vector, dimensions));
+    written
+}
+
+/// The definitions of a vector's components, and the vector by their names.
+fn by_components(
+    space: &mut Space,
+    term: &RawTerm,
+    vector: Vector,
+    dimensions: Dimensions,
+) -> (Vec<RawTerm>, Vector) {
+    let mut written = Vec::with_capacity(3);
+    let mut axes = AXES.into_iter();
+    let vector = vector.map(|component| {
+        let axis = axes.next().unwrap_or_default();
+        if written.len() == dimensions.count() {
+            return component;
+        }
+        let text = format!("{}_{axis}", term.name.text);
+        space.definitions.moving.learn(&text, &component);
+        let by_name = match is_plain(&component) {
+            true => component.clone(),
+            false => name(&text, component.span),
+        };
+        written.push(RawTerm {
+            name: Name {
+                text,
+                span: term.name.span,
+            },
+            value: expansion(component),
+            doc: term.doc.clone(),
+            origin: term.origin.clone(),
+        });
+        by_name
+    });
+    (written, vector)
+}
+
+/// Places a frame; a mistake in it is reported.
+fn frame(
+    space: &mut Space,
+    raw: &RawFrame,
+    expressions: &FrameExpressions,
+    found: &mut Diagnostics,
+) {
+    let name = &raw.name.text;
+    let broken = |space: &Space, syntax: &Option<Syntax>| {
+        syntax
+            .as_ref()
+            .is_some_and(|syntax| space.is_broken(syntax))
+    };
+    let parent = raw.parent.as_ref().map(|parent| parent.text.as_str());
+    if parent.is_some_and(|parent| space.frames.named(parent).is_none())
+        || broken(space, &expressions.origin)
+        || broken(space, &expressions.rotation)
+    {
+        space.broken.insert(name.clone());
+        return;
+    }
+    let owner = Owner::new(&raw.name, &raw.doc);
+    let placed = placement(space, &owner, raw, expressions);
+    let placed = placed.and_then(|placed| {
+        let Space {
+            frames,
+            definitions,
+            ..
+        } = space;
+        frames.place(owner, parent, placed, definitions)
+    });
+    if found.keep(placed).is_none() {
+        space.broken.insert(name.clone());
+    }
+}
+
+fn placement(
+    space: &mut Space,
+    owner: &Owner,
+    raw: &RawFrame,
+    expressions: &FrameExpressions,
+) -> Result<(Vector, Vec<Turn>), Diagnostic> {
+    let name = &raw.name;
+    let origin = match &raw.origin {
+        Some(origin) => {
+            let subject = format!("the origin of `{}`", name.text);
+            Reader::new(space, owner).demanded(origin, &subject, Dimension::LENGTH)?
+        }
+        None => [0, 1, 2].map(|_| number(0.0, name.span)),
+    };
+    let mut list = match &expressions.rotation {
+        Some(rotation) => turns(rotation)?,
+        None => Vec::new(),
+    };
+    for turn in &mut list {
+        let written = expansion(turn.angle.clone());
+        let mut reader = Reader::new(space, owner);
+        let subject = format!("an angle of `{}`", name.text);
+        turn.angle = reader.scalar(&written, &subject, "an angle is a scalar")?;
+        space.demands.units.push(UnitDemand {
+            value: expansion(turn.angle.clone()),
+            dimension: Dimension::NONE,
+            subject,
+        });
+    }
+    Ok((origin, list))
+}

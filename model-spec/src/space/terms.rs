@@ -1,0 +1,293 @@
+//! Energies, forces, constraints and observables with vectors in them, by their components.
+
+use super::definitions::Owner;
+use super::expression::Reader;
+use super::known::Space;
+use super::scalar::{expansion, half, is, name, number, placed};
+use super::value::{Dimensions, Value};
+use super::vector::{AXES, Vector, cross};
+use crate::ast::Syntax;
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::model::{MULTIPLIER, RESIDUAL};
+use crate::raw::{Document, RawTerm};
+use crate::span::Span;
+use crate::table::{Name, Quantity};
+
+/// Replaces what holds vectors in all sections but definitions and frames.
+pub fn expand(document: &mut Document, space: &mut Space, found: &mut Diagnostics) {
+    let product = "an energy is a scalar: for example 1/2*m*dot(v, v)";
+    for (terms, subject) in [
+        (&mut document.kinetic, "this term of the kinetic energy"),
+        (&mut document.potential, "this term of the potential energy"),
+        (&mut document.dissipation, "this term of the dissipation"),
+    ] {
+        for term in terms {
+            let owner = Owner::new(&term.name, &term.doc);
+            scalar(space, &owner, &mut term.value, (subject, product), found);
+        }
+    }
+    for state in &mut document.states {
+        let owner = Owner::new(&state.name, &state.doc);
+        let subject = format!("the rate of `{}`", state.name.text);
+        let help = "a state is a scalar: take a component, v.x";
+        scalar(space, &owner, &mut state.rate, (&subject, help), found);
+    }
+    for (impact, _) in &mut document.impacts {
+        let owner = Owner::new(&impact.name, &impact.doc);
+        let help = "a distance is a scalar: for example dot(n, r), or norm(r)";
+        scalar(
+            space,
+            &owner,
+            &mut impact.value,
+            ("this distance", help),
+            found,
+        );
+    }
+    let forces = std::mem::take(&mut document.forces);
+    for force in forces {
+        document.forces.extend(self::forces(space, force, found));
+    }
+    let constraints = std::mem::take(&mut document.constraints);
+    for constraint in constraints {
+        let expanded = self::constraints(space, constraint, found);
+        document.constraints.extend(expanded);
+    }
+    for prefix in [MULTIPLIER, RESIDUAL] {
+        let constraints = document.constraints.iter();
+        let names = constraints.map(|constraint| format!("{prefix}{}", constraint.name.text));
+        space.reported.extend(names);
+    }
+    let observables = std::mem::take(&mut document.observables);
+    for (term, unit) in observables {
+        let terms = self::observables(space, term, found);
+        document
+            .observables
+            .extend(terms.into_iter().map(|term| (term, unit.clone())));
+    }
+}
+
+/// The worth of an expression with vectors in it; none where it holds none or is wrong.
+fn read(
+    space: &mut Space,
+    owner: &Owner,
+    quantity: &Quantity,
+    found: &mut Diagnostics,
+) -> Option<Value> {
+    let syntax = touched(space, quantity)?;
+    found.keep(Reader::new(space, owner).value(&syntax))
+}
+
+/// The expression, if it holds vectors and nothing in it is wrong already.
+fn touched(space: &Space, quantity: &Quantity) -> Option<Syntax> {
+    // What cannot be read is reported where names are looked up.
+    let syntax = quantity.syntax().ok()?;
+    (space.touches(&syntax) && !space.is_broken(&syntax)).then_some(syntax)
+}
+
+fn scalar(
+    space: &mut Space,
+    owner: &Owner,
+    quantity: &mut Quantity,
+    (subject, help): (&str, &str),
+    found: &mut Diagnostics,
+) {
+    if touched(space, quantity).is_none() {
+        return;
+    }
+    let read = Reader::new(space, owner).scalar(quantity, subject, help);
+    if let Some(scalar) = found.keep(read) {
+        *quantity = expansion(scalar);
+    }
+}
+
+/// A component of a term.
+fn component(term: &RawTerm, axis: &str, value: Syntax) -> RawTerm {
+    RawTerm {
+        name: Name {
+            text: format!("{}_{axis}", term.name.text),
+            span: term.name.span,
+        },
+        value: expansion(value),
+        doc: term.doc.clone(),
+        origin: term.origin.clone(),
+    }
+}
+
+fn of_components(term: &RawTerm, vector: Vector, dimensions: Dimensions) -> Vec<RawTerm> {
+    let components = vector.into_iter().zip(AXES).take(dimensions.count());
+    components
+        .map(|(value, axis)| component(term, axis, value))
+        .collect()
+}
+
+/// Observables of a vector are its components: three columns.
+fn observables(space: &mut Space, term: RawTerm, found: &mut Diagnostics) -> Vec<RawTerm> {
+    let owner = Owner::new(&term.name, &term.doc);
+    let place = term.value.span();
+    match read(space, &owner, &term.value, found) {
+        None => vec![term],
+        Some(Value::Scalar(value)) => {
+            let value = expansion(value);
+            vec![RawTerm { value, ..term }]
+        }
+        Some(Value::Vector(vector, dimensions)) => of_components(&term, vector, dimensions),
+        Some(Value::Rotation(..)) => {
+            found.push(
+                Diagnostic::error("an observable is a scalar or a vector")
+                    .at(place, "this is a rotation")
+                    .help("report what it makes of a vector, R*v, or an axis of a frame, FRAME.x"),
+            );
+            vec![]
+        }
+    }
+}
+
+/// Constraints of a vector are those of its components; what is 0 as it is written constrains nothing.
+fn constraints(space: &mut Space, term: RawTerm, found: &mut Diagnostics) -> Vec<RawTerm> {
+    let owner = Owner::new(&term.name, &term.doc);
+    let place = term.value.span();
+    match read(space, &owner, &term.value, found) {
+        None => vec![term],
+        Some(Value::Scalar(value)) => {
+            let value = expansion(value);
+            vec![RawTerm { value, ..term }]
+        }
+        Some(Value::Vector(vector, dimensions)) => {
+            for prefix in [MULTIPLIER, RESIDUAL] {
+                let reported = format!("{prefix}{}", term.name.text);
+                let mut axes = AXES.into_iter();
+                let components = vector.each_ref().map(|component| {
+                    let axis = axes.next().unwrap_or_default();
+                    match is(component, 0.0) {
+                        true => component.clone(),
+                        false => name(&format!("{reported}_{axis}"), place),
+                    }
+                });
+                let value = Value::Vector(components, dimensions);
+                space.vectors.insert(reported, value);
+            }
+            let mut terms = of_components(&term, vector.clone(), dimensions);
+            let mut components = vector.iter();
+            terms.retain(|_| components.next().is_none_or(|c| !is(c, 0.0)));
+            if terms.is_empty() {
+                found.push(
+                    Diagnostic::error(format!("the constraint `{}` holds nothing", term.name.text))
+                        .at(place, "this is 0 whatever moves"),
+                );
+            }
+            terms
+        }
+        Some(Value::Rotation(..)) => {
+            found.push(
+                Diagnostic::error("a rotation is not zero")
+                    .at(place, "this is a rotation")
+                    .help("axes stay along each other by products: dot(A.x, B.y) and so on"),
+            );
+            vec![]
+        }
+    }
+}
+
+type Force = (RawTerm, Quantity);
+
+/// A force vector at a point does the work of its components; a torque that of forces on the
+/// ends of axes.
+fn forces(space: &mut Space, (term, on): Force, found: &mut Diagnostics) -> Vec<Force> {
+    let owner = Owner::new(&term.name, &term.doc);
+    if touched(space, &term.value).is_none() && touched(space, &on).is_none() {
+        return vec![(term, on)];
+    }
+    let (place, on_place) = (term.value.span(), on.span());
+    let mut value_of = |quantity: &Quantity| {
+        let syntax = quantity.syntax().ok()?;
+        match space.is_broken(&syntax) {
+            true => None,
+            false => found.keep(Reader::new(space, &owner).value(&syntax)),
+        }
+    };
+    let (Some(value), Some(on)) = (value_of(&term.value), value_of(&on)) else {
+        return vec![];
+    };
+    match (value, on) {
+        (Value::Scalar(value), Value::Scalar(on)) => {
+            let value = expansion(value);
+            vec![(RawTerm { value, ..term }, expansion(on))]
+        }
+        (Value::Vector(value, one), Value::Vector(on, other)) if one == other => {
+            let forces = of_components(&term, value, one).into_iter().zip(on);
+            moving(space, forces.collect())
+        }
+        (Value::Vector(torque, Dimensions::Three), Value::Rotation(factors, Dimensions::Three)) => {
+            let made = torques(space, &owner, &term, torque, &factors, on_place);
+            let forces = found.keep(made).unwrap_or_default();
+            moving(space, forces)
+        }
+        (value, on) => {
+            found.push(work(&value, place, &on, on_place));
+            vec![]
+        }
+    }
+}
+
+/// Forces on what moves; the first if nothing does, which is refused later.
+fn moving(space: &Space, mut forces: Vec<(RawTerm, Syntax)>) -> Vec<Force> {
+    let moves = |(_, on): &&(RawTerm, Syntax)| space.definitions.moving.holds(on);
+    if forces.iter().any(|force| moves(&force)) {
+        forces.retain(|force| moves(&force));
+    } else {
+        forces.truncate(1);
+    }
+    let kept = forces.into_iter();
+    kept.map(|(term, on)| (term, expansion(on))).collect()
+}
+
+/// The torque t on axes e_k that turn by a small angle d: their ends move by d x e_k, and the sum of
+/// 1/2 (t x e_k).(d x e_k) over three axes is t.d.
+fn torques(
+    space: &mut Space,
+    owner: &Owner,
+    term: &RawTerm,
+    torque: Vector,
+    factors: &[super::rotation::Factor],
+    place: Span,
+) -> Result<Vec<(RawTerm, Syntax)>, Diagnostic> {
+    let mut reader = Reader::new(space, owner);
+    let torque = reader.name_each(torque)?;
+    let halves = reader.name_each(torque.map(half))?;
+    // What is wrong with the torque is said where it is written.
+    let value_span = term.value.span();
+    let mut forces = Vec::with_capacity(9);
+    for (axis, own) in AXES.into_iter().enumerate() {
+        let mut unit = [0, 1, 2].map(|_| number(0.0, place));
+        unit[axis] = number(1.0, place);
+        let end = reader.rotated(factors, unit)?;
+        let end = reader.name_each(end)?;
+        for ((value, on), along) in cross(&halves, &end).into_iter().zip(end).zip(AXES) {
+            let value = Syntax {
+                span: value_span,
+                ..value
+            };
+            let on = placed(on, place);
+            forces.push((component(term, &format!("{own}_{along}"), value), on));
+        }
+    }
+    Ok(forces)
+}
+
+fn work(value: &Value, place: Span, on: &Value, on_place: Span) -> Diagnostic {
+    let message = format!("{} does no work on {}", value.kind(), on.kind());
+    let help = match (value, on) {
+        (Value::Scalar(_), Value::Vector(..)) => "a force at a point is a vector: [F_x, F_y, F_z]",
+        (Value::Vector(..), Value::Scalar(_)) => {
+            "a force vector works on the point where it acts, such as on = \"FRAME.origin\""
+        }
+        (Value::Scalar(_), Value::Rotation(..)) => {
+            "a torque on a frame is a vector: [M_x, M_y, M_z]"
+        }
+        _ => "both have 2 components or both have 3",
+    };
+    Diagnostic::error(message)
+        .at(place, format!("this is {}", value.kind()))
+        .also(on_place, format!("on {}", on.kind()))
+        .help(help)
+}

@@ -1,0 +1,150 @@
+//! The mesh and the arm's end once per forcing period over the backlash: where points lie on each other the motion has
+//! the forcing's period, where they scatter it has none.
+
+use std::f64::consts::PI;
+
+use eomgen_plot::{Axes, Drawn, Frame, Panel, Series};
+use rayon::prelude::*;
+
+use super::arm::{Arm, Case, Undisclosed};
+use super::error::StudyError;
+use super::figures::{Heading, figure as drawn};
+use super::report::{Columns, Figure};
+use super::run::Run;
+use super::series::Record;
+
+/// Backlashes in um, from 0 on, one after the other.
+const MICROMETRES: std::ops::RangeInclusive<u32> = 0..=100;
+/// Forcing periods that are waited, and those that are shown.
+const WAITED: usize = 160;
+const SHOWN: usize = 80;
+
+/// Stroboscopic points over the backlash; one entry in each list per point.
+#[derive(Clone, Debug)]
+pub(super) struct Bifurcation {
+    /// The modal truncation order.
+    order: usize,
+    omega: f64,
+    /// Half the backlash of both meshes, m.
+    b: Vec<f64>,
+    x_sp: Vec<f64>,
+    /// How far x_sp is beyond the flank it drives with, m.
+    beyond: Vec<f64>,
+    dr: Vec<f64>,
+}
+
+impl Bifurcation {
+    /// Runs every backlash from rest at zero.
+    pub fn of(arm: &Arm, order: usize, omega: f64) -> Result<Self, StudyError> {
+        let sections = MICROMETRES.into_par_iter().map(|micrometres| {
+            let case = Case {
+                order,
+                backlash: f64::from(micrometres) * 1e-6,
+                omega,
+                undisclosed: Undisclosed::ASSUMED,
+            };
+            let mut propagator = arm.propagator(&case)?;
+            let mut run = Run::start(&mut propagator, &case, WAITED, 1)?;
+            run.extend(&mut propagator, SHOWN)?;
+            let record = Record::of(&run.times, &run.states, &arm.lengths(&case));
+            Ok((case.backlash, record))
+        });
+        let sections = sections.collect::<Result<Vec<_>, StudyError>>()?;
+        let mut found = Self {
+            order,
+            omega,
+            b: Vec::new(),
+            x_sp: Vec::new(),
+            beyond: Vec::new(),
+            dr: Vec::new(),
+        };
+        for (b, record) in sections {
+            found.b.extend(std::iter::repeat_n(b, record.x_sp.len()));
+            found.beyond.extend(record.x_sp.iter().map(|x_sp| x_sp - b));
+            found.x_sp.extend(record.x_sp);
+            found.dr.extend(record.dr);
+        }
+        Ok(found)
+    }
+
+    /// The points as data.
+    pub fn table(&self) -> Columns {
+        let column = |name: &str, values: &[f64]| (name.to_owned(), values.to_vec());
+        let multiple = (self.omega / PI).round();
+        Columns {
+            file: format!("bifurcation_w{multiple:02}pi_s{}.parquet", self.order),
+            columns: vec![
+                column("b", &self.b),
+                column("x_sp", &self.x_sp),
+                column("dr", &self.dr),
+            ],
+        }
+    }
+
+    fn arm(&self) -> String {
+        match self.order {
+            0 => "rigid arm".to_owned(),
+            order => format!("S = {order}"),
+        }
+    }
+
+    /// What is beyond the flank, over b.
+    fn mesh(&self, letter: &str) -> Frame<'_> {
+        let title = format!(
+            "{letter} mesh, {}, ω = {:.0}π rad/s",
+            self.arm(),
+            self.omega / PI
+        );
+        frame(title, "x_sp − b", &self.b, &self.beyond)
+    }
+
+    fn deflection(&self, letter: &str) -> Frame<'_> {
+        frame(format!("{letter} arm's end"), "dr", &self.b, &self.dr)
+    }
+}
+
+fn frame<'a>(title: String, quantity: &str, b: &'a [f64], values: &'a [f64]) -> Frame<'a> {
+    Frame {
+        panel: Panel {
+            title,
+            quantity: quantity.to_owned(),
+            unit: "m".to_owned(),
+            series: vec![Series {
+                label: String::new(),
+                abscissa: b,
+                values,
+            }],
+            references: Vec::new(),
+        },
+        axes: Axes::Quantity {
+            symbol: "b",
+            unit: "m",
+        },
+        drawn: Drawn::Points,
+        ..Frame::default()
+    }
+}
+
+/// Draws one arm's mesh and deflection, or the meshes of two.
+pub(super) fn figure(found: &[Bifurcation]) -> Result<Figure, StudyError> {
+    let letters = ["(a)", "(b)"];
+    let meshes = found
+        .iter()
+        .zip(letters)
+        .map(|(of, letter)| of.mesh(letter));
+    let mut frames: Vec<Frame<'_>> = meshes.collect();
+    if let [only] = found {
+        frames.push(only.deflection("(b)"));
+    }
+    let heading = Heading {
+        file: "bifurcation.svg".to_owned(),
+        paper: String::new(),
+        caption: format!(
+            "Bifurcation diagram over half the backlash b = 0 to 100 um in steps of 1 um: {SHOWN} forcing \
+             periods after {WAITED} from rest, each motion seen once per forcing period: x_sp less b, which is how far \
+             the mesh is beyond its flank, and dr; the modes from the \
+             second on are hardly damped and have not died away by then"
+        ),
+    };
+    drawn(heading, Vec::new(), frames)
+}

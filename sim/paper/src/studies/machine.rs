@@ -1,0 +1,214 @@
+//! A drawing of the machine with its signs: which way every angle, deflection and error is positive.
+//! Radii and the arm's length have the proportions of Table I; deflections are drawn much too large.
+
+use eomgen_plot::drawing::{Drawing, Look, Part, arc, drawing, on_circle};
+
+use super::report::Figure;
+
+/// The centre of the sun, px.
+const CENTRE: (f64, f64) = (200.0, 236.0);
+/// Pixels per mm.
+const SCALE: f64 = 0.86;
+/// The module in mm and half of it times the teeth of sun, planet and ring: the pitch circles.
+const HALF_MODULE: f64 = 1.5;
+const SUN: f64 = 27.0 * HALF_MODULE * SCALE;
+const PLANET: f64 = 36.0 * HALF_MODULE * SCALE;
+const RING: f64 = 99.0 * HALF_MODULE * SCALE;
+/// The arm's length.
+const LENGTH: f64 = 500.0 * SCALE;
+/// Where the planets stand, degrees.
+const PLANETS: [f64; 3] = [90.0, 210.0, 330.0];
+/// The carrier's angle and the one it would have without backlash, degrees.
+const CARRIER: f64 = 12.0;
+const AHEAD: f64 = 23.0;
+/// The deflection of the arm's end, px.
+const TIP: f64 = 40.0;
+const PRESSURE: f64 = 24.6;
+
+/// Draws it.
+pub(super) fn machine() -> Figure {
+    let caption = "The arm on its planetary reducer, every quantity drawn in its positive direction: angles theta_s, \
+                   theta_p and theta_c, mesh deflections x_sp and x_pr, the deflection w of the arm and that of its end, \
+                   tip (dr in the paper), the lag dtheta of the carrier, and the two positioning errors f_la and f_la_signed";
+    let parts = [gears(), meshes(), arm(), errors(), law(), formulas()];
+    Figure {
+        file: "machine.svg".to_owned(),
+        paper: String::new(),
+        caption: caption.to_owned(),
+        cases: Vec::new(),
+        svg: drawing(&Drawing {
+            title: caption.to_owned(),
+            size: (980.0, 640.0),
+            parts: parts.concat(),
+        }),
+    }
+}
+
+fn words(at: (f64, f64), side: i8, text: &str) -> Part {
+    Part::Words(at, side, text.to_owned())
+}
+
+fn circle(centre: (f64, f64), radius: f64) -> Part {
+    Part::Line(Look::Body, arc(centre, radius, (0.0, 360.0)))
+}
+
+/// Sun, planets, ring and carrier with their angles.
+fn gears() -> Vec<Part> {
+    let mut parts = vec![
+        circle(CENTRE, SUN),
+        circle(CENTRE, RING),
+        circle(CENTRE, RING + 10.0),
+    ];
+    for angle in PLANETS {
+        let centre = on_circle(CENTRE, SUN + PLANET, angle);
+        parts.extend([circle(centre, PLANET), circle(centre, 4.0)]);
+        parts.push(Part::Line(Look::Body, vec![CENTRE, centre]));
+    }
+    let planet = on_circle(CENTRE, SUN + PLANET, PLANETS[1]);
+    parts.extend([
+        Part::Arrow(Look::Measure, arc(CENTRE, 0.62 * SUN, (150.0, 400.0))),
+        words((CENTRE.0 - 13.0, CENTRE.1 + SUN + 15.0), -1, "theta_s"),
+        Part::Arrow(Look::Measure, arc(planet, 0.62 * PLANET, (240.0, -20.0))),
+        words((planet.0 - 6.0, planet.1 + 20.0), 0, "theta_p"),
+        words((CENTRE.0, CENTRE.1 - RING - 22.0), 0, "ring, fixed"),
+        words(
+            (CENTRE.0, CENTRE.1 + RING + 30.0),
+            0,
+            "sun inside, three planets on the carrier",
+        ),
+    ]);
+    parts
+}
+
+/// The lines of action at the two meshes of the upper planet, with what is ahead where a deflection is
+/// positive.
+fn meshes() -> Vec<Part> {
+    let (sun, ring) = (on_circle(CENTRE, SUN, 90.0), on_circle(CENTRE, RING, 90.0));
+    let along = |from: (f64, f64), angle: f64| {
+        vec![
+            on_circle(from, 6.0, angle + 180.0),
+            on_circle(from, 42.0, angle),
+        ]
+    };
+    vec![
+        // The sun's teeth go to the left there and push the planet.
+        Part::Arrow(Look::Measure, along(sun, 180.0 - PRESSURE)),
+        words((sun.0 - 48.0, sun.1 - 22.0), 1, "x_sp"),
+        // The planet's teeth go to the right there and push the ring.
+        Part::Arrow(Look::Measure, along(ring, -PRESSURE)),
+        words((ring.0 + 48.0, ring.1 + 26.0), -1, "x_pr"),
+    ]
+}
+
+/// The arm at rest on its carrier and bent.
+fn arm() -> Vec<Part> {
+    let bent = (0..=40).map(|step| {
+        let s = f64::from(step) / 40.0;
+        // A load at the end bends a beam so: near enough to the first mode.
+        let w = TIP * s * s * (3.0 - s) / 2.0;
+        let along = on_circle(CENTRE, LENGTH * s, CARRIER);
+        on_circle(along, w, CARRIER + 90.0)
+    });
+    let end = on_circle(CENTRE, LENGTH, CARRIER);
+    let middle = on_circle(CENTRE, 0.6 * LENGTH, CARRIER);
+    let bow = TIP * 0.36 * 1.2;
+    vec![
+        Part::Line(
+            Look::Thought,
+            vec![CENTRE, (CENTRE.0 + LENGTH + 20.0, CENTRE.1)],
+        ),
+        Part::Line(Look::Thought, vec![CENTRE, end]),
+        Part::Line(Look::Moved, bent.collect()),
+        Part::Arrow(Look::Measure, arc(CENTRE, RING + 34.0, (0.0, CARRIER))),
+        words((CENTRE.0 + RING + 40.0, CENTRE.1 - 10.0), -1, "theta_c"),
+        Part::Arrow(
+            Look::Measure,
+            vec![middle, on_circle(middle, bow, CARRIER + 90.0)],
+        ),
+        words((middle.0 + 10.0, middle.1 + 16.0), -1, "w(x, t)"),
+        words(
+            on_circle((CENTRE.0, CENTRE.1 + 20.0), 0.9 * LENGTH, CARRIER),
+            0,
+            "x",
+        ),
+    ]
+}
+
+/// What leads and what lags at the arm's end.
+fn errors() -> Vec<Part> {
+    let end = on_circle(CENTRE, LENGTH, CARRIER);
+    let ideal = on_circle(CENTRE, LENGTH + 36.0, AHEAD);
+    let outside = LENGTH + 20.0;
+    vec![
+        Part::Line(Look::Thought, vec![CENTRE, ideal]),
+        words(
+            (ideal.0 + 6.0, ideal.1 - 6.0),
+            -1,
+            "theta_s/i_sH: the arm without backlash",
+        ),
+        Part::Arrow(
+            Look::Measure,
+            vec![end, on_circle(end, TIP, CARRIER + 90.0)],
+        ),
+        words((end.0 - 12.0, end.1 - 17.0), 1, "tip"),
+        Part::Arrow(Look::Measure, arc(CENTRE, outside, (CARRIER, AHEAD))),
+        words(
+            (
+                on_circle(CENTRE, outside + 10.0, 16.5).0,
+                on_circle(CENTRE, outside, 16.5).1,
+            ),
+            -1,
+            "l dtheta: the carrier lags",
+        ),
+        words((end.0 + 30.0, end.1 + 18.0), -1, "tip: the end leads"),
+    ]
+}
+
+/// The force of a mesh over its deflection.
+fn law() -> Vec<Part> {
+    let (x, y) = (200.0, 520.0);
+    let (half, b, rise) = (130.0, 38.0, 56.0);
+    vec![
+        Part::Heading((24.0, 432.0), "a mesh".to_owned()),
+        Part::Arrow(Look::Thought, vec![(x - half, y), (x + half + 16.0, y)]),
+        Part::Arrow(
+            Look::Thought,
+            vec![(x, y + rise + 8.0), (x, y - rise - 14.0)],
+        ),
+        Part::Line(
+            Look::Moved,
+            vec![
+                (x - half, y + rise),
+                (x - b, y),
+                (x + b, y),
+                (x + half, y - rise),
+            ],
+        ),
+        words((x + b, y + 19.0), 0, "+b"),
+        words((x - b, y - 9.0), 0, "−b"),
+        words((x + half + 22.0, y + 5.0), -1, "x_sp, x_pr"),
+        words((x + 9.0, y - rise - 6.0), -1, "k f_k"),
+        words((x + half - 6.0, y - rise - 12.0), 0, "driving flanks"),
+        words((x - half + 40.0, y + rise + 24.0), 0, "rear flanks"),
+    ]
+}
+
+/// The relations between them.
+fn formulas() -> Vec<Part> {
+    let mut parts = vec![Part::Heading((470.0, 352.0), "signs".to_owned())];
+    let lines = [
+        "theta_s, theta_c: with the sun; theta_p: absolute, against it",
+        "x_s = r_s theta_s,  x_p = r_p theta_p,  x_c = r_c cos(alpha) theta_c",
+        "x_sp = x_s − x_p − x_c: the sun is ahead of the planet",
+        "x_pr = x_p − x_c: the planet is ahead of the ring",
+        "F_sp, F_pr > 0 turn the carrier on, and F_sp turns the sun back",
+        "w: with theta_c;  tip = w(l, t), dr in the paper",
+        "dtheta = theta_s/i_sH − theta_c: a lag of the carrier",
+        "f_la = l dtheta + tip: the sum that Eq. (24) prints",
+        "f_la_signed = tip − l dtheta: the error of the arm's end",
+    ];
+    for (place, line) in lines.iter().enumerate() {
+        parts.push(words((470.0, 380.0 + 26.0 * place as f64), -1, line));
+    }
+    parts
+}

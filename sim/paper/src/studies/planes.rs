@@ -1,0 +1,58 @@
+//! The mesh in its plane: the motion over a forcing period, and where it is once per period.
+
+use eomgen_plot::{Axes, Drawn, Frame, Panel, Reference, Series};
+
+use super::display::Display;
+
+/// x_sp and its rate.
+const PLANE: Axes = Axes::Quantity {
+    symbol: "x_sp",
+    unit: "m",
+};
+
+/// The phase plane over the first forcing period that is displayed.
+pub(super) fn orbit<'a>(letter: &str, display: &'a Display) -> Frame<'a> {
+    let count = display.per_period() + 1;
+    let first = |values: &'a [f64]| values.get(..count).unwrap_or(values);
+    let panel = panel(
+        format!("{letter} phase plane, one period"),
+        first(&display.history.x_sp),
+        first(&display.x_sp_dot),
+    );
+    frame(panel, Drawn::Orbit, display)
+}
+
+/// The stroboscopic section, given as columns.
+pub(super) fn section<'a>(display: &Display, [x_sp, x_sp_dot]: &'a [Vec<f64>; 2]) -> Frame<'a> {
+    let title = format!("Poincaré section, {} forcing periods", x_sp.len());
+    frame(panel(title, x_sp, x_sp_dot), Drawn::Points, display)
+}
+
+fn panel<'a>(title: String, x_sp: &'a [f64], x_sp_dot: &'a [f64]) -> Panel<'a> {
+    Panel {
+        title,
+        quantity: "x_sp_dot".to_owned(),
+        unit: "m/s".to_owned(),
+        series: vec![Series {
+            label: String::new(),
+            abscissa: x_sp,
+            values: x_sp_dot,
+        }],
+        references: Vec::new(),
+    }
+}
+
+fn frame<'a>(panel: Panel<'a>, drawn: Drawn, display: &Display) -> Frame<'a> {
+    let b = display.case.backlash;
+    let flanks = [("−b", -b), ("+b", b)].map(|(label, value)| Reference {
+        label: label.to_owned(),
+        value,
+    });
+    Frame {
+        panel,
+        axes: PLANE,
+        marks: if b > 0.0 { flanks.into() } else { Vec::new() },
+        overlaid: false,
+        drawn,
+    }
+}

@@ -1,0 +1,229 @@
+//! How numbers are spread: columns over their range and the share that lies below each value.
+
+use super::PlotError;
+use super::axis::{Axis, Range, Scale, ticks};
+use super::bars::{COLUMN, draw_level, draw_marks, label, outline, title, write};
+use super::canvas::{Anchor, Canvas, Stroke};
+use super::error::is_drawable;
+use super::figure::Reference;
+use super::quantity::Quantity;
+
+/// Numbers and their statistics.
+#[derive(Clone, Debug, Default)]
+pub struct Distribution<'a> {
+    /// Written above the frame.
+    pub title: String,
+    /// What the numbers are of.
+    pub quantity: String,
+    /// Their SI unit; empty for a number.
+    pub unit: String,
+    /// The numbers in ascending order.
+    pub sorted: &'a [f64],
+    /// Numbers with a name, ascending: dashed upright lines.
+    pub marks: Vec<Reference>,
+}
+
+const WIDTH: f64 = 720.0;
+const HEIGHT: f64 = 360.0;
+/// Left and right of the frame, above and below it, px.
+const MARGINS: ((f64, f64), (f64, f64)) = ((78.0, 70.0), (58.0, 62.0));
+/// The fewest and the most columns.
+const COLUMNS: (usize, usize) = (5, 60);
+/// Points of the curve: more are not told apart.
+const POINTS: usize = 400;
+
+const CURVE: Stroke = Stroke {
+    colour: "#d55e00",
+    width: 1.6,
+    dashes: "",
+};
+
+/// Draws a distribution as an SVG document, 720 px wide.
+///
+/// # Errors
+///
+/// No number, or one that is not finite.
+pub fn distribution(of: &Distribution<'_>) -> Result<String, PlotError> {
+    if of.sorted.is_empty() || !of.sorted.iter().copied().all(is_drawable) {
+        return Err(PlotError::Empty {
+            panel: 0,
+            series: of.quantity.clone(),
+        });
+    }
+    let largest = of
+        .sorted
+        .iter()
+        .fold(0.0, |most: f64, value| most.max(value.abs()));
+    let quantity = Quantity::scaled(&of.quantity, &of.unit, largest);
+    let values: Vec<f64> = of
+        .sorted
+        .iter()
+        .map(|value| value / quantity.scale)
+        .collect();
+    let whole = Range::of(values.iter().copied()).unwrap_or(Range {
+        low: 0.0,
+        high: 1.0,
+    });
+    let counts = counts(&values, whole.opened());
+    let most = counts.iter().copied().max().unwrap_or(1);
+    let axes = Axes::new(whole.opened(), most);
+    let mut canvas = Canvas::default();
+    for tick in ticks(axes.up.scale, axes.up.range, 6) {
+        draw_level(&mut canvas, &tick, &axes.up, axes.along.pixels);
+    }
+    draw_columns(&mut canvas, &counts, whole.opened(), &axes);
+    canvas.lines(&[curve(&values, &axes)], CURVE);
+    let marks = of.marks.iter().map(|mark| scaled(mark, quantity.scale));
+    let marks: Vec<Reference> = marks.collect();
+    draw_marks(&mut canvas, &marks, &axes.along, &axes.up);
+    draw_names(&mut canvas, &axes, &quantity.label);
+    title(&mut canvas, &of.title, (16.0, 22.0));
+    Ok(canvas.document(&of.title, WIDTH, HEIGHT))
+}
+
+/// Along the numbers, up their counts and the share below.
+struct Axes {
+    along: Axis,
+    up: Axis,
+    share: Axis,
+}
+
+impl Axes {
+    fn new(whole: Range, most: usize) -> Self {
+        let ((left, right), (above, below)) = MARGINS;
+        let axis = |range, pixels| Axis {
+            scale: Scale::Linear,
+            range,
+            pixels,
+        };
+        let upright = (HEIGHT - below, above);
+        let to = |high| Range { low: 0.0, high };
+        Self {
+            along: axis(whole.padded(0.03), (left, WIDTH - right)),
+            up: axis(to(1.08 * most as f64), upright),
+            share: axis(to(108.0), upright),
+        }
+    }
+}
+
+/// Ticks of two axes, all names, and the frame.
+fn draw_names(canvas: &mut Canvas, Axes { along, up, share }: &Axes, quantity: &str) {
+    for tick in ticks(along.scale, along.range, 8) {
+        let at = (along.pixel(tick.place), up.pixels.0 + 19.0);
+        write(canvas, &tick.label, at, Anchor::Middle);
+    }
+    for part in [0.0, 25.0, 50.0, 75.0, 100.0_f64] {
+        let at = (along.pixels.1 + 7.0, share.pixel(part) + 5.0);
+        write(canvas, &format!("{part:.0}"), at, Anchor::Start);
+    }
+    outline(canvas, along.pixels, up.pixels);
+    let middle = (along.pixels.0 + along.pixels.1) / 2.0;
+    label(canvas, quantity, (middle, up.pixels.0 + 44.0), 0.0);
+    let middle = (up.pixels.0 + up.pixels.1) / 2.0;
+    label(canvas, "samples", (19.0, middle), -90.0);
+    let share = "share below [%], orange";
+    label(canvas, share, (WIDTH - 14.0, middle), -90.0);
+}
+
+fn scaled(mark: &Reference, scale: f64) -> Reference {
+    Reference {
+        label: mark.label.clone(),
+        value: mark.value / scale,
+    }
+}
+
+/// How many values lie in each of some columns of one width, which is that of D. Freedman and P. Diaconis
+/// (1981), twice the distance of the quartiles by the cube root of the number.
+fn counts(sorted: &[f64], range: Range) -> Vec<usize> {
+    let at = |part: f64| sorted[(part * (sorted.len() - 1) as f64).round() as usize];
+    let width = 2.0 * (at(0.75) - at(0.25)) / (sorted.len() as f64).cbrt();
+    let span = range.high - range.low;
+    let (least, most) = COLUMNS;
+    let columns = ((span / width).ceil().min(most as f64) as usize).clamp(least, most);
+    let mut counts = vec![0; columns];
+    for value in sorted {
+        let place = (value - range.low) / span * columns as f64;
+        counts[(place as usize).min(columns - 1)] += 1;
+    }
+    counts
+}
+
+fn draw_columns(canvas: &mut Canvas, counts: &[usize], range: Range, axes: &Axes) {
+    let (along, up) = (&axes.along, &axes.up);
+    let edge = |place: usize| {
+        let part = place as f64 / counts.len() as f64;
+        along.pixel(range.low + part * (range.high - range.low))
+    };
+    for (place, count) in counts.iter().enumerate() {
+        let (from, to, top) = (edge(place), edge(place + 1), up.pixel(*count as f64));
+        canvas.rectangle(
+            (from + 0.5, top),
+            (to - from - 1.0, up.pixels.0 - top),
+            COLUMN,
+        );
+    }
+}
+
+/// The share of values up to each, as a staircase of few steps.
+fn curve(sorted: &[f64], Axes { along, share, .. }: &Axes) -> Vec<(f64, f64)> {
+    let count = sorted.len();
+    let part = |number: usize| share.pixel(100.0 * number as f64 / count as f64);
+    let step = count.div_ceil(POINTS);
+    let kept = (0..count).filter(|place| place % step == 0 || *place + 1 == count);
+    let mut points = vec![(along.pixels.0, part(0))];
+    for place in kept {
+        let before = points.last().map_or(part(0), |(_, y)| *y);
+        let x = along.pixel(sorted[place]);
+        points.extend([(x, before), (x, part(place + 1))]);
+    }
+    points.push((along.pixels.1, part(count)));
+    points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_number_is_in_one_column() {
+        for values in [
+            vec![2.0],
+            vec![2.0; 9],
+            (0..1000).map(f64::from).collect(),
+            vec![-1.0, 5.0],
+        ] {
+            let range = Range::of(values.iter().copied()).expect("a range").opened();
+            let counts = counts(&values, range);
+            assert_eq!(counts.iter().sum::<usize>(), values.len());
+            assert!((COLUMNS.0..=COLUMNS.1).contains(&counts.len()));
+        }
+        // A thousand even numbers: 2 * 500/10 = 100 wide.
+        let even: Vec<f64> = (0..1000).map(f64::from).collect();
+        assert_eq!(
+            counts(
+                &even,
+                Range {
+                    low: 0.0,
+                    high: 1000.0
+                }
+            ),
+            [100; 10]
+        );
+    }
+
+    #[test]
+    fn what_cannot_be_drawn_is_an_error() {
+        for sorted in [&[][..], &[f64::NAN], &[1.0, f64::INFINITY]] {
+            let of = Distribution {
+                sorted,
+                ..Distribution::default()
+            };
+            assert!(distribution(&of).is_err());
+        }
+        let of = Distribution {
+            sorted: &[1.0],
+            ..Distribution::default()
+        };
+        assert!(distribution(&of).expect("a figure").ends_with("</svg>\n"));
+    }
+}

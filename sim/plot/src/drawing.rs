@@ -1,0 +1,156 @@
+//! Drawings that are no graphs: lines, circles, arrows and words in places that the caller says.
+
+use super::canvas::{Anchor, Canvas, Stroke, Text};
+use super::decimate::Point;
+use super::layout::{TICK_SIZE, TITLE_SIZE};
+
+/// A drawing of a given size.
+#[derive(Clone, Debug, Default)]
+pub struct Drawing {
+    /// What it shows, for those who cannot see it; not drawn.
+    pub title: String,
+    /// Width and height, px.
+    pub size: (f64, f64),
+    /// One over the other.
+    pub parts: Vec<Part>,
+}
+
+/// A part of a drawing; places in px from the upper left corner.
+#[derive(Clone, Debug)]
+pub enum Part {
+    /// A line through points.
+    Line(Look, Vec<Point>),
+    /// A line through points that ends in a head.
+    Arrow(Look, Vec<Point>),
+    /// A word or a sentence: its place, and whether it begins, stands in the middle or ends there (-1, 0, 1).
+    Words(Point, i8, String),
+    /// The same, larger and bold.
+    Heading(Point, String),
+}
+
+/// The look of a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Look {
+    /// Of a body.
+    Body,
+    /// Of what moves out of its place, thicker.
+    Moved,
+    /// Of a measure or a direction.
+    Measure,
+    /// Of what is not there: an axis, a place at rest.
+    Thought,
+}
+
+impl Look {
+    fn stroke(self) -> Stroke {
+        let (colour, width, dashes) = match self {
+            Self::Body => ("#444444", 1.4, ""),
+            Self::Moved => ("#0072b2", 4.0, ""),
+            Self::Measure => ("#d55e00", 1.8, ""),
+            Self::Thought => ("#8a8a8a", 1.1, "6 4"),
+        };
+        Stroke {
+            colour,
+            width,
+            dashes,
+        }
+    }
+}
+
+/// A point of a circle, with the angle in degrees against the clock from the right.
+pub fn on_circle(centre: Point, radius: f64, degrees: f64) -> Point {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    (centre.0 + radius * cos, centre.1 - radius * sin)
+}
+
+/// Points of an arc from an angle to another, in degrees against the clock from the right.
+pub fn arc(centre: Point, radius: f64, (from, to): (f64, f64)) -> Vec<Point> {
+    let steps = ((to - from).abs() / 4.0).ceil().max(1.0) as usize;
+    let angle = |step: usize| from + (to - from) * step as f64 / steps as f64;
+    (0..=steps)
+        .map(|step| on_circle(centre, radius, angle(step)))
+        .collect()
+}
+
+/// Draws it as an SVG document.
+pub fn drawing(of: &Drawing) -> String {
+    let mut canvas = Canvas::default();
+    for part in &of.parts {
+        match part {
+            Part::Line(look, points) => canvas.lines(std::slice::from_ref(points), look.stroke()),
+            Part::Arrow(look, points) => {
+                let stroke = look.stroke();
+                let head = head(points);
+                canvas.lines(
+                    &[points.clone(), head],
+                    Stroke {
+                        dashes: "",
+                        ..stroke
+                    },
+                );
+            }
+            Part::Words(at, side, text) => canvas.text(Text {
+                text,
+                at: *at,
+                size: TICK_SIZE,
+                anchor: match side {
+                    0 => Anchor::Middle,
+                    side if *side < 0 => Anchor::Start,
+                    _ => Anchor::End,
+                },
+                bold: false,
+            }),
+            Part::Heading(at, text) => canvas.text(Text {
+                text,
+                at: *at,
+                size: TITLE_SIZE,
+                anchor: Anchor::Start,
+                bold: true,
+            }),
+        }
+    }
+    canvas.document(&of.title, of.size.0, of.size.1)
+}
+
+/// The head of an arrow: a line over its last point.
+fn head(points: &[Point]) -> Vec<Point> {
+    let [.., before, end] = points else {
+        return Vec::new();
+    };
+    let back = (end.1 - before.1).atan2(before.0 - end.0).to_degrees();
+    [back - 24.0, back + 24.0]
+        .map(|angle| on_circle(*end, 9.0, angle))
+        .into_iter()
+        .enumerate()
+        .flat_map(|(place, side)| {
+            if place == 0 {
+                vec![side, *end]
+            } else {
+                vec![side]
+            }
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn angles_go_against_the_clock_and_arcs_end_where_they_should() {
+        let (x, y) = on_circle((10.0, 20.0), 5.0, 90.0);
+        assert!((x - 10.0).abs() < 1e-12 && (y - 15.0).abs() < 1e-12);
+        let arc = arc((0.0, 0.0), 1.0, (0.0, 180.0));
+        let last = arc[arc.len() - 1];
+        assert!((last.0 + 1.0).abs() < 1e-12 && last.1.abs() < 1e-12);
+        assert!(arc.iter().all(|(x, y)| (x.hypot(*y) - 1.0).abs() < 1e-12));
+    }
+
+    #[test]
+    fn a_head_lies_behind_its_point() {
+        let head = head(&[(0.0, 0.0), (50.0, 0.0)]);
+        assert_eq!(head.len(), 3);
+        assert_eq!(head[1], (50.0, 0.0));
+        assert!(head[0].0 < 45.0 && head[2].0 < 45.0 && head[0].1 * head[2].1 < 0.0);
+    }
+}

@@ -1,0 +1,85 @@
+//! Bars of amplitudes with names and numbers.
+
+use super::look::{FRAME, GRID, IN_STEP, LATER};
+use super::types::Bar;
+use crate::axis::{Axis, Range, Scale};
+use crate::bars::{outline, write};
+use crate::canvas::{Anchor, Canvas};
+use crate::layout::TICK_SIZE;
+use crate::lettering::{fitted, width};
+use crate::quantity::scaled_unit;
+
+/// The width of the bars with their names and numbers, px.
+pub(super) const BARS: f64 = 420.0;
+/// The height of a bar with what is between it and the next, and of the bar alone, px.
+pub(super) const ROW: (f64, f64) = (21.0, 13.0);
+/// A smaller amplitude reads as 0.
+const SHOWN: f64 = 5e-5;
+
+/// Draws bars from (left, top) on.
+pub(super) fn draw(canvas: &mut Canvas, bars: &[Bar], later: bool, (left, top): (f64, f64)) {
+    let names = bars.iter().map(|bar| width(&bar.name, TICK_SIZE));
+    let widest = names.fold(0.0, f64::max).min(130.0);
+    let edges = (left + widest + 24.0, left + BARS - 130.0);
+    let x = Axis {
+        scale: Scale::Linear,
+        range: Range {
+            low: -1.04,
+            high: 1.04,
+        },
+        pixels: edges,
+    };
+    let bottom = top + ROW.0 * bars.len() as f64 + 4.0;
+    for place in [-1.0, 0.0, 1.0] {
+        let at = x.pixel(place);
+        let line = if place == 0.0 { FRAME } else { GRID };
+        canvas.segments(&[((at, bottom), (at, top))], line);
+    }
+    for (place, bar) in bars.iter().enumerate() {
+        let y = top + 5.0 + ROW.0 * place as f64;
+        let base = y + 0.5 * ROW.1 + 0.36 * TICK_SIZE;
+        let name = fitted(&bar.name, TICK_SIZE, 130.0);
+        write(canvas, &name, (edges.0 - 8.0, base), Anchor::End);
+        let [re, im] = bar.amplitude.map(|part| part / full(bars, &bar.unit));
+        let mut fill = |value: f64, (from, tall): (f64, f64), colour| {
+            let (zero, end) = (x.pixel(0.0), x.pixel(value));
+            canvas.rectangle((zero.min(end), from), ((end - zero).abs(), tall), colour);
+        };
+        if later {
+            fill(re, (y, 0.55 * ROW.1), IN_STEP);
+            fill(-im, (y + 0.6 * ROW.1, 0.4 * ROW.1), LATER);
+        } else {
+            fill(re, (y, ROW.1), IN_STEP);
+        }
+        write(canvas, &number(bar), (edges.1 + 8.0, base), Anchor::Start);
+    }
+    outline(canvas, edges, (bottom, top));
+}
+
+/// What a full bar of a unit is.
+fn full(bars: &[Bar], unit: &str) -> f64 {
+    let alike = bars.iter().filter(|bar| bar.unit == unit);
+    let sizes = alike.map(|bar| bar.amplitude[0].hypot(bar.amplitude[1]));
+    sizes.fold(1.0, f64::max)
+}
+
+/// A bar's size, with its phase where it is neither in step nor opposite.
+fn number(bar: &Bar) -> String {
+    let [re, im] = bar.amplitude;
+    let size = re.hypot(im);
+    if size < SHOWN {
+        return "0".to_owned();
+    }
+    let (scale, unit) = scaled_unit(&bar.unit, size);
+    let (shown, phase) = (size / scale, im.atan2(re).to_degrees().round());
+    let decimals = 2_usize.saturating_sub(shown.log10().max(0.0) as usize);
+    let (sign, phase) = match phase {
+        phase if phase.abs() >= 180.0 => ("−", String::new()),
+        0.0 => ("", String::new()),
+        phase => ("", format!(", {phase}°").replace('-', "−")),
+    };
+    format!("{sign}{shown:.decimals$} {unit}")
+        .trim_end()
+        .to_owned()
+        + &phase
+}

@@ -1,0 +1,106 @@
+//! The shape of a field over its length.
+
+use super::look::{FRAME, GRID, IN_STEP, LATER, stroke};
+use super::types::Shape;
+use crate::axis::{Axis, Range, Scale, ticks};
+use crate::bars::{label, outline, write};
+use crate::canvas::{Anchor, Canvas};
+use crate::decimate::Point;
+use crate::layout::TICK_SIZE;
+use crate::quantity::Quantity;
+
+/// The width of a frame with its labels, px.
+pub(super) const FIELD: f64 = 400.0;
+/// Left and right of a field's frame, px.
+const MARGINS: (f64, f64) = (80.0, 24.0);
+/// A field that moves less is drawn at rest: beside amplitudes of 1 that is rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// The axes of a frame, with their names.
+struct Axes {
+    x: Axis,
+    y: Axis,
+    along: Quantity,
+    up: Quantity,
+}
+
+/// Draws a field's shape in the frame at (left, top, height).
+pub(super) fn draw(canvas: &mut Canvas, shape: &Shape, later: bool, place: (f64, f64, f64)) {
+    let axes = axes(shape, place);
+    draw_frame(canvas, &axes, place.0);
+    let curve = |of: fn(&[f64; 2]) -> f64| -> Vec<Point> {
+        let samples = shape.positions.iter().zip(&shape.amplitudes);
+        let pixel = |(at, value): (&f64, &[f64; 2])| {
+            let (x, y) = (at / axes.along.scale, of(value) / axes.up.scale);
+            (axes.x.pixel(x), axes.y.pixel(y))
+        };
+        samples.map(pixel).collect()
+    };
+    // After a quarter of a period the motion is the real part of i times the amplitude.
+    if later {
+        canvas.lines(&[curve(|[_, im]| -im)], stroke(LATER, 1.6, "6 4"));
+    }
+    canvas.lines(&[curve(|[re, _]| *re)], stroke(IN_STEP, 2.0, ""));
+}
+
+fn axes(shape: &Shape, (left, top, height): (f64, f64, f64)) -> Axes {
+    let size =
+        |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |most, v| v.abs().max(most));
+    let largest = size(&mut shape.amplitudes.iter().flatten().copied());
+    let moves = largest > ROUNDING;
+    let up = Quantity::scaled(&shape.name, &shape.unit, if moves { largest } else { 1.0 });
+    let reach = if moves {
+        1.08 * largest / up.scale
+    } else {
+        1.0
+    };
+    let furthest = size(&mut shape.positions.iter().copied());
+    let along = Quantity::scaled(&shape.along, "m", furthest);
+    let places = shape.positions.iter().map(|x| x / along.scale);
+    let range = Range::of(places).unwrap_or(Range {
+        low: 0.0,
+        high: 1.0,
+    });
+    let axis = |range, pixels| Axis {
+        scale: Scale::Linear,
+        range,
+        pixels,
+    };
+    let both = Range {
+        low: -reach,
+        high: reach,
+    };
+    Axes {
+        x: axis(range.opened(), (left + MARGINS.0, left + FIELD - MARGINS.1)),
+        y: axis(both, (top + height, top)),
+        along,
+        up,
+    }
+}
+
+/// Grid, ticks, names and the frame itself.
+fn draw_frame(canvas: &mut Canvas, Axes { x, y, along, up }: &Axes, left: f64) {
+    let (edges, (bottom, top)) = (x.pixels, y.pixels);
+    for tick in ticks(x.scale, x.range, 5) {
+        let at = x.pixel(tick.place);
+        canvas.segments(&[((at, bottom), (at, top))], GRID);
+        write(canvas, &tick.label, (at, bottom + 18.0), Anchor::Middle);
+    }
+    for tick in ticks(y.scale, y.range, 4) {
+        let at = y.pixel(tick.place);
+        canvas.segments(&[((edges.0, at), (edges.1, at))], GRID);
+        let base = (edges.0 - 7.0, at + 0.35 * TICK_SIZE);
+        write(canvas, &tick.label, base, Anchor::End);
+    }
+    let middle = y.pixel(0.0);
+    canvas.segments(&[((edges.0, middle), (edges.1, middle))], FRAME);
+    outline(canvas, edges, y.pixels);
+    let below = ((edges.0 + edges.1) / 2.0, bottom + 38.0);
+    label(canvas, &along.label, below, 0.0);
+    label(
+        canvas,
+        &up.label,
+        (left + 20.0, (top + bottom) / 2.0),
+        -90.0,
+    );
+}

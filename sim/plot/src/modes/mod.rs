@@ -1,0 +1,184 @@
+//! Natural modes one below the other: the shape of every field over its length, and bars for what
+//! is no field. `types` states them, `field` and `amplitudes` draw the two, `look` has their colours.
+
+mod amplitudes;
+mod field;
+mod look;
+mod types;
+
+pub use types::{Bar, Mode, Modes, Shape};
+
+use self::amplitudes::{BARS, ROW};
+use self::field::FIELD;
+use super::PlotError;
+use super::bars::{title, write};
+use super::canvas::{Anchor, Canvas};
+use super::error::is_drawable;
+use super::layout::TICK_SIZE;
+use super::lettering::fitted;
+
+/// The least height of a frame, px, and what is above (a title) and below it (ticks and a label).
+const FRAME_HEIGHT: f64 = 110.0;
+const ABOVE: f64 = 32.0;
+const BELOW: f64 = 50.0;
+/// An imaginary part is drawn from this share of the largest amplitude on.
+const OUT_OF_STEP: f64 = 0.02;
+
+/// Draws modes as an SVG document.
+///
+/// # Errors
+///
+/// No mode, one with nothing to draw, or numbers that cannot be drawn.
+pub fn modes(of: &Modes) -> Result<String, PlotError> {
+    let Some(first) = of.modes.first() else {
+        return Err(PlotError::NoPanels);
+    };
+    for (panel, mode) in of.modes.iter().enumerate() {
+        check(panel, mode)?;
+    }
+    let bars = if first.bars.is_empty() { 0.0 } else { BARS };
+    let whole = (FIELD * first.fields.len() as f64 + bars).max(560.0);
+    let mut canvas = Canvas::default();
+    let mut y = 24.0;
+    title(&mut canvas, &of.title, (16.0, y));
+    for note in notes(of) {
+        y += 20.0;
+        let note = fitted(&note, TICK_SIZE, whole - 32.0);
+        write(&mut canvas, &note, (16.0, y), Anchor::Start);
+    }
+    y += 8.0;
+    for mode in &of.modes {
+        y = draw(&mut canvas, mode, y);
+    }
+    Ok(canvas.document(&of.title, whole, y.ceil() + 4.0))
+}
+
+/// What cannot be drawn.
+fn check(panel: usize, mode: &Mode) -> Result<(), PlotError> {
+    let empty = |series: &str| PlotError::Empty {
+        panel,
+        series: series.to_owned(),
+    };
+    if mode.fields.is_empty() && mode.bars.is_empty() {
+        return Err(PlotError::NoSeries { panel });
+    }
+    for shape in &mode.fields {
+        let (abscissae, values) = (shape.positions.len(), shape.amplitudes.len());
+        if abscissae != values {
+            return Err(PlotError::Lengths {
+                panel,
+                series: shape.name.clone(),
+                abscissae,
+                values,
+            });
+        }
+        let numbers = shape.amplitudes.iter().flatten().chain(&shape.positions);
+        if abscissae == 0 || !numbers.copied().all(is_drawable) {
+            return Err(empty(&shape.name));
+        }
+    }
+    let wrong = |bar: &&Bar| !bar.amplitude.into_iter().all(is_drawable);
+    match mode.bars.iter().find(wrong) {
+        Some(bar) => Err(empty(&bar.name)),
+        None => Ok(()),
+    }
+}
+
+/// The notes, and what the second colour is where there is one.
+fn notes(of: &Modes) -> impl Iterator<Item = String> {
+    let later = of.modes.iter().any(|mode| has_later(mode));
+    let said = "blue where the largest amplitude is; orange, dashed, a quarter of a period later";
+    let said = later.then(|| said.to_owned());
+    of.notes.iter().cloned().chain(said)
+}
+
+/// Whether some of a mode is out of step with its largest amplitude.
+fn has_later(mode: &Mode) -> bool {
+    let shapes = mode.fields.iter().flat_map(|shape| &shape.amplitudes);
+    let all = || {
+        shapes
+            .clone()
+            .chain(mode.bars.iter().map(|bar| &bar.amplitude))
+    };
+    let largest = all().fold(0.0, |most: f64, [re, im]| most.max(re.hypot(*im)));
+    all().any(|[_, im]| im.abs() > OUT_OF_STEP * largest)
+}
+
+/// Draws a mode below `top`; where the next begins.
+fn draw(canvas: &mut Canvas, mode: &Mode, top: f64) -> f64 {
+    let later = has_later(mode);
+    let bars = ROW.0 * mode.bars.len() as f64 + 8.0;
+    let (upper, height) = (top + ABOVE, bars.max(FRAME_HEIGHT));
+    title(canvas, &mode.title, (16.0, top + 22.0));
+    let mut left = 0.0;
+    for shape in &mode.fields {
+        field::draw(canvas, shape, later, (left, upper, height));
+        left += FIELD;
+    }
+    if !mode.bars.is_empty() {
+        amplitudes::draw(canvas, &mode.bars, later, (left, upper));
+    }
+    upper
+        + if mode.fields.is_empty() {
+            bars
+        } else {
+            height + BELOW
+        }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn mode(amplitude: [f64; 2]) -> Mode {
+        Mode {
+            title: "mode 1: 2 Hz".to_owned(),
+            fields: vec![Shape {
+                name: "w".to_owned(),
+                unit: "m".to_owned(),
+                along: "x".to_owned(),
+                positions: vec![0.0, 0.5],
+                amplitudes: vec![[0.0, 0.0], [2.0, 0.0]],
+            }],
+            bars: vec![Bar {
+                name: "theta".to_owned(),
+                unit: "rad".to_owned(),
+                amplitude,
+            }],
+        }
+    }
+
+    fn drawn(mode: Mode) -> Result<String, PlotError> {
+        modes(&Modes {
+            modes: vec![mode],
+            ..Modes::default()
+        })
+    }
+
+    #[test]
+    fn a_bar_has_its_number_with_sign_or_phase() {
+        for (amplitude, number) in [
+            ([0.25, 0.0], ">250 mrad<"),
+            ([-0.25, 0.0], ">−250 mrad<"),
+            ([1.0, 1e-9], ">1.00 rad<"),
+            ([0.0, 0.012], ">12.0 mrad, 90°<"),
+            ([0.0, -0.012], ">12.0 mrad, −90°<"),
+            ([1e-9, 0.0], ">0<"),
+        ] {
+            let svg = drawn(mode(amplitude)).expect("a figure");
+            assert!(svg.contains(number), "{number}: {svg}");
+            let out_of_step = amplitude[1].abs() > 0.1;
+            assert_eq!(svg.contains("orange"), out_of_step, "{amplitude:?}");
+        }
+    }
+
+    #[test]
+    fn nothing_to_draw_is_an_error() {
+        assert!(modes(&Modes::default()).is_err());
+        assert!(drawn(Mode::default()).is_err());
+        assert!(drawn(mode([f64::NAN, 0.0])).is_err());
+        let mut short = mode([1.0, 0.0]);
+        short.fields[0].positions.pop();
+        assert!(drawn(short).is_err());
+    }
+}

@@ -1,0 +1,218 @@
+//! Columns of numbers from a text file, with the line that each fault is on.
+
+use std::borrow::Cow;
+use std::path::Path;
+
+use csv::{ByteRecord, Position, Reader, ReaderBuilder};
+
+use crate::description::columns::ColumnKey;
+use crate::description::format::{Format, Separator};
+use crate::header::{MOST_SAMPLES, Table, places, too_many};
+use crate::refusal::Refusal;
+
+/// What parts the cells where runs of spaces did: the ASCII unit separator.
+const UNIT_SEPARATOR: u8 = 0x1f;
+
+/// What a text file begins with where its encoding is not UTF-8.
+const UTF_16: [&[u8]; 2] = [&[0xff, 0xfe], &[0xfe, 0xff]];
+
+/// Reads these columns; a missing number is NaN.
+///
+/// # Errors
+/// A column that is not there, and a line or a cell that is none, with its place.
+pub fn read(
+    path: &Path,
+    bytes: &[u8],
+    format: &Format,
+    wanted: &[&ColumnKey],
+) -> Result<Table, Refusal> {
+    let text = behind_skipped(path, bytes, format)?;
+    let mut file = TextFile::new(path, &text, format)?;
+    let places = places(path, file.first_line, &file.header, wanted)?;
+    let mut table = Table {
+        columns: vec![Vec::new(); wanted.len()],
+        lines: Vec::new(),
+    };
+    while let Some((line, record)) = file.next()? {
+        if table.lines.len() == MOST_SAMPLES {
+            return Err(too_many(path));
+        }
+        table.lines.push(line);
+        for (column, place) in table.columns.iter_mut().zip(&places) {
+            let cell = record.get(*place).unwrap_or_default();
+            column.push(number(path, line, cell, *place, format.decimal)?);
+        }
+    }
+    Ok(table)
+}
+
+/// A text file behind its lines of names and units.
+pub(crate) struct TextFile<'t> {
+    path: &'t Path,
+    reader: Reader<&'t [u8]>,
+    /// The columns' names; numbers where there are none.
+    pub header: Vec<String>,
+    /// The line that the names stand on.
+    pub first_line: u64,
+    /// What stands in the line of units, if there is one.
+    pub units: Vec<String>,
+    skipped: u64,
+    record: ByteRecord,
+    /// The first line, where it holds numbers and is not handed out yet.
+    is_pending: bool,
+}
+
+impl<'t> TextFile<'t> {
+    /// Reads names and units. `text`: what lies behind the skipped lines.
+    pub fn new(path: &'t Path, text: &'t [u8], format: &Format) -> Result<Self, Refusal> {
+        let reader = ReaderBuilder::new()
+            .flexible(true)
+            .has_headers(false)
+            .comment(format.comment)
+            .delimiter(match format.separator {
+                Separator::Character(character) => character,
+                Separator::Spaces => UNIT_SEPARATOR,
+            })
+            .from_reader(text);
+        let mut file = Self {
+            path,
+            reader,
+            header: Vec::new(),
+            first_line: 1,
+            units: Vec::new(),
+            skipped: format.skip as u64,
+            record: ByteRecord::new(),
+            is_pending: false,
+        };
+        let empty = "is empty; expected a line of column names and a line per sample";
+        if !file.advance()? || file.record.iter().all(|cell| cell.trim_ascii().is_empty()) {
+            return Err(Refusal::file(path, empty));
+        }
+        file.first_line = file.line();
+        file.header = file.cells();
+        if !format.names {
+            file.header = (1..=file.record.len()).map(|n| n.to_string()).collect();
+        }
+        file.is_pending = !format.names;
+        if format.units {
+            if !format.names {
+                file.units = file.cells();
+                file.is_pending = false;
+            } else if file.advance()? {
+                file.units = file.cells();
+            }
+        }
+        Ok(file)
+    }
+
+    /// The cells of the present line as text.
+    fn cells(&self) -> Vec<String> {
+        let cells = self.record.iter();
+        cells
+            .map(|cell| String::from_utf8_lossy(cell).trim().to_owned())
+            .collect()
+    }
+
+    /// The number of the present line, from 1.
+    fn line(&self) -> u64 {
+        self.record.position().map_or(0, Position::line) + self.skipped
+    }
+
+    fn advance(&mut self) -> Result<bool, Refusal> {
+        let read = self.reader.read_byte_record(&mut self.record);
+        read.map_err(|error| Refusal::file(self.path, error.to_string()))
+    }
+
+    /// The next line of samples with its number.
+    pub fn next(&mut self) -> Result<Option<(u64, &ByteRecord)>, Refusal> {
+        if !std::mem::take(&mut self.is_pending) && !self.advance()? {
+            return Ok(None);
+        }
+        let line = self.line();
+        let (cells, expected) = (self.record.len(), self.header.len());
+        // Some programs end lines of numbers with a separator, but not that of the names.
+        let is_open = cells == expected + 1 && self.record[expected].trim_ascii().is_empty();
+        if cells != expected && !is_open {
+            return Err(Refusal::line(
+                self.path,
+                line,
+                format!(
+                    "has {cells} cells where the first line has {expected}; the file may be cut off"
+                ),
+            ));
+        }
+        Ok(Some((line, &self.record)))
+    }
+}
+
+/// What lies behind the skipped lines, as UTF-8 with one character between cells.
+pub(crate) fn behind_skipped<'b>(
+    path: &Path,
+    bytes: &'b [u8],
+    format: &Format,
+) -> Result<Cow<'b, [u8]>, Refusal> {
+    if UTF_16.iter().any(|mark| bytes.starts_with(mark)) {
+        return Err(Refusal::file(path, "is UTF-16; expected UTF-8 or ASCII"));
+    }
+    let mut text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    for _ in 0..format.skip {
+        let Some(end) = text.iter().position(|byte| *byte == b'\n') else {
+            return Err(Refusal::file(
+                path,
+                format!("has no more than {} lines, which are skipped", format.skip),
+            ));
+        };
+        text = &text[end + 1..];
+    }
+    if format.separator != Separator::Spaces {
+        return Ok(Cow::Borrowed(text));
+    }
+    let mut parted = Vec::with_capacity(text.len());
+    for line in text.split(|byte| *byte == b'\n') {
+        let words = line.split(u8::is_ascii_whitespace);
+        for word in words.filter(|word| !word.is_empty()) {
+            parted.extend_from_slice(word);
+            parted.push(UNIT_SEPARATOR);
+        }
+        if parted.last() == Some(&UNIT_SEPARATOR) {
+            parted.pop();
+        }
+        parted.push(b'\n');
+    }
+    Ok(Cow::Owned(parted))
+}
+
+/// The number of a cell.
+fn number(path: &Path, line: u64, cell: &[u8], place: usize, decimal: u8) -> Result<f64, Refusal> {
+    let cell = String::from_utf8_lossy(cell.trim_ascii());
+    if cell.is_empty() {
+        return Ok(f64::NAN);
+    }
+    if let Some(value) = parsed(&cell, decimal) {
+        return Ok(if value.is_finite() { value } else { f64::NAN });
+    }
+    let other = if decimal == b'.' { ',' } else { '.' };
+    let is_other = parsed(&cell, other as u8).is_some();
+    let help = match (is_other, other) {
+        (true, ',') => "; write decimal = \",\" in [format] if commas begin its fractions",
+        (true, _) => ": decimal = \",\" stands in [format], so a point has no place in it",
+        (false, _) => "",
+    };
+    let shown: String = cell.chars().take(40).collect();
+    Err(Refusal::line(
+        path,
+        line,
+        format!("column {}: \"{shown}\" is no number{help}", place + 1),
+    ))
+}
+
+/// A number with this decimal sign; none if it is no such number.
+pub(crate) fn parsed(cell: &str, decimal: u8) -> Option<f64> {
+    if decimal == b'.' {
+        return cell.parse().ok();
+    }
+    if cell.contains('.') {
+        return None;
+    }
+    cell.replace(',', ".").parse().ok()
+}

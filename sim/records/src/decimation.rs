@@ -1,0 +1,195 @@
+//! One of several samples: channels by a low-pass without delay first, so that nothing is folded
+//! into what is kept; inputs by their mean over the time for which they are held from then on.
+
+use std::f64::consts::PI;
+
+/// Where the low-pass lets half of the amplitude through, in rates of the samples that are kept:
+/// four fifths of their Nyquist frequency.
+const CUT_OFF: f64 = 0.4;
+
+/// How many kept samples the low-pass looks to either side. With Hamming's window it passes up to
+/// three fifths of the new Nyquist frequency, and from that on leaves less than a two-hundredth.
+const REACH: usize = 8;
+
+/// A sample of which more than this part of the filter's weights is missing is missing.
+const MOST_MISSING: f64 = 0.5;
+
+/// How one of several samples is kept.
+#[derive(Clone, Debug)]
+pub(crate) struct Decimation {
+    every: usize,
+    /// The low-pass's weights from its middle on; none where samples are taken as they are.
+    low_pass: Option<Vec<f64>>,
+}
+
+impl Decimation {
+    /// One of `every` samples, the channels low-passed before or not.
+    pub fn new(every: usize, filter: bool) -> Self {
+        Self {
+            every,
+            low_pass: (filter && every > 1).then(|| low_pass(every)),
+        }
+    }
+
+    /// Whether samples stay as they are.
+    pub fn is_idle(&self) -> bool {
+        self.every == 1
+    }
+
+    /// Whether it takes samples for evenly spaced.
+    pub fn is_filtered(&self) -> bool {
+        self.low_pass.is_some()
+    }
+
+    /// What becomes of the standard deviation of white noise.
+    pub fn noise(&self) -> f64 {
+        let Some(weights) = &self.low_pass else {
+            return 1.0;
+        };
+        let squares = weights.iter().map(|weight| weight * weight);
+        (2.0 * squares.sum::<f64>() - weights[0] * weights[0]).sqrt()
+    }
+
+    /// Samples that are kept as they are, as times are.
+    pub fn taken<T: Copy>(&self, column: &[T]) -> Vec<T> {
+        column.iter().step_by(self.every).copied().collect()
+    }
+
+    /// A measured column.
+    pub fn measured(&self, column: &[f64]) -> Vec<f64> {
+        match &self.low_pass {
+            None => self.taken(column),
+            Some(weights) => (0..column.len())
+                .step_by(self.every)
+                .map(|sample| passed(column, sample, weights))
+                .collect(),
+        }
+    }
+
+    /// A column that is held from sample to sample: the mean of what is held until the next one.
+    pub fn held(&self, column: &[f64]) -> Vec<f64> {
+        if !self.is_filtered() {
+            return self.taken(column);
+        }
+        let mean = |held: &[f64]| {
+            let known = held.iter().filter(|value| value.is_finite());
+            let (sum, count) = known.fold((0.0, 0.0), |(s, n), value| (s + value, n + 1.0));
+            sum / count
+        };
+        column.chunks(self.every).map(mean).collect()
+    }
+}
+
+/// A windowed sinc (Hamming), from its middle on, whose weights sum to 1.
+fn low_pass(every: usize) -> Vec<f64> {
+    let reach = (REACH * every) as f64;
+    let weight = |k: usize| {
+        let k = k as f64;
+        let phase = 2.0 * PI * CUT_OFF / every as f64 * k;
+        let sinc = if k == 0.0 { 1.0 } else { phase.sin() / phase };
+        sinc * (0.54 + 0.46 * (PI * k / reach).cos())
+    };
+    let weights: Vec<f64> = (0..=REACH * every).map(weight).collect();
+    let sum = 2.0 * weights.iter().sum::<f64>() - weights[0];
+    weights.into_iter().map(|weight| weight / sum).collect()
+}
+
+/// A column at a sample, low-passed; beyond its ends it goes on reflected through them.
+fn passed(column: &[f64], sample: usize, weights: &[f64]) -> f64 {
+    let last = column.len() - 1;
+    let at = |place: isize| match usize::try_from(place) {
+        Err(_) => 2.0 * column[0] - column[place.unsigned_abs().min(last)],
+        Ok(place) if place > last => 2.0 * column[last] - column[(2 * last).saturating_sub(place)],
+        Ok(place) => column[place],
+    };
+    let (mut sum, mut known, mut all) = (0.0, 0.0, 0.0);
+    let reach = weights.len() as isize - 1;
+    for k in -reach..=reach {
+        let weight = weights[k.unsigned_abs()];
+        all += weight.abs();
+        let value = at(sample as isize + k);
+        if value.is_finite() {
+            sum += weight * value;
+            known += weight;
+        }
+    }
+    if known < MOST_MISSING * all.min(1.0) {
+        return f64::NAN;
+    }
+    sum / known
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Decimation;
+
+    /// A wave of so many periods per kept sample, ten times as many samples.
+    fn wave(frequency: f64) -> Vec<f64> {
+        let phase = |k: usize| 2.0 * std::f64::consts::PI * frequency * k as f64 / 10.0;
+        (0..4000).map(|k| (phase(k) + 0.3).sin()).collect()
+    }
+
+    /// How far two columns differ in the middle of them.
+    fn apart(a: &[f64], b: &[f64]) -> f64 {
+        let middle = a.len() / 10..a.len() - a.len() / 10;
+        let pairs = a[middle.clone()].iter().zip(&b[middle]);
+        pairs.map(|(x, y)| (x - y).abs()).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn what_is_slow_passes_without_delay_and_what_would_be_folded_does_not() {
+        let kept = Decimation::new(10, true);
+        for frequency in [0.01, 0.1, 0.3] {
+            let slow = wave(frequency);
+            let passed = apart(&kept.measured(&slow), &kept.taken(&slow));
+            assert!(passed < 5e-3, "{frequency}: {passed}");
+        }
+        for frequency in [0.5, 0.7, 1.1, 3.0] {
+            let fast = kept.measured(&wave(frequency));
+            let left = apart(&fast, &vec![0.0; fast.len()]);
+            assert!(left < 5e-3, "{frequency}: {left}");
+        }
+        let plain = Decimation::new(10, false);
+        let folded = plain.measured(&wave(1.1));
+        assert!(apart(&folded, &vec![0.0; folded.len()]) > 0.9);
+    }
+
+    #[test]
+    fn a_line_stays_a_line_to_its_ends_and_a_missing_sample_is_bridged() {
+        let mut line: Vec<f64> = (0..1000).map(|k| 3.0 + 0.5 * f64::from(k)).collect();
+        let kept = Decimation::new(7, true);
+        let pairs = |column: &[f64]| apart(&kept.measured(column), &kept.taken(column));
+        assert!(pairs(&line) < 1e-9);
+        let whole = kept.taken(&line);
+        line[350] = f64::NAN;
+        assert!(apart(&kept.measured(&line), &whole) < 1.0);
+        line[200..500].fill(f64::NAN);
+        assert!(kept.measured(&line)[50].is_nan());
+    }
+
+    #[test]
+    fn white_noise_shrinks_as_is_said() {
+        let mut state = 1u64;
+        let mut uniform = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+        };
+        let noise: Vec<f64> = (0..200_000).map(|_| uniform()).collect();
+        let rms = |column: &[f64]| {
+            (column.iter().map(|v| v * v).sum::<f64>() / column.len() as f64).sqrt()
+        };
+        let kept = Decimation::new(10, true);
+        let shrunk = rms(&kept.measured(&noise)) / rms(&noise);
+        assert!((shrunk / kept.noise() - 1.0).abs() < 0.02, "{shrunk}");
+        assert!((kept.noise() - 0.28).abs() < 0.02, "{}", kept.noise());
+    }
+
+    #[test]
+    fn an_input_keeps_its_impulse() {
+        let kept = Decimation::new(4, true);
+        let held = kept.held(&[1.0, 2.0, 3.0, 6.0, 8.0, f64::NAN, 8.0, 8.0, 5.0]);
+        assert_eq!(held, [3.0, 8.0, 5.0]);
+    }
+}

@@ -1,0 +1,85 @@
+//! `[records]`: the files to learn from and to be judged by, or stretches of them.
+
+use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
+use eomgen_model_spec::span::Span;
+use eomgen_model_spec::table::{Entry, Number, Written};
+
+use super::keys;
+use super::required;
+
+/// `[records]`
+#[derive(Debug)]
+pub struct Records {
+    /// Files to learn from, relative to the dataset's folder.
+    pub train: Vec<Stretch>,
+    /// Files to be judged by.
+    pub test: Vec<Stretch>,
+    /// Where the table stands.
+    pub span: Span,
+}
+
+/// A file, or the part of it between two times.
+#[derive(Clone, Debug)]
+pub struct Stretch {
+    /// The file.
+    pub file: Written,
+    /// Its first time, in the unit of the time's column.
+    pub from: Option<Number>,
+    /// The time that is its end, and no part of it.
+    pub to: Option<Number>,
+}
+
+/// Reads the table.
+pub(super) fn read(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Records> {
+    let example = "{ train = [\"train.csv\"], test = [\"test.csv\"] }";
+    let record = entry.record(&keys::RECORDS, example, found)?;
+    let mut files = |key: &str| {
+        let Some(entry) = record.get(key) else {
+            return Vec::new();
+        };
+        let elements = found
+            .keep(entry.list("[\"record.csv\"]"))
+            .unwrap_or_default();
+        let stretches = elements.iter();
+        stretches
+            .filter_map(|element| stretch(element, found))
+            .collect()
+    };
+    Some(Records {
+        train: files("train"),
+        test: files("test"),
+        span: entry.name.span,
+    })
+}
+
+fn stretch(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Stretch> {
+    if !entry.is_table() {
+        let file = found.keep(entry.written())?;
+        return Some(Stretch {
+            file,
+            from: None,
+            to: None,
+        });
+    }
+    let example = "{ file = \"record.csv\", from = 0, to = 10 }";
+    let record = entry.record(&keys::STRETCH, example, found)?;
+    let file = required(&record, "file", "\"record.csv\"", found)?.written();
+    let [from, to] = ["from", "to"].map(|key| record.number(key, found));
+    if let (Some(from), Some(to)) = (from, to)
+        && from.value >= to.value
+    {
+        found.push(
+            Diagnostic::error(format!(
+                "nothing lies between {} and {}",
+                from.value, to.value
+            ))
+            .at(to.span, "expected a later time")
+            .also(from.span, "than this"),
+        );
+    }
+    Some(Stretch {
+        file: found.keep(file)?,
+        from,
+        to,
+    })
+}

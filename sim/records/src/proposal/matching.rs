@@ -1,0 +1,278 @@
+//! Which column of a record is which quantity of a model, by their names and units.
+
+use eomgen_model_spec::model::Model;
+use eomgen_model_spec::suggest::nearest;
+use eomgen_model_spec::unit::Unit;
+
+/// How people write units that are written otherwise here.
+const UNITS: [(&str, &str); 10] = [
+    ("°", "deg"),
+    ("degree", "deg"),
+    ("degrees", "deg"),
+    ("sec", "s"),
+    ("Nm", "N m"),
+    ("mNm", "mN m"),
+    ("N*m", "N m"),
+    ("m/s2", "m/s^2"),
+    ("rad/s2", "rad/s^2"),
+    ("µs", "us"),
+];
+
+/// A column as its file describes it.
+#[derive(Clone, Debug)]
+pub(crate) struct FileColumn {
+    /// Its number, from 1.
+    pub number: usize,
+    /// Its name, as it stands there; "" where there is none.
+    pub name: String,
+    /// The name without a unit in it.
+    pub stem: String,
+    /// Its unit, if the file says one that is known.
+    pub unit: Option<Unit>,
+}
+
+impl FileColumn {
+    /// A column of a file by its name and by what stands in its line of units.
+    pub fn of(number: usize, name: &str, unit: &str) -> Self {
+        let (stem, inside) = parted(name);
+        let unit = [unit.to_owned(), inside.to_owned()]
+            .into_iter()
+            .map(|text| bare_unit(&text))
+            .filter(|text| !text.is_empty() && text != "-")
+            .find_map(|text| Unit::parse(&text).ok());
+        Self {
+            number,
+            name: name.to_owned(),
+            stem: stem.to_owned(),
+            unit,
+        }
+    }
+
+    /// Takes the end of a name for a unit, as in `time_ms`, if it is one and none is known.
+    pub fn take_suffix(&mut self) {
+        let Some((stem, unit)) = self.stem.rsplit_once('_') else {
+            return;
+        };
+        if let (None, Ok(unit)) = (&self.unit, Unit::parse(&bare_unit(unit))) {
+            self.unit = Some(unit);
+            self.stem = stem.to_owned();
+        }
+    }
+}
+
+/// A quantity of a model.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Quantity {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: Unit,
+    /// Whether it is an input.
+    pub is_input: bool,
+}
+
+/// Inputs, observables, coordinates and rates that a record may hold.
+pub(crate) fn quantities(model: &Model) -> Vec<Quantity> {
+    let quantity = |name: &str, unit: &Unit, is_input: bool| Quantity {
+        name: name.to_owned(),
+        unit: unit.clone(),
+        is_input,
+    };
+    let own = model.inputs.iter().filter(|input| input.rate_of.is_none());
+    let inputs = own.map(|input| quantity(&input.name, &input.unit, true));
+    let observables = model.observables.iter();
+    let observables = observables
+        .filter(|observable| !["energy", "power"].contains(&observable.name.as_str()))
+        .map(|observable| quantity(&observable.name, &observable.unit, false));
+    let coordinates = model.coordinates.iter();
+    let coordinates = coordinates.map(|c| quantity(&c.name, &c.unit, false));
+    let rates = model.coordinates.iter().filter_map(|c| {
+        let unit = Unit::parse(&format!("{}/s", c.unit.text)).ok()?;
+        Some(quantity(&format!("{}_dot", c.name), &unit, false))
+    });
+    let mut all: Vec<Quantity> = Vec::new();
+    for quantity in inputs.chain(observables).chain(coordinates).chain(rates) {
+        // An observable may have the name of a coordinate.
+        if all.iter().all(|known| known.name != quantity.name) {
+            all.push(quantity);
+        }
+    }
+    all
+}
+
+/// A column that was matched, and why.
+#[derive(Clone, Debug)]
+pub(crate) struct Match {
+    /// The column's place among the columns.
+    pub column: usize,
+    /// The quantity's place among the quantities.
+    pub quantity: usize,
+    /// Why.
+    pub why: &'static str,
+}
+
+/// A rule by which a column may be a quantity.
+type Rule = fn(&FileColumn, &Quantity) -> bool;
+
+/// The rules, the surest first.
+const RULES: [(Rule, &str); 5] = [
+    (|c, q| c.name == q.name, "the same name"),
+    (|c, q| c.stem == q.name, "the same name beside a unit"),
+    (
+        |c, q| plain(&c.stem) == plain(&q.name),
+        "the same name but for capitals and signs",
+    ),
+    (
+        |c, q| nearest(&plain(&c.stem), [plain(&q.name).as_str()]).is_some() && c.stem.len() > 3,
+        "a name that is nearly the same: please check",
+    ),
+    (
+        |c, q| c.unit.is_some() && !q.unit.dimension.is_none(),
+        "the only one left with this unit: please check",
+    ),
+];
+
+/// Matches columns and quantities, each once. Where several would do, none is taken. What is left
+/// is tried with the end of its name as a unit.
+pub(crate) fn matched(columns: &mut [FileColumn], quantities: &[Quantity]) -> Vec<Match> {
+    let mut matches = Vec::new();
+    by_rules(columns, quantities, &mut matches);
+    for (place, column) in columns.iter_mut().enumerate() {
+        if matches.iter().all(|found| found.column != place) {
+            column.take_suffix();
+        }
+    }
+    by_rules(columns, quantities, &mut matches);
+    matches.sort_by_key(|found| found.quantity);
+    matches
+}
+
+/// Adds what the rules find among columns and quantities that are free.
+fn by_rules(columns: &[FileColumn], quantities: &[Quantity], matches: &mut Vec<Match>) {
+    for (rule, why) in RULES {
+        let may = |column: usize, quantity: usize| {
+            let (c, q) = (&columns[column], &quantities[quantity]);
+            let of_unit = c
+                .unit
+                .as_ref()
+                .is_none_or(|unit| unit.dimension == q.unit.dimension);
+            of_unit && !(c.name.is_empty() && c.unit.is_none()) && rule(c, q)
+        };
+        let free = |matches: &[Match], column: usize, quantity: usize| {
+            let taken = |m: &Match| m.column == column || m.quantity == quantity;
+            !matches.iter().any(taken)
+        };
+        let before = matches.clone();
+        for column in 0..columns.len() {
+            let fits =
+                |quantity: &usize| free(&before, column, *quantity) && may(column, *quantity);
+            let mut fitting = (0..quantities.len()).filter(fits);
+            let (Some(quantity), None) = (fitting.next(), fitting.next()) else {
+                continue;
+            };
+            let others = (0..columns.len()).filter(|other| {
+                *other != column && free(&before, *other, quantity) && may(*other, quantity)
+            });
+            if others.count() == 0 {
+                matches.push(Match {
+                    column,
+                    quantity,
+                    why,
+                });
+            }
+        }
+    }
+}
+
+/// A name and the unit in it: `u [N m]`, `u (N m)` or `u / N`.
+fn parted(name: &str) -> (&str, &str) {
+    for (opening, closing) in [('[', ']'), ('(', ')')] {
+        if let Some((stem, rest)) = name.split_once(opening)
+            && let Some(unit) = rest.trim_end().strip_suffix(closing)
+        {
+            return (stem.trim(), unit.trim());
+        }
+    }
+    if let Some((stem, unit)) = name.split_once(" / ") {
+        return (stem.trim(), unit.trim());
+    }
+    (name, "")
+}
+
+/// A unit without brackets, as it is written here.
+pub(crate) fn bare_unit(text: &str) -> String {
+    let bare = text.trim().trim_matches(['[', ']', '(', ')']).trim();
+    let known = UNITS.iter().find(|(theirs, _)| *theirs == bare);
+    known.map_or(bare, |(_, ours)| ours).to_owned()
+}
+
+/// A name without what people write differently.
+fn plain(name: &str) -> String {
+    const GREEK: [(char, &str); 9] = [
+        ('θ', "theta"),
+        ('φ', "phi"),
+        ('ϕ', "phi"),
+        ('ψ', "psi"),
+        ('α', "alpha"),
+        ('β', "beta"),
+        ('ω', "omega"),
+        ('τ', "tau"),
+        ('γ', "gamma"),
+    ];
+    let mut found = String::new();
+    for letter in name.chars().flat_map(char::to_lowercase) {
+        match GREEK.iter().find(|(greek, _)| *greek == letter) {
+            Some((_, word)) => found += word,
+            None if letter.is_alphanumeric() => found.push(letter),
+            None => {}
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{FileColumn, matched, quantities};
+
+    #[test]
+    fn columns_are_matched_by_name_and_unit_and_never_against_a_unit() {
+        let source = eomgen_model_spec::models::PLANETARY_ARM_RIG.source();
+        let model = eomgen_model_spec::check(source).expect("a model").model;
+        let all = quantities(&model);
+        let names = |columns: &[(&str, &str)]| -> Vec<(String, String)> {
+            let mut columns: Vec<FileColumn> = (1..)
+                .zip(columns)
+                .map(|(number, (name, unit))| FileColumn::of(number, name, unit))
+                .collect();
+            matched(&mut columns, &all)
+                .into_iter()
+                .map(|m| (columns[m.column].name.clone(), all[m.quantity].name.clone()))
+                .collect()
+        };
+        let pair = |a: &str, b: &str| (a.to_owned(), b.to_owned());
+        assert_eq!(
+            names(&[
+                ("U [Nm]", ""),
+                ("θ_s (°)", ""),
+                ("Theta-C", "rad"),
+                ("tip", "V")
+            ]),
+            [
+                pair("U [Nm]", "u"),
+                pair("θ_s (°)", "theta_s"),
+                pair("Theta-C", "theta_c")
+            ]
+        );
+        assert_eq!(
+            names(&[("theta_s", ""), ("theta_c_deg", ""), ("TIP_mm", "")]),
+            [
+                pair("theta_s", "theta_s"),
+                pair("theta_c_deg", "theta_c"),
+                pair("TIP_mm", "tip")
+            ]
+        );
+        // Two columns that would do are none.
+        assert!(names(&[("thetas", "m"), ("note", "")]).is_empty());
+        assert!(names(&[("THETA_S", ""), ("theta s", "")]).is_empty());
+    }
+}

@@ -1,0 +1,266 @@
+//! A dataset file proposed for a record and a model: how the record's numbers stand
+//! (`layout`), which columns are what (`matching`), how much noise they hold (`noise`), and the
+//! text with everything that was guessed and why (`written`).
+
+mod layout;
+mod matching;
+mod noise;
+mod written;
+
+use std::path::Path;
+
+use eomgen_model_spec::dimension::Dimension;
+use eomgen_model_spec::model::Model;
+use eomgen_model_spec::span::Span;
+use eomgen_model_spec::unit::Unit;
+
+use crate::columns;
+use crate::csv_file;
+use crate::description::columns::ColumnKey;
+use crate::description::format::Format;
+use crate::parquet_file;
+use crate::refusal::Refusal;
+use crate::samples::{FEWEST_SAMPLES, JITTER, typical_step};
+
+use self::matching::{FileColumn, Match, Quantity, matched, quantities};
+
+/// The part of the record that is to be learnt from; the rest judges.
+const TRAIN: f64 = 0.6;
+
+/// How many windows the part to learn from is cut into.
+const WINDOWS: f64 = 20.0;
+
+/// The fewest samples of a window.
+const FEWEST_IN_WINDOW: f64 = 100.0;
+
+/// More samples than this take a search long: fewer are kept.
+const MANY: usize = 100_000;
+
+/// What a column of time may be called.
+const TIMES: [&str; 6] = ["t", "time", "zeit", "timestamp", "seconds", "sec"];
+
+/// What was found in a record.
+struct Found<'m> {
+    model: &'m Model,
+    /// How the file is written.
+    format: Format,
+    /// All columns of numbers.
+    columns: Vec<FileColumn>,
+    /// Their numbers.
+    values: Vec<Vec<f64>>,
+    /// The place of the time among them, and its unit.
+    time: usize,
+    time_unit: Unit,
+    quantities: Vec<Quantity>,
+    matches: Vec<Match>,
+}
+
+impl Found<'_> {
+    fn times(&self) -> &[f64] {
+        &self.values[self.time]
+    }
+
+    /// The usual time from sample to sample, s.
+    fn step(&self) -> f64 {
+        self.time_unit.to_si(typical_step(self.times()))
+    }
+
+    /// Whether steps differ.
+    fn is_uneven(&self) -> bool {
+        let step = typical_step(self.times());
+        let mut steps = self.times().windows(2).map(|pair| pair[1] - pair[0]);
+        steps.any(|s| (s - step).abs() > JITTER * step)
+    }
+
+    /// One of how many samples is kept.
+    fn every(&self) -> usize {
+        self.times().len().div_ceil(MANY)
+    }
+
+    /// The time at which the part that judges begins, in its column's unit.
+    fn split(&self) -> f64 {
+        let times = self.times();
+        times[(TRAIN * times.len() as f64) as usize]
+    }
+
+    /// A window's length, s; none if the record is better left whole.
+    fn window(&self) -> Option<f64> {
+        let step = self.step() * self.every() as f64;
+        let train = self.time_unit.to_si(self.split() - self.times()[0]);
+        let length = round_down((train / WINDOWS).max(FEWEST_IN_WINDOW * step));
+        let judged = self
+            .time_unit
+            .to_si(self.times()[self.times().len() - 1] - self.split());
+        (2.0 * length <= judged).then_some(length)
+    }
+}
+
+/// The largest of 1, 2 and 5 times a power of ten that is not larger.
+fn round_down(value: f64) -> f64 {
+    let exponent = value.log10().floor() as i32;
+    let part = |digit: i32, exponent: i32| -> f64 {
+        format!("{digit}e{exponent}").parse().unwrap_or(value)
+    };
+    let choices = [5, 2, 1].map(|digit| part(digit, exponent));
+    let fitting = choices
+        .into_iter()
+        .find(|choice| *choice <= value * (1.0 + 1e-9));
+    fitting.unwrap_or(part(1, exponent))
+}
+
+/// A dataset file for a record of a model, as text, with what was guessed and why as comments.
+/// `name`: the record's path from the folder of the dataset file.
+///
+/// # Errors
+/// A record that cannot be read or holds no time, and one of which nothing is a quantity of the
+/// model.
+pub fn proposed(record: &Path, name: &str, model: &Model) -> Result<String, Refusal> {
+    let bytes = columns::bytes(record)?;
+    let (format, mut columns) = match record.extension().is_some_and(|e| e == "parquet") {
+        true => {
+            let names = parquet_file::names(record, bytes)?;
+            let column = |(number, name): &(usize, String)| FileColumn::of(*number, name, "");
+            (Format::default(), names.iter().map(column).collect())
+        }
+        false => described(record, &bytes)?,
+    };
+    let keys: Vec<ColumnKey> = columns
+        .iter()
+        .map(|column| ColumnKey::Number(column.number, Span::default()))
+        .collect();
+    let wanted: Vec<&ColumnKey> = keys.iter().collect();
+    let table = columns::read(record, &format, &wanted)?;
+    let (time, time_unit) = time(record, &mut columns, &table.columns)?;
+    let fewest = 2 * FEWEST_SAMPLES + FEWEST_SAMPLES / 2;
+    if table.lines.len() < fewest {
+        return Err(Refusal::file(
+            record,
+            format!(
+                "holds {} samples; expected {fewest} or more: {FEWEST_SAMPLES} to learn from and as many to be judged by",
+                table.lines.len()
+            ),
+        ));
+    }
+    let mut found = Found {
+        model,
+        format,
+        columns,
+        values: table.columns,
+        time,
+        time_unit,
+        quantities: quantities(model),
+        matches: Vec::new(),
+    };
+    let clock = found.columns.remove(time);
+    found.matches = matched(&mut found.columns, &found.quantities);
+    found.columns.insert(time, clock);
+    for matched in &mut found.matches {
+        matched.column += usize::from(matched.column >= time);
+    }
+    let is_channel = |m: &Match| !found.quantities[m.quantity].is_input;
+    if !found.matches.iter().any(is_channel) {
+        return Err(nothing_measured(record, &found));
+    }
+    Ok(written::text(&found, name))
+}
+
+/// How a text file is written, and its columns of numbers.
+fn described(record: &Path, bytes: &[u8]) -> Result<(Format, Vec<FileColumn>), Refusal> {
+    // What is no text that can be read is said by who reads it.
+    let text = csv_file::behind_skipped(record, bytes, &Format::default())?;
+    let text = String::from_utf8_lossy(&text);
+    let layout = layout::found(&text).ok_or_else(|| {
+        Refusal::file(
+            record,
+            "no two columns of numbers are found; expected lines of numbers, parted by commas, \
+             semicolons, bars, tabs or spaces",
+        )
+    })?;
+    let cells = layout.names.iter().zip(&layout.units).enumerate();
+    let columns = cells.filter(|(place, _)| layout.are_numbers[*place]);
+    let columns = columns.map(|(place, (name, unit))| FileColumn::of(place + 1, name, unit));
+    Ok((layout.format, columns.collect()))
+}
+
+/// Which column is the time, and its unit.
+fn time(
+    record: &Path,
+    columns: &mut [FileColumn],
+    values: &[Vec<f64>],
+) -> Result<(usize, Unit), Refusal> {
+    let is_time = |name: &str| TIMES.contains(&name.to_lowercase().trim_matches(['#', ' ']));
+    for column in columns.iter_mut() {
+        if column
+            .stem
+            .rsplit_once('_')
+            .is_some_and(|(stem, _)| is_time(stem))
+        {
+            column.take_suffix();
+        }
+    }
+    let rises = |column: &usize| {
+        let values = &values[*column];
+        values.iter().all(|v| v.is_finite()) && values.windows(2).all(|pair| pair[0] < pair[1])
+    };
+    let is_called = |column: &usize| is_time(&columns[*column].stem);
+    let all = 0..columns.len();
+    let Some(time) = all
+        .clone()
+        .find(|c| is_called(c) && rises(c))
+        .or_else(|| all.clone().find(rises))
+    else {
+        let called = all.clone().find(is_called);
+        return Err(Refusal::file(
+            record,
+            match called {
+                Some(column) => format!(
+                    "the time does not increase in column {}, `{}`; expected samples in order, each once",
+                    columns[column].number, columns[column].name
+                ),
+                None => "no column increases from line to line; expected one of time".to_owned(),
+            },
+        ));
+    };
+    let seconds = Unit::coherent(Dimension::TIME);
+    let unit = columns[time].unit.clone();
+    let unit = unit.filter(|unit| unit.dimension == seconds.dimension);
+    Ok((time, unit.unwrap_or(seconds)))
+}
+
+fn nothing_measured(record: &Path, found: &Found<'_>) -> Refusal {
+    let names = found
+        .columns
+        .iter()
+        .map(|column| match column.name.as_str() {
+            "" => format!("column {}", column.number),
+            name => name.to_owned(),
+        });
+    let names: Vec<String> = names.collect();
+    let measured = found.quantities.iter().filter(|q| !q.is_input);
+    let measured: Vec<&str> = measured.map(|q| q.name.as_str()).collect();
+    Refusal::file(
+        record,
+        format!(
+            "no column is an observable, coordinate or rate of the model by its name or unit: it has {}, \
+             the model {}; rename columns, or write the dataset file by hand",
+            names.join(", "),
+            measured.join(", ")
+        ),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn lengths_are_rounded_down_to_numbers_that_people_write() {
+        for (value, expected) in [
+            (0.12, 0.1),
+            (0.5, 0.5),
+            (0.99, 0.5),
+            (2.4, 2.0),
+            (1e-3, 1e-3),
+        ] {
+            assert_eq!(super::round_down(value), expected);
+        }
+    }
+}

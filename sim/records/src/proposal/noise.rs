@@ -1,0 +1,94 @@
+//! How much noise a column holds, from what differs from sample to sample.
+
+/// Orders of differences that are tried: what moves slowly leaves those of a high order, noise does
+/// not.
+const ORDERS: std::ops::RangeInclusive<usize> = 2..=8;
+
+/// The median of the absolute value of a normal number, in standard deviations.
+const MEDIAN: f64 = 0.674_489_750_196_081_7;
+
+/// One standard deviation of the white noise of an evenly sampled column, at least that of its
+/// resolution; none if nothing differs. Differences of order n of white noise have the variance
+/// binomial(2n, n); the order that leaves least is taken, because motion only adds.
+pub(crate) fn estimated(column: &[f64]) -> Option<f64> {
+    let mut differences: Vec<f64> = column.to_vec();
+    let mut least = f64::INFINITY;
+    let mut variance = 1.0;
+    for order in 1..=*ORDERS.end() {
+        differences = differences
+            .windows(2)
+            .map(|pair| pair[1] - pair[0])
+            .collect();
+        // binomial(2n, n) from the one before.
+        let n = order as f64;
+        variance *= 2.0 * (2.0 * n - 1.0) / n;
+        if ORDERS.contains(&order)
+            && let Some(median) = median(&differences)
+        {
+            least = least.min(median / MEDIAN / f64::sqrt(variance));
+        }
+    }
+    let found = least.max(resolution(column)? / f64::sqrt(12.0));
+    (found > 0.0 && found.is_finite()).then_some(found)
+}
+
+/// The median of the absolute values that are known.
+fn median(differences: &[f64]) -> Option<f64> {
+    let known = differences
+        .iter()
+        .map(|d| d.abs())
+        .filter(|d| d.is_finite());
+    let mut sizes: Vec<f64> = known.collect();
+    sizes.sort_by(f64::total_cmp);
+    sizes.get(sizes.len() / 2).copied()
+}
+
+/// The smallest step between values that a column takes.
+fn resolution(column: &[f64]) -> Option<f64> {
+    let mut values: Vec<f64> = column.iter().copied().filter(|v| v.is_finite()).collect();
+    values.sort_by(f64::total_cmp);
+    let largest = values.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
+    // What rounding of doubles makes is no step.
+    let steps = values.windows(2).map(|pair| pair[1] - pair[0]);
+    let steps = steps.filter(|step| *step > 1e-12 * largest);
+    steps.min_by(f64::total_cmp)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::estimated;
+
+    /// Numbers of mean 0 and standard deviation 1, nearly normal.
+    fn normal(count: usize) -> Vec<f64> {
+        let mut state = 7u64;
+        let mut uniform = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        };
+        (0..count)
+            .map(|_| (0..12).map(|_| uniform()).sum::<f64>() - 6.0)
+            .collect()
+    }
+
+    #[test]
+    fn noise_is_told_from_motion_and_never_below_the_resolution() {
+        let motion = |k: usize| 0.3 * (0.02 * k as f64).sin() + 0.05 * (0.21 * k as f64).cos();
+        let noisy = |sd: f64| -> Vec<f64> {
+            let noise = normal(4000).into_iter().enumerate();
+            noise.map(|(k, n)| motion(k) + sd * n).collect()
+        };
+        for sd in [1e-5, 1e-3, 0.1] {
+            let found = estimated(&noisy(sd)).expect("noise");
+            assert!((found / sd - 1.0).abs() < 0.1, "{sd}: {found}");
+        }
+        let step = 2.0 * std::f64::consts::PI / 4096.0;
+        let rounded: Vec<f64> = (0..4000)
+            .map(|k| (motion(k) / step).round() * step)
+            .collect();
+        let found = estimated(&rounded).expect("noise");
+        assert!(found > 0.9 * step / 12f64.sqrt() && found < step, "{found}");
+        assert_eq!(estimated(&[1.0; 100]), None);
+    }
+}

@@ -1,0 +1,414 @@
+//! Records as people have them: separators, decimal signs, lines that are no samples, columns
+//! without names, parts of a file, fewer samples. Each is read to the numbers that were written,
+//! or refused with its place and what to write.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use eomgen_model_spec::model::Model;
+use eomgen_records::dataset::Dataset;
+use eomgen_records::{Refusal, proposed, read_dataset};
+use tempfile::TempDir;
+
+/// A dataset file of a pendulum; `format` stands for further tables.
+const DESCRIPTION: &str = r#"
+[records]
+train = ["train.csv"]
+test = ["test.csv"]
+
+[time]
+column = "t"
+unit = "s"
+
+[channels.theta]
+column = "angle"
+unit = "mrad"
+noise = 0.1
+"#;
+
+/// Samples of a record, and the time between them, s.
+const SAMPLES: usize = 400;
+const STEP: f64 = 0.01;
+
+fn pendulum() -> Model {
+    let source = eomgen_model_spec::models::PENDULUM.source();
+    eomgen_model_spec::check(source).expect("a model").model
+}
+
+/// The angle at a sample, mrad; `turn` makes another record.
+fn angle(sample: usize, turn: f64) -> f64 {
+    100.0 * (1.3 * STEP * sample as f64 + turn).cos() + 20.0 * (3.1 * STEP * sample as f64).sin()
+}
+
+/// A record, line by line as `line` writes time and angle.
+fn record(head: &str, turn: f64, line: impl Fn(f64, f64) -> String) -> String {
+    let samples = 0..SAMPLES;
+    let lines = samples.map(|sample| line(STEP * sample as f64, angle(sample, turn)));
+    head.to_owned() + &lines.collect::<String>()
+}
+
+/// A folder with a dataset file and its records.
+fn folder(description: &str, head: &str, line: impl Fn(f64, f64) -> String) -> TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    write(folder.path(), "dataset.toml", description);
+    write(folder.path(), "train.csv", &record(head, 0.0, &line));
+    write(folder.path(), "test.csv", &record(head, 1.0, &line));
+    folder
+}
+
+fn write(folder: &Path, name: &str, text: &str) {
+    std::fs::write(folder.join(name), text).expect("a file");
+}
+
+fn read(folder: &TempDir) -> Result<Dataset, Refusal> {
+    read_dataset(&folder.path().join("dataset.toml"), &pendulum())
+}
+
+fn refused(folder: &TempDir) -> String {
+    match read(folder) {
+        Ok(_) => panic!("it is taken"),
+        Err(Refusal::Description(found)) => found.render(false),
+        Err(Refusal::Record(message)) => message,
+    }
+}
+
+fn plain(t: f64, angle: f64) -> String {
+    format!("{t:.2},{angle:.6}\n")
+}
+
+/// Asserts that a dataset holds what was written.
+fn holds(dataset: &Dataset) {
+    for (record, turn) in [(&dataset.train[0], 0.0), (&dataset.test[0], 1.0)] {
+        assert_eq!(record.times.len(), SAMPLES);
+        for sample in 0..SAMPLES {
+            assert!((record.times[sample] - STEP * sample as f64).abs() < 1e-9);
+            let expected = 1e-3 * angle(sample, turn);
+            assert!((record.channels[0][sample] - expected).abs() < 1e-9);
+        }
+    }
+}
+
+#[test]
+fn every_format_is_read_to_the_numbers_that_were_written() {
+    let comma = |number: f64| format!("{number:.6}").replace('.', ",");
+    let by_number = DESCRIPTION
+        .replace("column = \"t\"", "column = 1")
+        .replace("column = \"angle\"", "column = 3");
+    let with = |format: &str| format!("{DESCRIPTION}\n[format]\n{format}\n");
+    let cases: [(String, &str, Box<dyn Fn(f64, f64) -> String>); 9] = [
+        (DESCRIPTION.to_owned(), "t,angle\n", Box::new(plain)),
+        (
+            with("separator = \";\"\ndecimal = \",\""),
+            "\u{feff}t;angle\n",
+            Box::new(move |t, a| format!("{};{}\n", comma(t), comma(a))),
+        ),
+        (
+            with("separator = \"tab\"\nskip = 3"),
+            "measured on a bench\n\"a quote\nand more\nt\tangle\n",
+            Box::new(|t, a| format!("{t:.2}\t{a:.6}\n")),
+        ),
+        (
+            with("separator = \"spaces\"\ncomment = \"#\""),
+            "# by hand\n  t   angle\n# here it goes\n",
+            Box::new(|t, a| format!(" {t:8.2}  {a:12.6}\r\n")),
+        ),
+        (
+            with("units = true\nseparator = \"|\""),
+            "t|angle\ns|mrad\n",
+            Box::new(|t, a| format!("{t:.2}|{a:.6}|\n")),
+        ),
+        (
+            format!("{by_number}\n[format]\nnames = false\n"),
+            "",
+            Box::new(|t, a| format!("{t:.2},7,{a:.6}\n")),
+        ),
+        (
+            format!("{by_number}\n[format]\nnames = false\nunits = true\n"),
+            "s,-,mrad\n",
+            Box::new(|t, a| format!("{t:.2},7,{a:.6}\n")),
+        ),
+        (
+            by_number.clone(),
+            "t,angle,angle\n",
+            Box::new(|t, a| format!("{t:.2},7,{a:.6}\n")),
+        ),
+        (
+            with("").replace("\"angle\"", "\"angle (mrad)\""),
+            "t,angle (mrad)\n",
+            Box::new(plain),
+        ),
+    ];
+    for (description, head, line) in cases {
+        let folder = folder(&description, head, line);
+        let dataset = read(&folder).unwrap_or_else(|refusal| panic!("{head}: {refusal}"));
+        holds(&dataset);
+    }
+}
+
+#[test]
+fn what_a_format_does_not_fit_is_refused_with_what_to_write() {
+    let with = |format: &str| format!("{DESCRIPTION}\n[format]\n{format}\n");
+    let cases = [
+        (with(""), "t;angle\n", "separator = \";\" in [format]"),
+        (with(""), "t\tangle\n", "separator = \"tab\" in [format]"),
+        (
+            with("decimal = \",\""),
+            "t,angle\n",
+            "cannot both part columns",
+        ),
+        (
+            with("decimal = \",\"\nseparator = \";\""),
+            "t;angle\n0.01;3\n",
+            "line 2: column 1: \"0.01\" is no number: decimal = \",\" stands in [format]",
+        ),
+        (
+            with("separator = \";\""),
+            "t;angle\n0,01;3\n",
+            "column 1: \"0,01\" is no number; write decimal = \",\" in [format]",
+        ),
+        (with("skip = 2"), "one line", "has no more than 2 lines"),
+        (with("skip = -1"), "t,angle\n", "0 to 1000"),
+        (
+            with("skip = 2"),
+            "a\nb\nt,angle\n0,x\n",
+            "line 4: column 2: \"x\" is no number",
+        ),
+        (
+            with("comment = \"rem\""),
+            "t,angle\n",
+            "expected one character",
+        ),
+        (with("names = false"), "0,1\n", "give the column's number"),
+        (with("names = 1"), "t,angle\n", "is not a truth value"),
+        (
+            with("separator = \"-\""),
+            "t,angle\n",
+            "expected \",\" or \";\"",
+        ),
+        (
+            with("seperator = \";\""),
+            "t,angle\n",
+            "did you mean `separator`?",
+        ),
+        (
+            DESCRIPTION.replace("\"angle\"", "3"),
+            "t,angle\n",
+            "line 1: there is no column 3; there are 2",
+        ),
+        (
+            DESCRIPTION.replace("\"angle\"", "0"),
+            "t,angle\n",
+            "numbered from 1",
+        ),
+    ];
+    for (description, text, part) in cases {
+        let folder = folder(&description, text, |_, _| String::new());
+        let message = refused(&folder);
+        assert!(message.contains(part), "{part}: {message}");
+    }
+    let folder = folder(DESCRIPTION, "t,angle\n", plain);
+    std::fs::write(folder.path().join("train.csv"), b"\xff\xfet\0,\0").expect("a file");
+    assert!(refused(&folder).contains("is UTF-16; expected UTF-8"));
+}
+
+#[test]
+fn a_file_is_parted_by_its_times() {
+    let parted = DESCRIPTION
+        .replace("[\"train.csv\"]", "[{ file = \"train.csv\", to = 2500 }]")
+        .replace(
+            "[\"test.csv\"]",
+            "[{ file = \"train.csv\", from = 2500, to = 3.5e3 }]",
+        )
+        .replace("unit = \"s\"", "unit = \"ms\"");
+    let folder = folder(&parted, "t,angle\n", |t, a| {
+        format!("{:.0},{a:.6}\n", 1e3 * t)
+    });
+    let dataset = read(&folder).unwrap_or_else(|refusal| panic!("{refusal}"));
+    let ends = |times: &[f64]| (times[0], times[times.len() - 1]);
+    assert_eq!(ends(&dataset.train[0].times), (0.0, 2.49));
+    assert_eq!(ends(&dataset.test[0].times), (2.5, 3.49));
+    assert_eq!(dataset.test[0].channels[0].len(), 100);
+    for (from, to, part) in [
+        (
+            "from = 2500",
+            "from = 2000",
+            "stretches that do not overlap",
+        ),
+        (
+            "from = 2500",
+            "from = 3600",
+            "nothing lies between 3600 and 3500",
+        ),
+        ("to = 2500", "to = -1", "it goes from 0 to 3990 ms"),
+        ("to = 2500", "until = 2500", "known here: file, from, to"),
+        ("to = 2500", "to = 100", "holds 10 samples; expected 50"),
+    ] {
+        write(folder.path(), "dataset.toml", &parted.replacen(from, to, 1));
+        let message = refused(&folder);
+        assert!(message.contains(part), "{part}: {message}");
+    }
+}
+
+#[test]
+fn fewer_samples_are_kept_behind_a_low_pass_or_as_they_are() {
+    // A wave far above what the samples that are kept can show.
+    let ripple = |t: f64| 5.0 * (2.0 * std::f64::consts::PI * 19.0 * t + 0.4).sin();
+    let line = move |t: f64, a: f64| format!("{t:.2},{:.6}\n", a + ripple(t));
+    let every = |more: &str| DESCRIPTION.replace("\"s\"", &format!("\"s\"\nevery = 5\n{more}"));
+    let furthest = |dataset: &Dataset| {
+        let record = &dataset.train[0];
+        assert_eq!(record.times.len(), 80);
+        let apart = |kept: usize| (record.channels[0][kept] - 1e-3 * angle(5 * kept, 0.0)).abs();
+        (8..72).map(apart).fold(0.0, f64::max)
+    };
+    let smooth = folder(&every(""), "t,angle\n", line);
+    let dataset = read(&smooth).unwrap_or_else(|refusal| panic!("{refusal}"));
+    assert!(furthest(&dataset) < 5e-5, "{}", furthest(&dataset));
+    // White noise shrinks with its band.
+    assert!((dataset.channels[0].noise / 1e-4 - 0.4).abs() < 0.03);
+    let plain = folder(&every("filter = \"none\""), "t,angle\n", line);
+    let dataset = read(&plain).unwrap_or_else(|refusal| panic!("{refusal}"));
+    assert!(furthest(&dataset) > 4e-3);
+    assert_eq!(dataset.channels[0].noise, 1e-4);
+
+    let text = record("t,angle\n", 0.0, line).replace("\n1.50,", "\n1.505,");
+    write(smooth.path(), "train.csv", &text);
+    let message = refused(&smooth);
+    assert!(message.contains("line 152: the low-pass"), "{message}");
+    write(smooth.path(), "dataset.toml", &every("filter = \"none\""));
+    assert!(read(&smooth).is_ok());
+    for (wrong, part) in [("every = 0", "from 1 on"), ("every = 2.5", "not a whole")] {
+        write(
+            smooth.path(),
+            "dataset.toml",
+            &every("").replace("every = 5", wrong),
+        );
+        assert!(refused(&smooth).contains(part), "{wrong}");
+    }
+}
+
+#[test]
+fn what_is_known_of_a_sensor_is_taken_in_its_units() {
+    let said = format!(
+        "{DESCRIPTION}gain = {{ mean = 2, sd = 0.5 }}\nbias = {{ sd = 3 }}\ndelay = {{ mean = 0.02, sd = 0 }}\n"
+    );
+    let folder = folder(&said, "t,angle\n", plain);
+    let priors = read(&folder).expect("a dataset").channels[0].priors;
+    let numbers = |of: Option<eomgen_records::dataset::Expected>| {
+        of.map(|expected| (expected.mean, expected.sd))
+    };
+    assert_eq!(numbers(priors.gain), Some((Some(2.0), 0.5)));
+    assert_eq!(numbers(priors.bias), Some((None, 3e-3)));
+    assert_eq!(numbers(priors.delay), Some((Some(0.02), 0.0)));
+    let mut message = String::new();
+    for (from, to, part) in [
+        (
+            "{ mean = 2, sd = 0.5 }",
+            "0.05",
+            "write gain = { sd = 0.02 }",
+        ),
+        ("sd = 3", "sd = -3", "0 or greater"),
+        ("sd = 3", "mean = 3", "has no `sd`"),
+        ("bias", "offset", "unknown key `offset`"),
+        ("mean = 0.02", "mean = 0.2", "20.0 samples of the records"),
+    ] {
+        write(folder.path(), "dataset.toml", &said.replacen(from, to, 1));
+        message.clear();
+        write!(message, "{}", refused(&folder)).expect("text");
+        assert!(message.contains(part), "{part}: {message}");
+        assert!(message.contains("dataset.toml:"), "{message}");
+    }
+}
+
+#[test]
+fn a_dataset_file_is_proposed_that_reads_what_was_written() {
+    let comma = |number: f64| format!("{number:.6}").replace('.', ",");
+    // Noise that repeats, of about one standard deviation.
+    let noise = |t: f64| 3.4 * ((t * 7919.123).sin() * 43_758.545).fract().abs() - 1.7;
+    let cases: [(&str, Box<dyn Fn(f64, f64) -> String>, &[&str]); 4] = [
+        (
+            "t,theta,force,comment\n",
+            Box::new(|t, a| format!("{t:.2},{:.9},0.5,fine\n", 1e-3 * a)),
+            &["unit = \"rad\"", "# Not used: \"force\""],
+        ),
+        (
+            "Pendel 3\n\nZeit [ms];Theta (mrad);Bemerkung\n",
+            Box::new(move |t, a| format!("{};{};ok\n", comma(1e3 * t), comma(a))),
+            &[
+                "decimal = \",\"",
+                "skip = 2",
+                "column = \"Zeit [ms]\"",
+                "unit = \"ms\"",
+                "unit = \"mrad\"",
+            ],
+        ),
+        (
+            "% time_us  theta_deg\n",
+            Box::new(|t, a| format!("{:.1} {:.9}\n", 1e6 * t, (1e-3 * a).to_degrees())),
+            &[
+                "names = false",
+                "column = 2",
+                "unit = \"us\"",
+                "unit = \"deg\"",
+            ],
+        ),
+        (
+            "θ\tt\nmrad\ts\n",
+            Box::new(|t, a| format!("{a:.6}\t{t:.2}\n")),
+            &["separator = \"tab\"", "units = true", "column = \"θ\""],
+        ),
+    ];
+    for (head, line, parts) in cases {
+        let folder = folder("", head, |t, a| line(t, a + 0.1 * noise(t)));
+        let record = folder.path().join("train.csv");
+        let text = proposed(&record, "train.csv", &pendulum());
+        let text = text.unwrap_or_else(|refusal| panic!("{head}: {refusal}"));
+        for part in parts {
+            assert!(text.contains(part), "{part}: {text}");
+        }
+        write(folder.path(), "dataset.toml", &text);
+        let dataset = read(&folder).unwrap_or_else(|refusal| panic!("{refusal}: {text}"));
+        let (train, test) = (&dataset.train[0], &dataset.test[0]);
+        assert_eq!((train.times.len(), test.times.len()), (240, 160));
+        for (k, value) in train.channels[0]
+            .iter()
+            .chain(&test.channels[0])
+            .enumerate()
+        {
+            assert!((value - 1e-3 * angle(k, 0.0)).abs() < 2e-4, "{text}");
+        }
+        let noise = dataset.channels[0].noise;
+        assert!((5e-5..2e-4).contains(&noise), "{noise}: {text}");
+    }
+}
+
+#[test]
+fn records_for_which_nothing_can_be_proposed_are_refused() {
+    let cases = [
+        ("a,b\nno,numbers\n", "no two columns of numbers"),
+        ("", "is empty"),
+        (
+            "t,elbow\n",
+            "no column is an observable, coordinate or rate",
+        ),
+        ("theta,other\n", "no column increases"),
+    ];
+    for (head, part) in cases {
+        let folder = folder("", head, |t, a| match head {
+            "t,elbow\n" => format!("{t:.2},{a:.6}\n"),
+            "theta,other\n" => format!("{:.6},{a:.6}\n", a),
+            _ => String::new(),
+        });
+        let message = proposed(&folder.path().join("train.csv"), "train.csv", &pendulum());
+        let message = message.expect_err(part).to_string();
+        assert!(message.contains(part), "{part}: {message}");
+    }
+    let few = "t,theta\n".to_owned() + &(0..90).map(|k| format!("{k},{k}\n")).collect::<String>();
+    let folder = folder("", &few, |_, _| String::new());
+    let message = proposed(&folder.path().join("train.csv"), "train.csv", &pendulum());
+    let message = message.expect_err("too few").to_string();
+    assert!(
+        message.contains("holds 90 samples; expected 125"),
+        "{message}"
+    );
+}

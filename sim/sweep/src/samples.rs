@@ -1,0 +1,279 @@
+//! Random samples of the parameters that a specification calls uncertain.
+//!
+//! The numbers are those of SplitMix64 (Steele, Lea and Flood 2014), and normal ones of them by the
+//! transform of Box and Muller (1958), with the project's own functions: the same bits on every
+//! machine. Each number is made of the seed, the parameter's name and the sample alone, so that
+//! shards need nothing from each other, and another uncertain parameter leaves the others' samples.
+
+use std::f64::consts::TAU;
+
+use eomgen_elementary::Function;
+use eomgen_model_spec::model::Model;
+use eomgen_model_spec::uncertainty::{Law, Spread};
+use rand_xoshiro::SplitMix64;
+use rand_xoshiro::rand_core::{Rng, SeedableRng};
+use serde::{Deserialize, Serialize};
+
+use crate::error::SweepError;
+use crate::grid::MOST_POINTS;
+
+/// How often a normal number is drawn until it lies within its bounds. These are a standard deviation
+/// away at least, so that all of them lie outside once in 10^30; the mean is taken then.
+const MOST_DRAWS: usize = 64;
+
+/// Random samples of parameters, which do not depend on each other.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Samples {
+    /// How many samples.
+    pub count: usize,
+    /// Which sequence.
+    pub seed: u64,
+    /// What is sampled.
+    pub parameters: Vec<Sampled>,
+}
+
+/// How a parameter is sampled; numbers in the unit that the specification declares.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "law", rename_all = "snake_case")]
+pub enum Sampled {
+    /// Normal, without what lies outside the bounds.
+    Normal {
+        /// The parameter.
+        name: String,
+        /// The mean.
+        mean: f64,
+        /// The standard deviation.
+        sd: f64,
+        /// The lower bound, if there is one.
+        low: Option<f64>,
+        /// The upper bound.
+        high: Option<f64>,
+    },
+    /// Between two ends, all values alike.
+    Uniform {
+        /// The parameter.
+        name: String,
+        /// The lower end.
+        low: f64,
+        /// The upper end.
+        high: f64,
+    },
+}
+
+impl From<Spread> for Sampled {
+    fn from(Spread { name, law }: Spread) -> Self {
+        match law {
+            Law::Normal {
+                mean,
+                sd,
+                bounds: [low, high],
+            } => Self::Normal {
+                name,
+                mean,
+                sd,
+                low,
+                high,
+            },
+            Law::Uniform { low, high } => Self::Uniform { name, low, high },
+        }
+    }
+}
+
+impl Samples {
+    /// So many samples of the uncertain parameters of a model, about the values that they have.
+    ///
+    /// # Errors
+    /// A model without an uncertain parameter, an uncertainty that is none at a parameter's value, no
+    /// sample, more than [`MOST_POINTS`].
+    pub fn new(model: &Model, count: usize, seed: u64) -> Result<Self, SweepError> {
+        let spreads = model.spreads();
+        let spreads = spreads.map_err(|error| SweepError::Request(error.to_string()))?;
+        if spreads.is_empty() {
+            return Err(SweepError::Request(format!(
+                "--samples: the model `{}` has no uncertain parameter: give one or more of them an \
+                 uncertainty, as k = {{ value = 50, unit = \"N/m\", uncertainty = {{ relative = 0.02 }} }}",
+                model.name
+            )));
+        }
+        let samples = Self {
+            count,
+            seed,
+            parameters: spreads.into_iter().map(Sampled::from).collect(),
+        };
+        samples.check()?;
+        Ok(samples)
+    }
+
+    /// What is wrong with a number of samples.
+    pub(crate) fn check(&self) -> Result<(), SweepError> {
+        if (1..=MOST_POINTS).contains(&self.count) {
+            return Ok(());
+        }
+        Err(SweepError::Request(format!(
+            "--samples {}: expected a number from 1 to {MOST_POINTS}",
+            self.count
+        )))
+    }
+
+    /// The sampled parameters.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.parameters.iter().map(Sampled::name)
+    }
+
+    /// The parameters' values in a sample, in the order of [`Samples::names`].
+    pub fn settings(&self, sample: usize) -> Vec<(&str, f64)> {
+        let value = |parameter: &Sampled| {
+            let mut state = self.seed;
+            for word in [word_of(parameter.name()), sample as u64] {
+                state = SplitMix64::seed_from_u64(state ^ word).next_u64();
+            }
+            parameter.drawn(&mut SplitMix64::seed_from_u64(state))
+        };
+        self.parameters
+            .iter()
+            .map(|parameter| (parameter.name(), value(parameter)))
+            .collect()
+    }
+}
+
+impl Sampled {
+    /// The parameter's name.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Normal { name, .. } | Self::Uniform { name, .. } => name,
+        }
+    }
+
+    fn drawn(&self, random: &mut SplitMix64) -> f64 {
+        match *self {
+            Self::Uniform { low, high, .. } => (low + (high - low) * unit(random)).clamp(low, high),
+            Self::Normal {
+                mean,
+                sd,
+                low,
+                high,
+                ..
+            } => {
+                let inside = |value: &f64| {
+                    low.is_none_or(|low| low <= *value) && high.is_none_or(|high| *value <= high)
+                };
+                let mut draws = (0..MOST_DRAWS).map(|_| mean + sd * normal(random));
+                draws.find(inside).unwrap_or(mean)
+            }
+        }
+    }
+}
+
+/// Uniform in [0, 1).
+fn unit(random: &mut SplitMix64) -> f64 {
+    (random.next_u64() >> 11) as f64 * 0.5_f64.powi(53)
+}
+
+/// Normal with mean 0 and standard deviation 1.
+fn normal(random: &mut SplitMix64) -> f64 {
+    // 1 - [0, 1) is not 0, so that it has a logarithm.
+    let radius = (-2.0 * Function::Ln.apply(&[1.0 - unit(random)])).sqrt();
+    radius * Function::Cos.apply(&[TAU * unit(random)])
+}
+
+/// A name as a number: the hash of Fowler, Noll and Vo, FNV-1a.
+fn word_of(name: &str) -> u64 {
+    name.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn normal_law(name: &str, low: Option<f64>) -> Sampled {
+        let name = name.to_owned();
+        Sampled::Normal {
+            name,
+            mean: 3.0,
+            sd: 0.5,
+            low,
+            high: None,
+        }
+    }
+
+    fn values(parameter: &Sampled, seed: u64, count: usize) -> Vec<f64> {
+        let samples = Samples {
+            count,
+            seed,
+            parameters: vec![parameter.clone()],
+        };
+        (0..count)
+            .map(|sample| samples.settings(sample)[0].1)
+            .collect()
+    }
+
+    fn moment(values: &[f64], about: f64, power: i32) -> f64 {
+        values
+            .iter()
+            .map(|value| (value - about).powi(power))
+            .sum::<f64>()
+            / values.len() as f64
+    }
+
+    #[test]
+    fn normal_numbers_have_the_moments_of_their_law() {
+        let n = 40_000;
+        let values = values(&normal_law("k", None), 1, n);
+        let root = (n as f64).sqrt();
+        // Standard errors of the first four moments, times four.
+        assert!((moment(&values, 0.0, 1) - 3.0).abs() < 4.0 * 0.5 / root);
+        assert!((moment(&values, 3.0, 2) - 0.25).abs() < 4.0 * 0.25 * 2_f64.sqrt() / root);
+        assert!(moment(&values, 3.0, 3).abs() < 4.0 * 0.125 * 15_f64.sqrt() / root);
+        assert!((moment(&values, 3.0, 4) - 3.0 / 16.0).abs() < 4.0 * 96_f64.sqrt() / 16.0 / root);
+        let within = values
+            .iter()
+            .filter(|value| (**value - 3.0).abs() < 0.5)
+            .count();
+        // erf(1/sqrt(2)) = 0.682689
+        assert!((within as f64 / n as f64 - 0.682_689).abs() < 4.0 * 0.4654 / root);
+    }
+
+    #[test]
+    fn bounds_cut_the_law_and_seeds_names_and_samples_make_other_numbers() {
+        let n = 10_000;
+        let cut = values(&normal_law("k", Some(2.5)), 1, n);
+        assert!(cut.iter().all(|value| *value >= 2.5));
+        // phi(1)/Phi(1) = 0.287600 standard deviations above the mean.
+        let root = (n as f64).sqrt();
+        assert!((moment(&cut, 3.0, 1) - 0.5 * 0.2876).abs() < 4.0 * 0.5 / root);
+        let [one, name, seed] = [("k", 1), ("c", 1), ("k", 2)]
+            .map(|(name, seed)| values(&normal_law(name, None), seed, n));
+        for other in [&name, &seed, &one[1..].to_vec()] {
+            let product = one.iter().zip(other).map(|(a, b)| (a - 3.0) * (b - 3.0));
+            let correlation = product.sum::<f64>() / (0.25 * n as f64);
+            assert!(correlation.abs() < 4.0 / root, "{correlation}");
+        }
+    }
+
+    #[test]
+    fn uniform_numbers_fill_their_range() {
+        let name = "k".to_owned();
+        let values = values(
+            &Sampled::Uniform {
+                name,
+                low: -1.0,
+                high: 3.0,
+            },
+            7,
+            40_000,
+        );
+        assert!(values.iter().all(|value| (-1.0..=3.0).contains(value)));
+        let root = (values.len() as f64).sqrt();
+        assert!((moment(&values, 0.0, 1) - 1.0).abs() < 4.0 * (16.0 / 12.0_f64).sqrt() / root);
+        for quarter in 0..4 {
+            let from = -1.0 + f64::from(quarter);
+            let inside = values
+                .iter()
+                .filter(|value| (from..from + 1.0).contains(*value))
+                .count();
+            assert!((inside as f64 / values.len() as f64 - 0.25).abs() < 4.0 * 0.433 / root);
+        }
+    }
+}

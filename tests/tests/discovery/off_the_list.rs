@@ -1,0 +1,209 @@
+//! What stands in no list of effects and orders, in records that a few lines of the midpoint rule make:
+//! springs that harden or meet a stop, a stiffness that nobody called uncertain, a ripple of seven
+//! per turn.
+
+use eomgen_tests::program;
+use serde_json::Value;
+
+/// A machine of one coordinate: its specification, the unit of its coordinate and of its input, and
+/// the acceleration at a position, a rate and an input.
+struct Machine<'m> {
+    specification: &'m str,
+    units: [&'m str; 2],
+    noise: f64,
+    uncertain: &'m str,
+    input: fn(f64, f64) -> f64,
+    acceleration: &'m dyn Fn(f64, f64, f64) -> f64,
+}
+
+const OSCILLATOR: &str = r#"
+[model]
+name = "oscillator"
+
+[parameters]
+m = { value = 1, unit = "kg", min = 0 }
+k = { value = 400, unit = "N/m", min = 0 }
+c = { value = 4, unit = "N s/m", min = 0 }
+
+[coordinates]
+x = { unit = "m" }
+
+[inputs]
+u = { unit = "N" }
+
+[kinetic]
+mass = "1/2*m*dot(x)^2"
+
+[potential]
+spring = "1/2*k*x^2"
+
+[dissipation]
+damper = "1/2*c*dot(x)^2"
+
+[forces]
+drive = { on = "x", value = "u" }
+"#;
+
+const ROTOR: &str = r#"
+[model]
+name = "rotor"
+
+[parameters]
+J = { value = 0.02, unit = "kg m^2", min = 0 }
+c = { value = 0.02, unit = "N m s", min = 0 }
+
+[coordinates]
+x = { unit = "rad" }
+
+[inputs]
+u = { unit = "N m" }
+
+[kinetic]
+rotor = "1/2*J*dot(x)^2"
+
+[dissipation]
+bearing = "1/2*c*dot(x)^2"
+
+[forces]
+motor = { on = "x", value = "u" }
+"#;
+
+/// Time between samples, s, and how many there are.
+const SAMPLE: f64 = 0.005;
+const SAMPLES: usize = 400;
+
+impl Machine<'_> {
+    /// A record: t, u, x. `turn` makes another one.
+    fn record(&self, turn: f64) -> String {
+        let parts = 100;
+        let h = SAMPLE / f64::from(parts);
+        let (mut x, mut v, mut noise) = (0.0_f64, 0.0_f64, 0.4_f64);
+        let mut text = "t,u,x\n".to_owned();
+        for sample in 0..SAMPLES {
+            let t = SAMPLE * sample as f64;
+            let u = (self.input)(t, turn);
+            // The logistic map: a noise that is the same everywhere, of mean 0 once centred.
+            noise = 4.0 * noise * (1.0 - noise) * 0.999_999;
+            let seen = x + self.noise * 2.8 * (noise - 0.5);
+            text += &format!("{t:.4},{u:.12},{seen:.12}\n");
+            for _ in 0..parts {
+                let middle = (x + 0.5 * h * v, v + 0.5 * h * (self.acceleration)(x, v, u));
+                x += h * middle.1;
+                v += h * (self.acceleration)(middle.0, middle.1, u);
+            }
+        }
+        text
+    }
+
+    /// What `discover` answers.
+    fn answer(&self) -> Value {
+        let folder = tempfile::tempdir().expect("a folder");
+        let place = |name: &str| folder.path().join(name);
+        let [unit, input] = self.units;
+        let dataset = format!(
+            "[records]\ntrain = [\"train.csv\"]\ntest = [\"test.csv\"]\n\n[time]\ncolumn = \"t\"\nunit = \"s\"\n\n\
+             [inputs.u]\ncolumn = \"u\"\nunit = \"{input}\"\nhold = \"zero-order\"\n\n\
+             [channels.x]\ncolumn = \"x\"\nunit = \"{unit}\"\nnoise = {:e}\n\n[initial]\nstate = \"rest\"\n\n\
+             [uncertain]\n{}\n\n[windows]\nlength = 0.5\n",
+            self.noise, self.uncertain
+        );
+        let files = [
+            ("dataset.toml", dataset),
+            ("spec.toml", self.specification.to_owned()),
+            ("train.csv", self.record(0.0)),
+            ("test.csv", self.record(1.0)),
+        ];
+        for (name, text) in files {
+            std::fs::write(place(name), text).expect("a file");
+        }
+        let paths = [place("spec.toml"), place("dataset.toml"), place("found")];
+        let [model, dataset, out] = paths.map(|path| path.display().to_string());
+        let output = program::run(&["discover", &model, &dataset, "--out", &out]);
+        let message = program::text(&output.stderr);
+        assert_eq!(output.status.code(), Some(0), "{message}");
+        let text = std::fs::read_to_string(place("found/discovery.json")).expect("a document");
+        serde_json::from_str(&text).expect("JSON")
+    }
+
+    /// The only effect that is found: its document, with which it must have this name and place.
+    fn only(&self, effect: &str, on: &str) -> Value {
+        let found = self.answer();
+        let effects = found["effects"].as_array().expect("a list");
+        assert_eq!(effects.len(), 1, "{effects:#?}");
+        assert_eq!(effects[0]["effect"], effect, "{effects:#?}");
+        assert_eq!(effects[0]["on"], on, "{effects:#?}");
+        let closure = found["closure"]["test"].as_f64();
+        assert!(closure.is_some_and(|part| part > 0.95), "{closure:?}");
+        let believed = |entry: &Value| entry["effect"] == effect && entry["on"] == on;
+        let rejected = found["rejected"].as_array().expect("a list");
+        assert!(!rejected.iter().any(believed), "{rejected:#?}");
+        effects[0].clone()
+    }
+}
+
+/// An oscillator whose spring pulls back with this force, N.
+fn oscillator<'m>(acceleration: &'m dyn Fn(f64, f64, f64) -> f64) -> Machine<'m> {
+    Machine {
+        specification: OSCILLATOR,
+        units: ["m", "N"],
+        noise: 1e-5,
+        uncertain: "m = { relative = 0.01 }",
+        input: |t, turn| {
+            18.0 * (11.0 * t + turn).cos() - 9.0 * (23.0 * t * (1.0 + 0.2 * turn)).sin()
+        },
+        acceleration,
+    }
+}
+
+/// A value of an effect, close to what was hidden.
+fn is_near(effect: &Value, name: &str, hidden: f64, part: f64) {
+    let value = effect["parameters"][name]["value"].as_f64();
+    let value = value.unwrap_or_else(|| panic!("no {name}: {effect:#}"));
+    assert!(
+        (value - hidden).abs() <= part * hidden.abs(),
+        "{value} for {hidden}"
+    );
+}
+
+#[test]
+fn a_spring_that_hardens_is_found_by_name_on_the_spring() {
+    let effect = oscillator(&|x, v, u| u - 400.0 * x - 6e4 * x.powi(3) - 4.0 * v)
+        .only("stiffness_nonlinearity", "spring");
+    is_near(&effect, "k_3", 6e4, 0.02);
+    assert_eq!(effect["status"], "named", "{effect:#}");
+}
+
+#[test]
+fn a_stop_on_one_side_is_no_friction_and_no_spring() {
+    let effect = oscillator(&|x, v, u| u - 400.0 * x - 900.0 * (x - 0.03).max(0.0) - 4.0 * v)
+        .only("end_stop", "spring");
+    is_near(&effect, "k_s", 900.0, 0.05);
+    is_near(&effect, "p_s", 0.03, 0.05);
+}
+
+#[test]
+fn play_in_a_coupling_is_called_backlash() {
+    let play = |x: f64| x - x.clamp(-3e-3, 3e-3);
+    let effect = oscillator(&|x, v, u| u - 400.0 * play(x) - 4.0 * v).only("backlash", "spring");
+    is_near(&effect, "b_0", 3e-3, 0.05);
+}
+
+#[test]
+fn a_stiffness_that_nobody_called_uncertain_is_named_before_any_pair() {
+    let effect = oscillator(&|x, v, u| u - 0.82 * 400.0 * x - 4.0 * v).only("parameter_shift", "k");
+    is_near(&effect, "k", 0.82 * 400.0, 0.01);
+}
+
+#[test]
+fn an_order_that_no_list_holds_is_seen_in_the_residual_force() {
+    let rotor = Machine {
+        specification: ROTOR,
+        units: ["rad", "N m"],
+        noise: 1e-4,
+        uncertain: "J = { relative = 0.01 }",
+        input: |t, turn| 0.5 * (2.1 * t + 0.7 * turn).cos() - 0.25 * (7.0 * t).sin(),
+        acceleration: &|x, v, u| (u - 0.02 * v + 0.05 * (7.0 * x + 0.4).cos()) / 0.02,
+    };
+    let effect = rotor.only("torque_ripple", "x");
+    assert_eq!(effect["order"]["order"], 7, "{effect:#}");
+}
