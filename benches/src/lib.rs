@@ -1,11 +1,14 @@
 //! What the criterion benches of `benches/` compare: the planetary arm as emitted for
 //! orders from 0 to 128 ([`variants`]) beside the other [`contenders`], and a state to
-//! evaluate it at; and how [`instructions`] are counted and the [`history`] of both is kept.
+//! evaluate it at; and how [`instructions`] are counted and the [`history`] of both is kept. [`rigid_specifications`] and
+//! [`casadi_contender`] are what rigid trees are compared by.
 
+pub mod casadi_contender;
 pub mod cases;
 pub mod contenders;
 pub mod history;
 pub mod instructions;
+pub mod rigid_specifications;
 
 /// One module per order, emitted when this crate is built.
 pub mod variants {

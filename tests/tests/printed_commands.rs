@@ -31,7 +31,7 @@ const REDUCED: [(&str, &str); 2] = [
 ];
 
 /// What another test runs, with the file that does.
-const ELSEWHERE: [(&str, &str); 14] = [
+const ELSEWHERE: [(&str, &str); 15] = [
     ("cargo install --path cli", "tests/tests/installed.rs"),
     // The same commands, as the package's own page has them.
     ("python3 -m venv .venv", "tests/tests/hosts/python.rs"),
@@ -74,6 +74,11 @@ const ELSEWHERE: [(&str, &str); 14] = [
     (
         "cargo run --release -p eomgen-benches --bin c99",
         "tests/tests/hosts/c99/mod.rs",
+    ),
+    // The same specifications, by counted operations; timing is for an idle machine.
+    (
+        "cargo run --release -p eomgen-benches --bin rigid_trees",
+        "benches/tests/rigid_trees.rs",
     ),
     // The same test, with fewer models.
     ("EOMGEN_SMOOTH_MODELS=300 ", "tests/tests/smooth_models.rs"),
