@@ -41,6 +41,9 @@ pub(crate) struct Association {
 
 type ProductPowers = (u64, Vec<(NodeId, i32)>);
 
+/// Products of more factors keep their order: the pairs that they hold are too many to compare.
+pub(crate) const MOST_FACTORS: usize = 12;
+
 /// Beyond this a power is left to squarings.
 const LARGEST_EXPONENT: i32 = 3;
 
@@ -148,7 +151,9 @@ impl Association {
             }
             factors.extend((0..exponent).map(|_| Factor::Node(id)));
         }
-        (factors.len() > 1).then_some(factors)
+        (2..=MOST_FACTORS)
+            .contains(&factors.len())
+            .then_some(factors)
     }
 }
 

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use eomgen_model_spec::model::Function;
 
-use crate::symbolic::association::shared_operations;
+use crate::symbolic::association::{MOST_FACTORS, shared_operations};
 use crate::symbolic::graph::{Graph, NodeId, Operation, Shape};
 use crate::symbolic::substitute::substitute;
 
@@ -138,11 +138,13 @@ fn most_common_factor(graph: &Graph, terms: &[(f64, NodeId)]) -> Option<NodeId> 
         .map(|(id, _)| id)
 }
 
-/// The scalar factors of a term that depend on the state and have a positive exponent.
+/// The scalar factors of a term that depend on the state and have a positive exponent; of a product
+/// of many none, which takes too long to take apart.
 fn live_factors(graph: &Graph, term: NodeId) -> Vec<NodeId> {
     let live =
         |id: NodeId| graph.shape(id) == Shape::Scalar && !graph.dependence(id).is_parameter_only();
     match graph.operation(term) {
+        Operation::Product(factors) if factors.len() > MOST_FACTORS => Vec::new(),
         Operation::Product(factors) => factors
             .iter()
             .filter(|(id, exponent)| *exponent > 0 && live(*id))
