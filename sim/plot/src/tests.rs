@@ -280,6 +280,7 @@ fn overlaid_curves_let_what_is_below_show() -> Result<(), Box<dyn std::error::Er
                 value: 10.0,
             }],
             overlaid,
+            ..Frame::default()
         };
         let svg = plate(&Plate {
             title: String::new(),
