@@ -7,11 +7,12 @@ use eomgen_model_spec::model::Model;
 
 use crate::mechanics::equations::{Equations, derive};
 use crate::mechanics::inertia;
-use crate::mechanics::outputs::Output;
 use crate::mechanics::outputs::derive_outputs;
-use crate::program::Program;
+use crate::mechanics::outputs::{Output, Outputs};
+use crate::mechanics::sliding::with_sides;
 use crate::program::evaluator::{Evaluator, Point};
 use crate::program::lowering::lower_with_outputs;
+use crate::program::{Program, Quantity};
 
 /// A model derived at one order for each of its fields.
 pub struct Variant {
@@ -72,6 +73,35 @@ impl Variant {
         let program = lower_with_outputs(model, &equations, &values, &outputs);
         Ok(Self { equations, program })
     }
+}
+
+/// The program of a model in which the sides of surfaces that may hold the motion are inputs, behind
+/// those of the model; see [`sliding`](crate::mechanics::sliding). Nothing where no surface may.
+///
+/// # Errors
+/// What cannot be derived.
+pub fn derive_sliding(model: &Model, orders: &[usize]) -> Result<Option<Program>, Diagnostics> {
+    let found = |diagnostic| Diagnostics::one(model.source.clone(), diagnostic);
+    let values = model
+        .parameter_values()
+        .map_err(|error| found(error.diagnostic()))?;
+    let mut equations = derive(model, orders).map_err(|error| found(error.diagnostic()))?;
+    let sliding = with_sides(&mut equations);
+    if sliding.is_empty() {
+        return Ok(None);
+    }
+    let sides = (0..sliding.len()).map(|side| Quantity {
+        name: format!("side_{side}"),
+        unit: "1".to_owned(),
+        doc: "0 to 1, between where the surface holds the motion".to_owned(),
+    });
+    let outputs = Outputs {
+        sliding,
+        ..Outputs::default()
+    };
+    let mut program = lower_with_outputs(model, &equations, &values, &outputs);
+    program.inputs.extend(sides);
+    Ok(Some(program))
 }
 
 /// The mass matrix at the initial state and the declared parameters, row by row.

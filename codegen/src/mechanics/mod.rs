@@ -5,8 +5,8 @@
 //! those of a kinetic energy), `constraints` (what stays zero),
 //! `solve` (the accelerations), `impacts` (what impulses do),
 //! `coefficients` (names as in Eq. (22)), `equations` (all of it), `outputs` (what is derived on
-//! request), `linearity` (whether a model is linear between its switches), `affine` (its
-//! coefficients then), `inertia` (whether all that moves has some).
+//! request), `linearity` (whether a model is linear between its switches), `sides` (switching functions
+//! as polynomials), `affine` (the coefficients of a model that is linear between its switches), `sliding` (motion held on surfaces), `inertia` (whether all that moves has some).
 
 pub mod affine;
 pub mod coefficients;
@@ -23,6 +23,8 @@ pub mod linearity;
 pub mod mass_matrix;
 pub mod outputs;
 pub mod rows;
+mod sides;
+pub mod sliding;
 pub mod solve;
 mod sweeps;
 pub mod translate;

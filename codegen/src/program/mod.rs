@@ -25,6 +25,7 @@ pub use crate::mechanics::outputs::{
     BlockPlace, Decided, GradientDerivative, GradientRow, Jacobian, JacobianBlock, Output, Outputs,
     Products, SURFACES_OF_A_REGIME, Switch,
 };
+pub use crate::mechanics::sliding::SlidingSurface;
 pub use crate::symbolic::arguments::Arguments;
 pub use crate::symbolic::graph::{Argument, Variable};
 pub use types::{

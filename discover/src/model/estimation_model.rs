@@ -261,7 +261,13 @@ impl EstimationModel {
         let mut simulation = Simulation::new(&self.measured, evaluator, linear_outputs, self.steps);
         simulation.stop = self.stop.clone();
         let (linear, own) = match &self.linear {
-            None => return Ok(simulation),
+            None => {
+                // What cannot be derived with sides was derived without: it is followed without.
+                if let Ok(Some(sided)) = self.compiled.sided(values) {
+                    simulation.hold(sided);
+                }
+                return Ok(simulation);
+            }
             Some(LinearPart::Whole) => (&self.compiled, values.to_vec()),
             Some(LinearPart::Part(part)) => {
                 let own = part.parameters.iter().map(|id| values[id.index()]);

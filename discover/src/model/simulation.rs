@@ -6,7 +6,7 @@
 use std::cell::RefCell;
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
-use eomgen_compiled_model::Driven;
+use eomgen_compiled_model::{Driven, Sided};
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::{Settings, simulate};
 use eomgen_sim::piecewise_linear::Propagator;
@@ -31,6 +31,8 @@ pub struct Simulation<'m> {
     integrator: Option<ExponentialIntegrator>,
     remainder: Option<NonlinearRemainder>,
     propagator: Option<Propagator>,
+    /// What surfaces such as those of dry friction do where they hold a motion, for the solver.
+    sided: Option<Sided>,
     /// Whether to follow no motion any more.
     pub(crate) stop: Stop,
 }
@@ -91,6 +93,7 @@ impl<'m> Simulation<'m> {
             integrator: None,
             remainder: None,
             propagator: None,
+            sided: None,
             stop: Stop::default(),
         }
     }
@@ -109,6 +112,13 @@ impl<'m> Simulation<'m> {
     pub(crate) fn propagate(&mut self, mut propagator: Propagator) {
         propagator.max_switch_rate = thresholds::FASTEST_SWITCHING;
         self.propagator = Some(propagator);
+    }
+
+    /// Takes what surfaces do where they hold a motion; a solver follows that, and steps of one length
+    /// do not.
+    pub(crate) fn hold(&mut self, sided: Sided) {
+        self.sided = Some(sided);
+        self.steps = None;
     }
 
     /// Whether the exponential integrator runs it.
@@ -220,8 +230,10 @@ impl<'m> Simulation<'m> {
             max_switch_rate: thresholds::FASTEST_SWITCHING,
             ..Settings::with_tolerance(thresholds::SOLVER_TOLERANCE)
         };
-        let driven = Driven::new(&self.evaluator, inputs);
-        simulate(&driven, initial, span, samples, &settings, &mut |_| {})
+        let driven = Driven::new(&self.evaluator, inputs).with_sliding(self.sided.take());
+        let found = simulate(&driven, initial, span, samples, &settings, &mut |_| {});
+        self.sided = driven.into_sided();
+        found
             .map(|trajectory| trajectory.states)
             .map_err(SimulationError::Solver)
     }

@@ -27,7 +27,8 @@ const CONTRADICTION: f64 = 0.1;
 
 impl Instance<'_> {
     /// The model as the general solver sees it, with an evaluator of it: states stay on its
-    /// constraints, and bodies hit at its impacts. A motion of its own, as contacts are remembered.
+    /// constraints, bodies hit at its impacts, and surfaces such as those of dry friction hold it. A
+    /// motion of its own, as contacts and what holds are remembered.
     ///
     /// # Errors
     /// As [`Instance::evaluator`].
@@ -39,7 +40,7 @@ impl Instance<'_> {
         let impacts = self.model().model().impacts.iter();
         let impacts = impacts.map(|impact| impact.name.clone()).collect();
         let driven = Driven::new(evaluator, inputs).with_projection(self.projection()?);
-        Ok(driven.with_impacts(impacts))
+        Ok(driven.with_impacts(impacts).with_sliding(self.sided()?))
     }
 
     /// What keeps states on the constraints, if there are any.

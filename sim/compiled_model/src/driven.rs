@@ -12,6 +12,7 @@ use eomgen_sim::ode::{Surface, System, jacobian_by_differences};
 use crate::contacts::Contacts;
 use crate::jacobians::{Jacobian, JacobianEvaluator};
 use crate::projection::Projection;
+use crate::sliding::{Sided, Sliding};
 
 /// A derived model driven by inputs, as the solvers see it; it owns or borrows both. The mass
 /// matrix has positive pivots at the evaluator's parameters.
@@ -21,6 +22,7 @@ pub struct Driven<E, I> {
     jacobians: Option<RefCell<JacobianEvaluator>>,
     projection: Option<Projection>,
     contacts: Option<RefCell<Contacts>>,
+    sliding: Option<RefCell<Sliding>>,
 }
 
 impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
@@ -32,6 +34,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
             jacobians: None,
             projection: None,
             contacts: None,
+            sliding: None,
         }
     }
 
@@ -48,6 +51,19 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
         self
     }
 
+    /// The same where surfaces may hold the motion, as dry friction does, at the same parameters. A motion
+    /// of its own, as what holds is remembered.
+    pub fn with_sliding(mut self, sided: Option<Sided>) -> Self {
+        self.sliding = sided.map(|sided| RefCell::new(Sliding::new(sided)));
+        self
+    }
+
+    /// What it was given for surfaces that may hold the motion, for another motion.
+    pub fn into_sided(self) -> Option<Sided> {
+        let sliding = self.sliding?;
+        Some(sliding.into_inner().into_sided())
+    }
+
     /// The impact at which bodies overlap, where the motion ended for that.
     pub(crate) fn overlap(&self) -> Option<String> {
         let contacts = self.contacts.as_ref()?.borrow();
@@ -58,6 +74,12 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
     fn rests(&self) -> bool {
         let contacts = self.contacts.as_ref();
         contacts.is_some_and(|contacts| contacts.borrow().rest())
+    }
+
+    /// Whether the rates are not those that the signs of the switching functions give.
+    fn slides(&self) -> bool {
+        let sliding = self.sliding.as_ref();
+        sliding.is_some_and(|sliding| sliding.borrow().is_active())
     }
 
     /// The same with its own Jacobian, at the same parameters, for implicit methods.
@@ -125,6 +147,10 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for Driven<E, 
     }
 
     fn rates(&self, t: f64, y: &[f64], out: &mut [f64]) {
+        if let Some(sliding) = self.sliding.as_ref().filter(|_| self.slides()) {
+            let inputs = &self.inputs.borrow().at(t);
+            return sliding.borrow_mut().rates((t, y), inputs, out);
+        }
         self.at(t, y, |evaluator, point| {
             evaluator.rates(point, out);
             if let Some(contacts) = &self.contacts {
@@ -134,6 +160,11 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for Driven<E, 
     }
 
     fn jacobian(&self, t: f64, y: &[f64], out: &mut [f64]) {
+        let is_on = |sliding: &&RefCell<Sliding>| !RefCell::borrow(sliding).is_free();
+        if let Some(sliding) = self.sliding.as_ref().filter(is_on) {
+            let inputs = &self.inputs.borrow().at(t);
+            return sliding.borrow_mut().jacobian((t, y), inputs, out);
+        }
         match &self.jacobians {
             Some(jacobians) if !self.rests() => {
                 let mut jacobians = jacobians.borrow_mut();
@@ -163,6 +194,10 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for Driven<E, 
                 contacts.borrow_mut().guards(evaluator, point, more);
             }
         });
+        if let Some(sliding) = &self.sliding {
+            let inputs = &self.inputs.borrow().at(t);
+            sliding.borrow_mut().guards((t, y), inputs, out);
+        }
     }
 
     fn indefinite(&self, t: f64, y: &[f64]) -> Option<usize> {
@@ -182,7 +217,8 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for Driven<E, 
     }
 
     fn project(&self, t: f64, y: &mut [f64]) -> u64 {
-        if self.projection.is_none() && self.contacts.is_none() {
+        let holds = self.projection.is_some() || self.contacts.is_some() || self.slides();
+        if !holds {
             return 0;
         }
         let inputs = &self.inputs.borrow().at(t);
@@ -192,6 +228,9 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for Driven<E, 
         }
         if let Some(contacts) = &self.contacts {
             evaluations += contacts.borrow_mut().keep(&mut self.evaluator(), at, y);
+        }
+        if let Some(sliding) = &self.sliding {
+            evaluations += sliding.borrow_mut().keep(t, inputs, y);
         }
         evaluations
     }
@@ -204,6 +243,26 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for Driven<E, 
                 .borrow_mut()
                 .cross(&mut evaluator, inputs, before, t, y);
         }
+        if let Some(sliding) = &self.sliding {
+            let inputs = &self.inputs.borrow().at(t);
+            sliding.borrow_mut().cross(inputs, before, t, y);
+        }
+    }
+
+    fn keep_sides(&self, sides: Option<&[f64]>) {
+        if let Some(sliding) = &self.sliding {
+            sliding.borrow_mut().keep_sides(sides);
+        }
+    }
+
+    fn caught_or_let_go(&self, t: f64, y: &[f64]) -> Vec<(usize, bool)> {
+        let Some(sliding) = &self.sliding else {
+            return Vec::new();
+        };
+        let given = self.inputs.borrow();
+        let (earlier, inputs) = (given.at(t.next_down()), given.at(t));
+        let mut sliding = sliding.borrow_mut();
+        sliding.arrive((t, y), (earlier.as_ref(), inputs.as_ref()))
     }
 
     fn next_breakpoint(&self, t: f64) -> Option<f64> {

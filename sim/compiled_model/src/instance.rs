@@ -10,6 +10,7 @@ use eomgen_sim::piecewise_linear::{ExactError, Propagator};
 use crate::error::Error;
 use crate::model::CompiledModel;
 use crate::motion::Motion;
+use crate::sliding::{Observed, Sided};
 
 /// A compiled model with values for all its parameters and the initial state that follows.
 pub struct Instance<'m> {
@@ -143,6 +144,14 @@ impl<'m> Instance<'m> {
         }
     }
 
+    /// The model with sides at these parameters; see [`CompiledModel::sided`].
+    ///
+    /// # Errors
+    /// What cannot be derived.
+    pub(crate) fn sided(&self) -> Result<Option<Sided>, Error> {
+        self.model.sided(&self.parameters)
+    }
+
     /// A propagator from switch to switch at these parameters.
     ///
     /// # Errors
@@ -164,7 +173,8 @@ impl<'m> Instance<'m> {
         Ok(rows)
     }
 
-    /// Shows time (s), state and observables of every sample of a motion, one after the other.
+    /// Shows time (s), state and observables of every sample of a motion, one after the other. Where
+    /// dry friction holds the motion its force is the one that does.
     ///
     /// # Errors
     /// As [`Instance::evaluator`].
@@ -173,12 +183,13 @@ impl<'m> Instance<'m> {
         motion: &Motion,
         mut show: impl FnMut(f64, &[f64], &[f64]),
     ) -> Result<(), Error> {
-        let mut evaluator = self.evaluator()?;
+        let evaluator = self.evaluator()?;
         let mut observables = vec![0.0; evaluator.program().observables.len()];
         let trajectory = &motion.trajectory;
+        let mut observed = Observed::new(evaluator, self.sided()?, trajectory, &motion.inputs);
         for (&t, state) in trajectory.times.iter().zip(&trajectory.states) {
             let inputs = &motion.inputs.at(t);
-            evaluator.observables(Point { t, state, inputs }, &mut observables);
+            observed.observables(Point { t, state, inputs }, &mut observables);
             show(t, state, &observables);
         }
         Ok(())

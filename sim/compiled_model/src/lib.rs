@@ -52,6 +52,7 @@ mod motion;
 mod operating_point;
 mod projection;
 mod simulate;
+mod sliding;
 
 pub use driven::Driven;
 pub use equilibrium::Equilibrium;
@@ -63,3 +64,4 @@ pub use motion::{Cause, Choice, Motion, Solver, Stopped};
 pub use operating_point::{OperatingPoint, Setting};
 pub use projection::Moved;
 pub use simulate::{DEFAULT_TOLERANCE, Request};
+pub use sliding::Sided;

@@ -5,9 +5,10 @@ use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
 use eomgen_codegen::mechanics::equations::Equations;
+use eomgen_codegen::mechanics::sliding::may_hold;
 use eomgen_codegen::program::Program;
 use eomgen_codegen::program::evaluator::{Evaluator, MachineCode};
-use eomgen_codegen::variant::Variant;
+use eomgen_codegen::variant::{Variant, derive_sliding};
 use eomgen_model_spec::Checked;
 use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_model_spec::model::Model;
@@ -16,6 +17,7 @@ use eomgen_sim::piecewise_linear::{ExactError, PiecewiseLinear};
 
 use crate::differentiated::Differentiated;
 use crate::error::Error;
+use crate::sliding::Sided;
 
 /// The modal truncation orders that a model is derived at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,6 +71,7 @@ pub struct CompiledModel {
     code: OnceLock<Option<Arc<dyn MachineCode>>>,
     piecewise_linear: OnceLock<Result<PiecewiseLinear, ExactError>>,
     differentiated: OnceLock<Result<Differentiated, Diagnostics>>,
+    sided: OnceLock<Result<Option<(Program, Option<Arc<dyn MachineCode>>)>, Diagnostics>>,
 }
 
 impl CompiledModel {
@@ -122,6 +125,7 @@ impl CompiledModel {
             code: OnceLock::new(),
             piecewise_linear: OnceLock::new(),
             differentiated: OnceLock::new(),
+            sided: OnceLock::new(),
         }
     }
 
@@ -208,6 +212,30 @@ impl CompiledModel {
             .differentiated
             .get_or_init(|| Differentiated::of(self.model(), self.orders()));
         made.as_ref().map_err(|found| found.clone().into())
+    }
+
+    /// The model with the sides of surfaces that may hold a motion as inputs, at these values of the
+    /// independent parameters, SI; nothing where no surface may, or where contacts would have to be held with
+    /// them.
+    ///
+    /// # Errors
+    /// What cannot be derived.
+    pub fn sided(&self, parameters: &[f64]) -> Result<Option<Sided>, Error> {
+        let made = self.sided.get_or_init(|| {
+            if !may_hold(&self.equations) || !self.model.impacts.is_empty() {
+                return Ok(None);
+            }
+            let program = derive_sliding(&self.model, &self.orders)?;
+            Ok(program.map(|program| {
+                let code = eomgen_jit::code(&program);
+                (program, code)
+            }))
+        });
+        let made = made.as_ref().map_err(|found| Error::from(found.clone()))?;
+        let sided = made
+            .as_ref()
+            .map(|(program, code)| Sided::new(evaluator(program, code.as_ref(), parameters)));
+        Ok(sided)
     }
 
     /// The model's form that is linear between its switches.

@@ -181,6 +181,10 @@ impl Instance<'_> {
             ));
         }
         let mut system = self.driven(&evaluator, request.inputs)?;
+        if settings.method == Method::Adams {
+            // It goes on from the steps before, which rest cuts off: it says where that is.
+            system = system.with_sliding(None);
+        }
         let (initial, moved) =
             self.consistent(request.initial, request.span().0, request.inputs)?;
         let solver = match settings.method {

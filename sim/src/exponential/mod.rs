@@ -286,8 +286,10 @@ impl ExponentialIntegrator {
             return Ok(());
         }
         let mut changed = false;
-        for (surface, side) in &regime.held {
-            let side = side.at(&motion.state, &motion.given);
+        let borne = motion.remainder.borne.iter().copied();
+        let borne = borne.chain(std::iter::repeat(0.0));
+        for ((surface, side), borne) in regime.held.iter().zip(borne) {
+            let side = side.at(&motion.state, &motion.given) + borne;
             if !(0.0..=1.0).contains(&side) {
                 motion.sides[*surface] = Side::of(side - 1.0);
                 changed = true;

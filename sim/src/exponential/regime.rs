@@ -41,6 +41,9 @@ pub struct Regime {
     pub rates: Vec<Row>,
     /// For each surface that is held its place and its side, which must stay within 0 and 1.
     pub held: Vec<(usize, Row)>,
+    /// What accelerations that come from elsewhere add to these sides, a row for each, and what that
+    /// adds to the accelerations, a column for each.
+    borne: (DMatrix<f64>, DMatrix<f64>),
 }
 
 /// The rates of a regime as matrices.
@@ -75,7 +78,11 @@ impl Regime {
         let system = evaluator.system(&surfaces.numbers(sides, |_| 0.0));
         let mut rates = Rates::of(&system);
         let functions = surfaces.rows(&system);
-        let held = hold(evaluator, surfaces, sides, &functions, &mut rates)?;
+        let Held {
+            sides: held,
+            factor,
+            jumps,
+        } = hold(evaluator, surfaces, sides, &functions, &mut rates)?;
         if rates
             .state
             .iter()
@@ -86,6 +93,10 @@ impl Regime {
         }
         let n = system.states;
         let (degrees, forced) = (system.degrees, n - system.degrees);
+        let borne = (
+            factor.columns(degrees, forced).into_owned(),
+            jumps.rows(degrees, forced).into_owned(),
+        );
         let columns = n + rates.given.ncols() + forced;
         let mut whole = DMatrix::zeros(columns, columns);
         whole.view_mut((0, 0), (n, n)).copy_from(&rates.state);
@@ -125,11 +136,30 @@ impl Regime {
             functions,
             rates: speeds,
             held,
+            borne,
         })
     }
 }
 
 impl Regime {
+    /// Takes from accelerations that come from elsewhere what surfaces that hold the motion bear of
+    /// them, and says what that adds to the sides.
+    pub fn bear(&self, accelerations: &mut [f64], sides: &mut Vec<f64>) {
+        sides.clear();
+        if self.held.is_empty() {
+            return;
+        }
+        let (factor, jumps) = &self.borne;
+        for row in factor.row_iter() {
+            let products = row.iter().zip(accelerations.iter());
+            sides.push(products.map(|(a, b)| a * b).sum());
+        }
+        for (column, side) in jumps.column_iter().zip(sides.iter()) {
+            let sums = accelerations.iter_mut().zip(column.iter());
+            sums.for_each(|(slot, jump)| *slot += jump * side);
+        }
+    }
+
     /// Writes the rates at a state with a unit constant and the inputs; `out` has a number for
     /// each row of the matrix.
     pub fn rates(&self, state: &[f64], given: &[f64], out: &mut [f64]) {
@@ -156,22 +186,35 @@ fn along(row: &Row, rates: &Rates) -> Row {
     }
 }
 
-/// Makes the rates those of a state that is held where the sides say so; returns what the
-/// sides then are.
+/// How surfaces hold a motion.
+struct Held {
+    /// For each of them its place and its side.
+    sides: Vec<(usize, Row)>,
+    /// What rates add to these sides, a row for each.
+    factor: DMatrix<f64>,
+    /// What a side adds to the rates, a column for each.
+    jumps: DMatrix<f64>,
+}
+
+/// Makes the rates those of a state that is held where the sides say so.
 fn hold(
     evaluator: &mut AffineEvaluator,
     surfaces: &Surfaces,
     sides: &[Side],
     functions: &[Row],
     rates: &mut Rates,
-) -> Option<Vec<(usize, Row)>> {
+) -> Option<Held> {
     let places: Vec<usize> = (0..sides.len())
         .filter(|place| sides[*place] == Side::Held)
         .collect();
-    if places.is_empty() {
-        return Some(Vec::new());
-    }
     let n = rates.state.nrows();
+    if places.is_empty() {
+        return Some(Held {
+            sides: Vec::new(),
+            factor: DMatrix::zeros(0, n),
+            jumps: DMatrix::zeros(n, 0),
+        });
+    }
     let mut jumps = DMatrix::zeros(n, places.len());
     for (column, held) in places.iter().enumerate() {
         let numbers = surfaces.numbers(sides, |place| f64::from(u8::from(place == *held)));
@@ -193,13 +236,12 @@ fn hold(
         state: of_state.row(place).iter().copied().collect(),
         given: of_given.row(place).iter().copied().collect(),
     };
-    Some(
-        places
-            .iter()
-            .enumerate()
-            .map(|(k, p)| (*p, row(k)))
-            .collect(),
-    )
+    let held = places.iter().enumerate();
+    Some(Held {
+        sides: held.map(|(k, p)| (*p, row(k))).collect(),
+        factor,
+        jumps,
+    })
 }
 
 /// The largest magnitude of the rates' eigenvalues over the regimes, 1/s.

@@ -24,6 +24,8 @@ pub struct Remainder {
     pub moved: Vec<f64>,
     /// Whether anything may be.
     pub moves: bool,
+    /// What it adds to the side of each surface that holds the motion, in the order of the regime's.
+    pub borne: Vec<f64>,
     guards: Vec<f64>,
 }
 

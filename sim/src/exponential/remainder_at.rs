@@ -34,7 +34,9 @@ impl ExponentialIntegrator {
     ) -> Result<(), String> {
         let functions = &self.regimes[here].functions;
         out.find(force, (&self.surfaces, functions), (t, state, given));
-        self.relate((here, sides), state, given, out)
+        self.relate((here, sides), state, given, out)?;
+        self.regimes[here].bear(&mut out.force, &mut out.borne);
+        Ok(())
     }
 
     /// The same where a motion with these rates is so many steps later, or was so many before:

@@ -93,6 +93,7 @@ fn run<S: System + ?Sized, M: Stepper>(
         y: initial.to_vec(),
     };
     let watched = Watched::new(system, start.t, &start.y);
+    watched.keep_sides(true);
     let step = FIRST_STEP * (span.1 - span.0);
     let mut driver = Driver {
         watched: &watched,
@@ -196,14 +197,30 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             beyond = found.beyond;
             if found.length > 0.0 {
                 self.stepper.set_step(found.length);
-                if !self.controlled_step(f64::INFINITY)?.is_accepted {
+                let outcome = self.controlled_step(f64::INFINITY)?;
+                if !outcome.is_accepted {
                     // Not the surface alone: shorter steps, and then again.
                     return Ok(());
+                }
+                if outcome.length < found.length {
+                    // A method that starts may begin with a shorter step.
+                    window += found.length - outcome.length;
+                    beyond = Vec::new();
                 }
                 if let Some(length) = self.taken_back()? {
                     window = length.min(0.5 * found.length);
                     beyond = Vec::new();
                     continue;
+                }
+                if self.watched.crossed().is_some() && self.is_beyond(self.stepper.here()) {
+                    // Its error led it over.
+                    let mut point = self.stepper.here().clone();
+                    self.stepper.take_back();
+                    let start = self.stepper.here().clone();
+                    self.watched
+                        .cross((start.t, &start.y), point.t, &mut point.y);
+                    self.stepper.restart(point, length);
+                    return self.accept(begin);
                 }
                 self.accept(begin)?;
             }
@@ -228,7 +245,8 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
                 self.stepper.restart(point, length);
                 return self.accept(start.t);
             }
-            if window > SHORTEST_CONTACT * length {
+            // In a step that does not move the time there is nothing to leap over.
+            if window > SHORTEST_CONTACT * length && point.t > start.t {
                 let trials = &mut self.trajectory.work.trials;
                 if let Some(ahead) =
                     leapt_over::<S, M>(self.watched, &start, &point, tolerance, trials)?
@@ -293,12 +311,18 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         self.samples.get(self.trajectory.times.len()).copied()
     }
 
-    /// Takes note of the switching functions that changed sign.
+    /// Takes note of the surfaces that caught the motion or let it go, and of the switching functions
+    /// that changed sign.
     fn enter_regime(&mut self) -> Result<(), SolveError> {
         let here = self.stepper.here();
         let t = here.t;
+        let mut changed = self.watched.caught_or_let_go(t, &here.y);
         for guard in self.watched.enter(t, &here.y) {
-            let to_positive = self.watched.is_positive(guard);
+            if changed.iter().all(|(known, _)| *known != guard) {
+                changed.push((guard, self.watched.is_positive(guard)));
+            }
+        }
+        for (guard, to_positive) in changed {
             self.trajectory.switches.push(Switch {
                 t,
                 guard,
@@ -306,6 +330,8 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             });
             self.check_switch_rate(t, guard)?;
         }
+        // Rates that lead back from beyond a surface must not keep trials from getting there.
+        self.watched.keep_sides(true);
         Ok(())
     }
 }
@@ -393,6 +419,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     }
 
     fn finish(self) {
+        self.watched.keep_sides(false);
         self.trajectory.last = self.stepper.here().y.clone();
         self.trajectory.work.evaluations = self.watched.evaluations();
     }

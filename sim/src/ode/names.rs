@@ -46,9 +46,9 @@ impl Names<'_> {
 }
 
 /// Dry friction and its like.
-const STICKS: &str = "there it sticks, as dry friction holds a body at rest. Write a smooth law \
-    for this solver, tanh(v/v_0) with a small speed v_0 for sign(v); the exact solver goes on \
-    where the model is linear between its switches and the level of the friction constant";
+const STICKS: &str = "there it sticks, as dry friction holds a body at rest, which is not followed \
+    here (by adams, with impacts, where the speed holds piecewise functions, and for exponents). \
+    Take the solver rk, or write a smooth law, tanh(v/v_0) with a small speed v_0 for sign(v)";
 
 /// A force that jumps at a place.
 const CHATTERS: &str = "there it chatters, as the forces on both sides lead back to it. Let what \

@@ -50,6 +50,19 @@ pub trait System {
     /// side, `t` and `y` are just beyond it. Changes in `y` what jumps there, as the distance to a
     /// neighbouring motion does that is carried beside the motion.
     fn cross(&self, _before: (f64, &[f64]), _t: f64, _y: &mut [f64]) {}
+
+    /// From here on rates go on smoothly over surfaces that may hold a motion, as they are on these sides
+    /// of them: for each switching function -1, 1, or 0 where it is not known. With none they are
+    /// those of the side where a state is, again. A system that does not know how may leave it.
+    fn keep_sides(&self, _sides: Option<&[f64]>) {}
+
+    /// The motion has come to `t` and `y`, and what drives it may jump here. Returns the
+    /// switching functions whose surfaces have caught the motion since this was last asked, or let it
+    /// go, each with whether the motion came from its negative side, or goes to its positive one. Such
+    /// a function need not change its sign.
+    fn caught_or_let_go(&self, _t: f64, _y: &[f64]) -> Vec<(usize, bool)> {
+        Vec::new()
+    }
 }
 
 impl<S: System + ?Sized> System for &S {
@@ -87,6 +100,14 @@ impl<S: System + ?Sized> System for &S {
 
     fn cross(&self, before: (f64, &[f64]), t: f64, y: &mut [f64]) {
         (**self).cross(before, t, y);
+    }
+
+    fn keep_sides(&self, sides: Option<&[f64]>) {
+        (**self).keep_sides(sides);
+    }
+
+    fn caught_or_let_go(&self, t: f64, y: &[f64]) -> Vec<(usize, bool)> {
+        (**self).caught_or_let_go(t, y)
     }
 }
 

@@ -170,6 +170,19 @@ impl<'a, S: System + ?Sized> Watched<'a, S> {
         self.system.cross(before, t, y);
     }
 
+    /// Has rates go on smoothly over surfaces as they are in the present regime, or no longer; see
+    /// [`System::keep_sides`].
+    pub fn keep_sides(&self, keep: bool) {
+        let regime = self.regime.borrow();
+        self.system.keep_sides(keep.then_some(regime.as_slice()));
+    }
+
+    /// The switching functions whose surfaces have caught the motion or let it go; see
+    /// [`System::caught_or_let_go`].
+    pub fn caught_or_let_go(&self, t: f64, y: &[f64]) -> Vec<(usize, bool)> {
+        self.system.caught_or_let_go(t, y)
+    }
+
     /// The state variable that changes fastest at `t` and `y`, in parts of its size.
     pub fn fastest(&self, t: f64, y: &[f64]) -> usize {
         let mut rates = vec![0.0; y.len()];

@@ -8,21 +8,21 @@
 //! the motion. A side between 0 and 1 is a state held on the surface (dry friction that
 //! sticks): the convex combination of the motions on both sides.
 //!
-//! The files: [`mod@self`] (the coefficients as nodes), `sides` (switching functions to
-//! polynomials), `rows` (an expression's coefficients). Their numbers are the program's.
+//! The files: [`mod@self`] (the coefficients as nodes), `rows` (an expression's coefficients).
+//! Switching functions become polynomials in `sides`; the numbers are the program's.
 
 mod rows;
-mod sides;
 
 use std::collections::HashMap;
 
-use eomgen_model_spec::ids::FieldId;
+use eomgen_model_spec::ids::{FieldId, ParameterId};
 use eomgen_model_spec::model::Function;
 
 use crate::mechanics::equations::Equations;
 use crate::mechanics::forces::may_rest;
 use crate::mechanics::linearity::{Linearity, linearity};
 use crate::mechanics::rows::RowNodes;
+use crate::mechanics::sides::Sides;
 use crate::symbolic::differentiate::by_scalar;
 use crate::symbolic::graph::{Graph, NodeId, Operation, Shape, Space};
 use crate::symbolic::substitute::substitute;
@@ -79,7 +79,12 @@ pub fn affine(mut equations: Equations) -> Result<AffineEquations, NodeId> {
     if let Some(guard) = equations.guards.iter().find(not_scalar) {
         return Err(guard.value);
     }
-    let mut with_sides = sides::Sides::of(&mut equations);
+    let first_side = equations.parameter_names.len();
+    let mut roots = equations.rate_nodes();
+    roots.extend(equations.guards.iter().map(|guard| guard.value));
+    let mut with_sides = Sides::of(&mut equations, &roots, &|guard| {
+        Some(Operation::Parameter(ParameterId::new(first_side + guard)))
+    });
     let graph = &mut equations.graph;
     let known = &mut with_sides.known;
     let mut replaced = |graph: &mut Graph, id: NodeId| substitute(graph, id, &|_, _| None, known);

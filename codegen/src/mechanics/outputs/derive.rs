@@ -186,20 +186,22 @@ fn times(graph: &mut Graph, matrix: &StructuredMatrix, vector: NodeId) -> Vec<No
 
 /// The rates of the guards along the motion, the inputs held.
 fn guard_rates(equations: &mut Equations) -> Vec<NodeId> {
-    let rows = equations.accelerations.rows.clone();
-    let state_rates = equations.state_rates.clone();
-    let tangent = move |graph: &mut Graph, leaf: NodeId| match *graph.operation(leaf) {
+    let values: Vec<NodeId> = equations.guards.iter().map(|guard| guard.value).collect();
+    let mut rate = |value: &NodeId| guard_rate(equations, *value);
+    values.iter().map(&mut rate).collect()
+}
+
+/// The rate of a function of the motion, the inputs held.
+pub(crate) fn guard_rate(equations: &mut Equations, value: NodeId) -> NodeId {
+    let rows = &equations.accelerations.rows;
+    let state_rates = &equations.state_rates;
+    let tangent = |graph: &mut Graph, leaf: NodeId| match *graph.operation(leaf) {
         Operation::Rate(index) => rows.scalars[index],
         Operation::ModeRates(field) => rows.modal[field],
         Operation::State(index) => state_rates[index],
         _ => along_motion(graph, leaf),
     };
-    let mut direction = Direction::new(&tangent);
-    let graph = &mut equations.graph;
-    let guards = equations.guards.iter();
-    guards
-        .map(|guard| direction.derivative(graph, guard.value))
-        .collect()
+    Direction::new(&tangent).derivative(&mut equations.graph, value)
 }
 
 fn products(equations: &mut Equations) -> Products<NodeId, RowNodes> {

@@ -15,6 +15,7 @@ mod regimes;
 mod types;
 
 pub use derive::derive_outputs;
+pub(crate) use derive::guard_rate;
 pub use output::{Output, UnknownOutput};
 pub use regimes::{Decided, SURFACES_OF_A_REGIME, Switch};
 pub use types::{

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use super::output::Output;
 use super::regimes::Switch;
+use crate::mechanics::sliding::SlidingSurface;
 use crate::symbolic::graph::Variable;
 
 /// The outputs on request, of nodes `N` and rows `R` of them.
@@ -26,6 +27,8 @@ pub struct Outputs<N, R> {
     pub gradient_derivative: Option<GradientDerivative<N>>,
     /// What a regime decides in the accelerations.
     pub regimes: Option<Vec<Switch<N>>>,
+    /// The surfaces on which the motion may be held, where their sides are inputs.
+    pub sliding: Vec<SlidingSurface<N, R>>,
 }
 
 impl<N, R> Default for Outputs<N, R> {
@@ -39,6 +42,7 @@ impl<N, R> Default for Outputs<N, R> {
             products: None,
             gradient_derivative: None,
             regimes: None,
+            sliding: Vec::new(),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Machine code of a program, as the evaluator calls it. How it is made is not known here.
 
 use super::point::Point;
-use crate::program::{Impact, Products, Program, RowValues, ValueId};
+use crate::program::{Impact, Products, Program, RowValues, SlidingSurface, ValueId};
 
 /// What is computed together in one call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,6 +16,8 @@ pub enum Stage {
     Distances,
     /// Everything of the impacts.
     Impacts,
+    /// Everything of the surfaces that may hold the motion.
+    Sliding,
     /// The blocks of the mass matrix.
     Mass,
     /// Velocity terms and generalised forces.
@@ -38,12 +40,13 @@ pub enum Stage {
 
 impl Stage {
     /// Every stage.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::Rates,
         Self::Observables,
         Self::Guards,
         Self::Distances,
         Self::Impacts,
+        Self::Sliding,
         Self::Mass,
         Self::Forces,
         Self::BiasForces,
@@ -67,6 +70,12 @@ impl Stage {
                 .map(|impact| impact.distance)
                 .collect(),
             Self::Impacts => program.impacts.iter().flat_map(of_impact).collect(),
+            Self::Sliding => program
+                .outputs
+                .sliding
+                .iter()
+                .flat_map(of_surface)
+                .collect(),
             Self::Mass => {
                 let mass = &program.mass;
                 let mut roots: Vec<ValueId> = mass.scalars.iter().flatten().copied().collect();
@@ -100,6 +109,15 @@ fn of_impact(impact: &Impact<ValueId, RowValues>) -> Vec<ValueId> {
     ];
     values.extend(&impact.delassus);
     values.extend(impact.column.all());
+    values
+}
+
+/// The values of a surface that may hold the motion.
+fn of_surface(surface: &SlidingSurface<ValueId, RowValues>) -> Vec<ValueId> {
+    let mut values = vec![surface.rate];
+    values.extend(&surface.by_sides);
+    values.extend(&surface.first_order);
+    values.extend(surface.column.all());
     values
 }
 

@@ -10,6 +10,7 @@ mod operands;
 mod outputs;
 mod places;
 mod point;
+mod sliding;
 mod step;
 
 use eomgen_model_spec::ids::FieldId;
@@ -21,6 +22,7 @@ pub use functions::{Law, call, law};
 pub use impacts::ImpactAt;
 pub use places::Places;
 pub use point::Point;
+pub use sliding::SlidingAt;
 use step::step;
 
 /// A program with memory to run it in. Nothing is allocated after construction.

@@ -6,6 +6,7 @@ use crate::mechanics::outputs::{
     GradientDerivative, GradientRow, Jacobian, JacobianBlock, Outputs, Products,
 };
 use crate::mechanics::rows::RowNodes;
+use crate::mechanics::sliding::SlidingSurface;
 use crate::program::{RowValues, ValueId};
 use crate::symbolic::graph::NodeId;
 
@@ -65,6 +66,23 @@ impl Lowering<'_> {
                     })
                     .collect()
             }),
+            sliding: outputs.sliding.iter().map(|s| self.sliding(s)).collect(),
+        }
+    }
+
+    fn sliding(
+        &mut self,
+        surface: &SlidingSurface<NodeId, RowNodes>,
+    ) -> SlidingSurface<ValueId, RowValues> {
+        let mut values = |nodes: &[NodeId]| nodes.iter().map(|id| self.value(*id)).collect();
+        SlidingSurface {
+            guard: surface.guard,
+            is_odd: surface.is_odd,
+            is_linear: surface.is_linear,
+            by_sides: values(&surface.by_sides),
+            first_order: values(&surface.first_order),
+            rate: self.value(surface.rate),
+            column: self.rows(&surface.column),
         }
     }
 

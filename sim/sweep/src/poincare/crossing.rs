@@ -214,4 +214,13 @@ impl<S: System> System for Watched<'_, S> {
         }
         self.system.cross((before, start), t, y);
     }
+
+    fn keep_sides(&self, sides: Option<&[f64]>) {
+        let others = sides.and_then(|sides| sides.split_last());
+        self.system.keep_sides(others.map(|(_, others)| others));
+    }
+
+    fn caught_or_let_go(&self, t: f64, y: &[f64]) -> Vec<(usize, bool)> {
+        self.system.caught_or_let_go(t, y)
+    }
 }

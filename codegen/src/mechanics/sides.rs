@@ -1,8 +1,8 @@
-//! Switching functions as polynomials in the sides of their surfaces.
+//! Switching functions as polynomials in the sides of their surfaces: 1 where a surface's function is
+//! positive, 0 where it is not, between them where a motion is held on the surface.
 
 use std::collections::HashMap;
 
-use eomgen_model_spec::ids::ParameterId;
 use eomgen_model_spec::model::Function;
 
 use crate::mechanics::equations::Equations;
@@ -10,8 +10,8 @@ use crate::mechanics::forces::{Surfaces, surfaces};
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 use crate::symbolic::substitute::substitute;
 
-/// Replacements for every switching function of a model.
-pub(super) struct Sides {
+/// Replacements for switching functions of a model.
+pub(crate) struct Sides {
     /// A node to the one that stands for it.
     pub known: HashMap<NodeId, NodeId>,
     /// Half-widths of dead zones: what is written here holds for those that are not negative.
@@ -19,24 +19,27 @@ pub(super) struct Sides {
 }
 
 impl Sides {
-    /// Replaces what switches in the accelerations and in the surfaces themselves.
-    pub fn of(equations: &mut Equations) -> Self {
-        let first_side = equations.parameter_names.len();
+    /// Replaces what switches in these nodes, at surfaces that have a side: `side` says by which leaf
+    /// that of a guard, by its place among them, enters.
+    pub fn of(
+        equations: &mut Equations,
+        roots: &[NodeId],
+        side: &dyn Fn(usize) -> Option<Operation>,
+    ) -> Self {
         let values: Vec<NodeId> = equations.guards.iter().map(|guard| guard.value).collect();
-        let roots = [equations.rate_nodes(), values.clone()].concat();
         let graph = &mut equations.graph;
         let mut sides = Self {
             known: HashMap::new(),
             half_widths: Vec::new(),
         };
         // Operands come first: what stands inside of a switching function is replaced by then.
-        for id in graph.reachable(&roots) {
+        for id in graph.reachable(roots) {
             if graph.dependence(id).is_parameter_only() {
                 continue;
             }
             let parameter = |graph: &mut Graph, surface: NodeId| {
                 let index = values.iter().position(|value| *value == surface)?;
-                Some(graph.intern(Operation::Parameter(ParameterId::new(first_side + index))))
+                side(index).map(|leaf| graph.intern(leaf))
             };
             if let Some(replacement) = sides.replacement(graph, id, &parameter) {
                 sides.known.insert(id, replacement);

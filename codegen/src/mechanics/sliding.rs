@@ -1,0 +1,157 @@
+//! Motion held on switching surfaces, as dry friction holds a machine at rest: the equations with the
+//! sides of such surfaces as inputs.
+//!
+//! On a surface g = 0 across which the rates jump, a motion goes on by a combination of both sides that
+//! keeps g' at zero, if there is one (A. F. Filippov, *Differential Equations with Discontinuous
+//! Righthand Sides*): sign(g), which is -1 or 1 beside the surface, is any number between them on
+//! it. With the side of the surface in its place, 0 to 1, every force follows from the side: the rates
+//! that hold, power and observables. A surface can hold the motion where g' feels its side, as that of a speed does and that of a place does
+//! not. Which of them hold, and when they let go, is for those who follow the motion.
+
+use std::collections::HashMap;
+
+use eomgen_model_spec::ids::InputId;
+use eomgen_model_spec::model::Function;
+
+use crate::mechanics::equations::Equations;
+use crate::mechanics::forces::may_rest;
+use crate::mechanics::outputs::guard_rate;
+use crate::mechanics::rows::RowNodes;
+use crate::mechanics::sides::Sides;
+use crate::symbolic::differentiate::by_scalar;
+use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation, Shape};
+use crate::symbolic::substitute::substitute;
+
+/// A surface with a side, of nodes `N` in the equations or values in the program, and rows `R` of
+/// them.
+#[derive(Clone, Debug)]
+pub struct SlidingSurface<N, R> {
+    /// The place of its function g among the numbers of all guards.
+    pub guard: usize,
+    /// Whether what switches there is midway between both sides where g is exactly 0, as sign(0) is.
+    pub is_odd: bool,
+    /// Whether the rates are of first degree in the sides.
+    pub is_linear: bool,
+    /// g', with the sides given.
+    pub rate: N,
+    /// The derivatives of g' by the sides of all surfaces.
+    pub by_sides: Vec<N>,
+    /// The derivatives of the accelerations by the surface's own side.
+    pub column: R,
+    /// Those of the rates of the states of first order.
+    pub first_order: Vec<N>,
+}
+
+/// Whether there are surfaces that may hold the motion, as far as can be told without derivatives.
+pub fn may_hold(equations: &Equations) -> bool {
+    !guards_with_sides(equations).is_empty()
+}
+
+/// Makes the sides of surfaces that may hold the motion inputs, which follow those of the
+/// model in the order of the surfaces. None where no surface may; the equations are of no use then.
+pub(crate) fn with_sides(equations: &mut Equations) -> Vec<SlidingSurface<NodeId, RowNodes>> {
+    let sliding = guards_with_sides(equations);
+    let first = equations.inputs;
+    let leaf = |side: usize| Operation::Input(InputId::new(first + side));
+    let roots = roots(equations);
+    let mut known = Sides::of(equations, &roots, &|guard| {
+        let mut places = sliding.iter();
+        places.position(|(own, _)| *own == guard).map(leaf)
+    })
+    .known;
+    replace(equations, &mut known);
+    let leaves: Vec<NodeId> = (0..sliding.len())
+        .map(|side| equations.graph.intern(leaf(side)))
+        .collect();
+    let rates: Vec<NodeId> = sliding
+        .iter()
+        .map(|(guard, _)| guard_rate(equations, equations.guards[*guard].value))
+        .collect();
+    let graph = &mut equations.graph;
+    let accelerations = &equations.accelerations.rows;
+    let mut found = Vec::with_capacity(sliding.len());
+    for (side, (guard, place)) in sliding.iter().enumerate() {
+        let own = leaves[side];
+        let by = |graph: &mut Graph, nodes: &[NodeId]| -> Vec<NodeId> {
+            nodes.iter().map(|id| by_scalar(graph, *id, own)).collect()
+        };
+        found.push(SlidingSurface {
+            guard: *place,
+            is_odd: matches!(
+                equations.guards[*guard].function,
+                Function::Sign | Function::Abs
+            ),
+            is_linear: true,
+            rate: rates[side],
+            by_sides: leaves
+                .iter()
+                .map(|leaf| by_scalar(graph, rates[side], *leaf))
+                .collect(),
+            column: RowNodes {
+                scalars: by(graph, &accelerations.scalars),
+                modal: by(graph, &accelerations.modal),
+            },
+            first_order: by(graph, &equations.state_rates),
+        });
+    }
+    let feels = |(side, surface): (usize, &SlidingSurface<NodeId, RowNodes>)| {
+        !graph.is_zero(surface.by_sides[side])
+    };
+    if !found.iter().enumerate().any(feels) {
+        return Vec::new();
+    }
+    for surface in &mut found {
+        let parts = graph.reachable(&surface.by_sides);
+        surface.is_linear = !parts.iter().any(|part| leaves.contains(part));
+    }
+    found
+}
+
+/// The guards, with their places among the numbers of all, that are of rates or of states of first
+/// order, and have no value of their own throughout a region.
+fn guards_with_sides(equations: &Equations) -> Vec<(usize, usize)> {
+    let graph = &equations.graph;
+    let moves = Dependence::RATE.join(Dependence::STATE);
+    let mut found = Vec::new();
+    let mut place = 0;
+    for (index, guard) in equations.guards.iter().enumerate() {
+        let is_single = match graph.shape(guard.value) {
+            Shape::Vector(space) => {
+                place += graph.size(space);
+                continue;
+            }
+            _ => matches!(
+                guard.function,
+                Function::Sign | Function::Abs | Function::Above | Function::Max | Function::Min
+            ),
+        };
+        if is_single && graph.dependence(guard.value).has(moves) && !may_rest(graph, guard.value) {
+            found.push((index, place));
+        }
+        place += 1;
+    }
+    found
+}
+
+/// What is computed where a motion is held.
+fn roots(equations: &Equations) -> Vec<NodeId> {
+    let mut roots = equations.rate_nodes();
+    roots.extend(equations.forces.nodes());
+    roots.extend(&equations.observables);
+    roots.push(equations.power);
+    roots
+}
+
+/// Puts the sides into all that [`roots`] names.
+fn replace(equations: &mut Equations, known: &mut HashMap<NodeId, NodeId>) {
+    let graph = &mut equations.graph;
+    let rows = &mut equations.accelerations.rows;
+    let nodes = rows.scalars.iter_mut().chain(&mut rows.modal);
+    let forces = &mut equations.forces;
+    let nodes = nodes.chain(forces.scalars.iter_mut().chain(&mut forces.modal));
+    let nodes = nodes.chain(&mut equations.state_rates);
+    let nodes = nodes.chain(&mut equations.observables);
+    for node in nodes.chain(std::iter::once(&mut equations.power)) {
+        *node = substitute(graph, *node, &|_, _| None, known);
+    }
+}

@@ -1,0 +1,455 @@
+//! Switching surfaces that hold a motion, as dry friction does: sign(v) is any number between -1 and 1
+//! where v is zero, and is there what keeps v at zero, if one of these does (A. F. Filippov; for
+//! friction, J. J. Moreau).
+//!
+//! `decision` (which of several surfaces hold), `sided` (the model with the sides of its surfaces
+//! given), `observed` (what a motion's observables are at rest). Here is what becomes of surfaces while
+//! a motion goes on: caught where it reaches them, it is let go where the force that holds has
+//! reached what the surface can bear. There the function and its rate are zero up to rounding, which must not
+//! decide: the surface is moved by as much as rounding is until the motion has left it.
+
+mod decision;
+mod observed;
+mod sided;
+
+pub(crate) use observed::Observed;
+pub use sided::Sided;
+
+use decision::{Arrival, Verdict};
+use eomgen_sim::ode::SMALLEST_MAGNITUDE;
+
+/// How far a function may move from a surface that holds it before the state is put back, beside the
+/// largest it has been.
+const DRIFT: f64 = 1e-12;
+
+/// The same beside what the surface's own force does to it in the time since it holds.
+const DRIFT_OF_A_FORCE: f64 = 1e-13;
+
+/// Corrections of a state that a surface catches; each squares what is left.
+const CORRECTIONS: usize = 2;
+
+/// A state counts as this part of the largest for differences.
+const SMALL: f64 = 1e-3;
+
+/// A function that moves by a step over a surface touches others within so many times its move.
+const NEAR: f64 = 4.0;
+
+/// And within this part of the largest that it has been.
+const NEAREST: f64 = 1e-9;
+
+/// How a motion stands on a surface that it did not just come to.
+const STILL: Arrival = Arrival {
+    side: 1.0,
+    is_overcome: false,
+};
+
+/// What a surface does to the motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Place {
+    /// Its function decides on which side the motion is.
+    Free,
+    /// It holds the motion, which came from this side, -1 or 1, since this time, s.
+    Holding { from: f64, since: f64 },
+    /// It bears all it can to this side, and others hold the motion.
+    Bearing { from: f64, side: f64 },
+    /// It has let the motion go to this side, which does not show yet: so far the surface is moved.
+    Leaving { side: f64, moved: f64 },
+}
+
+impl Place {
+    /// Whether the motion stands on the surface.
+    fn is_on(self) -> bool {
+        matches!(self, Self::Holding { .. } | Self::Bearing { .. })
+    }
+}
+
+/// The surfaces of a motion under way.
+pub(crate) struct Sliding {
+    sided: Sided,
+    places: Vec<Place>,
+    /// The largest that each function has been.
+    sizes: Vec<f64>,
+    /// When the motion began, s.
+    begin: Option<f64>,
+    /// The sides, -1 or 1, that are kept where a surface is free, whatever its function is.
+    kept: Option<Vec<f64>>,
+    /// Where the sides that hold were last found.
+    found_at: Option<(f64, Vec<f64>)>,
+    /// What caught the motion or let it go, and was not told yet.
+    changes: Vec<(usize, bool)>,
+}
+
+impl Sliding {
+    pub fn new(sided: Sided) -> Self {
+        let count = sided.count();
+        Self {
+            places: vec![Place::Free; count],
+            sizes: vec![0.0; count],
+            begin: None,
+            kept: None,
+            found_at: None,
+            changes: Vec::new(),
+            sided,
+        }
+    }
+
+    /// What the surfaces were made of.
+    pub fn into_sided(self) -> Sided {
+        self.sided
+    }
+
+    /// Whether the rates are not those that the functions' signs give.
+    pub fn is_active(&self) -> bool {
+        self.kept.is_some() || !self.is_free()
+    }
+
+    /// Whether the motion stands on no surface, and has left those on which it did.
+    pub fn is_free(&self) -> bool {
+        self.places.iter().all(|place| *place == Place::Free)
+    }
+
+    /// Keeps these sides of the guards, -1, 1, or 0 where it is not known, or no longer.
+    pub fn keep_sides(&mut self, sides: Option<&[f64]>) {
+        self.found_at = None;
+        self.kept = sides.map(|sides| {
+            let guards = (0..self.places.len()).map(|surface| self.sided.guard(surface));
+            guards.map(|guard| sides[guard]).collect()
+        });
+    }
+
+    /// The rates, where this is active.
+    pub fn rates(&mut self, at: (f64, &[f64]), inputs: &[f64], out: &mut [f64]) {
+        self.hold(at, inputs);
+        self.sided.rates(at, inputs, out);
+    }
+
+    /// The derivatives of the rates by the state, where this is active, by differences: what holds goes on
+    /// holding, and sides stay what they are.
+    pub fn jacobian(&mut self, (t, state): (f64, &[f64]), inputs: &[f64], out: &mut [f64]) {
+        let (sides, held) = (self.sides((t, state), inputs), self.holding());
+        self.found_at = None;
+        let count = state.len();
+        let mut rates = |state: &[f64], out: &mut [f64]| {
+            self.sided.hold((t, state), inputs, &sides, &held);
+            self.sided.rates((t, state), inputs, out);
+        };
+        let (mut base, mut moved_rates) = (vec![0.0; count], vec![0.0; count]);
+        rates(state, &mut base);
+        let largest = state.iter().fold(0.0_f64, |most, y| most.max(y.abs()));
+        let mut moved = state.to_vec();
+        for column in 0..count {
+            let size = state[column].abs().max(SMALL * largest);
+            moved[column] = state[column] + f64::EPSILON.sqrt() * size.max(SMALLEST_MAGNITUDE);
+            rates(&moved, &mut moved_rates);
+            let step = moved[column] - state[column];
+            for row in 0..count {
+                out[row * count + column] = (moved_rates[row] - base[row]) / step;
+            }
+            moved[column] = state[column];
+        }
+    }
+
+    /// Where the motion begins, and what is positive or negative as long as it stays as it is in the place of
+    /// the guards `out`: a surface that holds keeps the side from which the motion came until what
+    /// it bears has reached a bound.
+    pub fn guards(&mut self, at: (f64, &[f64]), inputs: &[f64], out: &mut [f64]) {
+        if self.begin.is_none() {
+            self.begin(at, inputs);
+        }
+        if self.is_free() {
+            return;
+        }
+        self.hold(at, inputs);
+        for (surface, place) in self.places.iter().enumerate() {
+            let slot = &mut out[self.sided.guard(surface)];
+            let side = self.sided.sides()[surface];
+            match *place {
+                Place::Free => {}
+                Place::Holding { from, .. } => *slot = from * 4.0 * side * (1.0 - side),
+                Place::Bearing { from, .. } => *slot = from,
+                Place::Leaving { side, moved } => *slot += side * moved,
+            }
+        }
+    }
+
+    /// The motion has gone over a surface, from the state `before` to one just beyond: decides what
+    /// those that it has come to do.
+    pub fn cross(
+        &mut self,
+        inputs: &[f64],
+        (t_before, before): (f64, &[f64]),
+        t: f64,
+        state: &mut [f64],
+    ) {
+        let near = self.sided.functions((t_before, before), inputs);
+        let beyond = self.sided.functions((t, state), inputs);
+        let roundings = self.sided.roundings((t, state), inputs);
+        let mut is_new = false;
+        let mut touching = Vec::new();
+        let mut arrivals = Vec::new();
+        let overcome = self.overcome((t, state), inputs);
+        for (surface, place) in self.places.iter().enumerate() {
+            let (from, to) = (near[surface], beyond[surface]);
+            let moved = match place {
+                Place::Leaving { side, moved } => side * moved,
+                _ => 0.0,
+            };
+            let is_crossed = (from + moved) * (to + moved) < 0.0;
+            let near = NEAR * (to - from).abs();
+            let near = near.min(NEAREST * self.sizes[surface]) + roundings[surface];
+            let is_near = to.abs() <= near;
+            if place.is_on() || is_crossed || (is_near && *place == Place::Free) {
+                is_new |= is_crossed && !place.is_on();
+                touching.push(surface);
+                arrivals.push(overcome[surface].unwrap_or(Arrival {
+                    side: if is_crossed {
+                        to.signum()
+                    } else {
+                        from.signum()
+                    },
+                    is_overcome: false,
+                }));
+            }
+        }
+        if !is_new && overcome.iter().all(Option::is_none) {
+            return;
+        }
+        self.settle((t, state), inputs, (&touching, &arrivals), &near);
+        self.put_back((t, state), inputs, true);
+    }
+
+    /// Brings a state that has strayed back onto what holds it; how many evaluations that took.
+    pub fn keep(&mut self, t: f64, inputs: &[f64], state: &mut [f64]) -> u64 {
+        self.put_back((t, state), inputs, false)
+    }
+
+    /// The motion has come to a point, where inputs may jump from `earlier`: lets go what they take along
+    /// or what can bear no more, and tells which surfaces caught the motion or let it go since this was last
+    /// asked.
+    pub fn arrive(
+        &mut self,
+        at: (f64, &[f64]),
+        (earlier, inputs): (&[f64], &[f64]),
+    ) -> Vec<(usize, bool)> {
+        if self.begin.is_some() && !self.is_free() {
+            let functions = self.sided.functions(at, inputs);
+            let jumps: Vec<bool> = match earlier == inputs {
+                true => vec![false; functions.len()],
+                false => {
+                    let before = self.sided.functions(at, earlier);
+                    let roundings = self.sided.roundings(at, inputs);
+                    let moved = functions.iter().zip(&before).map(|(a, b)| (a - b).abs());
+                    let allowed = roundings.iter().zip(&self.sizes);
+                    let allowed = allowed.map(|(rounding, size)| rounding + DRIFT * size);
+                    moved.zip(allowed).map(|(a, b)| a > b).collect()
+                }
+            };
+            for (surface, place) in self.places.iter_mut().enumerate() {
+                let value = functions[surface];
+                let has_left = match *place {
+                    Place::Leaving { side, moved } => side * value > 2.0 * moved,
+                    _ => jumps[surface],
+                };
+                if has_left && *place != Place::Free {
+                    if place.is_on() {
+                        self.changes.push((self.sided.guard(surface), value > 0.0));
+                    }
+                    *place = Place::Free;
+                    self.found_at = None;
+                }
+            }
+            for _ in 0..=self.places.len() {
+                let overcome = self.overcome(at, inputs);
+                if overcome.iter().all(Option::is_none) {
+                    break;
+                }
+                let on = |surface: &usize| self.places[*surface].is_on();
+                let touching: Vec<usize> = (0..self.places.len()).filter(on).collect();
+                let arrival = |surface: &usize| overcome[*surface].unwrap_or(STILL);
+                let arrivals: Vec<Arrival> = touching.iter().map(arrival).collect();
+                self.settle(at, inputs, (&touching, &arrivals), &functions);
+            }
+        }
+        let functions = self.sided.functions(at, inputs);
+        for (size, value) in self.sizes.iter_mut().zip(&functions) {
+            *size = size.max(value.abs());
+        }
+        std::mem::take(&mut self.changes)
+    }
+
+    /// What stands on a surface at the start may be held there.
+    fn begin(&mut self, at: (f64, &[f64]), inputs: &[f64]) {
+        self.begin = Some(at.0);
+        let functions = self.sided.functions(at, inputs);
+        let roundings = self.sided.roundings(at, inputs);
+        let touching: Vec<usize> = (0..functions.len())
+            .filter(|surface| functions[*surface].abs() <= roundings[*surface])
+            .collect();
+        if !touching.is_empty() {
+            let arrivals = vec![STILL; touching.len()];
+            self.settle(at, inputs, (&touching, &arrivals), &functions);
+        }
+        self.changes.clear();
+    }
+
+    /// The surfaces that would have to bear more than they can, with the side to which that is.
+    fn overcome(&mut self, at: (f64, &[f64]), inputs: &[f64]) -> Vec<Option<Arrival>> {
+        self.hold(at, inputs);
+        let held = self.places.iter().zip(self.sided.sides());
+        held.map(|(place, side)| {
+            let is_overcome = matches!(place, Place::Holding { .. }) && !(0.0..=1.0).contains(side);
+            is_overcome.then_some(Arrival {
+                side: (side - 0.5).signum(),
+                is_overcome,
+            })
+        })
+        .collect()
+    }
+
+    /// Decides what surfaces do to a motion that stands on them; it came from the sides on which
+    /// the functions had these values.
+    fn settle(
+        &mut self,
+        at: (f64, &[f64]),
+        inputs: &[f64],
+        (touching, arrivals): (&[usize], &[Arrival]),
+        came_from: &[f64],
+    ) {
+        self.found_at = None;
+        let sides = self.sides(at, inputs);
+        let asked = (touching, arrivals);
+        let Some(verdicts) = self.sided.decide(at, inputs, asked, &sides) else {
+            // Its function's sign decides, and the solver says that it comes to no end.
+            for surface in touching {
+                self.places[*surface] = Place::Free;
+            }
+            return;
+        };
+        let functions = self.sided.functions(at, inputs);
+        let mut roundings = self.sided.roundings(at, inputs);
+        let passed = self.begin.map_or(0.0, |begin| at.0 - begin);
+        for (surface, rounding) in roundings.iter_mut().enumerate() {
+            // A rate of rounding, kept up for a while.
+            *rounding += DRIFT_OF_A_FORCE * self.sided.own_rate(surface) * passed;
+        }
+        for (surface, verdict) in touching.iter().zip(verdicts) {
+            let old = self.places[*surface];
+            let from = match old {
+                Place::Holding { from, .. } | Place::Bearing { from, .. } => from,
+                _ if came_from[*surface] < 0.0 => -1.0,
+                _ => 1.0,
+            };
+            let since = match old {
+                Place::Holding { since, .. } => since,
+                _ => at.0,
+            };
+            let new = match verdict {
+                Verdict::Holds(_) => Place::Holding { from, since },
+                Verdict::Bears(side) => Place::Bearing { from, side },
+                Verdict::LetsGo(side) => {
+                    let value = functions[*surface];
+                    match side * value > 2.0 * roundings[*surface] {
+                        true => Place::Free,
+                        false => Place::Leaving {
+                            side,
+                            moved: roundings[*surface].max(-2.0 * side * value),
+                        },
+                    }
+                }
+            };
+            self.places[*surface] = new;
+            if let Some(kept) = &mut self.kept {
+                kept[*surface] = verdict.sign().signum();
+            }
+            let guard = self.sided.guard(*surface);
+            if old.is_on() && !new.is_on() {
+                self.changes.push((guard, verdict.sign() > 0.0));
+            } else if new.is_on() && !old.is_on() {
+                self.changes.push((guard, from < 0.0));
+            }
+        }
+    }
+
+    /// The sides of all surfaces at a point, those that hold in the middle. Functions are asked only where
+    /// they decide.
+    fn sides(&mut self, at: (f64, &[f64]), inputs: &[f64]) -> Vec<f64> {
+        let kept = self.kept.clone().unwrap_or_default();
+        let mut functions = Vec::new();
+        let mut sides = Vec::with_capacity(self.places.len());
+        for (surface, place) in self.places.iter().enumerate() {
+            let kept = kept.get(surface).filter(|side| **side != 0.0);
+            let moved = match (*place, kept) {
+                (Place::Holding { .. }, _) => {
+                    sides.push(0.5);
+                    continue;
+                }
+                (Place::Bearing { side, .. }, _) | (Place::Leaving { side, .. }, Some(_)) => {
+                    sides.push(0.5 + 0.5 * side);
+                    continue;
+                }
+                (Place::Free, Some(side)) => {
+                    sides.push(0.5 + 0.5 * side);
+                    continue;
+                }
+                (Place::Free, None) => 0.0,
+                (Place::Leaving { side, moved }, None) => side * moved,
+            };
+            if functions.is_empty() {
+                functions = self.sided.functions(at, inputs);
+            }
+            sides.push(self.sided.side_of(surface, functions[surface] + moved));
+        }
+        sides
+    }
+
+    fn holding(&self) -> Vec<usize> {
+        let holds = |surface: &usize| matches!(self.places[*surface], Place::Holding { .. });
+        (0..self.places.len()).filter(holds).collect()
+    }
+
+    /// Finds what holds the motion at a point.
+    fn hold(&mut self, (t, state): (f64, &[f64]), inputs: &[f64]) {
+        if let Some((known, at)) = &self.found_at
+            && *known == t
+            && at == state
+        {
+            return;
+        }
+        let (sides, held) = (self.sides((t, state), inputs), self.holding());
+        self.sided.hold((t, state), inputs, &sides, &held);
+        match &mut self.found_at {
+            Some((known, at)) => {
+                *known = t;
+                at.copy_from_slice(state);
+            }
+            none => *none = Some((t, state.to_vec())),
+        }
+    }
+
+    /// Puts a state onto the surfaces that hold it, if it has strayed from them, or in any case.
+    fn put_back(&mut self, (t, state): (f64, &mut [f64]), inputs: &[f64], always: bool) -> u64 {
+        let held = self.holding();
+        if held.is_empty() {
+            return 0;
+        }
+        let values = self.sided.functions((t, state), inputs);
+        let has_strayed = |surface: &usize| {
+            let Place::Holding { since, .. } = self.places[*surface] else {
+                return false;
+            };
+            let by_force = self.sided.own_rate(*surface) * (t - since).abs();
+            let allowed = DRIFT * self.sizes[*surface] + DRIFT_OF_A_FORCE * by_force;
+            values[*surface].abs() > allowed
+        };
+        if !always && !held.iter().any(has_strayed) {
+            return 0;
+        }
+        self.hold((t, state), inputs);
+        self.found_at = None;
+        for _ in 0..CORRECTIONS {
+            let values = self.sided.functions((t, state), inputs);
+            self.sided.put_on(t, state, (&held, &values));
+        }
+        CORRECTIONS as u64
+    }
+}

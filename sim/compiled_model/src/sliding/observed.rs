@@ -1,0 +1,107 @@
+//! Observables along a motion that surfaces may hold: a force of dry friction at rest is what holds
+//! there, not that of sign(0) = 0.
+
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_sim::inputs::HeldInputs;
+use eomgen_sim::ode::Trajectory;
+
+use super::Sided;
+use super::decision::Arrival;
+
+/// A state this near to a surface, beside the largest that its function is in the motion, is on it.
+const ON: f64 = 1e-10;
+
+/// The same beside what the surface's own force does to it over the time of the motion.
+const ON_BY_A_FORCE: f64 = 1e-11;
+
+/// What observes a motion.
+pub(crate) struct Observed {
+    own: Evaluator,
+    sided: Option<Sided>,
+    /// The largest that each function is, and how long the motion takes, s.
+    sizes: Vec<f64>,
+    duration: f64,
+}
+
+impl Observed {
+    /// Looks at a motion by an evaluator, and by the model with sides if surfaces may hold it.
+    pub fn new(
+        own: Evaluator,
+        mut sided: Option<Sided>,
+        trajectory: &Trajectory,
+        inputs: &HeldInputs,
+    ) -> Self {
+        let mut sizes = vec![0.0_f64; sided.as_ref().map_or(0, Sided::count)];
+        if let Some(sided) = &mut sided {
+            for (t, state) in trajectory.times.iter().zip(&trajectory.states) {
+                let functions = sided.functions((*t, state), &inputs.at(*t));
+                for (size, value) in sizes.iter_mut().zip(functions) {
+                    *size = size.max(value.abs());
+                }
+            }
+        }
+        let ends = (trajectory.times.first(), trajectory.times.last());
+        let duration = match ends {
+            (Some(first), Some(last)) => last - first,
+            _ => 0.0,
+        };
+        Self {
+            own,
+            sided,
+            sizes,
+            duration,
+        }
+    }
+
+    /// The observables at a point of the motion.
+    pub fn observables(&mut self, point: Point<'_>, out: &mut [f64]) {
+        let Point { t, state, inputs } = point;
+        let held = self.sided.as_mut().is_some_and(|sided| {
+            let reach: Vec<f64> = self.sizes.iter().map(|size| ON * size).collect();
+            let is_held = hold(sided, (t, state), inputs, (&reach, self.duration));
+            if is_held {
+                sided.observables((t, state), out);
+            }
+            is_held
+        });
+        if !held {
+            self.own.observables(point, out);
+        }
+    }
+}
+
+/// Finds what holds a motion at a state, if it stands on surfaces.
+fn hold(
+    sided: &mut Sided,
+    at: (f64, &[f64]),
+    inputs: &[f64],
+    (reach, duration): (&[f64], f64),
+) -> bool {
+    let functions = sided.functions(at, inputs);
+    let mut sides: Vec<f64> = (0..functions.len())
+        .map(|surface| sided.side_of(surface, functions[surface]))
+        .collect();
+    sided.look(at, inputs, &sides);
+    let touching: Vec<usize> = (0..functions.len())
+        .filter(|surface| {
+            let by_force = ON_BY_A_FORCE * sided.own_rate(*surface) * duration;
+            functions[*surface].abs() <= reach[*surface] + by_force
+        })
+        .collect();
+    if touching.is_empty() {
+        return false;
+    }
+    let arrival = |surface: &usize| Arrival {
+        side: if functions[*surface] < 0.0 { -1.0 } else { 1.0 },
+        is_overcome: false,
+    };
+    let arrivals: Vec<Arrival> = touching.iter().map(arrival).collect();
+    let Some(verdicts) = sided.decide(at, inputs, (&touching, &arrivals), &sides) else {
+        return false;
+    };
+    for (surface, verdict) in touching.iter().zip(verdicts) {
+        sides[*surface] = 0.5 + 0.5 * verdict.sign();
+    }
+    sided.hold(at, inputs, &sides, &[]);
+    true
+}

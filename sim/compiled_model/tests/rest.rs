@@ -1,0 +1,658 @@
+//! Machines that dry friction holds at rest, by the general solver: against a set-valued time stepping
+//! that knows no surfaces, no regimes and no events (every step's friction impulses are those in
+//! their bounds that bring the speeds to zero, or as near as they can), against closed forms, and against the
+//! exact solver where that follows.
+
+use std::path::Path;
+
+use eomgen_compiled_model::{CompiledModel, Motion, Orders, Solver};
+use eomgen_sim::inputs::HeldInputs;
+
+/// The solvers that take steps and follow rest.
+const GENERAL: [Solver; 2] = [Solver::Rk, Solver::Radau];
+
+fn example(name: &str) -> CompiledModel {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/friction");
+    CompiledModel::load(folder.join(format!("{name}.toml")), Orders::Declared)
+        .unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn of_text(text: &str) -> CompiledModel {
+    CompiledModel::of_text("rest.toml", text, Orders::Declared)
+        .unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn grid(until: f64, count: usize) -> Vec<f64> {
+    (0..=count)
+        .map(|k| until * k as f64 / count as f64)
+        .collect()
+}
+
+fn simulated(
+    model: &CompiledModel,
+    settings: &[(&str, f64)],
+    times: &[f64],
+    solver: Solver,
+) -> Motion {
+    let run = model.with(settings).unwrap();
+    let motion = run.simulate(run.initial(), times, &run.no_inputs(), solver);
+    motion.unwrap_or_else(|error| panic!("{settings:?} {solver}: {error}"))
+}
+
+/// A dry friction: J v - b is the speed at which it slides, and the most that it bears.
+struct Rubbing<const N: usize> {
+    along: [f64; N],
+    drift: f64,
+    level: f64,
+}
+
+/// A machine for the time stepping: M(q) v' = f(t, q, v) + frictions.
+struct Machine<'m, const N: usize> {
+    inverse_mass: &'m dyn Fn([f64; N]) -> [[f64; N]; N],
+    forces: &'m dyn Fn(f64, [f64; N], [f64; N]) -> [f64; N],
+    rubbing: &'m dyn Fn([f64; N], [f64; N]) -> Vec<Rubbing<N>>,
+}
+
+impl<const N: usize> Machine<'_, N> {
+    /// Places and speeds after so many steps.
+    fn stepped(&self, start: ([f64; N], [f64; N]), until: f64, steps: u32) -> Vec<f64> {
+        let h = until / f64::from(steps);
+        let (mut q, mut v) = start;
+        let mut impulses: Vec<f64> = Vec::new();
+        for step in 0..steps {
+            let middle: [f64; N] = std::array::from_fn(|i| q[i] + 0.5 * h * v[i]);
+            let t = (f64::from(step) + 0.5) * h;
+            let yields = (self.inverse_mass)(middle);
+            let mut next = v;
+            for _ in 0..2 {
+                let mean: [f64; N] = std::array::from_fn(|i| 0.5 * (v[i] + next[i]));
+                let forces = (self.forces)(t, middle, mean);
+                let rubbing = (self.rubbing)(middle, v);
+                impulses.resize(rubbing.len(), 0.0);
+                let times = |force: [f64; N]| -> [f64; N] {
+                    std::array::from_fn(|i| (0..N).map(|j| yields[i][j] * force[j]).sum())
+                };
+                let moved = times(forces);
+                next = std::array::from_fn(|i| v[i] + h * moved[i]);
+                for (rub, impulse) in rubbing.iter().zip(&impulses) {
+                    let moved = times(rub.along);
+                    next = std::array::from_fn(|i| next[i] + moved[i] * impulse);
+                }
+                for _ in 0..200 {
+                    let mut changed = 0.0_f64;
+                    for (rub, impulse) in rubbing.iter().zip(&mut impulses) {
+                        let moved = times(rub.along);
+                        let dot = |b: [f64; N]| (0..N).map(|i| rub.along[i] * b[i]).sum::<f64>();
+                        let wanted = *impulse - (dot(next) - rub.drift) / dot(moved);
+                        let wanted = wanted.clamp(-rub.level * h, rub.level * h);
+                        next = std::array::from_fn(|i| next[i] + moved[i] * (wanted - *impulse));
+                        changed = changed.max((wanted - *impulse).abs() / (rub.level * h));
+                        *impulse = wanted;
+                    }
+                    if changed < 1e-13 {
+                        break;
+                    }
+                }
+            }
+            for i in 0..N {
+                q[i] += 0.5 * h * (v[i] + next[i]);
+            }
+            v = next;
+        }
+        [q, v].concat()
+    }
+
+    /// The stepping comes to this state as its steps shrink: the difference is small in the end and
+    /// falls as a method of first order has it.
+    fn comes_to(&self, start: ([f64; N], [f64; N]), until: f64, wanted: &[f64], step: f64) {
+        let difference = |steps: u32| {
+            let found = self.stepped(start, until, steps);
+            let pairs = found.iter().zip(wanted);
+            pairs.fold(0.0_f64, |worst, (a, b)| worst.max((a - b).abs()))
+        };
+        let coarse = (until / step) as u32;
+        let (before, after) = (difference(coarse), difference(8 * coarse));
+        println!("{before:.2e} {after:.2e}");
+        assert!(after < 2e-4, "{before:e} {after:e}");
+        assert!(after < 0.3 * before || after < 1e-7, "{before:e} {after:e}");
+    }
+}
+
+#[test]
+fn a_pendulum_stops_off_the_vertical_and_friction_bears_its_weight() {
+    let model = example("stopped_pendulum");
+    let (m, l, g, t_c) = (0.15, 0.3, 9.81, 0.02);
+    let machine = Machine {
+        inverse_mass: &|_| [[1.0 / (m * l * l)]],
+        forces: &|_, [theta], _| [-m * g * l * f64::sin(theta)],
+        rubbing: &|_, _| {
+            vec![Rubbing {
+                along: [1.0],
+                drift: 0.0,
+                level: t_c,
+            }]
+        },
+    };
+    let times = grid(10.0, 100);
+    for solver in GENERAL {
+        let motion = simulated(&model, &[], &times, solver);
+        let states = &motion.trajectory.states;
+        machine.comes_to(([1.0], [0.0]), 10.0, &states[100], 2e-4);
+        // Held: nothing moves any more, not even by rounding that adds up.
+        assert!(states[100][0].abs() > 1e-3, "{:?}", states[100]);
+        assert!((states[100][0] - states[60][0]).abs() < 1e-13);
+        assert!(states[60..].iter().all(|state| state[1].abs() < 1e-14));
+        let run = model.at_declared().unwrap();
+        let observables = run.observables(&motion).unwrap();
+        for (row, state) in observables[60..].iter().zip(&states[60..]) {
+            // `rubs`, the energy and the power.
+            assert!(
+                (row[0] - m * g * l * state[0].sin()).abs() < 1e-12,
+                "{row:?}"
+            );
+            assert!(row[2].abs() < 1e-15, "{row:?}");
+        }
+        assert!(row_of_sliding(&observables, states));
+    }
+}
+
+/// Where it slides the friction is at its level.
+fn row_of_sliding(observables: &[Vec<f64>], states: &[Vec<f64>]) -> bool {
+    let mut pairs = observables.iter().zip(states);
+    pairs.all(|(row, state)| state[1].abs() < 1e-6 || row[0] == -0.02 * state[1].signum())
+}
+
+#[test]
+fn a_pendulum_is_let_go_by_a_motor_and_caught_again() {
+    let model = example("stopped_pendulum");
+    let (m, l, g, t_c) = (0.15, 0.3, 9.81, 0.02);
+    for (torque, omega) in [(0.1, 3.0), (0.03, 2.0), (0.0201, 1.0)] {
+        let machine = Machine {
+            inverse_mass: &|_| [[1.0 / (m * l * l)]],
+            forces: &|t, [theta], _| [torque * f64::sin(omega * t) - m * g * l * f64::sin(theta)],
+            rubbing: &|_, _| {
+                vec![Rubbing {
+                    along: [1.0],
+                    drift: 0.0,
+                    level: t_c,
+                }]
+            },
+        };
+        let settings = [("T_0", torque), ("omega", omega)];
+        for solver in GENERAL {
+            let motion = simulated(&model, &settings, &[0.0, 6.0], solver);
+            machine.comes_to(([1.0], [0.0]), 6.0, &motion.trajectory.last, 5e-5);
+        }
+    }
+}
+
+#[test]
+fn a_mass_on_a_belt_sticks_and_slips_by_friction_that_falls_with_speed() {
+    let model = example("stribeck_belt");
+    let machine = Machine {
+        inverse_mass: &|_| [[1.0]],
+        forces: &|_, [x], _| [-100.0 * x],
+        rubbing: &|_, [v]| {
+            let slip = (v - 0.1) / 0.05;
+            vec![Rubbing {
+                along: [1.0],
+                drift: 0.1,
+                level: 3.0 + 2.0 * f64::exp(-slip * slip),
+            }]
+        },
+    };
+    for solver in GENERAL {
+        let motion = simulated(&model, &[], &[0.0, 2.0], solver);
+        machine.comes_to(([0.0], [0.0]), 2.0, &motion.trajectory.last, 2e-5);
+    }
+    let motion = simulated(&model, &[], &grid(20.0, 20), Solver::Auto);
+    assert_eq!(motion.solver, Solver::Rk);
+    // It sticks and is pulled loose in every turn of 0.907 s.
+    let switches = &motion.trajectory.switches;
+    assert!(switches.len() > 40, "{}", switches.len());
+}
+
+#[test]
+fn a_cart_and_its_pole_rub_both() {
+    let model = example("cart_pole");
+    let (big, m, l, g) = (1.0, 0.3, 0.5, 9.81);
+    for (rails, pivot, push, omega) in [
+        (1.5, 0.1, 3.0, 4.0),
+        (0.5, 0.3, 2.0, 7.0),
+        (2.5, 0.02, 3.0, 3.0),
+        (3.5, 1.0, 3.0, 4.0),
+    ] {
+        let machine = Machine {
+            inverse_mass: &|[_, phi]| {
+                let [a, b, c] = [big + m, m * l * f64::cos(phi), m * l * l];
+                let det = a * c - b * b;
+                [[c / det, -b / det], [-b / det, a / det]]
+            },
+            forces: &|t, [_, phi], [_, rate]| {
+                [
+                    push * f64::sin(omega * t) + m * l * f64::sin(phi) * rate * rate,
+                    -m * g * l * f64::sin(phi),
+                ]
+            },
+            rubbing: &|_, _| {
+                let rub = |along, level| Rubbing {
+                    along,
+                    drift: 0.0,
+                    level,
+                };
+                vec![rub([1.0, 0.0], rails), rub([0.0, 1.0], pivot)]
+            },
+        };
+        let settings = [
+            ("F_c", rails),
+            ("T_c", pivot),
+            ("F_0", push),
+            ("omega", omega),
+        ];
+        for solver in GENERAL {
+            let motion = simulated(&model, &settings, &[0.0, 3.0], solver);
+            machine.comes_to(([0.0, 0.6], [0.0; 2]), 3.0, &motion.trajectory.last, 1e-4);
+        }
+    }
+}
+
+const SLED: &str = r#"
+[model]
+name = "sled"
+[parameters]
+m = { value = 2, unit = "kg" }
+F = { value = 3, unit = "N" }
+A = { value = 4, unit = "N" }
+omega = { value = 5, unit = "rad/s" }
+[coordinates]
+x = { unit = "m" }
+[kinetic]
+sled = "1/2*m*dot(x)^2"
+[forces]
+rubs = { on = "x", value = "-F*sign(dot(x))" }
+drive = { on = "x", value = "A*sin(omega*t)" }
+"#;
+
+#[test]
+fn a_drive_sticks_and_breaks_away_a_thousand_times() {
+    let (f, a, omega) = (3.0_f64, 4.0_f64, 5.0_f64);
+    // It breaks away where A |sin(omega t)| = F, once in every half turn, and comes to rest in between.
+    let half = std::f64::consts::PI / omega;
+    let away = |turn: usize| (f / a).asin() / omega + half * turn as f64;
+    let until = 1000.0 * half;
+    let model = of_text(SLED);
+    for solver in [Solver::Rk, Solver::Radau, Solver::Exact] {
+        let motion = simulated(&model, &[], &grid(until, 1000), solver);
+        let switches = &motion.trajectory.switches;
+        assert_eq!(switches.len(), 2000, "{solver}");
+        for (turn, pair) in switches.chunks(2).enumerate() {
+            let late = pair[0].t - away(turn);
+            assert!(
+                late.abs() < 1e-8 * (1.0 + away(turn)),
+                "{solver} {turn}: {late:e}"
+            );
+            assert!(pair[1].t > pair[0].t && pair[1].t < away(turn + 1));
+            assert_eq!(pair[0].to_positive, turn % 2 == 0, "{solver} {turn}");
+        }
+        // It goes to and fro: after every whole turn it rests where it did.
+        let states = &motion.trajectory.states;
+        for turn in (2..1000).step_by(2) {
+            let moved = states[turn][0] - states[2][0];
+            assert!(moved.abs() < 1e-7, "{solver} {turn}: {moved:e}");
+            assert!(states[turn][1].abs() < 1e-12, "{solver} {turn}");
+        }
+    }
+}
+
+/// A generator of numbers between 0 and 1.
+struct Numbers(u64);
+
+impl Numbers {
+    fn next(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+/// A row of masses between springs, each rubbed at the ground, on a belt or against the one before, and
+/// shaken. No two frictions hold one motion: what each of them bears then is not known.
+fn random_row(seed: u64) -> String {
+    let mut numbers = Numbers(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
+    let mut number = |least: f64, most: f64| least + (most - least) * numbers.next();
+    let count = 1 + (seed % 3) as usize;
+    let mut coordinates = String::new();
+    let (mut kinetic, mut potential, mut forces) = (String::new(), String::new(), String::new());
+    for i in 0..count {
+        let (place, speed) = (number(-0.3, 0.3), number(-0.5, 0.5));
+        let speed = if number(0.0, 1.0) < 0.4 { 0.0 } else { speed };
+        coordinates +=
+            &format!("x_{i} = {{ unit = \"m\", initial = {place}, initial_rate = {speed} }}\n");
+        kinetic += &format!("T_{i} = \"{}*m*dot(x_{i})^2\"\n", number(0.2, 1.0));
+        let before = if i == 0 {
+            "x_0".to_owned()
+        } else {
+            format!("(x_{i} - x_{})", i - 1)
+        };
+        potential += &format!("V_{i} = \"{}*k*{before}^2\"\n", number(10.0, 60.0));
+        let belt = if number(0.0, 1.0) < 0.3 {
+            number(-0.2, 0.2)
+        } else {
+            0.0
+        };
+        let is_rubbed = number(0.0, 1.0) < 0.6;
+        if is_rubbed {
+            let level = number(0.5, 4.0);
+            forces += &format!(
+                "rub_{i} = {{ on = \"x_{i}\", value = \"-{level}*F*sign(dot(x_{i}) - {belt}*v)\" }}\n"
+            );
+        }
+        if i > 0 && !is_rubbed {
+            let level = number(0.5, 3.0);
+            forces += &format!(
+                "between_{i} = {{ on = \"x_{i} - x_{0}\", value = \"-{level}*F*sign(dot(x_{i}) - dot(x_{0}))\" }}\n",
+                i - 1
+            );
+        }
+        let (push, rate) = (number(1.0, 8.0), number(2.0, 12.0));
+        forces +=
+            &format!("push_{i} = {{ on = \"x_{i}\", value = \"{push}*F*sin({rate}*t/s)\" }}\n");
+        forces += &format!(
+            "damper_{i} = {{ on = \"x_{i}\", value = \"-{}*c*dot(x_{i})\" }}\n",
+            number(0.0, 0.5)
+        );
+    }
+    format!(
+        r#"
+[model]
+name = "row"
+[parameters]
+m = {{ value = 1, unit = "kg" }}
+k = {{ value = 1, unit = "N/m" }}
+c = {{ value = 1, unit = "N s/m" }}
+F = {{ value = 1, unit = "N" }}
+v = {{ value = 1, unit = "m/s" }}
+s = {{ value = 1, unit = "s" }}
+[coordinates]
+{coordinates}
+[kinetic]
+{kinetic}
+[potential]
+{potential}
+[forces]
+{forces}
+"#
+    )
+}
+
+#[test]
+fn random_rows_rest_and_move_as_the_exact_solver_has_them() {
+    let times = grid(4.0, 40);
+    let (mut compared, mut held) = (0, 0);
+    for seed in 1..=40 {
+        let text = random_row(seed);
+        let model = of_text(&text);
+        let run = model.at_declared().unwrap();
+        let none = run.no_inputs();
+        let Ok(exact) = run.simulate(run.initial(), &times, &none, Solver::Exact) else {
+            continue;
+        };
+        compared += 1;
+        let reference = run.observables(&exact).unwrap();
+        for solver in GENERAL {
+            let motion = simulated(&model, &[], &times, solver);
+            let rows = run.observables(&motion).unwrap();
+            let pairs = motion
+                .trajectory
+                .states
+                .iter()
+                .zip(&exact.trajectory.states);
+            let mut worst = 0.0_f64;
+            for (place, (a, b)) in pairs.enumerate() {
+                let apart = a.iter().zip(b).map(|(a, b)| (a - b).abs());
+                worst = apart.fold(worst, f64::max);
+                // Powers too, but for a row that stands just at a switch.
+                let power = (rows[place][1] - reference[place][1]).abs();
+                assert!(power < 1e-3, "{seed} {solver} {place}: power {power:e}");
+            }
+            assert!(worst < 1e-6, "{seed} {solver}: {worst:e}\n{text}");
+        }
+        held += exact.trajectory.switches.len();
+    }
+    println!("{compared} rows, {held} switches");
+    assert!(compared >= 25 && held > 300, "{compared} {held}");
+}
+
+#[test]
+fn frictions_that_hold_one_motion_bear_together_what_both_can() {
+    let text = r#"
+[model]
+name = "block"
+[parameters]
+m = { value = 1, unit = "kg" }
+a = { value = 1, unit = "N" }
+F = { value = 1, unit = "N" }
+G = { value = 2, unit = "N" }
+r = { value = 1, unit = "N/s" }
+[coordinates]
+x = { unit = "m" }
+[kinetic]
+block = "1/2*m*dot(x)^2"
+[forces]
+one = { on = "x", value = "-F*sign(dot(x))" }
+other = { on = "x", value = "-G*sign(3*dot(x))" }
+pull = { on = "x", value = "r*t" }
+[observables]
+both = { value = "-F*sign(dot(x)) - G*sign(3*dot(x))", unit = "N" }
+"#
+    .replace("a = { value = 1, unit = \"N\" }\n", "");
+    let model = of_text(&text);
+    let run = model.at_declared().unwrap();
+    for solver in GENERAL {
+        let motion = simulated(&model, &[], &grid(4.0, 40), solver);
+        let rows = run.observables(&motion).unwrap();
+        for (t, (row, state)) in motion
+            .trajectory
+            .times
+            .iter()
+            .zip(rows.iter().zip(&motion.trajectory.states))
+        {
+            // It breaks away where r t = F + G.
+            let gone = (t - 3.0).max(0.0);
+            assert!(
+                (state[0] - gone.powi(3) / 6.0).abs() < 1e-8,
+                "{solver} {t}: {state:?}"
+            );
+            assert!((row[0] + t.min(3.0)).abs() < 1e-9, "{solver} {t}: {row:?}");
+        }
+    }
+}
+
+#[test]
+fn a_jump_of_an_input_breaks_away_and_a_belt_that_jumps_takes_nothing_along() {
+    let text = r#"
+[model]
+name = "block"
+[parameters]
+m = { value = 1, unit = "kg" }
+F = { value = 2, unit = "N" }
+[coordinates]
+x = { unit = "m" }
+[inputs]
+u = { unit = "N" }
+w = { unit = "m/s" }
+[kinetic]
+block = "1/2*m*dot(x)^2"
+[forces]
+rub = { on = "x", value = "-F*sign(dot(x) - w)" }
+pull = { on = "x", value = "u" }
+"#;
+    let model = of_text(text);
+    let run = model.at_declared().unwrap();
+    // Held for 1 s, pulled loose with 1 m/s^2 for 1 s, slowed down by 2 m/s^2 to rest at 2.5 s; at 3 s the
+    // belt begins to run at 1 m/s, which the block has after 0.5 s.
+    let times = vec![0.0, 1.0, 2.0, 3.0];
+    let values = vec![1.5, 0.0, 3.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+    let inputs = HeldInputs::new(times, values, 2).unwrap();
+    let samples = grid(5.0, 10);
+    let wanted = [0.0, 0.0, 0.0, 0.125, 0.5, 0.75, 0.75, 1.0, 1.5, 2.0, 2.5];
+    for solver in GENERAL {
+        let motion = run
+            .simulate(run.initial(), &samples, &inputs, solver)
+            .unwrap();
+        for (state, wanted) in motion.trajectory.states.iter().zip(wanted) {
+            assert!(
+                (state[0] - wanted).abs() < 1e-9,
+                "{solver}: {state:?} {wanted}"
+            );
+        }
+        let changes = motion.trajectory.switches.len();
+        assert!(changes >= 4, "{solver}: {changes}");
+    }
+}
+
+#[test]
+fn a_relay_holds_a_state_of_first_order_and_a_weighted_rate() {
+    let text = r#"
+[model]
+name = "servo"
+[parameters]
+m = { value = 1, unit = "kg" }
+K = { value = 4, unit = "N" }
+s = { value = 0.5, unit = "s" }
+T = { value = 1, unit = "s" }
+U = { value = 3, unit = "V" }
+g = { value = 1, unit = "V/s" }
+[coordinates]
+x = { unit = "m", initial = 1 }
+[states]
+y = { unit = "V", initial = 0.5, rate = "(-y - U*sign(y - g*t*0.2))/T" }
+[kinetic]
+block = "1/2*m*dot(x)^2"
+[forces]
+relay = { on = "x", value = "-K*sign(x + s*dot(x))" }
+swing = { on = "x", value = "K*sin(x*0.3/l)" }
+"#
+    .replace(
+        "[coordinates]",
+        "l = { value = 1, unit = \"m\" }\n[coordinates]",
+    );
+    let model = of_text(&text);
+    for solver in GENERAL {
+        let motion = simulated(&model, &[], &grid(4.0, 40), solver);
+        let states = &motion.trajectory.states;
+        // On the surface x + s x' = 0, the motion decays with s; y follows 0.2 t.
+        for (t, pair) in motion
+            .trajectory
+            .times
+            .iter()
+            .zip(states.windows(2))
+            .skip(15)
+        {
+            let decayed = pair[0][0] * (-0.1_f64 / 0.5).exp();
+            assert!(
+                (pair[1][0] - decayed).abs() < 1e-8,
+                "{solver} {t}: {pair:?}"
+            );
+            assert!(
+                (pair[0][2] - 0.2 * t).abs() < 1e-9,
+                "{solver} {t}: {pair:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn friction_beside_a_constraint_and_on_a_shaft_with_modes() {
+    // A bead on a circle, by a constraint, rubbed along the horizontal: it rests where the weight
+    // along the circle is less than the friction along it.
+    let text = r#"
+[model]
+name = "bead"
+[parameters]
+m = { value = 1, unit = "kg" }
+r = { value = 1, unit = "m" }
+g = { value = 9.81, unit = "m/s^2" }
+F = { value = 2, unit = "N" }
+[coordinates]
+x = { unit = "m", initial = 0.8 }
+y = { unit = "m", initial = -0.6 }
+[kinetic]
+bead = "1/2*m*(dot(x)^2 + dot(y)^2)"
+[potential]
+weight = "m*g*y"
+[constraints]
+circle = { zero = "x^2 + y^2 - r^2" }
+[forces]
+rub = { on = "x", value = "-F*sign(dot(x))" }
+"#;
+    let model = of_text(text);
+    let machine = Machine {
+        inverse_mass: &|_| [[1.0]],
+        forces: &|_, [a], _| [-9.81 * f64::sin(a)],
+        rubbing: &|[a], _| {
+            vec![Rubbing {
+                along: [f64::cos(a)],
+                drift: 0.0,
+                level: 2.0,
+            }]
+        },
+    };
+    for solver in [Solver::Rk, Solver::Radau] {
+        let motion = simulated(&model, &[], &[0.0, 6.0], solver);
+        let [x, y] = [motion.trajectory.last[0], motion.trajectory.last[1]];
+        let angle = x.atan2(-y);
+        let start = 0.8_f64.atan2(0.6);
+        machine.comes_to(([start], [0.0]), 6.0, &[angle, 0.0], 1e-4);
+        assert!(motion.trajectory.last[2].abs() < 1e-10);
+    }
+    // A disc on an elastic shaft that a brake holds: the shaft swings on by its modes.
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../model-spec/models");
+    let text = std::fs::read_to_string(folder.join("shaft_and_disc.toml")).unwrap();
+    let brake = "brake = { on = \"theta_d\", value = \"-T_b*sign(dot(theta_d))\" }";
+    let text = text
+        .replace(
+            "[coordinates]",
+            "T_b = { value = 3, unit = \"N m\" }\n[coordinates]",
+        )
+        .replace("motor = {", &format!("{brake}\nmotor = {{"));
+    let model = of_text(&text);
+    let run = model.at_declared().unwrap();
+    let inputs = HeldInputs::new(vec![0.0, 0.05, 0.1], vec![4.0, -2.0, 1.0], 1).unwrap();
+    let samples = grid(0.2, 20);
+    let exact = run
+        .simulate(run.initial(), &samples, &inputs, Solver::Exact)
+        .unwrap();
+    assert!(exact.trajectory.switches.len() >= 3);
+    for solver in [Solver::Rk, Solver::Radau] {
+        let motion = run
+            .simulate(run.initial(), &samples, &inputs, solver)
+            .unwrap();
+        for (a, b) in motion
+            .trajectory
+            .states
+            .iter()
+            .zip(&exact.trajectory.states)
+        {
+            let apart = a.iter().zip(b).map(|(a, b)| (a - b).abs());
+            assert!(apart.fold(0.0, f64::max) < 1e-5, "{solver}: {a:?} {b:?}");
+        }
+    }
+}
+
+#[test]
+fn adams_stops_with_a_message_where_friction_holds() {
+    let model = of_text(SLED);
+    let run = model.at_declared().unwrap();
+    let none = run.no_inputs();
+    let error = run.simulate(run.initial(), &[0.0, 1.0], &none, Solver::Adams);
+    let said = error
+        .err()
+        .map(|error| error.to_string())
+        .unwrap_or_default();
+    assert!(
+        said.contains("there it sticks, as dry friction holds a body at rest"),
+        "{said}"
+    );
+}
