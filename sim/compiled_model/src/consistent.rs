@@ -89,6 +89,10 @@ impl Instance<'_> {
             };
             return Err(error);
         }
+        // Rounding may have let a correction succeed that rests on a constraint which follows from others.
+        if let Some(reason) = self.dependent(t, &found, inputs)? {
+            return Err(Error::Request(reason));
+        }
         self.above_zero(t, &found, inputs)?;
         let names = self.model().state_names();
         let units = self.model().state_units();
