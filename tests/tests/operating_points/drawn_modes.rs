@@ -52,7 +52,10 @@ fn curves_are_the_shapes_of_a_clamped_beam() {
     assert_eq!(drawn.len(), 5);
     // Deflections at half the length beside that at the free end: W. C. Young, R. G. Budynas,
     // Roark's Formulas, and by hand from cosh - cos - sigma (sinh - sin).
-    for (curve, wavenumber) in drawn.iter().zip([1.875104069_f64, 4.694091133, 7.854757438]) {
+    for (curve, wavenumber) in drawn
+        .iter()
+        .zip([1.875104069_f64, 4.694091133, 7.854757438])
+    {
         let shape = |s: f64| {
             let sigma =
                 (wavenumber.sinh() - wavenumber.sin()) / (wavenumber.cosh() + wavenumber.cos());
