@@ -149,7 +149,7 @@ fn springs_are_found_however_they_are_written() {
     let expected = [
         ["both_k_1", "p", "m"],
         ["both_k_2", "rim", "m"],
-        ["shaft", "theta - phi", "rad"],
+        ["shaft", "(theta - phi)", "rad"],
     ];
     assert_eq!(springs, expected.map(|words| words.map(str::to_owned)));
 }
