@@ -82,12 +82,11 @@ impl KineticRows {
         let rows = momenta.rates(graph, &|graph, _| graph.zero());
         let rows = cheaper(graph, rows);
         let upper = (0..size).flat_map(|row| scalars[row][row..].to_vec());
-        let mut entries = cheaper(graph, upper.collect()).into_iter();
-        for row in 0..size {
-            for (column, entry) in (row..size).zip(entries.by_ref()) {
-                scalars[row][column] = entry;
-                scalars[column][row] = entry;
-            }
+        let entries = cheaper(graph, upper.collect());
+        let places = (0..size).flat_map(|row| (row..size).map(move |column| (row, column)));
+        for ((row, column), entry) in places.zip(entries) {
+            scalars[row][column] = entry;
+            scalars[column][row] = entry;
         }
         Some(Self {
             momenta: RowNodes {
