@@ -86,7 +86,7 @@ fn check(panel: usize, mode: &Mode) -> Result<(), PlotError> {
 
 /// The notes, and what the second colour is where there is one.
 fn notes(of: &Modes) -> impl Iterator<Item = String> {
-    let later = of.modes.iter().any(|mode| has_later(mode));
+    let later = of.modes.iter().any(has_later);
     let said = "blue where the largest amplitude is; orange, dashed, a quarter of a period later";
     let said = later.then(|| said.to_owned());
     of.notes.iter().cloned().chain(said)
