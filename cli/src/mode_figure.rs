@@ -50,7 +50,7 @@ pub fn figure(run: &Instance<'_>, regime: &[Side], found: &[NaturalMode]) -> Res
         title: format!("Natural modes of {title}{count}"),
         notes: regime
             .chunks(SIDES)
-            .map(|sides| in_regime(sides))
+            .map(in_regime)
             .take(MOST_LINES)
             .collect(),
         modes: shown.map(of_mode).collect(),

@@ -248,7 +248,7 @@ fn stacks_of_any_balls_fall_without_gaining_energy_or_going_through_each_other()
             let energy = observables[place];
             assert!(
                 energy <= before * (1.0 + 1e-9) + 1e-12,
-                "{case} {t}: {energy} {before}"
+                "{case} {t}: {energy} {before}\n{text}"
             );
             before = energy;
             let heights = [0.0, state[0], state[1], state[2], state[3]];

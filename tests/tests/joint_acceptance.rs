@@ -10,7 +10,7 @@ const STEP_OF_ENCODER: f64 = 1e-3;
 
 const DESCRIPTION: &str = r#"
 [records]
-train = ["1.8.csv", "2.6.csv"]
+train = ["1.4.csv", "2.6.csv"]
 test = ["4.0.csv"]
 
 [time]
@@ -72,7 +72,7 @@ fn friction_and_a_ripple_that_are_accepted_only_together_are_both_named() {
     let folder = tempfile::tempdir().expect("a folder");
     let place = |name: &str| folder.path().join(name);
     std::fs::write(place("dataset.toml"), DESCRIPTION).expect("a file");
-    for from in [1.8, 2.6, 4.0] {
+    for from in [1.4, 2.6, 4.0] {
         std::fs::write(place(&format!("{from:.1}.csv")), swing(from)).expect("a file");
     }
     let paths = [path("pendulum"), place("dataset.toml"), place("found")];

@@ -166,26 +166,28 @@ fn stopped(specification: &str, until: &str, more: &[&str]) -> Stopped {
 
 #[test]
 fn friction_at_rest_leaves_the_rows_so_far() {
-    for solver in ["rk", "adams"] {
-        let found = stopped(BELT, "2", &["--solver", solver, "--sample", "0.001"]);
-        // The belt's friction brings the mass to its speed within 0.02 s.
-        assert!(
-            (0.015..0.025).contains(&found.last_time()),
-            "{}",
-            found.last_time()
-        );
-        assert!(found.rows.len() > 15);
-        found.says(&[
-            "error: at t = 0.02",
-            "`dot(x) - v`",
-            "sticks",
-            "tanh(v/v_0)",
-        ]);
-    }
+    let found = stopped(BELT, "2", &["--solver", "adams", "--sample", "0.001"]);
+    // The belt's friction brings the mass to its speed within 0.02 s.
+    assert!(
+        (0.015..0.025).contains(&found.last_time()),
+        "{}",
+        found.last_time()
+    );
+    assert!(found.rows.len() > 15);
+    found.says(&[
+        "error: at t = 0.02",
+        "`dot(x) - v`",
+        "sticks",
+        "tanh(v/v_0)",
+    ]);
     let folder = tempfile::tempdir().expect("a folder");
     let (spec, out) = (written(folder.path(), BELT), folder.path().join("a.csv"));
     let shown = out.display().to_string();
-    accepted(&["simulate", &spec, "--until", "2", "--out", &shown]);
+    for solver in ["auto", "exact", "rk", "radau"] {
+        accepted(&[
+            "simulate", &spec, "--until", "2", "--solver", solver, "--out", &shown,
+        ]);
+    }
 }
 
 #[test]
@@ -197,7 +199,7 @@ fn rows_so_far_in_parquet_and_the_reason_in_json() {
     );
     let shown = out.display().to_string();
     let output = run(&[
-        "simulate", &spec, "--until", "2", "--sample", "0.001", "--solver", "rk", "--json",
+        "simulate", &spec, "--until", "2", "--sample", "0.001", "--solver", "adams", "--json",
         "--out", &shown,
     ]);
     assert_eq!(output.status.code(), Some(1));
@@ -223,16 +225,42 @@ fn rows_so_far_in_parquet_and_the_reason_in_json() {
 
 #[test]
 fn a_place_where_forces_chatter_is_no_friction() {
-    // Turns that get shorter and shorter, and a relay that looks ahead.
-    for (law, formula) in [
-        ("-F*sign(x) - D*sign(dot(x))", "`x` is zero"),
-        ("-F*sign(x + tau*dot(x))", "`x + dot(x)*tau` is zero"),
-    ] {
-        let found = stopped(&between_forces(law), "60", &["--solver", "rk"]);
-        found.says(&["at t = ", formula, "chatters"]);
-        found.is_silent_on(&["sticks", "friction", "tanh"]);
-        assert!(found.rows.len() > 10 && found.last_time() > 5.0);
+    // Turns that get shorter and shorter.
+    let law = between_forces("-F*sign(x) - D*sign(dot(x))");
+    let found = stopped(&law, "60", &["--solver", "rk"]);
+    found.says(&["at t = ", "`x` is zero", "chatters"]);
+    found.is_silent_on(&["sticks", "friction", "tanh"]);
+    assert!(found.rows.len() > 10 && found.last_time() > 5.0);
+}
+
+/// A relay that looks ahead leads onto the place where it switches and along it, as dry friction does.
+#[test]
+fn a_relay_that_looks_ahead_slides() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let law = between_forces("-F*sign(x + tau*dot(x))");
+    let spec = written(folder.path(), &law);
+    let of = |solver| {
+        let out = folder.path().join(format!("{solver}.csv"));
+        let shown = out.display().to_string();
+        accepted(&[
+            "simulate", &spec, "--until", "20", "--solver", solver, "--out", &shown,
+        ]);
+        let table = std::fs::read_to_string(&out).expect("a table");
+        let of_row = |line: &str| -> Vec<f64> {
+            let numbers = line
+                .split(',')
+                .map(|number| number.parse().expect("a number"));
+            numbers.collect()
+        };
+        table.lines().skip(1).map(of_row).collect::<Vec<_>>()
+    };
+    let (exact, general) = (of("exact"), of("rk"));
+    assert_eq!(exact.len(), general.len());
+    for (one, other) in exact.iter().zip(&general) {
+        assert!((one[1] - other[1]).abs() < 1e-6, "{one:?} {other:?}");
     }
+    let last = &general[general.len() - 1];
+    assert!((last[1] + 0.1 * last[2]).abs() < 1e-9, "{last:?}");
 }
 
 /// Turns that get shorter and shorter add up to 6.3094 s: the rows until there are those of the general

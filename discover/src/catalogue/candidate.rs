@@ -8,7 +8,7 @@ use eomgen_model_spec::model::{Model, Parameter, ParameterValue};
 use eomgen_model_spec::source::Source;
 
 use crate::catalogue::effect::{Change, Effect, SiteKind};
-use crate::catalogue::sites::Site;
+use crate::catalogue::site::Site;
 use crate::catalogue::template::{edits, free_name, instantiated, terms};
 use crate::catalogue::usual_motion::UsualMotion;
 use crate::error::DiscoverError;

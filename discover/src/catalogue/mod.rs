@@ -1,5 +1,5 @@
 //! What a model may lack: the effects that come with the program and a user's ([`effect`]), the
-//! places of a model where they may sit ([`sites`], `springs`), how these move ([`usual_motion`]), and both together as [`candidate`]s (the edits
+//! places of a model where they may sit ([`site`], [`sites`], `springs`), how these move ([`usual_motion`]), and both together as [`candidate`]s (the edits
 //! of an effect at a place: [`template`]; its parameters as unknowns: [`candidate_unknown`]). What
 //! effects do is decided by nobody but the specification. How a file of effects is read is in
 //! `file` with `change`, `placeholders` and `fields`.
@@ -11,6 +11,7 @@ pub mod effect;
 mod fields;
 mod file;
 mod placeholders;
+pub mod site;
 pub mod sites;
 mod springs;
 pub mod template;

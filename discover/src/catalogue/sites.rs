@@ -10,20 +10,8 @@ use eomgen_model_spec::ids::{CoordinateId, FieldId};
 use eomgen_model_spec::model::{Expr, ExprKind, Function, Model, Term};
 
 use crate::catalogue::effect::SiteKind;
+use crate::catalogue::site::{Site, text};
 use crate::catalogue::springs::springs;
-
-/// A place for effects.
-#[derive(Clone, Debug)]
-pub struct Site {
-    /// What kind of place it is.
-    pub kind: SiteKind,
-    /// Its name in results.
-    pub name: String,
-    /// What fills the placeholders.
-    pub arguments: BTreeMap<&'static str, String>,
-    /// The terms that make up a mesh or hold a spring, or those of the kinetic energy that move with a body.
-    pub terms: Vec<(Section, Vec<String>)>,
-}
 
 /// All places of a model.
 pub fn sites(model: &Model) -> Vec<Site> {
@@ -47,10 +35,8 @@ struct Parts {
 fn parts(model: &Model, expr: &Expr, into: &mut Parts) {
     expr.visit(&mut |part| match part.kind {
         ExprKind::Coordinate(id) => into.coordinates.push(id),
-        ExprKind::Definition(id) => {
-            if into.definitions.insert(id.index()) {
-                parts(model, &model.definitions[id].value, into);
-            }
+        ExprKind::Definition(id) if into.definitions.insert(id.index()) => {
+            parts(model, &model.definitions[id].value, into);
         }
         ExprKind::Dot(_)
         | ExprKind::Field(_)
@@ -350,15 +336,4 @@ fn factor_of_square<'m>(expr: &'m Expr, wanted: &dyn Fn(&Expr) -> bool) -> Optio
         ExprKind::Integral { integrand, .. } => factor_of_square(integrand, wanted),
         _ => None,
     }
-}
-
-/// An expression as the specification writes it.
-pub(super) fn text(model: &Model, expr: &Expr) -> String {
-    let span = expr.span;
-    let written = model
-        .source
-        .text
-        .get(span.start..span.end)
-        .unwrap_or_default();
-    written.trim().to_owned()
 }

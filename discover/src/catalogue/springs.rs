@@ -7,7 +7,7 @@ use eomgen_model_spec::edit::Section;
 use eomgen_model_spec::model::{Expr, ExprKind, Model, Term};
 
 use crate::catalogue::effect::SiteKind;
-use crate::catalogue::sites::{Site, text};
+use crate::catalogue::site::{Site, text};
 
 /// All springs of a model.
 pub(super) fn springs(model: &Model) -> Vec<Site> {

@@ -6,7 +6,7 @@ use eomgen_model_spec::edit::{Edit, NewCoordinate, NewForce, NewTerm, Section, S
 use eomgen_model_spec::model::{Expr, Model};
 
 use crate::catalogue::effect::{Change, SiteKind, Within};
-use crate::catalogue::sites::Site;
+use crate::catalogue::site::Site;
 
 /// The edits that a change of the catalogue comes to with these arguments;
 /// none if an argument is missing, or what is replaced is not there.

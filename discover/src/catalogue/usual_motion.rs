@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use crate::catalogue::effect::Scale;
-use crate::catalogue::sites::Site;
+use crate::catalogue::site::Site;
 use crate::interval::Interval;
 
 /// How places of a model move, as far as it is known.

@@ -6,7 +6,8 @@ use std::collections::BTreeMap;
 
 use crate::catalogue::candidate::{Candidate, candidates};
 use crate::catalogue::effect::{Effect, SiteKind};
-use crate::catalogue::sites::{Site, sites};
+use crate::catalogue::site::Site;
+use crate::catalogue::sites::sites;
 use crate::catalogue::usual_motion::UsualMotion;
 use crate::fit::preliminary::{PreliminaryFit, WarmStart};
 use crate::ids::{CandidateId, FittedId, ResponseId};

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::catalogue::effect::SiteKind;
-use crate::catalogue::sites::Site;
+use crate::catalogue::site::Site;
 use crate::catalogue::usual_motion::UsualMotion;
 use crate::fit::fitted::Fit;
 use crate::fit::travels::travels;

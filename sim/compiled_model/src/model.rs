@@ -60,6 +60,9 @@ impl Orders<'_> {
     }
 }
 
+/// The program whose rates take sides of surfaces as inputs, and its machine code.
+type SidedProgram = (Program, Option<Arc<dyn MachineCode>>);
+
 /// A derived model that can be run at any values of its independent parameters. Machine code
 /// and the piecewise-linear form are made when they are first asked for, once; the model may
 /// be shared between threads.
@@ -71,7 +74,7 @@ pub struct CompiledModel {
     code: OnceLock<Option<Arc<dyn MachineCode>>>,
     piecewise_linear: OnceLock<Result<PiecewiseLinear, ExactError>>,
     differentiated: OnceLock<Result<Differentiated, Diagnostics>>,
-    sided: OnceLock<Result<Option<(Program, Option<Arc<dyn MachineCode>>)>, Diagnostics>>,
+    sided: OnceLock<Result<Option<SidedProgram>, Diagnostics>>,
 }
 
 impl CompiledModel {

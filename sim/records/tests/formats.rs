@@ -88,6 +88,9 @@ fn holds(dataset: &Dataset) {
     }
 }
 
+/// A line of a file, from its time and its angle.
+type Line = Box<dyn Fn(f64, f64) -> String>;
+
 #[test]
 fn every_format_is_read_to_the_numbers_that_were_written() {
     let comma = |number: f64| format!("{number:.6}").replace('.', ",");
@@ -95,7 +98,7 @@ fn every_format_is_read_to_the_numbers_that_were_written() {
         .replace("column = \"t\"", "column = 1")
         .replace("column = \"angle\"", "column = 3");
     let with = |format: &str| format!("{DESCRIPTION}\n[format]\n{format}\n");
-    let cases: [(String, &str, Box<dyn Fn(f64, f64) -> String>); 9] = [
+    let cases: [(String, &str, Line); 9] = [
         (DESCRIPTION.to_owned(), "t,angle\n", Box::new(plain)),
         (
             with("separator = \";\"\ndecimal = \",\""),
@@ -325,7 +328,7 @@ fn a_dataset_file_is_proposed_that_reads_what_was_written() {
     let comma = |number: f64| format!("{number:.6}").replace('.', ",");
     // Noise that repeats, of about one standard deviation.
     let noise = |t: f64| 3.4 * ((t * 7919.123).sin() * 43_758.545).fract().abs() - 1.7;
-    let cases: [(&str, Box<dyn Fn(f64, f64) -> String>, &[&str]); 4] = [
+    let cases: [(&str, Line, &[&str]); 4] = [
         (
             "t,theta,force,comment\n",
             Box::new(|t, a| format!("{t:.2},{:.9},0.5,fine\n", 1e-3 * a)),

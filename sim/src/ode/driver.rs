@@ -118,7 +118,7 @@ struct Driver<'a, S: System + ?Sized, M: Stepper> {
     settings: &'a Settings,
     samples: &'a [f64],
     end: f64,
-    recent: VecDeque<f64>,
+    recent: VecDeque<(f64, usize)>,
     pace: Pace,
     trajectory: &'a mut Trajectory,
 }
@@ -363,15 +363,40 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
 
     fn check_switch_rate(&mut self, t: f64, guard: usize) -> Result<(), SolveError> {
         let rate = self.settings.max_switch_rate;
-        self.recent.push_back(t);
+        self.recent.push_back((t, guard));
         if self.recent.len() < SWITCHES_AVERAGED {
             return Ok(());
         }
-        let first = self.recent.pop_front().unwrap_or(t);
+        let first = self.recent.pop_front().map_or(t, |(first, _)| first);
         if (t - first) * rate < SWITCHES_AVERAGED as f64 {
+            let guard = self.rarest();
             return Err(SolveError::TooManySwitches { t, guard, rate });
         }
         Ok(())
+    }
+
+    /// Of the switching functions that take turns in the last switches, the one that switched least: a
+    /// surface that catches the motion and lets it go between those of another is not what chatters.
+    fn rarest(&self) -> usize {
+        let mut counts = vec![
+            0;
+            self.trajectory
+                .switches
+                .iter()
+                .map(|switch| switch.guard + 1)
+                .max()
+                .unwrap_or(1)
+        ];
+        for (_, guard) in &self.recent {
+            counts[*guard] += 1;
+        }
+        let turns = counts
+            .iter()
+            .enumerate()
+            .filter(|(_, count)| 4 * **count >= self.recent.len());
+        turns
+            .min_by_key(|(_, count)| **count)
+            .map_or(0, |(guard, _)| guard)
     }
 
     fn check_steps(&self) -> Result<(), SolveError> {

@@ -109,25 +109,15 @@ fn figures_of_machines_of_every_kind_are_whole_documents() {
     let folder = tempfile::tempdir().expect("a folder");
     let svg = folder.path().join("a.svg");
     let shown = svg.display().to_string();
-    let arm = shipped("planetary_arm.toml");
+    let arm = shipped("planetary_arm");
     for arguments in [
         vec!["modes", &arm, "--order", "0"],
         vec!["modes", &arm, "--order", "1"],
         vec!["modes", &arm, "--order", "128"],
-        vec!["modes", &shipped("loudspeaker.toml")],
-        vec![
-            "modes",
-            &shipped("chaplygin_sleigh.toml"),
-            "--at",
-            "x_dot=1",
-        ],
-        vec!["modes", &shipped("puma_560.toml")],
-        vec![
-            "modes",
-            &shipped("two_link_arm.toml"),
-            "--at",
-            "theta_2=0.5",
-        ],
+        vec!["modes", &shipped("loudspeaker")],
+        vec!["modes", &shipped("chaplygin_sleigh"), "--at", "x_dot=1"],
+        vec!["modes", &shipped("puma_560")],
+        vec!["modes", &shipped("two_link_arm"), "--at", "theta_2=0.5"],
     ] {
         accepted(&[&arguments[..], &["--plot", &shown]].concat());
         let svg = std::fs::read_to_string(&svg).expect("the figure");

@@ -224,7 +224,10 @@ fn wrong_requests_are_refused() {
         ),
         (&["--samples", "-3"], "--samples"),
         (&["--samples", "5", "--vary", "F=1:2:3"], "--vary"),
-        (&["--vary", "F=1:2:3", "--seed", "4"], "--samples"),
+        (
+            &["--vary", "F=1:2:3", "--seed", "4"],
+            "cannot be used with '--seed",
+        ),
         (&[], "--vary"),
     ] {
         let message = refuse(&arguments(&place, "never", more));

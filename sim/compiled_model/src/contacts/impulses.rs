@@ -14,6 +14,12 @@ const UNSOLVED: f64 = 1e-6;
 /// A flight no higher than so many times the rounding of its distance is rest.
 const LOWEST_FLIGHT: f64 = 1000.0;
 
+/// An energy that impulses add is rounding where it is this small beside what they exchange.
+const NO_GAIN: f64 = 1e-12;
+
+/// Halvings in the search for a restitution that adds no energy.
+const RESTITUTIONS: usize = 20;
+
 /// Which flights after an impact are none.
 struct Flight {
     /// Those that are this short, s.
@@ -101,18 +107,68 @@ impl Contacts {
     /// Whether no contact that touches needs an impulse.
     fn nothing_hits(&self, touching: &[usize], ago: f64) -> bool {
         let mut all = touching.iter();
-        all.all(|place| self.to_be_stopped(*place, ago) >= 0.0)
+        all.all(|place| self.to_be_stopped(*place, ago, 1.0) >= 0.0)
     }
 
     /// The rate of a contact that hit so long `ago` (s), for which impulses must make up.
-    fn to_be_stopped(&self, place: usize, ago: f64) -> f64 {
+    fn to_be_stopped(&self, place: usize, ago: f64, most: f64) -> f64 {
+        let rate = self.hit_rate(place, ago);
+        match self.closed.contains(&place) {
+            true => rate,
+            // What already leaves must not be pulled back.
+            false => rate + self.at[place].restitution.min(most) * rate.min(0.0),
+        }
+    }
+
+    /// The rate with which a contact hit so long `ago`, s.
+    fn hit_rate(&self, place: usize, ago: f64) -> f64 {
         let impact = &self.at[place];
-        let rate = impact.rate - ago * impact.acceleration;
         match self.closed.contains(&place) {
             true => impact.rate,
-            // What already leaves must not be pulled back.
-            false => rate + impact.restitution * rate.min(0.0),
+            false => impact.rate - ago * impact.acceleration,
         }
+    }
+
+    /// The impulses of what touches and hit so long `ago` (s), nothing where none keep the bodies apart.
+    /// Newton's law can add energy where contacts of different restitution touch at once, or one that leaves
+    /// is hit again; then none takes more restitution than the most that does not. With none it never
+    /// does: twice the energy is -P W P then.
+    fn impulses(&self, touching: &[usize], ago: f64) -> Option<Vec<f64>> {
+        let delassus = self.delassus(touching);
+        let with = |most: f64| {
+            let stopped = touching.iter();
+            let stopped: Vec<f64> = stopped
+                .map(|place| self.to_be_stopped(*place, ago, most))
+                .collect();
+            let impulses = complementary(&delassus, &stopped);
+            solves(&delassus, &stopped, &impulses).then_some(impulses)
+        };
+        // Of every impulse the rates before and after, which it moves against.
+        let adds_energy = |impulses: &[f64]| {
+            let rows = touching.iter().zip(&delassus).zip(impulses);
+            let gained = rows.map(|((place, row), impulse)| {
+                let pushed: f64 = row.iter().zip(impulses).map(|(w, p)| w * p).sum();
+                impulse * (2.0 * self.hit_rate(*place, ago) + pushed)
+            });
+            let (sum, size) = gained.fold((0.0, 0.0), |(sum, size), gain| {
+                (sum + gain, size + gain.abs())
+            });
+            sum > NO_GAIN * size
+        };
+        let impulses = with(1.0)?;
+        if !adds_energy(&impulses) {
+            return Some(impulses);
+        }
+        let (mut most, mut found) = (0.0, with(0.0)?);
+        let mut part = 0.5;
+        for _ in 0..RESTITUTIONS {
+            let trial = with(most + part)?;
+            if !adds_energy(&trial) {
+                (most, found) = (most + part, trial);
+            }
+            part *= 0.5;
+        }
+        Some(found)
     }
 
     /// Has the rates of a state jump by the impulses of what touches and hit so long `ago` (s), and of what
@@ -129,13 +185,7 @@ impl Contacts {
         let degrees = own.program().degrees_of_freedom();
         let mut still = 0.0_f64;
         loop {
-            let stopped = touching.iter().map(|place| self.to_be_stopped(*place, ago));
-            let stopped: Vec<f64> = stopped.collect();
-            let delassus = self.delassus(&touching);
-            let impulses = complementary(&delassus, &stopped);
-            if !solves(&delassus, &stopped, &impulses) {
-                return None;
-            }
+            let impulses = self.impulses(&touching, ago)?;
             let (coordinates, rates) = state[..2 * degrees].split_at_mut(degrees);
             let most = largest(rates) + self.largest_push(&touching, &impulses);
             still = still.max(OF_A_DISTANCE * most);

@@ -6,7 +6,7 @@ use eomgen_model_spec::span::Span;
 use eomgen_model_spec::table::{Entry, Name, Number, Record, Written};
 
 use super::keys;
-use super::required;
+use super::required::required;
 
 /// The least and the most samples of which one is kept.
 const EVERY: std::ops::RangeInclusive<i64> = 1..=1_000_000;

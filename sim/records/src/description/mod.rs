@@ -6,6 +6,7 @@ pub mod format;
 pub mod keys;
 pub mod motion;
 pub mod records;
+mod required;
 
 use std::path::Path;
 
@@ -19,6 +20,7 @@ use self::columns::{ChannelColumn, ColumnKey, InputColumn, Time};
 use self::format::Format;
 use self::motion::{InitialState, Windows};
 use self::records::Records;
+use self::required::required;
 
 /// The largest dataset file accepted, in bytes.
 const LARGEST: u64 = 1 << 20;
@@ -166,14 +168,4 @@ fn each<T>(
         .iter()
         .filter_map(|entry| of(entry, found))
         .collect()
-}
-
-/// The entry of a key that cannot be left out.
-fn required<'r, 'd>(
-    record: &'r Record<'d>,
-    key: &str,
-    example: &str,
-    found: &mut Diagnostics,
-) -> Option<&'r Entry<'d>> {
-    record.require(key, &format!("write {key} = {example}"), found)
 }

@@ -4,7 +4,7 @@ use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::table::{Entry, Name, Number};
 
 use super::keys;
-use super::required;
+use super::required::required;
 
 /// `[initial]`
 #[derive(Debug)]

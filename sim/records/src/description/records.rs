@@ -5,7 +5,7 @@ use eomgen_model_spec::span::Span;
 use eomgen_model_spec::table::{Entry, Number, Written};
 
 use super::keys;
-use super::required;
+use super::required::required;
 
 /// `[records]`
 #[derive(Debug)]
