@@ -15,32 +15,12 @@ use eomgen_model_spec::model::Function;
 
 use crate::mechanics::equations::Equations;
 use crate::mechanics::forces::may_rest;
-use crate::mechanics::outputs::guard_rate;
+use crate::mechanics::outputs::{SlidingSurface, guard_rate};
 use crate::mechanics::rows::RowNodes;
 use crate::mechanics::sides::Sides;
 use crate::symbolic::differentiate::by_scalar;
 use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation, Shape};
 use crate::symbolic::substitute::substitute;
-
-/// A surface with a side, of nodes `N` in the equations or values in the program, and rows `R` of
-/// them.
-#[derive(Clone, Debug)]
-pub struct SlidingSurface<N, R> {
-    /// The place of its function g among the numbers of all guards.
-    pub guard: usize,
-    /// Whether what switches there is midway between both sides where g is exactly 0, as sign(0) is.
-    pub is_odd: bool,
-    /// Whether the rates are of first degree in the sides.
-    pub is_linear: bool,
-    /// g', with the sides given.
-    pub rate: N,
-    /// The derivatives of g' by the sides of all surfaces.
-    pub by_sides: Vec<N>,
-    /// The derivatives of the accelerations by the surface's own side.
-    pub column: R,
-    /// Those of the rates of the states of first order.
-    pub first_order: Vec<N>,
-}
 
 /// Whether there are surfaces that may hold the motion, as far as can be told without derivatives.
 pub fn may_hold(equations: &Equations) -> bool {

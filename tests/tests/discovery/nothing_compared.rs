@@ -254,7 +254,7 @@ fn keys_and_words_that_are_not_known_are_refused_with_the_nearest() {
         (
             "noise = 1e-6",
             "noise = 1e-6\ngain = 0.05",
-            ["dataset.toml:19:1", "write gain = { sd = 0.02 }"],
+            ["dataset.toml:19:8", "write gain = { sd = 0.02 }"],
         ),
         (
             "noise = 1e-6",

@@ -20,4 +20,5 @@ pub use output::{Output, UnknownOutput};
 pub use regimes::{Decided, SURFACES_OF_A_REGIME, Switch};
 pub use types::{
     BlockPlace, GradientDerivative, GradientRow, Jacobian, JacobianBlock, Outputs, Products,
+    SlidingSurface,
 };

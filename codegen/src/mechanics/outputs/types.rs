@@ -5,7 +5,6 @@ use std::ops::Range;
 
 use super::output::Output;
 use super::regimes::Switch;
-use crate::mechanics::sliding::SlidingSurface;
 use crate::symbolic::graph::Variable;
 
 /// The outputs on request, of nodes `N` and rows `R` of them.
@@ -45,6 +44,26 @@ impl<N, R> Default for Outputs<N, R> {
             sliding: Vec::new(),
         }
     }
+}
+
+/// A surface with a side, of nodes `N` in the equations or values in the program, and rows `R` of
+/// them.
+#[derive(Clone, Debug)]
+pub struct SlidingSurface<N, R> {
+    /// The place of its function g among the numbers of all guards.
+    pub guard: usize,
+    /// Whether what switches there is midway between both sides where g is exactly 0, as sign(0) is.
+    pub is_odd: bool,
+    /// Whether the rates are of first degree in the sides.
+    pub is_linear: bool,
+    /// g', with the sides given.
+    pub rate: N,
+    /// The derivatives of g' by the sides of all surfaces.
+    pub by_sides: Vec<N>,
+    /// The derivatives of the accelerations by the surface's own side.
+    pub column: R,
+    /// Those of the rates of the states of first order.
+    pub first_order: Vec<N>,
 }
 
 /// Products of the rates' Jacobian by state and inputs.

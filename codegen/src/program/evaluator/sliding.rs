@@ -3,7 +3,7 @@
 use super::{Evaluator, Point, Stage};
 
 /// A surface at a point, in SI; the quantities are those of
-/// [`SlidingSurface`](crate::mechanics::sliding::SlidingSurface).
+/// [`SlidingSurface`](crate::mechanics::outputs::SlidingSurface).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SlidingAt {
     /// The rate of its function.

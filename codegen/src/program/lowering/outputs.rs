@@ -1,12 +1,12 @@
 //! The values of the outputs on request, node by node as it is structured.
 
 use super::values::Lowering;
+use crate::mechanics::outputs::SlidingSurface;
 use crate::mechanics::outputs::Switch;
 use crate::mechanics::outputs::{
     GradientDerivative, GradientRow, Jacobian, JacobianBlock, Outputs, Products,
 };
 use crate::mechanics::rows::RowNodes;
-use crate::mechanics::sliding::SlidingSurface;
 use crate::program::{RowValues, ValueId};
 use crate::symbolic::graph::NodeId;
 
