@@ -4,6 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::friction::Strange;
+use crate::machines::two_bodies::Form;
 use crate::machines::{Machine, Setup};
 
 /// An effect.
@@ -31,6 +32,13 @@ pub enum Effect {
     SensorGain,
     SensorBias,
     ParameterShift,
+    Backlash,
+    /// On one side, by the sign.
+    EndStop,
+    /// The same stop on both sides.
+    EndStops,
+    InputGain,
+    InputBias,
     /// Outside the catalogue: friction that grows with the displacement.
     WornFriction,
     /// Outside the catalogue: a force that comes from elsewhere.
@@ -46,7 +54,8 @@ pub struct Hidden {
     pub effect: Effect,
     /// Where: an axis, mesh, channel or parameter, or `arm`.
     pub on: String,
-    /// Per turn, for what repeats with an angle; the frequency in Hz of a hum.
+    /// Per turn, for what repeats with an angle; the frequency in Hz of a hum; the deflection at which
+    /// a stop is met.
     pub order: f64,
     /// -1 or 1, where both make sense.
     pub sign: f64,
@@ -106,6 +115,10 @@ fn stribeck_speed(machine: &Machine) -> f64 {
         Machine::Arm(_) => 1.0,
         Machine::Stage(_) => 0.02,
         Machine::Pendulum(_) => 0.5,
+        Machine::TwoBodies(bodies) => match bodies.form {
+            Form::TwoMass => 0.3,
+            Form::Crane | Form::QuarterCar => 0.02,
+        },
     }
 }
 
@@ -128,8 +141,31 @@ impl Hidden {
                 machine.mesh(&self.on).expect("a mesh").variation = repeating;
             }
             Effect::AsymmetricBacklash => machine.mesh(&self.on).expect("a mesh").middle = amount,
+            Effect::InputGain | Effect::InputBias => {
+                let Machine::TwoBodies(bodies) = machine else {
+                    panic!("only two bodies have a drive that is not as recorded");
+                };
+                match self.effect {
+                    Effect::InputGain => bodies.actuator.0 = amount,
+                    _ => bodies.actuator.1 = amount,
+                }
+            }
+            _ if machine.spring(&self.on).is_some() => self.hide_in_spring(machine),
             _ if self.on == "arm" => self.hide_in_arm(machine, amount),
             _ => self.hide_on_axis(machine, amount, repeating),
+        }
+    }
+
+    fn hide_in_spring(&self, machine: &mut Machine) {
+        let spring = machine.spring(&self.on).expect("a spring");
+        let stop = (self.amount, self.order);
+        match self.effect {
+            Effect::Backlash => spring.play = self.amount,
+            Effect::StiffnessNonlinearity => spring.hardening = self.amount,
+            Effect::EndStop if self.sign > 0.0 => spring.upper = stop,
+            Effect::EndStop => spring.lower = stop,
+            Effect::EndStops => (spring.upper, spring.lower) = (stop, stop),
+            other => panic!("{other:?} does not sit in a spring"),
         }
     }
 
@@ -178,8 +214,11 @@ impl Hidden {
             | Effect::TransmissionError
             | Effect::StiffnessVariation => vec![self.amount * cosine, self.amount * sine],
             Effect::JointCompliance => vec![1.0 / amount],
-            Effect::SensorGain => vec![1.0 + amount],
+            Effect::SensorGain | Effect::InputGain => vec![1.0 + amount],
+            Effect::EndStop | Effect::EndStops => vec![self.amount, self.order],
             Effect::ParameterShift => Vec::new(),
+            // By another law than the catalogue's.
+            Effect::StiffnessNonlinearity if self.on != "arm" => Vec::new(),
             _ => vec![amount],
         }
     }
@@ -210,6 +249,9 @@ impl Hidden {
 
     /// The name of the effect as results have it.
     pub fn name(&self) -> String {
+        if self.effect == Effect::EndStops {
+            return "end_stop".to_owned();
+        }
         serde_json::to_value(self.effect)
             .ok()
             .and_then(|value| value.as_str().map(str::to_owned))

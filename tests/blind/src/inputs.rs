@@ -1,6 +1,7 @@
 //! What drives the machines: slow sines that reverse the motion, a sweep, and steps; and where
 //! the motions begin. Inputs are held from sample to sample.
 
+use crate::machines::two_bodies::Form;
 use crate::machines::{Kind, Machine, Setup};
 use crate::random::Draw;
 
@@ -58,6 +59,17 @@ pub fn drive(kind: Kind, setup: &Setup, manner: Manner, place: usize, draw: &mut
             let all = slow.iter().zip(fast);
             all.map(|(slow, fast)| lasting + slow + fast).collect()
         }
+        (Kind::TwoBodies { form, .. }, _) => {
+            let Machine::TwoBodies(bodies) = &machine else {
+                unreachable!("two bodies are two bodies");
+            };
+            made(
+                setup,
+                samples,
+                &of_two_bodies(form, bodies.usual_input()),
+                draw,
+            )
+        }
         (Kind::Arm, Manner::Gentle) => sines(setup, samples, ((2.5, 6.0), (0.4, 0.9)), draw),
         (Kind::Stage, _) => made(
             setup,
@@ -88,6 +100,20 @@ pub fn drive(kind: Kind, setup: &Setup, manner: Manner, place: usize, draw: &mut
             .map(|value| rounded(part * value))
             .collect(),
         start,
+    }
+}
+
+/// Sizes in the input that moves two bodies as they are meant to be moved.
+fn of_two_bodies(form: Form, usual: f64) -> Ingredients {
+    let (slow, sweep, lasting) = match form {
+        Form::TwoMass => ((0.5, 2.0), (3.0, 20.0), (0.05, 0.2)),
+        Form::Crane => ((0.3, 1.0), (1.0, 6.0), (0.2, 0.5)),
+        Form::QuarterCar => ((0.5, 3.0), (3.0, 20.0), (0.05, 0.2)),
+    };
+    Ingredients {
+        slow: (slow, (0.6 * usual, 1.6 * usual)),
+        sweep: (sweep.0, sweep.1, usual),
+        steps: (0.6 * usual, lasting),
     }
 }
 

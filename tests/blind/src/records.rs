@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::hidden::{Hidden, Sensors};
 use crate::inputs::{Drive, drive};
 use crate::integrate::Stepper;
-use crate::machines::{Machine, Setup};
+use crate::machines::{Machine, Setup, Specification};
 use crate::plan::{Case, Group, Nuisances};
 use crate::random::Draw;
 use crate::size;
@@ -152,11 +152,11 @@ fn write_case(
     drives: &[Drive],
     columns: &[Vec<Vec<f64>>],
 ) -> std::io::Result<()> {
-    let specification = specifications.join(setup.specification);
-    write_whole(
-        &folder.join("spec.toml"),
-        &std::fs::read_to_string(specification)?,
-    )?;
+    let specification = match &setup.specification {
+        Specification::Shipped(file) => std::fs::read_to_string(specifications.join(file))?,
+        Specification::Text(text) => text.clone(),
+    };
+    write_whole(&folder.join("spec.toml"), &specification)?;
     let names: Vec<String> = (0..drives.len())
         .map(|place| match place.checked_sub(setup.records.0) {
             None => format!("train{place}.csv"),

@@ -7,6 +7,7 @@ use eomgen_blind::inputs::{Drive, Manner, drive};
 use eomgen_blind::integrate::{Motion, Stepper};
 use eomgen_blind::machines::arm::Arm;
 use eomgen_blind::machines::axes::Pendulum;
+use eomgen_blind::machines::two_bodies::{Form, TwoBodies};
 use eomgen_blind::machines::{Kind, Machine, Setup};
 use eomgen_blind::random::Draw;
 use eomgen_blind::size::{floors_of_missing_modes, window};
@@ -105,6 +106,27 @@ fn the_pendulum_keeps_its_energy_and_its_small_period() {
     );
 }
 
+#[test]
+fn two_bodies_without_losses_keep_their_energy_and_losses_take_from_it() {
+    for form in [Form::TwoMass, Form::Crane, Form::QuarterCar] {
+        let declared = TwoBodies::drawn(form, 8);
+        let mut bodies = declared.clone();
+        bodies.viscous = [0.0; 2];
+        bodies.spring.damping = 0.0;
+        let start = [0.02, 0.3, -0.5, 1.0, 0.0, 0.0];
+        let energy = bodies.energy(&start);
+        let end = advanced(&bodies, &start, 1.0, 20_000);
+        assert!((end[0] - start[0]).abs() > 1e-3, "it hardly moves");
+        let scale = bodies.energy(&[0.0, 0.3, 0.0, 1.0, 0.0, 0.0]).abs();
+        assert!(
+            (bodies.energy(&end) - energy).abs() < 1e-9 * scale,
+            "{form:?}"
+        );
+        let end = advanced(&declared, &start, 1.0, 20_000);
+        assert!(energy - declared.energy(&end) > 1e-3 * scale, "{form:?}");
+    }
+}
+
 fn drives(kind: Kind, setup: &Setup, seed: u64) -> Vec<Drive> {
     let mut draw = Draw::new(seed, 0);
     vec![drive(kind, setup, Manner::Usual, 0, &mut draw)]
@@ -139,17 +161,29 @@ const STEP_ERROR: f64 = 0.2;
 
 #[test]
 fn steps_are_short_enough() {
-    for kind in [Kind::Arm, Kind::Stage, Kind::Pendulum] {
+    let drawn = [Form::TwoMass, Form::Crane, Form::QuarterCar]
+        .map(|form| Kind::TwoBodies { form, seed: 5 });
+    for kind in [Kind::Arm, Kind::Stage, Kind::Pendulum]
+        .into_iter()
+        .chain(drawn)
+    {
         let setup = kind.setup();
         let (level, bristles) = match kind {
             Kind::Arm => (0.05, (2e-3, 6e-4)),
             Kind::Stage => (5.0, (5e-6, 95.0)),
             Kind::Pendulum => (1e-3, (3e-4, 3.3e-3)),
+            Kind::TwoBodies { form, seed } => {
+                let bodies = TwoBodies::drawn(form, seed);
+                (0.2 * bodies.usual_input(), bodies.bristles()[0])
+            }
         };
         for bends in [false, true] {
             let mut machine = kind.nominal();
-            let axis = setup.channels[0].name;
-            let axis = machine.axis(axis).expect("the first channel is an axis");
+            let name = match &machine {
+                Machine::TwoBodies(bodies) => bodies.axes()[0],
+                _ => setup.channels[0].name,
+            };
+            let axis = machine.axis(name).expect("an axis");
             axis.coulomb = level;
             if bends {
                 let (reach, inertia) = bristles;

@@ -2,12 +2,16 @@
 
 pub mod arm;
 pub mod axes;
+pub mod spring;
+pub mod two_bodies;
 
 use crate::friction::{AxisForces, Dry};
 use crate::integrate::Motion;
 use crate::random::Draw;
 use arm::{Arm, Mesh};
 use axes::{Pendulum, Stage};
+use spring::Spring;
+use two_bodies::{Form, TwoBodies};
 
 /// A machine with its true parameters and what is hidden in it.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,6 +22,8 @@ pub enum Machine {
     Stage(Stage),
     /// A pendulum that swings freely.
     Pendulum(Pendulum),
+    /// Two bodies, drawn from a family.
+    TwoBodies(Box<TwoBodies>),
 }
 
 /// Which machine.
@@ -30,6 +36,22 @@ pub enum Kind {
     Stage,
     /// A pendulum that swings freely.
     Pendulum,
+    /// Two bodies, drawn by a seed.
+    TwoBodies {
+        /// Which machine.
+        form: Form,
+        /// What its parameters are drawn by.
+        seed: u64,
+    },
+}
+
+/// What declares a machine.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Specification {
+    /// A file of `model-spec/models`.
+    Shipped(&'static str),
+    /// Its text.
+    Text(String),
 }
 
 /// A measured channel.
@@ -50,8 +72,8 @@ pub struct Channel {
 /// How a machine is measured and what of it is declared uncertain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setup {
-    /// The specification, by its file in `model-spec/models`.
-    pub specification: &'static str,
+    /// What declares it.
+    pub specification: Specification,
     /// The truncation order of the model, where it has one.
     pub order: Option<usize>,
     /// Channels, in the order of [`Machine::outputs`].
@@ -79,6 +101,9 @@ impl Kind {
             Kind::Arm => Machine::Arm(Box::new(Arm::nominal())),
             Kind::Stage => Machine::Stage(Stage::nominal()),
             Kind::Pendulum => Machine::Pendulum(Pendulum::nominal()),
+            Kind::TwoBodies { form, seed } => {
+                Machine::TwoBodies(Box::new(TwoBodies::drawn(form, seed)))
+            }
         }
     }
 
@@ -93,7 +118,7 @@ impl Kind {
         };
         match self {
             Kind::Arm => Setup {
-                specification: "planetary_arm_rig.toml",
+                specification: Specification::Shipped("planetary_arm_rig.toml"),
                 order: Some(2),
                 channels: vec![
                     channel("theta_s", "rad", 1.0, 6e-5, 6e-5),
@@ -109,7 +134,7 @@ impl Kind {
                 records: (1, 1),
             },
             Kind::Stage => Setup {
-                specification: "emps.toml",
+                specification: Specification::Shipped("emps.toml"),
                 order: None,
                 channels: vec![channel("q", "mm", 1e-3, 2e-6, 3e-6)],
                 input: Some(("force", "N")),
@@ -121,7 +146,7 @@ impl Kind {
                 records: (1, 1),
             },
             Kind::Pendulum => Setup {
-                specification: "pendulum.toml",
+                specification: Specification::Shipped("pendulum.toml"),
                 order: None,
                 channels: vec![channel("theta", "rad", 1.0, 5e-4, 6e-4)],
                 input: None,
@@ -132,6 +157,7 @@ impl Kind {
                 uncertain: vec![("k", 0.3), ("I", 0.05)],
                 records: (3, 2),
             },
+            Kind::TwoBodies { form, seed } => TwoBodies::drawn(form, seed).setup(),
         }
     }
 }
@@ -142,6 +168,7 @@ impl Machine {
         match self {
             Machine::Arm(_) => arm::STATE,
             Machine::Stage(_) | Machine::Pendulum(_) => 3,
+            Machine::TwoBodies(_) => two_bodies::STATE,
         }
     }
 
@@ -150,6 +177,7 @@ impl Machine {
         match self {
             Machine::Arm(arm) => arm.outputs(state).to_vec(),
             Machine::Stage(_) | Machine::Pendulum(_) => vec![state[0]],
+            Machine::TwoBodies(_) => state[..2].to_vec(),
         }
     }
 
@@ -158,6 +186,7 @@ impl Machine {
         match self {
             Machine::Arm(_) => Arm::states_of_model(2),
             Machine::Stage(_) | Machine::Pendulum(_) => vec![0, 1],
+            Machine::TwoBodies(_) => vec![0, 1, 2, 3],
         }
     }
 
@@ -169,6 +198,7 @@ impl Machine {
             Machine::Stage(_) | Machine::Pendulum(_) => {
                 vec![vec![1.0, 0.0, 0.0], vec![0.0, 1.0, 0.0]]
             }
+            Machine::TwoBodies(bodies) => bodies.directions(),
         }
     }
 
@@ -176,7 +206,7 @@ impl Machine {
     pub fn plain_state(&self, state: &[f64]) -> Vec<f64> {
         match self {
             Machine::Arm(_) => Arm::without_joint(state),
-            Machine::Stage(_) | Machine::Pendulum(_) => state.to_vec(),
+            Machine::Stage(_) | Machine::Pendulum(_) | Machine::TwoBodies(_) => state.to_vec(),
         }
     }
 
@@ -187,6 +217,10 @@ impl Machine {
             (Machine::Arm(arm), "theta_c") => Some(&mut arm.on_carrier),
             (Machine::Stage(stage), "q") => Some(&mut stage.hidden),
             (Machine::Pendulum(pendulum), "theta") => Some(&mut pendulum.hidden),
+            (Machine::TwoBodies(bodies), _) => {
+                let place = bodies.axes().iter().position(|axis| *axis == name)?;
+                bodies.hidden.get_mut(place)
+            }
             _ => None,
         }
     }
@@ -196,6 +230,16 @@ impl Machine {
         match (self, name) {
             (Machine::Arm(arm), "x_sp") => Some(&mut arm.meshes[0]),
             (Machine::Arm(arm), "x_pr") => Some(&mut arm.meshes[1]),
+            _ => None,
+        }
+    }
+
+    /// The spring of this name.
+    pub fn spring(&mut self, name: &str) -> Option<&mut Spring> {
+        match self {
+            Machine::TwoBodies(bodies) if bodies.spring_name() == Some(name) => {
+                Some(&mut bodies.spring)
+            }
             _ => None,
         }
     }
@@ -218,6 +262,10 @@ impl Machine {
             (Machine::Pendulum(pendulum), "k") => &mut pendulum.viscous,
             (Machine::Pendulum(pendulum), "I") => &mut pendulum.inertia,
             (Machine::Pendulum(pendulum), "a") => &mut pendulum.distance,
+            (Machine::TwoBodies(bodies), _) => match bodies.parameter(parameter) {
+                Some(value) => value,
+                None => return false,
+            },
             _ => return false,
         };
         *value *= factor;
@@ -239,6 +287,13 @@ impl Machine {
             }
             Machine::Stage(stage) => choose(&mut stage.hidden, 5e-6, stage.mass),
             Machine::Pendulum(pendulum) => choose(&mut pendulum.hidden, 3e-4, 3.3e-3),
+            Machine::TwoBodies(bodies) => {
+                for ((reach, inertia), axis) in
+                    bodies.bristles().into_iter().zip(&mut bodies.hidden)
+                {
+                    choose(axis, reach, inertia);
+                }
+            }
         }
     }
 }
@@ -249,6 +304,7 @@ impl Motion for Machine {
             Machine::Arm(arm) => arm.rates(t, state, input, rates),
             Machine::Stage(stage) => stage.rates(t, state, input, rates),
             Machine::Pendulum(pendulum) => pendulum.rates(t, state, input, rates),
+            Machine::TwoBodies(bodies) => bodies.rates(t, state, input, rates),
         }
     }
 }

@@ -6,6 +6,7 @@ use super::{Case, Group, Nuisances, Planned};
 use crate::hidden::{Effect, Hidden};
 use crate::inputs::Manner;
 use crate::machines::Kind;
+use crate::machines::two_bodies::Form;
 use crate::random::Draw;
 
 /// Everything as declared but the parameters.
@@ -33,9 +34,9 @@ fn case(group: Group, machine: Kind, manner: Manner, hidden: Vec<Planned>) -> Ca
 
 fn planned(effect: Effect, on: &str, level: f64, draw: &mut Draw) -> Planned {
     use Effect::{
-        AsymmetricBacklash, AsymmetricFriction, ForceOffset, ForeignHum, ParameterShift,
-        SensorBias, SensorGain, StiffnessNonlinearity, StiffnessVariation, TorqueRipple,
-        TransmissionError, WeakeningDrive,
+        AsymmetricBacklash, AsymmetricFriction, EndStop, ForceOffset, ForeignHum, InputGain,
+        ParameterShift, SensorBias, SensorGain, StiffnessNonlinearity, StiffnessVariation,
+        TorqueRipple, TransmissionError, WeakeningDrive,
     };
     let either = match effect {
         AsymmetricFriction
@@ -44,11 +45,14 @@ fn planned(effect: Effect, on: &str, level: f64, draw: &mut Draw) -> Planned {
         | SensorBias
         | AsymmetricBacklash
         | StiffnessNonlinearity
+        | EndStop
+        | InputGain
         | WeakeningDrive => true,
         ParameterShift => !matches!(on, "b_m" | "F_v"),
         _ => false,
     };
     let order = match (effect, on) {
+        (TorqueRipple, "theta_m") => draw.one_of(&[1.0, 2.0, 5.0, 7.0, 11.0]),
         (TorqueRipple, "theta") => draw.one_of(&[2.0, 3.0, 4.0]),
         (TorqueRipple, _) => draw.one_of(&[1.0, 2.0, 3.0, 4.0, 6.0]),
         (TransmissionError | StiffnessVariation, _) => draw.one_of(&[1.0, 2.0, 3.0, 27.0]),
@@ -91,13 +95,19 @@ fn alike(effect: Effect, on: &str) -> Vec<(String, String)> {
     owned.collect()
 }
 
-/// Every effect of the catalogue alone, three times; every other one with nuisances at full priors.
-pub fn singles(draw: &mut Draw) -> Vec<Case> {
+/// The machines of two bodies that a seed draws.
+fn two_bodies(seed: u64) -> [Kind; 3] {
+    [Form::TwoMass, Form::Crane, Form::QuarterCar].map(|form| Kind::TwoBodies { form, seed })
+}
+
+/// Every effect of the catalogue alone; every other one with nuisances at full priors.
+pub fn singles(seed: u64, draw: &mut Draw) -> Vec<Case> {
     use Effect::{
-        AsymmetricBacklash, AsymmetricFriction, CoulombFriction, ElasticRestraint, ForceOffset,
-        Gravity, JointCompliance, ParameterShift, QuadraticDrag, SensorBias, SensorDelay,
-        SensorGain, StiffnessNonlinearity, StiffnessVariation, StribeckFriction, StructuralDamping,
-        TipMass, TorqueRipple, TransmissionError, ViscousFriction,
+        AsymmetricBacklash, AsymmetricFriction, Backlash, CoulombFriction, ElasticRestraint,
+        EndStop, EndStops, ForceOffset, Gravity, InputGain, JointCompliance, ParameterShift,
+        QuadraticDrag, SensorBias, SensorDelay, SensorGain, StiffnessNonlinearity,
+        StiffnessVariation, StribeckFriction, StructuralDamping, TipMass, TorqueRipple,
+        TransmissionError, ViscousFriction,
     };
     use Kind::{Arm, Pendulum, Stage};
     let sun = (Arm, "theta_s");
@@ -105,54 +115,91 @@ pub fn singles(draw: &mut Draw) -> Vec<Case> {
     let (stage, pendulum) = ((Stage, "q"), (Pendulum, "theta"));
     let arm = (Arm, "arm");
     let mesh = (Arm, "x_sp");
-    // Three places each, some more than once.
-    let list: [(Effect, [(Kind, &str); 3]); 20] = [
+    // Two places each, some twice.
+    let either = |one, other, draw: &mut Draw| draw.one_of(&[one, other]);
+    let list: [(Effect, [(Kind, &str); 2]); 20] = [
         (
             CoulombFriction,
-            [draw.one_of(&[sun, carrier]), stage, pendulum],
+            [either(sun, carrier, draw), either(stage, pendulum, draw)],
         ),
-        (ViscousFriction, [carrier; 3]),
-        (StribeckFriction, [carrier, stage, pendulum]),
-        (AsymmetricFriction, [sun, stage, pendulum]),
-        (QuadraticDrag, [sun, stage, pendulum]),
-        (ForceOffset, [carrier, stage, pendulum]),
-        (ElasticRestraint, [carrier, stage, pendulum]),
-        (Gravity, [carrier; 3]),
-        (TorqueRipple, [sun, sun, pendulum]),
-        (StructuralDamping, [arm; 3]),
-        (TipMass, [arm; 3]),
-        (StiffnessNonlinearity, [arm; 3]),
-        (JointCompliance, [arm; 3]),
-        (TransmissionError, [mesh; 3]),
-        (StiffnessVariation, [mesh; 3]),
-        (AsymmetricBacklash, [mesh; 3]),
-        (SensorDelay, [(Arm, "tip"), (Arm, "theta_s"), stage]),
-        (SensorGain, [(Arm, "tip"), (Arm, "tip"), pendulum]),
-        (SensorBias, [(Arm, "tip"), (Arm, "tip"), pendulum]),
-        (ParameterShift, [(Arm, "m_c"), (Stage, "M"), (Stage, "F_v")]),
+        (ViscousFriction, [carrier; 2]),
+        (StribeckFriction, [carrier, either(stage, pendulum, draw)]),
+        (AsymmetricFriction, [sun, either(stage, pendulum, draw)]),
+        (QuadraticDrag, [sun, either(stage, pendulum, draw)]),
+        (ForceOffset, [carrier, either(stage, pendulum, draw)]),
+        (ElasticRestraint, [carrier, either(stage, pendulum, draw)]),
+        (Gravity, [carrier; 2]),
+        (TorqueRipple, [sun, pendulum]),
+        (StructuralDamping, [arm; 2]),
+        (TipMass, [arm; 2]),
+        (StiffnessNonlinearity, [arm; 2]),
+        (JointCompliance, [arm; 2]),
+        (TransmissionError, [mesh; 2]),
+        (StiffnessVariation, [mesh; 2]),
+        (AsymmetricBacklash, [mesh; 2]),
+        (SensorDelay, [(Arm, "tip"), stage]),
+        (SensorGain, [(Arm, "tip"), pendulum]),
+        (SensorBias, [(Arm, "tip"), pendulum]),
+        (
+            ParameterShift,
+            [(Arm, "m_c"), draw.one_of(&[(Stage, "M"), (Stage, "F_v")])],
+        ),
     ];
-    let mut cases = Vec::new();
+    let [drive, crane, car] = two_bodies(seed);
+    // Parameters that nobody declared, the drive's strength, springs, other machines.
+    let further: [(Effect, Kind, &str); 20] = [
+        (CoulombFriction, drive, "theta_m"),
+        (CoulombFriction, drive, "theta_l"),
+        (ViscousFriction, drive, "theta_l"),
+        (TorqueRipple, drive, "theta_m"),
+        (Backlash, drive, "shaft"),
+        (Backlash, drive, "shaft"),
+        (StiffnessNonlinearity, drive, "shaft"),
+        (ParameterShift, drive, draw.one_of(&["J_m", "k"])),
+        (InputGain, drive, "u"),
+        (CoulombFriction, crane, "x"),
+        (QuadraticDrag, crane, "theta"),
+        (ElasticRestraint, crane, "x"),
+        (ParameterShift, crane, draw.one_of(&["M", "l"])),
+        (InputGain, crane, "F"),
+        (CoulombFriction, car, "travel"),
+        (AsymmetricFriction, car, "travel"),
+        (StiffnessNonlinearity, car, "suspension"),
+        (EndStop, car, "suspension"),
+        (EndStops, car, "suspension"),
+        (ParameterShift, car, draw.one_of(&["k_t", "m_w"])),
+    ];
+    let mut wanted = Vec::new();
     for (index, (effect, places)) in list.into_iter().enumerate() {
-        let mut levels = [0, 1, 2].map(|next| LEVELS[(index + 2 * next) % LEVELS.len()]);
+        let mut levels = [0, 1].map(|next| LEVELS[(index + 2 * next) % LEVELS.len()]);
         draw.shuffle(&mut levels);
-        for ((machine, on), level) in places.into_iter().zip(levels) {
-            let mut hidden = planned(effect, on, level, draw);
-            // More of it would be a viscous friction beside it.
-            if on == "F_v" {
-                hidden.hidden.sign = -1.0;
-            }
-            let mut made = case(Group::Single, machine, Manner::Usual, vec![hidden]);
-            if cases.len() % 2 == 1 {
-                made.nuisances = Nuisances::FULL;
-            }
-            cases.push(made);
-        }
+        let both = places.into_iter().zip(levels);
+        wanted.extend(both.map(|((machine, on), level)| (effect, machine, on, level)));
     }
-    cases
+    for (index, (effect, machine, on)) in further.into_iter().enumerate() {
+        wanted.push((effect, machine, on, LEVELS[(2 * index + 1) % LEVELS.len()]));
+    }
+    let single = |(number, (effect, machine, on, level)): (usize, (Effect, Kind, &str, f64))| {
+        let mut hidden = planned(effect, on, level, draw);
+        // More of it would be a viscous friction beside it.
+        if on == "F_v" {
+            hidden.hidden.sign = -1.0;
+        }
+        // By a law of its own, which only hardens.
+        if matches!(machine, Kind::TwoBodies { .. }) && effect == StiffnessNonlinearity {
+            hidden.hidden.sign = 1.0;
+        }
+        let mut made = case(Group::Single, machine, Manner::Usual, vec![hidden]);
+        if number % 2 == 1 {
+            made.nuisances = Nuisances::FULL;
+        }
+        made
+    };
+    wanted.into_iter().enumerate().map(single).collect()
 }
 
 /// Nothing hidden, with everything off that may be off.
-pub fn nothings() -> Vec<Case> {
+pub fn nothings(seed: u64) -> Vec<Case> {
     let none = Nuisances {
         declared: 0.0,
         bias: 0.0,
@@ -170,8 +217,9 @@ pub fn nothings() -> Vec<Case> {
         Nuisances::FULL,
     ];
     let mut cases = Vec::new();
-    for machine in [Kind::Arm, Kind::Stage, Kind::Pendulum] {
-        for index in 0..10 {
+    let [drive, crane, car] = two_bodies(seed);
+    for machine in [Kind::Arm, Kind::Stage, Kind::Pendulum, drive, crane, car] {
+        for index in 0..5 {
             let mut made = case(Group::Nothing, machine, Manner::Usual, Vec::new());
             made.nuisances = kinds[index % kinds.len()];
             cases.push(made);
@@ -181,14 +229,28 @@ pub fn nothings() -> Vec<Case> {
 }
 
 /// Two effects, both plain.
-pub fn pairs(draw: &mut Draw) -> Vec<Case> {
+pub fn pairs(seed: u64, draw: &mut Draw) -> Vec<Case> {
     use Effect::{
-        AsymmetricFriction, CoulombFriction, ElasticRestraint, ForceOffset, JointCompliance,
-        QuadraticDrag, SensorBias, StribeckFriction, StructuralDamping, TipMass, TorqueRipple,
+        AsymmetricFriction, Backlash, CoulombFriction, ElasticRestraint, EndStop, ForceOffset,
+        QuadraticDrag, SensorBias, StiffnessNonlinearity, StructuralDamping, TipMass, TorqueRipple,
         ViscousFriction,
     };
     use Kind::{Arm, Pendulum, Stage};
+    let [drive, crane, car] = two_bodies(seed);
     let list = [
+        (drive, (CoulombFriction, "theta_l"), (Backlash, "shaft")),
+        (
+            drive,
+            (ViscousFriction, "theta_l"),
+            (TorqueRipple, "theta_m"),
+        ),
+        (crane, (CoulombFriction, "x"), (QuadraticDrag, "theta")),
+        (car, (CoulombFriction, "travel"), (EndStop, "suspension")),
+        (
+            car,
+            (AsymmetricFriction, "travel"),
+            (StiffnessNonlinearity, "suspension"),
+        ),
         (
             Arm,
             (CoulombFriction, "theta_s"),
@@ -197,55 +259,59 @@ pub fn pairs(draw: &mut Draw) -> Vec<Case> {
         (Arm, (TipMass, "arm"), (StructuralDamping, "arm")),
         (Arm, (CoulombFriction, "theta_c"), (TipMass, "arm")),
         (Arm, (TorqueRipple, "theta_s"), (CoulombFriction, "theta_c")),
-        (Arm, (JointCompliance, "arm"), (CoulombFriction, "theta_s")),
         (
             Arm,
             (ElasticRestraint, "theta_c"),
             (QuadraticDrag, "theta_s"),
         ),
         (Stage, (CoulombFriction, "q"), (ForceOffset, "q")),
-        (Stage, (CoulombFriction, "q"), (AsymmetricFriction, "q")),
         (Stage, (QuadraticDrag, "q"), (ForceOffset, "q")),
         (Stage, (CoulombFriction, "q"), (ElasticRestraint, "q")),
-        (Stage, (CoulombFriction, "q"), (StribeckFriction, "q")),
         (
             Pendulum,
             (CoulombFriction, "theta"),
             (QuadraticDrag, "theta"),
         ),
-        (Pendulum, (QuadraticDrag, "theta"), (ForceOffset, "theta")),
-        (
-            Pendulum,
-            (CoulombFriction, "theta"),
-            (TorqueRipple, "theta"),
-        ),
         (Pendulum, (CoulombFriction, "theta"), (SensorBias, "theta")),
     ];
-    let pair = |(machine, first, second): (Kind, (Effect, &str), (Effect, &str))| {
-        let mut level = || draw.one_of(&[6.0, 10.0, 15.0]);
-        let (one, other) = (level(), level());
-        let hidden = vec![
-            planned(first.0, first.1, one, draw),
-            planned(second.0, second.1, other, draw),
-        ];
-        case(Group::Pair, machine, Manner::Usual, hidden)
-    };
-    list.map(pair).into()
+    let pair =
+        |(number, (machine, first, second)): (usize, (Kind, (Effect, &str), (Effect, &str)))| {
+            let mut level = || draw.one_of(&[6.0, 10.0, 15.0]);
+            let (one, other) = (level(), level());
+            let hidden = vec![
+                planned(first.0, first.1, one, draw),
+                planned(second.0, second.1, other, draw),
+            ];
+            let mut made = case(Group::Pair, machine, Manner::Usual, hidden);
+            for planned in &mut made.hidden {
+                if matches!(machine, Kind::TwoBodies { .. })
+                    && planned.hidden.effect == StiffnessNonlinearity
+                {
+                    planned.hidden.sign = 1.0;
+                }
+            }
+            if number % 2 == 1 {
+                made.nuisances = Nuisances::FULL;
+            }
+            made
+        };
+    list.into_iter().enumerate().map(pair).collect()
 }
 
 /// Effects of no catalogue.
-pub fn outside(draw: &mut Draw) -> Vec<Case> {
+pub fn outside(seed: u64, draw: &mut Draw) -> Vec<Case> {
     use Effect::{ForeignHum, WeakeningDrive, WornFriction};
     use Kind::{Arm, Pendulum, Stage};
+    let [drive, crane, car] = two_bodies(seed);
     let list = [
         (Arm, WornFriction, "theta_c"),
-        (Arm, ForeignHum, "theta_c"),
         (Arm, WeakeningDrive, "theta_s"),
         (Stage, WornFriction, "q"),
         (Stage, ForeignHum, "q"),
-        (Stage, WeakeningDrive, "q"),
         (Pendulum, WornFriction, "theta"),
-        (Pendulum, ForeignHum, "theta"),
+        (drive, ForeignHum, "theta_l"),
+        (crane, WeakeningDrive, "x"),
+        (car, WornFriction, "travel"),
     ];
     let strange = |(machine, effect, on): (Kind, Effect, &str)| {
         let hidden = vec![planned(effect, on, 10.0, draw)];

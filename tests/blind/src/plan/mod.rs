@@ -115,10 +115,10 @@ impl Case {
 /// The cases of a seed.
 pub fn plan(seed: u64) -> Vec<Case> {
     let mut draw = Draw::new(seed, 0);
-    let mut cases = lists::singles(&mut draw);
-    cases.extend(lists::nothings());
-    cases.extend(lists::pairs(&mut draw));
-    cases.extend(lists::outside(&mut draw));
+    let mut cases = lists::singles(seed, &mut draw);
+    cases.extend(lists::nothings(seed));
+    cases.extend(lists::pairs(seed, &mut draw));
+    cases.extend(lists::outside(seed, &mut draw));
     cases.extend(lists::untellable(&mut draw));
     draw.shuffle(&mut cases);
     for (number, case) in cases.iter_mut().enumerate() {
@@ -130,6 +130,7 @@ pub fn plan(seed: u64) -> Vec<Case> {
 #[cfg(test)]
 mod tests {
     use super::{Group, Nuisances, plan};
+    use crate::machines::Kind;
 
     #[test]
     fn a_seed_makes_the_numbers_of_cases_that_are_promised() {
@@ -139,6 +140,8 @@ mod tests {
         assert_eq!(of(Group::Nothing), 30);
         assert_eq!(of(Group::Pair), 15);
         assert_eq!(of(Group::Outside) + of(Group::Untellable), 15);
+        let drawn = |case: &&super::Case| matches!(case.machine, Kind::TwoBodies { .. });
+        assert_eq!(cases.iter().filter(drawn).count(), 20 + 15 + 5 + 3);
         assert!(
             cases
                 .iter()
@@ -155,5 +158,8 @@ mod tests {
         let singles = cases.iter().filter(|case| case.group == Group::Single);
         let full = singles.filter(|case| case.nuisances == Nuisances::FULL);
         assert_eq!(full.count(), 30);
+        let pairs = cases.iter().filter(|case| case.group == Group::Pair);
+        let full = pairs.filter(|case| case.nuisances == Nuisances::FULL);
+        assert_eq!(full.count(), 7);
     }
 }

@@ -225,6 +225,7 @@ fn nominal(label: &Label, name: &str) -> Option<f64> {
         (Machine::Stage(stage), "F_v") => Some(stage.viscous),
         (Machine::Pendulum(pendulum), "k") => Some(pendulum.viscous),
         (Machine::Pendulum(pendulum), "I") => Some(pendulum.inertia),
+        (Machine::TwoBodies(mut bodies), _) => bodies.parameter(name).copied(),
         _ => None,
     }
 }

@@ -12,6 +12,7 @@ mod windows;
 
 use crate::hidden::{Effect, Hidden};
 use crate::inputs::Drive;
+use crate::machines::two_bodies::TwoBodies;
 use crate::machines::{Machine, Setup};
 pub use fit::Fit;
 use projection::Basis;
@@ -55,6 +56,9 @@ pub fn sized(
     mut hidden: Hidden,
     level: f64,
 ) -> Sized {
+    if matches!(hidden.effect, Effect::EndStop | Effect::EndStops) {
+        hidden.order = 0.5 * furthest(machine, setup, drives, hidden.sign);
+    }
     let coarse = |part: usize| Setup {
         steps: setup.steps / part,
         ..setup.clone()
@@ -84,6 +88,16 @@ pub fn sized(
     Sized { hidden, floors }
 }
 
+/// How far the spring between two bodies deflects to one side.
+fn furthest(machine: &Machine, setup: &Setup, drives: &[Drive], side: f64) -> f64 {
+    let motions = drives
+        .iter()
+        .flat_map(|drive| windows::states(machine, setup, drive));
+    motions
+        .map(|state| side * TwoBodies::deflection(&state))
+        .fold(0.0, f64::max)
+}
+
 /// A size to begin with, and the largest that makes sense, SI.
 fn range(hidden: &Hidden, machine: &Machine, drives: &[Drive]) -> (f64, f64) {
     let free = f64::INFINITY;
@@ -93,8 +107,24 @@ fn range(hidden: &Hidden, machine: &Machine, drives: &[Drive]) -> (f64, f64) {
         Machine::Arm(_) => (arm, free),
         Machine::Stage(_) => (stage, free),
         Machine::Pendulum(_) => (pendulum, free),
+        Machine::TwoBodies(_) => (0.02 * strongest, free),
     };
     match hidden.effect {
+        Effect::Backlash | Effect::EndStop | Effect::EndStops | Effect::StiffnessNonlinearity
+            if let Machine::TwoBodies(bodies) = machine =>
+        {
+            let stiffness = bodies.spring.stiffness;
+            let deflection = strongest / stiffness;
+            match hidden.effect {
+                Effect::Backlash => (0.05 * deflection, deflection),
+                Effect::StiffnessNonlinearity => (
+                    0.05 * stiffness / deflection.powi(2),
+                    10.0 * stiffness / deflection.powi(2),
+                ),
+                _ => (stiffness, 30.0 * stiffness),
+            }
+        }
+        Effect::InputGain => (0.05, 0.5),
         // Half of the critical damping of the first mode.
         Effect::StructuralDamping => (1e-4, 5e-3),
         Effect::TipMass => (0.01, 1.0),
@@ -108,9 +138,9 @@ fn range(hidden: &Hidden, machine: &Machine, drives: &[Drive]) -> (f64, f64) {
         Effect::ParameterShift => (0.02, 0.5),
         // What the drive cannot move stands still whatever the friction.
         Effect::CoulombFriction | Effect::StribeckFriction
-            if matches!(machine, Machine::Stage(_)) =>
+            if matches!(machine, Machine::Stage(_) | Machine::TwoBodies(_)) =>
         {
-            (1.0, 0.5 * strongest)
+            (0.01 * strongest, 0.5 * strongest)
         }
         Effect::QuadraticDrag | Effect::WornFriction => of_axis(1e-4, 10.0, 1e-5),
         Effect::WeakeningDrive => of_axis(0.01, 0.1, 0.0),

@@ -1,0 +1,103 @@
+//! A spring between two bodies with what may be wrong in it. Its laws are not written as a catalogue
+//! writes them: plays and stops begin smoothly, a spring that hardens does so by a hyperbolic sine.
+
+/// A spring: stiffness and damping as declared, and what may be hidden. Zero is nothing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spring {
+    /// Force per deflection.
+    pub stiffness: f64,
+    /// Force per rate of the deflection.
+    pub damping: f64,
+    /// Half of a play.
+    pub play: f64,
+    /// How much it hardens: force per cube of the deflection, at small ones.
+    pub hardening: f64,
+    /// Stop on the positive side: stiffness, and the deflection at which it is met.
+    pub upper: (f64, f64),
+    /// The same on the negative side.
+    pub lower: (f64, f64),
+}
+
+/// Part of a play or of a way to a stop over which contact is made.
+const ROUNDED: f64 = 1.0 / 30.0;
+
+/// Damping of a stop, s of its stiffness.
+const STOP_LOSS: f64 = 2e-3;
+
+impl Spring {
+    /// With nothing hidden.
+    pub fn declared(stiffness: f64, damping: f64) -> Self {
+        Self {
+            stiffness,
+            damping,
+            play: 0.0,
+            hardening: 0.0,
+            upper: (0.0, 1.0),
+            lower: (0.0, 1.0),
+        }
+    }
+
+    /// The force that pulls the deflection `p`, with the rate `v`, back.
+    pub fn force(&self, p: f64, v: f64) -> f64 {
+        let (p_held, v_held) = match self.play > 0.0 {
+            true => {
+                let (above, meets_above) = beyond(p, self.play);
+                let (below, meets_below) = beyond(-p, self.play);
+                (above - below, v * (meets_above + meets_below))
+            }
+            false => (p, v),
+        };
+        let elastic = if self.hardening > 0.0 {
+            let a = (6.0 * self.hardening / self.stiffness).sqrt();
+            self.stiffness * (a * p_held).sinh() / a
+        } else {
+            self.stiffness * p_held
+        };
+        elastic + self.damping * v_held + stop(self.upper, p, v) - stop(self.lower, -p, -v)
+    }
+}
+
+/// The force of a stop on a deflection that grows towards it; it does not pull.
+fn stop((stiffness, at): (f64, f64), p: f64, v: f64) -> f64 {
+    if stiffness == 0.0 {
+        return 0.0;
+    }
+    let (depth, meets) = beyond(p, at);
+    (stiffness * (depth + STOP_LOSS * meets * v)).max(0.0)
+}
+
+/// By how much a deflection is beyond a limit, rounded, and the derivative of this.
+fn beyond(p: f64, limit: f64) -> (f64, f64) {
+    let excess = p - limit;
+    let root = excess.hypot(ROUNDED * limit);
+    (0.5 * (excess + root), 0.5 * (1.0 + excess / root))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Spring;
+
+    #[test]
+    fn a_play_lets_small_deflections_through_and_takes_its_half_from_large_ones() {
+        let mut spring = Spring::declared(100.0, 0.5);
+        spring.play = 0.02;
+        assert!(spring.force(0.005, 0.0).abs() < 0.005 * 100.0 * 0.01);
+        assert!((spring.force(0.1, 0.0) - 100.0 * 0.08).abs() < 1e-3);
+        assert!((spring.force(-0.1, -2.0) + 100.0 * 0.08 + 0.5 * 2.0).abs() < 2e-3);
+    }
+
+    #[test]
+    fn a_spring_hardens_by_the_cube_and_a_stop_only_pushes() {
+        let mut spring = Spring::declared(100.0, 0.0);
+        spring.hardening = 500.0;
+        let cubic = |p: f64| 100.0 * p + 500.0 * p.powi(3);
+        assert!((spring.force(0.05, 0.0) - cubic(0.05)).abs() < 1e-2 * 500.0 * 0.05f64.powi(3));
+        let mut stopped = Spring::declared(0.0, 0.0);
+        stopped.upper = (1000.0, 0.1);
+        assert!((stopped.force(0.2, 0.0) - 100.0).abs() < 0.1);
+        assert_eq!(stopped.force(0.1, -1e3), 0.0);
+        assert!(stopped.force(-0.3, 0.0) < 0.1);
+        stopped.lower = (1000.0, 0.1);
+        assert!((stopped.force(-0.2, 0.0) + 100.0).abs() < 0.1);
+    }
+}
