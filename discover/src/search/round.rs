@@ -69,8 +69,10 @@ impl Round<'_> {
                 break;
             }
         }
-        // One unknown before two: a number that is off is a rival of the first effect, and of any pair.
-        if self.is_first && !has_offsets && !is_any(&tested, &|fitted| self.is_near_floor(fitted)) {
+        // One unknown before two: a number that is off is a rival of the first effect while much is
+        // left, and of whatever takes more unknowns, a pair or an effect with a shape.
+        let is_simple = |best: &FittedHypothesis| best.own.len() == 1 && self.is_near_floor(best);
+        if self.is_first && !has_offsets && !best_accepted(&tested).is_some_and(is_simple) {
             tested.push(self.offsets());
             has_offsets = true;
         }
@@ -276,8 +278,8 @@ impl Round<'_> {
     }
 }
 
-/// What nobody doubts, which stands last, is off only if no other single effect that is accepted comes
-/// near, and no pair leaves clearly less; a pair that does not gives way to it.
+/// What nobody doubts, which stands last, is off only if no other single unknown that is accepted comes
+/// near, and nothing of more unknowns leaves clearly less; what does not gives way to it.
 fn keep_clear(tested: &mut [TestedPool]) {
     let Some((offsets, tested)) = tested.split_last_mut() else {
         return;
@@ -285,7 +287,7 @@ fn keep_clear(tested: &mut [TestedPool]) {
     let others = tested.iter().flat_map(|tested| &tested.fitted_hypotheses);
     let others: Vec<&FittedHypothesis> = others.filter(|fitted| fitted.verdict.is_ok()).collect();
     offsets.fitted_hypotheses.retain(|fitted| {
-        let is_clear = |other: &&FittedHypothesis| match other.responses.len() {
+        let is_clear = |other: &&FittedHypothesis| match other.own.len() {
             1 => fitted.fit.leaves_clearly_less(&other.fit),
             _ => !other.fit.leaves_clearly_less(&fitted.fit),
         };
@@ -296,10 +298,18 @@ fn keep_clear(tested: &mut [TestedPool]) {
         accepted.filter(|fitted| fitted.verdict.is_ok()).collect();
     for tested in tested {
         tested.fitted_hypotheses.retain(|fitted| {
-            fitted.responses.len() == 1
+            fitted.own.len() == 1
+                || fitted.verdict.is_err()
                 || (accepted.iter()).all(|offset| fitted.fit.leaves_clearly_less(&offset.fit))
         });
     }
+}
+
+/// What leaves least of all that is accepted.
+fn best_accepted(tested: &[TestedPool]) -> Option<&FittedHypothesis> {
+    let all = tested.iter().flat_map(|tested| &tested.fitted_hypotheses);
+    let accepted = all.filter(|fitted| fitted.verdict.is_ok());
+    accepted.min_by(|a, b| a.fit.rms().total_cmp(&b.fit.rms()))
 }
 
 /// Whether any fitted hypothesis is such.

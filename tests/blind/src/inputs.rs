@@ -107,7 +107,8 @@ pub fn drive(kind: Kind, setup: &Setup, manner: Manner, place: usize, draw: &mut
 fn of_two_bodies(form: Form, usual: f64) -> Ingredients {
     let (slow, sweep, lasting) = match form {
         Form::TwoMass => ((0.5, 2.0), (3.0, 20.0), (0.05, 0.2)),
-        Form::Crane => ((0.3, 1.0), (1.0, 6.0), (0.2, 0.5)),
+        // Through the swing of the load.
+        Form::Crane => ((0.3, 1.0), (0.5, 4.0), (0.2, 0.5)),
         Form::QuarterCar => ((0.5, 3.0), (3.0, 20.0), (0.05, 0.2)),
     };
     Ingredients {

@@ -164,15 +164,16 @@ impl TwoBodies {
         state[0] - state[1]
     }
 
-    /// Inertia that bristles of both axes swing with, and how far they bend.
+    /// How far bristles of both axes bend, and the inertia that swings with them. They turn within
+    /// a part of a sample at usual speeds: slower ones were a lag that no friction of a catalogue has.
     pub fn bristles(&self) -> [(f64, f64); 2] {
         match self.form {
-            Form::TwoMass => [(1e-3, self.inertia[0]), (1e-3, self.inertia[1])],
+            Form::TwoMass => [(1e-4, self.inertia[0]), (1e-4, self.inertia[1])],
             Form::Crane => {
                 let [trolley, load] = self.inertia;
-                [(1e-4, trolley), (1e-3, load * self.length * self.length)]
+                [(2e-5, trolley), (1e-4, load * self.length * self.length)]
             }
-            Form::QuarterCar => [(2e-5, self.inertia[1]), (2e-5, self.inertia[0])],
+            Form::QuarterCar => [(5e-6, self.inertia[1]), (5e-6, self.inertia[0])],
         }
     }
 
