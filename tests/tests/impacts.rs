@@ -539,6 +539,26 @@ fn what_cannot_hold_is_said() {
         .expect("refused")
         .to_string();
     assert!(refusal.contains('1'), "{refusal}");
+    // A distance that no motion changes.
+    let text = r#"
+[model]
+name = "apart"
+[parameters]
+m = { value = 1, unit = "kg" }
+[coordinates]
+y = { unit = "m", initial = 1 }
+[kinetic]
+ball = "1/2*m*dot(y)^2"
+[impacts]
+nothing = { when = "0*y", restitution = 0.5 }
+"#;
+    let refusal = CompiledModel::of_text("apart.toml", text, Orders::Declared)
+        .err()
+        .expect("refused")
+        .to_string();
+    for said in ["no coordinate changes", "`nothing`", "apart.toml:11:21"] {
+        assert!(refusal.contains(said), "{refusal}");
+    }
     // Walls that close in on a ball: ever more impacts, and no end.
     let text = r#"
 [model]

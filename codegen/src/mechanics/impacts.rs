@@ -7,14 +7,14 @@
 //! impulse moves along them. When bodies hit and what comes back is for those who follow the motion.
 
 use eomgen_model_spec::ids::FieldId;
-use eomgen_model_spec::model::Model;
+use eomgen_model_spec::model::{self, Model};
 
 use crate::mechanics::constraints::Constraints;
 use crate::mechanics::lagrange::{GradientBy, Variables};
 use crate::mechanics::mass_matrix::MassMatrix;
 use crate::mechanics::rows::RowNodes;
 use crate::mechanics::solve::solve;
-use crate::mechanics::translate::{Derived, Translator, along_motion};
+use crate::mechanics::translate::{DeriveError, Derived, Translator, along_motion};
 use crate::symbolic::graph::{Graph, NodeId, Space};
 
 /// An impact, of nodes `N` in the equations or values in the program, and rows `R` of them.
@@ -54,6 +54,9 @@ pub(crate) fn impacts(
         let restitution = translator.node(&impact.restitution)?;
         let graph = &mut translator.graph;
         let gradient = variables.gradient(graph, distance, GradientBy::Coordinates);
+        if gradient.nodes().iter().all(|entry| graph.is_zero(*entry)) {
+            return Err(moves_nothing(impact));
+        }
         let rate = along_motion(graph, distance);
         let of_rates = along_motion(graph, rate);
         let of_accelerations = product(graph, &gradient, accelerations);
@@ -77,6 +80,20 @@ pub(crate) fn impacts(
             .collect();
     }
     Ok(found)
+}
+
+/// An impulse along nothing: the distance would never change by it.
+fn moves_nothing(impact: &model::Impact) -> DeriveError {
+    DeriveError {
+        span: impact.when.span,
+        message: format!(
+            "no coordinate changes the distance of the impact `{}`",
+            impact.name
+        ),
+        help: Some(
+            "an impact happens where an expression of coordinates falls through zero".into(),
+        ),
+    }
 }
 
 /// The product of two rows.

@@ -106,10 +106,14 @@ impl Axis {
             return Err("the range is too wide".to_owned());
         }
         let is_log = self.spacing == Spacing::Log;
-        if is_log && !((self.to / self.from).is_normal() && self.to / self.from > 0.0) {
+        let is_apart_from_zero = self.from != 0.0 && self.to != 0.0;
+        if is_log && !(is_apart_from_zero && self.from.signum() == self.to.signum()) {
             return Err(
                 "the ends of a logarithmic range are both positive, or both negative".to_owned(),
             );
+        }
+        if is_log && !(self.to / self.from).is_normal() {
+            return Err("the range is too wide".to_owned());
         }
         Ok(())
     }
@@ -256,6 +260,7 @@ mod tests {
             ("b=1:2:3:log:5", "5 numbers"),
             ("b=0:2:3:log", "both positive"),
             ("b=-1:2:3:log", "both positive"),
+            ("b=1e-300:1e300:3:log", "too wide"),
             ("b=x:2:3", "\"x\" is no number"),
             ("b=0:1:2.5", "\"2.5\" is no whole number"),
             ("b=0:1:-3", "\"-3\" is no whole number"),
