@@ -64,7 +64,14 @@ fn alternatives(
         in_model.len(),
         pool.candidate(response).label()
     ));
-    let mut predictions = predictions(pool, fitted, &in_model)?;
+    // Where more is left than a right model leaves, the same effect elsewhere is tried whatever it
+    // promises: a promise along the motion of a wrong place may be far off.
+    let at_floor = fitted.fit.is_at_floor(pool.context.floor);
+    let most = match at_floor {
+        true => thresholds::RIVAL,
+        false => f64::INFINITY,
+    };
+    let mut predictions = predictions(pool, fitted, &in_model, most)?;
     predictions.sort_by(|a, b| a.prediction.cost.total_cmp(&b.prediction.cost));
     predictions.truncate(thresholds::FITS_AT_ONCE);
     let shape_ratio = shape_ratio(pool, fitted).unwrap_or(1.0);
@@ -132,12 +139,13 @@ struct Predicted {
     prediction: Prediction,
 }
 
-/// Which candidates promise to leave little without a fitted hypothesis' own terms, what they leave
-/// and their sizes.
+/// Which candidates promise to leave less than so many times what a fitted hypothesis leaves,
+/// without its own terms, what they leave and their sizes.
 fn predictions(
     pool: &Pool<'_>,
     fitted: &FittedHypothesis,
     in_model: &[Candidate],
+    most: f64,
 ) -> Option<Vec<Predicted>> {
     let mut screening = screening(pool.context.problem, &fitted.fit, in_model, 1.0);
     let cost = screening.predicted(&[]).cost;
@@ -155,7 +163,7 @@ fn predictions(
     });
     Some(
         predictions
-            .filter(|of| of.prediction.cost < thresholds::RIVAL * cost)
+            .filter(|of| of.prediction.cost < most * cost)
             .collect(),
     )
 }

@@ -118,8 +118,9 @@ fn best_pairs(pool: &Pool<'_>, ranking: &[ResponseId], at_limit: &[ResponseId]) 
     hypotheses
 }
 
-/// Pairs that share one half with a pair and whose other half looks like its other, if they
-/// were not fitted yet; the most similar first, at most [`thresholds::FITS_AT_ONCE`].
+/// Pairs that share one half with a pair and whose other half looks like its other, or, where the pair
+/// leaves more than a right model, is the same effect elsewhere, if they were not fitted yet; the
+/// most similar first, at most [`thresholds::FITS_AT_ONCE`].
 pub fn other_halves(
     pool: &Pool<'_>,
     fitted_hypotheses: &[FittedHypothesis],
@@ -129,6 +130,7 @@ pub fn other_halves(
         return Vec::new();
     };
     let mut found: Vec<(f64, Vec<ResponseId>)> = Vec::new();
+    let at_floor = fitted_hypotheses[pair].fit.is_at_floor(pool.context.floor);
     for (kept, other) in [(a, b), (b, a)] {
         for response in ResponseId::first(pool.screening.responses.len()) {
             let is_new = ![kept, other].contains(&response)
@@ -144,8 +146,10 @@ pub fn other_halves(
             let is_known = |fitted: &FittedHypothesis| {
                 fitted.responses.len() == 2 && pair.iter().all(|r| fitted.responses.contains(r))
             };
-            if similarity > thresholds::INDISTINGUISHABLE && !fitted_hypotheses.iter().any(is_known)
-            {
+            let is_same = pool.candidate(response).effect == pool.candidate(other).effect;
+            let may_be = similarity > thresholds::INDISTINGUISHABLE
+                || (!at_floor && is_same && similarity > 0.0);
+            if may_be && !fitted_hypotheses.iter().any(is_known) {
                 found.push((similarity, pair));
             }
         }

@@ -90,7 +90,7 @@ pub fn selected(context: Context<'_>, tested: TestedPool) -> Option<Selected> {
 }
 
 /// The fitted hypotheses of a round with, if a pair is best, further pairs with what looks like one
-/// of its halves.
+/// of its halves; and of a better one found so, again, while it leaves more than a right model.
 fn with_other_halves(context: Context<'_>, tested: TestedPool) -> TestedPool {
     let TestedPool {
         candidates,
@@ -98,10 +98,17 @@ fn with_other_halves(context: Context<'_>, tested: TestedPool) -> TestedPool {
         mut fitted_hypotheses,
     } = tested;
     let pool = Pool::new(context, &candidates, &screening, context.is_whole());
-    if let Some(best) = best_of(&fitted_hypotheses) {
+    let mut known = None;
+    while let Some(best) = best_of(&fitted_hypotheses)
+        && known != Some(best)
+    {
         let mut further = other_halves(&pool, &fitted_hypotheses, best);
         further.retain(|fitted| fitted.explains);
         fitted_hypotheses.extend(further);
+        if fitted_hypotheses[best].fit.is_at_floor(context.floor) {
+            break;
+        }
+        known = Some(best);
     }
     TestedPool {
         candidates,
