@@ -2,21 +2,20 @@
 //! where v is zero, and is there what keeps v at zero, if one of these does (A. F. Filippov; for
 //! friction, J. J. Moreau).
 //!
-//! `decision` (which of several surfaces hold), `sided` (the model with the sides of its surfaces
+//! Which of several surfaces hold is decided in [`eomgen_sim::sliding_modes`]; `sided` (the model with the sides of its surfaces
 //! given), `observed` (what a motion's observables are at rest). Here is what becomes of surfaces while
 //! a motion goes on: caught where it reaches them, it is let go where the force that holds has
 //! reached what the surface can bear. There the function and its rate are zero up to rounding, which must not
 //! decide: the surface is moved by as much as rounding is until the motion has left it.
 
-mod decision;
 mod observed;
 mod sided;
 
 pub(crate) use observed::Observed;
 pub use sided::Sided;
 
-use decision::{Arrival, Verdict};
 use eomgen_sim::ode::SMALLEST_MAGNITUDE;
+use eomgen_sim::sliding_modes::{Arrival, Verdict};
 
 /// How far a function may move from a surface that holds it before the state is put back, beside the
 /// largest it has been.

@@ -282,14 +282,16 @@ s = {{ value = 1, unit = "s" }}
 fn frictions_at_the_ground_and_between_neighbours_hold_as_the_time_stepping_has_them() {
     let until = 3.0;
     let times = grid(until, 60);
-    for seed in 1..=60 {
+    for seed in (1..=60).chain([65, 91, 103, 151, 152, 167]) {
         let row = Row::random(seed);
         let model = of_text(&row.text());
-        let motion = simulated(&model, &[], &times, Solver::Rk).trajectory;
-        let other = simulated(&model, &[], &times, Solver::Radau).trajectory;
-        for (t, (a, b)) in times.iter().zip(motion.states.iter().zip(&other.states)) {
-            let apart = difference(a, b);
-            assert!(apart < 1e-6, "{seed}, t = {t}: {apart:e}");
+        let motion = simulated(&model, &[], &times, Solver::Exact).trajectory;
+        for solver in GENERAL {
+            let other = simulated(&model, &[], &times, solver).trajectory;
+            for (t, (a, b)) in times.iter().zip(motion.states.iter().zip(&other.states)) {
+                let apart = difference(a, b);
+                assert!(apart < 1e-6, "{solver} {seed}, t = {t}: {apart:e}");
+            }
         }
         if seed <= 24 {
             let apart = difference(&row.stepped(until, 30_000), &motion.last);
