@@ -2,7 +2,7 @@
 //!
 //! [`ode`] integrates any model and locates its switches; [`piecewise_linear`] propagates a model
 //! that is linear between its switches exactly; [`exponential`] steps through one that nearly is,
-//! with its derivatives by initial states. [`inputs`] are what drives a motion. How a model is
+//! with its derivatives by initial states. [`sliding_modes`] decides which surfaces hold a motion. [`inputs`] are what drives a motion. How a model is
 //! derived is the business of `codegen`, which solver takes it that of the compiled model.
 //!
 //! A mass on a spring with play, by the general solver and exactly:
@@ -73,4 +73,5 @@ pub mod exponential;
 pub mod inputs;
 pub mod ode;
 pub mod piecewise_linear;
+pub mod sliding_modes;
 pub mod variational;

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use eomgen_analysis::constrained_modes::constrained_modes;
 use eomgen_codegen::program::evaluator::Point;
-use eomgen_compiled_model::{CompiledModel, Driven, Error, Orders, Solver};
+use eomgen_compiled_model::{CompiledModel, Driven, Error, Orders, Request, Solver};
 use eomgen_sim::ode::{Settings, simulate};
 
 const ROD: &str = r#"
@@ -196,6 +196,83 @@ fn constraints_that_cannot_hold_are_named() {
 }
 
 /// What runs emitted equations without projecting has to rely on the stabilisation.
+/// Two equal cranks and a coupler as long as the ground between them, which is turned by this angle.
+fn parallelogram(angle: f64) -> String {
+    format!(
+        r#"
+[model]
+name = "parallelogram"
+[parameters]
+m = {{ value = 1, unit = "kg" }}
+a = {{ value = 0.3, unit = "m" }}
+b = {{ value = 0.5, unit = "m" }}
+g = {{ value = 9.81, unit = "m/s^2" }}
+J = {{ value = 0.01, unit = "kg m^2" }}
+[coordinates]
+phi = {{ unit = "rad", initial = {start} }}
+psi = {{ unit = "rad", initial = {start} }}
+beta = {{ unit = "rad", initial = {angle} }}
+[kinetic]
+cranks = "1/2*m*a^2*dot(phi)^2 + 1/2*m*a^2*dot(psi)^2"
+coupler = "1/2*J*dot(beta)^2"
+[potential]
+weight = "m*g*a*(sin(phi - {angle}) + sin(psi - {angle}))"
+[constraints]
+across = {{ zero = "a*cos(phi) + b*cos(beta) - b*cos({angle}) - a*cos(psi)" }}
+up = {{ zero = "a*sin(phi) + b*sin(beta) - b*sin({angle}) - a*sin(psi)" }}
+"#,
+        start = 1.2 + angle
+    )
+}
+
+#[test]
+fn a_linkage_that_folds_flat_stops_there_and_names_the_constraints() {
+    for (angle, named) in [
+        (0.0, "the constraint `across` holds nothing any more"),
+        (
+            0.6,
+            "the constraints `across`, `up` are no longer independent",
+        ),
+    ] {
+        let model = compiled(&parallelogram(angle));
+        let run = model.at_declared().expect("an instance");
+        let times: Vec<f64> = (0..=100).map(|k| f64::from(k) * 0.01).collect();
+        for solver in [Solver::Rk, Solver::Radau] {
+            let request = Request {
+                initial: run.initial(),
+                times: &times,
+                inputs: &run.no_inputs(),
+                solver,
+                tolerance: 1e-9,
+            };
+            let motion = run.follow(&request, &mut |_| {}).expect("a motion");
+            let stopped = motion.stopped.expect("a stop");
+            assert!(stopped.reason.contains(named), "{}", stopped.reason);
+            assert!(
+                stopped.reason.contains("singular position"),
+                "{}",
+                stopped.reason
+            );
+            // The cranks fall as one pendulum of two bobs: from 1.2 rad to flat by its energy, with the time
+            // as an integral of 1/rate, substituted so that it is smooth.
+            let (g, a) = (9.81_f64, 0.3_f64);
+            let count = 2000;
+            let flat: f64 = (0..count)
+                .map(|k| {
+                    let u = (f64::from(k) + 0.5) / f64::from(count);
+                    let phi = 1.2 * (1.0 - u * u);
+                    let rate = (2.0 * g / a * (1.2_f64.sin() - phi.sin())).sqrt();
+                    2.0 * 1.2 * u / rate / f64::from(count)
+                })
+                .sum();
+            let t = stopped.t.expect("a time");
+            assert!((t - flat).abs() < 1e-4, "{solver}: {t} {flat}");
+            let rows = motion.trajectory.states.len();
+            assert_eq!(rows, 1 + (flat / 0.01) as usize, "{solver}");
+        }
+    }
+}
+
 #[test]
 fn residuals_decay_at_the_rate_that_is_set() {
     let model = compiled(ROD);

@@ -7,6 +7,7 @@ use std::cell::RefCell;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_model_spec::model::{Constraint, RESIDUAL, STABILISATION_RATE};
 use eomgen_sim::inputs::HeldInputs;
+use nalgebra::DMatrix;
 
 use crate::contacts::first_overlap;
 use crate::driven::Driven;
@@ -20,6 +21,12 @@ const MOST_AT_THE_START: usize = 100;
 
 /// A derivative is a combination of others if this part of it is left beside them.
 const INDEPENDENT: f64 = 1e-9;
+
+/// A combination of constraints' derivatives that is this small beside them is on its way to none.
+const SINGULAR: f64 = 1e-3;
+
+/// A constraint is named with others if its part in their combination is no less beside the largest.
+const TAKES_PART: f64 = 0.1;
 
 /// A constraint that follows from others contradicts them if so much of the residuals is left when
 /// theirs are taken away; less may be their curvature where a motion does not begin on them.
@@ -175,6 +182,60 @@ impl Instance<'_> {
             independent.push(rest);
         }
         Ok(None)
+    }
+
+    /// What is to be said of constraints that are no longer independent of each other at a state to which a motion
+    /// from `initial` has come; nothing where they are.
+    ///
+    /// # Errors
+    /// As [`Instance::evaluator`].
+    pub(crate) fn singular_position(
+        &self,
+        (start, initial): (f64, &[f64]),
+        (t, state): (f64, &[f64]),
+        inputs: &HeldInputs,
+    ) -> Result<Option<String>, Error> {
+        let constraints = &self.model().model().constraints;
+        if constraints.is_empty() || state.iter().any(|entry| !entry.is_finite()) {
+            return Ok(None);
+        }
+        let before = self.gradients(start, initial, &inputs.at(start))?;
+        let here = self.gradients(t, state, &inputs.at(t))?;
+        // In parts of the largest that each derivative was or is, as one may vanish by itself.
+        let sizes = before.iter().zip(&here).map(|(a, b)| norm(a).max(norm(b)));
+        let sizes: Vec<f64> = sizes.collect();
+        let degrees = here.first().map_or(0, Vec::len);
+        let parts = DMatrix::from_fn(here.len(), degrees, |row, column| {
+            here[row][column] / sizes[row]
+        });
+        if parts.iter().any(|part| !part.is_finite()) {
+            return Ok(None);
+        }
+        let held = (&parts * parts.transpose()).symmetric_eigen();
+        let (least, value) = held.eigenvalues.argmin();
+        if value.max(0.0).sqrt() > SINGULAR {
+            return Ok(None);
+        }
+        let combined = held.eigenvectors.column(least);
+        let takes_part =
+            |(_, part): &(&Constraint, &f64)| part.abs() > TAKES_PART * combined.amax();
+        let names = constraints.iter().zip(combined.iter()).filter(takes_part);
+        let names: Vec<String> = names
+            .map(|(constraint, _)| format!("`{}`", constraint.name))
+            .collect();
+        let what = match &names[..] {
+            [one] => {
+                format!("the constraint {one} holds nothing any more, as its derivatives are all 0")
+            }
+            several => format!(
+                "the constraints {} are no longer independent, as the derivative of one is made of those of the others",
+                several.join(", ")
+            ),
+        };
+        Ok(Some(format!(
+            "at t = {t:?} s the motion comes to a singular position: {what} there, and no accelerations follow; \
+             shorten the time, or keep the motion away from there (a stop, another start by --initial)"
+        )))
     }
 
     /// What every constraint is away from zero, in SI.

@@ -206,14 +206,24 @@ impl Instance<'_> {
             Ok(()) => Ok(so_far),
             Err(error) => {
                 let (t, surfaces) = (SolveError::time(&error), system.surfaces());
-                let reason = match system.overlap() {
-                    Some(name) => format!(
+                let cause = self.cause(&error);
+                let ended_at = t.unwrap_or(request.span().0);
+                let singular = match cause {
+                    Cause::NotFinite | Cause::Limit => self.singular_position(
+                        (request.span().0, &initial),
+                        (ended_at, &so_far.trajectory.last),
+                        request.inputs,
+                    )?,
+                    Cause::Switching | Cause::Stiff(_) => None,
+                };
+                let reason = match (system.overlap(), singular) {
+                    (Some(name), _) => format!(
                         "nothing keeps the distance of the impact `{name}` above zero: bodies are \
                          pressed into each other, or hit each other without end"
                     ),
-                    None => self.named(&surfaces, |names| error.named(names)),
+                    (None, Some(reason)) => reason,
+                    (None, None) => self.named(&surfaces, |names| error.named(names)),
                 };
-                let cause = self.cause(&error);
                 stopped(so_far, Stopped { t, reason, cause })
             }
         }

@@ -193,10 +193,10 @@ impl Stepper for Adams {
     }
 
     fn single_step<S: System + ?Sized>(
+        &self,
         watched: &Watched<'_, S>,
         start: &Point,
         length: f64,
-        _: f64,
     ) -> Result<Point, SolveError> {
         single_step(watched, start, length)
     }

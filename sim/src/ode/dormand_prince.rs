@@ -168,10 +168,10 @@ impl Stepper for DormandPrince853 {
     }
 
     fn single_step<S: System + ?Sized>(
+        &self,
         watched: &Watched<'_, S>,
         start: &Point,
         length: f64,
-        _: f64,
     ) -> Result<Point, SolveError> {
         single_step(watched, start, length)
     }

@@ -9,6 +9,7 @@ use super::error::SolveError;
 use super::grazing::{leapt_over, passed_over};
 use super::radau::Radau;
 use super::request;
+use super::resolution::{PARTS, Resolution};
 use super::settings::{Method, Settings};
 use super::stepper::{Outcome, Point, Stepper, refusal};
 use super::stiffness::{Pace, Standing};
@@ -29,6 +30,16 @@ const SWITCHES_AVERAGED: usize = 256;
 /// Times closer to 0 than this part of the span count as so far from it when a step is
 /// judged too short.
 const SMALLEST_TIME: f64 = 1e-6;
+
+/// A step that does not see what switching functions do is shortened so often at most: what is finer is
+/// taken for rounding.
+const MOST_SHORTENED: u32 = 12;
+
+/// And by this at most each time.
+const SHORTENED: f64 = 0.2;
+
+/// In a step that is this short beside the time, times inside are rounding.
+const SHORTEST_SEEN: f64 = 1e-12;
 
 /// Simulates `system` from `initial` over `span` (begin, end; s) and returns the states
 /// at `samples` (s, ascending, inside the span). `progress` is called with the time
@@ -103,12 +114,23 @@ fn run<S: System + ?Sized, M: Stepper>(
         end: span.1,
         recent: VecDeque::with_capacity(SWITCHES_AVERAGED),
         pace: Pace::new(span.0),
+        resolution: Resolution::new(settings.tolerance),
         trajectory,
     };
     driver.sample_start();
     let ended = driver.go_to_the_end(system, progress);
     driver.finish();
     ended
+}
+
+/// What becomes of a step whose error is small enough.
+enum Accepted {
+    /// The motion goes on from its end.
+    Stands,
+    /// It was taken back and is to be made shorter.
+    Shortened,
+    /// It was taken back: so far from its start (s) the motion is beyond a surface.
+    PassedOver(f64),
 }
 
 /// A simulation under way.
@@ -120,6 +142,7 @@ struct Driver<'a, S: System + ?Sized, M: Stepper> {
     end: f64,
     recent: VecDeque<(f64, usize)>,
     pace: Pace,
+    resolution: Resolution,
     trajectory: &'a mut Trajectory,
 }
 
@@ -143,6 +166,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         let next = system.next_breakpoint(begin).filter(|next| *next > begin);
         let until = next.map_or(self.end, |next| next.min(self.end));
         self.watched.see_until(next.unwrap_or(f64::INFINITY));
+        let mut shortened = 0;
         loop {
             self.check_step_size()?;
             let outcome = self.controlled_step(until)?;
@@ -155,10 +179,11 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
                 return self.cross(outcome.length);
             }
             if outcome.is_accepted {
-                return match self.taken_back()? {
-                    Some(length) => self.cross(length),
-                    None => self.accept(begin),
-                };
+                match self.looked_at(outcome.length, shortened < MOST_SHORTENED)? {
+                    Accepted::Shortened => shortened += 1,
+                    Accepted::PassedOver(length) => return self.cross(length),
+                    Accepted::Stands => return self.accept(begin),
+                }
             }
         }
     }
@@ -174,15 +199,62 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         Ok(outcome)
     }
 
-    /// Takes an accepted step back that passed over a surface, and says how far from its start (s)
-    /// the motion is beyond it.
-    fn taken_back(&mut self) -> Result<Option<f64>, SolveError> {
-        let trials = &mut self.trajectory.work.trials;
-        let beyond = passed_over(self.watched, &mut self.stepper, trials)?;
-        if beyond.is_some() {
-            self.stepper.take_back();
+    /// The switching functions at [`PARTS`] of the last step; nothing where the method made none to here, or one
+    /// so short that times inside are rounding.
+    fn glimpses(&mut self) -> Option<[Vec<f64>; 5]> {
+        let (start, end) = (self.stepper.last().clone(), self.stepper.here().clone());
+        let is_short = end.t - start.t <= SHORTEST_SEEN * end.t.abs();
+        if is_short || !self.watched.has_guards() {
+            return None;
         }
-        Ok(beyond)
+        let mut values: [Vec<f64>; 5] = Default::default();
+        for (part, values) in PARTS.into_iter().zip(&mut values) {
+            let t = start.t + part * (end.t - start.t);
+            let state = match part {
+                0.0 => start.y.clone(),
+                1.0 => end.y.clone(),
+                _ => self.stepper.interpolated(t)?,
+            };
+            *values = self.watched.guards_seen(t, &state);
+        }
+        Some(values)
+    }
+
+    /// Takes an accepted step of `length` s back that did not see what switching functions do, for a shorter
+    /// one; else keeps the next one so short that it will.
+    fn shortened(&mut self, values: &[Vec<f64>; 5], length: f64) -> bool {
+        let longest = self
+            .resolution
+            .longest(values, |guard| self.watched.side(guard));
+        let is_seen = longest >= 1.0;
+        if is_seen {
+            let step = self.stepper.step();
+            self.stepper.set_step(step.min(longest * length));
+        } else {
+            self.stepper.take_back();
+            self.stepper.set_step(longest.max(SHORTENED) * length);
+            self.trajectory.work.rejected += 1;
+        }
+        !is_seen
+    }
+
+    /// What became of an accepted step of `length` s; it may be `shortened` first.
+    fn looked_at(&mut self, length: f64, may_shorten: bool) -> Result<Accepted, SolveError> {
+        let Some(values) = self.glimpses() else {
+            return Ok(Accepted::Stands);
+        };
+        if may_shorten && self.shortened(&values, length) {
+            return Ok(Accepted::Shortened);
+        }
+        let trials = &mut self.trajectory.work.trials;
+        let beyond = passed_over(self.watched, &mut self.stepper, &values, trials)?;
+        Ok(match beyond {
+            None => Accepted::Stands,
+            Some(length) => {
+                self.stepper.take_back();
+                Accepted::PassedOver(length)
+            }
+        })
     }
 
     /// Goes to the surface that may lie within `length` of here, and over it.
@@ -207,10 +279,14 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
                     window += found.length - outcome.length;
                     beyond = Vec::new();
                 }
-                if let Some(length) = self.taken_back()? {
-                    window = length.min(0.5 * found.length);
-                    beyond = Vec::new();
-                    continue;
+                match self.looked_at(outcome.length, true)? {
+                    Accepted::Shortened => return Ok(()),
+                    Accepted::PassedOver(length) => {
+                        window = length.min(0.5 * found.length);
+                        beyond = Vec::new();
+                        continue;
+                    }
+                    Accepted::Stands => {}
                 }
                 if self.watched.crossed().is_some() && self.is_beyond(self.stepper.here()) {
                     // Its error led it over.
@@ -237,8 +313,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             self.trajectory.work.trials += 1;
             self.watched.reset();
             // Relying on nothing: what a multistep method remembers holds on the near side only.
-            let tolerance = self.settings.tolerance;
-            let mut point = M::single_step(self.watched, &start, window, tolerance)?;
+            let mut point = self.stepper.single_step(self.watched, &start, window)?;
             if self.is_beyond(&point) {
                 self.watched
                     .cross((start.t, &start.y), point.t, &mut point.y);
@@ -248,9 +323,8 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             // In a step that does not move the time there is nothing to leap over.
             if window > SHORTEST_CONTACT * length && point.t > start.t {
                 let trials = &mut self.trajectory.work.trials;
-                if let Some(ahead) =
-                    leapt_over::<S, M>(self.watched, &start, &point, tolerance, trials)?
-                {
+                let step = (&start, &point);
+                if let Some(ahead) = leapt_over(self.watched, &self.stepper, step, trials)? {
                     // Too short for this step: let shorter ones find it.
                     self.stepper.restart(start, 0.25 * ahead);
                     return Ok(());

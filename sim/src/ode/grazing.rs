@@ -1,7 +1,7 @@
 //! What an accepted step may have passed over: a switching function that changes sign and changes
 //! back between the places where the step was evaluated.
 //!
-//! The switching functions at both ends and in the middle of the step give a parabola each. Where
+//! The switching functions where they are lowest of five times in the step give a parabola each. Where
 //! one comes close to zero in between, or beyond, the motion itself is asked there, and again
 //! beside the lowest value found until nothing lower is to be expected. This is the search for
 //! turning points of the event functions that Shampine and Thompson recommend ("Event location
@@ -10,12 +10,17 @@
 //! than once within a step.
 
 use super::error::SolveError;
+use super::resolution::PARTS;
 use super::stepper::{Point, Stepper};
 use super::system::System;
 use super::watch::Watched;
 
 /// The motion is asked where a parabola promises less than this part of the lowest value known.
 const WORTH_A_LOOK: f64 = 0.5;
+
+/// A parabola through three of equally spaced values is off between them by less than this part of the third
+/// difference.
+const DOUBT: f64 = 0.1;
 
 /// Negative values up to this part of the highest one in a step may be rounding.
 const ROUNDING: f64 = 1e-12;
@@ -32,8 +37,8 @@ struct Sample {
 }
 
 /// How far from its start (s) the last step of `stepper`, which was accepted, was beyond a surface
-/// that it neither began nor ended beyond; `None` if it was not. `trials` counts the states that
-/// the stepper computes for it.
+/// that it neither began nor ended beyond; `None` if it was not. The switching functions have these values at
+/// [`PARTS`] of the step. `trials` counts the states that the stepper computes for it.
 ///
 /// # Errors
 ///
@@ -41,69 +46,77 @@ struct Sample {
 pub fn passed_over<S: System + ?Sized, M: Stepper>(
     watched: &Watched<'_, S>,
     stepper: &mut M,
+    values: &[Vec<f64>; 5],
     trials: &mut u64,
 ) -> Result<Option<f64>, SolveError> {
-    if !watched.has_guards() {
-        return Ok(None);
-    }
-    let (start, end) = (stepper.last().clone(), stepper.here().clone());
-    let t = start.t + 0.5 * (end.t - start.t);
-    let Some(y) = stepper.interpolated(t) else {
-        return Ok(None);
-    };
-    let middle = Point { t, y };
-    let begin = start.t;
-    search(watched, &[start, middle, end], &mut |at| {
+    let (begin, end) = (stepper.last().t, stepper.here().t);
+    let mut after = |length: f64| {
         *trials += 1;
-        let t = begin + at;
+        let t = begin + length;
         let y = stepper.inside(watched, t)?;
         Ok(Point { t, y })
-    })
+    };
+    let samples = |guard: usize, side: f64| {
+        let value = |place: usize| side * values[place][guard];
+        let lowest = (1..PARTS.len()).fold(0, |lowest, place| match value(place) < value(lowest) {
+            true => place,
+            false => lowest,
+        });
+        let middle = lowest.clamp(1, PARTS.len() - 2);
+        let third = |from: usize| {
+            (value(from + 3) - value(from) - 3.0 * (value(from + 2) - value(from + 1))).abs()
+        };
+        let samples = [middle - 1, middle, middle + 1].map(|place| Sample {
+            at: PARTS[place],
+            value: value(place),
+        });
+        (samples, DOUBT * third(0).max(third(1)))
+    };
+    search(watched, end - begin, values[0].len(), samples, &mut after)
 }
 
-/// The same for one step of a method from `start` to `end`, whatever its error; `tolerance` is for
-/// what has to be solved for.
+/// The same for one step of a method from `start` to `end`, whatever its error.
 ///
 /// # Errors
 ///
 /// As for [`passed_over`].
 pub fn leapt_over<S: System + ?Sized, M: Stepper>(
     watched: &Watched<'_, S>,
-    start: &Point,
-    end: &Point,
-    tolerance: f64,
+    stepper: &M,
+    (start, end): (&Point, &Point),
     trials: &mut u64,
 ) -> Result<Option<f64>, SolveError> {
     let mut after = |length: f64| {
         *trials += 1;
-        M::single_step(watched, start, length, tolerance)
+        stepper.single_step(watched, start, length)
     };
-    let middle = after(0.5 * (end.t - start.t))?;
-    search(watched, &[start.clone(), middle, end.clone()], &mut after)
+    let length = end.t - start.t;
+    let middle = after(0.5 * length)?;
+    let points = [start, &middle, end];
+    let values = points.map(|point| watched.guards_at(point.t, &point.y));
+    let samples = |guard: usize, side: f64| {
+        let parts = [0.0, 0.5, 1.0];
+        let samples = [0, 1, 2].map(|place| Sample {
+            at: parts[place],
+            value: side * values[place][guard],
+        });
+        (samples, 0.0)
+    };
+    search(watched, length, values[0].len(), samples, &mut after)
 }
 
-/// How far from its start (s) a motion through three `points`, the second of which halves the
-/// time, is beyond a surface; `after` computes the point so far from the start.
+/// How far from its start (s) a motion in a step of `length` s is beyond a surface, given the `samples` of each of
+/// so many functions on a side and by how much their parabola may be off; `after` computes the point so far from the start.
 fn search<S: System + ?Sized>(
     watched: &Watched<'_, S>,
-    points: &[Point; 3],
+    length: f64,
+    guards: usize,
+    samples: impl Fn(usize, f64) -> ([Sample; 3], f64),
     after: &mut impl FnMut(f64) -> Result<Point, SolveError>,
 ) -> Result<Option<f64>, SolveError> {
-    let length = points[2].t - points[0].t;
-    let guards = points
-        .each_ref()
-        .map(|point| watched.guards_at(point.t, &point.y));
-    for guard in 0..guards[0].len() {
+    for guard in 0..guards {
         let side = watched.side(guard);
-        let sample = |at, values: &[f64]| Sample {
-            at,
-            value: side * values[guard],
-        };
-        let samples = [
-            sample(0.0, &guards[0]),
-            sample(0.5, &guards[1]),
-            sample(1.0, &guards[2]),
-        ];
+        let (samples, doubt) = samples(guard, side);
         let highest = samples
             .map(|sample| sample.value)
             .into_iter()
@@ -118,7 +131,7 @@ fn search<S: System + ?Sized>(
             let is_beyond = value < -negligible || watched.crossed().is_some();
             Ok((!is_beyond).then_some(value))
         };
-        if let Some(at) = beyond(samples, &mut look)? {
+        if let Some(at) = beyond(samples, doubt, &mut look)? {
             return Ok(Some(at * length));
         }
     }
@@ -129,10 +142,11 @@ fn search<S: System + ?Sized>(
 /// `None` where it is beyond.
 fn beyond(
     mut samples: [Sample; 3],
+    doubt: f64,
     look: &mut impl FnMut(f64) -> Result<Option<f64>, SolveError>,
 ) -> Result<Option<f64>, SolveError> {
     for _ in 0..MOST_LOOKS {
-        let Some(at) = next_look(&samples) else {
+        let Some(at) = next_look(&samples, doubt) else {
             return Ok(None);
         };
         let Some(value) = look(at)? else {
@@ -143,8 +157,8 @@ fn beyond(
     Ok(None)
 }
 
-/// Where within three samples to look for something negative, if anywhere.
-fn next_look(samples: &[Sample; 3]) -> Option<f64> {
+/// Where within three samples, whose parabola may be off by `doubt`, to look for something negative, if anywhere.
+fn next_look(samples: &[Sample; 3], doubt: f64) -> Option<f64> {
     let [a, b, c] = *samples;
     let lowest = a.value.min(b.value).min(c.value);
     if lowest < 0.0 {
@@ -160,7 +174,7 @@ fn next_look(samples: &[Sample; 3]) -> Option<f64> {
     let at = 0.5 * (a.at + b.at - before / curvature);
     let is_inside = a.at < at && at < c.at && at != b.at;
     let value = a.value + (at - a.at) * (before + (at - b.at) * curvature);
-    (is_inside && value < WORTH_A_LOOK * lowest).then_some(at)
+    (is_inside && value < (WORTH_A_LOOK * lowest).max(doubt)).then_some(at)
 }
 
 /// The three of four samples that stand around the lowest.
@@ -188,7 +202,7 @@ mod tests {
             at,
             value: function(at),
         });
-        let found = beyond(samples, &mut |at| {
+        let found = beyond(samples, 0.0, &mut |at| {
             looks += 1;
             Ok(Some(function(at)).filter(|value| *value >= 0.0))
         });

@@ -2,6 +2,9 @@
 
 use super::settings::SMALLEST_MAGNITUDE;
 
+/// What rounding is, in units of the last place.
+const ROUNDING: f64 = 10.0;
+
 /// The largest magnitude of each component so far, and the tolerance relative to it.
 pub struct Magnitudes {
     largest: Vec<f64>,
@@ -14,6 +17,18 @@ impl Magnitudes {
         Self {
             largest: vec![SMALLEST_MAGNITUDE; states],
             tolerance,
+        }
+    }
+
+    /// Components that have not moved yet, none so small that the rounding of what it has been counts: what
+    /// has come to rest is small, and its rounding is not.
+    pub fn afresh(&self) -> Self {
+        let roundings = ROUNDING * f64::EPSILON / self.tolerance;
+        let largest = self.largest.iter();
+        let largest = largest.map(|largest| SMALLEST_MAGNITUDE.max(roundings * largest));
+        Self {
+            largest: largest.collect(),
+            tolerance: self.tolerance,
         }
     }
 

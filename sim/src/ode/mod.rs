@@ -5,8 +5,8 @@
 //! Dormand-Prince method of order 8 (`dormand_prince`) or of Adams' method of variable
 //! order (`adams`, of `attempt`s that continue a `history`), or of Radau's implicit method of order 5
 //! for stiff systems (`radau`, each a `collocation`); `crossing` approaches a switching
-//! surface by steps that stay on one side and then steps over it, and `grazing` finds what a step
-//! passed over; `driver` strings these
+//! surface by steps that stay on one side and then steps over it, `grazing` finds what a step
+//! passed over, and `resolution` keeps steps so short that they see what switching functions do; `driver` strings these
 //! together into a [`Trajectory`], `stiffness` being asked whether there will be an end; an
 //! `error` says why there is none, with `names`. A step therefore never averages over a kink or a jump
 //! of the right-hand side, which is what ruins the order of a method applied blindly.
@@ -42,6 +42,7 @@ mod magnitudes;
 mod names;
 mod radau;
 mod request;
+mod resolution;
 pub mod runge_kutta;
 mod settings;
 mod stepper;

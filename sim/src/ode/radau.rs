@@ -183,7 +183,7 @@ impl Stepper for Radau {
         watched: &Watched<'_, S>,
         length: f64,
     ) -> Result<Point, SolveError> {
-        Self::single_step(watched, &self.here, length, self.magnitudes.tolerance())
+        self.single_step(watched, &self.here, length)
     }
 
     fn interpolated(&mut self, t: f64) -> Option<Vec<f64>> {
@@ -199,18 +199,18 @@ impl Stepper for Radau {
         if let Some(state) = self.interpolated(t) {
             return Ok(state);
         }
-        let (after, tolerance) = (t - self.last.t, self.magnitudes.tolerance());
-        Ok(Self::single_step(watched, &self.last, after, tolerance)?.y)
+        let after = t - self.last.t;
+        Ok(self.single_step(watched, &self.last, after)?.y)
     }
 
     fn single_step<S: System + ?Sized>(
+        &self,
         watched: &Watched<'_, S>,
         start: &Point,
         length: f64,
-        tolerance: f64,
     ) -> Result<Point, SolveError> {
         let end = start.t + length;
-        let mut magnitudes = Magnitudes::new(start.y.len(), tolerance);
+        let mut magnitudes = self.magnitudes.afresh();
         let mut point = start.clone();
         // In parts that are halves of halves, so that they add up to one exactly.
         let (mut part, mut done, mut refused) = (1.0, 0.0, 0);

@@ -77,13 +77,13 @@ pub trait Stepper: Sized {
     ) -> Result<Vec<f64>, SolveError>;
 
     /// The point that a step of exactly `length` s leads to from `start`, whatever its error and
-    /// without relying on what came before; what has to be solved for is as accurate as
-    /// `tolerance` asks. Where that is hard, it may end earlier, beyond a switching surface.
+    /// without relying on where the steps before led; what has to be solved for is as accurate as in
+    /// those. Where that is hard, it may end earlier, beyond a switching surface.
     fn single_step<S: System + ?Sized>(
+        &self,
         watched: &Watched<'_, S>,
         start: &Point,
         length: f64,
-        tolerance: f64,
     ) -> Result<Point, SolveError>;
 }
 

@@ -141,6 +141,11 @@ impl<'a, S: System + ?Sized> Watched<'a, S> {
         guards
     }
 
+    /// The same where nothing jumps yet at the end of a step; see [`Watched::see_until`].
+    pub fn guards_seen(&self, t: f64, y: &[f64]) -> Vec<f64> {
+        self.guards_at(self.seen(t), y)
+    }
+
     /// Whether switching function `guard` with value `value` is beyond its surface.
     pub fn is_beyond(&self, guard: usize, value: f64) -> bool {
         self.side(guard) * value < 0.0

@@ -26,6 +26,8 @@ pub(super) struct Adjacent {
     pub saltation: Option<usize>,
     /// Whether the functions of other families may jump in the transition.
     pub moves_others: bool,
+    /// Whether the motion stands on other surfaces there, so that what happens is decided for all together.
+    pub meets_others: bool,
 }
 
 impl Propagator {
@@ -61,6 +63,7 @@ impl Propagator {
             jumps,
             saltation,
             moves_others: held || self.moves_others(before, regime, family),
+            meets_others: (held || jumps) && self.met(limit).len() > 1,
         };
         self.regimes[before].adjacent[event_function][usize::from(upper)] = Some(adjacent);
         Ok(adjacent)

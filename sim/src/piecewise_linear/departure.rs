@@ -6,7 +6,6 @@
 //! and so on. So the state is put onto the surface, and until the function is farther away than
 //! rounding can have brought it, `flow` takes what it does within that for none.
 
-use super::parallel_guards::Cell;
 use super::propagator::{Motion, Propagator};
 
 impl Propagator {
@@ -19,10 +18,10 @@ impl Propagator {
                 continue;
             }
             motion.departing.retain(|departing| *departing != family);
-            let (rank, departs) = match pair {
-                (_, Cell::On(rank)) => (*rank, false),
-                (Cell::On(rank), _) => (*rank, true),
-                _ => continue,
+            let (rank, departs) = match (pair.0.standing_on(), pair.1.standing_on()) {
+                (_, Some(rank)) => (rank, false),
+                (Some(rank), None) => (rank, true),
+                (None, None) => continue,
             };
             let function = &after.functions[family];
             if function.is_still() {

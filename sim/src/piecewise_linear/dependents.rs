@@ -171,6 +171,6 @@ impl Propagator {
 fn is_beside(cell: Cell, rank: usize) -> bool {
     match cell {
         Cell::Between(above) => above == rank || above == rank + 1,
-        Cell::On(on) => on == rank,
+        Cell::On(on) | Cell::Bearing(on, _) => on == rank,
     }
 }

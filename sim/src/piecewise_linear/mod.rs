@@ -11,7 +11,7 @@
 //! `cluster_flow` (the motion in a regime), `bounds` and `search` (the next switch, which
 //! cannot be missed), `clock` (with `error_free`), `visited` and `adjacent` (which regimes there are, and which border on each other),
 //! `outline`, `coincidence`, `dependents` and `transition` (surfaces that feel the sides of others),
-//! `switching`, `departure` (from a surface that held the motion), [`propagator`] (from switch to
+//! `standing_on` (several at once), `switching`, `departure` (from a surface that held the motion), [`propagator`] (from switch to
 //! switch),
 //! `follow` (to a time, with samples), `simulate`; for neighbouring motions `saltation`,
 //! `tangent`, [`neighbours`] and [`lyapunov`].
@@ -54,6 +54,7 @@ mod search;
 mod simd_vectors;
 mod simulate;
 mod sliding;
+mod standing_on;
 mod step_table;
 mod switching;
 mod tangent;

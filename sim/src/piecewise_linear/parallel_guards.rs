@@ -20,6 +20,9 @@ pub(super) enum Cell {
     Between(usize),
     /// Held on the threshold of this rank.
     On(usize),
+    /// On the threshold of this rank, where others hold the motion, and on its upper side or not: it bears all it
+    /// can.
+    Bearing(usize, bool),
 }
 
 impl Cell {
@@ -28,8 +31,16 @@ impl Cell {
         match (self, upper) {
             (Self::Between(above), true) => Self::Between(above + 1),
             (Self::Between(above), false) => Self::Between(above - 1),
-            (Self::On(rank), true) => Self::Between(rank + 1),
-            (Self::On(rank), false) => Self::Between(rank),
+            (Self::On(rank) | Self::Bearing(rank, _), true) => Self::Between(rank + 1),
+            (Self::On(rank) | Self::Bearing(rank, _), false) => Self::Between(rank),
+        }
+    }
+
+    /// The rank of the threshold that the motion stands on, if it stands on one.
+    pub fn standing_on(self) -> Option<usize> {
+        match self {
+            Self::Between(_) => None,
+            Self::On(rank) | Self::Bearing(rank, _) => Some(rank),
         }
     }
 }
@@ -69,7 +80,8 @@ impl ParallelGuards {
             let side = match cell {
                 Cell::Between(above) => f64::from(u8::from(rank < above)),
                 Cell::On(on) if on == rank => held,
-                Cell::On(on) => f64::from(u8::from(rank < on)),
+                Cell::Bearing(on, upper) if on == rank => f64::from(u8::from(upper)),
+                Cell::On(on) | Cell::Bearing(on, _) => f64::from(u8::from(rank < on)),
             };
             for guard in guards {
                 sides[*guard] = side;

@@ -8,9 +8,16 @@ use nalgebra::{DMatrix, DVector};
 
 use super::event_function::Linear;
 use super::parallel_guards::{Cell, ParallelGuards};
+use crate::sliding_modes::DEPENDENT;
 
 /// What is left of a jump that is constant on its surface, relative.
 const ROUNDING: f64 = 1e-11;
+
+/// What is left of the rate of a function that is held, relative.
+const HELD: f64 = 1e-9;
+
+/// A function has a state of its own beside others if it feels it with no less than this part of its largest factor.
+const ALONE: f64 = 1e-6;
 
 /// A regime held on surfaces.
 pub(super) struct Sliding {
@@ -97,7 +104,7 @@ fn jump(
 fn combine(below: AffineSystem, rows: &[DVector<f64>], jumps: &[DVector<f64>]) -> Option<Sliding> {
     let held = rows.len();
     let projected = DMatrix::from_fn(held, held, |i, j| rows[i].dot(&jumps[j]));
-    let inverse = projected.try_inverse()?;
+    let (inverse, are_dependent) = inverted(&projected)?;
     // parts = -inverse rows f_below.
     let weights = DMatrix::from_fn(held, below.states, |i, state| {
         -(0..held)
@@ -116,7 +123,7 @@ fn combine(below: AffineSystem, rows: &[DVector<f64>], jumps: &[DVector<f64>]) -
             })
             .collect()
     };
-    let parts: Vec<Linear> = (0..held)
+    let mut parts: Vec<Linear> = (0..held)
         .map(|part| Linear {
             state: DVector::from_vec(of(&rates.state, part)),
             inputs: of(&rates.inputs, part),
@@ -125,6 +132,13 @@ fn combine(below: AffineSystem, rows: &[DVector<f64>], jumps: &[DVector<f64>]) -
             constant: of(&rates.constant, part)[0],
         })
         .collect();
+    if are_dependent {
+        // Of all shares that hold, those with the smallest signs.
+        let halves = &inverse * projected.column_sum() * 0.5;
+        for (part, half) in parts.iter_mut().zip(&halves) {
+            part.constant += 0.5 - half;
+        }
+    }
     let mut system = below.clone();
     for (part, jump) in parts.iter().zip(jumps) {
         let add = |block: &mut [f64], row: &[f64]| {
@@ -141,19 +155,89 @@ fn combine(below: AffineSystem, rows: &[DVector<f64>], jumps: &[DVector<f64>]) -
         add(&mut system.rates.cosines, &part.cosines);
         add(&mut system.rates.constant, &[part.constant]);
     }
-    for row in rows {
-        hold(&mut system, row);
+    if are_dependent && !rows.iter().all(|row| is_held(&system, &below, row)) {
+        return None;
     }
+    hold(&mut system, rows, jumps);
     Some(Sliding { system, parts })
 }
 
-/// Where one state alone is held, its rate is zero without rounding.
-fn hold(system: &mut AffineSystem, row: &DVector<f64>) {
-    let mut felt = row.iter().enumerate().filter(|(_, entry)| **entry != 0.0);
-    let (Some((state, _)), None) = (felt.next(), felt.next()) else {
-        return;
-    };
+/// The inverse of what the jumps do to the functions held, or its pseudoinverse where some of these follow
+/// from others, and whether they do.
+fn inverted(projected: &DMatrix<f64>) -> Option<(DMatrix<f64>, bool)> {
+    if projected.iter().any(|entry| !entry.is_finite()) {
+        return None;
+    }
+    let values = projected.singular_values();
+    let smallest = DEPENDENT * values.max();
+    if values.min() > smallest {
+        return Some((projected.clone().try_inverse()?, false));
+    }
+    let inverse = projected.clone().pseudo_inverse(smallest);
+    Some((inverse.ok()?, true))
+}
+
+/// Whether a function keeps its value, up to rounding.
+fn is_held(system: &AffineSystem, below: &AffineSystem, row: &DVector<f64>) -> bool {
+    let pairs = blocks(&system.rates).into_iter().zip(blocks(&below.rates));
+    let mut pairs = pairs.map(|(block, below)| (block, block.iter().chain(below)));
+    pairs.all(|(block, all)| {
+        let width = block.len() / row.len().max(1);
+        let size = all.fold(0.0_f64, |most, entry| most.max(entry.abs())) * row.amax();
+        (0..width).all(|column| {
+            let rate: f64 = (0..row.len())
+                .map(|state| row[state] * block[state * width + column])
+                .sum();
+            rate.abs() <= HELD * size
+        })
+    })
+}
+
+fn blocks(rates: &AffineRows) -> [&Vec<f64>; 5] {
+    [
+        &rates.state,
+        &rates.inputs,
+        &rates.sines,
+        &rates.cosines,
+        &rates.constant,
+    ]
+}
+
+/// Takes the rounding out of the rates that are held: of each function one state that the surfaces move has the
+/// rate that the others leave it, which is none where it is alone.
+fn hold(system: &mut AffineSystem, rows: &[DVector<f64>], jumps: &[DVector<f64>]) {
     let states = system.states;
+    let moved: Vec<usize> = (0..states)
+        .filter(|state| jumps.iter().any(|jump| jump[*state] != 0.0))
+        .collect();
+    // Each row less the others until it has a state of its own (Gauss and Jordan).
+    let mut left = rows.to_vec();
+    let mut own: Vec<(usize, DVector<f64>)> = Vec::new();
+    while let Some(row) = left.pop() {
+        let size = row.amax();
+        let row = own
+            .iter()
+            .fold(row, |row, (state, known)| &row - known * row[*state]);
+        let largest = moved
+            .iter()
+            .copied()
+            .max_by(|a, b| row[*a].abs().total_cmp(&row[*b].abs()));
+        let Some(state) = largest.filter(|state| row[*state].abs() > ALONE * size) else {
+            continue;
+        };
+        let row = row.map(|entry| {
+            if entry.abs() > ROUNDING * size {
+                entry
+            } else {
+                0.0
+            }
+        });
+        let row = &row / row[state];
+        for (_, known) in &mut own {
+            *known -= &row * known[state];
+        }
+        own.push((state, row));
+    }
     let rates = &mut system.rates;
     let blocks = [
         &mut rates.state,
@@ -164,6 +248,14 @@ fn hold(system: &mut AffineSystem, row: &DVector<f64>) {
     ];
     for block in blocks {
         let width = block.len() / states;
-        block[state * width..(state + 1) * width].fill(0.0);
+        for column in 0..width {
+            for (state, row) in &own {
+                let others = (0..states).filter(|other| other != state && row[*other] != 0.0);
+                let rate: f64 = others
+                    .map(|other| row[other] * block[other * width + column])
+                    .sum();
+                block[state * width + column] = -rate;
+            }
+        }
     }
 }

@@ -42,11 +42,12 @@ impl Limit {
         match (cell, self.upper) {
             (Cell::Between(above), true) => (above, true),
             (Cell::Between(above), false) => (above - 1, false),
-            (Cell::On(rank), upper) => (rank, upper),
+            (Cell::On(rank) | Cell::Bearing(rank, _), upper) => (rank, upper),
         }
     }
 
-    fn outward(&self) -> f64 {
+    /// To which side of the surface it leads, 1 or -1.
+    pub fn outward(&self) -> f64 {
         if self.upper { 1.0 } else { -1.0 }
     }
 }
@@ -77,7 +78,13 @@ impl Propagator {
             saltation: adjacent.saltation,
             moves_others: adjacent.moves_others,
         };
-        if adjacent.jumps && !limit.by_jump {
+        if adjacent.meets_others
+            && let Some(cells) = self.decided_together(limit, standing)
+        {
+            transition.after = self.regime(&cells, limit.t)?;
+            transition.saltation = None;
+            transition.moves_others = true;
+        } else if adjacent.jumps && !limit.by_jump {
             let Standing {
                 state,
                 inputs,

@@ -72,6 +72,7 @@ impl Propagator {
                     };
                     (function, limits)
                 }
+                Cell::Bearing(..) => (functions[index].clone(), Limits::none(index)),
                 Cell::On(_) => (
                     parts.remove(0),
                     Limits {
@@ -169,6 +170,16 @@ impl Propagator {
             return self.regime(&cells, clock.time());
         }
         let (mut cells, tied) = self.cells_at(state, inputs, &phases);
+        if tied.len() > 1 {
+            let standing = Standing {
+                state,
+                inputs,
+                phases: &phases,
+            };
+            if let Some(cells) = self.begun_together(&cells, &tied, standing) {
+                return self.regime(&cells, clock.time());
+            }
+        }
         let mut found = self.regime(&cells, clock.time())?;
         for (family, rank) in tied {
             let mut side = |propagator: &mut Self, cell: Cell| {

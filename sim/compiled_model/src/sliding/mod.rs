@@ -2,21 +2,20 @@
 //! where v is zero, and is there what keeps v at zero, if one of these does (A. F. Filippov; for
 //! friction, J. J. Moreau).
 //!
-//! `decision` (which of several surfaces hold), `sided` (the model with the sides of its surfaces
+//! Which of several surfaces hold is decided in [`eomgen_sim::sliding_modes`]; `sided` (the model with the sides of its surfaces
 //! given), `observed` (what a motion's observables are at rest). Here is what becomes of surfaces while
 //! a motion goes on: caught where it reaches them, it is let go where the force that holds has
 //! reached what the surface can bear. There the function and its rate are zero up to rounding, which must not
 //! decide: the surface is moved by as much as rounding is until the motion has left it.
 
-mod decision;
 mod observed;
 mod sided;
 
 pub(crate) use observed::Observed;
 pub use sided::Sided;
 
-use decision::{Arrival, Verdict};
 use eomgen_sim::ode::SMALLEST_MAGNITUDE;
+use eomgen_sim::sliding_modes::{Arrival, Verdict};
 
 /// How far a function may move from a surface that holds it before the state is put back, beside the
 /// largest it has been.
@@ -188,13 +187,14 @@ impl Sliding {
         let mut touching = Vec::new();
         let mut arrivals = Vec::new();
         let overcome = self.overcome((t, state), inputs);
+        let came_from = self.came_from(&near);
         for (surface, place) in self.places.iter().enumerate() {
             let (from, to) = (near[surface], beyond[surface]);
             let moved = match place {
                 Place::Leaving { side, moved } => side * moved,
                 _ => 0.0,
             };
-            let is_crossed = (from + moved) * (to + moved) < 0.0;
+            let is_crossed = came_from[surface] * (to + moved) < 0.0;
             let near = NEAR * (to - from).abs();
             let near = near.min(NEAREST * self.sizes[surface]) + roundings[surface];
             let is_near = to.abs() <= near;
@@ -202,10 +202,9 @@ impl Sliding {
                 is_new |= is_crossed && !place.is_on();
                 touching.push(surface);
                 arrivals.push(overcome[surface].unwrap_or(Arrival {
-                    side: if is_crossed {
-                        to.signum()
-                    } else {
-                        from.signum()
+                    side: match is_crossed {
+                        true => -came_from[surface],
+                        false => came_from[surface],
                     },
                     is_overcome: false,
                 }));
@@ -214,8 +213,25 @@ impl Sliding {
         if !is_new && overcome.iter().all(Option::is_none) {
             return;
         }
-        self.settle((t, state), inputs, (&touching, &arrivals), &near);
+        self.settle((t, state), inputs, (&touching, &arrivals), &came_from);
         self.put_back((t, state), inputs, true);
+    }
+
+    /// The sides, -1 or 1, on which the motion was where the functions had these values. One that came to a
+    /// surface exactly has the side that it came from.
+    fn came_from(&self, near: &[f64]) -> Vec<f64> {
+        let kept = |surface: usize| self.kept.as_ref().map(|kept| kept[surface]);
+        let side = |(surface, value): (usize, &f64)| {
+            let moved = match self.places[surface] {
+                Place::Leaving { side, moved } => side * moved,
+                _ => 0.0,
+            };
+            match kept(surface).filter(|side| *side != 0.0) {
+                Some(side) if value + moved == 0.0 => side,
+                _ => (value + moved).signum(),
+            }
+        };
+        near.iter().enumerate().map(side).collect()
     }
 
     /// Brings a state that has strayed back onto what holds it; how many evaluations that took.

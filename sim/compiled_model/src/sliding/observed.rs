@@ -4,9 +4,9 @@
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::Trajectory;
+use eomgen_sim::sliding_modes::Arrival;
 
 use super::Sided;
-use super::decision::Arrival;
 
 /// A state this near to a surface, beside the largest that its function is in the motion, is on it.
 const ON: f64 = 1e-10;

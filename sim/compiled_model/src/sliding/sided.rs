@@ -2,9 +2,8 @@
 //! observables that follow.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point, SlidingAt};
+use eomgen_sim::sliding_modes::{Arrival, Rates, Verdict, decide, least};
 use nalgebra::{DMatrix, DVector};
-
-use super::decision::{Arrival, Rates, Verdict, decide, least};
 
 /// Newton's iterations where the rates are not of first degree in the sides.
 const ITERATIONS: usize = 20;

@@ -1,4 +1,4 @@
-//! Which of several surfaces hold a motion that stands on them.
+//! Which of several switching surfaces hold a motion that stands on them: its sliding mode (A. F. Filippov).
 //!
 //! With s_i between -1 and 1 in the place of sign(g_i) the rates are g' = c + W s. A surface holds
 //! the motion where its rate is zero, and lets it go to the side s_i = 1 or -1 where its rate leads
@@ -11,7 +11,7 @@ use nalgebra::{DMatrix, DVector};
 const ROUNDING: f64 = 1e-10;
 
 /// Singular values that are this small beside the largest belong to surfaces that follow from others.
-const DEPENDENT: f64 = 1e-10;
+pub const DEPENDENT: f64 = 1e-10;
 
 /// So many changes for each surface take that of the largest error, then the first one is taken,
 /// which comes to an end (K. G. Murty, *Linear Complementarity*, chapter 11).
@@ -22,7 +22,7 @@ const MOST_TO_TRY: usize = 7;
 
 /// What a surface does to a motion that stands on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Verdict {
+pub enum Verdict {
     /// It holds it, with this number in the place of the sign.
     Holds(f64),
     /// It bears all it can to this side, and the motion stays, as other surfaces hold it.
@@ -42,21 +42,24 @@ impl Verdict {
 
 /// How a motion comes to stand on a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Arrival {
+pub struct Arrival {
     /// The side to which it goes, -1 or 1, where the surface cannot hold it.
     pub side: f64,
     /// Whether the surface held it so far and would have to bear more than it can to this side.
     pub is_overcome: bool,
 }
 
-/// g' = c + W s.
-pub(super) struct Rates {
+/// The rates of the functions g that the surfaces are the zeros of, g' = c + W s, where s stands in the place of
+/// their signs.
+pub struct Rates {
+    /// W, in the unit of each row's function per second.
     pub w: DMatrix<f64>,
+    /// c, in the same units.
     pub c: DVector<f64>,
 }
 
 /// What each surface does to a motion that came to them so. Nothing where no answer was found.
-pub(super) fn decide(rates: &Rates, arrivals: &[Arrival]) -> Option<Vec<Verdict>> {
+pub fn decide(rates: &Rates, arrivals: &[Arrival]) -> Option<Vec<Verdict>> {
     let count = arrivals.len();
     let begins = |(i, arrival): (usize, &Arrival)| {
         (arrival.is_overcome || !rates.may_hold(i)).then_some(arrival.side)
@@ -180,7 +183,7 @@ fn held(sides: &[Option<f64>]) -> Vec<usize> {
 }
 
 /// The smallest x with W x = b, or with as small a difference as there can be.
-pub(super) fn least(w: DMatrix<f64>, b: DVector<f64>) -> DVector<f64> {
+pub fn least(w: DMatrix<f64>, b: DVector<f64>) -> DVector<f64> {
     if b.len() <= 1 {
         let divided = b.zip_map(&w.column_sum(), |b, w| b / w);
         return divided.map(|x| if x.is_finite() { x } else { 0.0 });

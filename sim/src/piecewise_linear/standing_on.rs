@@ -1,0 +1,236 @@
+//! Several surfaces that a motion stands on at once, as two bodies do that rub at the ground and against each
+//! other: what each of them does hangs on the others, and is decided for all together.
+//!
+//! A function that follows from those that are held keeps its value as they do: it comes to its threshold with
+//! the last of them, and stands there as long as they hold, whether its own surface holds or bears all it can.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::dependents::Standing;
+use super::event_function::Linear;
+use super::parallel_guards::Cell;
+use super::propagator::Propagator;
+use super::transition::Limit;
+use crate::sliding_modes::{Arrival, Rates, Verdict, decide, least};
+
+/// What is left of a function that follows from others, and of its threshold, relative.
+const FOLLOWS: f64 = 1e-10;
+
+/// What is left of rates that are the sum of what the sides of each surface make of them, relative.
+const ADDS_UP: f64 = 1e-9;
+
+/// What a surface changes in a rate is rounding if it is this small beside its terms.
+const ROUNDING: f64 = 1e-12;
+
+/// A surface that a motion stands on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct StoodOn {
+    pub family: usize,
+    pub rank: usize,
+    pub arrival: Arrival,
+}
+
+impl Propagator {
+    /// The surfaces that the motion stands on at a limit.
+    pub(super) fn met(&self, limit: &Limit) -> Vec<StoodOn> {
+        let visited = &self.regimes[limit.before];
+        let rank = limit.rank(visited.cells[limit.family]).0;
+        let is_held = matches!(visited.cells[limit.family], Cell::On(_));
+        let mut met = vec![StoodOn {
+            family: limit.family,
+            rank,
+            arrival: Arrival {
+                side: limit.outward(),
+                is_overcome: is_held,
+            },
+        }];
+        for (family, cell) in visited.cells.iter().enumerate() {
+            if let Some(rank) = cell.standing_on().filter(|_| family != limit.family) {
+                let side = if *cell == Cell::Bearing(rank, false) {
+                    -1.0
+                } else {
+                    1.0
+                };
+                let arrival = Arrival {
+                    side,
+                    is_overcome: false,
+                };
+                met.push(StoodOn {
+                    family,
+                    rank,
+                    arrival,
+                });
+            }
+        }
+        let known = met.clone();
+        let functions = known.iter().map(|on| &visited.functions[on.family]);
+        let functions: Vec<DVector<f64>> = functions.map(coefficients).collect();
+        for (family, cell) in visited.cells.iter().enumerate() {
+            let Cell::Between(above) = *cell else {
+                continue;
+            };
+            if known.iter().any(|on| on.family == family) {
+                continue;
+            }
+            let Some(factors) = combined(&functions, &coefficients(&visited.functions[family]))
+            else {
+                continue;
+            };
+            let threshold = |family: usize, rank: usize| {
+                self.families[family].threshold(&visited.regime.system, rank)
+            };
+            let terms = known.iter().zip(&factors);
+            let terms = terms.map(|(on, factor)| factor * threshold(on.family, on.rank));
+            let (value, size) = terms.fold((0.0, 0.0_f64), |(sum, size), term| {
+                (sum + term, size + term.abs())
+            });
+            let ranks = above.saturating_sub(1)..(above + 1).min(self.families[family].ranks.len());
+            let met_at = |rank: &usize| {
+                (threshold(family, *rank) - value).abs() <= FOLLOWS * size.max(value.abs())
+            };
+            if let Some(rank) = ranks.clone().find(met_at) {
+                let side = if above == rank { 1.0 } else { -1.0 };
+                let arrival = Arrival {
+                    side,
+                    is_overcome: false,
+                };
+                met.push(StoodOn {
+                    family,
+                    rank,
+                    arrival,
+                });
+            }
+        }
+        met
+    }
+
+    /// The cells beyond a limit where the motion stands on several surfaces; nothing where what they do is not
+    /// told by the sum of what each of them does.
+    pub(super) fn decided_together(
+        &mut self,
+        limit: &Limit,
+        standing: Standing<'_>,
+    ) -> Option<Vec<Cell>> {
+        let met = self.met(limit);
+        let cells = self.regimes[limit.before].cells.clone();
+        self.decided_of(&met, cells, standing)
+    }
+
+    /// The cells of a motion that begins on the thresholds `tied` of families, in these cells but for them.
+    pub(super) fn begun_together(
+        &mut self,
+        cells: &[Cell],
+        tied: &[(usize, usize)],
+        standing: Standing<'_>,
+    ) -> Option<Vec<Cell>> {
+        let met: Vec<StoodOn> = tied
+            .iter()
+            .map(|(family, rank)| StoodOn {
+                family: *family,
+                rank: *rank,
+                arrival: Arrival {
+                    side: -1.0,
+                    is_overcome: false,
+                },
+            })
+            .collect();
+        self.decided_of(&met, cells.to_vec(), standing)
+    }
+
+    fn decided_of(
+        &mut self,
+        met: &[StoodOn],
+        mut cells: Vec<Cell>,
+        standing: Standing<'_>,
+    ) -> Option<Vec<Cell>> {
+        let rates = self.rates_on(met, &cells, standing)?;
+        let arrivals: Vec<Arrival> = met.iter().map(|on| on.arrival).collect();
+        let verdicts = decide(&rates, &arrivals)?;
+        for (on, verdict) in met.iter().zip(verdicts) {
+            cells[on.family] = match verdict {
+                Verdict::Holds(_) => Cell::On(on.rank),
+                Verdict::Bears(side) => Cell::Bearing(on.rank, side > 0.0),
+                Verdict::LetsGo(side) => Cell::Between(on.rank + usize::from(side > 0.0)),
+            };
+        }
+        Some(cells)
+    }
+
+    /// The rates of the functions of surfaces by their sides, the other families being in these cells.
+    fn rates_on(
+        &mut self,
+        met: &[StoodOn],
+        cells: &[Cell],
+        standing: Standing<'_>,
+    ) -> Option<Rates> {
+        let mut low = cells.to_vec();
+        for on in met {
+            low[on.family] = Cell::Between(on.rank);
+        }
+        let mut all = low.clone();
+        let at = |propagator: &mut Self, cells: &[Cell]| {
+            let outline = propagator.outline(cells);
+            (outline, propagator.outlines[outline].rates(standing))
+        };
+        let (outline, below) = at(self, &low);
+        let mut jumps = Vec::with_capacity(met.len());
+        for on in met {
+            let mut up = low.clone();
+            up[on.family] = Cell::Between(on.rank + 1);
+            all[on.family] = up[on.family];
+            let values = at(self, &up).1.values;
+            jumps.push(DVector::from_vec(values) - DVector::from_column_slice(&below.values));
+        }
+        let above = at(self, &all).1;
+        let sum = jumps
+            .iter()
+            .fold(DVector::from_vec(below.values), |sum, jump| sum + jump);
+        let states = sum.iter().zip(above.values.iter().zip(&above.sizes));
+        let mut states = states.zip(&below.sizes);
+        if !states
+            .all(|((sum, (value, size)), other)| (sum - value).abs() <= ADDS_UP * (size + other))
+        {
+            return None;
+        }
+        let middle = jumps
+            .iter()
+            .fold(DVector::from_vec(above.values), |sum, jump| {
+                sum - jump * 0.5
+            });
+        let sizes = DVector::from_vec(above.sizes) + DVector::from_vec(below.sizes);
+        let functions = |family: usize| &self.outlines[outline].functions[family];
+        let count = met.len();
+        let w = DMatrix::from_fn(count, count, |i, j| {
+            let row = &functions(met[i].family).state;
+            let by_side = 0.5 * row.dot(&jumps[j]);
+            let size = row.abs().dot(&sizes);
+            if by_side.abs() > ROUNDING * size {
+                by_side
+            } else {
+                0.0
+            }
+        });
+        let c = DVector::from_fn(count, |i, _| {
+            let function = functions(met[i].family);
+            function.state.dot(&middle) + self.explicit_rate(function, standing.phases)
+        });
+        Some(Rates { w, c })
+    }
+}
+
+fn coefficients(function: &Linear) -> DVector<f64> {
+    DVector::from_iterator(function.coefficients().count(), function.coefficients())
+}
+
+/// The factors with which some functions add up to another, if they do.
+fn combined(functions: &[DVector<f64>], wanted: &DVector<f64>) -> Option<DVector<f64>> {
+    let count = functions.len();
+    let products = DMatrix::from_fn(count, count, |i, j| functions[i].dot(&functions[j]));
+    let right = DVector::from_fn(count, |i, _| functions[i].dot(wanted));
+    let factors = least(products, right);
+    let terms = functions.iter().zip(&factors);
+    let rest = terms.fold(wanted.clone(), |rest, (function, factor)| {
+        rest - function * *factor
+    });
+    (rest.amax() <= FOLLOWS * wanted.amax()).then_some(factors)
+}
