@@ -71,7 +71,7 @@ pub enum Command {
     Compare(Compare),
     /// Find what a model lacks, name it, add it, and show the gap shrink.
     #[command(
-        after_help = "Example:\n  eomgen discover my_machine.toml dataset.toml --out found --seed 1"
+        after_help = "Examples:\n  eomgen discover my_machine.toml dataset.toml --out found --seed 1\n  eomgen discover my_machine.toml dataset.toml --out found --limit 60"
     )]
     Discover(Discover),
     /// Measure the motion over a grid of parameters.
@@ -189,6 +189,10 @@ pub struct Discover {
     /// Draws the noise of the twin that gives the floor.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
+    /// End the search after so many seconds, with what is known by then. The model as it is, is
+    /// fitted in any case, and what is found is written back and run again.
+    #[arg(long, allow_negative_numbers = true)]
+    pub limit: Option<f64>,
     /// Effects of your own, beside those of the catalogue.
     #[arg(long)]
     pub effects: Option<PathBuf>,

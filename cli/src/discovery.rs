@@ -2,10 +2,10 @@
 //! is validated. What is compared and what is found is the library's.
 
 use std::path::Path;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use eomgen_discover::report::result::Validation;
-use eomgen_discover::{Specification, catalogue};
+use eomgen_discover::{Specification, Stop, catalogue, discover_until};
 use eomgen_model_spec::source::Source;
 use eomgen_paper::certification::certify;
 use eomgen_records::dataset::Dataset;
@@ -48,7 +48,11 @@ pub fn discovered(options: &arguments::Discover) -> Result<Value> {
         text: &text,
         order,
     };
-    let found = eomgen_discover::discover(specification, dataset, &effects, options.seed, &warn);
+    let stop = match options.limit {
+        Some(limit) => Stop::after(seconds(limit)?),
+        None => Stop::default(),
+    };
+    let found = discover_until(specification, dataset, &effects, options.seed, &warn, &stop);
     let mut found = found.map_err(Error::discovery)?;
     found.validation = validated(&path, &found.extended, order)?;
     let mut document = found.to_json();
@@ -58,6 +62,14 @@ pub fn discovered(options: &arguments::Discover) -> Result<Value> {
     write_file(&out.join("report.html"), found.page().as_bytes())?;
     write_json(&out.join("discovery.json"), &document)?;
     Ok(document)
+}
+
+/// A time to be spent.
+fn seconds(limit: f64) -> Result<Duration> {
+    Duration::try_from_secs_f64(limit)
+        .ok()
+        .filter(|limit| !limit.is_zero())
+        .ok_or_else(|| Error::input(format!("--limit {limit:?}: expected a time in s above 0")))
 }
 
 /// What the checks of `validate` say of the specification that was written: its equations are

@@ -473,3 +473,10 @@ pub const WRITTEN_FROM: f64 = 0.5;
 
 /// A ratio between the residuals of slow and of fast motion below this is not worth a word.
 pub const WORTH_SAYING: f64 = 1.5;
+
+/// Records contradict each other only where each alone leaves less than the fit of all by this
+/// factor: what is missing in a model bends its parameters a little in every record.
+pub const CONTRADICTS: f64 = 2.0;
+
+/// And where their values differ by this part: less is what one machine does on two days.
+pub const CONTRADICTING_PART: f64 = 0.1;

@@ -17,7 +17,9 @@ pub fn check_sensors(model: &Model, found: &mut Diagnostics) {
     if model.sensors.is_empty() {
         return;
     }
-    let rates = model.coordinates.iter().map(|c| format!("{}_dot", c.name));
+    let coordinates = || model.coordinates.iter();
+    let rates = coordinates().map(|c| format!("{}_dot", c.name));
+    let accelerations = coordinates().map(|c| format!("{}_ddot", c.name));
     let mut channels: Vec<String> = vec!["energy".to_owned(), "power".to_owned()];
     channels.extend(
         model
@@ -31,13 +33,14 @@ pub fn check_sensors(model: &Model, found: &mut Diagnostics) {
             .iter()
             .map(|coordinate| coordinate.name.clone()),
     );
-    channels.extend(rates);
+    channels.extend(rates.chain(accelerations));
     channels.extend(model.states.iter().map(|state| state.name.clone()));
     for sensor in &model.sensors {
         if !channels.contains(&sensor.observable) {
             let message = format!("no quantity {} to be measured", quoted(&sensor.observable));
             let near = did_you_mean(&sensor.observable, channels.iter().map(String::as_str));
-            let rule = "a channel is an observable, a coordinate, a rate (NAME_dot) or a state";
+            let rule = "a channel is an observable, a coordinate, its rate (NAME_dot) or acceleration \
+                        (NAME_ddot), or a state";
             found.push(
                 Diagnostic::error(message)
                     .at(sensor.span, "not a channel of this model")

@@ -70,6 +70,7 @@ pub fn rediscover(out: &Path) -> Result<Rediscovery> {
         order: None,
         out: found.clone(),
         seed: 1,
+        limit: None,
         effects: None,
         json: false,
     })?;

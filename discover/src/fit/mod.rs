@@ -2,11 +2,13 @@
 //! how they depend on initial states and unknowns ([`sensitivity`]), initial states eliminated
 //! ([`variable_projection`]), steps ([`gauss_newton`] with [`bounded_least_squares`],
 //! [`continuation`] from far away), [`initial_states`]; a [`preliminary`] fit and a [`full`] one,
-//! the [`residuals`] that it leaves, and the [`mod@noise_floor`] that a right model would leave.
+//! the [`residuals`] that it leaves, the [`mod@noise_floor`] that a right model would leave, and the
+//! [`contradiction`]s among records.
 
 pub(crate) mod acceleration_differences;
 pub mod bounded_least_squares;
 pub mod continuation;
+pub mod contradiction;
 pub mod fitted;
 pub mod full;
 pub mod gauss_newton;

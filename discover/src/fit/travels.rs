@@ -33,7 +33,7 @@ pub fn travels(
     };
     let nothing = Interval::new(f64::INFINITY, f64::NEG_INFINITY);
     let mut found = vec![nothing; shown.len()];
-    let mut observables = model.measured.observables();
+    let mut observables = vec![0.0; model.program().observables.len()];
     let all = problem.train.list.len();
     let count = all.min(thresholds::MOST_WINDOWS);
     for window in (0..count).map(|k| WindowId::new(k * all / count)) {

@@ -105,9 +105,8 @@ impl EstimationModel {
         let is_number = |p: &&Parameter| matches!(p.value, ParameterValue::Number(_));
         let independent = compiled.model().parameters.iter().filter(is_number);
         let parameters = independent.map(|p| p.name.clone()).collect();
-        let observables = program.observables.len();
         Ok(Self {
-            measured: MeasuredOutputs::new(channels, program.degrees_of_freedom(), observables),
+            measured: MeasuredOutputs::new(channels, program),
             channels: channels
                 .iter()
                 .map(|channel| channel.name.clone())
@@ -260,6 +259,10 @@ impl EstimationModel {
         let linear_outputs = LinearOutputs::of(&self.measured, &mut evaluator);
         let mut simulation = Simulation::new(&self.measured, evaluator, linear_outputs, self.steps);
         simulation.stop = self.stop.clone();
+        if self.measured.has_rates() {
+            // What cannot be derived with sides is not held either.
+            simulation.measure_at_rest(self.compiled.sided(values).ok().flatten());
+        }
         let (linear, own) = match &self.linear {
             None => {
                 // What cannot be derived with sides was derived without: it is followed without.

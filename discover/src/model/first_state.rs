@@ -16,7 +16,9 @@ pub fn first_state(
 ) -> Vec<f64> {
     let mut state = model.initial();
     match initial {
-        Initial::Rest => {}
+        // What is known of the beginning does not hold later.
+        _ if record.is_continued => measured(model, record, channels, state),
+        Initial::Rest => state,
         Initial::Given(values) => {
             for (name, value) in values {
                 let known = model.states.iter().position(|state| state == name);
@@ -24,25 +26,33 @@ pub fn first_state(
                     state[index] = *value;
                 }
             }
+            state
         }
-        Initial::Estimate => {
-            let degrees = model.degrees_of_freedom();
-            for (channel, column) in channels.iter().zip(&record.channels) {
-                let (value, slope) = begin(&record.times, column);
-                match channel.quantity {
-                    Quantity::Coordinate(coordinate) => {
-                        state[coordinate] = value;
-                        state[degrees + coordinate] = slope;
-                    }
-                    Quantity::Rate(coordinate) => state[degrees + coordinate] = value,
-                    Quantity::Observable(_) => {}
-                }
+        Initial::Estimate => measured(model, record, channels, state),
+    }
+}
+
+/// A state with what the channels show of it at the beginning of a record.
+fn measured(
+    model: &EstimationModel,
+    record: &Record,
+    channels: &[Channel],
+    mut state: Vec<f64>,
+) -> Vec<f64> {
+    let degrees = model.degrees_of_freedom();
+    for (channel, column) in channels.iter().zip(&record.channels) {
+        let (value, slope) = begin(&record.times, column);
+        match channel.quantity {
+            Quantity::Coordinate(coordinate) => {
+                state[coordinate] = value;
+                state[degrees + coordinate] = slope;
             }
-            // Noise may put what is measured beyond where the model lives.
-            state = model.admissible(state);
+            Quantity::Rate(coordinate) => state[degrees + coordinate] = value,
+            Quantity::Observable(_) | Quantity::Acceleration(_) => {}
         }
     }
-    state
+    // Noise may put what is measured beyond where the model lives.
+    model.admissible(state)
 }
 
 /// The parabola through a column's first samples at the first time: value and slope. A line

@@ -15,15 +15,19 @@ pub struct LinearOutputs {
 
 impl LinearOutputs {
     /// The quantities at an evaluator's parameters; none if they are not linear in the state, or
-    /// depend on more than it.
+    /// depend on more than it. Accelerations are not: what changes a force changes them at once, and not by
+    /// the state alone.
     pub(crate) fn of(outputs: &MeasuredOutputs, evaluator: &mut Evaluator) -> Option<Self> {
+        if outputs.has_rates() {
+            return None;
+        }
         let n = evaluator.program().states();
         let inputs = evaluator.program().inputs.len();
-        let mut observables = outputs.observables();
+        let mut buffers = outputs.buffers();
         let mut quantities = |t: f64, state: &[f64], inputs: &[f64]| -> Vec<f64> {
             let mut values = Vec::with_capacity(outputs.count());
             let point = Point { t, state, inputs };
-            outputs.append(evaluator, point, &mut observables, &mut values);
+            outputs.append(evaluator, point, &mut buffers, &mut values);
             values
         };
         let constant = quantities(0.0, &vec![0.0; n], &vec![0.0; inputs]);

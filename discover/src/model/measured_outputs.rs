@@ -1,6 +1,8 @@
 //! Which of a model's states and observables the channels measure.
 
+use eomgen_codegen::program::Program;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_compiled_model::Rest;
 use eomgen_records::dataset::{Channel, Quantity};
 
 /// Where a channel's quantity is found.
@@ -10,6 +12,16 @@ pub(crate) enum Output {
     State(usize),
     /// An observable, by its place.
     Observable(usize),
+    /// The rate of a state, by the state's place.
+    Rate(usize),
+}
+
+/// Room for what a model computes beside its states.
+pub(crate) struct Buffers {
+    observables: Vec<f64>,
+    rates: Vec<f64>,
+    /// What holds the motion that is looked at, where surfaces may: sign(0) = 0 does not.
+    pub rest: Option<Rest>,
 }
 
 /// The measured quantities of a model, one per channel.
@@ -18,20 +30,24 @@ pub(crate) struct MeasuredOutputs {
     outputs: Vec<Output>,
     /// How many observables the model has.
     observables: usize,
+    /// How many states the model has.
+    states: usize,
 }
 
 impl MeasuredOutputs {
-    /// What channels measure of a model with so many coordinates, modes among them, and
-    /// observables.
-    pub fn new(channels: &[Channel], degrees_of_freedom: usize, observables: usize) -> Self {
+    /// What channels measure of a model.
+    pub fn new(channels: &[Channel], program: &Program) -> Self {
+        let degrees_of_freedom = program.degrees_of_freedom();
         let outputs = channels.iter().map(|channel| match channel.quantity {
             Quantity::Observable(observable) => Output::Observable(observable),
             Quantity::Coordinate(coordinate) => Output::State(coordinate),
             Quantity::Rate(coordinate) => Output::State(degrees_of_freedom + coordinate),
+            Quantity::Acceleration(coordinate) => Output::Rate(degrees_of_freedom + coordinate),
         });
         Self {
             outputs: outputs.collect(),
-            observables,
+            observables: program.observables.len(),
+            states: program.states(),
         }
     }
 
@@ -45,26 +61,43 @@ impl MeasuredOutputs {
         &self.outputs
     }
 
-    /// A buffer for all observables of the model.
-    pub fn observables(&self) -> Vec<f64> {
-        vec![0.0; self.observables]
+    /// Whether accelerations are measured: they jump where a force does, and a force adds to them at once.
+    pub fn has_rates(&self) -> bool {
+        let is_rate = |output: &Output| matches!(output, Output::Rate(_));
+        self.outputs.iter().any(is_rate)
     }
 
-    /// Appends the quantities at a point, SI. `observables`: a buffer for all of them.
+    /// Room for what [`MeasuredOutputs::append`] computes.
+    pub fn buffers(&self) -> Buffers {
+        Buffers {
+            observables: vec![0.0; self.observables],
+            rates: vec![0.0; if self.has_rates() { self.states } else { 0 }],
+            rest: None,
+        }
+    }
+
+    /// Appends the quantities at a point, SI.
     pub fn append(
         &self,
         evaluator: &mut Evaluator,
         point: Point<'_>,
-        observables: &mut [f64],
+        buffers: &mut Buffers,
         values: &mut Vec<f64>,
     ) {
-        let is_state = |output: &Output| matches!(output, Output::State(_));
-        if !self.outputs.iter().all(is_state) {
-            evaluator.observables(point, observables);
+        let is_observable = |output: &Output| matches!(output, Output::Observable(_));
+        if self.outputs.iter().any(is_observable) {
+            evaluator.observables(point, &mut buffers.observables);
+        }
+        if !buffers.rates.is_empty() {
+            let rest = buffers.rest.as_mut();
+            if !rest.is_some_and(|rest| rest.rates(point, &mut buffers.rates)) {
+                evaluator.rates(point, &mut buffers.rates);
+            }
         }
         values.extend(self.outputs.iter().map(|output| match *output {
             Output::State(state) => point.state[state],
-            Output::Observable(observable) => observables[observable],
+            Output::Observable(observable) => buffers.observables[observable],
+            Output::Rate(state) => buffers.rates[state],
         }));
     }
 }

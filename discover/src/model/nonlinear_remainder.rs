@@ -127,6 +127,7 @@ mod tests {
             inputs,
             input_columns: vec![torque],
             channels: Vec::new(),
+            is_continued: false,
         };
         let mut integrated =
             EstimationModel::of(&with, Some(&rig), "rig", Some(4), &channels).expect("a model");

@@ -6,14 +6,14 @@
 use std::cell::RefCell;
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
-use eomgen_compiled_model::{Driven, Sided};
+use eomgen_compiled_model::{Driven, Rest, Sided};
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::{Settings, simulate};
 use eomgen_sim::piecewise_linear::Propagator;
 
 use crate::error::SimulationError;
 use crate::model::linear_outputs::LinearOutputs;
-use crate::model::measured_outputs::MeasuredOutputs;
+use crate::model::measured_outputs::{Buffers, MeasuredOutputs};
 use crate::model::nonlinear_remainder::NonlinearRemainder;
 use crate::model::stop::Stop;
 use crate::thresholds;
@@ -24,7 +24,7 @@ use eomgen_sim::ode::runge_kutta::RungeKutta;
 pub struct Simulation<'m> {
     measured: &'m MeasuredOutputs,
     evaluator: RefCell<Evaluator>,
-    observables: Vec<f64>,
+    buffers: Buffers,
     linear_outputs: Option<LinearOutputs>,
     /// Runge-Kutta steps from sample to sample; none where a solver decides.
     steps: Option<usize>,
@@ -33,6 +33,8 @@ pub struct Simulation<'m> {
     propagator: Option<Propagator>,
     /// What surfaces such as those of dry friction do where they hold a motion, for the solver.
     sided: Option<Sided>,
+    /// The same for accelerations that are measured.
+    resting: Option<Sided>,
     /// Whether to follow no motion any more.
     pub(crate) stop: Stop,
 }
@@ -87,13 +89,14 @@ impl<'m> Simulation<'m> {
         Self {
             measured,
             evaluator: RefCell::new(evaluator),
-            observables: measured.observables(),
+            buffers: measured.buffers(),
             linear_outputs,
             steps,
             integrator: None,
             remainder: None,
             propagator: None,
             sided: None,
+            resting: None,
             stop: Stop::default(),
         }
     }
@@ -119,6 +122,11 @@ impl<'m> Simulation<'m> {
     pub(crate) fn hold(&mut self, sided: Sided) {
         self.sided = Some(sided);
         self.steps = None;
+    }
+
+    /// Takes what surfaces do where they hold a motion, for accelerations that are measured there.
+    pub(crate) fn measure_at_rest(&mut self, sided: Option<Sided>) {
+        self.resting = sided;
     }
 
     /// Whether the exponential integrator runs it.
@@ -282,9 +290,11 @@ impl<'m> Simulation<'m> {
     ) -> Result<Outputs, SimulationError> {
         let states = self.states(initial, samples, inputs)?;
         let mut values = Vec::with_capacity(samples.len() * self.measured.count());
+        self.look_at((samples, &states), inputs);
         for (t, state) in samples.iter().zip(&states) {
             self.measure(*t, state, inputs, &mut values);
         }
+        self.look_away();
         Ok(Outputs {
             values,
             last: states.into_iter().next_back().unwrap_or_default(),
@@ -319,6 +329,7 @@ impl<'m> Simulation<'m> {
         let mut outputs = Outputs::default();
         let mut derivatives = Vec::with_capacity(samples.len() * count * channels);
         let mut moved = vec![0.0; count];
+        self.look_at((samples, &found.states), inputs);
         for ((t, state), tangents) in samples.iter().zip(&found.states).zip(&found.derivatives) {
             let here = outputs.values.len();
             self.measure(*t, state, inputs, &mut outputs.values);
@@ -333,11 +344,23 @@ impl<'m> Simulation<'m> {
                 }
             }
         }
+        self.look_away();
         outputs.last = found.states.into_iter().next_back().unwrap_or_default();
         Some(OutputTangents {
             outputs,
             by_state: derivatives,
         })
+    }
+
+    /// What holds this motion is to be known where its accelerations are measured.
+    fn look_at(&mut self, motion: (&[f64], &[Vec<f64>]), inputs: &HeldInputs) {
+        let sided = self.resting.take();
+        self.buffers.rest = sided.map(|sided| Rest::along(sided, motion, inputs));
+    }
+
+    /// The next motion is another one.
+    fn look_away(&mut self) {
+        self.resting = self.buffers.rest.take().map(Rest::into_sided);
     }
 
     /// Appends the channels' quantities at a state.
@@ -349,7 +372,7 @@ impl<'m> Simulation<'m> {
         let inputs = inputs.held_at(t);
         let (evaluator, point) = (self.evaluator.get_mut(), Point { t, state, inputs });
         self.measured
-            .append(evaluator, point, &mut self.observables, values);
+            .append(evaluator, point, &mut self.buffers, values);
     }
 
     /// The rates of a state.

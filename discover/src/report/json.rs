@@ -62,6 +62,7 @@ impl Discovery {
         document["closure"] = json!({"train": self.closure.train, "test": self.closure.test});
         document["ladder"] = self.ladder();
         document["validation"] = self.validation();
+        document["unfinished"] = json!(self.unfinished);
         document
     }
 

@@ -159,6 +159,8 @@ pub struct Discovery {
     pub resimulation: Resimulation,
     /// Whether its equations are right, where that was asked.
     pub validation: Option<Validation>,
+    /// What is known of what the time did not suffice for; none where the search came to its end.
+    pub unfinished: Option<String>,
 }
 
 /// The verdict of a search.

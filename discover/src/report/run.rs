@@ -6,6 +6,7 @@ use crate::catalogue::effect::Effect;
 use crate::catalogue::user_effects;
 use crate::empirical::unnamed;
 use crate::error::DiscoverError;
+use crate::fit::contradiction::contradictions;
 use crate::fit::fitted::Fit;
 use crate::fit::noise_floor::{NoiseFloor, noise_floor};
 use crate::fit::null_model::null_fit;
@@ -63,6 +64,8 @@ pub fn compare(
         }),
     };
     let nuisances = nuisances(&problem, &fit);
+    let mut notes = [dataset.notes.clone(), bound_notes(&nuisances)].concat();
+    notes.extend(contradicting(&problem, &fit, floor.rms, progress));
     Ok(Comparison {
         has_gap: !fit.is_at_floor(floor.rms),
         compared: Compared {
@@ -71,7 +74,7 @@ pub fn compare(
             refitted: refitted(&fit, &[]),
             sensors: sensors(&problem, &fit),
             location: located(&problem, &fit, force.as_ref()),
-            notes: [dataset.notes.clone(), bound_notes(&nuisances)].concat(),
+            notes,
             nuisances,
             origin: Origin::of(specification, dataset, seed),
             pictures,
@@ -125,10 +128,13 @@ pub fn discover_until(
         force,
     } = null?;
     let mut location = located(&problem, &fit, force.as_ref());
+    stop.arm();
     let found = search(&problem, fit, catalogue, before.rms, progress);
     stop.check()?;
     let mut found = found?;
-    unnamed(&problem, &mut found, before.rms, progress);
+    if found.unfinished.is_none() {
+        unnamed(&problem, &mut found, before.rms, progress);
+    }
     stop.check()?;
     let floor = match found.accepted.is_empty() {
         true => before,
@@ -154,6 +160,15 @@ pub fn discover_until(
     };
     let gap = gap(&problem, null, Some(best), &floor);
     let nuisances = nuisances(&problem, best);
+    let mut notes = [problem.dataset.notes.clone(), bound_notes(&nuisances)].concat();
+    if let Some(unfinished) = &found.unfinished {
+        let most = stop.most().map_or(0.0, |most| most.as_secs_f64());
+        let note = format!("the search was ended by its limit of {most} s: {unfinished}");
+        progress(&format!("note: {note}"));
+        notes.push(note);
+    }
+    notes.extend(contradicting(&problem, best, floor.rms, progress));
+    stop.check()?;
     let is_sure =
         !Left::of(&gap, Stage::After).is_much() && !nuisances.iter().any(Nuisance::is_at_bound);
     Ok(Discovery {
@@ -169,6 +184,7 @@ pub fn discover_until(
         steps: steps(&found),
         resimulation: resimulated(&problem, best, &extended)?,
         validation: None,
+        unfinished: found.unfinished.clone(),
         original: text.to_owned(),
         extended,
         compared: Compared {
@@ -177,12 +193,30 @@ pub fn discover_until(
             refitted: refitted(best, &found.accepted),
             sensors: sensors(&problem, best),
             location,
-            notes: [problem.dataset.notes.clone(), bound_notes(&nuisances)].concat(),
+            notes,
             nuisances,
             origin: Origin::of(specification, problem.dataset, seed),
             pictures,
         },
     })
+}
+
+/// Which records contradict each other, where a fit of all leaves more than the floor. `progress` is
+/// told.
+fn contradicting(
+    problem: &EstimationProblem<'_>,
+    fit: &Fit,
+    floor: f64,
+    progress: &Progress<'_>,
+) -> Vec<String> {
+    if fit.is_at_floor(floor) {
+        return Vec::new();
+    }
+    let found = contradictions(problem, fit);
+    for sentence in &found {
+        progress(&format!("note: {sentence}"));
+    }
+    found
 }
 
 /// The null model's fit, the floor and the residual force there.

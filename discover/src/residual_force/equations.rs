@@ -161,7 +161,7 @@ impl Equations {
             free: self.model.evaluator(&self.values),
             forced: forced.collect(),
             shown: self.shown.clone(),
-            observables: self.model.measured.observables(),
+            observables: vec![0.0; self.model.program().observables.len()],
             rates: [vec![0.0; states], vec![0.0; states]],
         }
     }

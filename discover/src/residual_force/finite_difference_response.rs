@@ -6,6 +6,7 @@ use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use nalgebra::DMatrix;
 
 use crate::fit::shooting::{Sensors, Shooting, samples_in};
+use crate::model::measured_outputs::Buffers;
 use crate::model::simulation::NeighbourDrives;
 use crate::thresholds;
 use eomgen_sim::ode::runge_kutta::RungeKutta;
@@ -18,7 +19,7 @@ pub(crate) struct SteppedWindow<'s> {
     shooting: &'s Shooting<'s>,
     sensors: Sensors,
     evaluator: Evaluator,
-    observables: Vec<f64>,
+    buffers: Buffers,
     window: WindowId,
     steps: usize,
 }
@@ -31,16 +32,20 @@ struct Step {
 }
 
 impl<'s> SteppedWindow<'s> {
-    /// A window at these unknowns; none if a solver decides on its steps.
+    /// A window at these unknowns; none if a solver decides on its steps, or accelerations are measured, to
+    /// which a force adds at once.
     pub fn new(shooting: &'s Shooting<'s>, theta: &[f64], window: WindowId) -> Option<Self> {
         let model = shooting.model;
+        if model.measured.has_rates() {
+            return None;
+        }
         Some(Self {
             sensors: Sensors {
                 bias: vec![0.0; shooting.channels()],
                 ..shooting.sensors(theta)
             },
             evaluator: model.evaluator(&shooting.values(theta)),
-            observables: model.measured.observables(),
+            buffers: model.measured.buffers(),
             steps: model.steps?,
             window,
             shooting,
@@ -185,6 +190,6 @@ impl<'s> SteppedWindow<'s> {
     fn measure(&mut self, (t, state): (f64, &[f64]), inputs: &[f64], values: &mut Vec<f64>) {
         let point = Point { t, state, inputs };
         let measured = &self.shooting.model.measured;
-        measured.append(&mut self.evaluator, point, &mut self.observables, values);
+        measured.append(&mut self.evaluator, point, &mut self.buffers, values);
     }
 }

@@ -21,6 +21,7 @@ pub fn eliminate_backwards(
         let best = found.best();
         let fits = EffectId::first(found.accepted.len()).filter_map(|effect_id| {
             let fit = without(problem, found, effect_id).ok()?;
+            problem.stop.check().ok()?;
             is_as_good(best, &fit).then_some((effect_id, fit))
         });
         let least = fits.min_by(|a, b| a.1.train.rms.total_cmp(&b.1.train.rms));

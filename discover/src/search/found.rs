@@ -50,6 +50,8 @@ pub struct Found {
     pub accepted: Vec<Accepted>,
     /// What was not.
     pub rejected: Vec<Rejected>,
+    /// What is known of a round that the time did not suffice for, in a sentence.
+    pub unfinished: Option<String>,
 }
 
 impl Found {

@@ -5,8 +5,8 @@
 //! [`mod@variational_response`] or [`mod@perturbed_response`] ([`mod@responses`] chooses),
 //! [`screening`], [`acceptance`]; `motion_of_fit`, [`context`], [`pool`], [`hypothesis`], [`fitted`];
 //! `shape_restarts`, `singles`, `pairs`; [`tested`], [`parameter_offsets`], [`selected`],
-//! `alternatives`; `excitation_window`, `dropped_priors`, `round`, `joint`, `answer`; [`found`],
-//! `rejected`, [`backward_elimination`].
+//! `alternatives`; `excitation_window`, `dropped_priors`, `round`, `joint`, `answer`, `unfinished`;
+//! [`found`], `rejected`, [`backward_elimination`].
 
 pub mod acceptance;
 mod alternatives;
@@ -34,6 +34,7 @@ pub mod selected;
 mod shape_restarts;
 mod singles;
 pub mod tested;
+mod unfinished;
 pub mod variational_response;
 
 use crate::catalogue::effect::Effect;
@@ -49,6 +50,7 @@ use crate::search::found::{Accepted, Found, TestGap};
 use crate::search::rejected::note_rejected;
 use crate::search::round::Round;
 use crate::search::selected::Selected;
+use crate::search::unfinished::unfinished;
 use crate::thresholds;
 
 /// Searches for what a model lacks. `floor`: the gap that a right model would leave, in standard
@@ -68,13 +70,18 @@ pub fn search(
         last: None,
         accepted: Vec::new(),
         rejected: Vec::new(),
+        unfinished: None,
     };
     while found.accepted.len() < thresholds::MOST_EFFECTS {
-        problem.stop.check()?;
         let fit = found.last.as_ref().unwrap_or(&found.null);
         if fit.is_at_floor(floor) {
             break;
         }
+        let (number, most) = (found.accepted.len() + 1, thresholds::MOST_EFFECTS);
+        progress(&format!(
+            "effect {number} of at most {most}: {:.1} standard deviations are left, {floor:.1} would be by noise",
+            fit.rms()
+        ));
         let round = Round {
             context: Context {
                 problem,
@@ -86,13 +93,26 @@ pub fn search(
             effects,
         };
         let tested = round.round();
+        let so_far = unfinished(&tested);
+        if problem.stop.is_late() {
+            found.unfinished = Some(so_far);
+            break;
+        }
+        problem.stop.check()?;
         note_rejected(&mut found.rejected, &tested);
-        let Some(selected) = answer(&round, tested) else {
+        let selected = answer(&round, tested);
+        if problem.stop.is_late() {
+            found.unfinished = Some(so_far);
+            break;
+        }
+        let Some(selected) = selected else {
             break;
         };
         accept(&mut found, selected);
         eliminate_backwards(problem, &mut found, progress);
     }
+    problem.stop.lift();
+    problem.stop.check()?;
     Ok(found)
 }
 

@@ -13,6 +13,7 @@ from ._native import DiscoveryError, SimulationError, SpecificationError
 from .discovery import Discovery, discover
 from .linearisation import Linearisation
 from .model import Model, SpecificationWarning, load
+from .records import record_to_csv
 from .trajectory import Trajectory
 
 __all__ = [
@@ -26,4 +27,5 @@ __all__ = [
     "Trajectory",
     "discover",
     "load",
+    "record_to_csv",
 ]

@@ -64,4 +64,4 @@ pub use motion::{Cause, Choice, Motion, Solver, Stopped};
 pub use operating_point::{OperatingPoint, Setting};
 pub use projection::Moved;
 pub use simulate::{DEFAULT_TOLERANCE, Request};
-pub use sliding::Sided;
+pub use sliding::{Rest, Sided};

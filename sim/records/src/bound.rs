@@ -148,7 +148,11 @@ fn channel(entry: &ChannelColumn, model: &Model) -> Result<(Channel, Unit), Diag
     let one = Unit::coherent(Dimension::NONE);
     let channel = Channel {
         name: entry.name.text.clone(),
-        observable: asked.clone(),
+        observable: match quantity {
+            Quantity::Observable(_) | Quantity::Coordinate(_) => asked.clone(),
+            Quantity::Rate(place) => format!("{}_dot", model.coordinates[place].name),
+            Quantity::Acceleration(place) => format!("{}_ddot", model.coordinates[place].name),
+        },
         quantity,
         unit: expected,
         noise,
@@ -179,10 +183,17 @@ fn quantity(model: &Model, name: &str) -> Option<(Quantity, String)> {
         let unit = model.coordinates[place].unit.text.clone();
         return Some((Quantity::Coordinate(place), unit));
     }
-    let of = name.strip_suffix("_dot")?;
-    let place = model.coordinates.iter().position(|c| c.name == of)?;
-    let unit = format!("{}/s", model.coordinates[place].unit.text);
-    Some((Quantity::Rate(place), unit))
+    let of = |name: &str| model.coordinates.iter().position(|c| c.name == name);
+    let unit = |place: usize| &model.coordinates[place].unit.text;
+    let within = |before: &str, after: &str| of(name.strip_prefix(before)?.strip_suffix(after)?);
+    if let Some(place) = within("", "_ddot").or_else(|| within("dot(dot(", "))")) {
+        return Some((
+            Quantity::Acceleration(place),
+            format!("{}/s^2", unit(place)),
+        ));
+    }
+    let place = within("", "_dot").or_else(|| within("dot(", ")"))?;
+    Some((Quantity::Rate(place), format!("{}/s", unit(place))))
 }
 
 fn initial(written: &InitialState, model: &Model, found: &mut Diagnostics) -> Initial {

@@ -40,6 +40,17 @@ pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, Refusal> {
             "is not a file; expected CSV or Parquet",
         ));
     }
+    let ends_in = |kind: &str| {
+        path.extension()
+            .is_some_and(|end| end.eq_ignore_ascii_case(kind))
+    };
+    if ["npz", "mat"].into_iter().any(ends_in) {
+        return Err(Refusal::file(
+            path,
+            "holds arrays of NumPy or MATLAB; expected text or Parquet: in Python, \
+             eomgen.record_to_csv(source, out) writes one as the other",
+        ));
+    }
     if metadata.len() > LARGEST_RECORD {
         return Err(Refusal::file(
             path,

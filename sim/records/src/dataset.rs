@@ -13,6 +13,8 @@ pub enum Quantity {
     Coordinate(usize),
     /// The rate of a coordinate, by the coordinate's place.
     Rate(usize),
+    /// The acceleration of a coordinate, by the coordinate's place.
+    Acceleration(usize),
 }
 
 /// A measured channel.

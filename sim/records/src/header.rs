@@ -49,7 +49,14 @@ pub fn places(
             )),
             (None, _) => {
                 let list = there.join(", ");
-                let shown: String = list.chars().take(200).collect();
+                let visible = |c: char| {
+                    if c.is_control() {
+                        char::REPLACEMENT_CHARACTER
+                    } else {
+                        c
+                    }
+                };
+                let shown: String = list.chars().take(200).map(visible).collect();
                 let parted = parted(there).map_or(String::new(), |by| {
                     format!(": its columns are parted by {by}")
                 });

@@ -3,7 +3,7 @@
 //!
 //! The pipeline: a [`description`] is the dataset file by itself, `bound` its names and units
 //! looked up in a model; `files` and `columns` (text by `csv_file`, Parquet by `parquet_file`) bring
-//! the numbers of a [`record`], of which `decimation` may leave some, checked by [`samples`]; all records are a [`dataset`], examined by
+//! the numbers of a [`record`], of which `decimation` may leave some, checked by [`samples`] and parted by `gaps`; all records are a [`dataset`], examined by
 //! [`checks`] and `coverage`, cut into [`windows`]. [`inputs`] are read alone for a simulation.
 //! A [`proposal`] is a dataset file for a record that has none. What is wrong is a [`refusal`]. Nothing here is simulated or fitted.
 //!
@@ -49,6 +49,7 @@ pub mod dataset;
 mod decimation;
 pub mod description;
 mod files;
+mod gaps;
 mod header;
 pub mod inputs;
 mod parquet_file;

@@ -10,6 +10,7 @@ use crate::dataset::{Dataset, Start};
 use crate::decimation::Decimation;
 use crate::description::Description;
 use crate::description::records::Stretch;
+use crate::gaps::unbroken;
 use crate::inputs::notes_of_inputs;
 use crate::record::{Columns, Record};
 use crate::refusal::Refusal;
@@ -76,14 +77,19 @@ pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
         decimation: &decimation,
         fewest: FEWEST_SAMPLES,
     };
-    let read = |kind: &str, files: &[Stretch]| -> Result<Vec<Record>, Refusal> {
+    let mut notes = Vec::new();
+    let mut read = |kind: &str, files: &[Stretch]| -> Result<Vec<Record>, Refusal> {
         let files = files.iter().enumerate();
-        files
-            .map(|(place, file)| columns.record(&format!("{kind}[{place}]"), file))
-            .collect()
+        let mut records = Vec::new();
+        for (place, file) in files {
+            let record = columns.record(&format!("{kind}[{place}]"), file)?;
+            records.extend(unbroken(record, &mut notes));
+        }
+        Ok(records)
     };
     dataset.train = read("train", &description.records.train)?;
     dataset.test = read("test", &description.records.test)?;
+    dataset.notes.append(&mut notes);
     let notes = examine(&dataset, &description)?;
     dataset.notes.extend(notes);
     Ok(dataset)

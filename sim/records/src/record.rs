@@ -34,6 +34,8 @@ pub struct Record {
     pub input_columns: Vec<Vec<f64>>,
     /// One column per channel, NaN where a sample is missing.
     pub channels: Vec<Vec<f64>>,
+    /// Whether it begins behind a lost stretch: what is known of first states does not hold.
+    pub is_continued: bool,
 }
 
 /// Which columns of a record are what.
@@ -61,7 +63,7 @@ impl Columns<'_> {
             |diagnostic: Diagnostic| Diagnostics::one(self.description.source.clone(), diagnostic);
         let place = beside(self.path, &stretch.file).map_err(wrong)?;
         let mut table = self.table(&place)?;
-        self.cut(&place, stretch, &mut table)?;
+        let is_continued = self.cut(&place, stretch, &mut table)?;
         self.decimate(&place, &mut table)?;
         let first_channel = 1 + self.inputs.iter().flatten().count();
         let channels = table.columns.split_off(first_channel);
@@ -82,6 +84,7 @@ impl Columns<'_> {
             times,
             input_columns,
             channels,
+            is_continued,
         })
     }
 
@@ -109,10 +112,11 @@ impl Columns<'_> {
         Ok(table)
     }
 
-    /// Leaves what lies between two times, where a dataset file gives them.
-    fn cut(&self, place: &Path, stretch: &Stretch, table: &mut Table) -> Result<(), Refusal> {
+    /// Leaves what lies between two times, where a dataset file gives them; whether something lay
+    /// before.
+    fn cut(&self, place: &Path, stretch: &Stretch, table: &mut Table) -> Result<bool, Refusal> {
         if stretch.from.is_none() && stretch.to.is_none() {
-            return Ok(());
+            return Ok(false);
         }
         // A part of the file is looked at, all of its times must be in order.
         check_times(place, &table.columns[0], &table.lines, 1)?;
@@ -151,7 +155,7 @@ impl Columns<'_> {
         for column in &mut table.columns {
             *column = column[kept.clone()].to_vec();
         }
-        Ok(())
+        Ok(kept.start > 0)
     }
 
     /// Leaves one of several samples, where a dataset file says so.

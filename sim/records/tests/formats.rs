@@ -415,3 +415,66 @@ fn records_for_which_nothing_can_be_proposed_are_refused() {
         "{message}"
     );
 }
+
+#[test]
+fn a_lost_stretch_is_named_and_parts_the_record() {
+    let folder = folder(DESCRIPTION, "t,angle\n", plain);
+    let whole = record("t,angle\n", 0.0, plain);
+    let lost = |from: usize, to: usize| -> String {
+        let lines = whole.lines().enumerate();
+        let kept = lines.filter(|(line, _)| !(from..to).contains(line));
+        kept.map(|(_, line)| format!("{line}\n")).collect()
+    };
+    write(folder.path(), "train.csv", &lost(121, 181));
+    let dataset = read(&folder).unwrap_or_else(|refusal| panic!("{refusal}"));
+    let lengths: Vec<usize> = dataset.train.iter().map(|r| r.times.len()).collect();
+    assert_eq!(lengths, [120, 220]);
+    assert!(!dataset.train[0].is_continued && dataset.train[1].is_continued);
+    assert_eq!(dataset.train[1].times[0], 1.8);
+    assert!((dataset.train[1].channels[0][0] - 1e-3 * angle(180, 0.0)).abs() < 1e-9);
+    let notes = dataset.notes.join("\n");
+    assert!(
+        notes.contains(
+            "train[0]: nothing was recorded from 1.190000 s to 1.800000 s, where 60 samples"
+        ),
+        "{notes}"
+    );
+    // Too few samples to say anything are left out, a few that are missing part nothing.
+    write(folder.path(), "train.csv", &lost(31, 181));
+    let dataset = read(&folder).unwrap_or_else(|refusal| panic!("{refusal}"));
+    assert_eq!(dataset.train.len(), 1);
+    assert!(
+        dataset
+            .notes
+            .join("\n")
+            .contains("30 samples from 0.000000 s on are too few")
+    );
+    write(folder.path(), "train.csv", &lost(121, 124));
+    assert_eq!(
+        read(&folder).map(|dataset| dataset.train.len()).ok(),
+        Some(1)
+    );
+}
+
+#[test]
+fn rates_and_accelerations_are_channels_in_their_units() {
+    let channel = |observable: &str, unit: &str| {
+        DESCRIPTION.replace(
+            "unit = \"mrad\"",
+            &format!("unit = \"{unit}\"\nobservable = \"{observable}\""),
+        )
+    };
+    use eomgen_records::dataset::Quantity;
+    for (observable, unit, quantity) in [
+        ("theta_dot", "deg/s", Quantity::Rate(0)),
+        ("dot(theta)", "rad/s", Quantity::Rate(0)),
+        ("theta_ddot", "rad/s^2", Quantity::Acceleration(0)),
+        ("dot(dot(theta))", "deg/s^2", Quantity::Acceleration(0)),
+    ] {
+        let folder = folder(&channel(observable, unit), "t,angle\n", plain);
+        let dataset = read(&folder).unwrap_or_else(|refusal| panic!("{observable}: {refusal}"));
+        assert_eq!(dataset.channels[0].quantity, quantity);
+    }
+    let folder = folder(&channel("theta_ddot", "rad/s"), "t,angle\n", plain);
+    assert!(refused(&folder).contains("expected rad/s^2"));
+}

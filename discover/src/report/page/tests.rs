@@ -105,6 +105,7 @@ fn discovery(text: &str) -> Discovery {
         },
         original: format!("{text} before"),
         extended: format!("{text} after"),
+        unfinished: None,
         resimulation: Resimulation {
             train: 1.0,
             test: 1.1,

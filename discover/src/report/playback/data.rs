@@ -69,6 +69,7 @@ fn channels(
             let from = match output {
                 Output::State(place) => json!({ "state": place }),
                 Output::Observable(place) => json!({ "observable": place }),
+                Output::Rate(place) => json!({ "rate": place }),
             };
             json!({
                 "name": channel.name,

@@ -95,7 +95,7 @@ fn seen(
     let driven = Driven::new(&evaluator, inputs);
     let trajectory = simulate(&driven, &start, span, times, &settings, &mut |_| {}).ok()?;
     let mut quantities = Vec::new();
-    let mut observables = model.measured.observables();
+    let mut buffers = model.measured.buffers();
     let mut evaluator = evaluator.borrow_mut();
     for (t, state) in times.iter().zip(&trajectory.states) {
         let point = Point {
@@ -105,7 +105,7 @@ fn seen(
         };
         model
             .measured
-            .append(&mut evaluator, point, &mut observables, &mut quantities);
+            .append(&mut evaluator, point, &mut buffers, &mut quantities);
     }
     let shooting = best.shooting(problem);
     let sensors = shooting.sensors(&best.train.estimate.theta);

@@ -16,6 +16,7 @@ use maud::{Markup, html};
 
 use crate::fit::fitted::Fit;
 use crate::model::estimation_model::EstimationModel;
+use crate::model::measured_outputs::Output;
 use crate::model::problem::EstimationProblem;
 use crate::report::playback::controls::controls;
 use crate::report::playback::stretch::Stretch;
@@ -55,6 +56,10 @@ impl Playback {
         let (Ok(model), false) = (model, accepted.is_empty()) else {
             return Self::None;
         };
+        let is_rate = |output: &Output| matches!(output, Output::Rate(_));
+        if model.measured.outputs().iter().any(is_rate) {
+            return Self::Still("accelerations are measured".to_owned());
+        }
         let Ok(module) = wasm::emit(model.program()) else {
             return Self::Still("its equations cannot be emitted as WebAssembly".to_owned());
         };

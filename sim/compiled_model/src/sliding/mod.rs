@@ -2,8 +2,8 @@
 //! where v is zero, and is there what keeps v at zero, if one of these does (A. F. Filippov; for
 //! friction, J. J. Moreau).
 //!
-//! Which of several surfaces hold is decided in [`eomgen_sim::sliding_modes`]; `sided` (the model with the sides of its surfaces
-//! given), `observed` (what a motion's observables are at rest). Here is what becomes of surfaces while
+//! Which of several surfaces hold is decided in [`eomgen_sim::sliding_modes`]; `sided` (the model with the
+//! sides of its surfaces given), `observed` (what a motion's observables and rates are at rest). Here is what becomes of surfaces while
 //! a motion goes on: caught where it reaches them, it is let go where the force that holds has
 //! reached what the surface can bear. There the function and its rate are zero up to rounding, which must not
 //! decide: the surface is moved by as much as rounding is until the motion has left it.
@@ -12,6 +12,7 @@ mod observed;
 mod sided;
 
 pub(crate) use observed::Observed;
+pub use observed::Rest;
 pub use sided::Sided;
 
 use eomgen_sim::ode::SMALLEST_MAGNITUDE;

@@ -1,5 +1,5 @@
-//! Observables along a motion that surfaces may hold: a force of dry friction at rest is what holds
-//! there, not that of sign(0) = 0.
+//! Observables and rates along a motion that surfaces may hold: a force of dry friction at rest is what
+//! holds there, not that of sign(0) = 0.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_sim::inputs::HeldInputs;
@@ -17,56 +17,90 @@ const ON_BY_A_FORCE: f64 = 1e-11;
 /// What observes a motion.
 pub(crate) struct Observed {
     own: Evaluator,
-    sided: Option<Sided>,
-    /// The largest that each function is, and how long the motion takes, s.
-    sizes: Vec<f64>,
-    duration: f64,
+    rest: Option<Rest>,
 }
 
 impl Observed {
     /// Looks at a motion by an evaluator, and by the model with sides if surfaces may hold it.
     pub fn new(
         own: Evaluator,
-        mut sided: Option<Sided>,
+        sided: Option<Sided>,
         trajectory: &Trajectory,
         inputs: &HeldInputs,
     ) -> Self {
-        let mut sizes = vec![0.0_f64; sided.as_ref().map_or(0, Sided::count)];
-        if let Some(sided) = &mut sided {
-            for (t, state) in trajectory.times.iter().zip(&trajectory.states) {
-                let functions = sided.functions((*t, state), &inputs.at(*t));
-                for (size, value) in sizes.iter_mut().zip(functions) {
-                    *size = size.max(value.abs());
-                }
+        let motion = (&trajectory.times[..], &trajectory.states[..]);
+        Self {
+            own,
+            rest: sided.map(|sided| Rest::along(sided, motion, inputs)),
+        }
+    }
+
+    /// The observables at a point of the motion.
+    pub fn observables(&mut self, point: Point<'_>, out: &mut [f64]) {
+        let is_shown = self.rest.as_mut().is_some_and(|rest| {
+            let is_held = rest.holds(point);
+            if is_held {
+                rest.sided.observables((point.t, point.state), out);
+            }
+            is_held
+        });
+        if !is_shown {
+            self.own.observables(point, out);
+        }
+    }
+}
+
+/// What holds a motion where it rests on surfaces.
+pub struct Rest {
+    sided: Sided,
+    /// The largest that each function is, and how long the motion takes, s.
+    sizes: Vec<f64>,
+    duration: f64,
+}
+
+impl Rest {
+    /// Of a motion through these states at these times, s.
+    pub fn along(
+        mut sided: Sided,
+        (times, states): (&[f64], &[Vec<f64>]),
+        inputs: &HeldInputs,
+    ) -> Self {
+        let mut sizes = vec![0.0_f64; sided.count()];
+        for (t, state) in times.iter().zip(states) {
+            let functions = sided.functions((*t, state), &inputs.at(*t));
+            for (size, value) in sizes.iter_mut().zip(functions) {
+                *size = size.max(value.abs());
             }
         }
-        let ends = (trajectory.times.first(), trajectory.times.last());
-        let duration = match ends {
+        let duration = match (times.first(), times.last()) {
             (Some(first), Some(last)) => last - first,
             _ => 0.0,
         };
         Self {
-            own,
             sided,
             sizes,
             duration,
         }
     }
 
-    /// The observables at a point of the motion.
-    pub fn observables(&mut self, point: Point<'_>, out: &mut [f64]) {
-        let Point { t, state, inputs } = point;
-        let held = self.sided.as_mut().is_some_and(|sided| {
-            let reach: Vec<f64> = self.sizes.iter().map(|size| ON * size).collect();
-            let is_held = hold(sided, (t, state), inputs, (&reach, self.duration));
-            if is_held {
-                sided.observables((t, state), out);
-            }
-            is_held
-        });
-        if !held {
-            self.own.observables(point, out);
+    /// The rates at a point of the motion, if surfaces hold it there; whether they do.
+    pub fn rates(&mut self, point: Point<'_>, out: &mut [f64]) -> bool {
+        let is_held = self.holds(point);
+        if is_held {
+            let Point { t, state, inputs } = point;
+            self.sided.rates((t, state), inputs, out);
         }
+        is_held
+    }
+
+    /// What the surfaces were made of, for another motion.
+    pub fn into_sided(self) -> Sided {
+        self.sided
+    }
+
+    fn holds(&mut self, Point { t, state, inputs }: Point<'_>) -> bool {
+        let reach: Vec<f64> = self.sizes.iter().map(|size| ON * size).collect();
+        hold(&mut self.sided, (t, state), inputs, (&reach, self.duration))
     }
 }
 

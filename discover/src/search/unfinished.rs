@@ -1,0 +1,34 @@
+//! What is known of a round that the time did not suffice for.
+
+use crate::search::fitted::FittedHypothesis;
+use crate::search::tested::TestedPool;
+
+/// What leaves least so far, of what passed the decision or else of what was fitted, in a sentence.
+pub fn unfinished(tested: &[TestedPool]) -> String {
+    let all = tested.iter().flat_map(|pool| {
+        let fitted = pool.fitted_hypotheses.iter();
+        fitted.map(move |fitted| (pool, fitted))
+    });
+    // What was cut off has no end that counts.
+    let all = all.filter(|(_, fitted)| fitted.fit.test.rms.is_finite());
+    let order = |(_, fitted): &(&TestedPool, &FittedHypothesis)| {
+        (fitted.verdict.is_err(), fitted.fit.test.rms)
+    };
+    let best = all.min_by(|a, b| {
+        let (a, b) = (order(a), order(b));
+        a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+    });
+    let Some((pool, best)) = best else {
+        return "no effect was fitted by then".to_owned();
+    };
+    let names = best.responses.iter().map(|response| {
+        let candidate = pool.screening.responses[*response].candidate;
+        pool.candidates[candidate].label()
+    });
+    let names: Vec<String> = names.collect();
+    format!(
+        "so far {} leaves least, {:.1} standard deviations of the test records, and was not compared with all others",
+        names.join(" and "),
+        best.fit.test.rms
+    )
+}

@@ -1,0 +1,110 @@
+"""Records of NumPy and MATLAB as the tables that dataset files describe."""
+
+from __future__ import annotations
+
+import os
+import pathlib
+import tempfile
+import warnings
+from typing import Dict, Iterable, List, Optional, Union
+
+import numpy as np
+from numpy.typing import NDArray
+
+Path = Union[str, "os.PathLike[str]"]
+
+# What a file of MATLAB 7.3 begins with: it is HDF5 inside, which SciPy does not read.
+_MATLAB_7_3 = b"MATLAB 7.3"
+
+
+def record_to_csv(source: Path, out: Path, columns: Optional[Iterable[str]] = None) -> List[str]:
+    """Writes arrays of a `.npz` or `.mat` file as the columns of a CSV file; returns their names.
+
+    source: a file of `numpy.savez`, or of MATLAB up to version 7, which SciPy reads. out: the file
+    to write, or to replace. columns: the arrays to take, in this order; by default all real ones
+    that are as long as the longest. A matrix `x` of n columns becomes x_1 to x_n. Numbers keep all
+    their digits.
+
+    Raises ValueError for a file that is none of these, arrays of other lengths or kinds that were
+    asked for, and files that hold no arrays; ImportError where SciPy is needed and missing.
+    """
+    arrays = _arrays(pathlib.Path(source))
+    wanted = list(arrays) if columns is None else list(columns)
+    for name in wanted:
+        if name not in arrays:
+            raise ValueError(f"{source} has no array {name!r}; it has {', '.join(arrays)}")
+    rows: Dict[str, NDArray[np.float64]] = {}
+    for name in wanted:
+        column = _samples(arrays[name])
+        if column is not None:
+            rows[name] = column
+        elif columns is not None:
+            array = arrays[name]
+            raise ValueError(
+                f"{source}: {name!r} holds {array.dtype} of shape {array.shape}; expected real samples"
+            )
+    longest = max((len(column) for column in rows.values()), default=0)
+    if longest < 2:
+        raise ValueError(f"{source} holds no arrays of samples; it has {', '.join(arrays) or 'none'}")
+    others = [name for name, column in rows.items() if len(column) != longest]
+    if others and columns is not None:
+        raise ValueError(
+            f"{source}: {', '.join(others)} not as long as the others, which have {longest} samples"
+        )
+    if others:
+        warnings.warn(
+            f"{source}: left out, because not as long as the others: {', '.join(others)}",
+            stacklevel=2,
+        )
+    table = {name: column for name, column in rows.items() if len(column) == longest}
+    names = [
+        name if column.shape[1] == 1 else f"{name}_{place}"
+        for name, column in table.items()
+        for place in range(1, column.shape[1] + 1)
+    ]
+    _write(pathlib.Path(out), names, np.column_stack(list(table.values())))
+    return names
+
+
+def _arrays(source: pathlib.Path) -> Dict[str, NDArray]:
+    """All arrays of a file by their names."""
+    kind = source.suffix.lower()
+    if kind == ".npz":
+        with np.load(source, allow_pickle=False) as file:
+            return {name: file[name] for name in file.files}
+    if kind != ".mat":
+        raise ValueError(f"{source}: expected a file that ends in .npz or .mat")
+    with open(source, "rb") as file:
+        if file.read(len(_MATLAB_7_3)) == _MATLAB_7_3:
+            raise ValueError(f"{source} is of MATLAB 7.3; save it with save(..., '-v7')")
+    try:
+        from scipy.io import loadmat
+    except ImportError as error:
+        raise ImportError("files of MATLAB are read by SciPy: pip install scipy") from error
+    loaded = loadmat(source, squeeze_me=True)
+    return {name: np.asarray(array) for name, array in loaded.items() if not name.startswith("__")}
+
+
+def _samples(array: NDArray) -> Optional[NDArray[np.float64]]:
+    """A row per sample; None for what is no real array of one or two dimensions."""
+    if array.dtype.kind not in "fiub" or array.ndim not in (1, 2):
+        return None
+    column = np.asarray(array, dtype=np.float64)
+    return column[:, np.newaxis] if column.ndim == 1 else column
+
+
+def _write(out: pathlib.Path, names: List[str], table: NDArray[np.float64]) -> None:
+    """The table, whole or not at all."""
+    quoted = ['"' + name.replace('"', '""') + '"' for name in names]
+    lines = [",".join(quoted)]
+    lines += [",".join("" if x != x else repr(x) for x in row) for row in table.tolist()]
+    out.parent.mkdir(parents=True, exist_ok=True)
+    handle, beside = tempfile.mkstemp(dir=out.parent, suffix=".csv")
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as file:
+            file.write("\n".join(lines) + "\n")
+        os.chmod(beside, 0o644)
+        os.replace(beside, out)
+    except BaseException:
+        os.unlink(beside)
+        raise

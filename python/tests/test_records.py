@@ -1,0 +1,55 @@
+"""Records of NumPy and MATLAB written as CSV, and what is refused."""
+
+import csv
+
+import numpy as np
+import pytest
+
+import eomgen
+
+T = np.linspace(0.0, 1.0, 101)
+ARRAYS = {"t": T, "u": np.sin(3 * T) / 7, "enc": np.column_stack([T**2, -T / 3]), "rate": np.array(100.0)}
+
+
+def columns(path):
+    """The names of a CSV file and its numbers."""
+    with open(path, newline="", encoding="utf-8") as file:
+        rows = list(csv.reader(file))
+    return rows[0], np.array([[float(cell) if cell else np.nan for cell in row] for row in rows[1:]])
+
+
+def test_arrays_of_numpy_keep_all_digits(tmp_path):
+    np.savez(tmp_path / "run.npz", **ARRAYS)
+    names = eomgen.record_to_csv(tmp_path / "run.npz", tmp_path / "run.csv")
+    assert names == ["t", "u", "enc_1", "enc_2"]
+    head, numbers = columns(tmp_path / "run.csv")
+    assert head == names
+    assert (numbers == np.column_stack([T, ARRAYS["u"], ARRAYS["enc"]])).all()
+    assert eomgen.record_to_csv(tmp_path / "run.npz", tmp_path / "run.csv", ["u", "t"]) == ["u", "t"]
+
+
+def test_files_of_matlab_are_read_by_scipy(tmp_path):
+    io = pytest.importorskip("scipy.io")
+    io.savemat(tmp_path / "run.mat", {**ARRAYS, "note": "by hand", "short": T[:7]})
+    with pytest.warns(UserWarning, match="left out.*short"):
+        names = eomgen.record_to_csv(tmp_path / "run.mat", tmp_path / "run.csv")
+    assert names == ["t", "u", "enc_1", "enc_2"]
+    _, numbers = columns(tmp_path / "run.csv")
+    assert (numbers[:, 1] == ARRAYS["u"]).all()
+
+
+def test_what_is_no_record_is_refused_and_nothing_written(tmp_path):
+    np.savez(tmp_path / "run.npz", t=T, short=T[:7], words=np.array(["a", "b"]))
+    np.savez(tmp_path / "none.npz", rate=np.array(100.0))
+    (tmp_path / "new.mat").write_bytes(b"MATLAB 7.3 MAT-file, and so on")
+    for name, wanted, part in [
+        ("run.npz", ["v"], "has no array 'v'; it has t, short, words"),
+        ("run.npz", ["t", "short"], "short not as long as the others, which have 101"),
+        ("run.npz", ["words"], "expected real samples"),
+        ("none.npz", None, "holds no arrays of samples"),
+        ("new.mat", None, "-v7"),
+        ("run.csv", None, "ends in .npz or .mat"),
+    ]:
+        with pytest.raises(ValueError, match=part):
+            eomgen.record_to_csv(tmp_path / name, tmp_path / "out.csv", wanted)
+        assert not (tmp_path / "out.csv").exists()

@@ -1,0 +1,175 @@
+//! Accelerations as channels, on a driven mass on a spring with dry friction: found from an accelerometer
+//! alone or beside a position, and none where the mass rests. Records are Newton's law and Coulomb's,
+//! in steps of 0.1 ms.
+
+use std::path::Path;
+
+use eomgen_tests::program;
+use serde_json::Value;
+
+const OSCILLATOR: &str = r#"
+[model]
+name = "oscillator"
+
+[parameters]
+m = { value = 2, unit = "kg", min = 0 }
+c = { value = 6, unit = "N s/m", min = 0 }
+k = { value = 300, unit = "N/m", min = 0 }
+
+[coordinates]
+x = { unit = "m" }
+
+[inputs]
+u = { unit = "N" }
+
+[kinetic]
+mass = "1/2*m*dot(x)^2"
+
+[potential]
+spring = "1/2*k*x^2"
+
+[dissipation]
+damper = "1/2*c*dot(x)^2"
+
+[forces]
+motor = { on = "x", value = "u" }
+"#;
+
+const DATASET: &str = r#"
+[records]
+train = ["train.csv"]
+test = ["test.csv"]
+
+[time]
+column = "t"
+unit = "s"
+
+[inputs.u]
+column = "u"
+unit = "N"
+
+[channels.accelerometer]
+column = "a"
+unit = "m/s^2"
+noise = 5e-3
+observable = "dot(dot(x))"
+
+[initial]
+state = "rest"
+
+[uncertain]
+c = { relative = 0.05 }
+
+[windows]
+length = 0.5
+"#;
+
+const POSITION: &str = r#"
+[channels.x]
+column = "x"
+unit = "m"
+noise = 1e-5
+"#;
+
+/// Dry friction, N.
+const FRICTION: f64 = 2.0;
+
+/// Of the accelerometer, m/s^2, and of the position, m.
+const NOISE: [f64; 2] = [5e-3, 1e-5];
+
+/// A record: t, u, x, a. `idle`: the force alone does not move the mass in every other half second.
+fn record(friction: f64, turn: f64, idle: bool) -> String {
+    let (m, c, k) = (2.0, 6.0, 300.0);
+    let (mut x, mut v, mut noise): (f64, f64, f64) = (0.0, 0.0, 0.3 + 0.1 * turn);
+    let mut text = "t,u,x,a\n".to_owned();
+    let mut drawn = || {
+        noise = 4.0 * noise * (1.0 - noise) * 0.999_999;
+        2.8 * (noise - 0.5)
+    };
+    for sample in 0..800 {
+        let t = 0.005 * f64::from(sample);
+        let wave = 20.0 * (9.0 * t + turn).sin() + 12.0 * (23.0 * t * (1.0 + 0.1 * turn)).sin();
+        let u = match idle && (2.0 * t) as u32 % 2 == 1 {
+            true => 0.0,
+            false => wave,
+        };
+        // Where the mass rests friction bears what the others do, as far as it can.
+        let acceleration = |x: f64, v: f64| {
+            let others = u - c * v - k * x;
+            match v == 0.0 {
+                true => (others - others.clamp(-friction, friction)) / m,
+                false => (others - friction * v.signum()) / m,
+            }
+        };
+        let shown = [acceleration(x, v), x];
+        let [a, q] = [0, 1].map(|place| shown[place] + NOISE[place] * drawn());
+        text += &format!("{t:.3},{u:.17},{q:.12},{a:.12}\n");
+        for _ in 0..200 {
+            let h = 2.5e-5;
+            let after = v + h * acceleration(x, v);
+            // Friction turns no motion round: it stops it.
+            v = if v * after < 0.0 { 0.0 } else { after };
+            x += h * v;
+        }
+    }
+    text
+}
+
+/// What `command` finds in records of these channels.
+fn answered(command: &str, specification: &str, dataset: &str, records: [String; 2]) -> Value {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = |name: &str| folder.path().join(name).display().to_string();
+    let [train, test] = &records;
+    for (name, text) in [
+        ("oscillator.toml", specification),
+        ("dataset.toml", dataset),
+        ("train.csv", train),
+        ("test.csv", test),
+    ] {
+        std::fs::write(file(name), text).expect("a file");
+    }
+    let (model, dataset, out) = (file("oscillator.toml"), file("dataset.toml"), file("out"));
+    program::accepted(&[command, &model, &dataset, "--out", &out]);
+    let name = match command {
+        "compare" => "comparison.json",
+        _ => "discovery.json",
+    };
+    let text = std::fs::read_to_string(Path::new(&out).join(name)).expect("a document");
+    serde_json::from_str(&text).expect("JSON")
+}
+
+#[test]
+fn a_hidden_friction_is_found_from_an_accelerometer_alone_and_beside_a_position() {
+    for dataset in [DATASET.to_owned(), format!("{DATASET}{POSITION}")] {
+        let records = || [record(FRICTION, 0.0, false), record(FRICTION, 1.0, false)];
+        let found = answered("discover", OSCILLATOR, &dataset, records());
+        assert_eq!(found["verdict"], "effects_found", "{found:#}");
+        let effects = found["effects"].as_array().expect("effects");
+        assert_eq!(effects.len(), 1, "{effects:#?}");
+        assert_eq!(effects[0]["effect"], "coulomb_friction", "{effects:#?}");
+        let level = effects[0]["parameters"].as_object();
+        let level = level.and_then(|p| p.values().next());
+        let level = level.and_then(|p| p["value"].as_f64()).expect("a level");
+        assert!((level / FRICTION - 1.0).abs() < 0.03, "{level}");
+    }
+    let nothing = [record(0.0, 0.0, false), record(0.0, 1.0, false)];
+    let found = answered("discover", OSCILLATOR, DATASET, nothing);
+    assert_eq!(found["verdict"], "no_significant_gap", "{found:#}");
+}
+
+#[test]
+fn friction_that_holds_leaves_no_acceleration() {
+    let with_friction = OSCILLATOR.replace(
+        "[coordinates]",
+        "F_c = { value = 12, unit = \"N\" }\n\n[coordinates]",
+    ) + "dry = { on = \"x\", value = \"-F_c*sign(dot(x))\" }\n";
+    let records = [record(12.0, 0.0, true), record(12.0, 1.0, true)];
+    let resting = records[0].lines().skip(1);
+    let resting = resting.filter(|line| {
+        let last = line.rsplit(',').next().and_then(|a| a.parse::<f64>().ok());
+        last.is_some_and(|a| a.abs() < 1e-2)
+    });
+    assert!(resting.count() > 100, "the mass rests");
+    let found = answered("compare", &with_friction, DATASET, records);
+    assert_eq!(found["verdict"], "no_significant_gap", "{:#}", found["gap"]);
+}

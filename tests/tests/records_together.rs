@@ -1,0 +1,64 @@
+//! Records seen together: those that contradict each other, and a search that is cut off.
+
+use eomgen_tests::measured::{DESCRIPTION, Measured, Moment, record_of};
+use eomgen_tests::program;
+use serde_json::Value;
+
+/// The notes of a document as one text.
+fn notes(document: &Value) -> String {
+    document["notes"].to_string()
+}
+
+#[test]
+fn records_that_contradict_each_other_are_named_with_what_each_says_alone() {
+    let more = |at: Moment| -150.0 * at.v;
+    let measured = Measured::stage(0.0);
+    measured.write("other.csv", record_of(&more, 0.4).as_bytes());
+    let both = DESCRIPTION
+        .replace("[\"train.csv\"]", "[\"train.csv\", \"other.csv\"]")
+        .replace("relative = 0.05", "relative = 0.2");
+    measured.write("dataset.toml", both.as_bytes());
+    let (result, warned) = measured.answered("compare", "both");
+    let found = notes(&result);
+    assert!(found.contains("contradict each other"), "{found}");
+    assert!(
+        found.contains("train[1]") && found.contains("`F_v`") && found.contains("e2 +- "),
+        "{found}"
+    );
+    assert!(warned.contains("contradict each other"), "{warned}");
+    // Two records of one machine do not, though something is missing in its model.
+    let dry = |at: Moment| -3.0 * (at.v / 1e-4).tanh();
+    let sound = Measured::stage(3.0);
+    sound.write("other.csv", record_of(&dry, 0.4).as_bytes());
+    sound.write("dataset.toml", both.as_bytes());
+    let (result, _) = sound.answered("compare", "sound");
+    assert_eq!(result["verdict"], "gap_found", "{result:#}");
+    assert!(!notes(&result).contains("contradict"), "{result:#}");
+}
+
+#[test]
+fn a_search_that_is_cut_off_leaves_what_is_known() {
+    let measured = Measured::stage(3.0);
+    let arguments = measured.arguments("discover", "cut");
+    let mut arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    arguments.extend(["--limit", "1e-6"]);
+    program::accepted(&arguments);
+    let found: Value = serde_json::from_str(&measured.read("cut/discovery.json")).expect("JSON");
+    assert_eq!(found["verdict"], "unexplained");
+    assert_eq!(found["unfinished"], "no effect was fitted by then");
+    assert!(
+        notes(&found).contains("ended by its limit of 0.000001 s"),
+        "{found:#}"
+    );
+    assert!(measured.read("cut/extended.toml").contains("[model]"));
+    for wrong in ["0", "-1", "nan"] {
+        let mut arguments = arguments.clone();
+        arguments.pop();
+        arguments.push(wrong);
+        assert!(program::refused(&arguments).contains("--limit"), "{wrong}");
+    }
+    let (whole, warned) = measured.answered("discover", "whole");
+    assert_eq!(whole["unfinished"], Value::Null);
+    assert_eq!(whole["effects"][0]["effect"], "coulomb_friction");
+    assert!(warned.contains("effect 1 of at most 4: "), "{warned}");
+}
