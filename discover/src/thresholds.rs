@@ -473,3 +473,32 @@ pub const WRITTEN_FROM: f64 = 0.5;
 
 /// A ratio between the residuals of slow and of fast motion below this is not worth a word.
 pub const WORTH_SAYING: f64 = 1.5;
+
+// The next experiment.
+
+/// What is played separates two members if it leaves the wrong one this many standard deviations of the
+/// noise in the channel that shows it best: then it leaves three floors, and nobody takes it for right.
+pub const SEPARATES: f64 = 3.0;
+
+/// The most samples of an experiment of which nobody said how long it lasts.
+pub const EXPERIMENT_SAMPLES: f64 = 10_000.0;
+
+/// Sizes of an input that are tried, in parts of its range: what moves far leaves its limits at the
+/// larger ones.
+pub const EXPERIMENT_SIZES: [f64; 6] = [1.0, 0.5, 0.25, 0.1, 0.05, 0.02];
+
+/// The band of a recorded input is where this part of its power is.
+pub const RECORDED_POWER: f64 = 0.99;
+
+/// How far beyond what was recorded a channel may go, in parts of that: records of one motion differ by
+/// so much.
+pub const LIMIT_MARGIN: f64 = 0.05;
+
+/// So many of the inputs that promise most by a straight line are tried with rivals fitted anew.
+pub const EXPERIMENTS_REFITTED: usize = 3;
+
+/// Steps of such a fit: it begins where records left it, and they hold it there.
+pub const REFIT_STEPS: usize = 4;
+
+/// And parts of a step, until it helps.
+pub const REFIT_PARTS: [f64; 4] = [1.0, 0.5, 0.2, 0.05];

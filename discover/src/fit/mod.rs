@@ -10,6 +10,7 @@ pub mod continuation;
 pub mod fitted;
 pub mod full;
 pub mod gauss_newton;
+pub mod information;
 pub mod initial_states;
 pub mod linearised;
 pub mod noise_floor;

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use eomgen_records::dataset::Channel;
 
 use crate::empirical::EMPIRICAL;
+use crate::experiment::next::{Experiments, NextExperiment};
 use crate::fit::fitted::Fit;
 use crate::fit::noise_floor::NoiseFloor;
 use crate::model::problem::EstimationProblem;
@@ -41,10 +42,13 @@ pub(crate) fn gap(
 pub(crate) fn effects(
     problem: &EstimationProblem<'_>,
     found: &Found,
+    experiments: &Experiments,
     is_sure: bool,
 ) -> Vec<FoundEffect> {
-    let mut order: Vec<&Accepted> = found.accepted.iter().collect();
-    order.sort_by(|a, b| {
+    let mut order: Vec<(&Accepted, &Option<NextExperiment>)> = (found.accepted.iter())
+        .zip(&experiments.of_effects)
+        .collect();
+    order.sort_by(|(a, _), (b, _)| {
         // Squares add up: what one effect closes of them hardly depends on what came before.
         let closed =
             |effect: &Accepted| effect.test_gap.before.powi(2) - effect.test_gap.after.powi(2);
@@ -52,7 +56,10 @@ pub(crate) fn effects(
     });
     let effects = order.into_iter();
     effects
-        .map(|effect| found_effect(problem, found.best(), effect, is_sure))
+        .map(|(effect, next)| FoundEffect {
+            next_experiment: next.clone(),
+            ..found_effect(problem, found.best(), effect, is_sure)
+        })
         .collect()
 }
 
@@ -177,6 +184,7 @@ fn found_effect(
             .clone()
             .map(|(angle, order)| ShaftOrder { angle, order }),
         experiment: has_equivalent.then(|| candidate.experiment.clone()),
+        next_experiment: None,
     }
 }
 

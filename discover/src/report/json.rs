@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde_json::{Map, Value, json};
 
+use crate::experiment::next::{ExperimentFile, MemberAt, NextExperiment, Pair};
 use crate::report::result::{
     ChannelGap, Compared, Comparison, Discovery, EffectAt, Estimated, FoundEffect, OnRecords,
     RejectedEffect, Sensor,
@@ -51,7 +52,9 @@ impl Discovery {
             })
         };
         let mut document = common(&self.compared, gap);
-        let effects: Vec<Value> = self.effects.iter().map(effect).collect();
+        let effects: Vec<Value> = (self.effects.iter())
+            .map(|of| effect(of, &self.experiments))
+            .collect();
         let rejected = self.rejected.iter().map(|r| rejected(r, false));
         let not_testable = self.not_testable.iter().map(|r| self::rejected(r, true));
         document["verdict"] = json!(self.verdict.word());
@@ -136,7 +139,7 @@ fn rejected(of: &RejectedEffect, has_experiment: bool) -> Value {
     entry
 }
 
-fn effect(of: &FoundEffect) -> Value {
+fn effect(of: &FoundEffect, files: &[ExperimentFile]) -> Value {
     let mut entry = at(&of.at);
     entry["status"] = json!(of.status.word());
     entry["equivalent"] = of.equivalent.iter().map(at).collect();
@@ -154,5 +157,31 @@ fn effect(of: &FoundEffect) -> Value {
     if let Some(experiment) = &of.experiment {
         entry["experiment"] = json!(experiment);
     }
+    if let Some(next) = &of.next_experiment {
+        entry["next_experiment"] = next_experiment(next, files);
+    }
     entry
+}
+
+/// An experiment that was computed, in `next_experiment`.
+fn next_experiment(next: &NextExperiment, files: &[ExperimentFile]) -> Value {
+    let member = |of: &MemberAt| json!({"effect": of.effect, "on": of.on});
+    let pair = |pair: &Pair| {
+        json!({
+            "between": pair.between.each_ref().map(member),
+            "separation": pair.separation,
+            "channel": pair.channel,
+        })
+    };
+    json!({
+        "file": next.file.map(|file| &files[file].name),
+        "input": next.input,
+        "form": next.form,
+        "separation": next.separation,
+        "channel": next.channel,
+        "pairs": next.pairs.iter().map(pair).collect::<Vec<Value>>(),
+        "left_out": next.left_out.iter().map(member).collect::<Vec<Value>>(),
+        "reason": next.reason,
+        "bounds": next.bounds,
+    })
 }

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use maud::Markup;
 
+use crate::experiment::next::{ExperimentFile, NextExperiment};
 use crate::report::origin::Origin;
 use crate::report::playback::Playback;
 use crate::report::resimulation::Resimulation;
@@ -145,6 +146,8 @@ pub struct Discovery {
     pub rejected: Vec<RejectedEffect>,
     /// What these records could not have shown.
     pub not_testable: Vec<RejectedEffect>,
+    /// Experiments that would tell more, to be played.
+    pub experiments: Vec<ExperimentFile>,
     /// The part of the gap that was closed; none where there was hardly one.
     pub closure: OnRecords<Option<f64>>,
     /// The test gap step by step.
@@ -248,6 +251,8 @@ pub struct FoundEffect {
     pub order: Option<ShaftOrder>,
     /// What would separate it from its equivalents, where it has some.
     pub experiment: Option<String>,
+    /// What to play for that, as it was computed.
+    pub next_experiment: Option<NextExperiment>,
 }
 
 /// An effect that was not accepted.

@@ -6,6 +6,7 @@ use crate::catalogue::effect::Effect;
 use crate::catalogue::user_effects;
 use crate::empirical::unnamed;
 use crate::error::DiscoverError;
+use crate::experiment::experiments;
 use crate::fit::fitted::Fit;
 use crate::fit::noise_floor::{NoiseFloor, noise_floor};
 use crate::fit::null_model::null_fit;
@@ -27,6 +28,7 @@ use crate::report::write_back::extended;
 use crate::residual_force::residual_force;
 use crate::residual_force::types::ResidualForce;
 use crate::residual_force::wording::described_after;
+use crate::search::context::Context;
 use crate::search::search;
 
 /// Is told, line by line, what is being done.
@@ -152,6 +154,14 @@ pub fn discover_until(
             (equation, force_section(force, after.as_ref()))
         }),
     };
+    let context = Context {
+        problem: &problem,
+        fit: null,
+        floor: floor.rms,
+        progress,
+    };
+    let experiments = experiments(context, &found);
+    stop.check()?;
     let gap = gap(&problem, null, Some(best), &floor);
     let nuisances = nuisances(&problem, best);
     let is_sure =
@@ -162,9 +172,10 @@ pub fn discover_until(
             (true, true) => Verdict::NoSignificantGap,
             (true, false) => Verdict::Unexplained,
         },
-        effects: effects(&problem, &found, is_sure),
+        effects: effects(&problem, &found, &experiments, is_sure),
         rejected: rejected(&found, false),
         not_testable: rejected(&found, true),
+        experiments: experiments.files,
         closure: closure(null, best, &floor),
         steps: steps(&found),
         resimulation: resimulated(&problem, best, &extended)?,
