@@ -29,13 +29,22 @@ pub struct Discrimination {
     pub predicted: Vec<Vec<Vec<f64>>>,
 }
 
-/// How far two members are apart: that which is fitted to the other's prediction more easily.
+/// How far two members are apart.
 #[derive(Clone, Debug)]
 pub struct PairSeparation {
-    /// The member whose prediction is taken for the truth, and the one that is fitted to it.
+    /// The members.
     pub members: [usize; 2],
-    /// What the latter leaves.
-    pub separation: Separation,
+    /// What the second leaves of what the first predicts, and the first of what the second does.
+    pub separations: [Separation; 2],
+}
+
+impl PairSeparation {
+    /// The lesser of both, in standard deviations of the noise: which of the members is true nobody
+    /// knows.
+    pub fn least(&self) -> f64 {
+        let [one, other] = &self.separations;
+        one.size.min(other.size)
+    }
 }
 
 /// Why there is no experiment.
@@ -95,7 +104,7 @@ impl Members<'_> {
             .iter()
             .filter_map(|(_, place)| self.refitted(bounds, times, (*place, &family[*place])));
         let best = refitted.max_by(|a, b| {
-            let least = |of: &Discrimination| least(&|pair| of.pairs[pair].separation.size);
+            let least = |of: &Discrimination| least(&|pair| of.pairs[pair].least());
             least(a).total_cmp(&least(b))
         });
         best.ok_or_else(|| excluded(&promised))
@@ -153,18 +162,12 @@ impl Members<'_> {
         let predictions = self.predictions(bounds, times, proposal).ok()?;
         let separation = |truth: usize, rival: usize| {
             let model = &self.rivals[truth].fit.model;
-            let separation =
-                self.rivals[rival].separation(self.problem, model, &predictions[truth])?;
-            Some(PairSeparation {
-                members: [truth, rival],
-                separation,
-            })
+            self.rivals[rival].separation(self.problem, model, &predictions[truth])
         };
         let of = |[a, b]: [usize; 2]| {
-            let (one, other) = (separation(a, b)?, separation(b, a)?);
-            Some(match one.separation.size <= other.separation.size {
-                true => one,
-                false => other,
+            Some(PairSeparation {
+                members: [a, b],
+                separations: [separation(a, b)?, separation(b, a)?],
             })
         };
         let pairs: Option<Vec<PairSeparation>> = self.pairs().into_iter().map(of).collect();

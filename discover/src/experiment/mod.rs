@@ -18,11 +18,11 @@ pub mod separation;
 pub mod waveform;
 
 use crate::experiment::bounds::Bounds;
-use crate::experiment::discrimination::{Discrimination, Members};
+use crate::experiment::discrimination::{Discrimination, Members, PairSeparation};
 use crate::experiment::members::equivalent_fits;
 use crate::experiment::next::{ExperimentFile, Experiments, MemberAt, NextExperiment, Pair};
 use crate::experiment::proposal::Proposal;
-use crate::experiment::separation::Rival;
+use crate::experiment::separation::{Rival, Separation};
 use crate::fit::fitted::Fit;
 use crate::ids::EffectId;
 use crate::search::context::Context;
@@ -117,49 +117,52 @@ impl Plan<'_> {
     ) -> NextExperiment {
         let proposal = &self.family[best.proposal];
         let channels = &self.context.problem.dataset.channels;
-        let pairs: Vec<Pair> = (best.pairs.iter())
-            .map(|pair| Pair {
-                between: pair.members.map(|member| at[member].clone()),
-                separation: pair.separation.size,
-                channel: channels[pair.separation.channel].name.clone(),
-            })
-            .collect();
-        let separates = |pair: &&Pair| pair.separation >= thresholds::SEPARATES;
-        let is_enough = pairs.iter().any(|pair| separates(&pair));
-        let counted = pairs.iter().filter(|pair| !is_enough || separates(pair));
-        let least = counted.min_by(|a, b| a.separation.total_cmp(&b.separation));
-        let least = least.cloned();
-        let file = is_enough.then(|| {
-            let shown = best.pairs.iter().position(|pair| {
-                Some(pair.separation.size) == least.as_ref().map(|l| l.separation)
-            });
-            let [truth, rival] = best.pairs[shown.unwrap_or(0)].members;
-            files.push(ExperimentFile {
+        let separates = |pair: &&PairSeparation| pair.least() >= thresholds::SEPARATES;
+        let is_enough = best.pairs.iter().any(|pair| separates(&pair));
+        let counted = best
+            .pairs
+            .iter()
+            .filter(|pair| !is_enough || separates(pair));
+        let least = counted.min_by(|a, b| a.least().total_cmp(&b.least()));
+        let file = least.filter(|_| is_enough).map(|least| {
+            let text = played::text(
+                (&self.bounds, &self.times),
+                proposal,
+                &self.inputs,
+                &self.context.problem.dataset.played,
+            );
+            let file = ExperimentFile {
                 name: ExperimentFile::numbered(files.len()),
-                text: played::text(
-                    (&self.bounds, &self.times),
-                    proposal,
-                    &self.inputs,
-                    &self.context.problem.dataset.played,
-                ),
+                text,
                 input: proposal.name.clone(),
                 times: self.times.clone(),
                 values: proposal.values.clone(),
-                members: [at[truth].clone(), at[rival].clone()],
+                members: least.members.map(|member| at[member].clone()),
                 predicted: [
-                    best.predicted[truth].clone(),
-                    best.pairs[shown.unwrap_or(0)].separation.seen.clone(),
+                    best.predicted[least.members[0]].clone(),
+                    least.separations[0].seen.clone(),
                 ],
-            });
+            };
+            files.push(file);
             files.len() - 1
         });
+        let pair = |pair: &PairSeparation| {
+            let [a, b] = pair.members.map(|member| at[member].clone());
+            let [of_b, of_a] = &pair.separations;
+            let told = |truth: &MemberAt, rival: &MemberAt, of: &Separation| Pair {
+                truth: truth.clone(),
+                rival: rival.clone(),
+                separation: of.size,
+                channel: channels[of.channel].name.clone(),
+            };
+            [told(&a, &b, of_b), told(&b, &a, of_a)]
+        };
         NextExperiment {
             file,
             input: Some(proposal.name.clone()),
             form: Some(proposal.form.clone()),
-            separation: least.as_ref().map(|pair| pair.separation),
-            channel: least.map(|pair| pair.channel),
-            pairs,
+            separation: least.map(PairSeparation::least),
+            pairs: best.pairs.iter().flat_map(pair).collect(),
             left_out,
             reason: None,
             bounds: self.bounds.words.clone(),

@@ -72,9 +72,11 @@ impl ExperimentFile {
 /// How far an experiment separates two members.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pair {
-    /// The members: the second is fitted to what the first predicts.
-    pub between: [MemberAt; 2],
-    /// What that leaves, in standard deviations of the noise.
+    /// The one whose prediction is taken for the truth.
+    pub truth: MemberAt,
+    /// The one that is fitted to it.
+    pub rival: MemberAt,
+    /// The root mean square of what that leaves, in standard deviations of the noise.
     pub separation: f64,
     /// The channel that shows it best.
     pub channel: String,
@@ -92,9 +94,7 @@ pub struct NextExperiment {
     /// The least separation of the pairs that are separated, in standard deviations of the noise; the
     /// least of all if none is.
     pub separation: Option<f64>,
-    /// The channel that shows that best.
-    pub channel: Option<String>,
-    /// All pairs.
+    /// All pairs, either way.
     pub pairs: Vec<Pair>,
     /// Members that could not be fitted.
     pub left_out: Vec<MemberAt>,
@@ -112,7 +112,6 @@ impl NextExperiment {
             input: None,
             form: None,
             separation: None,
-            channel: None,
             pairs: Vec::new(),
             left_out: Vec::new(),
             reason: Some(reason.to_owned()),

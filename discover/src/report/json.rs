@@ -168,7 +168,8 @@ fn next_experiment(next: &NextExperiment, files: &[ExperimentFile]) -> Value {
     let member = |of: &MemberAt| json!({"effect": of.effect, "on": of.on});
     let pair = |pair: &Pair| {
         json!({
-            "between": pair.between.each_ref().map(member),
+            "true": member(&pair.truth),
+            "rival": member(&pair.rival),
             "separation": pair.separation,
             "channel": pair.channel,
         })
@@ -178,7 +179,6 @@ fn next_experiment(next: &NextExperiment, files: &[ExperimentFile]) -> Value {
         "input": next.input,
         "form": next.form,
         "separation": next.separation,
-        "channel": next.channel,
         "pairs": next.pairs.iter().map(pair).collect::<Vec<Value>>(),
         "left_out": next.left_out.iter().map(member).collect::<Vec<Value>>(),
         "reason": next.reason,
