@@ -497,8 +497,23 @@ pub const LIMIT_MARGIN: f64 = 0.05;
 /// So many of the inputs that promise most by a straight line are tried with rivals fitted anew.
 pub const EXPERIMENTS_REFITTED: usize = 3;
 
-/// Steps of such a fit: it begins where records left it, and they hold it there.
-pub const REFIT_STEPS: usize = 4;
+/// What an experiment shows of something small: [`SEPARATES`], but for what a straight line is off by.
+pub const SHOWS: f64 = 2.0;
+
+/// What could not be tested is looked at once for each effect and place, so many in all: what would show
+/// one often shows the next.
+pub const MOST_SHOWN: usize = 6;
+
+/// How far something moves the outputs where it is taken to be small, in standard deviations of the
+/// noise: a straight line holds there.
+pub const SHOWN_BY: f64 = 3.0;
+
+/// And how near that its size is chosen.
+pub const SHOWN_WITHIN: Interval = Interval::new(1.0, 10.0);
+
+/// The most steps of such a fit: far from where records left it a rival that has not come as near as it
+/// can would seem to be told.
+pub const REFIT_STEPS: usize = 30;
 
 /// And parts of a step, until it helps.
 pub const REFIT_PARTS: [f64; 4] = [1.0, 0.5, 0.2, 0.05];

@@ -105,10 +105,9 @@ impl Bounds {
         });
         let channels = channels.collect();
         let words = match &from_records[..] {
-            [] => "all bounds are those of the dataset file".to_owned(),
-            [only] => format!("{only} is as recorded, where the dataset file says nothing"),
-            [all @ .., last] => format!(
-                "{} and {last} are as recorded, where the dataset file says nothing",
+            [] => "All bounds are those of the dataset file.".to_owned(),
+            all => format!(
+                "As recorded, because the dataset file says nothing: {}.",
                 all.join(", ")
             ),
         };

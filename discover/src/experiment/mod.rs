@@ -4,10 +4,12 @@
 //! The files, in the order in which they read each other: [`waveform`] (forms of an input), [`bounds`]
 //! (within which it stays), [`proposal`] (inputs within these), [`prediction`] (what a fitted model
 //! does then), [`separation`] (what another leaves of that, once it is fitted to it as well),
-//! [`discrimination`] (the input that separates best), `members` (fits of a class), `played` (the
+//! [`discrimination`] (the input that separates best), [`detection`] (the one that shows best what the
+//! records could not), `members` (fits of a class), `played` (the
 //! file), [`next`] (the result).
 
 pub mod bounds;
+pub mod detection;
 pub mod discrimination;
 mod members;
 pub mod next;
@@ -17,14 +19,18 @@ pub mod proposal;
 pub mod separation;
 pub mod waveform;
 
+use crate::catalogue::candidate::Candidate;
 use crate::experiment::bounds::Bounds;
-use crate::experiment::discrimination::{Discrimination, Members, PairSeparation};
+use crate::experiment::detection::Hidden;
+use crate::experiment::discrimination::{Discrimination, Members, NoExperiment, PairSeparation};
 use crate::experiment::members::equivalent_fits;
-use crate::experiment::next::{ExperimentFile, Experiments, MemberAt, NextExperiment, Pair};
+use crate::experiment::next::{ExperimentFile, Experiments, MemberAt, NextExperiment, Pair, Shown};
+use crate::experiment::prediction::Predictor;
 use crate::experiment::proposal::Proposal;
 use crate::experiment::separation::{Rival, Separation};
 use crate::fit::fitted::Fit;
 use crate::ids::EffectId;
+use crate::model::unknowns::What;
 use crate::search::context::Context;
 use crate::search::found::Found;
 use crate::thresholds;
@@ -52,6 +58,7 @@ pub fn experiments(context: Context<'_>, found: &Found) -> Experiments {
         };
         experiments.of_effects.push(next);
     }
+    plan.of_not_testable(found, &mut experiments);
     experiments
 }
 
@@ -125,26 +132,15 @@ impl Plan<'_> {
             .filter(|pair| !is_enough || separates(pair));
         let least = counted.min_by(|a, b| a.least().total_cmp(&b.least()));
         let file = least.filter(|_| is_enough).map(|least| {
-            let text = played::text(
-                (&self.bounds, &self.times),
+            self.written(
                 proposal,
-                &self.inputs,
-                &self.context.problem.dataset.played,
-            );
-            let file = ExperimentFile {
-                name: ExperimentFile::numbered(files.len()),
-                text,
-                input: proposal.name.clone(),
-                times: self.times.clone(),
-                values: proposal.values.clone(),
-                members: least.members.map(|member| at[member].clone()),
-                predicted: [
+                least.members.map(|member| at[member].words()),
+                [
                     best.predicted[least.members[0]].clone(),
                     least.separations[0].seen.clone(),
                 ],
-            };
-            files.push(file);
-            files.len() - 1
+                files,
+            )
         });
         let pair = |pair: &PairSeparation| {
             let [a, b] = pair.members.map(|member| at[member].clone());
@@ -164,8 +160,162 @@ impl Plan<'_> {
             separation: least.map(PairSeparation::least),
             pairs: best.pairs.iter().flat_map(pair).collect(),
             left_out,
+            shows: None,
             reason: None,
             bounds: self.bounds.words.clone(),
+        }
+    }
+
+    /// The file of an input, written if it is not yet: of several uses the first is drawn.
+    fn written(
+        &self,
+        proposal: &Proposal,
+        members: [String; 2],
+        predicted: [Vec<Vec<f64>>; 2],
+        files: &mut Vec<ExperimentFile>,
+    ) -> usize {
+        let text = played::text(
+            (&self.bounds, &self.times),
+            proposal,
+            &self.inputs,
+            &self.context.problem.dataset.played,
+        );
+        if let Some(known) = files.iter().position(|file| file.text == text) {
+            return known;
+        }
+        files.push(ExperimentFile {
+            name: ExperimentFile::numbered(files.len()),
+            text,
+            input: proposal.name.clone(),
+            times: self.times.clone(),
+            values: proposal.values.clone(),
+            members,
+            predicted,
+        });
+        files.len() - 1
+    }
+
+    /// What would show the effects that the records could not have shown, each at each place once.
+    fn of_not_testable(&self, found: &Found, experiments: &mut Experiments) {
+        let problem = self.context.problem;
+        experiments.of_rejected = vec![None; found.rejected.len()];
+        let mut wanted: Vec<usize> = Vec::new();
+        for (place, rejected) in found.rejected.iter().enumerate() {
+            let is_known = |other: &usize| {
+                found.rejected[*other]
+                    .candidate
+                    .is_same_as(&rejected.candidate)
+            };
+            if rejected.not_testable && !wanted.iter().any(is_known) {
+                wanted.push(place);
+            }
+        }
+        wanted.truncate(thresholds::MOST_SHOWN);
+        if wanted.is_empty() {
+            return;
+        }
+        (self.context.progress)(&format!(
+            "seeking experiments that show what these records could not, {} effects",
+            wanted.len()
+        ));
+        let without = Rival::declared(found.best());
+        let family = self.largest(found.best());
+        for place in wanted {
+            let candidate = &found.rejected[place].candidate;
+            let next = match Hidden::of(problem, &without, candidate) {
+                Ok(hidden) => self.shown(&hidden, candidate, &family, &mut experiments.files),
+                Err(error) => NextExperiment::none(&error.to_string(), &self.bounds),
+            };
+            experiments.of_rejected[place] = Some(next);
+        }
+    }
+
+    /// Of each form on each input the largest with which a fit stays within its limits.
+    fn largest(&self, fit: &Fit) -> Vec<(usize, &Proposal)> {
+        let Some(mut predictor) = Predictor::of(self.context.problem, fit) else {
+            return Vec::new();
+        };
+        let mut family: Vec<(usize, &Proposal)> = Vec::new();
+        for (place, proposal) in self.family.iter().enumerate() {
+            let is_same = |known: &(usize, &Proposal)| {
+                known.1.place == proposal.place && known.1.waveform == proposal.waveform
+            };
+            let is_admitted = |predictor: &mut Predictor<'_>| {
+                let predicted = predictor.predicted(&self.bounds, &self.times, proposal);
+                predicted.is_ok()
+            };
+            if !family.last().is_some_and(is_same) && is_admitted(&mut predictor) {
+                family.push((place, proposal));
+            }
+        }
+        family
+    }
+
+    /// What shows an effect best.
+    fn shown(
+        &self,
+        hidden: &Hidden<'_>,
+        candidate: &Candidate,
+        family: &[(usize, &Proposal)],
+        files: &mut Vec<ExperimentFile>,
+    ) -> NextExperiment {
+        let Some(best) = hidden.best((&self.bounds, &self.times), family) else {
+            let reason = match self.family.is_empty() {
+                true => NoExperiment::NoInput.to_string(),
+                false => "nothing that was tried within the bounds shows it".to_owned(),
+            };
+            return NextExperiment::none(&reason, &self.bounds);
+        };
+        let proposal = &self.family[best.proposal];
+        let is_enough = best.separation.size >= thresholds::SHOWS;
+        let file = is_enough.then(|| {
+            let label = MemberAt::of(candidate).words();
+            self.written(
+                proposal,
+                [format!("with {label}"), "without it".to_owned()],
+                [best.predicted.clone(), best.separation.seen.clone()],
+                files,
+            )
+        });
+        NextExperiment {
+            file,
+            input: Some(proposal.name.clone()),
+            form: Some(proposal.form.clone()),
+            separation: Some(best.separation.size),
+            pairs: Vec::new(),
+            left_out: Vec::new(),
+            shows: is_enough
+                .then(|| self.smallest(candidate, hidden.stated(best.size)))
+                .flatten(),
+            reason: None,
+            bounds: self.bounds.words.clone(),
+        }
+    }
+
+    /// What scales an effect and the value from which on it is shown, in its unit.
+    fn smallest(&self, candidate: &Candidate, value: f64) -> Option<Shown> {
+        let shown = |what: &str, from: f64, unit: &str| {
+            Some(Shown {
+                what: what.to_owned(),
+                from,
+                unit: unit.to_owned(),
+            })
+        };
+        let channels = &self.context.problem.dataset.channels;
+        match &candidate.dropped_prior {
+            None => {
+                let scaling = candidate.parameters.iter().find(|of| of.shape.is_none())?;
+                shown(&scaling.name, scaling.per_si() * value, &scaling.unit)
+            }
+            Some(What::Gain(_)) => shown("gain", value, "1"),
+            Some(What::Bias(channel)) => shown("bias", value, &channels[*channel].unit),
+            Some(What::Delay(_)) => shown("delay", value, "s"),
+            Some(What::Parameter(name) | What::Inverse(name)) => {
+                let model = self.context.fit.model.specification();
+                let parameter = model.parameters.iter().find(|of| of.name == *name)?;
+                let unit = &parameter.unit;
+                shown(name, unit.from_si(value), &unit.text)
+            }
         }
     }
 }

@@ -13,6 +13,8 @@ pub struct Experiments {
     pub files: Vec<ExperimentFile>,
     /// For each accepted effect what separates its class; none where it is no class.
     pub of_effects: Vec<Option<NextExperiment>>,
+    /// For each rejected one what would show it; none where that was not asked.
+    pub of_rejected: Vec<Option<NextExperiment>>,
 }
 
 /// A member of a class.
@@ -52,8 +54,9 @@ pub struct ExperimentFile {
     pub times: Vec<f64>,
     /// Its values, SI.
     pub values: Vec<f64>,
-    /// The two members that it separates least of those that it separates.
-    pub members: [MemberAt; 2],
+    /// The two members that it separates least of those that it separates, or the model with what it
+    /// shows and without that.
+    pub members: [String; 2],
     /// What the sensors show of the first, and of the second fitted to that: a column for each channel,
     /// SI.
     pub predicted: [Vec<Vec<f64>>; 2],
@@ -82,7 +85,18 @@ pub struct Pair {
     pub channel: String,
 }
 
-/// What would tell the members of a class apart.
+/// How small something may be to be shown.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shown {
+    /// What scales it.
+    pub what: String,
+    /// From which value on it is shown, in its unit.
+    pub from: f64,
+    /// The unit.
+    pub unit: String,
+}
+
+/// What would tell the members of a class apart, or show what the records could not.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NextExperiment {
     /// Which of the files; none if nothing within the bounds separates them.
@@ -98,6 +112,8 @@ pub struct NextExperiment {
     pub pairs: Vec<Pair>,
     /// Members that could not be fitted.
     pub left_out: Vec<MemberAt>,
+    /// Of what the records could not show, how small it may be.
+    pub shows: Option<Shown>,
     /// Why nothing can be played, if so.
     pub reason: Option<String>,
     /// Where the bounds come from.
@@ -114,6 +130,7 @@ impl NextExperiment {
             separation: None,
             pairs: Vec::new(),
             left_out: Vec::new(),
+            shows: None,
             reason: Some(reason.to_owned()),
             bounds: bounds.words.clone(),
         }

@@ -9,6 +9,7 @@ use eomgen_sim::inputs::HeldInputs;
 use crate::experiment::bounds::Bounds;
 use crate::experiment::proposal::Proposal;
 use crate::fit::fitted::Fit;
+use crate::fit::shooting::{Sensors, Shooting};
 use crate::model::estimation_model::EstimationModel;
 use crate::model::problem::EstimationProblem;
 use crate::model::simulation::{Motion, Simulation};
@@ -34,9 +35,10 @@ pub enum Excluded {
 /// A model at fixed parameters, to be driven by experiments.
 pub struct Predictor<'a> {
     problem: &'a EstimationProblem<'a>,
-    fit: &'a Fit,
-    /// The model, which is the fit's or has something more.
+    /// The model, which is a fit's or has something more.
     model: &'a EstimationModel,
+    shooting: Shooting<'a>,
+    sensors: Sensors,
     simulation: Simulation<'a>,
     initial: Vec<f64>,
 }
@@ -44,14 +46,15 @@ pub struct Predictor<'a> {
 impl<'a> Predictor<'a> {
     /// A fit's own model. None where there is no motion at its parameters.
     pub fn of(problem: &'a EstimationProblem<'a>, fit: &'a Fit) -> Option<Self> {
-        let values = fit.shooting(problem).values(&fit.train.estimate.theta);
-        Self::with(problem, fit, &fit.model, &values)
+        let theta = &fit.train.estimate.theta;
+        let values = fit.shooting(problem).values(theta);
+        Self::with(problem, (fit, theta), &fit.model, &values)
     }
 
-    /// Another model at these parameters, seen by a fit's sensors.
+    /// Another model at these parameters, seen by the sensors of a fit's unknowns.
     pub fn with(
         problem: &'a EstimationProblem<'a>,
-        fit: &'a Fit,
+        (fit, theta): (&'a Fit, &[f64]),
         model: &'a EstimationModel,
         values: &[f64],
     ) -> Option<Self> {
@@ -62,10 +65,12 @@ impl<'a> Predictor<'a> {
                 problem.first_state(model, &problem.dataset.train[0])
             }
         };
+        let shooting = fit.shooting(problem);
         Some(Self {
             problem,
-            fit,
             model,
+            sensors: shooting.sensors(theta),
+            shooting,
             simulation: model.simulation(values).ok()?,
             initial,
         })
@@ -86,9 +91,7 @@ impl<'a> Predictor<'a> {
         let motion = self.simulation.motion(&self.initial, times, &inputs);
         let Motion { states, outputs } = motion.map_err(|_| Excluded::Unfollowed)?;
         self.check(bounds, &states, &outputs)?;
-        let shooting = self.fit.shooting(self.problem);
-        let sensors = shooting.sensors(&self.fit.train.estimate.theta);
-        let seen = shooting.seen(times, &sensors, &outputs);
+        let seen = self.shooting.seen(times, &self.sensors, &outputs);
         Ok(Prediction {
             records: vec![recorded(times, inputs, &seen, bounds.channels.len())],
             states,

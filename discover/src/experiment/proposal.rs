@@ -15,6 +15,8 @@ pub struct Proposal {
     pub place: usize,
     /// Its name.
     pub name: String,
+    /// Its form.
+    pub waveform: Waveform,
     /// What it is, in words.
     pub form: String,
     /// Its value at each sample, SI.
@@ -34,6 +36,7 @@ impl Proposal {
                     family.push(Self {
                         place: input.place,
                         name: input.name.clone(),
+                        waveform: form,
                         form: format!("{}, {:.0} % of its range", form.words(), 100.0 * size),
                         values: played(&shape, size, input, bounds.sample),
                     });

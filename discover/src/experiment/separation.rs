@@ -30,7 +30,7 @@ use crate::thresholds;
 pub struct Rival<'f> {
     /// The fit.
     pub fit: &'f Fit,
-    /// What the records tell of its unknowns: a triangular factor of the information.
+    /// What is known of its unknowns: a factor of the information.
     information: DMatrix<f64>,
     /// Its unknowns, whose priors are in the information.
     unknowns: Vec<Unknown>,
@@ -50,13 +50,26 @@ pub struct Separation {
 impl<'f> Rival<'f> {
     /// A fit with what its records tell of it.
     pub fn of(problem: &EstimationProblem<'_>, fit: &'f Fit) -> Self {
+        Self::with(fit, information_of(problem, fit))
+    }
+
+    /// A fit with what was declared of it alone: had the records held something more, they would have
+    /// told something else.
+    pub fn declared(fit: &'f Fit) -> Self {
+        let sd = |unknown: &Unknown| unknown.prior.map_or(f64::INFINITY, |prior| prior.sd);
+        let weights = fit.unknowns.iter().map(|unknown| 1.0 / sd(unknown));
+        let weights = DVector::from_iterator(fit.unknowns.len(), weights);
+        Self::with(fit, DMatrix::from_diagonal(&weights))
+    }
+
+    fn with(fit: &'f Fit, information: DMatrix<f64>) -> Self {
         let without_prior = |unknown: &Unknown| Unknown {
             prior: None,
             ..unknown.clone()
         };
         Self {
             fit,
-            information: information_of(problem, fit),
+            information,
             unknowns: fit.unknowns.iter().map(without_prior).collect(),
         }
     }

@@ -64,9 +64,13 @@ pub(crate) fn effects(
 }
 
 /// The effects that were not, testable or not.
-pub(crate) fn rejected(found: &Found, not_testable: bool) -> Vec<RejectedEffect> {
-    let such = found.rejected.iter();
-    let such = such.filter(|rejected| rejected.not_testable == not_testable);
+pub(crate) fn rejected(
+    found: &Found,
+    experiments: &Experiments,
+    not_testable: bool,
+) -> Vec<RejectedEffect> {
+    let such = found.rejected.iter().zip(&experiments.of_rejected);
+    let such = such.filter(|(rejected, _)| rejected.not_testable == not_testable);
     // What is accepted, or may be meant by what is, is not rejected too: a later round knows it as
     // one more of the same.
     let is_believed = |of: &Rejected| {
@@ -75,14 +79,15 @@ pub(crate) fn rejected(found: &Found, not_testable: bool) -> Vec<RejectedEffect>
             .flat_map(|effect| std::iter::once(&effect.candidate).chain(&effect.equivalent));
         believed.any(|known| known.is_same_as(&of.candidate))
     };
-    let such = such.filter(|rejected| !is_believed(rejected));
-    such.map(|of| RejectedEffect {
+    let such = such.filter(|(rejected, _)| !is_believed(rejected));
+    such.map(|(of, next)| RejectedEffect {
         at: EffectAt {
             effect: of.candidate.effect.clone(),
             on: of.candidate.on.clone(),
         },
         reason: reason(of),
         experiment: of.candidate.experiment.clone(),
+        next_experiment: next.clone(),
     })
     .collect()
 }

@@ -122,6 +122,8 @@ pub(crate) struct Pictures {
     pub overlay: Markup,
     /// Residuals over time, and their spectra.
     pub residuals: Markup,
+    /// What to play next, and what is predicted of it.
+    pub experiments: Markup,
     /// The equation whose residual force is shown, and that force.
     pub force: Option<(String, Markup)>,
 }
@@ -264,6 +266,8 @@ pub struct RejectedEffect {
     pub reason: String,
     /// What would show it.
     pub experiment: String,
+    /// What to play for that, where it was computed.
+    pub next_experiment: Option<NextExperiment>,
 }
 
 /// A step of the search.

@@ -1,6 +1,7 @@
 //! The whole way from a specification and records to a result.
 
 use eomgen_records::dataset::Dataset;
+use maud::Markup;
 
 use crate::catalogue::effect::Effect;
 use crate::catalogue::user_effects;
@@ -16,6 +17,7 @@ use crate::model::stop::Stop;
 use crate::report::discovery::{
     bound_notes, closure, effects, gap, nuisances, refitted, rejected, sensors, steps,
 };
+use crate::report::experiment::drawn;
 use crate::report::left::{Left, Stage};
 use crate::report::location::located;
 use crate::report::origin::{Origin, Specification};
@@ -59,6 +61,7 @@ pub fn compare(
         playback: Playback::None,
         overlay: overlay(&problem, &fit, None),
         residuals: figures(&problem, &fit, None),
+        experiments: Markup::default(),
         force: force.as_ref().map(|force| {
             let equation = force.profiled_equation().to_owned();
             (equation, force_section(force, None))
@@ -145,15 +148,6 @@ pub fn discover_until(
     }
     stop.check()?;
     let extended = extended(&problem, text, best, &found.accepted)?;
-    let pictures = Pictures {
-        playback: Playback::of(&problem, (null, best), &found.accepted, &extended),
-        overlay: overlay(&problem, null, found.last.as_ref()),
-        residuals: figures(&problem, null, found.last.as_ref()),
-        force: force.as_ref().map(|force| {
-            let equation = force.profiled_equation().to_owned();
-            (equation, force_section(force, after.as_ref()))
-        }),
-    };
     let context = Context {
         problem: &problem,
         fit: null,
@@ -162,6 +156,16 @@ pub fn discover_until(
     };
     let experiments = experiments(context, &found);
     stop.check()?;
+    let pictures = Pictures {
+        playback: Playback::of(&problem, (null, best), &found.accepted, &extended),
+        overlay: overlay(&problem, null, found.last.as_ref()),
+        residuals: figures(&problem, null, found.last.as_ref()),
+        experiments: drawn(&problem, &experiments.files),
+        force: force.as_ref().map(|force| {
+            let equation = force.profiled_equation().to_owned();
+            (equation, force_section(force, after.as_ref()))
+        }),
+    };
     let gap = gap(&problem, null, Some(best), &floor);
     let nuisances = nuisances(&problem, best);
     let is_sure =
@@ -173,8 +177,8 @@ pub fn discover_until(
             (true, false) => Verdict::Unexplained,
         },
         effects: effects(&problem, &found, &experiments, is_sure),
-        rejected: rejected(&found, false),
-        not_testable: rejected(&found, true),
+        rejected: rejected(&found, &experiments, false),
+        not_testable: rejected(&found, &experiments, true),
         experiments: experiments.files,
         closure: closure(null, best, &floor),
         steps: steps(&found),
