@@ -19,6 +19,8 @@ pub mod proposal;
 pub mod separation;
 pub mod waveform;
 
+use eomgen_model_spec::unit::Unit;
+
 use crate::catalogue::candidate::Candidate;
 use crate::experiment::bounds::Bounds;
 use crate::experiment::detection::Hidden;
@@ -38,14 +40,18 @@ use crate::thresholds;
 /// The next experiments for what was found. `context`: that of the search.
 pub fn experiments(context: Context<'_>, found: &Found) -> Experiments {
     let problem = context.problem;
-    let inputs = found.null.model.specification().inputs.iter();
-    let inputs: Vec<String> = inputs.map(|input| input.name.clone()).collect();
+    let inputs = &found.null.model.specification().inputs;
+    let units = inputs.iter();
+    let units = units.map(|input| Unit::coherent(input.unit.dimension).text);
+    let units: Vec<String> = units.collect();
+    let inputs: Vec<String> = inputs.iter().map(|input| input.name.clone()).collect();
     let bounds = Bounds::of(problem, &inputs);
     let times = bounds.times();
     let family = Proposal::family(&bounds, &times);
     let plan = Plan {
         context,
         inputs,
+        units,
         bounds,
         times,
         family,
@@ -67,6 +73,8 @@ struct Plan<'r> {
     context: Context<'r>,
     /// The model's inputs.
     inputs: Vec<String>,
+    /// The SI unit of each.
+    units: Vec<String>,
     bounds: Bounds,
     times: Vec<f64>,
     family: Vec<Proposal>,
@@ -187,6 +195,7 @@ impl Plan<'_> {
             name: ExperimentFile::numbered(files.len()),
             text,
             input: proposal.name.clone(),
+            unit: self.units[proposal.place].clone(),
             times: self.times.clone(),
             values: proposal.values.clone(),
             members,

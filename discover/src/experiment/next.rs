@@ -50,6 +50,8 @@ pub struct ExperimentFile {
     pub text: String,
     /// The input that is played.
     pub input: String,
+    /// That input's SI unit.
+    pub unit: String,
     /// The times of its samples, s.
     pub times: Vec<f64>,
     /// Its values, SI.

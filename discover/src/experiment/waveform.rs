@@ -76,21 +76,18 @@ impl Waveform {
                 };
                 at(&|part| phase(part).cos())
             }
-            Self::Square(times) => at(&|part| match (part * f64::from(times)).fract() < 0.5 {
+            Self::Square(times) => at(&|part| match phase(part, times) < 0.5 {
                 true => 1.0,
                 false => -1.0,
             }),
-            Self::Shuttle(times) => at(&|part| match (part * f64::from(times)).fract() {
+            Self::Shuttle(times) => at(&|part| match phase(part, times) {
                 phase if (0.25..0.75).contains(&phase) => -1.0,
                 _ => 1.0,
             }),
-            Self::Triangle(times) => at(&|part| {
-                let phase = (part * f64::from(times)).fract();
-                match phase {
-                    phase if phase < 0.25 => 4.0 * phase,
-                    phase if phase < 0.75 => 2.0 - 4.0 * phase,
-                    phase => 4.0 * phase - 4.0,
-                }
+            Self::Triangle(times) => at(&|part| match phase(part, times) {
+                phase if phase < 0.25 => 4.0 * phase,
+                phase if phase < 0.75 => 2.0 - 4.0 * phase,
+                phase => 4.0 * phase - 4.0,
             }),
             Self::Constant { is_upper } => at(&|_| end(is_upper)),
             Self::Release { is_upper, part } => at(&|now| match now < part {
@@ -137,6 +134,12 @@ impl Waveform {
             Self::Staircase => "a staircase of five levels to each side".to_owned(),
         }
     }
+}
+
+/// Where in its period something is that has so many, a part of the time after its beginning. At the end
+/// none begins anew.
+fn phase(part: f64, periods: u32) -> f64 {
+    (part.min(1.0 - 1e-12) * f64::from(periods)).fract()
 }
 
 fn end(is_upper: bool) -> f64 {

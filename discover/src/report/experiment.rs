@@ -87,7 +87,7 @@ fn figure_of(file: &ExperimentFile, channels: &[Channel], noise: &[f64]) -> Mark
     let series = |label: &str, values: &'_ [f64]| (label.to_owned(), values.to_vec());
     let mut panels = vec![(
         format!("{}: what is played", file.input),
-        (file.input.clone(), String::new()),
+        (file.input.clone(), file.unit.clone()),
         vec![series(&file.input, &file.values)],
         Vec::new(),
     )];
