@@ -71,7 +71,7 @@ pub enum Command {
     Compare(Compare),
     /// Find what a model lacks, name it, add it, and show the gap shrink.
     #[command(
-        after_help = "Examples:\n  eomgen discover my_machine.toml dataset.toml --out found --seed 1\n  eomgen discover my_machine.toml dataset.toml --out found --limit 60"
+        after_help = "Examples:\n  eomgen discover my_machine.toml dataset.toml --out found --seed 1\n  eomgen discover my_machine.toml dataset.toml --out found --limit 60\nWhere records do not tell effects apart, found/experiment.csv is an input that does: play it, list its record beside the others,\nand run this again; docs/discovery.md has its bounds."
     )]
     Discover(Discover),
     /// Measure the motion over a grid of parameters.
@@ -183,7 +183,7 @@ pub struct Discover {
     /// Modal truncation order of every field, instead of the specification's.
     #[arg(long, allow_negative_numbers = true)]
     pub order: Option<String>,
-    /// The folder for `discovery.json`, `extended.toml` and `report.html`.
+    /// The folder for `discovery.json`, `extended.toml`, `report.html`, and `experiment.csv` where one would tell more.
     #[arg(long)]
     pub out: PathBuf,
     /// Draws the noise of the twin that gives the floor.

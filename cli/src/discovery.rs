@@ -60,6 +60,9 @@ pub fn discovered(options: &arguments::Discover) -> Result<Value> {
     let out = &options.out;
     write_file(&out.join("extended.toml"), found.extended.as_bytes())?;
     write_file(&out.join("report.html"), found.page().as_bytes())?;
+    for experiment in &found.experiments {
+        write_file(&out.join(&experiment.name), experiment.text.as_bytes())?;
+    }
     write_json(&out.join("discovery.json"), &document)?;
     Ok(document)
 }

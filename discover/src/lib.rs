@@ -42,6 +42,7 @@
 pub mod catalogue;
 pub mod empirical;
 pub mod error;
+pub mod experiment;
 pub mod fit;
 pub mod ids;
 pub mod interval;

@@ -480,3 +480,47 @@ pub const CONTRADICTS: f64 = 2.0;
 
 /// And where their values differ by this part: less is what one machine does on two days.
 pub const CONTRADICTING_PART: f64 = 0.1;
+
+// The next experiment.
+
+/// What is played separates two members if it leaves the wrong one this many standard deviations of the
+/// noise in the channel that shows it best: then it leaves three floors, and nobody takes it for right.
+pub const SEPARATES: f64 = 3.0;
+
+/// The most samples of an experiment of which nobody said how long it lasts.
+pub const EXPERIMENT_SAMPLES: f64 = 10_000.0;
+
+/// Sizes of an input that are tried, in parts of its range: what moves far leaves its limits at the
+/// larger ones.
+pub const EXPERIMENT_SIZES: [f64; 6] = [1.0, 0.5, 0.25, 0.1, 0.05, 0.02];
+
+/// The band of a recorded input is where this part of its power is.
+pub const RECORDED_POWER: f64 = 0.99;
+
+/// How far beyond what was recorded a channel may go, in parts of that: records of one motion differ by
+/// so much.
+pub const LIMIT_MARGIN: f64 = 0.05;
+
+/// So many of the inputs that promise most by a straight line are tried with rivals fitted anew.
+pub const EXPERIMENTS_REFITTED: usize = 3;
+
+/// What an experiment shows of something small: [`SEPARATES`], but for what a straight line is off by.
+pub const SHOWS: f64 = 2.0;
+
+/// What could not be tested is looked at once for each effect and place, so many in all: what would show
+/// one often shows the next.
+pub const MOST_SHOWN: usize = 6;
+
+/// How far something moves the outputs where it is taken to be small, in standard deviations of the
+/// noise: a straight line holds there.
+pub const SHOWN_BY: f64 = 3.0;
+
+/// And how near that its size is chosen.
+pub const SHOWN_WITHIN: Interval = Interval::new(1.0, 10.0);
+
+/// The most steps of such a fit: far from where records left it a rival that has not come as near as it
+/// can would seem to be told.
+pub const REFIT_STEPS: usize = 30;
+
+/// And parts of a step, until it helps.
+pub const REFIT_PARTS: [f64; 4] = [1.0, 0.5, 0.2, 0.05];

@@ -15,8 +15,9 @@ use crate::error;
 use crate::interruption::{Line, interruptible};
 use crate::model::Model;
 
-/// The document `discovery.json`, the extended specification and the page.
-type Found = (String, String, String);
+/// The document `discovery.json`, the extended specification, the page, and the names and texts of
+/// experiments to be played.
+type Found = (String, String, String, Vec<(String, String)>);
 
 /// Searches for what the model lacks of what a dataset's records show. `progress` is called with
 /// each line on what is being done.
@@ -37,6 +38,11 @@ pub fn discover(
         found.to_json().to_string(),
         found.extended.clone(),
         found.page(),
+        found
+            .experiments
+            .iter()
+            .map(|experiment| (experiment.name.clone(), experiment.text.clone()))
+            .collect(),
     ))
 }
 

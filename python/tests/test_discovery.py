@@ -85,6 +85,7 @@ def test_the_files_are_those_of_the_result(found):
         "extended.toml",
         "report.html",
     ]
+    assert d.experiments == {}
     assert "srcdoc" in d._repr_html_() and "</iframe>" in d._repr_html_()
 
 

@@ -157,6 +157,46 @@ fn datasets_that_say_something_else_are_refused() {
             "outside the dataset's folder",
         ),
         ("[windows]", "[windows", "dataset.toml"),
+        (
+            "[windows]",
+            "[experiment]\ninputs.forse = { range = [-1, 1] }\n[windows]",
+            "did you mean `force`",
+        ),
+        (
+            "[windows]",
+            "[experiment]\ninputs.force = { range = [1, -1] }\n[windows]",
+            "nothing lies between 1 and -1",
+        ),
+        (
+            "[windows]",
+            "[experiment]\ninputs.force = { range = [1] }\n[windows]",
+            "has 1 numbers",
+        ),
+        (
+            "[windows]",
+            "[experiment]\ninputs.force = { band = [-1, 1] }\n[windows]",
+            "no frequency is -1",
+        ),
+        (
+            "[windows]",
+            "[experiment]\ninputs.force = { speed = 1 }\n[windows]",
+            "speed",
+        ),
+        (
+            "[windows]",
+            "[experiment]\nlimits.p = [0, 1]\n[windows]",
+            "there is no channel `p`",
+        ),
+        (
+            "[windows]",
+            "[experiment]\nduration = 0\n[windows]",
+            "greater than 0",
+        ),
+        (
+            "[windows]",
+            "[experiment]\nduration = 1e9\nsample = 1e-3\n[windows]",
+            "is no record",
+        ),
     ] {
         let description = DESCRIPTION.replacen(from, to, 1);
         assert_ne!(description, DESCRIPTION, "{from}");

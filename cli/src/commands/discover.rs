@@ -37,6 +37,9 @@ fn print(as_json: bool, result: &Value, out: &Path) -> Result {
             word("on"),
             word("status")
         );
+        if let Some(says) = effect["next_experiment"]["says"].as_str() {
+            text += &format!("    {says}\n");
+        }
     }
     for (name, gap) in result["gap"].as_object().into_iter().flatten() {
         let number = |value: &Value| {

@@ -76,11 +76,7 @@ impl Fit {
         if state.is_empty() {
             return Vec::new();
         }
-        let value = |name: &String| {
-            let index = self.model.states.iter().position(|known| known == name);
-            index.map_or(0.0, |index| state[index])
-        };
-        model.states.iter().map(value).collect()
+        model.mapped(&self.model, state)
     }
 
     /// Whether it leaves no more than a right model would.

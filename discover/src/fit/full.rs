@@ -2,19 +2,19 @@
 //! uncertainty and to its residuals on the records it was fitted to and on the others.
 
 use crate::ids::WindowId;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
 use crate::error::DiscoverError;
 use crate::fit::continuation::{continuation, continuation_by_secants, secants};
 use crate::fit::fitted::Fit;
 use crate::fit::gauss_newton::{Estimate, damped_gauss_newton, evaluated, level};
+use crate::fit::information::information_factor;
 use crate::fit::initial_states::{self, carried, following};
 use crate::fit::preliminary::{self, PreliminaryFit};
 use crate::fit::prior::{InitialStatePrior, InitialStates};
 use crate::fit::residuals::Residuals;
 use crate::fit::sensitivity::{WindowDerivatives, linearised};
 use crate::fit::shooting::Shooting;
-use crate::fit::variable_projection::{reduced_block, triangular_factor};
 use crate::model::problem::EstimationProblem;
 use crate::model::specification_texts::SpecificationTexts;
 use crate::model::unknowns::Unknown;
@@ -292,20 +292,7 @@ fn uncertainty(
     linear: &[Option<WindowDerivatives>],
 ) -> Vec<f64> {
     let count = shooting.unknowns.len();
-    let mut factor = DMatrix::zeros(count + 1, count + 1);
-    for (window, linear) in WindowId::first(linear.len()).zip(linear) {
-        if let Some(linear) = linear {
-            let block = reduced_block(linear, prior, window, &found.initial_states[window]);
-            factor = triangular_factor(&factor, &block.unknowns());
-        }
-    }
-    let mut rows = DMatrix::zeros(count, count + 1);
-    for (row, unknown) in shooting.unknowns.iter().enumerate() {
-        let sd = unknown.prior.map_or(f64::INFINITY, |prior| prior.sd);
-        rows[(row, row)] = shooting.prior_weight.sqrt() / sd;
-    }
-    let factor = triangular_factor(&factor, &rows);
-    let square = factor.view((0, 0), (count, count)).into_owned();
+    let square = information_factor(shooting, prior, &found.initial_states, linear);
     (0..count)
         .map(|column| {
             let unit = DVector::from_fn(count, |row, _| f64::from(u8::from(row == column)));

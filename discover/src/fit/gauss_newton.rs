@@ -207,7 +207,7 @@ pub(crate) fn change_of_unknowns(
 }
 
 /// The estimate at new unknowns: each window's initial state follows as far as it helps.
-fn followed(
+pub(crate) fn followed(
     shooting: &Shooting<'_>,
     prior: &InitialStatePrior,
     present: &Estimate,

@@ -12,6 +12,7 @@ pub mod contradiction;
 pub mod fitted;
 pub mod full;
 pub mod gauss_newton;
+pub mod information;
 pub mod initial_states;
 pub mod linearised;
 pub mod noise_floor;

@@ -138,6 +138,23 @@ impl EstimationModel {
         state
     }
 
+    /// A state of another model as one of this: states that only this has are 0.
+    pub fn mapped(&self, other: &Self, state: &[f64]) -> Vec<f64> {
+        let value = |name: &String| {
+            let index = other.states.iter().position(|known| known == name);
+            index.map_or(0.0, |index| state[index])
+        };
+        self.states.iter().map(value).collect()
+    }
+
+    /// Whether a state is where the model lives.
+    pub fn admits(&self, state: &[f64]) -> bool {
+        let ranged = state.iter().zip(&self.ranges);
+        ranged
+            .filter_map(|(entry, range)| Some((entry, (*range)?)))
+            .all(|(entry, (low, high))| (low..=high).contains(entry))
+    }
+
     /// The checked specification.
     pub fn specification(&self) -> &Model {
         self.compiled.model()

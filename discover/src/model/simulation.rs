@@ -60,6 +60,15 @@ pub struct LinearisedMotion {
     pub by_drive: Vec<f64>,
 }
 
+/// A motion and what is measured of it.
+#[derive(Clone, Debug, Default)]
+pub struct Motion {
+    /// The state at each sample.
+    pub states: Vec<Vec<f64>>,
+    /// The channels' quantities: a row per sample, a number per channel.
+    pub outputs: Vec<f64>,
+}
+
 /// Outputs of a window: a row per sample, a number per channel; and the state at the end.
 #[derive(Clone, Debug, Default)]
 pub struct Outputs {
@@ -288,17 +297,32 @@ impl<'m> Simulation<'m> {
         samples: &[f64],
         inputs: &HeldInputs,
     ) -> Result<Outputs, SimulationError> {
-        let states = self.states(initial, samples, inputs)?;
-        let mut values = Vec::with_capacity(samples.len() * self.measured.count());
-        self.look_at((samples, &states), inputs);
-        for (t, state) in samples.iter().zip(&states) {
-            self.measure(*t, state, inputs, &mut values);
-        }
-        self.look_away();
+        let Motion { states, outputs } = self.motion(initial, samples, inputs)?;
         Ok(Outputs {
-            values,
+            values: outputs,
             last: states.into_iter().next_back().unwrap_or_default(),
         })
+    }
+
+    /// The states at the samples of a motion that starts at the first of them, and what the channels
+    /// measure there.
+    ///
+    /// # Errors
+    /// As [`Simulation::states`].
+    pub fn motion(
+        &mut self,
+        initial: &[f64],
+        samples: &[f64],
+        inputs: &HeldInputs,
+    ) -> Result<Motion, SimulationError> {
+        let states = self.states(initial, samples, inputs)?;
+        let mut outputs = Vec::with_capacity(samples.len() * self.measured.count());
+        self.look_at((samples, &states), inputs);
+        for (t, state) in samples.iter().zip(&states) {
+            self.measure(*t, state, inputs, &mut outputs);
+        }
+        self.look_away();
+        Ok(Motion { states, outputs })
     }
 
     /// The channels' quantities and their derivatives by each initial state, if the exact

@@ -27,6 +27,14 @@ pub enum What {
 }
 
 impl What {
+    /// The parameter that it is, or one over it.
+    pub fn parameter(&self) -> Option<&str> {
+        match self {
+            Self::Parameter(name) | Self::Inverse(name) => Some(name),
+            Self::Gain(_) | Self::Bias(_) | Self::Delay(_) => None,
+        }
+    }
+
     /// Its value as a specification states it, from its estimate, SI.
     pub fn stated(&self, value: f64) -> f64 {
         match self {

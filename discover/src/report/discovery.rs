@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use eomgen_records::dataset::Channel;
 
 use crate::empirical::EMPIRICAL;
+use crate::experiment::next::{Experiments, NextExperiment};
 use crate::fit::fitted::Fit;
 use crate::fit::noise_floor::NoiseFloor;
 use crate::model::problem::EstimationProblem;
@@ -41,10 +42,13 @@ pub(crate) fn gap(
 pub(crate) fn effects(
     problem: &EstimationProblem<'_>,
     found: &Found,
+    experiments: &Experiments,
     is_sure: bool,
 ) -> Vec<FoundEffect> {
-    let mut order: Vec<&Accepted> = found.accepted.iter().collect();
-    order.sort_by(|a, b| {
+    let mut order: Vec<(&Accepted, &Option<NextExperiment>)> = (found.accepted.iter())
+        .zip(&experiments.of_effects)
+        .collect();
+    order.sort_by(|(a, _), (b, _)| {
         // Squares add up: what one effect closes of them hardly depends on what came before.
         let closed =
             |effect: &Accepted| effect.test_gap.before.powi(2) - effect.test_gap.after.powi(2);
@@ -52,14 +56,21 @@ pub(crate) fn effects(
     });
     let effects = order.into_iter();
     effects
-        .map(|effect| found_effect(problem, found.best(), effect, is_sure))
+        .map(|(effect, next)| FoundEffect {
+            next_experiment: next.clone(),
+            ..found_effect(problem, found.best(), effect, is_sure)
+        })
         .collect()
 }
 
 /// The effects that were not, testable or not.
-pub(crate) fn rejected(found: &Found, not_testable: bool) -> Vec<RejectedEffect> {
-    let such = found.rejected.iter();
-    let such = such.filter(|rejected| rejected.not_testable == not_testable);
+pub(crate) fn rejected(
+    found: &Found,
+    experiments: &Experiments,
+    not_testable: bool,
+) -> Vec<RejectedEffect> {
+    let such = found.rejected.iter().zip(&experiments.of_rejected);
+    let such = such.filter(|(rejected, _)| rejected.not_testable == not_testable);
     // What is accepted, or may be meant by what is, is not rejected too: a later round knows it as
     // one more of the same.
     let is_believed = |of: &Rejected| {
@@ -68,14 +79,15 @@ pub(crate) fn rejected(found: &Found, not_testable: bool) -> Vec<RejectedEffect>
             .flat_map(|effect| std::iter::once(&effect.candidate).chain(&effect.equivalent));
         believed.any(|known| known.is_same_as(&of.candidate))
     };
-    let such = such.filter(|rejected| !is_believed(rejected));
-    such.map(|of| RejectedEffect {
+    let such = such.filter(|(rejected, _)| !is_believed(rejected));
+    such.map(|(of, next)| RejectedEffect {
         at: EffectAt {
             effect: of.candidate.effect.clone(),
             on: of.candidate.on.clone(),
         },
         reason: reason(of),
         experiment: of.candidate.experiment.clone(),
+        next_experiment: next.clone(),
     })
     .collect()
 }
@@ -177,6 +189,7 @@ fn found_effect(
             .clone()
             .map(|(angle, order)| ShaftOrder { angle, order }),
         experiment: has_equivalent.then(|| candidate.experiment.clone()),
+        next_experiment: None,
     }
 }
 

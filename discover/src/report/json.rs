@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use serde_json::{Map, Value, json};
 
+use crate::experiment::next::{ExperimentFile, MemberAt, NextExperiment, Pair};
+use crate::report::experiment::sentences;
 use crate::report::result::{
     ChannelGap, Compared, Comparison, Discovery, EffectAt, Estimated, FoundEffect, OnRecords,
     RejectedEffect, Sensor,
@@ -51,9 +53,12 @@ impl Discovery {
             })
         };
         let mut document = common(&self.compared, gap);
-        let effects: Vec<Value> = self.effects.iter().map(effect).collect();
-        let rejected = self.rejected.iter().map(|r| rejected(r, false));
-        let not_testable = self.not_testable.iter().map(|r| self::rejected(r, true));
+        let effects: Vec<Value> = (self.effects.iter())
+            .map(|of| effect(of, &self.experiments))
+            .collect();
+        let rejected = self.rejected.iter().map(|r| rejected(r, None));
+        let not_testable = self.not_testable.iter();
+        let not_testable = not_testable.map(|r| self::rejected(r, Some(&self.experiments)));
         document["verdict"] = json!(self.verdict.word());
         document["summary"] = json!(Summary::of_discovery(self).text());
         document["effects"] = json!(effects);
@@ -128,16 +133,19 @@ fn at(of: &EffectAt) -> Value {
     json!({"effect": of.effect, "on": of.on})
 }
 
-fn rejected(of: &RejectedEffect, has_experiment: bool) -> Value {
+/// `files`: the experiments, for what the records could not have shown.
+fn rejected(of: &RejectedEffect, files: Option<&[ExperimentFile]>) -> Value {
     let mut entry = at(&of.at);
     entry["reason"] = json!(of.reason);
-    if has_experiment {
-        entry["experiment"] = json!(of.experiment);
+    let Some(files) = files else { return entry };
+    entry["experiment"] = json!(of.experiment);
+    if let Some(next) = &of.next_experiment {
+        entry["next_experiment"] = next_experiment(next, files);
     }
     entry
 }
 
-fn effect(of: &FoundEffect) -> Value {
+fn effect(of: &FoundEffect, files: &[ExperimentFile]) -> Value {
     let mut entry = at(&of.at);
     entry["status"] = json!(of.status.word());
     entry["equivalent"] = of.equivalent.iter().map(at).collect();
@@ -155,5 +163,35 @@ fn effect(of: &FoundEffect) -> Value {
     if let Some(experiment) = &of.experiment {
         entry["experiment"] = json!(experiment);
     }
+    if let Some(next) = &of.next_experiment {
+        entry["next_experiment"] = next_experiment(next, files);
+    }
     entry
+}
+
+/// An experiment that was computed, in `next_experiment`.
+fn next_experiment(next: &NextExperiment, files: &[ExperimentFile]) -> Value {
+    let member = |of: &MemberAt| json!({"effect": of.effect, "on": of.on});
+    let pair = |pair: &Pair| {
+        json!({
+            "true": member(&pair.truth),
+            "rival": member(&pair.rival),
+            "separation": pair.separation,
+            "channel": pair.channel,
+        })
+    };
+    json!({
+        "says": sentences(next, files),
+        "file": next.file.map(|file| &files[file].name),
+        "input": next.input,
+        "form": next.form,
+        "separation": next.separation,
+        "pairs": next.pairs.iter().map(pair).collect::<Vec<Value>>(),
+        "shows_from": next.shows.as_ref().map(|shown| {
+            json!({&shown.what: {"value": shown.from, "unit": shown.unit}})
+        }),
+        "left_out": next.left_out.iter().map(member).collect::<Vec<Value>>(),
+        "reason": next.reason,
+        "bounds": next.bounds,
+    })
 }

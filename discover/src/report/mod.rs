@@ -2,9 +2,10 @@
 //! [`result`] put together in `discovery`, where model and records disagree ([`location`]), the
 //! specification with what was found ([`write_back`]) run again ([`mod@resimulation`]); how sure it is
 //! (`left`) and the answer in two sentences (`summary`); documents (`json`) and the page (`page`) with its `pictures` and what was measured over what is simulated
-//! (`overlay`), how numbers are written there (`quantity`), and what was found, to be moved in the page (`playback`).
+//! (`overlay`), how numbers are written there (`quantity`), and what was found, to be moved in the page (`playback`), and what to play next (`experiment`).
 
 mod discovery;
+mod experiment;
 mod json;
 mod left;
 pub mod location;

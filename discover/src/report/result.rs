@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use maud::Markup;
 
+use crate::experiment::next::{ExperimentFile, NextExperiment};
 use crate::report::origin::Origin;
 use crate::report::playback::Playback;
 use crate::report::resimulation::Resimulation;
@@ -121,6 +122,8 @@ pub(crate) struct Pictures {
     pub overlay: Markup,
     /// Residuals over time, and their spectra.
     pub residuals: Markup,
+    /// What to play next, and what is predicted of it.
+    pub experiments: Markup,
     /// The equation whose residual force is shown, and that force.
     pub force: Option<(String, Markup)>,
 }
@@ -145,6 +148,8 @@ pub struct Discovery {
     pub rejected: Vec<RejectedEffect>,
     /// What these records could not have shown.
     pub not_testable: Vec<RejectedEffect>,
+    /// Experiments that would tell more, to be played.
+    pub experiments: Vec<ExperimentFile>,
     /// The part of the gap that was closed; none where there was hardly one.
     pub closure: OnRecords<Option<f64>>,
     /// The test gap step by step.
@@ -250,6 +255,8 @@ pub struct FoundEffect {
     pub order: Option<ShaftOrder>,
     /// What would separate it from its equivalents, where it has some.
     pub experiment: Option<String>,
+    /// What to play for that, as it was computed.
+    pub next_experiment: Option<NextExperiment>,
 }
 
 /// An effect that was not accepted.
@@ -261,6 +268,8 @@ pub struct RejectedEffect {
     pub reason: String,
     /// What would show it.
     pub experiment: String,
+    /// What to play for that, where it was computed.
+    pub next_experiment: Option<NextExperiment>,
 }
 
 /// A step of the search.

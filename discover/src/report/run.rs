@@ -1,11 +1,13 @@
 //! The whole way from a specification and records to a result.
 
 use eomgen_records::dataset::Dataset;
+use maud::Markup;
 
 use crate::catalogue::effect::Effect;
 use crate::catalogue::user_effects;
 use crate::empirical::unnamed;
 use crate::error::DiscoverError;
+use crate::experiment::experiments;
 use crate::fit::contradiction::contradictions;
 use crate::fit::fitted::Fit;
 use crate::fit::noise_floor::{NoiseFloor, noise_floor};
@@ -16,6 +18,7 @@ use crate::model::stop::Stop;
 use crate::report::discovery::{
     bound_notes, closure, effects, gap, nuisances, refitted, rejected, sensors, steps,
 };
+use crate::report::experiment::drawn;
 use crate::report::left::{Left, Stage};
 use crate::report::location::located;
 use crate::report::origin::{Origin, Specification};
@@ -28,6 +31,7 @@ use crate::report::write_back::extended;
 use crate::residual_force::residual_force;
 use crate::residual_force::types::ResidualForce;
 use crate::residual_force::wording::described_after;
+use crate::search::context::Context;
 use crate::search::search;
 
 /// Is told, line by line, what is being done.
@@ -58,6 +62,7 @@ pub fn compare(
         playback: Playback::None,
         overlay: overlay(&problem, &fit, None),
         residuals: figures(&problem, &fit, None),
+        experiments: Markup::default(),
         force: force.as_ref().map(|force| {
             let equation = force.profiled_equation().to_owned();
             (equation, force_section(force, None))
@@ -149,10 +154,19 @@ pub fn discover_until(
     }
     stop.check()?;
     let extended = extended(&problem, text, best, &found.accepted)?;
+    let context = Context {
+        problem: &problem,
+        fit: null,
+        floor: floor.rms,
+        progress,
+    };
+    let experiments = experiments(context, &found);
+    stop.check()?;
     let pictures = Pictures {
         playback: Playback::of(&problem, (null, best), &found.accepted, &extended),
         overlay: overlay(&problem, null, found.last.as_ref()),
         residuals: figures(&problem, null, found.last.as_ref()),
+        experiments: drawn(&problem, &experiments.files),
         force: force.as_ref().map(|force| {
             let equation = force.profiled_equation().to_owned();
             (equation, force_section(force, after.as_ref()))
@@ -177,9 +191,10 @@ pub fn discover_until(
             (true, true) => Verdict::NoSignificantGap,
             (true, false) => Verdict::Unexplained,
         },
-        effects: effects(&problem, &found, is_sure),
-        rejected: rejected(&found, false),
-        not_testable: rejected(&found, true),
+        effects: effects(&problem, &found, &experiments, is_sure),
+        rejected: rejected(&found, &experiments, false),
+        not_testable: rejected(&found, &experiments, true),
+        experiments: experiments.files,
         closure: closure(null, best, &floor),
         steps: steps(&found),
         resimulation: resimulated(&problem, best, &extended)?,

@@ -56,7 +56,10 @@ fn is_as_good(with: &Fit, without: &Fit) -> bool {
 }
 
 /// The fit with all effects but one, started where the fit with it ended.
-fn without(
+///
+/// # Errors
+/// As for [`full::fit`].
+pub(crate) fn without(
     problem: &EstimationProblem<'_>,
     found: &Found,
     effect_id: EffectId,

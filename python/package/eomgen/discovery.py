@@ -26,10 +26,20 @@ class Discovery:
     "provisional" or "empirical"), `equivalent`, `parameters` (names to `value`, `sd`, `unit`),
     `term`. document: all of `discovery.json`.
     extended: the text of the specification with what was found; report: the page for people, HTML.
+    experiments: what to play next, texts of CSV files by their names, with the columns `t` and the
+    inputs in the dataset's units.
     """
 
-    def __init__(self, document: Dict[str, Any], extended: str, report: str, order: Optional[int]):
+    def __init__(
+        self,
+        document: Dict[str, Any],
+        extended: str,
+        report: str,
+        experiments: Mapping[str, str],
+        order: Optional[int],
+    ):
         self.document, self.extended, self.report = document, extended, report
+        self.experiments = dict(experiments)
         self._order = order
 
     @property
@@ -68,13 +78,14 @@ class Discovery:
         return load(self.extended, self._order)
 
     def write(self, out: Union[str, "os.PathLike[str]"]) -> None:
-        """Writes `discovery.json`, `extended.toml` and `report.html` into a folder, each whole or
-        not at all.
+        """Writes `discovery.json`, `extended.toml`, `report.html` and the experiments into a folder,
+        each whole or not at all.
         """
         folder = Path(out)
         folder.mkdir(parents=True, exist_ok=True)
         document = json.dumps(self.document, indent=2, ensure_ascii=False, sort_keys=True) + "\n"
-        for name, text in [(EXTENDED, self.extended), (PAGE, self.report), (DOCUMENT, document)]:
+        texts = [(EXTENDED, self.extended), (PAGE, self.report), *self.experiments.items()]
+        for name, text in [*texts, (DOCUMENT, document)]:
             beside = folder / f".{name}.part"
             try:
                 beside.write_bytes(text.encode("utf-8"))
@@ -103,7 +114,7 @@ def discover(
     """Finds what a model lacks of what measured records show, and names it.
 
     dataset: the path of a dataset's file. out: a folder that is to hold `discovery.json`,
-    `extended.toml` and `report.html`, or None. seed: draws the noise of the bootstrap; the same seed
+    `extended.toml`, `report.html` and experiments to be played, or None. seed: draws the noise of the bootstrap; the same seed
     gives the same result. progress: called with each line on what is being done; by default the
     last one is shown in terminals and notebooks once it takes longer than two seconds.
 
@@ -115,10 +126,12 @@ def discover(
     seed = _arguments.whole("seed", seed)
     begin = time.monotonic()
     with Lines(progress) as lines:
-        document, extended, report = _native.discover(
+        document, extended, report, experiments = _native.discover(
             model._native, os.fspath(dataset), seed, lines.tell
         )
-    found = Discovery(json.loads(document), extended, report, model._native.order)
+    found = Discovery(
+        json.loads(document), extended, report, dict(experiments), model._native.order
+    )
     found.document["seconds"] = time.monotonic() - begin
     if out is not None:
         found.write(out)

@@ -3,6 +3,7 @@
 use crate::description::Description;
 use crate::description::columns::{ChannelColumn, ColumnKey, Prior};
 use crate::description::motion::InitialState;
+use crate::experiment::{self, ExperimentBounds};
 use crate::units::unit;
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
 use eomgen_model_spec::dimension::Dimension;
@@ -31,6 +32,8 @@ pub struct Bound<'d> {
     pub initial: Initial,
     /// Which parameters may be refitted.
     pub uncertain: Vec<Uncertain>,
+    /// Within what bounds the next experiment may be played.
+    pub experiment: ExperimentBounds,
 }
 
 /// Binds a dataset file to a model.
@@ -55,6 +58,7 @@ pub fn bound<'d>(description: &'d Description, model: &Model) -> Result<Bound<'d
     for (name, relative) in &description.uncertain {
         uncertain.extend(found.keep(doubted(name, *relative, model)));
     }
+    let experiment = experiment::bound(description, model, (&inputs, &channel_units), &mut found);
     match time {
         Some(time) if found.is_empty() => Ok(Bound {
             time,
@@ -63,6 +67,7 @@ pub fn bound<'d>(description: &'d Description, model: &Model) -> Result<Bound<'d
             channel_units,
             initial,
             uncertain,
+            experiment,
         }),
         _ => Err(found),
     }

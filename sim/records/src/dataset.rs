@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use crate::experiment::{ExperimentBounds, Played};
 use crate::record::Record;
 
 /// What a channel measures.
@@ -105,6 +106,10 @@ pub struct Dataset {
     pub start: Start,
     /// Which parameters may be refitted.
     pub uncertain: Vec<Uncertain>,
+    /// Within what bounds the next experiment may be played.
+    pub experiment: ExperimentBounds,
+    /// How it is written down.
+    pub played: Played,
     /// What is worth a remark.
     pub notes: Vec<String>,
 }

@@ -48,6 +48,7 @@ mod csv_file;
 pub mod dataset;
 mod decimation;
 pub mod description;
+pub mod experiment;
 mod files;
 mod gaps;
 mod header;

@@ -10,6 +10,7 @@ use crate::dataset::{Dataset, Start};
 use crate::decimation::Decimation;
 use crate::description::Description;
 use crate::description::records::Stretch;
+use crate::experiment::Played;
 use crate::gaps::unbroken;
 use crate::inputs::notes_of_inputs;
 use crate::record::{Columns, Record};
@@ -61,6 +62,8 @@ pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
             false => Start::Fitted,
         },
         uncertain: bound.uncertain,
+        experiment: bound.experiment,
+        played: Played::of(&bound.time, &bound.inputs),
         notes: notes_of_inputs(&description, model),
     };
     let decimation = Decimation::new(description.time.every, description.time.filter);

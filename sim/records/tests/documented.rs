@@ -51,6 +51,9 @@ fn every_table_and_key_stands_in_the_reference() {
     for key in keys::STRETCH {
         assert!(documented.contains(&("records", key)), "{key}");
     }
+    for key in keys::EXPERIMENT_INPUT {
+        assert!(documented.contains(&("experiment", key)), "{key}");
+    }
     for key in keys::TEXTS {
         assert!(documented.contains(&("(none)", key)), "{key}");
     }
@@ -58,6 +61,7 @@ fn every_table_and_key_stands_in_the_reference() {
         "(none)" => keys::TEXTS.contains(key),
         "records" => keys::RECORDS.contains(key) || keys::STRETCH.contains(key),
         "uncertain" => *key == "NAME",
+        "experiment" => keys::EXPERIMENT.contains(key) || keys::EXPERIMENT_INPUT.contains(key),
         table => keys::TABLES
             .iter()
             .any(|(name, keys)| *name == table && keys.contains(key)),

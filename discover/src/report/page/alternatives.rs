@@ -4,6 +4,8 @@
 use eomgen_page::{section, table};
 use maud::{Markup, html};
 
+use crate::experiment::next::{ExperimentFile, NextExperiment};
+use crate::report::experiment::sentences;
 use crate::report::quantity::readable;
 use crate::report::result::{EffectAt, RejectedEffect};
 use crate::report::summary::words;
@@ -16,6 +18,8 @@ struct Group<'a> {
     effects: Vec<&'a EffectAt>,
     reason: &'a str,
     experiment: &'a str,
+    /// What was computed to be played, for those for which it was.
+    next: Vec<&'a NextExperiment>,
 }
 
 impl<'a> Group<'a> {
@@ -29,13 +33,17 @@ impl<'a> Group<'a> {
             let own = key(of);
             match groups.iter_mut().find(|(known, _)| *known == own) {
                 Some((_, group)) if group.effects.contains(&&of.at) => {}
-                Some((_, group)) => group.effects.push(&of.at),
+                Some((_, group)) => {
+                    group.effects.push(&of.at);
+                    group.next.extend(&of.next_experiment);
+                }
                 None => groups.push((
                     own,
                     Self {
                         effects: vec![&of.at],
                         reason: &of.reason,
                         experiment: &of.experiment,
+                        next: of.next_experiment.iter().collect(),
                     },
                 )),
             }
@@ -64,6 +72,13 @@ impl<'a> Group<'a> {
         each.collect::<Vec<String>>().join("; ")
     }
 
+    /// What to play, as sentences behind what would show it in words.
+    fn next(&self, files: &[ExperimentFile]) -> String {
+        let all = self.next.iter();
+        let all = all.map(|next| format!(". {}", readable(&sentences(next, files))));
+        all.collect()
+    }
+
     /// Its reason: the first line, as a message of the compiler has more.
     fn why(&self) -> String {
         readable(self.reason.lines().next().unwrap_or_default())
@@ -88,13 +103,13 @@ pub(super) fn rejected(list: &[RejectedEffect]) -> Markup {
 }
 
 /// What these records could not have shown, by what would show it.
-pub(super) fn not_testable(list: &[RejectedEffect]) -> Markup {
+pub(super) fn not_testable(list: &[RejectedEffect], files: &[ExperimentFile]) -> Markup {
     if list.is_empty() {
         return html! {};
     }
     let groups = Group::all(list, |of| (&of.at.effect, &of.experiment));
     let row = |group: &Group<'_>| {
-        html! { tr { td { (group.names()) } td { (group.why()) } td { (group.experiment) } } }
+        html! { tr { td { (group.names()) } td { (group.why()) } td { (group.experiment) (group.next(files)) } } }
     };
     section(
         "What these records cannot tell",

@@ -3,22 +3,24 @@
 use eomgen_page::{section, table};
 use maud::{Markup, html};
 
-use crate::report::quantity::{estimate, percent, plain};
+use crate::experiment::next::ExperimentFile;
+use crate::report::experiment::sentences;
+use crate::report::quantity::{estimate, percent, plain, readable};
 use crate::report::result::{Discovery, FoundEffect, Status, Step};
 use crate::report::summary::words;
 
 /// The effects; nothing where there are none, as the verdict says so.
-pub(super) fn effects(effects: &[FoundEffect]) -> Markup {
+pub(super) fn effects(effects: &[FoundEffect], files: &[ExperimentFile]) -> Markup {
     if effects.is_empty() {
         return html! {};
     }
     section(
         "What was found",
-        &html! { @for found in effects { (effect(found)) } },
+        &html! { @for found in effects { (effect(found, files)) } },
     )
 }
 
-fn effect(effect: &FoundEffect) -> Markup {
+fn effect(effect: &FoundEffect, files: &[ExperimentFile]) -> Markup {
     let is_value = effect.parameters.keys().any(|name| {
         let rest = effect.term.strip_prefix(name.as_str());
         rest.is_some_and(|rest| rest.starts_with(" = "))
@@ -44,6 +46,9 @@ fn effect(effect: &FoundEffect) -> Markup {
             }
             @if let Some(experiment) = &effect.experiment {
                 " To tell: " (experiment) "."
+            }
+            @if let Some(next) = &effect.next_experiment {
+                " " (readable(&sentences(next, files)))
             }
         }
         dl.values {

@@ -46,12 +46,13 @@ impl Discovery {
             compared,
             &html! {
                 (verdict::of_discovery(self))
-                (found::effects(&self.effects))
+                (found::effects(&self.effects, &self.experiments))
+                (compared.pictures.experiments)
                 (playback(compared))
                 (opening(compared))
                 (found::steps(self))
                 (alternatives::rejected(&self.rejected))
-                (alternatives::not_testable(&self.not_testable))
+                (alternatives::not_testable(&self.not_testable, &self.experiments))
                 (closing(compared))
                 (found::change(&self.original, &self.extended))
             },

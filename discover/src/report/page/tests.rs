@@ -1,6 +1,7 @@
 use std::collections::BTreeMap;
 
 use super::*;
+use crate::experiment::next::NextExperiment;
 use crate::report::origin::{HashedFile, Origin};
 use crate::report::playback::Playback;
 use crate::report::resimulation::Resimulation;
@@ -9,6 +10,22 @@ use crate::report::result::{
     Sensor, Status, Step, Validation, Verdict,
 };
 use crate::search::acceptance::TestStatistics;
+
+/// An experiment with `text` wherever names could put it.
+fn next_experiment(text: &str) -> NextExperiment {
+    let name = || text.to_owned();
+    NextExperiment {
+        file: None,
+        input: Some(name()),
+        form: Some(name()),
+        separation: Some(0.5),
+        pairs: Vec::new(),
+        left_out: Vec::new(),
+        shows: None,
+        reason: None,
+        bounds: name(),
+    }
+}
 
 /// A discovery with `text` wherever a dataset, a specification or a file name could put it.
 fn discovery(text: &str) -> Discovery {
@@ -36,6 +53,7 @@ fn discovery(text: &str) -> Discovery {
         at: at(),
         reason: name(),
         experiment: name(),
+        next_experiment: Some(next_experiment(text)),
     };
     Discovery {
         verdict: Verdict::EffectsFound,
@@ -55,9 +73,11 @@ fn discovery(text: &str) -> Discovery {
             },
             order: None,
             experiment: Some(name()),
+            next_experiment: Some(next_experiment(text)),
         }],
         rejected: vec![rejected.clone()],
         not_testable: vec![rejected],
+        experiments: Vec::new(),
         closure: OnRecords {
             train: Some(0.9),
             test: None,
@@ -100,6 +120,7 @@ fn discovery(text: &str) -> Discovery {
                 playback: Playback::None,
                 overlay: html! {},
                 residuals: html! {},
+                experiments: html! {},
                 force: Some((name(), html! {})),
             },
         },

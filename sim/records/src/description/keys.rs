@@ -3,7 +3,7 @@
 
 /// Tables with their keys; of those that hold entries by name, the keys of an entry. `title` and
 /// `source` stand outside of all tables.
-pub const TABLES: [(&str, &[&str]); 8] = [
+pub const TABLES: [(&str, &[&str]); 9] = [
     ("records", &RECORDS),
     ("format", &FORMAT),
     ("time", &TIME),
@@ -12,6 +12,7 @@ pub const TABLES: [(&str, &[&str]); 8] = [
     ("initial", &INITIAL),
     ("uncertain", &UNCERTAIN),
     ("windows", &WINDOWS),
+    ("experiment", &EXPERIMENT),
 ];
 
 /// Keys outside of all tables.
@@ -54,6 +55,12 @@ pub const UNCERTAIN: [&str; 1] = ["relative"];
 
 /// `[windows]`
 pub const WINDOWS: [&str; 2] = ["length", "start"];
+
+/// `[experiment]`
+pub const EXPERIMENT: [&str; 4] = ["duration", "sample", "inputs", "limits"];
+
+/// `[experiment.inputs.NAME]`
+pub const EXPERIMENT_INPUT: [&str; 3] = ["range", "rate", "band"];
 
 /// All keys of the first level.
 pub fn first_level() -> Vec<&'static str> {

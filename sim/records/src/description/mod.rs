@@ -2,6 +2,7 @@
 //! are checked by whoever takes them over.
 
 pub mod columns;
+pub mod experiment;
 pub mod format;
 pub mod keys;
 pub mod motion;
@@ -17,6 +18,7 @@ use eomgen_model_spec::table::{Entry, Name, Number, Record};
 use eomgen_model_spec::toml_file;
 
 use self::columns::{ChannelColumn, ColumnKey, InputColumn, Time};
+use self::experiment::Experiment;
 use self::format::Format;
 use self::motion::{InitialState, Windows};
 use self::records::Records;
@@ -48,6 +50,8 @@ pub struct Description {
     pub uncertain: Vec<(Name, Number)>,
     /// `[windows]`
     pub windows: Windows,
+    /// `[experiment]`
+    pub experiment: Experiment,
 }
 
 impl Description {
@@ -114,6 +118,10 @@ fn described(
         Some(entry) => motion::windows(entry, found),
         None => Some(Windows::default()),
     };
+    let experiment = match top.get("experiment") {
+        Some(entry) => experiment::read(entry, found),
+        None => Some(Experiment::default()),
+    };
     let description = Description {
         source: source.clone(),
         title,
@@ -125,6 +133,7 @@ fn described(
         initial: initial?,
         uncertain,
         windows: windows?,
+        experiment: experiment?,
     };
     nameless(&description, found);
     Some(description)

@@ -1,0 +1,174 @@
+//! Within what an experiment stays: what the dataset file says, and where it says nothing what the
+//! records justify, because what was played before can be played again.
+
+use eomgen_analysis::spectrum::periodogram;
+use eomgen_records::samples::typical_step;
+
+use crate::ids::ChannelId;
+use crate::interval::Interval;
+use crate::model::problem::EstimationProblem;
+use crate::thresholds;
+
+/// Within what an experiment stays, SI.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bounds {
+    /// How long it lasts, s.
+    pub duration: f64,
+    /// The time between its samples, s.
+    pub sample: f64,
+    /// Of the inputs that have columns and are not held at one value.
+    pub inputs: Vec<InputBounds>,
+    /// Of each channel's quantity.
+    pub channels: Vec<Interval>,
+    /// Where these come from, in a sentence.
+    pub words: String,
+}
+
+/// The bounds of one input, SI.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InputBounds {
+    /// Its place among the model's inputs.
+    pub place: usize,
+    /// Its name.
+    pub name: String,
+    /// Its values.
+    pub range: Interval,
+    /// The fastest change, per s.
+    pub rate: f64,
+    /// The frequencies of what swings, Hz.
+    pub band: Interval,
+}
+
+impl Bounds {
+    /// The bounds of a dataset. `inputs`: the names of the model's inputs.
+    pub fn of(problem: &EstimationProblem<'_>, inputs: &[String]) -> Self {
+        let dataset = problem.dataset;
+        let said = &dataset.experiment;
+        let sample = said
+            .sample
+            .unwrap_or_else(|| typical_step(&dataset.train[0].times));
+        let lasting = dataset.train.iter().map(|record| {
+            let times = &record.times;
+            times[times.len() - 1] - times[0]
+        });
+        let longest = lasting.fold(0.0, f64::max);
+        let duration = said
+            .duration
+            .unwrap_or_else(|| longest.min(thresholds::EXPERIMENT_SAMPLES * sample));
+        let mut from_records: Vec<String> = Vec::new();
+        let mut input_bounds = Vec::new();
+        for (place, name) in inputs.iter().enumerate() {
+            if dataset.played.inputs.get(place).is_none_or(Option::is_none) {
+                continue;
+            }
+            let of = said.inputs.get(place).copied().unwrap_or_default();
+            let (recorded, fastest) = recorded(problem, place);
+            if of.range.is_none() {
+                from_records.push(format!("the range of {name}"));
+            }
+            if of.band.is_none() {
+                from_records.push(format!("the band of {name}"));
+            }
+            let range = of
+                .range
+                .map_or(recorded, |(low, high)| Interval::new(low, high));
+            let slowest = 1.0 / duration;
+            let nyquist = 0.5 / sample;
+            let band = of
+                .band
+                .map_or(Interval::new(slowest, fastest), |(low, high)| {
+                    Interval::new(low, high)
+                });
+            let low = band.low.clamp(slowest, nyquist);
+            let band = Interval::new(low, band.high.clamp(low, nyquist));
+            let steepest = std::f64::consts::PI * band.high * (range.high - range.low);
+            if range.low < range.high {
+                input_bounds.push(InputBounds {
+                    place,
+                    name: name.clone(),
+                    range,
+                    rate: of.rate.unwrap_or(steepest),
+                    band,
+                });
+            }
+        }
+        let channels = ChannelId::first(dataset.channels.len()).zip(&dataset.channels);
+        let channels = channels.map(|(id, channel)| {
+            let said = said.limits.get(id.index()).copied().flatten();
+            said.map_or_else(
+                || {
+                    from_records.push(format!("the limits of {}", channel.name));
+                    moved(problem, id)
+                },
+                |(low, high)| Interval::new(low, high),
+            )
+        });
+        let channels = channels.collect();
+        let words = match &from_records[..] {
+            [] => "All bounds are those of the dataset file.".to_owned(),
+            all => format!(
+                "As recorded, because the dataset file says nothing: {}.",
+                all.join(", ")
+            ),
+        };
+        Self {
+            duration,
+            sample,
+            inputs: input_bounds,
+            channels,
+            words,
+        }
+    }
+
+    /// The times of its samples, s.
+    pub fn times(&self) -> Vec<f64> {
+        let count = (self.duration / self.sample).round() as usize + 1;
+        (0..count).map(|k| self.sample * k as f64).collect()
+    }
+}
+
+/// The least and the greatest value of an input on all records, with the drive off; and the frequency
+/// below which nearly all of its power is.
+fn recorded(problem: &EstimationProblem<'_>, place: usize) -> (Interval, f64) {
+    let records = || problem.dataset.train.iter().chain(&problem.dataset.test);
+    let mut range = Interval::ZERO;
+    let mut fastest: f64 = 0.0;
+    for record in records() {
+        let column: Vec<f64> = record.input_columns[place]
+            .iter()
+            .copied()
+            .filter(|value| value.is_finite())
+            .collect();
+        for value in &column {
+            range = Interval::new(range.low.min(*value), range.high.max(*value));
+        }
+        let times = &record.times;
+        let slowest = 4.0 / (times[times.len() - 1] - times[0]);
+        let mean = column.iter().sum::<f64>() / column.len().max(1) as f64;
+        let swinging: Vec<f64> = column.iter().map(|value| value - mean).collect();
+        let own = periodogram(&swinging, typical_step(times)).map_or(0.0, |spectrum| {
+            let whole: f64 = spectrum.density.iter().sum();
+            let mut sum = 0.0;
+            let bins = spectrum.frequency.iter().zip(&spectrum.density);
+            let below = bins.take_while(|(_, density)| {
+                sum += *density;
+                sum < thresholds::RECORDED_POWER * whole
+            });
+            below.last().map_or(0.0, |(frequency, _)| *frequency)
+        });
+        fastest = fastest.max(own).max(slowest);
+    }
+    (range, fastest)
+}
+
+/// Between what values a channel's quantity was, noise aside.
+fn moved(problem: &EstimationProblem<'_>, channel: ChannelId) -> Interval {
+    let records = problem.dataset.train.iter().chain(&problem.dataset.test);
+    let values = records.flat_map(|record| record.channels[channel].iter());
+    let values = values.filter(|value| value.is_finite());
+    let both = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+        (low.min(*value), high.max(*value))
+    });
+    let margin = thresholds::LIMIT_MARGIN * (both.1 - both.0);
+    Interval::new(both.0 - margin, both.1 + margin)
+}

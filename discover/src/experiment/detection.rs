@@ -1,0 +1,256 @@
+//! Which experiment shows best what the records could not: how small it may be for the model without it,
+//! fitted to the experiment too, to leave what separates.
+
+use rayon::prelude::*;
+
+use crate::catalogue::candidate::Candidate;
+use crate::catalogue::candidate_unknown::CandidateUnknown;
+use crate::error::DiscoverError;
+use crate::experiment::bounds::Bounds;
+use crate::experiment::prediction::{Prediction, Predictor};
+use crate::experiment::proposal::Proposal;
+use crate::experiment::separation::{Rival, Separation};
+use crate::fit::shooting::Shooting;
+use crate::ids::UnknownId;
+use crate::interval::Interval;
+use crate::model::estimation_model::EstimationModel;
+use crate::model::problem::EstimationProblem;
+use crate::model::unknowns::Unknown;
+use crate::thresholds;
+
+/// Trials of a size, until it moves the outputs as wanted.
+const TRIALS: usize = 8;
+
+/// Corrections of the size that separates, each by at most this, until it is so close.
+const CORRECTIONS: usize = 4;
+const CORRECTED: Interval = Interval::new(0.2, 5.0);
+const CLOSE_ENOUGH: Interval = Interval::new(0.9, 1.1);
+
+/// An effect that the records could not have shown, of whatever size.
+pub struct Hidden<'f> {
+    problem: &'f EstimationProblem<'f>,
+    /// The model without it.
+    without: &'f Rival<'f>,
+    place: Place,
+    /// What scales it.
+    unknown: Unknown,
+    /// Its value where it is absent, SI.
+    base: f64,
+}
+
+/// Where an effect sits.
+enum Place {
+    /// In terms of its own.
+    Model {
+        model: Box<EstimationModel>,
+        /// The values of its parameters where it is absent, SI.
+        values: Vec<f64>,
+    },
+    /// In an unknown of the model without it.
+    Unknown(UnknownId),
+}
+
+/// An experiment that shows an effect.
+#[derive(Clone, Debug)]
+pub struct Detection {
+    /// Which of the proposals.
+    pub proposal: usize,
+    /// The size from which on it does, SI; that which was tried where nothing tells it.
+    pub size: f64,
+    /// What the model without it leaves then.
+    pub separation: Separation,
+    /// What the sensors show with it: a column for each channel.
+    pub predicted: Vec<Vec<f64>>,
+}
+
+impl<'f> Hidden<'f> {
+    /// An effect beside what a fit has.
+    ///
+    /// # Errors
+    /// What is wrong with the specification with it.
+    pub fn of(
+        problem: &'f EstimationProblem<'f>,
+        without: &'f Rival<'f>,
+        candidate: &Candidate,
+    ) -> Result<Self, DiscoverError> {
+        let fit = without.fit;
+        let theta = &fit.train.estimate.theta;
+        if let Some(what) = &candidate.dropped_prior {
+            let mut unknowns = fit.unknowns();
+            let (id, unknown) = { &mut unknowns }
+                .find(|(_, unknown)| unknown.what == *what)
+                .ok_or(DiscoverError::NotExcited)?;
+            return Ok(Self {
+                problem,
+                without,
+                place: Place::Unknown(id),
+                unknown: unknown.clone(),
+                base: theta[id],
+            });
+        }
+        let unknowns = candidate.parameters.iter().map(CandidateUnknown::of);
+        let unknowns: Vec<CandidateUnknown> = unknowns.collect();
+        let scaling = unknowns.iter().find(|of| !of.is_shape);
+        let scaling = scaling.ok_or(DiscoverError::NotExcited)?;
+        // Present, so that it is derived: its size is set when it is run.
+        let present = unknowns.iter().map(|of| {
+            let value = match of.is_shape {
+                true => of.unknown.start,
+                false => of.unknown.admissible(of.base + of.unknown.scale),
+            };
+            of.unknown.what.stated(value)
+        });
+        let texts = candidate.added(problem, &fit.texts, &present.collect::<Vec<f64>>())?;
+        let model = problem.model(&texts.whole, Some(&texts.linear))?;
+        let shooting = Shooting::new(problem, &model, &problem.train, &fit.unknowns, &[]);
+        let mut values = shooting.values(theta);
+        for (parameter, of) in candidate.parameters.iter().zip(&unknowns) {
+            if !of.is_shape {
+                let absent = parameter.absent();
+                model.set(&mut values, &parameter.name, absent);
+            }
+        }
+        Ok(Self {
+            problem,
+            without,
+            place: Place::Model {
+                model: Box::new(model),
+                values,
+            },
+            unknown: scaling.unknown.clone(),
+            base: scaling.base,
+        })
+    }
+
+    /// What scales it, at a size: its value as a specification states it, SI.
+    pub fn stated(&self, size: f64) -> f64 {
+        let value = self.unknown.admissible(self.base + size);
+        self.unknown.what.stated(value)
+    }
+
+    /// The model with the effect.
+    fn model(&self) -> &EstimationModel {
+        match &self.place {
+            Place::Model { model, .. } => model,
+            Place::Unknown(_) => &self.without.fit.model,
+        }
+    }
+
+    /// What a size of it leaves of an experiment, if that is within bounds.
+    fn predicted(
+        &self,
+        (bounds, times): (&Bounds, &[f64]),
+        proposal: &Proposal,
+        size: f64,
+    ) -> Option<Prediction> {
+        let fit = self.without.fit;
+        let mut theta = fit.train.estimate.theta.clone();
+        let values = match &self.place {
+            Place::Model { model, values } => {
+                let mut values = values.clone();
+                if let Some(name) = self.unknown.what.parameter() {
+                    model.set(&mut values, name, self.stated(size));
+                }
+                values
+            }
+            Place::Unknown(id) => {
+                theta[*id] = self.base + size;
+                fit.shooting(self.problem).values(&theta)
+            }
+        };
+        let predictor = Predictor::with(self.problem, (fit, &theta), self.model(), &values);
+        predictor?.predicted(bounds, times, proposal).ok()
+    }
+
+    /// A size that moves the outputs of an experiment by as much as is small, and what it leaves.
+    fn small(
+        &self,
+        within: (&Bounds, &[f64]),
+        proposal: &Proposal,
+    ) -> Option<(f64, f64, Prediction)> {
+        let absent = Predictor::of(self.problem, self.without.fit)?
+            .predicted(within.0, within.1, proposal)
+            .ok()?;
+        let mut size = 1e-3 * self.unknown.scale;
+        for _ in 0..TRIALS {
+            let Some(present) = self.predicted(within, proposal, size) else {
+                size *= 0.1;
+                continue;
+            };
+            let moved = self.moved(&absent, &present);
+            if thresholds::SHOWN_WITHIN.clamp(moved) == moved {
+                return Some((size, moved, present));
+            }
+            size *= (thresholds::SHOWN_BY / moved).clamp(1e-3, 1e3);
+        }
+        None
+    }
+
+    /// The root mean square by which outputs differ, in standard deviations of the noise.
+    fn moved(&self, one: &Prediction, other: &Prediction) -> f64 {
+        let columns = one.records[0]
+            .channels
+            .iter()
+            .zip(&other.records[0].channels);
+        let columns = columns.zip(&self.problem.noise);
+        let (mut sum, mut count) = (0.0, 0.0);
+        for ((one, other), noise) in columns {
+            let squares = one.iter().zip(other);
+            sum += squares.map(|(a, b)| ((a - b) / noise).powi(2)).sum::<f64>();
+            count += one.len() as f64;
+        }
+        (sum / count).sqrt()
+    }
+
+    /// The experiment of some that shows the smallest size. `None` where none of them can be played or
+    /// shows anything at all.
+    pub fn best(
+        &self,
+        within: (&Bounds, &[f64]),
+        family: &[(usize, &Proposal)],
+    ) -> Option<Detection> {
+        let shown = family.par_iter().filter_map(|(place, proposal)| {
+            let (size, moved, present) = self.small(within, proposal)?;
+            let left = self
+                .without
+                .leaves_by_tangents(self.problem, self.model(), &present)?;
+            Some((*place, *proposal, size, moved, left))
+        });
+        let shown: Vec<(usize, &Proposal, f64, f64, f64)> = shown.collect();
+        // What of the outputs' motion is its own, by the size that makes it.
+        let order = |of: &(usize, &Proposal, f64, f64, f64)| of.4 / of.2.abs();
+        let (place, proposal, size, moved, left) = shown
+            .into_iter()
+            .max_by(|a, b| order(a).total_cmp(&order(b)))?;
+        let is_own = left * left > thresholds::UNEXPLAINED_FRACTION * moved * moved;
+        let mut size = match is_own {
+            true => size * thresholds::SEPARATES / left,
+            false => size,
+        };
+        let refitted = |size: f64| {
+            let prediction = self.predicted(within, proposal, size)?;
+            let separation = self
+                .without
+                .separation(self.problem, self.model(), &prediction)?;
+            Some((prediction, separation))
+        };
+        let (mut prediction, mut separation) = refitted(size)?;
+        for _ in 0..CORRECTIONS {
+            let off = thresholds::SEPARATES / separation.size;
+            if !is_own || CLOSE_ENOUGH.clamp(off) == off {
+                break;
+            }
+            let Some(found) = refitted(size * CORRECTED.clamp(off)) else {
+                break;
+            };
+            size *= CORRECTED.clamp(off);
+            (prediction, separation) = found;
+        }
+        Some(Detection {
+            proposal: place,
+            size,
+            separation,
+            predicted: prediction.records[0].channels.clone(),
+        })
+    }
+}

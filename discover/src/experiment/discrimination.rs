@@ -1,0 +1,199 @@
+//! Which experiment separates the members of a class best: the largest of the least separation, over
+//! the pairs that some experiment separates at all.
+
+use rayon::prelude::*;
+
+use crate::experiment::bounds::Bounds;
+use crate::experiment::prediction::{Excluded, Prediction, Predictor};
+use crate::experiment::proposal::Proposal;
+use crate::experiment::separation::{Rival, Separation};
+use crate::model::problem::EstimationProblem;
+use crate::thresholds;
+
+/// Fitted models that the records do not tell apart.
+pub struct Members<'f> {
+    /// What all fits share.
+    pub problem: &'f EstimationProblem<'f>,
+    /// One for each.
+    pub rivals: Vec<Rival<'f>>,
+}
+
+/// An experiment and what it comes to.
+#[derive(Clone, Debug)]
+pub struct Discrimination {
+    /// Which of the proposals.
+    pub proposal: usize,
+    /// One for each pair of members.
+    pub pairs: Vec<PairSeparation>,
+    /// What the sensors show of each member: a column for each channel.
+    pub predicted: Vec<Vec<Vec<f64>>>,
+}
+
+/// How far two members are apart.
+#[derive(Clone, Debug)]
+pub struct PairSeparation {
+    /// The members.
+    pub members: [usize; 2],
+    /// What the second leaves of what the first predicts, and the first of what the second does.
+    pub separations: [Separation; 2],
+}
+
+impl PairSeparation {
+    /// The lesser of both, in standard deviations of the noise: which of the members is true nobody
+    /// knows.
+    pub fn least(&self) -> f64 {
+        let [one, other] = &self.separations;
+        one.size.min(other.size)
+    }
+}
+
+/// Why there is no experiment.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum NoExperiment {
+    /// The model has no input that is driven and may move.
+    NoInput,
+    /// None of so many inputs stays within the limits; this is what most of them leave.
+    Leaves(usize, String),
+    /// None of so many can be followed.
+    Unfollowed(usize),
+}
+
+impl Members<'_> {
+    /// The experiment that separates them best of a family. What nothing separates does not decide.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn best(
+        &self,
+        bounds: &Bounds,
+        times: &[f64],
+        family: &[Proposal],
+    ) -> Result<Discrimination, NoExperiment> {
+        if family.is_empty() {
+            return Err(NoExperiment::NoInput);
+        }
+        let promised: Vec<Result<Vec<f64>, Excluded>> = (family.par_iter())
+            .map(|proposal| self.promised(bounds, times, proposal))
+            .collect();
+        let count = self.pairs().len();
+        let mut most = vec![0.0_f64; count];
+        for promised in promised.iter().flatten() {
+            for (most, own) in most.iter_mut().zip(promised) {
+                *most = most.max(*own);
+            }
+        }
+        let mut counted: Vec<usize> = (0..count)
+            .filter(|pair| most[*pair] >= thresholds::SEPARATES)
+            .collect();
+        if counted.is_empty() {
+            counted = (0..count).collect();
+        }
+        let least = |of: &dyn Fn(usize) -> f64| {
+            let of_pairs = counted.iter().map(|pair| of(*pair));
+            of_pairs.fold(f64::INFINITY, f64::min)
+        };
+        let mut ranking: Vec<(f64, usize)> = (promised.iter().enumerate())
+            .filter_map(|(place, promised)| {
+                let promised = promised.as_ref().ok()?;
+                Some((least(&|pair| promised[pair]), place))
+            })
+            .collect();
+        ranking.sort_by(|a, b| b.0.total_cmp(&a.0));
+        ranking.truncate(thresholds::EXPERIMENTS_REFITTED);
+        let refitted = ranking
+            .iter()
+            .filter_map(|(_, place)| self.refitted(bounds, times, (*place, &family[*place])));
+        let best = refitted.max_by(|a, b| {
+            let least = |of: &Discrimination| least(&|pair| of.pairs[pair].least());
+            least(a).total_cmp(&least(b))
+        });
+        best.ok_or_else(|| excluded(&promised))
+    }
+
+    /// All pairs of members.
+    fn pairs(&self) -> Vec<[usize; 2]> {
+        let count = self.rivals.len();
+        let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| [a, b]));
+        pairs.collect()
+    }
+
+    /// What each member predicts of an experiment.
+    fn predictions(
+        &self,
+        bounds: &Bounds,
+        times: &[f64],
+        proposal: &Proposal,
+    ) -> Result<Vec<Prediction>, Excluded> {
+        let predicted = |rival: &Rival<'_>| {
+            let predictor = Predictor::of(self.problem, rival.fit);
+            let mut predictor = predictor.ok_or(Excluded::Unfollowed)?;
+            predictor.predicted(bounds, times, proposal)
+        };
+        self.rivals.iter().map(predicted).collect()
+    }
+
+    /// How far the members of each pair are apart, by a straight line.
+    fn promised(
+        &self,
+        bounds: &Bounds,
+        times: &[f64],
+        proposal: &Proposal,
+    ) -> Result<Vec<f64>, Excluded> {
+        let predictions = self.predictions(bounds, times, proposal)?;
+        let leaves = |truth: usize, rival: usize| {
+            let model = &self.rivals[truth].fit.model;
+            let prediction = &predictions[truth];
+            self.rivals[rival].leaves_by_tangents(self.problem, model, prediction)
+        };
+        let of = |[a, b]: [usize; 2]| Some(leaves(a, b)?.min(leaves(b, a)?));
+        let pairs = self.pairs().into_iter();
+        pairs
+            .map(|pair| of(pair).ok_or(Excluded::Unfollowed))
+            .collect()
+    }
+
+    /// The same with rivals fitted anew; none where one cannot be followed.
+    fn refitted(
+        &self,
+        bounds: &Bounds,
+        times: &[f64],
+        (place, proposal): (usize, &Proposal),
+    ) -> Option<Discrimination> {
+        let predictions = self.predictions(bounds, times, proposal).ok()?;
+        let separation = |truth: usize, rival: usize| {
+            let model = &self.rivals[truth].fit.model;
+            self.rivals[rival].separation(self.problem, model, &predictions[truth])
+        };
+        let of = |[a, b]: [usize; 2]| {
+            Some(PairSeparation {
+                members: [a, b],
+                separations: [separation(a, b)?, separation(b, a)?],
+            })
+        };
+        let pairs: Option<Vec<PairSeparation>> = self.pairs().into_iter().map(of).collect();
+        let seen = |of: &Prediction| of.records[0].channels.clone();
+        Some(Discrimination {
+            proposal: place,
+            pairs: pairs?,
+            predicted: predictions.iter().map(seen).collect(),
+        })
+    }
+}
+
+/// Why no experiment is left: what most of them leave.
+fn excluded<T>(promised: &[Result<T, Excluded>]) -> NoExperiment {
+    let mut left: Vec<(&str, usize)> = Vec::new();
+    for of in promised {
+        let Err(Excluded::Leaves(name)) = of else {
+            continue;
+        };
+        match left.iter_mut().find(|(known, _)| known == name) {
+            Some((_, count)) => *count += 1,
+            None => left.push((name, 1)),
+        }
+    }
+    match left.iter().max_by_key(|(_, count)| *count) {
+        Some((name, _)) => NoExperiment::Leaves(promised.len(), (*name).to_owned()),
+        None => NoExperiment::Unfollowed(promised.len()),
+    }
+}

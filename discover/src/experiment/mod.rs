@@ -1,0 +1,330 @@
+//! The next experiment: for what the records do not tell apart an input within bounds that does,
+//! simulated with the fitted models.
+//!
+//! The files, in the order in which they read each other: [`waveform`] (forms of an input), [`bounds`]
+//! (within which it stays), [`proposal`] (inputs within these), [`prediction`] (what a fitted model
+//! does then), [`separation`] (what another leaves of that, once it is fitted to it as well),
+//! [`discrimination`] (the input that separates best), [`detection`] (the one that shows best what the
+//! records could not), `members` (fits of a class), `played` (the
+//! file), [`next`] (the result).
+
+pub mod bounds;
+pub mod detection;
+pub mod discrimination;
+mod members;
+pub mod next;
+mod played;
+pub mod prediction;
+pub mod proposal;
+pub mod separation;
+pub mod waveform;
+
+use eomgen_model_spec::unit::Unit;
+
+use crate::catalogue::candidate::Candidate;
+use crate::experiment::bounds::Bounds;
+use crate::experiment::detection::Hidden;
+use crate::experiment::discrimination::{Discrimination, Members, NoExperiment, PairSeparation};
+use crate::experiment::members::equivalent_fits;
+use crate::experiment::next::{ExperimentFile, Experiments, MemberAt, NextExperiment, Pair, Shown};
+use crate::experiment::prediction::Predictor;
+use crate::experiment::proposal::Proposal;
+use crate::experiment::separation::{Rival, Separation};
+use crate::fit::fitted::Fit;
+use crate::ids::EffectId;
+use crate::model::unknowns::What;
+use crate::search::context::Context;
+use crate::search::found::Found;
+use crate::thresholds;
+
+/// The next experiments for what was found. `context`: that of the search.
+pub fn experiments(context: Context<'_>, found: &Found) -> Experiments {
+    let problem = context.problem;
+    let inputs = &found.null.model.specification().inputs;
+    let units = inputs.iter();
+    let units = units.map(|input| Unit::coherent(input.unit.dimension).text);
+    let units: Vec<String> = units.collect();
+    let inputs: Vec<String> = inputs.iter().map(|input| input.name.clone()).collect();
+    let bounds = Bounds::of(problem, &inputs);
+    let times = bounds.times();
+    let family = Proposal::family(&bounds, &times);
+    let plan = Plan {
+        context,
+        inputs,
+        units,
+        bounds,
+        times,
+        family,
+    };
+    let mut experiments = Experiments::default();
+    for effect in EffectId::first(found.accepted.len()) {
+        let next = match found.accepted[effect].equivalent.is_empty() {
+            true => None,
+            false => Some(plan.of_class(found, effect, &mut experiments.files)),
+        };
+        experiments.of_effects.push(next);
+    }
+    plan.of_not_testable(found, &mut experiments);
+    experiments
+}
+
+/// What may be played.
+struct Plan<'r> {
+    context: Context<'r>,
+    /// The model's inputs.
+    inputs: Vec<String>,
+    /// The SI unit of each.
+    units: Vec<String>,
+    bounds: Bounds,
+    times: Vec<f64>,
+    family: Vec<Proposal>,
+}
+
+impl Plan<'_> {
+    /// What separates the members of an accepted effect's class.
+    fn of_class(
+        &self,
+        found: &Found,
+        effect: EffectId,
+        files: &mut Vec<ExperimentFile>,
+    ) -> NextExperiment {
+        let accepted = &found.accepted[effect];
+        (self.context.progress)(&format!(
+            "seeking an experiment that tells {} from {} more",
+            accepted.candidate.label(),
+            accepted.equivalent.len()
+        ));
+        let equivalent = equivalent_fits(self.context, found, effect);
+        let mut members = vec![(MemberAt::of(&accepted.candidate), found.best())];
+        let mut left_out = Vec::new();
+        for (candidate, fit) in &equivalent {
+            match fit {
+                Some(fit) => members.push((MemberAt::of(candidate), fit)),
+                None => left_out.push(MemberAt::of(candidate)),
+            }
+        }
+        if members.len() < 2 {
+            return NextExperiment::none(
+                "none of the others could be fitted beside what was found later",
+                &self.bounds,
+            );
+        }
+        let (at, fits): (Vec<MemberAt>, Vec<&Fit>) = members.into_iter().unzip();
+        let problem = self.context.problem;
+        let rivals = fits.into_iter().map(|fit| Rival::of(problem, fit));
+        let members = Members {
+            problem,
+            rivals: rivals.collect(),
+        };
+        match members.best(&self.bounds, &self.times, &self.family) {
+            Ok(best) => self.told(&at, left_out, best, files),
+            Err(reason) => NextExperiment::none(&reason.to_string(), &self.bounds),
+        }
+    }
+
+    /// An experiment of a class as a result; a file if it separates some.
+    fn told(
+        &self,
+        at: &[MemberAt],
+        left_out: Vec<MemberAt>,
+        best: Discrimination,
+        files: &mut Vec<ExperimentFile>,
+    ) -> NextExperiment {
+        let proposal = &self.family[best.proposal];
+        let channels = &self.context.problem.dataset.channels;
+        let separates = |pair: &&PairSeparation| pair.least() >= thresholds::SEPARATES;
+        let is_enough = best.pairs.iter().any(|pair| separates(&pair));
+        let counted = best
+            .pairs
+            .iter()
+            .filter(|pair| !is_enough || separates(pair));
+        let least = counted.min_by(|a, b| a.least().total_cmp(&b.least()));
+        let file = least.filter(|_| is_enough).map(|least| {
+            self.written(
+                proposal,
+                least.members.map(|member| at[member].words()),
+                [
+                    best.predicted[least.members[0]].clone(),
+                    least.separations[0].seen.clone(),
+                ],
+                files,
+            )
+        });
+        let pair = |pair: &PairSeparation| {
+            let [a, b] = pair.members.map(|member| at[member].clone());
+            let [of_b, of_a] = &pair.separations;
+            let told = |truth: &MemberAt, rival: &MemberAt, of: &Separation| Pair {
+                truth: truth.clone(),
+                rival: rival.clone(),
+                separation: of.size,
+                channel: channels[of.channel].name.clone(),
+            };
+            [told(&a, &b, of_b), told(&b, &a, of_a)]
+        };
+        NextExperiment {
+            file,
+            input: Some(proposal.name.clone()),
+            form: Some(proposal.form.clone()),
+            separation: least.map(PairSeparation::least),
+            pairs: best.pairs.iter().flat_map(pair).collect(),
+            left_out,
+            shows: None,
+            reason: None,
+            bounds: self.bounds.words.clone(),
+        }
+    }
+
+    /// The file of an input, written if it is not yet: of several uses the first is drawn.
+    fn written(
+        &self,
+        proposal: &Proposal,
+        members: [String; 2],
+        predicted: [Vec<Vec<f64>>; 2],
+        files: &mut Vec<ExperimentFile>,
+    ) -> usize {
+        let text = played::text(
+            (&self.bounds, &self.times),
+            proposal,
+            &self.inputs,
+            &self.context.problem.dataset.played,
+        );
+        if let Some(known) = files.iter().position(|file| file.text == text) {
+            return known;
+        }
+        files.push(ExperimentFile {
+            name: ExperimentFile::numbered(files.len()),
+            text,
+            input: proposal.name.clone(),
+            unit: self.units[proposal.place].clone(),
+            times: self.times.clone(),
+            values: proposal.values.clone(),
+            members,
+            predicted,
+        });
+        files.len() - 1
+    }
+
+    /// What would show the effects that the records could not have shown, each at each place once.
+    fn of_not_testable(&self, found: &Found, experiments: &mut Experiments) {
+        let problem = self.context.problem;
+        experiments.of_rejected = vec![None; found.rejected.len()];
+        let mut wanted: Vec<usize> = Vec::new();
+        for (place, rejected) in found.rejected.iter().enumerate() {
+            let is_known = |other: &usize| {
+                found.rejected[*other]
+                    .candidate
+                    .is_same_as(&rejected.candidate)
+            };
+            if rejected.not_testable && !wanted.iter().any(is_known) {
+                wanted.push(place);
+            }
+        }
+        wanted.truncate(thresholds::MOST_SHOWN);
+        if wanted.is_empty() {
+            return;
+        }
+        (self.context.progress)(&format!(
+            "seeking experiments that show what these records could not, {} effects",
+            wanted.len()
+        ));
+        let without = Rival::declared(found.best());
+        let family = self.largest(found.best());
+        for place in wanted {
+            let candidate = &found.rejected[place].candidate;
+            let next = match Hidden::of(problem, &without, candidate) {
+                Ok(hidden) => self.shown(&hidden, candidate, &family, &mut experiments.files),
+                Err(error) => NextExperiment::none(&error.to_string(), &self.bounds),
+            };
+            experiments.of_rejected[place] = Some(next);
+        }
+    }
+
+    /// Of each form on each input the largest with which a fit stays within its limits.
+    fn largest(&self, fit: &Fit) -> Vec<(usize, &Proposal)> {
+        let Some(mut predictor) = Predictor::of(self.context.problem, fit) else {
+            return Vec::new();
+        };
+        let mut family: Vec<(usize, &Proposal)> = Vec::new();
+        for (place, proposal) in self.family.iter().enumerate() {
+            let is_same = |known: &(usize, &Proposal)| {
+                known.1.place == proposal.place && known.1.waveform == proposal.waveform
+            };
+            let is_admitted = |predictor: &mut Predictor<'_>| {
+                let predicted = predictor.predicted(&self.bounds, &self.times, proposal);
+                predicted.is_ok()
+            };
+            if !family.last().is_some_and(is_same) && is_admitted(&mut predictor) {
+                family.push((place, proposal));
+            }
+        }
+        family
+    }
+
+    /// What shows an effect best.
+    fn shown(
+        &self,
+        hidden: &Hidden<'_>,
+        candidate: &Candidate,
+        family: &[(usize, &Proposal)],
+        files: &mut Vec<ExperimentFile>,
+    ) -> NextExperiment {
+        let Some(best) = hidden.best((&self.bounds, &self.times), family) else {
+            let reason = match self.family.is_empty() {
+                true => NoExperiment::NoInput.to_string(),
+                false => "nothing that was tried within the bounds shows it".to_owned(),
+            };
+            return NextExperiment::none(&reason, &self.bounds);
+        };
+        let proposal = &self.family[best.proposal];
+        let is_enough = best.separation.size >= thresholds::SHOWS;
+        let file = is_enough.then(|| {
+            let label = MemberAt::of(candidate).words();
+            self.written(
+                proposal,
+                [format!("with {label}"), "without it".to_owned()],
+                [best.predicted.clone(), best.separation.seen.clone()],
+                files,
+            )
+        });
+        NextExperiment {
+            file,
+            input: Some(proposal.name.clone()),
+            form: Some(proposal.form.clone()),
+            separation: Some(best.separation.size),
+            pairs: Vec::new(),
+            left_out: Vec::new(),
+            shows: is_enough
+                .then(|| self.smallest(candidate, hidden.stated(best.size)))
+                .flatten(),
+            reason: None,
+            bounds: self.bounds.words.clone(),
+        }
+    }
+
+    /// What scales an effect and the value from which on it is shown, in its unit.
+    fn smallest(&self, candidate: &Candidate, value: f64) -> Option<Shown> {
+        let shown = |what: &str, from: f64, unit: &str| {
+            Some(Shown {
+                what: what.to_owned(),
+                from,
+                unit: unit.to_owned(),
+            })
+        };
+        let channels = &self.context.problem.dataset.channels;
+        match &candidate.dropped_prior {
+            None => {
+                let scaling = candidate.parameters.iter().find(|of| of.shape.is_none())?;
+                shown(&scaling.name, scaling.per_si() * value, &scaling.unit)
+            }
+            Some(What::Gain(_)) => shown("gain", value, "1"),
+            Some(What::Bias(channel)) => shown("bias", value, &channels[*channel].unit),
+            Some(What::Delay(_)) => shown("delay", value, "s"),
+            Some(What::Parameter(name) | What::Inverse(name)) => {
+                let model = self.context.fit.model.specification();
+                let parameter = model.parameters.iter().find(|of| of.name == *name)?;
+                let unit = &parameter.unit;
+                shown(name, unit.from_si(value), &unit.text)
+            }
+        }
+    }
+}

@@ -1,0 +1,47 @@
+//! An experiment as a file that a rig can play: columns `t` and the driven inputs, in the units of the
+//! dataset.
+
+use eomgen_records::experiment::Played;
+
+use crate::experiment::bounds::Bounds;
+use crate::experiment::proposal::{Proposal, rest};
+
+/// The text of `experiment.csv`.
+pub(super) fn text(
+    (bounds, times): (&Bounds, &[f64]),
+    proposal: &Proposal,
+    names: &[String],
+    played: &Played,
+) -> String {
+    let driven: Vec<usize> = (0..names.len())
+        .filter(|place| played.inputs.get(*place).is_some_and(Option::is_some))
+        .collect();
+    let heading: Vec<&str> = driven.iter().map(|place| names[*place].as_str()).collect();
+    let mut text = format!("t,{}\n", heading.join(","));
+    for (t, value) in times.iter().zip(&proposal.values) {
+        text += &format!("{}", rounded(played.time.from_si(*t)));
+        for place in &driven {
+            let own = match *place == proposal.place {
+                true => *value,
+                false => {
+                    let mut others = bounds.inputs.iter();
+                    let other = others.find(|other| other.place == *place);
+                    other.map_or(0.0, |other| rest(other.range))
+                }
+            };
+            let unit = played.inputs[*place].as_ref();
+            let own = unit.map_or(own, |unit| unit.from_si(own));
+            text += &format!(",{}", rounded(own));
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// A number to twelve digits: what a difference of times leaves behind them is nobody's.
+fn rounded(value: f64) -> f64 {
+    if value == 0.0 || !value.is_finite() {
+        return value;
+    }
+    format!("{value:.11e}").parse().unwrap_or(value)
+}

@@ -1,0 +1,135 @@
+//! What a fitted model does when an input is played, and whether it stays within its limits.
+
+use std::path::PathBuf;
+
+use eomgen_records::dataset::Initial;
+use eomgen_records::record::Record;
+use eomgen_sim::inputs::HeldInputs;
+
+use crate::experiment::bounds::Bounds;
+use crate::experiment::proposal::Proposal;
+use crate::fit::fitted::Fit;
+use crate::fit::shooting::{Sensors, Shooting};
+use crate::model::estimation_model::EstimationModel;
+use crate::model::problem::EstimationProblem;
+use crate::model::simulation::{Motion, Simulation};
+
+/// A record that an experiment is predicted to leave, without noise.
+#[derive(Clone, Debug)]
+pub struct Prediction {
+    /// The state at each sample.
+    pub states: Vec<Vec<f64>>,
+    /// What the sensors show: the only one of a list.
+    pub records: Vec<Record>,
+}
+
+/// Why an experiment is not proposed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Excluded {
+    /// The motion cannot be followed.
+    Unfollowed,
+    /// This channel, or a coordinate, would leave its limits.
+    Leaves(String),
+}
+
+/// A model at fixed parameters, to be driven by experiments.
+pub struct Predictor<'a> {
+    problem: &'a EstimationProblem<'a>,
+    /// The model, which is a fit's or has something more.
+    model: &'a EstimationModel,
+    shooting: Shooting<'a>,
+    sensors: Sensors,
+    simulation: Simulation<'a>,
+    initial: Vec<f64>,
+}
+
+impl<'a> Predictor<'a> {
+    /// A fit's own model. None where there is no motion at its parameters.
+    pub fn of(problem: &'a EstimationProblem<'a>, fit: &'a Fit) -> Option<Self> {
+        let theta = &fit.train.estimate.theta;
+        let values = fit.shooting(problem).values(theta);
+        Self::with(problem, (fit, theta), &fit.model, &values)
+    }
+
+    /// Another model at these parameters, seen by the sensors of a fit's unknowns.
+    pub fn with(
+        problem: &'a EstimationProblem<'a>,
+        (fit, theta): (&'a Fit, &[f64]),
+        model: &'a EstimationModel,
+        values: &[f64],
+    ) -> Option<Self> {
+        let initial = match problem.dataset.initial {
+            // Where a record began says nothing of where a rig can begin anew.
+            Initial::Estimate => model.initial(),
+            Initial::Rest | Initial::Given(_) => {
+                problem.first_state(model, &problem.dataset.train[0])
+            }
+        };
+        let shooting = fit.shooting(problem);
+        Some(Self {
+            problem,
+            model,
+            sensors: shooting.sensors(theta),
+            shooting,
+            simulation: model.simulation(values).ok()?,
+            initial,
+        })
+    }
+
+    /// What it leaves of an experiment.
+    ///
+    /// # Errors
+    /// Why that is not proposed.
+    pub fn predicted(
+        &mut self,
+        bounds: &Bounds,
+        times: &[f64],
+        proposal: &Proposal,
+    ) -> Result<Prediction, Excluded> {
+        let count = self.model.specification().inputs.len();
+        let inputs = proposal.inputs(bounds, times, count);
+        let motion = self.simulation.motion(&self.initial, times, &inputs);
+        let Motion { states, outputs } = motion.map_err(|_| Excluded::Unfollowed)?;
+        self.check(bounds, &states, &outputs)?;
+        let seen = self.shooting.seen(times, &self.sensors, &outputs);
+        Ok(Prediction {
+            records: vec![recorded(times, inputs, &seen, bounds.channels.len())],
+            states,
+        })
+    }
+
+    /// Whether a motion stays within its limits.
+    fn check(&self, bounds: &Bounds, states: &[Vec<f64>], outputs: &[f64]) -> Result<(), Excluded> {
+        let channels = &self.problem.dataset.channels;
+        for row in outputs.chunks_exact(channels.len()) {
+            for ((value, limits), channel) in row.iter().zip(&bounds.channels).zip(channels) {
+                if !value.is_finite() {
+                    return Err(Excluded::Unfollowed);
+                }
+                if !(limits.low..=limits.high).contains(value) {
+                    return Err(Excluded::Leaves(channel.name.clone()));
+                }
+            }
+        }
+        match states.iter().all(|state| self.model.admits(state)) {
+            true => Ok(()),
+            false => Err(Excluded::Leaves("a coordinate".to_owned())),
+        }
+    }
+}
+
+/// A record of these columns.
+fn recorded(times: &[f64], inputs: HeldInputs, seen: &[f64], channels: usize) -> Record {
+    let column = |channel: usize| seen.iter().skip(channel).step_by(channels).copied();
+    Record {
+        is_continued: false,
+        name: "experiment".to_owned(),
+        path: PathBuf::new(),
+        times: times.to_vec(),
+        inputs,
+        input_columns: Vec::new(),
+        channels: (0..channels)
+            .map(|channel| column(channel).collect())
+            .collect(),
+    }
+}

@@ -1,0 +1,126 @@
+//! Inputs that may be played within bounds: each form on each input, in several sizes, the others at
+//! rest.
+
+use eomgen_sim::inputs::HeldInputs;
+
+use crate::experiment::bounds::{Bounds, InputBounds};
+use crate::experiment::waveform::Waveform;
+use crate::interval::Interval;
+use crate::thresholds;
+
+/// An input that may be played.
+#[derive(Clone, Debug)]
+pub struct Proposal {
+    /// Its place among the model's inputs.
+    pub place: usize,
+    /// Its name.
+    pub name: String,
+    /// Its form.
+    pub waveform: Waveform,
+    /// What it is, in words.
+    pub form: String,
+    /// Its value at each sample, SI.
+    pub values: Vec<f64>,
+}
+
+impl Proposal {
+    /// All that is tried, at these times, s.
+    pub fn family(bounds: &Bounds, times: &[f64]) -> Vec<Self> {
+        let mut family: Vec<Self> = Vec::new();
+        for input in &bounds.inputs {
+            for form in Waveform::family(input.band) {
+                let Some(shape) = form.sampled(times, bounds.duration) else {
+                    continue;
+                };
+                for size in thresholds::EXPERIMENT_SIZES {
+                    family.push(Self {
+                        place: input.place,
+                        name: input.name.clone(),
+                        waveform: form,
+                        form: format!("{}, {:.0} % of its range", form.words(), 100.0 * size),
+                        values: played(&shape, size, input, bounds.sample),
+                    });
+                }
+            }
+        }
+        family
+    }
+
+    /// The model's inputs, of which there are `count`, with this one played.
+    pub fn inputs(&self, bounds: &Bounds, times: &[f64], count: usize) -> HeldInputs {
+        let mut row = vec![0.0; count];
+        for other in &bounds.inputs {
+            row[other.place] = rest(other.range);
+        }
+        let rows = self.values.iter().flat_map(|value| {
+            let mut row = row.clone();
+            row[self.place] = *value;
+            row
+        });
+        HeldInputs::new(times.to_vec(), rows.collect(), count)
+            .unwrap_or_else(|| HeldInputs::zero(count))
+    }
+}
+
+/// Where an input is at rest: at 0, or as near to it as it may be.
+pub fn rest(range: Interval) -> f64 {
+    range.clamp(0.0)
+}
+
+/// A form on an input, so much of its range to either side of rest and no faster than it may be.
+fn played(shape: &[f64], size: f64, input: &InputBounds, sample: f64) -> Vec<f64> {
+    let Interval { low, high } = input.range;
+    let rest = rest(input.range);
+    let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+    let mut present = rest;
+    let most = input.rate * sample;
+    let value = |form: &f64| {
+        let wanted = match form.is_nan() {
+            true => rest,
+            false => rest + size * (middle + half * form - rest),
+        };
+        present += (wanted - present).clamp(-most, most);
+        present = input.range.clamp(present);
+        present
+    };
+    shape.iter().map(value).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bounds(low: f64, high: f64, rate: f64) -> Bounds {
+        Bounds {
+            duration: 10.0,
+            sample: 0.01,
+            inputs: vec![InputBounds {
+                place: 0,
+                name: "u".to_owned(),
+                range: Interval::new(low, high),
+                rate,
+                band: Interval::new(0.1, 5.0),
+            }],
+            channels: Vec::new(),
+            words: String::new(),
+        }
+    }
+
+    #[test]
+    fn whatever_is_proposed_stays_within_its_range_and_its_rate() {
+        for (low, high, rate) in [(-1.0, 2.0, 3.0), (0.0, 5.0, 1e3), (2.0, 4.0, 0.1)] {
+            let bounds = bounds(low, high, rate);
+            let times = bounds.times();
+            let family = Proposal::family(&bounds, &times);
+            assert!(family.len() > 80, "{}", family.len());
+            for proposal in family {
+                assert_eq!(proposal.values.len(), times.len());
+                let within = |value: &f64| (low..=high).contains(value);
+                assert!(proposal.values.iter().all(within), "{}", proposal.form);
+                let mut steps = proposal.values.windows(2);
+                let slow = |pair: &[f64]| (pair[1] - pair[0]).abs() <= rate * 0.01 * (1.0 + 1e-9);
+                assert!(steps.all(slow), "{}", proposal.form);
+            }
+        }
+    }
+}

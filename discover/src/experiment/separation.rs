@@ -1,0 +1,268 @@
+//! How far a rival stays from what another model predicts of an experiment, once it is fitted to that
+//! and to the records that are there: what it can imitate by a change of its unknowns that these
+//! records allow, or by the windows' initial states, does not count. The criterion of T-optimal designs
+//! (Atkinson and Fedorov, Biometrika 62, 1975), of estimates that records hold.
+
+use nalgebra::{DMatrix, DVector};
+
+use eomgen_records::windows::{Windows, judged};
+
+use crate::experiment::prediction::Prediction;
+use crate::fit::bounded_least_squares::least_squares;
+use crate::fit::fitted::Fit;
+use crate::fit::gauss_newton::{
+    Estimate, evaluated, followed, level, moved_unknowns, reduced_blocks,
+};
+use crate::fit::information::information_of;
+use crate::fit::initial_states::spread;
+use crate::fit::prior::InitialStatePrior;
+use crate::fit::residuals::Residuals;
+use crate::fit::sensitivity::linearised;
+use crate::fit::shooting::Shooting;
+use crate::fit::variable_projection::{ReducedBlock, triangular_factor};
+use crate::interval::Interval;
+use crate::model::estimation_model::EstimationModel;
+use crate::model::problem::EstimationProblem;
+use crate::model::unknowns::Unknown;
+use crate::thresholds;
+
+/// A fit that may explain what another predicts.
+pub struct Rival<'f> {
+    /// The fit.
+    pub fit: &'f Fit,
+    /// What is known of its unknowns: a factor of the information.
+    information: DMatrix<f64>,
+    /// Its unknowns, whose priors are in the information.
+    unknowns: Vec<Unknown>,
+}
+
+/// What a rival leaves of a prediction once it is fitted to it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Separation {
+    /// The root mean square of the channel that shows it best, in standard deviations of its noise.
+    pub size: f64,
+    /// That channel's place.
+    pub channel: usize,
+    /// What the rival's sensors show, a column for each channel, NaN where it is not compared.
+    pub seen: Vec<Vec<f64>>,
+}
+
+impl<'f> Rival<'f> {
+    /// A fit with what its records tell of it.
+    pub fn of(problem: &EstimationProblem<'_>, fit: &'f Fit) -> Self {
+        Self::with(fit, information_of(problem, fit))
+    }
+
+    /// A fit with what was declared of it alone: had the records held something more, they would have
+    /// told something else.
+    pub fn declared(fit: &'f Fit) -> Self {
+        let sd = |unknown: &Unknown| unknown.prior.map_or(f64::INFINITY, |prior| prior.sd);
+        let weights = fit.unknowns.iter().map(|unknown| 1.0 / sd(unknown));
+        let weights = DVector::from_iterator(fit.unknowns.len(), weights);
+        Self::with(fit, DMatrix::from_diagonal(&weights))
+    }
+
+    fn with(fit: &'f Fit, information: DMatrix<f64>) -> Self {
+        let without_prior = |unknown: &Unknown| Unknown {
+            prior: None,
+            ..unknown.clone()
+        };
+        Self {
+            fit,
+            information,
+            unknowns: fit.unknowns.iter().map(without_prior).collect(),
+        }
+    }
+
+    /// The root mean square over all channels of what it leaves of a prediction by a model whose states
+    /// `truth` has, by a straight line; none where it cannot be followed.
+    pub fn leaves_by_tangents(
+        &self,
+        problem: &EstimationProblem<'_>,
+        truth: &EstimationModel,
+        prediction: &Prediction,
+    ) -> Option<f64> {
+        let windows = Windows::cut(&prediction.records, problem.dataset.window);
+        let begin = self.begin(problem, truth, prediction, &windows);
+        let shooting = Shooting::new(
+            problem,
+            &self.fit.model,
+            &windows,
+            &self.unknowns,
+            &begin.ranges,
+        );
+        let present = evaluated(
+            &shooting,
+            &begin.prior,
+            self.theta().to_vec(),
+            begin.states.clone(),
+        );
+        let blocks = blocks(&shooting, &begin.prior, &present)?;
+        let factor = self.factor(&blocks, &present);
+        let last = factor[(factor.nrows() - 1, factor.ncols() - 1)];
+        let left = last.abs() / windows.numbers().sqrt();
+        left.is_finite().then_some(left)
+    }
+
+    /// What it leaves of a prediction once it is fitted to that and to its own records; none where it
+    /// cannot be followed.
+    pub fn separation(
+        &self,
+        problem: &EstimationProblem<'_>,
+        truth: &EstimationModel,
+        prediction: &Prediction,
+    ) -> Option<Separation> {
+        let windows = Windows::cut(&prediction.records, problem.dataset.window);
+        let begin = self.begin(problem, truth, prediction, &windows);
+        let shooting = Shooting::new(
+            problem,
+            &self.fit.model,
+            &windows,
+            &self.unknowns,
+            &begin.ranges,
+        );
+        let fitted = self.fitted(&shooting, &begin)?;
+        let residuals = Residuals::of(&shooting, fitted).whole();
+        let sizes = residuals.normalised_rms.iter().copied().enumerate();
+        let (channel, size) = sizes.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let channels = problem.noise.len();
+        let mut seen = vec![vec![f64::NAN; prediction.states.len()]; channels];
+        for (window, residual) in windows.list.iter().zip(&residuals.residuals) {
+            for sample in judged(window.times.len()) {
+                for (channel, noise) in problem.noise.iter().enumerate() {
+                    let number = sample * channels + channel;
+                    seen[channel][window.first + sample] =
+                        window.measured[number] + noise * residual[number];
+                }
+            }
+        }
+        size.is_finite().then_some(Separation {
+            size,
+            channel,
+            seen,
+        })
+    }
+
+    fn theta(&self) -> &[f64] {
+        &self.fit.train.estimate.theta
+    }
+
+    /// Where its windows begin: where the prediction's do.
+    fn begin(
+        &self,
+        problem: &EstimationProblem<'_>,
+        truth: &EstimationModel,
+        prediction: &Prediction,
+        windows: &Windows<'_>,
+    ) -> Beginning {
+        let model = &self.fit.model;
+        let states: Vec<Vec<f64>> = (windows.list.iter())
+            .map(|window| model.admissible(model.mapped(truth, &prediction.states[window.first])))
+            .collect();
+        let count = prediction.states.len() as f64;
+        let ranges = self.fit.ranges.iter().enumerate().map(|(state, range)| {
+            let name = &model.states[state];
+            let own = truth.states.iter().position(|known| known == name);
+            let spread = own.map_or(0.0, |own| {
+                let column = || prediction.states.iter().map(|state| state[own]);
+                let mean = column().sum::<f64>() / count;
+                let square = column().map(|x| (x - mean).powi(2)).sum::<f64>() / count;
+                square.sqrt()
+            });
+            range.max(spread)
+        });
+        let ranges: Vec<f64> = ranges.collect();
+        let prior = match problem.estimates_initial_states() {
+            true => InitialStatePrior {
+                mean: states.clone(),
+                sd: spread(&ranges),
+            },
+            false => InitialStatePrior::default(),
+        };
+        Beginning {
+            states,
+            ranges,
+            prior,
+        }
+    }
+
+    /// Fitted to windows and to what its records tell.
+    fn fitted(&self, shooting: &Shooting<'_>, begin: &Beginning) -> Option<Estimate> {
+        let Beginning { states, prior, .. } = begin;
+        let total = |estimate: &Estimate| {
+            estimate.cost + (&self.information * self.change(estimate)).norm_squared()
+        };
+        let mut present = evaluated(shooting, prior, self.theta().to_vec(), states.clone());
+        for _ in 0..thresholds::REFIT_STEPS {
+            let blocks = blocks(shooting, prior, &present)?;
+            let factor = self.factor(&blocks, &present);
+            let count = self.unknowns.len();
+            let bounds: Vec<Interval> = (self.unknowns.iter().zip(&present.theta))
+                .map(|(unknown, value)| unknown.bounds.relative_to(*value).with_zero())
+                .collect();
+            let change = least_squares(
+                &factor.columns(0, count).into_owned(),
+                &-factor.column(count).into_owned(),
+                &bounds,
+            );
+            let before = total(&present);
+            let next = thresholds::REFIT_PARTS.iter().find_map(|part| {
+                let theta = moved_unknowns(shooting, &present, &change, *part);
+                let next = followed(shooting, prior, &present, &blocks, theta);
+                (total(&next) < before).then_some(next)
+            });
+            let Some(next) = next else { break };
+            let is_converged = total(&next) > (1.0 - thresholds::LEAST_DECREASE) * before;
+            present = next;
+            if is_converged {
+                break;
+            }
+        }
+        Some(present)
+    }
+
+    /// How far an estimate is from what its records led to.
+    fn change(&self, estimate: &Estimate) -> DVector<f64> {
+        let pairs = estimate.theta.iter().zip(self.theta());
+        DVector::from_iterator(self.unknowns.len(), pairs.map(|(a, b)| a - b))
+    }
+
+    /// The triangular factor of [unknowns | residual], of windows and of what its records tell.
+    fn factor(&self, blocks: &[Option<ReducedBlock>], present: &Estimate) -> DMatrix<f64> {
+        let count = self.unknowns.len();
+        let mut rows = DMatrix::zeros(count, count + 1);
+        rows.view_mut((0, 0), (count, count))
+            .copy_from(&self.information);
+        rows.set_column(count, &(&self.information * self.change(present)));
+        let empty = DMatrix::zeros(count + 1, count + 1);
+        let factor = triangular_factor(&empty, &rows);
+        let windows = blocks.iter().flatten();
+        windows.fold(factor, |factor, block| {
+            triangular_factor(&factor, &block.unknowns())
+        })
+    }
+}
+
+/// Where a rival's windows begin.
+struct Beginning {
+    states: Vec<Vec<f64>>,
+    /// How far its states go, in the records or in the experiment.
+    ranges: Vec<f64>,
+    prior: InitialStatePrior,
+}
+
+/// The windows' derivatives with their initial states free; none where one cannot be followed.
+fn blocks(
+    shooting: &Shooting<'_>,
+    prior: &InitialStatePrior,
+    present: &Estimate,
+) -> Option<Vec<Option<ReducedBlock>>> {
+    let linear = linearised(
+        shooting,
+        &present.theta,
+        &present.initial_states,
+        level(shooting, present),
+    );
+    let blocks = reduced_blocks(prior, present, &linear);
+    blocks.iter().all(Option::is_some).then_some(blocks)
+}

@@ -1,0 +1,173 @@
+//! Forms of an input over time, between -1 and 1: what experimenters play. Multisines have the phases
+//! of Schroeder (IEEE Trans. Inf. Theory 16, 1970), which keep their crests low.
+
+use std::f64::consts::PI;
+
+use crate::interval::Interval;
+
+/// The tones of a multisine.
+const TONES: usize = 12;
+
+/// The levels of a staircase, forth and back.
+const LEVELS: [f64; 10] = [0.2, 0.4, 0.6, 0.8, 1.0, -0.2, -0.4, -0.6, -0.8, -1.0];
+
+/// A form of an input.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Waveform {
+    /// A sum of sines spread evenly over the octaves of a band, Hz.
+    Multisine(Interval),
+    /// A cosine whose frequency rises through a band, Hz, by equal factors in equal times.
+    Chirp(Interval),
+    /// To and fro between both ends, so many times.
+    Square(u32),
+    /// Forth, twice as long back, and forth, so many times: what has mass ends where it began.
+    Shuttle(u32),
+    /// Straight to one end, to the other, and back to rest, so many times.
+    Triangle(u32),
+    /// The upper end all the time, or the lower one.
+    Constant {
+        /// Whether it is the upper one.
+        is_upper: bool,
+    },
+    /// One end for this part of the time, then rest.
+    Release {
+        /// Whether it is the upper one.
+        is_upper: bool,
+        /// The part.
+        part: f64,
+    },
+    /// Five levels up to the upper end, then five down to the lower.
+    Staircase,
+}
+
+impl Waveform {
+    /// All that is tried within a band, Hz.
+    pub fn family(band: Interval) -> Vec<Self> {
+        let middle = (band.low * band.high).sqrt();
+        let mut family = vec![
+            Self::Multisine(band),
+            Self::Multisine(Interval::new(band.low, middle)),
+            Self::Chirp(band),
+            Self::Staircase,
+        ];
+        family.extend([1, 2, 4, 8].map(Self::Square));
+        family.extend([1, 2, 4].map(Self::Shuttle));
+        family.extend([1, 2, 4, 8].map(Self::Triangle));
+        for is_upper in [true, false] {
+            family.push(Self::Constant { is_upper });
+            family.extend([0.25, 0.5].map(|part| Self::Release { is_upper, part }));
+        }
+        family
+    }
+
+    /// Its values at times from 0 to `duration`, s; none where it does not fit into that.
+    pub fn sampled(&self, times: &[f64], duration: f64) -> Option<Vec<f64>> {
+        let at = |of: &dyn Fn(f64) -> f64| times.iter().map(|t| of(t / duration)).collect();
+        Some(match *self {
+            Self::Multisine(band) => multisine(band, times, duration)?,
+            Self::Chirp(band) => {
+                let octaves = (band.high / band.low).ln();
+                let phase = |part: f64| {
+                    let turns = match octaves < 1e-9 {
+                        true => part,
+                        false => ((octaves * part).exp() - 1.0) / octaves,
+                    };
+                    2.0 * PI * band.low * duration * turns
+                };
+                at(&|part| phase(part).cos())
+            }
+            Self::Square(times) => at(&|part| match phase(part, times) < 0.5 {
+                true => 1.0,
+                false => -1.0,
+            }),
+            Self::Shuttle(times) => at(&|part| match phase(part, times) {
+                phase if (0.25..0.75).contains(&phase) => -1.0,
+                _ => 1.0,
+            }),
+            Self::Triangle(times) => at(&|part| match phase(part, times) {
+                phase if phase < 0.25 => 4.0 * phase,
+                phase if phase < 0.75 => 2.0 - 4.0 * phase,
+                phase => 4.0 * phase - 4.0,
+            }),
+            Self::Constant { is_upper } => at(&|_| end(is_upper)),
+            Self::Release { is_upper, part } => at(&|now| match now < part {
+                true => end(is_upper),
+                false => f64::NAN,
+            }),
+            Self::Staircase => at(&|part| {
+                let step = (part * LEVELS.len() as f64) as usize;
+                LEVELS[step.min(LEVELS.len() - 1)]
+            }),
+        })
+    }
+
+    /// What it is, in words.
+    pub fn words(&self) -> String {
+        let times = |count: u32| match count {
+            1 => "once".to_owned(),
+            2 => "twice".to_owned(),
+            count => format!("{count} times"),
+        };
+        let between = |band: Interval| format!("{:.2} and {:.2} Hz", band.low, band.high);
+        let end = |is_upper: bool| if is_upper { "upper" } else { "lower" };
+        match *self {
+            Self::Multisine(band) => format!("a multisine between {}", between(band)),
+            Self::Chirp(band) => format!("a chirp between {}", between(band)),
+            Self::Square(count) => {
+                format!("steps from one end to the other and back, {}", times(count))
+            }
+            Self::Shuttle(count) => {
+                format!(
+                    "steps forth, twice as long back, and forth, {}",
+                    times(count)
+                )
+            }
+            Self::Triangle(count) => {
+                format!("a triangle to one end and to the other, {}", times(count))
+            }
+            Self::Constant { is_upper } => format!("a constant at the {} end", end(is_upper)),
+            Self::Release { is_upper, part } => format!(
+                "the {} end for {:.0} % of the time, then rest",
+                end(is_upper),
+                100.0 * part
+            ),
+            Self::Staircase => "a staircase of five levels to each side".to_owned(),
+        }
+    }
+}
+
+/// Where in its period something is that has so many, a part of the time after its beginning. At the end
+/// none begins anew.
+fn phase(part: f64, periods: u32) -> f64 {
+    (part.min(1.0 - 1e-12) * f64::from(periods)).fract()
+}
+
+fn end(is_upper: bool) -> f64 {
+    if is_upper { 1.0 } else { -1.0 }
+}
+
+/// Tones at whole numbers of periods, their sum's crest at 1.
+fn multisine(band: Interval, times: &[f64], duration: f64) -> Option<Vec<f64>> {
+    let mut periods: Vec<u64> = (0..TONES)
+        .map(|tone| {
+            let part = tone as f64 / (TONES - 1) as f64;
+            band.low * (band.high / band.low).powf(part)
+        })
+        .map(|frequency| (frequency * duration).round() as u64)
+        .filter(|periods| *periods > 0)
+        .collect();
+    periods.dedup();
+    let count = periods.len() as f64;
+    let value = |t: &f64| -> f64 {
+        let tones = periods.iter().enumerate();
+        tones
+            .map(|(tone, periods)| {
+                let phase = -PI * (tone * (tone + 1)) as f64 / count;
+                (2.0 * PI * *periods as f64 * t / duration + phase).cos()
+            })
+            .sum()
+    };
+    let values: Vec<f64> = times.iter().map(value).collect();
+    let crest = values.iter().map(|v| v.abs()).fold(0.0, f64::max);
+    (crest > 0.0).then(|| values.iter().map(|v| v / crest).collect())
+}

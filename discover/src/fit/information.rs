@@ -1,0 +1,56 @@
+//! What a set of windows tells of the unknowns: a factor of their information matrix.
+
+use nalgebra::DMatrix;
+
+use crate::fit::fitted::Fit;
+use crate::fit::gauss_newton::level;
+use crate::fit::prior::InitialStatePrior;
+use crate::fit::sensitivity::{WindowDerivatives, linearised};
+use crate::fit::shooting::Shooting;
+use crate::fit::variable_projection::{reduced_block, triangular_factor};
+use crate::ids::WindowId;
+use crate::model::problem::EstimationProblem;
+use crate::thresholds;
+
+/// A triangular R with R'R the information of the windows and of the unknowns' priors, initial states
+/// free: a change d of the unknowns adds |R d|^2 squared standard deviations.
+pub(crate) fn information_factor(
+    shooting: &Shooting<'_>,
+    prior: &InitialStatePrior,
+    initial_states: &[Vec<f64>],
+    linear: &[Option<WindowDerivatives>],
+) -> DMatrix<f64> {
+    let count = shooting.unknowns.len();
+    let mut factor = DMatrix::zeros(count + 1, count + 1);
+    for (window, linear) in WindowId::first(linear.len()).zip(linear) {
+        if let Some(linear) = linear {
+            let block = reduced_block(linear, prior, window, &initial_states[window]);
+            factor = triangular_factor(&factor, &block.unknowns());
+        }
+    }
+    let mut rows = DMatrix::zeros(count, count + 1);
+    for (row, unknown) in shooting.unknowns.iter().enumerate() {
+        let sd = unknown.prior.map_or(f64::INFINITY, |prior| prior.sd);
+        rows[(row, row)] = shooting.prior_weight.sqrt() / sd;
+    }
+    let factor = triangular_factor(&factor, &rows);
+    factor.view((0, 0), (count, count)).into_owned()
+}
+
+/// The same of a fit's training windows, as far as its misfit lets them be trusted.
+pub fn information_of(problem: &EstimationProblem<'_>, fit: &Fit) -> DMatrix<f64> {
+    let shooting = Shooting {
+        prior_weight: fit.prior_weight,
+        ..fit.shooting(problem)
+    };
+    let estimate = &fit.train.estimate;
+    let linear = linearised(
+        &shooting,
+        &estimate.theta,
+        &estimate.initial_states,
+        level(&shooting, estimate),
+    );
+    let factor = information_factor(&shooting, &fit.prior, &estimate.initial_states, &linear);
+    let inflation = (fit.train.rms * fit.train.rms).max(1.0) * fit.train.correlation;
+    factor / (thresholds::WIDER * inflation.sqrt())
+}

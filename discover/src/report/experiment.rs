@@ -1,0 +1,138 @@
+//! The next experiment in words, and drawn.
+
+use eomgen_page::{Figure, figure, section};
+use eomgen_plot::{Panel, Reference, Series, TimeHistory, time_history};
+use eomgen_records::dataset::Channel;
+use maud::{Markup, html};
+
+use crate::experiment::next::{ExperimentFile, NextExperiment, Pair};
+use crate::model::problem::EstimationProblem;
+use crate::report::quantity::{plain, quantity};
+use crate::thresholds;
+
+/// What to play, and what it comes to, as sentences.
+pub(crate) fn sentences(next: &NextExperiment, files: &[ExperimentFile]) -> String {
+    let (Some(input), Some(form), Some(separation)) = (&next.input, &next.form, next.separation)
+    else {
+        let reason = next.reason.as_deref().unwrap_or("nothing was tried");
+        return format!("No experiment is proposed: {reason}.");
+    };
+    let size = match separation < 0.01 {
+        true => "less than 0.01".to_owned(),
+        false => plain(separation, 2),
+    };
+    let bounds = match next.bounds.is_empty() {
+        true => String::new(),
+        false => format!(" {}", next.bounds),
+    };
+    let Some(file) = next.file.and_then(|file| files.get(file)) else {
+        return format!(
+            "No input within the bounds tells: the best of those that were tried, {form} on {input}, comes to {size} \
+             standard deviations of the noise.{bounds}"
+        );
+    };
+    let played = format!("Play {}: {form} on {input}.", file.name);
+    let told = match &next.shows {
+        Some(shown) => format!(
+            "It is predicted to show {} from {} on.",
+            shown.what,
+            quantity(shown.from, 2, &shown.unit)
+        ),
+        None => format!(
+            "What is not the right one is predicted to stay {size} standard deviations of the noise off, or more."
+        ),
+    };
+    format!("{played} {told}{}{bounds}", not_told(next))
+}
+
+/// Pairs that an experiment does not separate, as a sentence.
+fn not_told(next: &NextExperiment) -> String {
+    // Pairs stand either way, one behind the other.
+    let pairs = next.pairs.chunks_exact(2);
+    let is_told = |pair: &&[Pair]| pair.iter().all(|of| of.separation >= thresholds::SEPARATES);
+    let left = pairs.filter(|pair| !is_told(pair));
+    let left = left.map(|pair| format!("{} from {}", pair[0].truth.words(), pair[0].rival.words()));
+    match left.collect::<Vec<String>>() {
+        left if left.is_empty() => String::new(),
+        left => format!(" It does not tell {}.", left.join(", nor ")),
+    }
+}
+
+/// What is to be played, and what the models predict of it.
+pub(crate) fn drawn(problem: &EstimationProblem<'_>, files: &[ExperimentFile]) -> Markup {
+    if files.is_empty() {
+        return html! {};
+    }
+    section(
+        "The next experiment",
+        &html! {
+            @for file in files {
+                h3 { code { (file.name) } }
+                (figure_of(file, &problem.dataset.channels, &problem.noise))
+            }
+            p.note {
+                "Curves without noise: what the sensors would show of one, and of the other once it is fitted to that and "
+                "to these records. Dashed lines are one standard deviation of the noise to either side."
+            }
+        },
+    )
+}
+
+fn figure_of(file: &ExperimentFile, channels: &[Channel], noise: &[f64]) -> Markup {
+    let [first, second] = &file.predicted;
+    let columns = first.iter().zip(second);
+    let differences: Vec<Vec<f64>> = columns
+        .map(|(first, second)| first.iter().zip(second).map(|(a, b)| b - a).collect())
+        .collect();
+    let series = |label: &str, values: &'_ [f64]| (label.to_owned(), values.to_vec());
+    let mut panels = vec![(
+        format!("{}: what is played", file.input),
+        (file.input.clone(), file.unit.clone()),
+        vec![series(&file.input, &file.values)],
+        Vec::new(),
+    )];
+    for (place, channel) in channels.iter().enumerate() {
+        let named = || (channel.name.clone(), channel.unit.clone());
+        panels.push((
+            format!("{}: predicted", channel.name),
+            named(),
+            vec![
+                series(&file.members[0], &first[place]),
+                series(&file.members[1], &second[place]),
+            ],
+            Vec::new(),
+        ));
+        let band = [1.0, -1.0].map(|sign| Reference {
+            label: if sign > 0.0 { "noise" } else { "" }.to_owned(),
+            value: sign * noise[place],
+        });
+        panels.push((
+            format!("{}: the difference", channel.name),
+            named(),
+            vec![series("difference", &differences[place])],
+            band.to_vec(),
+        ));
+    }
+    let history = TimeHistory {
+        title: "The next experiment, predicted".to_owned(),
+        panels: panels
+            .iter()
+            .map(|(title, (quantity, unit), columns, references)| Panel {
+                title: title.clone(),
+                quantity: quantity.clone(),
+                unit: unit.clone(),
+                series: columns
+                    .iter()
+                    .map(|(label, values)| Series {
+                        label: label.clone(),
+                        abscissa: &file.times,
+                        values,
+                    })
+                    .collect(),
+                references: references.clone(),
+            })
+            .collect(),
+    };
+    let svg = time_history(&history).unwrap_or_default();
+    html! { @if !svg.is_empty() { (figure(Figure { svg: &svg, caption: "" })) } }
+}

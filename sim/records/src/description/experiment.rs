@@ -1,0 +1,128 @@
+//! `[experiment]`: within what bounds the next experiment may be played.
+
+use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
+use eomgen_model_spec::table::{Entry, Name, Number};
+
+use super::keys;
+
+/// `[experiment]`
+#[derive(Debug, Default)]
+pub struct Experiment {
+    /// How long it may last, s.
+    pub duration: Option<Number>,
+    /// The time between its samples, s.
+    pub sample: Option<Number>,
+    /// What is said of inputs.
+    pub inputs: Vec<InputBounds>,
+    /// Channels and between what values they must stay, in their columns' units.
+    pub limits: Vec<(Name, NumberRange)>,
+}
+
+/// `[experiment.inputs.NAME]`
+#[derive(Debug)]
+pub struct InputBounds {
+    /// The input.
+    pub name: Name,
+    /// Between what values it must stay, in its column's unit.
+    pub range: Option<NumberRange>,
+    /// How fast it may change, in its column's unit per s.
+    pub rate: Option<Number>,
+    /// Between what frequencies it may swing, Hz.
+    pub band: Option<NumberRange>,
+}
+
+/// Two numbers, the first below the second.
+#[derive(Clone, Copy, Debug)]
+pub struct NumberRange {
+    /// The lower.
+    pub low: Number,
+    /// The higher.
+    pub high: Number,
+}
+
+/// Reads the table.
+pub(super) fn read(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Experiment> {
+    let record = entry.record(&keys::EXPERIMENT, "{ duration = 10 }", found)?;
+    let mut experiment = Experiment {
+        duration: positive(record.number("duration", found), "duration", found),
+        sample: positive(record.number("sample", found), "sample", found),
+        ..Experiment::default()
+    };
+    if let Some(entry) = record.get("inputs") {
+        let entries = found.keep(entry.table("{ u = { range = [-1, 1] } }"))?;
+        let inputs = entries.iter().filter_map(|entry| input(entry, found));
+        experiment.inputs = inputs.collect();
+    }
+    if let Some(entry) = record.get("limits") {
+        let entries = found.keep(entry.table("{ x = [-0.1, 0.1] }"))?;
+        for entry in &entries {
+            let limit = range(entry, found)?;
+            experiment.limits.push((entry.name.clone(), limit));
+        }
+    }
+    Some(experiment)
+}
+
+/// Reads an entry of `inputs`.
+fn input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<InputBounds> {
+    let example = "{ range = [-1, 1], band = [0.1, 10] }";
+    let record = entry.record(&keys::EXPERIMENT_INPUT, example, found)?;
+    let mut pair = |key: &str| match record.get(key) {
+        Some(entry) => range(entry, found).map(Some),
+        None => Some(None),
+    };
+    let (values, band) = (pair("range")?, pair("band")?);
+    if let Some(band) = band.filter(|band| band.low.value < 0.0) {
+        found.push(
+            Diagnostic::error(format!("no frequency is {}", band.low.value))
+                .at(band.low.span, "expected Hz, 0 or greater"),
+        );
+    }
+    Some(InputBounds {
+        name: entry.name.clone(),
+        range: values,
+        rate: positive(record.number("rate", found), "rate", found),
+        band,
+    })
+}
+
+/// A list of two numbers, the first below the second.
+fn range(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<NumberRange> {
+    let elements = found.keep(entry.list("[-1, 1]"))?;
+    let [low, high] = &elements[..] else {
+        found.push(
+            Diagnostic::error(format!(
+                "`{}` has {} numbers",
+                entry.name.text,
+                elements.len()
+            ))
+            .at(entry.span(), "expected two, the lower one first"),
+        );
+        return None;
+    };
+    let (low, high) = (found.keep(low.number()), found.keep(high.number()));
+    let (low, high) = (low?, high?);
+    if low.value >= high.value {
+        found.push(
+            Diagnostic::error(format!(
+                "nothing lies between {} and {}",
+                low.value, high.value
+            ))
+            .at(entry.span(), "expected two numbers, the lower one first"),
+        );
+        return None;
+    }
+    Some(NumberRange { low, high })
+}
+
+/// A number that must be greater than 0.
+fn positive(number: Option<Number>, key: &str, found: &mut Diagnostics) -> Option<Number> {
+    if let Some(number) = number.filter(|number| number.value <= 0.0) {
+        found.push(
+            Diagnostic::error(format!("`{key}` cannot be {}", number.value))
+                .at(number.span, "expected a number greater than 0"),
+        );
+        return None;
+    }
+    number
+}

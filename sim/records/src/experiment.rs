@@ -1,0 +1,133 @@
+//! What a dataset file says of the next experiment, in SI, and how that is written down.
+
+use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
+use eomgen_model_spec::model::Model;
+use eomgen_model_spec::suggest::did_you_mean;
+use eomgen_model_spec::unit::Unit;
+
+use crate::description::Description;
+use crate::description::columns::ColumnKey;
+use crate::description::experiment::NumberRange;
+
+/// The most samples of an experiment: as many as a record may have.
+const MOST_SAMPLES: f64 = 1e6;
+
+/// Within what bounds the next experiment may be played, SI; none where a dataset file says nothing.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ExperimentBounds {
+    /// How long it may last, s.
+    pub duration: Option<f64>,
+    /// The time between its samples, s.
+    pub sample: Option<f64>,
+    /// One for each input of the model.
+    pub inputs: Vec<InputBounds>,
+    /// One for each channel: the least and the greatest value.
+    pub limits: Vec<Option<(f64, f64)>>,
+}
+
+/// The bounds of one input, SI.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct InputBounds {
+    /// The least and the greatest value.
+    pub range: Option<(f64, f64)>,
+    /// How fast it may change, per s.
+    pub rate: Option<f64>,
+    /// The lowest and the highest frequency, Hz.
+    pub band: Option<(f64, f64)>,
+}
+
+/// The columns of an experiment that is to be played.
+#[derive(Clone, Debug)]
+pub struct Played {
+    /// The unit of the time's column.
+    pub time: Unit,
+    /// For each input of the model the unit of its column; none where it has no column, and is 0.
+    pub inputs: Vec<Option<Unit>>,
+}
+
+impl Played {
+    /// With the columns of the records.
+    pub(crate) fn of(time: &Unit, inputs: &[Option<(&ColumnKey, Unit)>]) -> Self {
+        let units = inputs.iter();
+        Self {
+            time: time.clone(),
+            inputs: units
+                .map(|fed| fed.as_ref().map(|(_, unit)| unit.clone()))
+                .collect(),
+        }
+    }
+}
+
+/// The bounds of a dataset file for a model. `units`: of the inputs' and of the channels' columns.
+pub(crate) fn bound(
+    description: &Description,
+    model: &Model,
+    (inputs, channels): (&[Option<(&ColumnKey, Unit)>], &[Unit]),
+    found: &mut Diagnostics,
+) -> ExperimentBounds {
+    let said = &description.experiment;
+    let mut bounds = ExperimentBounds {
+        duration: said.duration.map(|number| number.value),
+        sample: said.sample.map(|number| number.value),
+        inputs: vec![InputBounds::default(); model.inputs.len()],
+        limits: vec![None; description.channels.len()],
+    };
+    if let (Some(duration), Some(sample)) = (said.duration, said.sample)
+        && duration.value / sample.value > MOST_SAMPLES
+    {
+        found.push(
+            Diagnostic::error(format!(
+                "an experiment of {:.0} samples is no record",
+                duration.value / sample.value
+            ))
+            .at(duration.span, format!("expected at most {MOST_SAMPLES:.0}"))
+            .also(sample.span, "of this time each"),
+        );
+    }
+    for input in &said.inputs {
+        let place = model
+            .inputs
+            .iter()
+            .position(|of| of.name == input.name.text);
+        let unit = place.and_then(|place| inputs.get(place)?.as_ref());
+        let (Some(place), Some((_, unit))) = (place, unit) else {
+            let known = description.inputs.iter();
+            let known = known.map(|column| column.name.text.as_str());
+            found.push(
+                Diagnostic::error(format!(
+                    "no record drives an input {}",
+                    quoted(&input.name.text)
+                ))
+                .at(input.name.span, "expected an input that has a column")
+                .help_if(did_you_mean(&input.name.text, known)),
+            );
+            continue;
+        };
+        bounds.inputs[place] = InputBounds {
+            range: input.range.map(|range| in_si(range, unit)),
+            rate: input.rate.map(|rate| unit.to_si(rate.value)),
+            band: input.band.map(|band| (band.low.value, band.high.value)),
+        };
+    }
+    for (name, limit) in &said.limits {
+        let place = description.channels.iter();
+        let place = { place }.position(|channel| channel.name.text == name.text);
+        match place.and_then(|place| Some((place, channels.get(place)?))) {
+            Some((place, unit)) => bounds.limits[place] = Some(in_si(*limit, unit)),
+            None => {
+                let known = description.channels.iter();
+                let known = known.map(|channel| channel.name.text.as_str());
+                found.push(
+                    Diagnostic::error(format!("there is no channel {}", quoted(&name.text)))
+                        .at(name.span, "expected one of [channels]")
+                        .help_if(did_you_mean(&name.text, known)),
+                );
+            }
+        }
+    }
+    bounds
+}
+
+fn in_si(range: NumberRange, unit: &Unit) -> (f64, f64) {
+    (unit.to_si(range.low.value), unit.to_si(range.high.value))
+}

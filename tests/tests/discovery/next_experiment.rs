@@ -1,0 +1,352 @@
+//! What one record cannot tell, the experiment that is proposed for it does: it is played on the true
+//! machine, by an integrator of a few lines, and its record beside the old one names the true member.
+
+use std::path::Path;
+
+use eomgen_tests::program;
+use serde_json::Value;
+
+/// A machine of one coordinate `x` that an input `u` drives, and how its records are made.
+struct Machine<'m> {
+    specification: &'m str,
+    units: [&'m str; 2],
+    noise: f64,
+    /// The length of a window, s.
+    window: f64,
+    uncertain: &'m str,
+    experiment: &'m str,
+    mass: f64,
+    /// All forces but dry friction, at a position, a rate and an input.
+    force: &'m dyn Fn(f64, f64, f64) -> f64,
+    /// Dry friction.
+    friction: f64,
+    /// How the first records begin, and their input at a time in s.
+    begin: (f64, f64),
+    input: fn(f64, f64) -> f64,
+}
+
+/// Time between samples, s, and how many the first records have.
+const SAMPLE: f64 = 0.005;
+const SAMPLES: usize = 600;
+
+const ROTOR: &str = r#"
+[model]
+name = "rotor"
+
+[parameters]
+J = { value = 0.02, unit = "kg m^2", min = 0 }
+
+[coordinates]
+x = { unit = "rad" }
+
+[inputs]
+u = { unit = "N m" }
+
+[kinetic]
+rotor = "1/2*J*dot(x)^2"
+
+[forces]
+motor = { on = "x", value = "u" }
+"#;
+
+const OSCILLATOR: &str = r#"
+[model]
+name = "oscillator"
+
+[parameters]
+m = { value = 1, unit = "kg", min = 0 }
+k = { value = 400, unit = "N/m", min = 0 }
+c = { value = 4, unit = "N s/m", min = 0 }
+
+[coordinates]
+x = { unit = "m" }
+
+[inputs]
+u = { unit = "N" }
+
+[kinetic]
+mass = "1/2*m*dot(x)^2"
+
+[potential]
+spring = "1/2*k*x^2"
+
+[dissipation]
+damper = "1/2*c*dot(x)^2"
+
+[forces]
+drive = { on = "x", value = "u" }
+"#;
+
+impl Machine<'_> {
+    /// A record of the machine, from a state, for an input at each sample: rates by implicit steps of the
+    /// dry friction, which hold it at rest. `seed` makes another noise.
+    fn record(&self, (mut x, mut v): (f64, f64), input: &[f64], seed: f64) -> String {
+        let parts = 200;
+        let h = SAMPLE / f64::from(parts);
+        let mut noise = 0.3 + 0.01 * seed;
+        let mut text = "t,u,x\n".to_owned();
+        for (sample, u) in input.iter().enumerate() {
+            // The logistic map: a noise that is the same everywhere, of mean 0 once centred.
+            noise = 4.0 * noise * (1.0 - noise) * 0.999_999;
+            let seen = x + self.noise * 2.8 * (noise - 0.5);
+            text += &format!("{:.4},{u:.12},{seen:.12}\n", SAMPLE * sample as f64);
+            for _ in 0..parts {
+                let free = v + h * (self.force)(x, v, *u) / self.mass;
+                let most = h * self.friction / self.mass;
+                v = free - free.clamp(-most, most);
+                x += h * v;
+            }
+        }
+        text
+    }
+
+    /// The dataset file with these records.
+    fn dataset(&self, train: &str, test: &str) -> String {
+        let [unit, input] = self.units;
+        format!(
+            "[records]\ntrain = [{train}]\ntest = [{test}]\n\n[time]\ncolumn = \"t\"\nunit = \"s\"\n\n\
+             [inputs.u]\ncolumn = \"u\"\nunit = \"{input}\"\n\n\
+             [channels.x]\ncolumn = \"x\"\nunit = \"{unit}\"\nnoise = {:e}\n\n[initial]\nstate = \"estimate\"\n\n\
+             [uncertain]\n{}\n\n[windows]\nlength = {}\n\n[experiment]\n{}\n",
+            self.noise, self.uncertain, self.window, self.experiment
+        )
+    }
+
+    /// What `discover` answers to these records.
+    fn answer(&self, folder: &Path, records: [&str; 2], out: &str) -> Value {
+        self.document(folder, "discover", records, out)
+    }
+
+    /// What a command answers to these records.
+    fn document(&self, folder: &Path, command: &str, [train, test]: [&str; 2], out: &str) -> Value {
+        let place = |name: &str| folder.join(name);
+        std::fs::write(place("dataset.toml"), self.dataset(train, test)).expect("a file");
+        let paths = [place("spec.toml"), place("dataset.toml"), place(out)];
+        let [model, dataset, out] = paths.map(|path| path.display().to_string());
+        let output = program::run(&[command, &model, &dataset, "--out", &out]);
+        let message = program::text(&output.stderr);
+        assert_eq!(output.status.code(), Some(0), "{message}");
+        let name = match command {
+            "discover" => "discovery.json",
+            _ => "comparison.json",
+        };
+        let text = std::fs::read_to_string(Path::new(&out).join(name));
+        serde_json::from_str(&text.expect("a document")).expect("JSON")
+    }
+
+    /// The class that the first records leave.
+    fn class(&self, folder: &Path) -> Value {
+        let write = |name: &str, text: &str| {
+            std::fs::write(folder.join(name), text).expect("a file");
+        };
+        write("spec.toml", self.specification);
+        for (name, turn) in [("train.csv", 0.0), ("test.csv", 1.0)] {
+            let times = (0..SAMPLES).map(|sample| SAMPLE * sample as f64);
+            let input: Vec<f64> = times.map(|t| (self.input)(t, turn)).collect();
+            write(name, &self.record(self.begin, &input, turn));
+        }
+        let first = self.answer(folder, ["\"train.csv\"", "\"test.csv\""], "first");
+        let class = &first["effects"][0];
+        assert_eq!(class["status"], "class", "{class:#}");
+        class.clone()
+    }
+
+    /// The input of the experiment that was proposed, if one was: a value at each sample.
+    fn played(&self, folder: &Path) -> Option<Vec<f64>> {
+        let played = std::fs::read_to_string(folder.join("first/experiment.csv")).ok()?;
+        let mut lines = played.lines();
+        assert_eq!(lines.next(), Some("t,u"));
+        let input = lines.enumerate().map(|(sample, line)| {
+            let (t, u) = line.split_once(',').expect("two columns");
+            let t: f64 = t.parse().expect("a time");
+            assert!((t - SAMPLE * sample as f64).abs() < 1e-9);
+            u.parse::<f64>().expect("a number")
+        });
+        Some(input.collect())
+    }
+
+    /// One record leaves a class that holds the true effect; with the experiment, played twice, that is
+    /// the only one. The experiment as it was proposed.
+    fn is_told(&self, folder: &Path, effect: &str, on: &str) -> Value {
+        let class = &self.class(folder);
+        let is_true = |of: &Value| of["effect"] == effect && of["on"] == on;
+        let others = class["equivalent"].as_array().expect("a list");
+        assert!(is_true(class) || others.iter().any(is_true), "{class:#}");
+        let next = &class["next_experiment"];
+        assert_eq!(next["file"], "experiment.csv", "{next:#}");
+        let separation = next["separation"].as_f64();
+        assert!(separation.is_some_and(|of| of >= 3.0), "{next:#}");
+
+        let input = self.played(folder).expect("an experiment");
+        let write = |name: &str, text: &str| {
+            std::fs::write(folder.join(name), text).expect("a file");
+        };
+        write("played.csv", &self.record((0.0, 0.0), &input, 2.0));
+        write("again.csv", &self.record((0.0, 0.0), &input, 3.0));
+        let second = self.answer(
+            folder,
+            [
+                "\"train.csv\", \"played.csv\"",
+                "\"test.csv\", \"again.csv\"",
+            ],
+            "second",
+        );
+        let effects = second["effects"].as_array().expect("a list");
+        assert_eq!(effects.len(), 1, "{effects:#?}");
+        assert!(is_true(&effects[0]), "{effects:#?}");
+        assert_eq!(effects[0]["status"], "named", "{effects:#?}");
+        next.clone()
+    }
+}
+
+fn folder() -> tempfile::TempDir {
+    tempfile::tempdir().expect("a folder")
+}
+
+/// The rotor in a bearing.
+fn in_a_bearing() -> String {
+    let with = ROTOR.replace(
+        "[coordinates]",
+        "c = { value = 0.02, unit = \"N m s\", min = 0 }\n\n[coordinates]",
+    );
+    with.replace(
+        "[forces]",
+        "[dissipation]\nbearing = \"1/2*c*dot(x)^2\"\n\n[forces]",
+    )
+}
+
+/// A rotor in a bearing that a torque turns one way only.
+fn one_way<'m>(specification: &'m str, force: &'m dyn Fn(f64, f64, f64) -> f64) -> Machine<'m> {
+    Machine {
+        specification,
+        units: ["rad", "N m"],
+        noise: 1e-3,
+        window: 0.5,
+        uncertain: "J = { relative = 0.02 }",
+        experiment: "duration = 3\ninputs.u = { range = [-0.4, 0.4] }\nlimits.x = [-40, 40]",
+        mass: 0.02,
+        force,
+        friction: 0.0,
+        begin: (0.0, 7.0),
+        input: |t, turn| 0.25 + 0.1 * (4.0 * t + turn).sin(),
+    }
+}
+
+#[test]
+fn dry_friction_in_one_direction_is_told_from_a_constant_force() {
+    let specification = in_a_bearing();
+    let machine = Machine {
+        friction: 0.1,
+        ..one_way(&specification, &|_, v, u| u - 0.02 * v)
+    };
+    machine.is_told(folder().path(), "coulomb_friction", "x");
+}
+
+/// Viscous friction and the bearing's parameter are two names of one thing, which no input tells. With
+/// that parameter free, what the wrong model leaves of the experiment is what was predicted.
+#[test]
+fn friction_that_differs_by_direction_is_told_from_what_does_not() {
+    let specification = in_a_bearing();
+    let force = |_: f64, v: f64, u: f64| u - 0.02 * v - 0.012 * v.abs();
+    let (machine, folder) = (one_way(&specification, &force), folder());
+    let next = machine.is_told(folder.path(), "asymmetric_friction", "x");
+    let is_alike = |pair: &&Value| {
+        [&pair["true"]["effect"], &pair["rival"]["effect"]]
+            .iter()
+            .all(|effect| **effect != "asymmetric_friction")
+    };
+    let pairs = next["pairs"].as_array().expect("a list");
+    let alike: Vec<&Value> = pairs.iter().filter(is_alike).collect();
+    assert_eq!(alike.len(), 2, "{next:#}");
+    for pair in alike {
+        let separation = pair["separation"].as_f64().expect("a number");
+        assert!(separation < 1e-3, "{next:#}");
+    }
+    let says = next["says"].as_str().expect("a sentence");
+    assert!(says.contains("does not tell viscous friction"), "{says}");
+
+    let rival = |pair: &&Value| {
+        pair["true"]["effect"] == "asymmetric_friction" && pair["rival"]["on"] == "c"
+    };
+    let predicted = pairs.iter().find(rival).expect("a pair");
+    let predicted = predicted["separation"].as_f64().expect("a number");
+    let wrong = Machine {
+        uncertain: "J = { relative = 0.02 }\nc = { relative = 0.5 }",
+        ..machine
+    };
+    let records = ["\"train.csv\", \"played.csv\"", "\"again.csv\""];
+    let compared = wrong.document(folder.path(), "compare", records, "compared");
+    let left = compared["gap"]["x"]["test"].as_f64().expect("a number") / wrong.noise;
+    assert!(
+        (0.8..1.3).contains(&(left / predicted)),
+        "{left} for {predicted}"
+    );
+}
+
+#[test]
+fn a_soft_spring_in_slow_motion_is_told_from_a_gain() {
+    Machine {
+        specification: OSCILLATOR,
+        units: ["m", "N"],
+        noise: 1.5e-3,
+        window: 1.5,
+        uncertain: "k = { relative = 0.02 }",
+        experiment: "inputs.u = { range = [-20, 20], band = [0.1, 8] }\nlimits.x = [-0.2, 0.2]",
+        mass: 1.0,
+        force: &|x, v, u| u - 0.82 * 400.0 * x - 4.0 * v,
+        friction: 0.0,
+        begin: (0.0, 0.0),
+        input: |t, turn| 18.0 * (3.0 * t + 0.3 * turn).sin() + 5.0 * (1.3 * t).sin(),
+    }
+    .is_told(folder().path(), "parameter_shift", "k");
+}
+
+#[test]
+fn a_weight_in_small_motion_is_told_from_a_spring() {
+    Machine {
+        experiment: "duration = 3\ninputs.u = { range = [-0.5, 0.5] }\nlimits.x = [-1.5, 1.5]",
+        begin: (0.0, 0.0),
+        input: |t, turn| 0.02 * (2.1 * t + 0.7 * turn).cos() - 0.01 * (7.0 * t).sin(),
+        ..one_way(ROTOR, &|x, _, u| u - 0.3 * x.sin())
+    }
+    .is_told(folder().path(), "gravity", "x");
+}
+
+/// In the limits of the records, which turn one way only and are in no need of more, nothing is played
+/// beyond these.
+#[test]
+fn what_is_played_stays_within_what_was_recorded_where_nothing_is_said() {
+    let specification = in_a_bearing();
+    let machine = Machine {
+        friction: 0.1,
+        experiment: "",
+        ..one_way(&specification, &|_, v, u| u - 0.02 * v)
+    };
+    let folder = folder();
+    let class = machine.class(folder.path());
+    let next = &class["next_experiment"];
+    let bounds = next["bounds"].as_str().expect("a sentence");
+    for said in ["the range of u", "the band of u", "the limits of x"] {
+        assert!(bounds.contains(said), "{bounds}");
+    }
+    if let Some(input) = machine.played(folder.path()) {
+        // From 0, the drive off, to the most that was recorded.
+        assert!(input.iter().all(|u| (0.0..=0.35 + 1e-9).contains(u)));
+        let record = machine.record((0.0, 0.0), &input, 2.0);
+        let shown = |text: &str| -> Vec<f64> {
+            let lines = text.lines().skip(1);
+            let last = lines.map(|line| line.rsplit(',').next().expect("a cell").to_owned());
+            last.map(|cell| cell.parse().expect("a number")).collect()
+        };
+        let before =
+            shown(&std::fs::read_to_string(folder.path().join("train.csv")).expect("a record"));
+        let most = before.iter().copied().fold(0.0, f64::max);
+        assert!(
+            shown(&record)
+                .iter()
+                .all(|x| *x < 1.1 * most && *x > -0.1 * most)
+        );
+    } else {
+        assert!(next["says"].as_str().is_some_and(|says| !says.is_empty()));
+    }
+}
