@@ -2,8 +2,8 @@
 //! crane, a quarter of a car on its actuator. States: two displacements, their rates, bent
 //! bristles of both axes. SI units.
 
+use super::setup::{Channel, Setup, Specification};
 use super::spring::Spring;
-use super::{Channel, Setup, Specification};
 use crate::friction::{AxisForces, Dry};
 use crate::integrate::Motion;
 use crate::random::Draw;
