@@ -186,6 +186,15 @@ fn constraints_that_cannot_hold_are_named() {
         let other = refusal(&changed("x^2 + y^2 - l^2", twice));
         assert!(other.contains("`again` contradicts `rod`"), "{other}");
     }
+    // Constraints along straight lines follow from others wherever the machine is.
+    for (again, said) in [
+        ("2*x - 2*l", "`again` is redundant"),
+        ("2*x - 3*l", "`again` contradicts `rod`"),
+    ] {
+        let twice = format!("x - l\" }}\nagain = {{ zero = \"{again}");
+        let other = refusal(&changed("x^2 + y^2 - l^2", &twice));
+        assert!(other.contains(said), "{other}");
+    }
     // Where the motion begins on all of them there is nothing to correct.
     let twice = "x^2 + y^2 - l^2\" }\nagain = { zero = \"x^2 + y^2 - l^2";
     let satisfied = changed("x^2 + y^2 - l^2", twice);

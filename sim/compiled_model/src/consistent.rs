@@ -79,9 +79,17 @@ impl Instance<'_> {
         inputs: &HeldInputs,
     ) -> Result<(Vec<f64>, Vec<Moved>), Error> {
         let inputs = &inputs.at(t);
-        let Some(projection) = self.projection()? else {
-            self.above_zero(t, state, inputs)?;
-            return Ok((state.to_vec(), Vec::new()));
+        let projection = match self.projection() {
+            Ok(Some(projection)) => projection,
+            Ok(None) => {
+                self.above_zero(t, state, inputs)?;
+                return Ok((state.to_vec(), Vec::new()));
+            }
+            // Of constraints that follow from others wherever the machine is no pivot is positive.
+            Err(error) => {
+                let reason = self.dependent(t, state, inputs)?;
+                return Err(reason.map_or(error, Error::Request));
+            }
         };
         let mut own = self.evaluator()?;
         let mut found = state.to_vec();
@@ -240,7 +248,7 @@ impl Instance<'_> {
 
     /// What every constraint is away from zero, in SI.
     fn residuals(&self, t: f64, state: &[f64], inputs: &[f64]) -> Result<Vec<f64>, Error> {
-        let mut own = self.evaluator()?;
+        let mut own = self.unchecked();
         let mut observables = vec![0.0; own.program().observables.len()];
         own.observables(Point { t, state, inputs }, &mut observables);
         let model = self.model().model();
@@ -256,12 +264,12 @@ impl Instance<'_> {
     /// The derivative of every constraint by the coordinates, or by the rates of a nonholonomic one,
     /// each coordinate measured by its own inertia.
     fn gradients(&self, t: f64, state: &[f64], inputs: &[f64]) -> Result<Vec<Vec<f64>>, Error> {
-        let mut jacobians = self.jacobian_evaluator()?;
+        let mut jacobians = self.unchecked_jacobians()?;
         let (rows, columns) = jacobians.shape(Jacobian::ObservablesByState);
         let mut matrix = vec![0.0; rows * columns];
         let point = Point { t, state, inputs };
         jacobians.evaluate(Jacobian::ObservablesByState, point, &mut matrix);
-        let mut own = self.evaluator()?;
+        let mut own = self.unchecked();
         let degrees = own.program().degrees_of_freedom();
         let mut mass = vec![0.0; degrees * degrees];
         own.mass_matrix(point, &mut mass);

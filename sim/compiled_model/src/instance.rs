@@ -136,12 +136,18 @@ impl<'m> Instance<'m> {
     /// # Errors
     /// [`Error::Request`] where the mass matrix is not positive definite.
     pub fn evaluator(&self) -> Result<Evaluator, Error> {
-        let evaluator = self.model.evaluator(&self.parameters);
+        let evaluator = self.unchecked();
         if evaluator.pivots_are_positive() {
             Ok(evaluator)
         } else {
             Err(Error::Request(NOT_POSITIVE.to_owned()))
         }
+    }
+
+    /// An evaluator at these parameters, whether its pivots are positive or not: what is asked of it must
+    /// not rest on accelerations.
+    pub(crate) fn unchecked(&self) -> Evaluator {
+        self.model.evaluator(&self.parameters)
     }
 
     /// The model with sides at these parameters; see [`CompiledModel::sided`].

@@ -147,6 +147,11 @@ impl Instance<'_> {
     /// What cannot be differentiated, and a mass matrix that is not positive definite.
     pub fn jacobian_evaluator(&self) -> Result<JacobianEvaluator, Error> {
         self.evaluator()?;
+        self.unchecked_jacobians()
+    }
+
+    /// The same whether pivots are positive or not: what is asked of it must not rest on accelerations.
+    pub(crate) fn unchecked_jacobians(&self) -> Result<JacobianEvaluator, Error> {
         let Differentiated { program, code } = self.model().differentiated()?;
         let layouts = Jacobian::ALL.iter().filter_map(|of| layout(program, *of));
         Ok(JacobianEvaluator {

@@ -164,7 +164,6 @@ impl Instance<'_> {
         choice: Option<Choice>,
         progress: &mut dyn FnMut(f64),
     ) -> Result<Motion, Error> {
-        let evaluator = RefCell::new(self.evaluator()?);
         let is_constrained = !self.model.model().constraints.is_empty();
         if !self.model.model().impacts.is_empty() && settings.method == Method::Adams {
             return Err(Error::Request(
@@ -180,13 +179,15 @@ impl Instance<'_> {
                     .to_owned(),
             ));
         }
+        // First of all: it says more of constraints that follow from others than their pivots do.
+        let (initial, moved) =
+            self.consistent(request.initial, request.span().0, request.inputs)?;
+        let evaluator = RefCell::new(self.evaluator()?);
         let mut system = self.driven(&evaluator, request.inputs)?;
         if settings.method == Method::Adams {
             // It goes on from the steps before, which rest cuts off: it says where that is.
             system = system.with_sliding(None);
         }
-        let (initial, moved) =
-            self.consistent(request.initial, request.span().0, request.inputs)?;
         let solver = match settings.method {
             Method::DormandPrince853 => Solver::Rk,
             Method::Adams => Solver::Adams,
