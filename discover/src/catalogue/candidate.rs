@@ -14,6 +14,7 @@ use crate::catalogue::usual_motion::UsualMotion;
 use crate::error::DiscoverError;
 use crate::interval::Interval;
 use crate::model::estimation_model::is_linear;
+use crate::model::input_faults::InputFault;
 use crate::model::problem::EstimationProblem;
 use crate::model::specification_texts::SpecificationTexts;
 use crate::model::unknowns::{What, sign_bounds};
@@ -59,7 +60,7 @@ pub struct CandidateParameter {
     pub inverse: bool,
     /// The size it must have for the effect to be itself, if it does not scale the effect.
     pub shape: Option<f64>,
-    /// What a parameter that the model has already is shifted from.
+    /// What a parameter is shifted from that the model has already, or that is not 0 where the effect is absent.
     pub offset: Option<ParameterOffset>,
     pub(crate) doc: String,
 }
@@ -73,6 +74,20 @@ pub struct ParameterOffset {
     pub bounds: Interval,
     /// The number of its units that one SI unit is.
     per_si: f64,
+    /// Whether the effect brings the parameter with it.
+    is_new: bool,
+}
+
+impl ParameterOffset {
+    /// Of a parameter that the effect brings with it, which has this value where the effect is absent.
+    pub(crate) fn new_from(from: f64, bounds: Interval) -> Self {
+        Self {
+            from,
+            bounds,
+            per_si: 1.0,
+            is_new: true,
+        }
+    }
 }
 
 impl CandidateParameter {
@@ -97,12 +112,12 @@ impl CandidateParameter {
 
     fn edit(&self, value: f64, source: &str) -> Edit {
         match &self.offset {
-            Some(_) => Edit::SetParameter(SetParameter {
+            Some(offset) if !offset.is_new => Edit::SetParameter(SetParameter {
                 name: self.name.clone(),
                 value: value * self.per_si(),
                 source: source.to_owned(),
             }),
-            None => Edit::AddParameter(NewParameter {
+            _ => Edit::AddParameter(NewParameter {
                 name: self.name.clone(),
                 value: NewValue::Number(value),
                 unit: self.unit.clone(),
@@ -123,6 +138,14 @@ impl Candidate {
             ),
             None => format!("{} on {}", self.effect, self.on),
         }
+    }
+
+    /// Whether it is a number that is off, of the model, of a sensor or of an input: nothing that varies.
+    pub(crate) fn is_offset(&self) -> bool {
+        let faults = InputFault::ALL.map(InputFault::effect);
+        self.dropped_prior.is_some()
+            || self.effect == PARAMETER_OFFSET
+            || faults.contains(&self.effect.as_str())
     }
 
     /// Whether it is the same effect at the same place, of whatever order.
@@ -343,6 +366,7 @@ pub fn offset_of(parameter: &Parameter) -> Option<Candidate> {
             from,
             bounds: sign_bounds(parameter, from),
             per_si: parameter.unit.from_si(1.0),
+            is_new: false,
         }),
         doc: String::new(),
     };

@@ -2,7 +2,8 @@
 //! places of a model where they may sit ([`site`], [`sites`], `springs`), how these move ([`usual_motion`]), and both together as [`candidate`]s (the edits
 //! of an effect at a place: [`template`]; its parameters as unknowns: [`candidate_unknown`]). What
 //! effects do is decided by nobody but the specification. How a file of effects is read is in
-//! `file` with `change`, `placeholders` and `fields`.
+//! `file` with `change`, `placeholders` and `fields`. Inputs that act otherwise than recorded are
+//! candidates of their own ([`input_faults`]).
 
 pub mod candidate;
 pub mod candidate_unknown;
@@ -10,6 +11,7 @@ mod change;
 pub mod effect;
 mod fields;
 mod file;
+pub mod input_faults;
 mod placeholders;
 pub mod site;
 pub mod sites;

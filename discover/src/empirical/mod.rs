@@ -10,7 +10,7 @@ use crate::ids::{EffectId, EquationId, UnknownId};
 use eomgen_model_spec::edit::{Edit, NewForce, NewParameter, NewValue};
 use eomgen_model_spec::model::Model;
 
-use crate::catalogue::candidate::{Candidate, CandidateParameter, PARAMETER_OFFSET, names};
+use crate::catalogue::candidate::{Candidate, CandidateParameter, names};
 use crate::catalogue::candidate_unknown::CandidateUnknown;
 use crate::catalogue::template::free_name;
 use crate::empirical::chosen::{Expression, chosen};
@@ -39,9 +39,7 @@ pub fn unnamed(
     floor: f64,
     progress: &(dyn Fn(&str) + Sync),
 ) {
-    let is_offset = |effect: &Accepted| {
-        effect.candidate.dropped_prior.is_some() || effect.candidate.effect == PARAMETER_OFFSET
-    };
+    let is_offset = |effect: &Accepted| effect.candidate.is_offset();
     let leaves_little = found.best().leaves_less(thresholds::UNNAMED_FROM * floor);
     if !found.accepted.iter().all(is_offset) || (leaves_little && found.last.is_some()) {
         return;

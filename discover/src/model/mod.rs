@@ -1,12 +1,13 @@
 //! What is estimated, and on what: a specification's model that can be run and its measured
 //! outputs ([`estimation_model`], [`simulation`]), records cut into
-//! [`windows`](eomgen_records::windows), the [`unknowns`] with their priors, and the estimation
+//! [`windows`](eomgen_records::windows), the [`unknowns`] with their priors, inputs that act otherwise than recorded ([`input_faults`]), and the estimation
 //! [`problem`] that all fits to one dataset share. [`channel_checks`] compares columns with what the
 //! model expects of them; [`smoothing`] has no delay; [`stop`] ends all of it early.
 
 pub mod channel_checks;
 pub mod estimation_model;
 pub mod first_state;
+pub mod input_faults;
 pub mod linear_outputs;
 pub(crate) mod measured_outputs;
 pub(crate) mod nonlinear_remainder;

@@ -5,6 +5,7 @@ use crate::ids::ChannelId;
 use crate::interval::Interval;
 use eomgen_model_spec::model::{Model, Parameter};
 
+use crate::model::input_faults::{InputFault, declared};
 use crate::thresholds;
 use eomgen_records::dataset::{Channel, Dataset, Expected};
 use eomgen_records::record::Record;
@@ -104,8 +105,8 @@ impl Unknown {
     }
 }
 
-/// The unknowns of the null model: parameters declared uncertain and, where there is more
-/// than noise to tell them from, the sensors.
+/// The unknowns of the null model: parameters declared uncertain, gains and biases of inputs of which
+/// the dataset speaks and, where there is more than noise to tell them from, the sensors.
 pub fn of_null_model(dataset: &Dataset, model: &Model, values: &[(String, f64)]) -> Vec<Unknown> {
     let mut unknowns = Vec::new();
     for uncertain in &dataset.uncertain {
@@ -119,6 +120,25 @@ pub fn of_null_model(dataset: &Dataset, model: &Model, values: &[(String, f64)])
         let what = (What::Parameter(name.clone()), format!("`{name}`"));
         let limits = sign_bounds(parameter, *value);
         let prior = NormalPrior { mean: *value, sd };
+        unknowns.push(Unknown::declared(what, prior, limits));
+    }
+    for (name, value) in values {
+        let Some((input, fault, expected)) = declared(&dataset.inputs, name) else {
+            continue;
+        };
+        if expected.sd == 0.0 {
+            continue;
+        }
+        let label = format!("the {} of the input `{input}`", fault.word());
+        let limits = match fault {
+            InputFault::Gain if *value > 0.0 => Interval::new(0.0, f64::INFINITY),
+            _ => Interval::ALL,
+        };
+        let prior = NormalPrior {
+            mean: *value,
+            sd: expected.sd,
+        };
+        let what = (What::Parameter(name.clone()), label);
         unknowns.push(Unknown::declared(what, prior, limits));
     }
     let step = dataset

@@ -9,6 +9,7 @@ use crate::empirical::EMPIRICAL;
 use crate::experiment::next::{Experiments, NextExperiment};
 use crate::fit::fitted::Fit;
 use crate::fit::noise_floor::NoiseFloor;
+use crate::model::input_faults::declared;
 use crate::model::problem::EstimationProblem;
 use crate::model::unknowns::{Unknown, What};
 use crate::report::quantity::{estimate, quantity};
@@ -199,7 +200,11 @@ pub(crate) fn nuisances(problem: &EstimationProblem<'_>, fit: &Fit) -> Vec<Nuisa
         let prior = unknown.prior?;
         let (name, per_si, unit) = named(problem, fit, &unknown.what)?;
         let (of, fault) = match &unknown.what {
-            What::Parameter(_) | What::Inverse(_) => (name, None),
+            What::Parameter(_) | What::Inverse(_) => match declared(&problem.dataset.inputs, &name)
+            {
+                Some((input, fault, _)) => (input.to_owned(), Some(fault.word())),
+                None => (name, None),
+            },
             What::Gain(at) => (problem.dataset.channels[*at].name.clone(), Some("gain")),
             What::Bias(at) => (problem.dataset.channels[*at].name.clone(), Some("bias")),
             What::Delay(at) => (problem.dataset.channels[*at].name.clone(), Some("delay")),

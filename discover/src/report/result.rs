@@ -82,9 +82,9 @@ pub struct Compared {
 /// Something fitted beside what is sought: what was declared of it, and what came out.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nuisance {
-    /// A parameter's name; of a sensor its channel's.
+    /// A parameter's or an input's name; of a sensor its channel's.
     pub of: String,
-    /// `gain`, `bias` or `delay` of a sensor; none for a parameter.
+    /// `gain`, `bias` or `delay` of a sensor or an input; none for a parameter.
     pub fault: Option<&'static str>,
     /// What was declared, and one standard deviation of it, in the estimate's unit.
     pub declared: (f64, f64),

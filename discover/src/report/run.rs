@@ -13,6 +13,7 @@ use crate::fit::fitted::Fit;
 use crate::fit::noise_floor::{NoiseFloor, noise_floor};
 use crate::fit::null_model::null_fit;
 use crate::model::channel_checks;
+use crate::model::input_faults::with_declared;
 use crate::model::problem::EstimationProblem;
 use crate::model::stop::Stop;
 use crate::report::discovery::{
@@ -56,6 +57,7 @@ pub fn compare(
     progress: &Progress<'_>,
 ) -> Result<Comparison, DiscoverError> {
     let Specification { path, text, order } = specification;
+    let text = &with_declared(text, path, &dataset.inputs)?;
     let problem = EstimationProblem::new(dataset, order, path, text);
     let Null { fit, floor, force } = null(&problem, text, seed, progress)?;
     let pictures = Pictures {
@@ -122,6 +124,8 @@ pub fn discover_until(
         progress(&format!("note: {note}"));
     }
     dataset.notes.extend(without_site);
+    let original = text;
+    let text = &with_declared(text, path, &dataset.inputs)?;
     let mut problem = EstimationProblem::new(&dataset, order, path, text);
     problem.stop = stop.clone();
     let null = null(&problem, text, seed, progress);
@@ -200,7 +204,7 @@ pub fn discover_until(
         resimulation: resimulated(&problem, best, &extended)?,
         validation: None,
         unfinished: found.unfinished.clone(),
-        original: text.to_owned(),
+        original: original.to_owned(),
         extended,
         compared: Compared {
             title: problem.dataset.title.clone(),

@@ -1,17 +1,32 @@
-//! Declared parameters and sensors that may be off by more than their priors allow, as candidates.
+//! Declared parameters, inputs and sensors that may be off by more than their priors allow, as candidates.
 
 use crate::catalogue::candidate::{self, Candidate};
+use crate::catalogue::input_faults;
 use crate::fit::fitted::Fit;
+use crate::model::input_faults::declared;
 use crate::model::problem::EstimationProblem;
 use crate::model::unknowns::{Unknown, What};
 
-/// Declared parameters and sensors that may be off by more than their priors allow.
+/// Declared parameters, inputs and sensors that may be off by more than their priors allow.
 pub fn dropped_prior(problem: &EstimationProblem<'_>, fit: &Fit) -> Vec<Candidate> {
     let unknowns = fit
         .unknowns
         .iter()
         .filter(|unknown| unknown.prior.is_some());
     let candidate = |unknown: &Unknown| {
+        let inputs = &problem.dataset.inputs;
+        if let What::Parameter(name) = &unknown.what
+            && let Some((input, fault, _)) = declared(inputs, name)
+        {
+            let (says, experiment) = input_faults::words(fault);
+            return candidate::dropped_prior(
+                fault.effect(),
+                input,
+                says,
+                experiment,
+                &unknown.what,
+            );
+        }
         let (effect, on, says, experiment) = match &unknown.what {
             What::Parameter(name) | What::Inverse(name) => (
                 candidate::PARAMETER_OFFSET,

@@ -2,6 +2,7 @@
 //! else is accepted, and beside what is accepted where they look like it.
 
 use crate::catalogue::candidate::{self, Candidate};
+use crate::catalogue::input_faults::input_faults;
 use crate::fit::fitted::Fit;
 use crate::ids::{CandidateId, ResponseId};
 use crate::model::unknowns::{Unknown, What};
@@ -21,8 +22,8 @@ pub struct SimilarOffsets {
     pub selected: ResponseId,
 }
 
-/// The parameters of a model that no unknown moves.
-pub fn offsets(fit: &Fit) -> Vec<Candidate> {
+/// The parameters of a model that no unknown moves, and how its inputs may act otherwise than recorded.
+pub fn offsets(fit: &Fit, path: &str) -> Vec<Candidate> {
     let is_known = |name: &str| {
         let of = |unknown: &Unknown| match &unknown.what {
             What::Parameter(known) | What::Inverse(known) => known == name,
@@ -32,7 +33,10 @@ pub fn offsets(fit: &Fit) -> Vec<Candidate> {
     };
     let parameters = fit.model.specification().parameters.iter();
     let free = parameters.filter(|parameter| !is_known(&parameter.name));
-    free.filter_map(candidate::offset_of).collect()
+    let parameters = free.filter_map(candidate::offset_of);
+    parameters
+        .chain(input_faults(fit.model.specification(), path))
+        .collect()
 }
 
 /// Parameters that look like what was named, fitted in its place: those that explain the records; and
@@ -40,13 +44,13 @@ pub fn offsets(fit: &Fit) -> Vec<Candidate> {
 /// it: a gain and a number of the model may be two names of one thing. None where nothing looks like
 /// it. The context's fit is what was fitted before anything was named.
 pub fn similar_offsets(context: Context<'_>, selected: &Candidate) -> Option<SimilarOffsets> {
-    let offsets = offsets(context.fit);
+    let offsets = offsets(context.fit, &context.problem.path);
     let (offsets, called) = match offsets.iter().any(|offset| offset.is_same_as(selected)) {
         true => (
             dropped_prior(context.problem, context.fit),
             "sensors and declared parameters",
         ),
-        false => (offsets, "parameters of the model"),
+        false => (offsets, "parameters of the model and of inputs"),
     };
     if offsets.is_empty() {
         return None;

@@ -222,9 +222,9 @@ impl Round<'_> {
 
     /// Parameters that nobody called uncertain.
     fn offsets(&self) -> TestedPool {
-        let offsets = offsets(self.context.fit);
+        let offsets = offsets(self.context.fit, &self.context.problem.path);
         (self.context.progress)(&format!(
-            "screening {} parameters of the model",
+            "screening {} parameters of the model and of inputs",
             offsets.len()
         ));
         let window = self.windows()[0];

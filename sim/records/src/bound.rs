@@ -1,7 +1,7 @@
 //! What a dataset file says, bound to a model: names looked up, units and numbers checked.
 
 use crate::description::Description;
-use crate::description::columns::{ChannelColumn, ColumnKey, Prior};
+use crate::description::columns::{ChannelColumn, ColumnKey, InputColumn, Prior};
 use crate::description::motion::InitialState;
 use crate::experiment::{self, ExperimentBounds};
 use crate::units::unit;
@@ -12,7 +12,9 @@ use eomgen_model_spec::suggest::did_you_mean;
 use eomgen_model_spec::table::{Name, Number};
 use eomgen_model_spec::unit::Unit;
 
-use crate::dataset::{Channel, Expected, Initial, Quantity, TransducerPriors, Uncertain};
+use crate::dataset::{
+    Channel, Expected, Initial, InputPriors, Quantity, TransducerPriors, Uncertain,
+};
 
 /// What is taken for the relative standard deviation of a parameter: a smaller one is exact, a
 /// larger one says nothing.
@@ -24,6 +26,8 @@ pub struct Bound<'d> {
     pub time: Unit,
     /// For each input of the model its column and the column's unit.
     pub inputs: Vec<Option<(&'d ColumnKey, Unit)>>,
+    /// What is known of how inputs act, where the file says so.
+    pub input_priors: Vec<InputPriors>,
     /// The channels.
     pub channels: Vec<Channel>,
     /// The unit of each channel's column.
@@ -46,6 +50,7 @@ pub fn bound<'d>(description: &'d Description, model: &Model) -> Result<Bound<'d
     lists(description, &mut found);
     let time = found.keep(time_unit(description));
     let inputs = inputs(description, model, &mut found);
+    let input_priors = input_priors(description, model);
     let (mut channels, mut channel_units) = (Vec::new(), Vec::new());
     for entry in &description.channels {
         if let Some((channel, unit)) = found.keep(channel(entry, model)) {
@@ -63,6 +68,7 @@ pub fn bound<'d>(description: &'d Description, model: &Model) -> Result<Bound<'d
         Some(time) if found.is_empty() => Ok(Bound {
             time,
             inputs,
+            input_priors,
             channels,
             channel_units,
             initial,
@@ -98,6 +104,28 @@ pub fn inputs<'d>(
         Some((&column.column.column, unit))
     };
     model.inputs.iter().map(of).collect()
+}
+
+/// What is known of how inputs act. Their columns are checked elsewhere.
+fn input_priors(description: &Description, model: &Model) -> Vec<InputPriors> {
+    let says = |column: &&InputColumn| column.gain.is_some() || column.bias.is_some();
+    let of = |column: &InputColumn| {
+        let mut inputs = model.inputs.iter();
+        let input = inputs.find(|input| input.name == column.name.text)?;
+        let own = unit(&column.column.unit, &input.unit.text).ok()?;
+        let one = Unit::coherent(Dimension::NONE);
+        Some(InputPriors {
+            name: input.name.clone(),
+            gain: column.gain.map(|gain| known_before(gain, &one)),
+            bias: column.bias.map(|bias| known_before(bias, &own)),
+        })
+    };
+    description
+        .inputs
+        .iter()
+        .filter(says)
+        .filter_map(of)
+        .collect()
 }
 
 /// There are records of both kinds and channels.

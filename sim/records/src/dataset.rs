@@ -47,6 +47,18 @@ pub struct TransducerPriors {
     pub delay: Option<Expected>,
 }
 
+/// What a dataset says of an input: what acts is gain * (recorded + bias). None where it says nothing, and
+/// what is recorded acts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InputPriors {
+    /// The input's name.
+    pub name: String,
+    /// Of the gain.
+    pub gain: Option<Expected>,
+    /// Of the bias, SI.
+    pub bias: Option<Expected>,
+}
+
 /// What is expected of a number, SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Expected {
@@ -96,6 +108,8 @@ pub struct Dataset {
     pub train: Vec<Record>,
     /// Records to be judged by.
     pub test: Vec<Record>,
+    /// Inputs of which the dataset says how they act.
+    pub inputs: Vec<InputPriors>,
     /// What was measured.
     pub channels: Vec<Channel>,
     /// What is known of the first state.

@@ -54,6 +54,7 @@ pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
         title: description.title.clone(),
         train: Vec::new(),
         test: Vec::new(),
+        inputs: bound.input_priors,
         channels: bound.channels,
         initial: bound.initial,
         window: description.windows.length.map(|length| length.value),

@@ -57,6 +57,10 @@ pub struct InputColumn {
     pub name: Name,
     /// Its column.
     pub column: Column,
+    /// What is known of the gain of what it acts through.
+    pub gain: Option<Prior>,
+    /// What is known of its bias, in its unit.
+    pub bias: Option<Prior>,
 }
 
 /// `[channels.NAME]`
@@ -149,9 +153,12 @@ pub(super) fn input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<InputC
     if let Some(hold) = record.get("hold") {
         found.keep(hold.word(&[("zero-order", ())]));
     }
+    let [gain, bias] = ["gain", "bias"].map(|key| prior(&record, key, found));
     Some(InputColumn {
         name: entry.name.clone(),
         column: column(&record, found)?,
+        gain: gain?,
+        bias: bias?,
     })
 }
 

@@ -1,6 +1,6 @@
-//! Accelerations as channels, on a driven mass on a spring with dry friction: found from an accelerometer
-//! alone or beside a position, and none where the mass rests. Records are Newton's law and Coulomb's,
-//! in steps of 0.1 ms.
+//! What channels may measure, on a driven mass on a spring with dry friction: accelerations, from which the
+//! friction is found, alone or beside a position, and none where the mass rests; and two quantities in
+//! proportion, as both encoders of a joint show. Records are Newton's law and Coulomb's, in small steps.
 
 use std::path::Path;
 
@@ -172,4 +172,56 @@ fn friction_that_holds_leaves_no_acceleration() {
     assert!(resting.count() > 100, "the mass rests");
     let found = answered("compare", &with_friction, DATASET, records);
     assert_eq!(found["verdict"], "no_significant_gap", "{:#}", found["gap"]);
+}
+
+#[test]
+fn both_encoders_of_a_joint_show_quantities_in_proportion() {
+    let geared =
+        format!("{OSCILLATOR}\n[observables]\nmotor = {{ value = \"50*x\", unit = \"m\" }}\n");
+    let accelerometer = DATASET.split_once("[channels.accelerometer]");
+    let (begin, rest) = accelerometer.expect("a channel");
+    let (_, end) = rest.split_once("[initial]").expect("a table");
+    let motor = POSITION.replace("[channels.x]", "[channels.motor]");
+    let motor = motor
+        .replace("column = \"x\"", "column = \"a\"")
+        .replace("1e-5", "2e-3");
+    let dataset = format!("{begin}{POSITION}{motor}\n[initial]{end}");
+    // The other encoder in the place of the accelerometer's column: coarser, and of its own gain.
+    let both = |gain: f64, friction: f64, turn: f64| {
+        let mut noise = 0.4;
+        let mut text = "t,u,x,a\n".to_owned();
+        for line in record(friction, turn, false).lines().skip(1) {
+            let cells: Vec<f64> = line
+                .split(',')
+                .filter_map(|cell| cell.parse().ok())
+                .collect();
+            let &[t, u, x, _] = &cells[..] else {
+                panic!("{line}")
+            };
+            noise = 4.0 * noise * (1.0_f64 - noise) * 0.999_999;
+            let shown = 50.0 * gain * x + 2e-3 * 2.8 * (noise - 0.5);
+            text += &format!("{t:.3},{u:.17},{x:.12},{shown:.12}\n");
+        }
+        text
+    };
+    let found = |gain: f64, friction: f64| {
+        let records = [0.0, 1.0].map(|turn| both(gain, friction, turn));
+        answered("discover", &geared, &dataset, records)
+    };
+    for (gain, friction, effect) in [
+        (1.0, FRICTION, Some("coulomb_friction")),
+        (1.07, 0.0, Some("sensor_gain")),
+        (1.0, 0.0, None),
+    ] {
+        let found = found(gain, friction);
+        let effects = found["effects"].as_array().expect("effects");
+        let names: Vec<&str> = effects
+            .iter()
+            .filter_map(|e| e["effect"].as_str())
+            .collect();
+        assert_eq!(names, Vec::from_iter(effect), "{effects:#?}");
+        if effect == Some("sensor_gain") {
+            assert_eq!(effects[0]["on"], "motor");
+        }
+    }
 }

@@ -1,0 +1,70 @@
+//! Inputs that act otherwise than they are recorded, as candidates: each a single unknown.
+
+use eomgen_model_spec::model::{Input, Model};
+
+use crate::catalogue::candidate::{Candidate, CandidateParameter, ParameterOffset, dropped_prior};
+use crate::interval::Interval;
+use crate::model::input_faults::{InputFault, in_the_place_of};
+use crate::model::unknowns::What;
+
+/// What a fault is, and what would show it best.
+pub(crate) fn words(fault: InputFault) -> (&'static str, &'static str) {
+    match fault {
+        InputFault::Gain => (
+            "an input acts more or less than it is recorded",
+            "measure what it does by itself, as a torque at standstill",
+        ),
+        InputFault::Bias => (
+            "a constant acts beside an input",
+            "record the motion where the input is 0",
+        ),
+    }
+}
+
+/// The faults of a model's inputs of which it holds no parameter yet. `path`: the specification's, for
+/// messages.
+pub fn input_faults(model: &Model, path: &str) -> Vec<Candidate> {
+    let inputs = model.inputs.iter();
+    // Prescribed motion has rates, which would have to follow.
+    let inputs = inputs.filter(|input| input.rate.is_none() && input.rate_of.is_none());
+    let all = inputs.flat_map(|input| InputFault::ALL.map(|fault| candidate(model, input, fault)));
+    let text = &model.source.text;
+    let is_written = |candidate: &Candidate| {
+        let absent = candidate.parameters.iter().map(CandidateParameter::absent);
+        let absent: Vec<f64> = absent.collect();
+        candidate.written(text, path, &absent, "").is_ok()
+    };
+    all.flatten().filter(is_written).collect()
+}
+
+fn candidate(model: &Model, input: &Input, fault: InputFault) -> Option<Candidate> {
+    let name = fault.parameter(&input.name);
+    let changes = in_the_place_of(model, &input.name, &fault.acting(&input.name));
+    if changes.is_empty() {
+        return None;
+    }
+    let (says, experiment) = words(fault);
+    let what = What::Parameter(name.clone());
+    let parameter = CandidateParameter {
+        name,
+        unit: fault.unit(input),
+        positive: false,
+        inverse: false,
+        shape: None,
+        offset: match fault {
+            InputFault::Gain => Some(ParameterOffset::new_from(
+                fault.absent(),
+                Interval::new(0.0, f64::INFINITY),
+            )),
+            InputFault::Bias => None,
+        },
+        doc: fault.doc(&input.name),
+    };
+    Some(Candidate {
+        parameters: vec![parameter],
+        changes,
+        dropped_prior: None,
+        term: fault.acting(&input.name),
+        ..dropped_prior(fault.effect(), &input.name, says, experiment, &what)
+    })
+}

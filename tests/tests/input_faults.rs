@@ -1,0 +1,179 @@
+//! Inputs that act otherwise than they are recorded, on a driven pendulum: found as what they are where
+//! nobody spoke of them, refitted where the dataset says how far they may be off. Records are Newton's law
+//! in small steps.
+
+use std::path::Path;
+
+use eomgen_tests::program;
+use serde_json::Value;
+
+const PENDULUM: &str = r#"
+[model]
+name = "driven_pendulum"
+
+[parameters]
+J = { value = 0.05, unit = "kg m^2", min = 0 }
+c = { value = 0.04, unit = "N m s", min = 0 }
+w = { value = 1.2, unit = "N m", min = 0, doc = "weight times its lever" }
+
+[coordinates]
+theta = { unit = "rad" }
+
+[inputs]
+u = { unit = "N m" }
+
+[kinetic]
+rotor = "1/2*J*dot(theta)^2"
+
+[potential]
+weight = "-w*cos(theta)"
+
+[dissipation]
+bearing = "1/2*c*dot(theta)^2"
+
+[forces]
+motor = { on = "theta", value = "u" }
+"#;
+
+const DATASET: &str = r#"
+[records]
+train = ["train.csv"]
+test = ["test.csv"]
+
+[time]
+column = "t"
+unit = "s"
+
+[inputs.u]
+column = "u"
+unit = "mN m"
+
+[channels.theta]
+column = "theta"
+unit = "rad"
+noise = 1e-4
+
+[initial]
+state = "rest"
+
+[windows]
+length = 0.5
+"#;
+
+/// A record: t, u in mN m, theta. What acts is gain * u + bias, N m.
+fn record(gain: f64, bias: f64, turn: f64) -> String {
+    let (inertia, damping, weight) = (0.05, 0.04, 1.2);
+    let (mut theta, mut rate, mut noise): (f64, f64, f64) = (0.0, 0.0, 0.3 + 0.1 * turn);
+    let mut text = "t,u,theta\n".to_owned();
+    for sample in 0..800 {
+        let t = 0.005 * f64::from(sample);
+        let u = 0.9 * (4.1 * t + turn).sin() + 0.5 * (9.7 * t * (1.0 + 0.1 * turn)).sin();
+        noise = 4.0 * noise * (1.0 - noise) * 0.999_999;
+        let shown = theta + 1e-4 * 2.8 * (noise - 0.5);
+        text += &format!("{t:.3},{:.15},{shown:.9}\n", 1e3 * u);
+        let acceleration = |theta: f64, rate: f64| {
+            (gain * u + bias - damping * rate - weight * theta.sin()) / inertia
+        };
+        for _ in 0..50 {
+            let h = 1e-4;
+            let (half, slope) = (theta + 0.5 * h * rate, acceleration(theta, rate));
+            let middle = rate + 0.5 * h * slope;
+            theta += h * middle;
+            rate += h * acceleration(half, middle);
+        }
+    }
+    text
+}
+
+/// What is found in records of a pendulum with this gain and bias, and the specification that is left.
+fn found(dataset: &str, specification: &str, (gain, bias): (f64, f64)) -> (Value, String) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = |name: &str| folder.path().join(name).display().to_string();
+    for (name, text) in [
+        ("pendulum.toml", specification),
+        ("dataset.toml", dataset),
+        ("train.csv", &record(gain, bias, 0.0)),
+        ("test.csv", &record(gain, bias, 1.0)),
+    ] {
+        std::fs::write(file(name), text).expect("a file");
+    }
+    let (model, dataset, out) = (file("pendulum.toml"), file("dataset.toml"), file("out"));
+    program::accepted(&["discover", &model, &dataset, "--out", &out]);
+    let read = |name: &str| std::fs::read_to_string(Path::new(&out).join(name)).expect("a file");
+    let document = serde_json::from_str(&read("discovery.json")).expect("JSON");
+    (document, read("extended.toml"))
+}
+
+/// The value of the only effect's parameter, and that effect with what is not told from it.
+fn only(document: &Value) -> (f64, Vec<String>) {
+    let effects = document["effects"].as_array().expect("effects");
+    assert_eq!(effects.len(), 1, "{effects:#?}");
+    let named = |of: &Value| format!("{} on {}", of["effect"], of["on"]).replace('"', "");
+    let others = effects[0]["equivalent"].as_array().expect("a list");
+    let names = std::iter::once(&effects[0]).chain(others).map(named);
+    let parameters = effects[0]["parameters"].as_object();
+    let value = parameters.and_then(|p| p.values().next());
+    let value = value.and_then(|p| p["value"].as_f64()).expect("a value");
+    (value, names.collect())
+}
+
+#[test]
+fn a_torque_constant_that_is_low_is_a_gain_of_the_input() {
+    let (document, extended) = found(DATASET, PENDULUM, (0.9, 0.0));
+    let (gain, names) = only(&document);
+    assert_eq!(names[0], "input_gain on u", "{names:?}");
+    assert!((gain - 0.9).abs() < 2e-3, "{gain}");
+    assert!(extended.contains("value = \"u_gain*u\""), "{extended}");
+    // What is written back explains the records.
+    let (again, _) = found(DATASET, &extended, (0.9, 0.0));
+    assert_eq!(again["verdict"], "no_significant_gap", "{again:#}");
+}
+
+#[test]
+fn a_constant_torque_may_be_a_bias_of_the_input() {
+    let (document, _) = found(DATASET, PENDULUM, (1.0, 0.08));
+    let (bias, names) = only(&document);
+    assert!((bias.abs() - 0.08).abs() < 2e-3, "{bias}");
+    assert!(names.contains(&"input_bias on u".to_owned()), "{names:?}");
+}
+
+#[test]
+fn what_a_dataset_says_of_an_input_is_fitted_within_that() {
+    let said = |gain: &str| DATASET.replace("unit = \"mN m\"", &format!("unit = \"mN m\"\n{gain}"));
+    let declared = said("gain = { sd = 0.02 }\nbias = { mean = 50, sd = 10 }");
+    let (document, extended) = found(&declared, PENDULUM, (0.97, 0.06));
+    assert_eq!(document["verdict"], "no_significant_gap", "{document:#}");
+    let fitted = |name: &str| {
+        document["refitted"][name]["value"]
+            .as_f64()
+            .expect("a value")
+    };
+    assert!((fitted("u_gain") - 0.97).abs() < 2e-3, "{document:#}");
+    assert!((fitted("u_bias") - 0.06).abs() < 2e-3, "{document:#}");
+    assert!(extended.contains("u_gain*(u + u_bias)"), "{extended}");
+    // It begins where that ended, and nothing is put in twice.
+    let (again, extended) = found(&declared, &extended, (0.97, 0.06));
+    assert_eq!(again["verdict"], "no_significant_gap", "{again:#}");
+    assert_eq!(extended.matches("u_gain*").count(), 1, "{extended}");
+    // A parameter of that name that is something else is not taken for it.
+    let other = PENDULUM.replace(
+        "[coordinates]",
+        "u_gain = { value = 5, unit = \"1\" }\n\n[coordinates]",
+    );
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = |name: &str| folder.path().join(name).display().to_string();
+    for (name, text) in [("other.toml", &other), ("dataset.toml", &declared)] {
+        std::fs::write(file(name), text).expect("a file");
+    }
+    for (name, turn) in [("train.csv", 0.0), ("test.csv", 1.0)] {
+        std::fs::write(file(name), record(1.0, 0.0, turn)).expect("a file");
+    }
+    let (model, dataset, out) = (file("other.toml"), file("dataset.toml"), file("out"));
+    let message = program::refused(&["discover", &model, &dataset, "--out", &out]);
+    assert!(message.contains("u_gain"), "{message}");
+    // Beyond three deviations it is an effect.
+    let (document, _) = found(&said("gain = { sd = 0.01 }"), PENDULUM, (0.9, 0.0));
+    let (gain, names) = only(&document);
+    assert_eq!(names[0], "input_gain on u", "{names:?}");
+    assert!((gain - 0.9).abs() < 2e-3, "{gain}");
+}
