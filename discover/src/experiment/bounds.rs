@@ -2,7 +2,7 @@
 //! records justify, because what was played before can be played again.
 
 use eomgen_analysis::spectrum::periodogram;
-use eomgen_records::samples::typical_step;
+use eomgen_records::samples::{FEWEST_SAMPLES, typical_step};
 
 use crate::ids::ChannelId;
 use crate::interval::Interval;
@@ -14,8 +14,10 @@ use crate::thresholds;
 pub struct Bounds {
     /// How long it lasts, s.
     pub duration: f64,
-    /// The time between its samples, s.
+    /// The time between the samples at which it is predicted, s.
     pub sample: f64,
+    /// So many of these are one of what is played: records are sampled no less often than they were.
+    pub hold: usize,
     /// Of the inputs that have columns and are not held at one value.
     pub inputs: Vec<InputBounds>,
     /// Of each channel's quantity.
@@ -44,9 +46,10 @@ impl Bounds {
     pub fn of(problem: &EstimationProblem<'_>, inputs: &[String]) -> Self {
         let dataset = problem.dataset;
         let said = &dataset.experiment;
-        let sample = said
-            .sample
-            .unwrap_or_else(|| typical_step(&dataset.train[0].times));
+        let recorded_step = typical_step(&dataset.train[0].times);
+        let played = said.sample.unwrap_or(recorded_step);
+        let hold = (played / recorded_step).round().max(1.0);
+        let sample = played / hold;
         let lasting = dataset.train.iter().map(|record| {
             let times = &record.times;
             times[times.len() - 1] - times[0]
@@ -73,7 +76,7 @@ impl Bounds {
                 .range
                 .map_or(recorded, |(low, high)| Interval::new(low, high));
             let slowest = 1.0 / duration;
-            let nyquist = 0.5 / sample;
+            let nyquist = 0.5 / played;
             let band = of
                 .band
                 .map_or(Interval::new(slowest, fastest), |(low, high)| {
@@ -114,10 +117,23 @@ impl Bounds {
         Self {
             duration,
             sample,
+            hold: hold as usize,
             inputs: input_bounds,
             channels,
             words,
         }
+    }
+
+    /// Why it is no record, if so: it lasts less than half a window, or has too few samples.
+    pub fn too_short(&self, window: Option<f64>) -> Option<String> {
+        let least = (0.5 * window.unwrap_or(0.0)).max(FEWEST_SAMPLES as f64 * self.sample);
+        (self.duration < least).then(|| {
+            format!(
+                "an experiment of {} s is too short for a record, which takes {least:.3} s here; expected a longer \
+                 [experiment] duration",
+                self.duration
+            )
+        })
     }
 
     /// The times of its samples, s.

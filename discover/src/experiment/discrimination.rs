@@ -69,9 +69,6 @@ impl Members<'_> {
         times: &[f64],
         family: &[Proposal],
     ) -> Result<Discrimination, NoExperiment> {
-        if family.is_empty() {
-            return Err(NoExperiment::NoInput);
-        }
         let promised: Vec<Result<Vec<f64>, Excluded>> = (family.par_iter())
             .map(|proposal| self.promised(bounds, times, proposal))
             .collect();

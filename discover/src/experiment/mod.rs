@@ -47,8 +47,13 @@ pub fn experiments(context: Context<'_>, found: &Found) -> Experiments {
     let inputs: Vec<String> = inputs.iter().map(|input| input.name.clone()).collect();
     let bounds = Bounds::of(problem, &inputs);
     let times = bounds.times();
-    let family = Proposal::family(&bounds, &times);
+    let too_short = bounds.too_short(problem.dataset.window);
+    let family = match too_short {
+        Some(_) => Vec::new(),
+        None => Proposal::family(&bounds, &times),
+    };
     let plan = Plan {
+        too_short,
         context,
         inputs,
         units,
@@ -76,11 +81,23 @@ struct Plan<'r> {
     /// The SI unit of each.
     units: Vec<String>,
     bounds: Bounds,
+    /// Why nothing of these bounds is a record, if so.
+    too_short: Option<String>,
     times: Vec<f64>,
     family: Vec<Proposal>,
 }
 
 impl Plan<'_> {
+    /// No experiment, where nothing can be played at all.
+    fn none(&self) -> Option<NextExperiment> {
+        let reason = match (&self.too_short, self.family.is_empty()) {
+            (Some(reason), _) => reason.clone(),
+            (None, true) => NoExperiment::NoInput.to_string(),
+            (None, false) => return None,
+        };
+        Some(NextExperiment::none(&reason, &self.bounds))
+    }
+
     /// What separates the members of an accepted effect's class.
     fn of_class(
         &self,
@@ -89,6 +106,9 @@ impl Plan<'_> {
         files: &mut Vec<ExperimentFile>,
     ) -> NextExperiment {
         let accepted = &found.accepted[effect];
+        if let Some(none) = self.none() {
+            return none;
+        }
         (self.context.progress)(&format!(
             "seeking an experiment that tells {} from {} more",
             accepted.candidate.label(),
@@ -220,6 +240,12 @@ impl Plan<'_> {
             }
         }
         wanted.truncate(thresholds::MOST_SHOWN);
+        if let Some(none) = self.none() {
+            for place in &wanted {
+                experiments.of_rejected[*place] = Some(none.clone());
+            }
+            return;
+        }
         if wanted.is_empty() {
             return;
         }
@@ -269,11 +295,8 @@ impl Plan<'_> {
         files: &mut Vec<ExperimentFile>,
     ) -> NextExperiment {
         let Some(best) = hidden.best((&self.bounds, &self.times), family) else {
-            let reason = match self.family.is_empty() {
-                true => NoExperiment::NoInput.to_string(),
-                false => "nothing that was tried within the bounds shows it".to_owned(),
-            };
-            return NextExperiment::none(&reason, &self.bounds);
+            let reason = "nothing that was tried within the bounds shows it";
+            return NextExperiment::none(reason, &self.bounds);
         };
         let proposal = &self.family[best.proposal];
         let is_enough = best.separation.size >= thresholds::SHOWS;

@@ -18,7 +18,7 @@ pub(super) fn text(
         .collect();
     let heading: Vec<&str> = driven.iter().map(|place| names[*place].as_str()).collect();
     let mut text = format!("t,{}\n", heading.join(","));
-    for (t, value) in times.iter().zip(&proposal.values) {
+    for (t, value) in times.iter().zip(&proposal.values).step_by(bounds.hold) {
         text += &format!("{}", rounded(played.time.from_si(*t)));
         for place in &driven {
             let own = match *place == proposal.place {

@@ -27,9 +27,10 @@ impl Proposal {
     /// All that is tried, at these times, s.
     pub fn family(bounds: &Bounds, times: &[f64]) -> Vec<Self> {
         let mut family: Vec<Self> = Vec::new();
+        let played_at: Vec<f64> = times.iter().copied().step_by(bounds.hold).collect();
         for input in &bounds.inputs {
             for form in Waveform::family(input.band) {
-                let Some(shape) = form.sampled(times, bounds.duration) else {
+                let Some(shape) = form.sampled(&played_at, bounds.duration) else {
                     continue;
                 };
                 for size in thresholds::EXPERIMENT_SIZES {
@@ -38,7 +39,7 @@ impl Proposal {
                         name: input.name.clone(),
                         waveform: form,
                         form: format!("{}, {:.0} % of its range", form.words(), 100.0 * size),
-                        values: played(&shape, size, input, bounds.sample),
+                        values: held(&played(&shape, size, input, bounds), bounds.hold, times.len()),
                     });
                 }
             }
@@ -68,12 +69,12 @@ pub fn rest(range: Interval) -> f64 {
 }
 
 /// A form on an input, so much of its range to either side of rest and no faster than it may be.
-fn played(shape: &[f64], size: f64, input: &InputBounds, sample: f64) -> Vec<f64> {
+fn played(shape: &[f64], size: f64, input: &InputBounds, bounds: &Bounds) -> Vec<f64> {
     let Interval { low, high } = input.range;
     let rest = rest(input.range);
     let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
     let mut present = rest;
-    let most = input.rate * sample;
+    let most = input.rate * bounds.sample * bounds.hold as f64;
     let value = |form: &f64| {
         let wanted = match form.is_nan() {
             true => rest,
@@ -86,6 +87,12 @@ fn played(shape: &[f64], size: f64, input: &InputBounds, sample: f64) -> Vec<f64
     shape.iter().map(value).collect()
 }
 
+/// Each value so many times, `count` in all.
+fn held(values: &[f64], times: usize, count: usize) -> Vec<f64> {
+    let held = values.iter().flat_map(|v| std::iter::repeat_n(*v, times));
+    held.take(count).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -94,6 +101,7 @@ mod tests {
         Bounds {
             duration: 10.0,
             sample: 0.01,
+            hold: 1,
             inputs: vec![InputBounds {
                 place: 0,
                 name: "u".to_owned(),
@@ -103,6 +111,20 @@ mod tests {
             }],
             channels: Vec::new(),
             words: String::new(),
+        }
+    }
+
+    #[test]
+    fn what_is_played_less_often_than_predicted_is_held() {
+        let bounds = Bounds {
+            hold: 5,
+            ..bounds(-1.0, 1.0, 1e3)
+        };
+        let times = bounds.times();
+        for proposal in Proposal::family(&bounds, &times) {
+            assert_eq!(proposal.values.len(), times.len());
+            let mut held = proposal.values.chunks(5);
+            assert!(held.all(|of| of.iter().all(|value| *value == of[0])));
         }
     }
 
