@@ -151,7 +151,7 @@ impl Hidden {
                 }
             }
             _ if machine.spring(&self.on).is_some() => self.hide_in_spring(machine),
-            _ if self.on == "arm" => self.hide_in_arm(machine, amount),
+            _ if self.on == "arm" => self.hide_in_arm(machine, amount, repeating),
             _ => self.hide_on_axis(machine, amount, repeating),
         }
     }
@@ -169,7 +169,7 @@ impl Hidden {
         }
     }
 
-    fn hide_in_arm(&self, machine: &mut Machine, amount: f64) {
+    fn hide_in_arm(&self, machine: &mut Machine, amount: f64, repeating: (f64, f64, f64)) {
         let Machine::Arm(arm) = machine else {
             panic!("only the arm bends");
         };
@@ -178,6 +178,7 @@ impl Hidden {
             Effect::TipMass => arm.tip_mass = amount,
             Effect::StiffnessNonlinearity => arm.cubic = amount,
             Effect::JointCompliance => arm.compliance = amount,
+            Effect::Gravity => arm.weight = (repeating.1, repeating.2),
             other => panic!("{other:?} does not sit in an arm"),
         }
         arm.prepare();

@@ -30,6 +30,7 @@ fn lossless(compliance: f64) -> Arm {
     }
     arm.tip_mass = 0.2;
     arm.cubic = 1e9;
+    arm.weight = (3.0, -5.0);
     arm.compliance = compliance;
     arm.prepare();
     arm

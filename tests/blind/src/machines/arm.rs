@@ -78,6 +78,9 @@ pub struct Arm {
     pub cubic: f64,
     /// Compliance of the joint, rad per N m.
     pub compliance: f64,
+    /// Weight per length where the arm turns in an upright plane: the parts across it at the angle 0
+    /// (sine) and along it (cosine), N/m.
+    pub weight: (f64, f64),
     inverse: [[f64; MODES + 2]; MODES + 2],
     /// Stiffness of each mode, N/m.
     bending: [f64; MODES],
@@ -129,6 +132,7 @@ impl Arm {
             tip_mass: 0.0,
             cubic: 0.0,
             compliance: 0.0,
+            weight: (0.0, 0.0),
             inverse: [[0.0; MODES + 2]; MODES + 2],
             bending: [0.0; MODES],
         };
@@ -205,6 +209,10 @@ impl Arm {
         if self.compliance > 0.0 {
             energy += 0.5 * state[3] * state[3] / self.compliance;
         }
+        let (along, across) = self.weight;
+        let (sine, cosine) = (state[2] + state[3]).sin_cos();
+        let (lever, bent) = (0.5 * length * length, self.area(state));
+        energy += across * (lever * sine + bent * cosine) - along * (lever * cosine - bent * sine);
         let sun = state[0] / r_s;
         for (mesh, deflection) in self.meshes.iter().zip(self.deflections(state, r_c)) {
             let dead = dead(
@@ -218,6 +226,11 @@ impl Arm {
 
     fn tip(&self, state: &[f64]) -> f64 {
         (0..self.modes).map(|i| end_value(i) * state[4 + i]).sum()
+    }
+
+    /// The integral of the deflection over the length.
+    fn area(&self, state: &[f64]) -> f64 {
+        (0..self.modes).map(|i| area_value(i) * state[4 + i]).sum()
     }
 
     fn deflections(&self, of: &[f64], r_c: f64) -> [f64; 2] {
@@ -271,6 +284,13 @@ impl Arm {
 /// phi_i(l) = 2 (-1)^(i+1), counted from 1.
 fn end_value(mode: usize) -> f64 {
     if mode.is_multiple_of(2) { 2.0 } else { -2.0 }
+}
+
+/// The integral of phi_i over the length: 2 sigma_i l/z_i.
+fn area_value(mode: usize) -> f64 {
+    let z = ROOTS[mode];
+    let sigma = (z.sinh() - z.sin()) / (z.cosh() + z.cos());
+    2.0 * sigma * given::LENGTH / z
 }
 
 fn dead(deflection: f64, play: f64) -> f64 {
@@ -343,9 +363,19 @@ impl Motion for Arm {
         forces[0] = on_carrier + held;
         forces[yields] -= held;
         let cubic = self.cubic * self.tip(at).powi(3);
+        let mut pressed = 0.0;
+        if self.weight != (0.0, 0.0) {
+            let (along, across) = self.weight;
+            let (sine, cosine) = (at[2] + at[3]).sin_cos();
+            let (lever, bent) = (0.5 * given::LENGTH * given::LENGTH, self.area(at));
+            pressed = across * cosine + along * sine;
+            forces[yields] -=
+                across * (lever * cosine - bent * sine) + along * (lever * sine + bent * cosine);
+        }
         for i in 0..self.modes {
             let bent = at[4 + i] + self.loss * moving[4 + i];
-            forces[1 + yields + i] = -self.bending[i] * bent - cubic * end_value(i);
+            forces[1 + yields + i] =
+                -self.bending[i] * bent - cubic * end_value(i) - pressed * area_value(i);
         }
         // Rows and columns that there are not are zero.
         let acceleration = |row: usize| -> f64 {

@@ -128,7 +128,7 @@ pub fn singles(seed: u64, draw: &mut Draw) -> Vec<Case> {
         (QuadraticDrag, [sun, either(stage, pendulum, draw)]),
         (ForceOffset, [carrier, either(stage, pendulum, draw)]),
         (ElasticRestraint, [carrier, either(stage, pendulum, draw)]),
-        (Gravity, [carrier; 2]),
+        (Gravity, [carrier, arm]),
         (TorqueRipple, [sun, pendulum]),
         (StructuralDamping, [arm; 2]),
         (TipMass, [arm; 2]),
