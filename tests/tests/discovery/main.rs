@@ -4,5 +4,6 @@ mod arm;
 mod effects_files;
 mod effects_found;
 mod effects_placed;
+mod friction_that_stops;
 mod nothing_compared;
 mod off_the_list;
