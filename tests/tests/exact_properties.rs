@@ -108,6 +108,33 @@ proptest! {
     }
 }
 
+/// A play that is passed within a ten-thousandth of what a damper beside it takes to settle: a search that
+/// looks far ahead comes back over much of that decay.
+#[test]
+fn a_play_that_is_passed_beside_a_strong_damper() {
+    let values = [
+        ("k_sp", 1e5),
+        ("k_pr", 464350152.82289267),
+        ("c_sp", 2759.6205921774285),
+        ("c_pr", 0.0),
+        ("b_sp", 0.0),
+        ("b_pr", 1.5318330730572323e-9),
+        ("M_s", 0.0853419369296616),
+        ("M_p", 0.14667898205208466),
+        ("a_m", 0.0),
+        ("F_w", 0.0),
+        ("b_m", 0.0),
+        ("omega", 0.0),
+    ];
+    let model = load("planetary_arm").with_parameters(&values);
+    let subject = Subject::new(model.expect("values within bounds"), 0);
+    let mut initial = subject.initial.clone();
+    let half = initial.len() / 2;
+    initial[half + 1] = -0.29280426769815593;
+    let subject = subject.from(&initial);
+    agree(&subject, 5e-4, 1e-6).expect("the same motion");
+}
+
 /// One more term of a machine.
 #[derive(Clone, Debug)]
 enum Term {

@@ -18,6 +18,9 @@ use super::simd_vectors::{
 };
 use super::step_table::Step;
 
+/// So many times the fastest decay's time constant amplitudes may be followed back, which magnifies their rounding.
+const BACK: f64 = 1.0;
+
 /// Magnitudes of amplitudes are found anew when the fastest decay since would make this much
 /// of a difference to their logarithm.
 const DECAYED: f64 = 0.25;
@@ -150,7 +153,15 @@ impl Flow {
     /// Advances by any time, which may be negative.
     #[inline(always)]
     pub fn shift<S: Simd>(&mut self, simd: S, regime: &Regime, time: f64) {
-        self.advance_by(simd, regime, time);
+        if -time * regime.modes.damping > BACK {
+            // From the start: what has decayed below the rounding of that would grow again out of rounding.
+            let tau = self.tau + time;
+            self.rewind(regime);
+            self.tau = 0.0;
+            self.advance_by(simd, regime, tau);
+        } else {
+            self.advance_by(simd, regime, time);
+        }
         self.measure(simd, regime);
     }
 

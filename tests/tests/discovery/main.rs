@@ -5,5 +5,6 @@ mod effects_files;
 mod effects_found;
 mod effects_placed;
 mod next_experiment;
+mod friction_that_stops;
 mod nothing_compared;
 mod off_the_list;
