@@ -180,6 +180,17 @@ pub fn expected_input_delay(inputs: &[InputPriors], model: &Model) -> f64 {
     }
 }
 
+/// That a mean which the dataset gives is not added to what the specification has.
+pub fn note_of_input_delay(inputs: &[InputPriors], model: &Model) -> Option<String> {
+    let (input, expected) = delayed_input(inputs)?;
+    let mean = expected.mean.filter(|mean| *mean != 0.0)?;
+    (!model.sensors.is_empty()).then(|| {
+        format!(
+            "the delay of `{input}`, {mean} s in the dataset, is taken to be in those of [sensors] in the specification"
+        )
+    })
+}
+
 /// The unknowns of one sensor, with the priors of its channel, or the usual ones where that says
 /// nothing. What is known for certain is none of them.
 pub fn of_sensor(id: ChannelId, channel: &Channel, model: &Model, step: f64) -> Vec<Unknown> {

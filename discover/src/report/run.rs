@@ -14,6 +14,7 @@ use crate::model::channel_checks;
 use crate::model::input_faults::with_declared;
 use crate::model::problem::EstimationProblem;
 use crate::model::stop::Stop;
+use crate::model::unknowns::note_of_input_delay;
 use crate::report::discovery::{
     bound_notes, closure, effects, gap, nuisances, refitted, rejected, sensors, steps,
 };
@@ -67,6 +68,10 @@ pub fn compare(
     };
     let nuisances = nuisances(&problem, &fit);
     let mut notes = [dataset.notes.clone(), bound_notes(&nuisances)].concat();
+    notes.extend(note_of_input_delay(
+        &dataset.inputs,
+        fit.model.specification(),
+    ));
     notes.extend(contradicting(&problem, &fit, floor.rms, progress));
     Ok(Comparison {
         has_gap: !fit.is_at_floor(floor.rms),
@@ -165,6 +170,10 @@ pub fn discover_until(
     let gap = gap(&problem, null, Some(best), &floor);
     let nuisances = nuisances(&problem, best);
     let mut notes = [problem.dataset.notes.clone(), bound_notes(&nuisances)].concat();
+    notes.extend(note_of_input_delay(
+        &problem.dataset.inputs,
+        null.model.specification(),
+    ));
     if let Some(unfinished) = &found.unfinished {
         let most = stop.most().map_or(0.0, |most| most.as_secs_f64());
         let note = format!("the search was ended by its limit of {most} s: {unfinished}");
@@ -216,7 +225,7 @@ fn contradicting(
     if fit.is_at_floor(floor) {
         return Vec::new();
     }
-    let found = contradictions(problem, fit);
+    let found = contradictions(problem, fit, floor);
     for sentence in &found {
         progress(&format!("note: {sentence}"));
     }
