@@ -61,6 +61,8 @@ fn a_search_that_is_cut_off_leaves_what_is_known() {
     let found: Value = serde_json::from_str(&measured.read("cut/discovery.json")).expect("JSON");
     assert_eq!(found["verdict"], "unexplained");
     assert_eq!(found["unfinished"], "no effect was fitted by then");
+    let summary = found["summary"].as_str().expect("a sentence");
+    assert!(summary.contains("ended by its limit"), "{summary}");
     assert!(
         notes(&found).contains("ended by its limit of 0.000001 s"),
         "{found:#}"

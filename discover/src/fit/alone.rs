@@ -93,6 +93,14 @@ pub fn alone(
     })
 }
 
+/// The most that a fit leaves of any record, in standard deviations.
+pub fn most_left(problem: &EstimationProblem<'_>, fit: &Fit) -> f64 {
+    let train =
+        (0..problem.dataset.train.len()).filter_map(|k| left_of(&problem.train, &fit.train, k));
+    let test = (0..problem.dataset.test.len()).filter_map(|k| left_of(&problem.test, &fit.test, k));
+    train.chain(test).fold(0.0, f64::max)
+}
+
 /// The root mean square that a fit leaves of one record, in standard deviations.
 fn left_of(windows: &Windows<'_>, residuals: &Residuals, record: usize) -> Option<f64> {
     let (mut sum, mut count) = (0.0, 0.0);

@@ -3,7 +3,7 @@
 
 use eomgen_model_spec::model::{Parameter, ParameterValue};
 
-use crate::fit::alone::{Alone, alone, each_alone};
+use crate::fit::alone::{Alone, alone, each_alone, most_left};
 use crate::fit::fitted::Fit;
 use crate::model::problem::EstimationProblem;
 use crate::model::unknowns::{Unknown, What, sign_bounds};
@@ -14,8 +14,8 @@ use crate::thresholds;
 /// is explained much better than all together. Or records that are not explained alone where others are, with the
 /// parameters that would explain them. `floor`: what a right model would leave, in standard deviations.
 pub fn contradictions(problem: &EstimationProblem<'_>, fit: &Fit, floor: f64) -> Vec<String> {
-    let dataset = problem.dataset;
-    if dataset.train.len() + dataset.test.len() < 2 {
+    // What none leaves more of than each could alone is no contradiction.
+    if most_left(problem, fit) < thresholds::CONTRADICTS * floor {
         return Vec::new();
     }
     let alone = each_alone(problem, fit);

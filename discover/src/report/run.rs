@@ -180,7 +180,10 @@ pub fn discover_until(
         progress(&format!("note: {note}"));
         notes.push(note);
     }
-    notes.extend(contradicting(&problem, best, floor.rms, progress));
+    // Each record alone takes as long as all together: not after a limit.
+    if found.unfinished.is_none() {
+        notes.extend(contradicting(&problem, best, floor.rms, progress));
+    }
     stop.check()?;
     let is_sure =
         !Left::of(&gap, Stage::After).is_much() && !nuisances.iter().any(Nuisance::is_at_bound);
@@ -214,17 +217,13 @@ pub fn discover_until(
     })
 }
 
-/// Which records contradict each other, where a fit of all leaves more than the floor. `progress` is
-/// told.
+/// Which records contradict each other. `progress` is told.
 fn contradicting(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
     floor: f64,
     progress: &Progress<'_>,
 ) -> Vec<String> {
-    if fit.is_at_floor(floor) {
-        return Vec::new();
-    }
     let found = contradictions(problem, fit, floor);
     for sentence in &found {
         progress(&format!("note: {sentence}"));
