@@ -60,19 +60,28 @@ state = "rest"
 length = 0.5
 "#;
 
-/// A record: t, u in mN m, theta. What acts is gain * u + bias, N m.
+/// A record of what acts: gain * (u + bias), N m.
 fn record(gain: f64, bias: f64, turn: f64) -> String {
+    late_record((gain, bias, 0.0), turn)
+}
+
+/// A record: t, u in mN m, theta. What acts is gain * (u + bias), N m, and u so late, s.
+fn late_record((gain, bias, delay): (f64, f64, f64), turn: f64) -> String {
     let (inertia, damping, weight) = (0.05, 0.04, 1.2);
     let (mut theta, mut rate, mut noise): (f64, f64, f64) = (0.0, 0.0, 0.3 + 0.1 * turn);
     let mut text = "t,u,theta\n".to_owned();
     for sample in 0..800 {
         let t = 0.005 * f64::from(sample);
-        let u = 0.9 * (4.1 * t + turn).sin() + 0.5 * (9.7 * t * (1.0 + 0.1 * turn)).sin();
+        let wave = |t: f64| {
+            let t = t.max(0.0);
+            0.9 * (4.1 * t + turn).sin() + 0.5 * (9.7 * t * (1.0 + 0.1 * turn)).sin()
+        };
+        let (u, acting) = (wave(t), wave(t - delay));
         noise = 4.0 * noise * (1.0 - noise) * 0.999_999;
         let shown = theta + 1e-4 * 2.8 * (noise - 0.5);
         text += &format!("{t:.3},{:.15},{shown:.9}\n", 1e3 * u);
         let acceleration = |theta: f64, rate: f64| {
-            (gain * u + bias - damping * rate - weight * theta.sin()) / inertia
+            (gain * (acting + bias) - damping * rate - weight * theta.sin()) / inertia
         };
         for _ in 0..50 {
             let h = 1e-4;
@@ -87,13 +96,19 @@ fn record(gain: f64, bias: f64, turn: f64) -> String {
 
 /// What is found in records of a pendulum with this gain and bias, and the specification that is left.
 fn found(dataset: &str, specification: &str, (gain, bias): (f64, f64)) -> (Value, String) {
+    let records = [0.0, 1.0].map(|turn| record(gain, bias, turn));
+    found_in(dataset, specification, &records)
+}
+
+/// The same in these records.
+fn found_in(dataset: &str, specification: &str, records: &[String; 2]) -> (Value, String) {
     let folder = tempfile::tempdir().expect("a folder");
     let file = |name: &str| folder.path().join(name).display().to_string();
     for (name, text) in [
         ("pendulum.toml", specification),
         ("dataset.toml", dataset),
-        ("train.csv", &record(gain, bias, 0.0)),
-        ("test.csv", &record(gain, bias, 1.0)),
+        ("train.csv", &records[0]),
+        ("test.csv", &records[1]),
     ] {
         std::fs::write(file(name), text).expect("a file");
     }
@@ -176,4 +191,42 @@ fn what_a_dataset_says_of_an_input_is_fitted_within_that() {
     let (gain, names) = only(&document);
     assert_eq!(names[0], "input_gain on u", "{names:?}");
     assert!((gain - 0.9).abs() < 2e-3, "{gain}");
+}
+
+#[test]
+fn an_input_that_acts_late_is_one_unknown() {
+    let lever = "\n[observables]\nlever = { value = \"0.3*sin(theta)\" }\n"
+        .replace(" }", ", unit = \"rad\" }");
+    let specification = format!("{PENDULUM}{lever}");
+    let second = "[channels.lever]\ncolumn = \"lever\"\nunit = \"rad\"\nnoise = 1e-4\n\n[initial]";
+    let dataset = |delay: &str| {
+        DATASET
+            .replace("[initial]", second)
+            .replace("unit = \"mN m\"", &format!("unit = \"mN m\"\n{delay}"))
+    };
+    // Four samples: the motor rests that long.
+    let records = [0.0, 1.0].map(|turn| {
+        let lines = late_record((1.0, 0.0, 0.02), turn);
+        let with_lever = |line: &str| {
+            let theta = line
+                .rsplit(',')
+                .next()
+                .and_then(|theta| theta.parse::<f64>().ok());
+            match theta {
+                Some(theta) => format!("{line},{:.9}\n", 0.3 * theta.sin()),
+                None => format!("{line},lever\n"),
+            }
+        };
+        lines.lines().map(with_lever).collect::<String>()
+    });
+    let declared = dataset("delay = { sd = 0.0025 }");
+    let (document, extended) = found_in(&declared, &specification, &records);
+    let (delay, names) = only(&document);
+    assert_eq!(names[0], "input_delay on u", "{names:?}");
+    assert!((delay - 0.02).abs() < 2e-4, "{delay}");
+    let (again, _) = found_in(&declared, &extended, &records);
+    assert_eq!(again["verdict"], "no_significant_gap", "{again:#}");
+    let known = dataset("delay = { mean = 0.02, sd = 0 }");
+    let (document, _) = found_in(&known, &specification, &records);
+    assert_eq!(document["verdict"], "no_significant_gap", "{document:#}");
 }

@@ -37,6 +37,21 @@ fn records_that_contradict_each_other_are_named_with_what_each_says_alone() {
 }
 
 #[test]
+fn another_payload_in_one_record_is_said_where_nobody_spoke_of_the_mass() {
+    // Of 95 kg, and 24 more: what the force and the guides make of the heavier stage.
+    let payload = |at: Moment| (at.force - 210.0 * at.v) * (95.0 / 119.0 - 1.0);
+    let measured = Measured::stage(0.0);
+    measured.write("other.csv", record_of(&payload, 0.4).as_bytes());
+    let both = DESCRIPTION.replace("[\"train.csv\"]", "[\"train.csv\", \"other.csv\"]");
+    measured.write("dataset.toml", both.as_bytes());
+    let (result, _) = measured.answered("discover", "both");
+    let found = notes(&result);
+    let said = "train[1] does not go with train[0], test[0]";
+    assert!(found.contains(said), "{result:#}");
+    assert!(found.contains("`M` = 1.1"), "{found}");
+}
+
+#[test]
 fn a_search_that_is_cut_off_leaves_what_is_known() {
     let measured = Measured::stage(3.0);
     let arguments = measured.arguments("discover", "cut");
@@ -46,6 +61,8 @@ fn a_search_that_is_cut_off_leaves_what_is_known() {
     let found: Value = serde_json::from_str(&measured.read("cut/discovery.json")).expect("JSON");
     assert_eq!(found["verdict"], "unexplained");
     assert_eq!(found["unfinished"], "no effect was fitted by then");
+    let summary = found["summary"].as_str().expect("a sentence");
+    assert!(summary.contains("ended by its limit"), "{summary}");
     assert!(
         notes(&found).contains("ended by its limit of 0.000001 s"),
         "{found:#}"

@@ -1,107 +1,113 @@
 //! Records that contradict each other: each fitted alone, then seen beside the fit of all together.
 //! What is off in one record only, as another payload or another supply, is no property of the machine.
 
+use eomgen_model_spec::model::{Parameter, ParameterValue};
+
+use crate::fit::alone::{Alone, alone, each_alone, most_left};
 use crate::fit::fitted::Fit;
-use crate::fit::full;
-use crate::fit::residuals::Residuals;
 use crate::model::problem::EstimationProblem;
-use crate::model::unknowns::{Unknown, What};
+use crate::model::unknowns::{Unknown, What, sign_bounds};
 use crate::thresholds;
-use eomgen_records::dataset::Dataset;
-use eomgen_records::record::Record;
-use eomgen_records::windows::Windows;
 
-/// What a record says alone.
-struct Alone {
-    name: String,
-    /// What the fit of all records leaves of it, in standard deviations.
-    together: f64,
-    /// What its own leaves.
-    rms: f64,
-    /// Its own estimates and their standard deviations, SI.
-    estimates: Vec<(f64, f64)>,
-}
-
-/// The contradictions among the records of a fit that leaves a gap, in sentences: declared
-/// parameters to which two records alone give different values, where each alone is explained much
-/// better than all together. None where there is one record.
-pub fn contradictions(problem: &EstimationProblem<'_>, fit: &Fit) -> Vec<String> {
-    let is_declared =
-        |unknown: &Unknown| matches!(unknown.what, What::Parameter(_)) && unknown.prior.is_some();
-    if !fit.unknowns.iter().any(is_declared) {
+/// The contradictions among the records of a fit that leaves a gap, in sentences. Parameters, declared
+/// ones or those of what was found, to which two records alone give different values, where each alone
+/// is explained much better than all together. Or records that are not explained alone where others are, with the
+/// parameters that would explain them. `floor`: what a right model would leave, in standard deviations.
+pub fn contradictions(problem: &EstimationProblem<'_>, fit: &Fit, floor: f64) -> Vec<String> {
+    // What none leaves more of than each could alone is no contradiction.
+    if most_left(problem, fit) < thresholds::CONTRADICTS * floor {
         return Vec::new();
     }
-    let dataset = problem.dataset;
-    let sets = [
-        (&dataset.train, &problem.train, &fit.train),
-        (&dataset.test, &problem.test, &fit.test),
-    ];
-    let alone: Vec<Alone> = sets
-        .into_iter()
-        .flat_map(|(records, windows, residuals)| {
-            let records = records.iter().enumerate();
-            records.filter_map(move |(place, record)| {
-                let together = left_of(windows, residuals, place)?;
-                alone(problem, fit, record, together)
-            })
-        })
-        .collect();
+    let alone = each_alone(problem, fit);
     let mut sentences = Vec::new();
     for (place, unknown) in fit.unknowns.iter().enumerate() {
-        if let (What::Parameter(name), true) = (&unknown.what, is_declared(unknown))
+        if let What::Parameter(name) = &unknown.what
             && let Some((a, b)) = furthest(&alone, place)
         {
             sentences.push(said(fit, name, place, a, b));
         }
     }
-    sentences
-}
-
-/// The root mean square that a fit leaves of one record, in standard deviations.
-fn left_of(windows: &Windows<'_>, residuals: &Residuals, record: usize) -> Option<f64> {
-    let (mut sum, mut count) = (0.0, 0.0);
-    for (window, values) in windows.list.iter().zip(&residuals.residuals) {
-        if window.record == record {
-            sum += values.iter().map(|r| r * r).sum::<f64>();
-            count += values.len() as f64;
-        }
+    match sentences.is_empty() {
+        true => odd(problem, fit, &alone, floor),
+        false => sentences,
     }
-    (count > 0.0).then(|| f64::sqrt(sum / count))
 }
 
-/// A record fitted by itself, its declared parameters as far off as it takes.
-fn alone(
+/// Records that leave much alone where others leave no more than a right model would.
+fn odd(problem: &EstimationProblem<'_>, fit: &Fit, alone: &[Alone], floor: f64) -> Vec<String> {
+    let is_explained = |record: &&Alone| record.rms < thresholds::CLOSE * floor;
+    let explained: Vec<&Alone> = alone.iter().filter(is_explained).collect();
+    let is_odd = |record: &&Alone| record.rms > thresholds::MUCH_IS_LEFT * floor;
+    let odd: Vec<&Alone> = alone.iter().filter(is_odd).collect();
+    // What is missing may show in a few records only; that most show it contradicts nothing.
+    if odd.len() >= explained.len() {
+        return Vec::new();
+    }
+    let names = |records: &[&Alone]| {
+        let names = records.iter().map(|record| record.name.as_str());
+        names.collect::<Vec<&str>>().join(", ")
+    };
+    let sentence = |record: &&Alone| {
+        let by = explaining(problem, fit, record, floor);
+        let by = match by.is_empty() {
+            true => String::new(),
+            false => format!(" Alone it is explained by {}.", by.join(", or by ")),
+        };
+        format!(
+            "{} does not go with {}: fitted alone, these leave at most {:.1} standard deviations, and it leaves {:.1}.{by} Was it \
+             measured on the same machine, with the same payload?",
+            record.name,
+            names(&explained),
+            explained
+                .iter()
+                .map(|record| record.rms)
+                .fold(0.0, f64::max),
+            record.rms
+        )
+    };
+    odd.iter().map(sentence).collect()
+}
+
+/// The single parameters of the model that explain a record alone, with their values.
+fn explaining(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
-    record: &Record,
-    together: f64,
-) -> Option<Alone> {
-    let dataset = Dataset {
-        train: vec![record.clone()],
-        test: vec![record.clone()],
-        ..problem.dataset.clone()
+    record: &Alone,
+    floor: f64,
+) -> Vec<String> {
+    let is_known = |parameter: &Parameter| {
+        let mut unknowns = fit.unknowns.iter();
+        unknowns.any(|known| known.what == What::Parameter(parameter.name.clone()))
     };
-    let (path, text) = (&problem.path, &fit.texts.whole);
-    let mut own = EstimationProblem::new(&dataset, problem.order, path, text);
-    own.stop = problem.stop.clone();
-    own.states.clone_from(&problem.states);
-    let free = |unknown: &Unknown| match unknown.what {
-        What::Parameter(_) => Unknown {
-            bounds: unknown.limits,
-            ..unknown.clone()
-        },
-        _ => unknown.clone(),
-    };
-    let unknowns = fit.unknowns.iter().map(free).collect();
-    let theta = &fit.train.estimate.theta;
-    let found = full::fit(&own, fit.texts.clone(), unknowns, theta).ok()?;
-    let estimates = found.train.estimate.theta.iter().zip(&found.sd);
-    Some(Alone {
-        name: record.name.clone(),
-        together,
-        rms: found.train.rms,
-        estimates: estimates.map(|(value, sd)| (*value, *sd)).collect(),
-    })
+    let parameters = fit.model.specification().parameters.iter();
+    let found = parameters
+        .filter(|parameter| !is_known(parameter))
+        .filter_map(|parameter| {
+            let ParameterValue::Number(value) = parameter.value else {
+                return None;
+            };
+            let bounds = sign_bounds(parameter, value);
+            let unknown = Unknown {
+                what: What::Parameter(parameter.name.clone()),
+                label: format!("`{}`", parameter.name),
+                start: value,
+                prior: None,
+                bounds,
+                limits: bounds,
+                scale: value.abs(),
+            };
+            let with =
+                (value != 0.0).then(|| alone(problem, fit, record.record, Some(&unknown)))??;
+            let estimate = *with.estimates.last()?;
+            (with.rms < thresholds::CLOSE * floor).then(|| {
+                format!(
+                    "`{}` = {}",
+                    parameter.name,
+                    stated(Some(parameter), estimate)
+                )
+            })
+        });
+    found.collect()
 }
 
 /// The two records that differ most in an unknown, if that is more than uncertainty makes of it and
@@ -128,18 +134,7 @@ fn furthest(alone: &[Alone], place: usize) -> Option<(&Alone, &Alone)> {
 fn said(fit: &Fit, name: &str, place: usize, a: &Alone, b: &Alone) -> String {
     let mut parameters = fit.model.specification().parameters.iter();
     let parameter = parameters.find(|parameter| parameter.name == name);
-    let value = |record: &Alone| {
-        let (value, sd) = record.estimates[place];
-        match parameter {
-            Some(p) => format!(
-                "{:.3e} +- {:.1e} {}",
-                p.unit.from_si(value),
-                p.unit.from_si(sd),
-                p.unit
-            ),
-            None => format!("{value:.3e} +- {sd:.1e}"),
-        }
-    };
+    let value = |record: &Alone| stated(parameter, record.estimates[place]);
     format!(
         "{} and {} contradict each other: alone, they give `{name}` as {} and {}, and leave {:.1} and {:.1} standard \
          deviations, where the fit of all leaves {:.1} and {:.1}. Were they measured on one machine, with one payload?",
@@ -152,4 +147,17 @@ fn said(fit: &Fit, name: &str, place: usize, a: &Alone, b: &Alone) -> String {
         a.together,
         b.together
     )
+}
+
+/// An estimate and its standard deviation, SI, in a parameter's unit.
+fn stated(parameter: Option<&Parameter>, (value, sd): (f64, f64)) -> String {
+    match parameter {
+        Some(p) => format!(
+            "{:.3e} +- {:.1e} {}",
+            p.unit.from_si(value),
+            p.unit.from_si(sd),
+            p.unit
+        ),
+        None => format!("{value:.3e} +- {sd:.1e}"),
+    }
 }

@@ -3,9 +3,10 @@
 //! ([`variable_projection`]), steps ([`gauss_newton`] with [`bounded_least_squares`],
 //! [`continuation`] from far away), [`initial_states`]; a [`preliminary`] fit and a [`full`] one,
 //! the [`residuals`] that it leaves, the [`mod@noise_floor`] that a right model would leave, and the
-//! [`contradiction`]s among records.
+//! [`contradiction`]s among records, each fitted [`alone`].
 
 pub(crate) mod acceleration_differences;
+pub mod alone;
 pub mod bounded_least_squares;
 pub mod continuation;
 pub mod contradiction;

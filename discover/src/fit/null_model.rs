@@ -28,7 +28,7 @@ pub fn null_fit(problem: &EstimationProblem<'_>, text: &str) -> Result<Fit, Disc
     // stand in for what parameters have not done yet: those that wait do not.
     let held = |unknown: &Unknown| match unknown.what {
         What::Parameter(_) | What::Inverse(_) => unknown.clone(),
-        What::Gain(_) | What::Bias(_) | What::Delay(_) => Unknown {
+        What::Gain(_) | What::Bias(_) | What::Delay(_) | What::InputDelay => Unknown {
             bounds: Interval::new(unknown.start, unknown.start),
             ..unknown.clone()
         },

@@ -394,6 +394,7 @@ fn moved_sensors(sensors: &Sensors, unknown: &Unknown) -> (Sensors, f64) {
         What::Gain(channel) => moved.gain[channel] += step,
         What::Bias(channel) => moved.bias[channel] += step,
         What::Delay(channel) => moved.delay[channel] += step,
+        What::InputDelay => moved.delay.iter_mut().for_each(|delay| *delay += step),
         What::Parameter(_) | What::Inverse(_) => {}
     }
     (moved, step)

@@ -9,8 +9,8 @@ use rayon::prelude::*;
 use crate::model::estimation_model::EstimationModel;
 use crate::model::problem::EstimationProblem;
 use crate::model::simulation::Simulation;
-use crate::model::unknowns::{Unknown, What};
-use eomgen_records::windows::{Window, Windows, judged};
+use crate::model::unknowns::{Unknown, What, expected_input_delay};
+use eomgen_records::windows::{LONGEST_DELAY, LONGEST_LEAD, Window, Windows, judged};
 
 /// The sensors' part of the unknowns.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,6 +34,8 @@ pub struct Shooting<'a> {
     pub noise: &'a [f64],
     /// The unknowns.
     pub unknowns: &'a [Unknown],
+    /// The delay of the input where it is not estimated, s.
+    pub input_delay: f64,
     /// The range of each state, where initial states are estimated.
     pub ranges: Option<&'a [f64]>,
     /// The part of each window that is compared, from its beginning.
@@ -74,6 +76,7 @@ impl<'a> Shooting<'a> {
             windows,
             noise: &problem.noise,
             unknowns,
+            input_delay: expected_input_delay(&problem.dataset.inputs, model.specification()),
             ranges: problem.estimates_initial_states().then_some(ranges),
             part: 1.0,
             prior_weight: 1.0,
@@ -92,7 +95,7 @@ impl<'a> Shooting<'a> {
             match &unknown.what {
                 What::Parameter(name) => self.model.set(&mut values, name, *value),
                 What::Inverse(name) => self.model.set(&mut values, name, 1.0 / value),
-                What::Gain(_) | What::Bias(_) | What::Delay(_) => {}
+                What::Gain(_) | What::Bias(_) | What::Delay(_) | What::InputDelay => {}
             }
         }
         values
@@ -107,12 +110,30 @@ impl<'a> Shooting<'a> {
             bias: expected().map(|sensor| sensor.bias).collect(),
             delay: expected().map(|sensor| sensor.delay).collect(),
         };
+        let mut input_delay = self.input_delay;
         for (unknown, value) in self.unknowns.iter().zip(theta) {
             match unknown.what {
                 What::Parameter(_) | What::Inverse(_) => {}
+                What::InputDelay => input_delay = *value,
                 What::Gain(channel) => sensors.gain[channel] = *value,
                 What::Bias(channel) => sensors.bias[channel] = *value,
                 What::Delay(channel) => sensors.delay[channel] = *value,
+            }
+        }
+        if input_delay != 0.0 {
+            // What acts late is seen late by all, as far as windows leave room for it.
+            let times = self
+                .windows
+                .list
+                .first()
+                .map_or(&[][..], |window| &window.times);
+            let step = match times {
+                [first, .., last] => (last - first) / (times.len() - 1) as f64,
+                _ => 0.0,
+            };
+            for delay in &mut sensors.delay {
+                let late = *delay + input_delay;
+                *delay = late.clamp(-LONGEST_LEAD * step, LONGEST_DELAY * step);
             }
         }
         sensors

@@ -2,7 +2,8 @@
 //! parameters of the specification for both. A motor's torque constant that is off is such a gain, an
 //! amplifier's offset such a bias.
 //!
-//! A delay of all inputs is one of all sensors, which is estimated with them.
+//! A delay of the input is one of all sensors, and estimated as such: initial states are free, and no model
+//! depends on when a motion begins but by its inputs.
 
 use eomgen_model_spec::edit::{
     self, Edit, EditError, NewParameter, NewValue, Section, Substitution,
@@ -10,6 +11,9 @@ use eomgen_model_spec::edit::{
 use eomgen_model_spec::model::{Expr, ExprKind, Input, Model};
 use eomgen_model_spec::source::Source;
 use eomgen_records::dataset::{Expected, InputPriors};
+
+/// The effect of an input that acts later than declared.
+pub const INPUT_DELAY: &str = "input_delay";
 
 /// How an input acts otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -94,6 +98,12 @@ pub fn declared<'p>(
     });
     let mut all = all;
     all.find(|(input, fault, _)| fault.parameter(input) == parameter)
+}
+
+/// The input of whose delay a dataset speaks, and what it says.
+pub fn delayed_input(inputs: &[InputPriors]) -> Option<(&str, Expected)> {
+    let mut delayed = inputs.iter();
+    delayed.find_map(|input| Some((input.name.as_str(), input.delay?)))
 }
 
 /// The edits that put an expression in the place of an input wherever it stands.

@@ -5,9 +5,9 @@ use crate::ids::ChannelId;
 use crate::interval::Interval;
 use eomgen_model_spec::model::{Model, Parameter};
 
-use crate::model::input_faults::{InputFault, declared};
+use crate::model::input_faults::{InputFault, declared, delayed_input};
 use crate::thresholds;
-use eomgen_records::dataset::{Channel, Dataset, Expected};
+use eomgen_records::dataset::{Channel, Dataset, Expected, InputPriors};
 use eomgen_records::record::Record;
 use eomgen_records::samples::typical_step;
 use eomgen_records::windows::{LONGEST_DELAY, LONGEST_LEAD};
@@ -25,6 +25,8 @@ pub enum What {
     Bias(ChannelId),
     /// The delay of a channel, s.
     Delay(ChannelId),
+    /// The delay of the input, s, by which all channels are late.
+    InputDelay,
 }
 
 impl What {
@@ -40,7 +42,11 @@ impl What {
     pub fn stated(&self, value: f64) -> f64 {
         match self {
             Self::Inverse(_) => 1.0 / value,
-            Self::Parameter(_) | Self::Gain(_) | Self::Bias(_) | Self::Delay(_) => value,
+            Self::Parameter(_)
+            | Self::Gain(_)
+            | Self::Bias(_)
+            | Self::Delay(_)
+            | Self::InputDelay => value,
         }
     }
 }
@@ -145,11 +151,52 @@ pub fn of_null_model(dataset: &Dataset, model: &Model, values: &[(String, f64)])
         .train
         .first()
         .map_or(0.0, |record: &Record| typical_step(&record.times));
+    unknowns.extend(of_input_delay(dataset, model, step));
     let ids = ChannelId::first(dataset.channels.len());
     for (id, channel) in ids.zip(&dataset.channels) {
         unknowns.extend(of_sensor(id, channel, model, step));
     }
     unknowns
+}
+
+/// The delay of the input, if the dataset says how far it is known.
+fn of_input_delay(dataset: &Dataset, model: &Model, step: f64) -> Option<Unknown> {
+    let (input, expected) = delayed_input(&dataset.inputs)?;
+    let mean = expected_input_delay(&dataset.inputs, model);
+    let late = Interval::new(-LONGEST_LEAD * step, LONGEST_DELAY * step);
+    let what = (
+        What::InputDelay,
+        format!("the delay of the input `{input}`"),
+    );
+    let prior = NormalPrior {
+        mean,
+        sd: expected.sd,
+    };
+    (expected.sd > 0.0).then(|| Unknown {
+        limits: Interval::new(mean.min(0.0), late.high),
+        ..Unknown::declared(what, prior, late)
+    })
+}
+
+/// The delay of the input before anything is fitted, s. Where the specification describes sensors, a fit
+/// has written the delay of the input into theirs.
+pub fn expected_input_delay(inputs: &[InputPriors], model: &Model) -> f64 {
+    let said = delayed_input(inputs).and_then(|(_, delay)| delay.mean);
+    match model.sensors.is_empty() {
+        true => said.unwrap_or(0.0),
+        false => 0.0,
+    }
+}
+
+/// That a mean which the dataset gives is not added to what the specification has.
+pub fn note_of_input_delay(inputs: &[InputPriors], model: &Model) -> Option<String> {
+    let (input, expected) = delayed_input(inputs)?;
+    let mean = expected.mean.filter(|mean| *mean != 0.0)?;
+    (!model.sensors.is_empty()).then(|| {
+        format!(
+            "the delay of `{input}`, {mean} s in the dataset, is taken to be in those of [sensors] in the specification"
+        )
+    })
 }
 
 /// The unknowns of one sensor, with the priors of its channel, or the usual ones where that says

@@ -9,7 +9,7 @@ use crate::empirical::EMPIRICAL;
 use crate::experiment::next::{Experiments, NextExperiment};
 use crate::fit::fitted::Fit;
 use crate::fit::noise_floor::NoiseFloor;
-use crate::model::input_faults::declared;
+use crate::model::input_faults::{declared, delayed_input};
 use crate::model::problem::EstimationProblem;
 use crate::model::unknowns::{Unknown, What};
 use crate::report::quantity::{estimate, quantity};
@@ -208,6 +208,10 @@ pub(crate) fn nuisances(problem: &EstimationProblem<'_>, fit: &Fit) -> Vec<Nuisa
             What::Gain(at) => (problem.dataset.channels[*at].name.clone(), Some("gain")),
             What::Bias(at) => (problem.dataset.channels[*at].name.clone(), Some("bias")),
             What::Delay(at) => (problem.dataset.channels[*at].name.clone(), Some("delay")),
+            What::InputDelay => (
+                delayed_input(&problem.dataset.inputs)?.0.to_owned(),
+                Some("delay"),
+            ),
         };
         Some(Nuisance {
             of,
@@ -250,7 +254,7 @@ fn named(problem: &EstimationProblem<'_>, fit: &Fit, what: &What) -> Option<(Str
             let unit = problem.dataset.channels[*at].unit.clone();
             Some(("bias".to_owned(), 1.0, unit))
         }
-        What::Delay(_) => Some(("delay".to_owned(), 1.0, "s".to_owned())),
+        What::Delay(_) | What::InputDelay => Some(("delay".to_owned(), 1.0, "s".to_owned())),
         What::Parameter(name) => {
             let mut parameters = fit.model.specification().parameters.iter();
             let parameter = parameters.find(|p| p.name == *name)?;

@@ -16,6 +16,7 @@ use crate::model::channel_checks;
 use crate::model::input_faults::with_declared;
 use crate::model::problem::EstimationProblem;
 use crate::model::stop::Stop;
+use crate::model::unknowns::note_of_input_delay;
 use crate::report::discovery::{
     bound_notes, closure, effects, gap, nuisances, refitted, rejected, sensors, steps,
 };
@@ -72,6 +73,10 @@ pub fn compare(
     };
     let nuisances = nuisances(&problem, &fit);
     let mut notes = [dataset.notes.clone(), bound_notes(&nuisances)].concat();
+    notes.extend(note_of_input_delay(
+        &dataset.inputs,
+        fit.model.specification(),
+    ));
     notes.extend(contradicting(&problem, &fit, floor.rms, progress));
     Ok(Comparison {
         has_gap: !fit.is_at_floor(floor.rms),
@@ -179,13 +184,20 @@ pub fn discover_until(
     let gap = gap(&problem, null, Some(best), &floor);
     let nuisances = nuisances(&problem, best);
     let mut notes = [problem.dataset.notes.clone(), bound_notes(&nuisances)].concat();
+    notes.extend(note_of_input_delay(
+        &problem.dataset.inputs,
+        null.model.specification(),
+    ));
     if let Some(unfinished) = &found.unfinished {
         let most = stop.most().map_or(0.0, |most| most.as_secs_f64());
         let note = format!("the search was ended by its limit of {most} s: {unfinished}");
         progress(&format!("note: {note}"));
         notes.push(note);
     }
-    notes.extend(contradicting(&problem, best, floor.rms, progress));
+    // Each record alone takes as long as all together: not after a limit.
+    if found.unfinished.is_none() {
+        notes.extend(contradicting(&problem, best, floor.rms, progress));
+    }
     stop.check()?;
     let is_sure =
         !Left::of(&gap, Stage::After).is_much() && !nuisances.iter().any(Nuisance::is_at_bound);
@@ -220,18 +232,14 @@ pub fn discover_until(
     })
 }
 
-/// Which records contradict each other, where a fit of all leaves more than the floor. `progress` is
-/// told.
+/// Which records contradict each other. `progress` is told.
 fn contradicting(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
     floor: f64,
     progress: &Progress<'_>,
 ) -> Vec<String> {
-    if fit.is_at_floor(floor) {
-        return Vec::new();
-    }
-    let found = contradictions(problem, fit);
+    let found = contradictions(problem, fit, floor);
     for sentence in &found {
         progress(&format!("note: {sentence}"));
     }

@@ -42,7 +42,7 @@ impl Summary {
     pub(crate) fn of_discovery(discovery: &Discovery) -> Self {
         let gap = &discovery.compared.gap;
         let [before, after] = [Stage::Before, Stage::After].map(|stage| Left::of(gap, stage));
-        match discovery.verdict {
+        let answer = match discovery.verdict {
             Verdict::NoSignificantGap => Self {
                 first: "The model explains the records; nothing is missing that they could show."
                     .to_owned(),
@@ -59,6 +59,18 @@ impl Summary {
                 ),
             },
             Verdict::EffectsFound => found(discovery, &before, &after),
+        };
+        match (&discovery.unfinished, discovery.verdict) {
+            (None, _) => answer,
+            (Some(unfinished), Verdict::EffectsFound) => Self {
+                rest: format!("{} The search was ended by its limit: {unfinished}.", answer.rest),
+                ..answer
+            },
+            (Some(unfinished), _) => Self {
+                first: "Something is missing, and the search was ended by its limit before it was found."
+                    .to_owned(),
+                rest: format!("{} What is known: {unfinished}.", answer.rest),
+            },
         }
     }
 }

@@ -7,6 +7,7 @@ use eomgen_model_spec::source::Source;
 
 use crate::error::DiscoverError;
 use crate::fit::fitted::Fit;
+use crate::model::input_faults::delayed_input;
 use crate::model::problem::EstimationProblem;
 use crate::model::unknowns::What;
 use crate::search::found::Accepted;
@@ -100,14 +101,21 @@ fn sensors(problem: &EstimationProblem<'_>, fit: &Fit, at_all: bool) -> Vec<Edit
     let sensors = shooting.sensors(&fit.train.estimate.theta);
     let moved = |channel: ChannelId| {
         fit.unknowns().any(|(id, unknown)| {
-            let own = matches!(unknown.what, What::Gain(c) | What::Bias(c) | What::Delay(c) if c == channel);
+            let own = match unknown.what {
+                What::Gain(of) | What::Bias(of) | What::Delay(of) => of == channel,
+                What::InputDelay => true,
+                What::Parameter(_) | What::Inverse(_) => false,
+            };
             own && has_moved(fit, id, at_all)
         })
     };
+    // The delay of the input is written with each sensor, or with none.
+    let is_late = delayed_input(&problem.dataset.inputs).is_some();
+    let any = ChannelId::first(problem.dataset.channels.len()).any(moved);
     let all = &problem.dataset.channels;
     let channels = ChannelId::first(all.len()).zip(all);
     channels
-        .filter(|(id, _)| moved(*id))
+        .filter(|(id, _)| moved(*id) || (is_late && any))
         .map(|(id, channel)| {
             Edit::SetSensor(SetSensor {
                 channel: channel.name.clone(),

@@ -3,7 +3,7 @@
 use crate::catalogue::candidate::{self, Candidate};
 use crate::catalogue::input_faults;
 use crate::fit::fitted::Fit;
-use crate::model::input_faults::declared;
+use crate::model::input_faults::{INPUT_DELAY, declared, delayed_input};
 use crate::model::problem::EstimationProblem;
 use crate::model::unknowns::{Unknown, What};
 
@@ -45,6 +45,12 @@ pub fn dropped_prior(problem: &EstimationProblem<'_>, fit: &Fit) -> Vec<Candidat
                 problem.dataset.channels[*channel].name.clone(),
                 "a sensor is off by a constant",
                 "read it where its quantity is known",
+            ),
+            What::InputDelay => (
+                INPUT_DELAY,
+                delayed_input(inputs).map_or_else(String::new, |(input, _)| input.to_owned()),
+                "an input acts late",
+                "record what it does beside it, as a current beside its command",
             ),
             What::Delay(channel) => (
                 "sensor_delay",

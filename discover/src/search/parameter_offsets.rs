@@ -27,7 +27,7 @@ pub fn offsets(fit: &Fit, path: &str) -> Vec<Candidate> {
     let is_known = |name: &str| {
         let of = |unknown: &Unknown| match &unknown.what {
             What::Parameter(known) | What::Inverse(known) => known == name,
-            What::Gain(_) | What::Bias(_) | What::Delay(_) => false,
+            What::Gain(_) | What::Bias(_) | What::Delay(_) | What::InputDelay => false,
         };
         fit.unknowns.iter().any(of)
     };

@@ -50,7 +50,7 @@ pub fn bound<'d>(description: &'d Description, model: &Model) -> Result<Bound<'d
     lists(description, &mut found);
     let time = found.keep(time_unit(description));
     let inputs = inputs(description, model, &mut found);
-    let input_priors = input_priors(description, model);
+    let input_priors = input_priors(description, model, &mut found);
     let (mut channels, mut channel_units) = (Vec::new(), Vec::new());
     for entry in &description.channels {
         if let Some((channel, unit)) = found.keep(channel(entry, model)) {
@@ -107,8 +107,24 @@ pub fn inputs<'d>(
 }
 
 /// What is known of how inputs act. Their columns are checked elsewhere.
-fn input_priors(description: &Description, model: &Model) -> Vec<InputPriors> {
-    let says = |column: &&InputColumn| column.gain.is_some() || column.bias.is_some();
+fn input_priors(
+    description: &Description,
+    model: &Model,
+    found: &mut Diagnostics,
+) -> Vec<InputPriors> {
+    let says = |column: &&InputColumn| {
+        column.gain.is_some() || column.bias.is_some() || column.delay.is_some()
+    };
+    for column in &description.inputs {
+        // Sensors show it as theirs, and all inputs' alike.
+        if let (Some(delay), true) = (column.delay, model.inputs.len() > 1) {
+            found.push(
+                Diagnostic::error("the delay of one of several inputs is not estimated".to_owned())
+                    .at(delay.sd.span, "the model has more inputs")
+                    .help("a delay that all inputs have is one of all channels; shift the column of one that is late"),
+            );
+        }
+    }
     let of = |column: &InputColumn| {
         let mut inputs = model.inputs.iter();
         let input = inputs.find(|input| input.name == column.name.text)?;
@@ -118,6 +134,7 @@ fn input_priors(description: &Description, model: &Model) -> Vec<InputPriors> {
             name: input.name.clone(),
             gain: column.gain.map(|gain| known_before(gain, &one)),
             bias: column.bias.map(|bias| known_before(bias, &own)),
+            delay: column.delay.map(|delay| known_before(delay, &one)),
         })
     };
     description

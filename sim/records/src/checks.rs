@@ -59,8 +59,10 @@ pub fn examine(dataset: &Dataset, description: &Description) -> Result<Vec<Strin
 /// Expected delays are within what windows leave room for.
 fn delays(dataset: &Dataset, description: &Description) -> Result<(), Refusal> {
     let step = typical_step(&dataset.train[0].times);
-    for channel in &description.channels {
-        let Some(mean) = channel.delay.and_then(|delay| delay.mean) else {
+    let channels = description.channels.iter().map(|channel| channel.delay);
+    let inputs = description.inputs.iter().map(|input| input.delay);
+    for delay in channels.chain(inputs) {
+        let Some(mean) = delay.and_then(|delay| delay.mean) else {
             continue;
         };
         let samples = mean.value / step;

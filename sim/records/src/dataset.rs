@@ -47,8 +47,8 @@ pub struct TransducerPriors {
     pub delay: Option<Expected>,
 }
 
-/// What a dataset says of an input: what acts is gain * (recorded + bias). None where it says nothing, and
-/// what is recorded acts.
+/// What a dataset says of an input: what acts at t is gain * (recorded(t - delay) + bias). None where it
+/// says nothing, and what is recorded acts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InputPriors {
     /// The input's name.
@@ -57,6 +57,8 @@ pub struct InputPriors {
     pub gain: Option<Expected>,
     /// Of the bias, SI.
     pub bias: Option<Expected>,
+    /// Of the delay, s.
+    pub delay: Option<Expected>,
 }
 
 /// What is expected of a number, SI.

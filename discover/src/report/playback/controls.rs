@@ -61,6 +61,8 @@ fn control(
             let unit = &problem.dataset.channels[at.index()].unit;
             of_sensor(at.index(), "bias", 0.0, unit).control("bias")
         }
+        // It is that of every sensor, and no control moves them together.
+        What::InputDelay => html! {},
         What::Delay(at) => of_sensor(at.index(), "delay", 0.0, "s").control("delay"),
     }
 }

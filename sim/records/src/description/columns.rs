@@ -61,6 +61,8 @@ pub struct InputColumn {
     pub gain: Option<Prior>,
     /// What is known of its bias, in its unit.
     pub bias: Option<Prior>,
+    /// What is known of its delay, s.
+    pub delay: Option<Prior>,
 }
 
 /// `[channels.NAME]`
@@ -153,12 +155,13 @@ pub(super) fn input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<InputC
     if let Some(hold) = record.get("hold") {
         found.keep(hold.word(&[("zero-order", ())]));
     }
-    let [gain, bias] = ["gain", "bias"].map(|key| prior(&record, key, found));
+    let [gain, bias, delay] = ["gain", "bias", "delay"].map(|key| prior(&record, key, found));
     Some(InputColumn {
         name: entry.name.clone(),
         column: column(&record, found)?,
         gain: gain?,
         bias: bias?,
+        delay: delay?,
     })
 }
 

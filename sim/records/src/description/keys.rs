@@ -31,7 +31,7 @@ pub const FORMAT: [&str; 6] = ["separator", "decimal", "skip", "comment", "names
 pub const TIME: [&str; 4] = ["column", "unit", "every", "filter"];
 
 /// `[inputs.NAME]`
-pub const INPUT: [&str; 5] = ["column", "unit", "hold", "gain", "bias"];
+pub const INPUT: [&str; 6] = ["column", "unit", "hold", "gain", "bias", "delay"];
 
 /// `[channels.NAME]`
 pub const CHANNEL: [&str; 7] = [

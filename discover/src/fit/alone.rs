@@ -1,0 +1,114 @@
+//! Records fitted one by one, beside the fit of all together.
+
+use crate::fit::fitted::Fit;
+use crate::fit::full;
+use crate::fit::residuals::Residuals;
+use crate::model::problem::EstimationProblem;
+use crate::model::unknowns::{Unknown, What};
+use eomgen_records::dataset::Dataset;
+use eomgen_records::record::Record;
+use eomgen_records::windows::Windows;
+
+/// What a record says alone.
+pub struct Alone {
+    /// Its name.
+    pub name: String,
+    /// Its place in the dataset.
+    pub record: Place,
+    /// What the fit of all records leaves of it, in standard deviations.
+    pub together: f64,
+    /// What its own leaves.
+    pub rms: f64,
+    /// Its own estimates and their standard deviations, SI.
+    pub estimates: Vec<(f64, f64)>,
+}
+
+/// A record's place in the dataset.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// Among those to learn from.
+    Train(usize),
+    /// Among those to be judged by.
+    Test(usize),
+}
+
+impl Place {
+    /// The record there.
+    fn of(self, dataset: &Dataset) -> &Record {
+        match self {
+            Self::Train(place) => &dataset.train[place],
+            Self::Test(place) => &dataset.test[place],
+        }
+    }
+}
+
+/// Every record fitted by itself, its parameters as far off as it takes; those that can be.
+pub fn each_alone(problem: &EstimationProblem<'_>, fit: &Fit) -> Vec<Alone> {
+    let dataset = problem.dataset;
+    let train = (0..dataset.train.len()).map(Place::Train);
+    let all = train.chain((0..dataset.test.len()).map(Place::Test));
+    all.filter_map(|place| alone(problem, fit, place, None))
+        .collect()
+}
+
+/// A record fitted by itself, with an unknown more if there is one.
+pub fn alone(
+    problem: &EstimationProblem<'_>,
+    fit: &Fit,
+    place: Place,
+    more: Option<&Unknown>,
+) -> Option<Alone> {
+    let together = match place {
+        Place::Train(record) => left_of(&problem.train, &fit.train, record)?,
+        Place::Test(record) => left_of(&problem.test, &fit.test, record)?,
+    };
+    let record = place.of(problem.dataset);
+    let dataset = Dataset {
+        train: vec![record.clone()],
+        test: vec![record.clone()],
+        ..problem.dataset.clone()
+    };
+    let (path, text) = (&problem.path, &fit.texts.whole);
+    let mut own = EstimationProblem::new(&dataset, problem.order, path, text);
+    own.stop = problem.stop.clone();
+    own.states.clone_from(&problem.states);
+    let free = |unknown: &Unknown| match unknown.what {
+        What::Parameter(_) => Unknown {
+            bounds: unknown.limits,
+            ..unknown.clone()
+        },
+        _ => unknown.clone(),
+    };
+    let unknowns = fit.unknowns.iter().map(free).chain(more.cloned()).collect();
+    let mut theta = fit.train.estimate.theta.clone();
+    theta.extend(more.map(|unknown| unknown.start));
+    let found = full::fit(&own, fit.texts.clone(), unknowns, &theta).ok()?;
+    let estimates = found.train.estimate.theta.iter().zip(&found.sd);
+    Some(Alone {
+        record: place,
+        name: record.name.clone(),
+        together,
+        rms: found.train.rms,
+        estimates: estimates.map(|(value, sd)| (*value, *sd)).collect(),
+    })
+}
+
+/// The most that a fit leaves of any record, in standard deviations.
+pub fn most_left(problem: &EstimationProblem<'_>, fit: &Fit) -> f64 {
+    let train =
+        (0..problem.dataset.train.len()).filter_map(|k| left_of(&problem.train, &fit.train, k));
+    let test = (0..problem.dataset.test.len()).filter_map(|k| left_of(&problem.test, &fit.test, k));
+    train.chain(test).fold(0.0, f64::max)
+}
+
+/// The root mean square that a fit leaves of one record, in standard deviations.
+fn left_of(windows: &Windows<'_>, residuals: &Residuals, record: usize) -> Option<f64> {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for (window, values) in windows.list.iter().zip(&residuals.residuals) {
+        if window.record == record {
+            sum += values.iter().map(|r| r * r).sum::<f64>();
+            count += values.len() as f64;
+        }
+    }
+    (count > 0.0).then(|| f64::sqrt(sum / count))
+}
