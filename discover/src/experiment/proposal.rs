@@ -39,7 +39,11 @@ impl Proposal {
                         name: input.name.clone(),
                         waveform: form,
                         form: format!("{}, {:.0} % of its range", form.words(), 100.0 * size),
-                        values: held(&played(&shape, size, input, bounds), bounds.hold, times.len()),
+                        values: held(
+                            &played(&shape, size, input, bounds),
+                            bounds.hold,
+                            times.len(),
+                        ),
                     });
                 }
             }
