@@ -112,6 +112,7 @@ fn add_empirical(
             reason: format!("{}: {reason}", candidate.term),
             candidate,
             not_testable: false,
+            p_value: None,
         }),
     }
 }

@@ -341,7 +341,7 @@ impl Plan<'_> {
             }
             Some(What::Gain(_)) => shown("gain", value, "1"),
             Some(What::Bias(channel)) => shown("bias", value, &channels[*channel].unit),
-            Some(What::Delay(_)) => shown("delay", value, "s"),
+            Some(What::Delay(_) | What::InputDelay) => shown("delay", value, "s"),
             Some(What::Parameter(name) | What::Inverse(name)) => {
                 let model = self.context.fit.model.specification();
                 let parameter = model.parameters.iter().find(|of| of.name == *name)?;

@@ -1,6 +1,8 @@
 //! What all fits to one dataset share: its windows, the standard deviation of its channels' noise,
 //! and the models of specifications ready to run along them.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use eomgen_model_spec::source::Source;
 
 use crate::error::DiscoverError;
@@ -30,6 +32,30 @@ pub struct EstimationProblem<'d> {
     pub states: Vec<String>,
     /// By which all of it can be told to stop.
     pub stop: Stop,
+    /// How many hypotheses were judged by the test records.
+    pub judged: Judged,
+}
+
+/// How many hypotheses were judged by the test records, on all threads: so many p-values there are to
+/// choose from.
+#[derive(Debug, Default)]
+pub struct Judged(AtomicUsize);
+
+impl Judged {
+    /// One more.
+    pub fn count(&self) {
+        self.0.fetch_add(1, Ordering::Relaxed);
+    }
+
+    /// So many.
+    pub fn number(&self) -> usize {
+        self.0.load(Ordering::Relaxed)
+    }
+
+    /// A p-value over all of them (Bonferroni), however they depend on each other.
+    pub fn adjusted(&self, p_value: f64) -> f64 {
+        (p_value * self.number().max(1) as f64).min(1.0)
+    }
 }
 
 impl<'d> EstimationProblem<'d> {
@@ -55,6 +81,7 @@ impl<'d> EstimationProblem<'d> {
             order,
             path: path.to_owned(),
             stop: Stop::default(),
+            judged: Judged::default(),
         }
     }
 

@@ -34,7 +34,7 @@ impl What {
     pub fn parameter(&self) -> Option<&str> {
         match self {
             Self::Parameter(name) | Self::Inverse(name) => Some(name),
-            Self::Gain(_) | Self::Bias(_) | Self::Delay(_) => None,
+            Self::Gain(_) | Self::Bias(_) | Self::Delay(_) | Self::InputDelay => None,
         }
     }
 

@@ -10,7 +10,7 @@ use crate::experiment::next::{Experiments, NextExperiment};
 use crate::fit::fitted::Fit;
 use crate::fit::noise_floor::NoiseFloor;
 use crate::model::input_faults::{declared, delayed_input};
-use crate::model::problem::EstimationProblem;
+use crate::model::problem::{EstimationProblem, Judged};
 use crate::model::unknowns::{Unknown, What};
 use crate::report::quantity::{estimate, quantity};
 use crate::report::result::{
@@ -66,6 +66,7 @@ pub(crate) fn effects(
 
 /// The effects that were not, testable or not.
 pub(crate) fn rejected(
+    judged: &Judged,
     found: &Found,
     experiments: &Experiments,
     not_testable: bool,
@@ -89,6 +90,7 @@ pub(crate) fn rejected(
         reason: reason(of),
         experiment: of.candidate.experiment.clone(),
         next_experiment: next.clone(),
+        p_values: of.p_value.map(|p| (p, judged.adjusted(p))),
     })
     .collect()
 }
@@ -185,6 +187,7 @@ fn found_effect(
         parameters,
         term,
         statistics: effect.statistics.clone(),
+        adjusted_p_value: (effect.statistics.p_value).map(|p| problem.judged.adjusted(p)),
         order: candidate
             .order
             .clone()

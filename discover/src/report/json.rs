@@ -137,6 +137,8 @@ fn at(of: &EffectAt) -> Value {
 fn rejected(of: &RejectedEffect, files: Option<&[ExperimentFile]>) -> Value {
     let mut entry = at(&of.at);
     entry["reason"] = json!(of.reason);
+    entry["p_value"] = json!(of.p_values.map(|(own, _)| own));
+    entry["p_value_of_all"] = json!(of.p_values.map(|(_, all)| all));
     let Some(files) = files else { return entry };
     entry["experiment"] = json!(of.experiment);
     if let Some(next) = &of.next_experiment {
@@ -156,6 +158,8 @@ fn effect(of: &FoundEffect, files: &[ExperimentFile]) -> Value {
         "standard_errors": of.statistics.held_out_errors,
         "information": of.statistics.information,
         "t": of.statistics.t,
+        "p_value": of.statistics.p_value,
+        "p_value_of_all": of.adjusted_p_value,
     });
     if let Some(order) = &of.order {
         entry["order"] = json!({"per_turn_of": order.angle, "order": order.order});

@@ -251,6 +251,8 @@ pub struct FoundEffect {
     pub term: String,
     /// What spoke for it.
     pub statistics: TestStatistics,
+    /// Its p-value over all hypotheses that were judged by the test records.
+    pub adjusted_p_value: Option<f64>,
     /// With what it repeats.
     pub order: Option<ShaftOrder>,
     /// What would separate it from its equivalents, where it has some.
@@ -270,6 +272,9 @@ pub struct RejectedEffect {
     pub experiment: String,
     /// What to play for that, where it was computed.
     pub next_experiment: Option<NextExperiment>,
+    /// The probability that noise alone lets the test records speak for it as much, and the same over all
+    /// hypotheses that were judged by these; none where it was not fitted.
+    pub p_values: Option<(f64, f64)>,
 }
 
 /// A step of the search.

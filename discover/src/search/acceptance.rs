@@ -19,6 +19,9 @@ pub struct TestStatistics {
     pub t: f64,
     /// What the effect does to the channel that shows it best, in standard deviations.
     pub size: f64,
+    /// The probability that noise alone lets the test records speak for it as much; none where that was
+    /// not computed.
+    pub p_value: Option<f64>,
 }
 
 /// An unknown of an effect.
@@ -103,6 +106,7 @@ pub fn test_statistics(before: &Fit, after: &Fit, own: &[EffectUnknown]) -> Test
         information: fall / (2.0 * whitening),
         t: significance(after, own),
         size: size(before, after),
+        p_value: None,
     }
 }
 

@@ -44,6 +44,7 @@ pub fn eliminate_backwards(
             candidate,
             reason,
             not_testable: false,
+            p_value: None,
         });
         found.last = Some(fit);
     }

@@ -11,6 +11,7 @@ use crate::search::acceptance::{EffectUnknown, TestStatistics, acceptance_test, 
 use crate::search::hypothesis::{self, Hypothesis, own_unknowns};
 use crate::search::pool::Pool;
 use crate::search::rejection::Rejection;
+use crate::search::split_sample::SplitSample;
 
 /// A hypothesis fitted in full.
 pub struct FittedHypothesis {
@@ -25,6 +26,8 @@ pub struct FittedHypothesis {
     /// Whether they explain the records, though their sizes may be uncertain: another name of what
     /// is accepted.
     pub explains: bool,
+    /// The probability that noise alone lets the test records speak for them as much.
+    pub p_value: Option<f64>,
 }
 
 /// Preliminary fits of hypotheses, side by side; the best first.
@@ -73,12 +76,22 @@ pub fn full_fits(
         })
         .collect();
     let mut fitted_hypotheses = Vec::new();
+    let held_out = match fits.is_empty() {
+        true => None,
+        false => SplitSample::of(pool.context.problem, pool.context.fit),
+    };
     for (hypothesis, new) in fits {
         let label = pool.label(&hypothesis.responses);
         match new {
             Ok(new) => {
                 let own = own_unknowns(pool, &hypothesis);
+                let p_value = held_out.as_ref().and_then(|of| of.p_value(&new, &own));
+                pool.context.problem.judged.count();
                 let verdict = acceptance_test(pool.context.fit, &new, &own);
+                let verdict = verdict.map(|statistics| TestStatistics {
+                    p_value,
+                    ..statistics
+                });
                 let explains = explains(pool.context.fit, &new, &own).is_ok();
                 let outcome = verdict
                     .as_ref()
@@ -94,6 +107,7 @@ pub fn full_fits(
                     fit: new,
                     verdict,
                     explains,
+                    p_value,
                 });
             }
             Err(error) => (pool.context.progress)(&format!("  {label}: {error}")),

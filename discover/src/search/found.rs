@@ -38,6 +38,9 @@ pub struct Rejected {
     pub reason: String,
     /// Whether the record could not have shown it.
     pub not_testable: bool,
+    /// The probability that noise alone lets the test records speak for it as much; none where it was not
+    /// fitted.
+    pub p_value: Option<f64>,
 }
 
 /// What the search found.

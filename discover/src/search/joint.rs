@@ -8,6 +8,7 @@ use crate::search::excitation_window::ExcitationWindow;
 use crate::search::fitted::FittedHypothesis;
 use crate::search::round::Round;
 use crate::search::selected::{Selected, selected};
+use crate::search::split_sample::SplitSample;
 use crate::search::tested::TestedPool;
 
 /// What is accepted together of what was tested, if it explains most of the residual.
@@ -38,6 +39,11 @@ pub fn joint_acceptance(round: &Round<'_>, tested: &[TestedPool]) -> Option<Sele
     });
     found.fitted.own = first.own.iter().cloned().chain(second).collect();
     found.fitted.verdict = acceptance_test(round.context.fit, &found.fitted.fit, &found.fitted.own);
+    if let Ok(statistics) = &mut found.fitted.verdict {
+        let held_out = SplitSample::of(round.context.problem, round.context.fit);
+        statistics.p_value =
+            held_out.and_then(|of| of.p_value(&found.fitted.fit, &found.fitted.own));
+    }
     let is_accepted =
         found.fitted.verdict.is_ok() && round.context.explains_most(&found.fitted.fit);
     found.candidates.insert(0, candidate);

@@ -3,7 +3,7 @@
 //!
 //! The files, in the order in which they read each other: [`response`] by
 //! [`mod@variational_response`] or [`mod@perturbed_response`] ([`mod@responses`] chooses),
-//! [`screening`], [`acceptance`]; `motion_of_fit`, [`context`], [`pool`], [`hypothesis`], [`fitted`];
+//! [`screening`], [`acceptance`], [`split_sample`]; `motion_of_fit`, [`context`], [`pool`], [`hypothesis`], [`fitted`];
 //! `shape_restarts`, `singles`, `pairs`; [`tested`], [`parameter_offsets`], [`selected`],
 //! `alternatives`; `excitation_window`, `dropped_priors`, `round`, `joint`, `answer`, `unfinished`;
 //! [`found`], `rejected`, [`backward_elimination`].
@@ -33,6 +33,7 @@ pub mod screening;
 pub mod selected;
 mod shape_restarts;
 mod singles;
+pub mod split_sample;
 pub mod tested;
 mod unfinished;
 pub mod variational_response;

@@ -13,6 +13,7 @@ struct Reason {
     text: String,
     not_testable: bool,
     is_of_fit: bool,
+    p_value: Option<f64>,
 }
 
 /// Notes what a round did not take, in the place of what an earlier round said of it. Within a round
@@ -30,6 +31,7 @@ pub fn note_rejected(rejected: &mut Vec<Rejected>, round: &[TestedPool]) {
                 candidate: candidate.clone(),
                 reason: reason.text,
                 not_testable: reason.not_testable,
+                p_value: reason.p_value,
             });
             if reason.is_of_fit {
                 fitted.push(label);
@@ -48,6 +50,7 @@ fn reasons(tested: &TestedPool) -> Vec<(&Candidate, Reason)> {
                 text: reason.to_string(),
                 not_testable: true,
                 is_of_fit: false,
+                p_value: None,
             };
             (&tested.candidates[*candidate], reason)
         })
@@ -77,6 +80,7 @@ fn of_fit(fitted: &FittedHypothesis) -> Reason {
         text,
         not_testable: false,
         is_of_fit: true,
+        p_value: fitted.p_value,
     }
 }
 
@@ -103,5 +107,6 @@ fn of_screening(tested: &TestedPool, id: ResponseId) -> Reason {
         text,
         not_testable,
         is_of_fit: false,
+        p_value: None,
     }
 }

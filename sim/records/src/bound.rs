@@ -3,7 +3,7 @@
 use crate::description::Description;
 use crate::description::columns::{ChannelColumn, ColumnKey, InputColumn, Prior};
 use crate::description::motion::InitialState;
-use crate::experiment::{self, ExperimentBounds};
+use crate::experiment::{self, ExperimentBounds, Played};
 use crate::units::unit;
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
 use eomgen_model_spec::dimension::Dimension;
@@ -38,6 +38,8 @@ pub struct Bound<'d> {
     pub uncertain: Vec<Uncertain>,
     /// Within what bounds the next experiment may be played.
     pub experiment: ExperimentBounds,
+    /// How it is written down.
+    pub played: Played,
 }
 
 /// Binds a dataset file to a model.
@@ -63,9 +65,17 @@ pub fn bound<'d>(description: &'d Description, model: &Model) -> Result<Bound<'d
     for (name, relative) in &description.uncertain {
         uncertain.extend(found.keep(doubted(name, *relative, model)));
     }
-    let experiment = experiment::bound(description, model, (&inputs, &channel_units), &mut found);
+    let input_units: Vec<Option<Unit>> = (inputs.iter())
+        .map(|fed| fed.as_ref().map(|(_, unit)| unit.clone()))
+        .collect();
+    let units = (&input_units[..], &channel_units[..]);
+    let experiment = experiment::bound(description, model, units, &mut found);
     match time {
         Some(time) if found.is_empty() => Ok(Bound {
+            played: Played {
+                time: time.clone(),
+                inputs: input_units,
+            },
             time,
             inputs,
             input_priors,

@@ -6,7 +6,6 @@ use eomgen_model_spec::suggest::did_you_mean;
 use eomgen_model_spec::unit::Unit;
 
 use crate::description::Description;
-use crate::description::columns::ColumnKey;
 use crate::description::experiment::NumberRange;
 
 /// The most samples of an experiment: as many as a record may have.
@@ -45,24 +44,11 @@ pub struct Played {
     pub inputs: Vec<Option<Unit>>,
 }
 
-impl Played {
-    /// With the columns of the records.
-    pub(crate) fn of(time: &Unit, inputs: &[Option<(&ColumnKey, Unit)>]) -> Self {
-        let units = inputs.iter();
-        Self {
-            time: time.clone(),
-            inputs: units
-                .map(|fed| fed.as_ref().map(|(_, unit)| unit.clone()))
-                .collect(),
-        }
-    }
-}
-
 /// The bounds of a dataset file for a model. `units`: of the inputs' and of the channels' columns.
 pub(crate) fn bound(
     description: &Description,
     model: &Model,
-    (inputs, channels): (&[Option<(&ColumnKey, Unit)>], &[Unit]),
+    (inputs, channels): (&[Option<Unit>], &[Unit]),
     found: &mut Diagnostics,
 ) -> ExperimentBounds {
     let said = &description.experiment;
@@ -90,7 +76,7 @@ pub(crate) fn bound(
             .iter()
             .position(|of| of.name == input.name.text);
         let unit = place.and_then(|place| inputs.get(place)?.as_ref());
-        let (Some(place), Some((_, unit))) = (place, unit) else {
+        let (Some(place), Some(unit)) = (place, unit) else {
             let known = description.inputs.iter();
             let known = known.map(|column| column.name.text.as_str());
             found.push(

@@ -10,7 +10,6 @@ use crate::dataset::{Dataset, Start};
 use crate::decimation::Decimation;
 use crate::description::Description;
 use crate::description::records::Stretch;
-use crate::experiment::Played;
 use crate::gaps::unbroken;
 use crate::inputs::notes_of_inputs;
 use crate::record::{Columns, Record};
@@ -64,7 +63,7 @@ pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
         },
         uncertain: bound.uncertain,
         experiment: bound.experiment,
-        played: Played::of(&bound.time, &bound.inputs),
+        played: bound.played.clone(),
         notes: notes_of_inputs(&description, model),
     };
     let decimation = Decimation::new(description.time.every, description.time.filter);

@@ -4,7 +4,7 @@ mod arm;
 mod effects_files;
 mod effects_found;
 mod effects_placed;
-mod next_experiment;
 mod friction_that_stops;
+mod next_experiment;
 mod nothing_compared;
 mod off_the_list;

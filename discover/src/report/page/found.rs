@@ -65,8 +65,19 @@ fn effect(effect: &FoundEffect, files: &[ExperimentFile]) -> Markup {
                 "with it " (percent(effect.statistics.held_out))
                 " less is left of the held-out records"
                 ", " (plain(effect.statistics.held_out_errors, 2)) " standard errors"
+                @if let Some(p) = effect.adjusted_p_value {
+                    "; noise alone comes to as much, for any of all that was fitted, with a probability of " (probability(p))
+                }
             }
         }
+    }
+}
+
+/// A probability in words: what is far below anything one would bet on is only said to be so.
+fn probability(p: f64) -> String {
+    match p < 1e-6 {
+        true => "less than one in a million".to_owned(),
+        false => plain(p, 2),
     }
 }
 

@@ -54,6 +54,7 @@ fn discovery(text: &str) -> Discovery {
         reason: name(),
         experiment: name(),
         next_experiment: Some(next_experiment(text)),
+        p_values: Some((0.2, 1.0)),
     };
     Discovery {
         verdict: Verdict::EffectsFound,
@@ -70,7 +71,9 @@ fn discovery(text: &str) -> Discovery {
                 information: 40.0,
                 t: 8.0,
                 size: 3.0,
+                p_value: Some(1e-3),
             },
+            adjusted_p_value: Some(0.02),
             order: None,
             experiment: Some(name()),
             next_experiment: Some(next_experiment(text)),

@@ -1,0 +1,202 @@
+//! P-values of effects that are not there, on records of a rotor in which nothing is hidden: they are
+//! spread evenly, or larger. And of one that is there.
+
+use std::path::Path;
+
+use eomgen_discover::catalogue::candidate::candidates;
+use eomgen_discover::catalogue::effects;
+use eomgen_discover::catalogue::sites::sites;
+use eomgen_discover::catalogue::usual_motion::UsualMotion;
+use eomgen_discover::fit::null_model::null_fit;
+use eomgen_discover::ids::ResponseId;
+use eomgen_discover::model::problem::EstimationProblem;
+use eomgen_discover::search::context::Context;
+use eomgen_discover::search::fitted::{full_fits, preliminary_fits};
+use eomgen_discover::search::hypothesis::Hypothesis;
+use eomgen_discover::search::pool::Pool;
+use eomgen_discover::search::screening::screening;
+use eomgen_model_spec::source::Source;
+use eomgen_records::read_dataset;
+
+const SPECIFICATION: &str = r#"
+[model]
+name = "rotor"
+
+[parameters]
+J = { value = 0.02, unit = "kg m^2", min = 0 }
+c = { value = 0.02, unit = "N m s", min = 0 }
+
+[coordinates]
+x = { unit = "rad" }
+
+[inputs]
+u = { unit = "N m" }
+
+[kinetic]
+rotor = "1/2*J*dot(x)^2"
+
+[dissipation]
+bearing = "1/2*c*dot(x)^2"
+
+[forces]
+motor = { on = "x", value = "u" }
+"#;
+
+const DATASET: &str = r#"
+[records]
+train = ["train.csv"]
+test = ["test.csv"]
+
+[time]
+column = "t"
+unit = "s"
+
+[inputs.u]
+column = "u"
+unit = "N m"
+
+[channels.x]
+column = "x"
+unit = "rad"
+noise = 1e-3
+
+[initial]
+state = "estimate"
+
+[uncertain]
+J = { relative = 0.05 }
+
+[windows]
+length = 0.4
+"#;
+
+const NOISE: f64 = 1e-3;
+
+/// Normal numbers (Box and Muller 1958) from a multiplicative generator (Park and Miller 1988).
+struct Normal(u64);
+
+impl Normal {
+    fn uniform(&mut self) -> f64 {
+        self.0 = self.0 * 48_271 % 2_147_483_647;
+        self.0 as f64 / 2_147_483_647.0
+    }
+
+    fn next(&mut self) -> f64 {
+        let (a, b) = (self.uniform(), self.uniform());
+        (-2.0 * a.ln()).sqrt() * (2.0 * std::f64::consts::PI * b).cos()
+    }
+}
+
+/// A record by the midpoint rule, with a constant force besides.
+fn record(normal: &mut Normal, turn: f64, force: f64) -> String {
+    let (sample, samples, parts) = (0.01, 200, 20);
+    let h = sample / f64::from(parts);
+    let (mut x, mut v) = (0.0, 0.0);
+    let mut text = "t,u,x\n".to_owned();
+    for number in 0..samples {
+        let t = sample * f64::from(number);
+        let u = 0.5 * (2.1 * t + turn).cos() - 0.25 * (7.0 * t + turn).sin();
+        text += &format!("{t:.3},{u:.12},{:.12}\n", x + NOISE * normal.next());
+        for _ in 0..parts {
+            let acceleration = |v: f64| (u + force - 0.02 * v) / 0.02;
+            let middle = v + 0.5 * h * acceleration(v);
+            x += h * middle;
+            v += h * acceleration(middle);
+        }
+    }
+    text
+}
+
+/// Effects of one coordinate.
+const NAMES: [&str; 4] = [
+    "force_offset",
+    "quadratic_drag",
+    "asymmetric_friction",
+    "elastic_restraint",
+];
+
+/// The p-value of each of `NAMES`, where it takes anything away.
+fn p_values(seed: u64, force: f64) -> Vec<Option<f64>> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut normal = Normal(12_345 + 7_919 * seed);
+    for _ in 0..20 {
+        normal.uniform();
+    }
+    for (name, turn) in [("train.csv", 0.3), ("test.csv", 1.7)] {
+        let text = record(&mut normal, turn + 0.1 * seed as f64, force);
+        std::fs::write(folder.path().join(name), text).expect("a file");
+    }
+    std::fs::write(folder.path().join("dataset.toml"), DATASET).expect("a file");
+    let source = Source::new("rotor.toml", SPECIFICATION);
+    let model = eomgen_model_spec::check(source).expect("a model").model;
+    let dataset = read_dataset(Path::new(&folder.path().join("dataset.toml")), &model);
+    let dataset = dataset.unwrap_or_else(|refusal| panic!("{refusal}"));
+    let problem = EstimationProblem::new(&dataset, None, "rotor.toml", SPECIFICATION);
+    let fit = null_fit(&problem, SPECIFICATION).expect("a fit");
+    let mut all = candidates(
+        &model,
+        &effects(None).expect("the catalogue"),
+        &sites(&model),
+        &UsualMotion::default(),
+    );
+    all.retain(|candidate| NAMES.contains(&candidate.effect.as_str()));
+    all.sort_by_key(|candidate| NAMES.iter().position(|name| *name == candidate.effect));
+    let screening = screening(&problem, &fit, &all, 1.0);
+    let context = Context {
+        problem: &problem,
+        fit: &fit,
+        floor: 1.0,
+        progress: &|_| {},
+    };
+    let pool = Pool::new(context, &all, &screening, true);
+    let of = |candidate: usize| {
+        let responses = ResponseId::first(screening.responses.len());
+        let response = { responses }
+            .find(|response| screening.responses[*response].candidate.index() == candidate)?;
+        let hypothesis = Hypothesis {
+            sizes: screening.responses[response].values.clone(),
+            responses: vec![response],
+            deleted: None,
+        };
+        let fitted = full_fits(&pool, preliminary_fits(&pool, vec![hypothesis]));
+        fitted.first()?.p_value
+    };
+    (0..NAMES.len()).map(of).collect()
+}
+
+#[test]
+fn p_values_of_what_is_not_there_are_even_or_larger() {
+    let cases = 60;
+    let all: Vec<Vec<Option<f64>>> = (1..=cases).map(|seed| p_values(seed, 0.0)).collect();
+    let mut smallest: Vec<f64> = Vec::new();
+    for (place, name) in NAMES.iter().enumerate() {
+        let own: Vec<f64> = all.iter().filter_map(|of| of[place]).collect();
+        println!("{name}: {own:.3?}");
+        is_even(name, &own);
+        // What must not be negative comes out as nothing in half of the cases.
+        assert!(own.len() as u64 > cases / 4, "{name}: {}", own.len());
+    }
+    for of in &all {
+        let of: Vec<f64> = of.iter().flatten().copied().collect();
+        let least = of.iter().copied().fold(1.0, f64::min);
+        smallest.push((least * of.len() as f64).min(1.0));
+    }
+    is_even("the smallest of all, adjusted", &smallest);
+}
+
+/// No more p-values are below a level than chance allows: two and a half standard errors.
+fn is_even(name: &str, p_values: &[f64]) {
+    let count = p_values.len() as f64;
+    for level in [0.02, 0.05, 0.1, 0.2, 0.5] {
+        let below = p_values.iter().filter(|p| **p <= level).count() as f64;
+        let most = count * level + 2.5 * (count * level * (1.0 - level)).sqrt();
+        println!("{name}: {below} of {count} at {level}, at most {most:.1}");
+        assert!(below <= most, "{name}: {below} of {count} at {level}");
+    }
+}
+
+#[test]
+fn the_p_value_of_what_is_there_is_small() {
+    let own = p_values(1, 2e-2)[0].expect("a p-value");
+    assert!(own < 1e-6, "{own}");
+}
