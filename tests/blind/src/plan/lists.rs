@@ -228,6 +228,9 @@ pub fn nothings(seed: u64) -> Vec<Case> {
     cases
 }
 
+/// An effect and where it is.
+type Placed<'a> = (Effect, &'a str);
+
 /// Two effects, both plain.
 pub fn pairs(seed: u64, draw: &mut Draw) -> Vec<Case> {
     use Effect::{
@@ -274,27 +277,26 @@ pub fn pairs(seed: u64, draw: &mut Draw) -> Vec<Case> {
         ),
         (Pendulum, (CoulombFriction, "theta"), (SensorBias, "theta")),
     ];
-    let pair =
-        |(number, (machine, first, second)): (usize, (Kind, (Effect, &str), (Effect, &str)))| {
-            let mut level = || draw.one_of(&[6.0, 10.0, 15.0]);
-            let (one, other) = (level(), level());
-            let hidden = vec![
-                planned(first.0, first.1, one, draw),
-                planned(second.0, second.1, other, draw),
-            ];
-            let mut made = case(Group::Pair, machine, Manner::Usual, hidden);
-            for planned in &mut made.hidden {
-                if matches!(machine, Kind::TwoBodies { .. })
-                    && planned.hidden.effect == StiffnessNonlinearity
-                {
-                    planned.hidden.sign = 1.0;
-                }
+    let pair = |(number, (machine, first, second)): (usize, (Kind, Placed<'_>, Placed<'_>))| {
+        let mut level = || draw.one_of(&[6.0, 10.0, 15.0]);
+        let (one, other) = (level(), level());
+        let hidden = vec![
+            planned(first.0, first.1, one, draw),
+            planned(second.0, second.1, other, draw),
+        ];
+        let mut made = case(Group::Pair, machine, Manner::Usual, hidden);
+        for planned in &mut made.hidden {
+            if matches!(machine, Kind::TwoBodies { .. })
+                && planned.hidden.effect == StiffnessNonlinearity
+            {
+                planned.hidden.sign = 1.0;
             }
-            if number % 2 == 1 {
-                made.nuisances = Nuisances::FULL;
-            }
-            made
-        };
+        }
+        if number % 2 == 1 {
+            made.nuisances = Nuisances::FULL;
+        }
+        made
+    };
     list.into_iter().enumerate().map(pair).collect()
 }
 
