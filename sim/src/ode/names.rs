@@ -48,7 +48,7 @@ impl Names<'_> {
 /// Dry friction and its like.
 const STICKS: &str = "there it sticks, as dry friction holds a body at rest, which is not followed \
     here (by adams, with impacts, where the speed holds piecewise functions, and for exponents). \
-    Take the solver rk, or write a smooth law, tanh(v/v_0) with a small speed v_0 for sign(v)";
+    Take the solver rk in place of adams, else write a smooth law, tanh(v/v_0) with a small speed v_0 for sign(v)";
 
 /// A force that jumps at a place.
 const CHATTERS: &str = "there it chatters, as the forces on both sides lead back to it. Let what \
