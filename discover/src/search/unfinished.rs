@@ -19,7 +19,10 @@ pub fn unfinished(tested: &[TestedPool]) -> String {
         a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
     });
     let Some((pool, best)) = best else {
-        return "no effect was fitted by then".to_owned();
+        return match promising(tested) {
+            Some(name) => format!("no effect was fitted by then; {name} promised most"),
+            None => "no effect was fitted by then".to_owned(),
+        };
     };
     let names = best.responses.iter().map(|response| {
         let candidate = pool.screening.responses[*response].candidate;
@@ -31,4 +34,14 @@ pub fn unfinished(tested: &[TestedPool]) -> String {
         names.join(" and "),
         best.fit.test.rms
     )
+}
+
+/// What promised to explain most where candidates were screened.
+fn promising(tested: &[TestedPool]) -> Option<String> {
+    let all = tested.iter().flat_map(|pool| {
+        let responses = pool.screening.responses.iter();
+        responses.map(move |response| (pool, response))
+    });
+    let best = all.max_by(|(_, a), (_, b)| a.decrease.total_cmp(&b.decrease));
+    best.map(|(pool, response)| pool.candidates[response.candidate].label())
 }

@@ -29,16 +29,27 @@ pub(crate) fn check(dataset: &Dataset, description: &Description) -> Result<Vec<
     let mut notes = Vec::new();
     for (set, records) in [("training", &dataset.train), ("test", &dataset.test)] {
         if let Some(length) = description.windows.length {
-            for record in records {
-                long_enough(length, record).map_err(wrong)?;
-                holes(length, record)?;
-            }
             whole_window(length, set, records).map_err(wrong)?;
         }
         notes.extend(compared(dataset, set, records)?);
         moving(dataset, description, set, records).map_err(wrong)?;
     }
     Ok(notes)
+}
+
+/// A record, before it is parted at what was lost, can be cut into windows.
+///
+/// # Errors
+/// Windows that hold hardly a sample, a record of which most is missing.
+pub(crate) fn can_be_cut(record: &Record, description: &Description) -> Result<(), Refusal> {
+    let wrong = |diagnostic: Diagnostic| Diagnostics::one(description.source.clone(), diagnostic);
+    match description.windows.length {
+        Some(length) => {
+            long_enough(length, record).map_err(wrong)?;
+            holes(length, record)
+        }
+        None => Ok(()),
+    }
 }
 
 /// A window holds some samples.

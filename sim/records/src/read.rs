@@ -6,6 +6,7 @@ use eomgen_model_spec::model::Model;
 
 use crate::bound::bound;
 use crate::checks::examine;
+use crate::coverage::can_be_cut;
 use crate::dataset::{Dataset, Start};
 use crate::decimation::Decimation;
 use crate::description::Description;
@@ -86,6 +87,7 @@ pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
         let mut records = Vec::new();
         for (place, file) in files {
             let record = columns.record(&format!("{kind}[{place}]"), file)?;
+            can_be_cut(&record, &description)?;
             records.extend(unbroken(record, &mut notes));
         }
         Ok(records)
