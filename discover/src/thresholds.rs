@@ -487,8 +487,8 @@ pub const CONTRADICTING_PART: f64 = 0.1;
 /// noise in the channel that shows it best: then it leaves three floors, and nobody takes it for right.
 pub const SEPARATES: f64 = 3.0;
 
-/// The most samples of an experiment of which nobody said how long it lasts.
-pub const EXPERIMENT_SAMPLES: f64 = 10_000.0;
+/// The most samples of an experiment of which nobody said how long it lasts: a hundred of it are simulated.
+pub const EXPERIMENT_SAMPLES: f64 = 4000.0;
 
 /// Sizes of an input that are tried, in parts of its range: what moves far leaves its limits at the
 /// larger ones.
@@ -509,7 +509,7 @@ pub const SHOWS: f64 = 2.0;
 
 /// What could not be tested is looked at once for each effect and place, so many in all: what would show
 /// one often shows the next.
-pub const MOST_SHOWN: usize = 6;
+pub const MOST_SHOWN: usize = 3;
 
 /// How far something moves the outputs where it is taken to be small, in standard deviations of the
 /// noise: a straight line holds there.

@@ -36,7 +36,7 @@ pub(crate) fn sentences(next: &NextExperiment, files: &[ExperimentFile]) -> Stri
         Some(shown) => format!(
             "It is predicted to show {} from {} on.",
             shown.what,
-            quantity(shown.from, 2, &shown.unit)
+            quantity(shown.from, 4, &shown.unit)
         ),
         None => format!(
             "What is not the right one is predicted to stay {size} standard deviations of the noise off, or more."

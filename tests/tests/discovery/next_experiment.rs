@@ -312,6 +312,42 @@ fn a_weight_in_small_motion_is_told_from_a_spring() {
     .is_told(folder().path(), "gravity", "x");
 }
 
+/// On the true machine, too.
+#[test]
+fn bounds_that_are_said_are_kept() {
+    let specification = in_a_bearing();
+    let machine = Machine {
+        experiment: "duration = 3\nsample = 0.01\n\
+                     inputs.u = { range = [-0.3, 0.4], rate = 0.5, band = [0.5, 1] }\nlimits.x = [-1, 8]",
+        ..one_way(&specification, &|_, v, u| u - 0.02 * v - 0.012 * v.abs())
+    };
+    let folder = folder();
+    let class = machine.class(folder.path());
+    assert_eq!(
+        class["next_experiment"]["file"], "experiment.csv",
+        "{class:#}"
+    );
+    let text = std::fs::read_to_string(folder.path().join("first/experiment.csv"));
+    let text = text.expect("an experiment");
+    let cells = |line: &str| -> Vec<f64> {
+        let cells = line.split(',');
+        cells.map(|cell| cell.parse().expect("a number")).collect()
+    };
+    let rows: Vec<Vec<f64>> = text.lines().skip(1).map(cells).collect();
+    assert_eq!(rows.len(), 301);
+    assert!(rows.iter().all(|row| (-0.3..=0.4).contains(&row[1])));
+    for pair in rows.windows(2) {
+        assert!((pair[1][0] - pair[0][0] - 0.01).abs() < 1e-9);
+        assert!((pair[1][1] - pair[0][1]).abs() <= 0.005 * (1.0 + 1e-9));
+    }
+    // Held over the samples of a record.
+    let held = rows.iter().flat_map(|row| [row[1], row[1]]);
+    let input: Vec<f64> = held.take(601).collect();
+    for line in machine.record((0.0, 0.0), &input, 2.0).lines().skip(1) {
+        assert!((-1.1..=8.1).contains(&cells(line)[2]), "{line}");
+    }
+}
+
 /// In the limits of the records, which turn one way only and are in no need of more, nothing is played
 /// beyond these.
 #[test]
