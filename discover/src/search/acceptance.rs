@@ -49,6 +49,10 @@ pub fn acceptance_test(
     own: &[EffectUnknown],
 ) -> Result<TestStatistics, Rejection> {
     let statistics = explains(before, after, own)?;
+    // Beyond its prior for certain, not by what the record leaves open.
+    if let Some(rejection) = within_prior(after, own, thresholds::STANDARD_ERRORS) {
+        return Err(rejection);
+    }
     if statistics.t < thresholds::SIGNIFICANCE {
         return Err(Rejection::Significance(statistics.t));
     }
@@ -71,7 +75,7 @@ pub fn explains(
     own: &[EffectUnknown],
 ) -> Result<TestStatistics, Rejection> {
     let statistics = test_statistics(before, after, own);
-    if let Some(rejection) = at_bound(after, own).or_else(|| within_prior(after, own)) {
+    if let Some(rejection) = at_bound(after, own).or_else(|| within_prior(after, own, 0.0)) {
         return Err(rejection);
     }
     if statistics.held_out < thresholds::HELD_OUT {
@@ -154,14 +158,18 @@ pub fn is_held(fit: &Fit, own: &EffectUnknown) -> bool {
     value <= unknown.bounds.low || value >= unknown.bounds.high
 }
 
-/// An unknown that gave up its prior and is within it still, and how far it is off.
-fn within_prior(fit: &Fit, own: &[EffectUnknown]) -> Option<Rejection> {
+/// An unknown that gave up its prior and is within it still, or may be: so many standard errors
+/// nearer than estimated.
+fn within_prior(fit: &Fit, own: &[EffectUnknown], errors: f64) -> Option<Rejection> {
     own.iter().find_map(|own| {
         let prior = own.prior?;
         let off = (fit.train.estimate.theta[own.unknown] - own.base).abs() / prior;
-        // Beyond its prior for certain, not by what the record leaves open.
-        let sure = off - thresholds::STANDARD_ERRORS * fit.sd[own.unknown] / prior;
-        let is_off = sure > thresholds::SHIFTED;
-        (!is_off).then(|| Rejection::WithinPrior(fit.unknowns[own.unknown].label.clone(), off))
+        let sd = fit.sd[own.unknown] / prior;
+        let is_off = off - errors * sd > thresholds::SHIFTED;
+        (!is_off).then(|| Rejection::WithinPrior {
+            name: fit.unknowns[own.unknown].label.clone(),
+            off,
+            sd,
+        })
     })
 }

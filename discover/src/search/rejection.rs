@@ -11,9 +11,15 @@ pub enum Rejection {
     AtLimit(String),
     /// A parameter that a bound holds, with which the effect vanishes.
     WrongSign(String),
-    /// An unknown that is within its prior still, and how many standard deviations of that it is
-    /// off.
-    WithinPrior(String, f64),
+    /// An unknown that may be within its prior still.
+    WithinPrior {
+        /// Which.
+        name: String,
+        /// How many standard deviations of its prior it is off.
+        off: f64,
+        /// One standard deviation of that.
+        sd: f64,
+    },
     /// The part by which the gap of the test records falls is too small.
     HeldOut(f64),
     /// The number of standard errors by which it falls is too small.
@@ -29,7 +35,7 @@ pub enum Rejection {
     Significance(f64),
     /// What it does is too small a part of the noise.
     Size(f64),
-    /// NonlinearRemainder another effect it leaves much.
+    /// Beside another effect it leaves much.
     LeavesMuch,
     /// The parts of the gap that it closes on training and on test records are too small.
     Closes {
@@ -48,9 +54,9 @@ impl fmt::Display for Rejection {
                 f,
                 "{name} has the wrong sign: held to it, the effect vanishes"
             ),
-            Self::WithinPrior(name, off) => write!(
+            Self::WithinPrior { name, off, sd } => write!(
                 f,
-                "{name} is {off:.1} standard deviations of its prior off, {} are asked for",
+                "{name} is {off:.1} ± {sd:.1} standard deviations of its prior off, {} are asked for",
                 thresholds::SHIFTED
             ),
             Self::HeldOut(part) => write!(
