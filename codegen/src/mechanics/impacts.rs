@@ -54,7 +54,9 @@ pub(crate) fn impacts(
         let restitution = translator.node(&impact.restitution)?;
         let graph = &mut translator.graph;
         let gradient = variables.gradient(graph, distance, GradientBy::Coordinates);
-        if gradient.nodes().iter().all(|entry| graph.is_zero(*entry)) {
+        // A distance of a field has no modes to change it at order 0.
+        let is_rigid = model.fields.is_empty();
+        if is_rigid && gradient.nodes().iter().all(|entry| graph.is_zero(*entry)) {
             return Err(moves_nothing(impact));
         }
         let rate = along_motion(graph, distance);
