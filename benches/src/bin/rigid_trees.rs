@@ -24,6 +24,8 @@ type Outcome<T> = Result<T, Box<dyn Error>>;
 
 /// How far the contenders may be apart, relative to the largest number of a call: they sum in different orders.
 const APART: f64 = 1e-10;
+/// So many lines of what a command said are shown where it fails.
+const MOST_SAID: usize = 20;
 /// Limits of Boost's that Pinocchio's headers want raised, as its package says.
 const LIMITS: [&str; 4] = [
     "-DBOOST_MPL_LIMIT_LIST_SIZE=30",
@@ -46,6 +48,8 @@ fn run(command: &mut Command) -> Outcome<String> {
     let output = command.output()?;
     if !output.status.success() {
         let said = String::from_utf8_lossy(&output.stderr);
+        let said: Vec<&str> = said.lines().take(MOST_SAID).collect();
+        let said = said.join("\n");
         return Err(format!("{command:?}: {said}").into());
     }
     Ok(String::from_utf8(output.stdout)?)
@@ -121,16 +125,12 @@ fn measured(model: &Model, program: &Program, peer: Option<&str>) -> Outcome<[f6
     if let Some(package) = peer {
         compile_peer(&sources, folder, package)?;
         let libraries = format!("{package}/lib");
+        // What is linked stands before the libraries that it is linked with.
         compiler
-            .args([
-                "-DPEER",
-                "-L",
-                &libraries,
-                "-lpinocchio_default",
-                "-lstdc++",
-            ])
-            .arg(format!("-Wl,-rpath,{libraries}"))
-            .arg(folder.join("peer.o"));
+            .arg("-DPEER")
+            .arg(folder.join("peer.o"))
+            .args(["-L", &libraries, "-lpinocchio_default", "-lstdc++"])
+            .arg(format!("-Wl,-rpath,{libraries}"));
     }
     run(compiler.args(["-lm", "-o"]).arg(folder.join("turns")))?;
     let printed = run(&mut Command::new(folder.join("turns")))?;
