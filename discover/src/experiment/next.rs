@@ -17,6 +17,17 @@ pub struct Experiments {
     pub of_rejected: Vec<Option<NextExperiment>>,
 }
 
+impl Experiments {
+    /// None for so many accepted and rejected effects.
+    pub fn none(accepted: usize, rejected: usize) -> Self {
+        Self {
+            files: Vec::new(),
+            of_effects: vec![None; accepted],
+            of_rejected: vec![None; rejected],
+        }
+    }
+}
+
 /// A member of a class.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MemberAt {

@@ -8,6 +8,7 @@ use crate::catalogue::user_effects;
 use crate::empirical::unnamed;
 use crate::error::DiscoverError;
 use crate::experiment::experiments;
+use crate::experiment::next::Experiments;
 use crate::fit::contradiction::contradictions;
 use crate::fit::fitted::Fit;
 use crate::fit::noise_floor::{NoiseFloor, noise_floor};
@@ -169,7 +170,11 @@ pub fn discover_until(
         floor: floor.rms,
         progress,
     };
-    let experiments = experiments(context, &found);
+    // An experiment takes as long as some fits: not after a limit.
+    let experiments = match &found.unfinished {
+        None => experiments(context, &found),
+        Some(_) => Experiments::none(found.accepted.len(), found.rejected.len()),
+    };
     stop.check()?;
     let pictures = Pictures {
         playback: Playback::of(&problem, (null, best), &found.accepted, &extended),
