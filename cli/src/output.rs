@@ -30,13 +30,20 @@ impl Destination {
     /// The same for a figure beside it, which has a place of its own.
     ///
     /// # Errors
-    /// As [`Destination::of`], and the place of the other file.
+    /// As [`Destination::of`], the place of the other file, and a name of another kind of figure.
     pub fn of_figure(figure: &Path, beside: Option<&Path>, json: bool) -> Result<Self> {
         let place = |path: &Path| std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         if beside.is_some_and(|other| place(other) == place(figure)) && !is_device(figure) {
             let shown = figure.display();
             return Err(Error::input(format!(
                 "--out {shown} and --plot {shown} are one place: give --plot another"
+            )));
+        }
+        let ending = figure.extension().filter(|_| !is_device(figure));
+        if ending.is_some_and(|ending| !ending.eq_ignore_ascii_case("svg")) {
+            return Err(Error::input(format!(
+                "--plot {}: a figure is an SVG: give it a name that ends in .svg",
+                figure.display()
             )));
         }
         Self::named("--plot", figure, json)

@@ -149,6 +149,8 @@ fn a_figure_on_stdout_is_alone_there() {
     let (figure, table) = (text(&output.stdout), text(&output.stderr));
     assert!(figure.starts_with("<svg") && figure.ends_with("</svg>\n"));
     assert!(table.contains("damping ratio"), "{table}");
+    let message = refused(&["modes", &spec, "--plot", "modes.png"]);
+    assert!(message.contains("ends in .svg"), "{message}");
     let message = refused(&["modes", &spec, "--json", "--plot", "-"]);
     assert!(message.contains("--json and --plot -"), "{message}");
 }
