@@ -84,13 +84,7 @@ impl<'f> Rival<'f> {
     ) -> Option<f64> {
         let windows = Windows::cut(&prediction.records, problem.dataset.window);
         let begin = self.begin(problem, truth, prediction, &windows);
-        let shooting = Shooting::new(
-            problem,
-            &self.fit.model,
-            &windows,
-            &self.unknowns,
-            &begin.ranges,
-        );
+        let shooting = self.shooting(problem, &windows, &begin);
         let present = evaluated(
             &shooting,
             &begin.prior,
@@ -114,13 +108,7 @@ impl<'f> Rival<'f> {
     ) -> Option<Separation> {
         let windows = Windows::cut(&prediction.records, problem.dataset.window);
         let begin = self.begin(problem, truth, prediction, &windows);
-        let shooting = Shooting::new(
-            problem,
-            &self.fit.model,
-            &windows,
-            &self.unknowns,
-            &begin.ranges,
-        );
+        let shooting = self.shooting(problem, &windows, &begin);
         let fitted = self.fitted(&shooting, &begin)?;
         let residuals = Residuals::of(&shooting, fitted).whole();
         let sizes = residuals.normalised_rms.iter().copied().enumerate();
@@ -141,6 +129,17 @@ impl<'f> Rival<'f> {
             channel,
             seen,
         })
+    }
+
+    /// Its windows of a prediction, to be explained.
+    fn shooting<'s>(
+        &'s self,
+        problem: &'s EstimationProblem<'s>,
+        windows: &'s Windows<'s>,
+        begin: &'s Beginning,
+    ) -> Shooting<'s> {
+        let ranges = &begin.ranges;
+        Shooting::new(problem, &self.fit.model, windows, &self.unknowns, ranges)
     }
 
     fn theta(&self) -> &[f64] {

@@ -260,33 +260,7 @@ theta_2 = { value = "theta_2", unit = "rad" }
 /// A mass on a spring that a force drives.
 const OSCILLATOR: Machine = Machine {
     name: "oscillator",
-    specification: r#"
-[model]
-name = "oscillator"
-
-[parameters]
-m = { value = 1, unit = "kg", min = 0 }
-k = { value = 400, unit = "N/m", min = 0 }
-c = { value = 4, unit = "N s/m", min = 0 }
-
-[coordinates]
-x = { unit = "m" }
-
-[inputs]
-u = { unit = "N" }
-
-[kinetic]
-mass = "1/2*m*dot(x)^2"
-
-[potential]
-spring = "1/2*k*x^2"
-
-[dissipation]
-damper = "1/2*c*dot(x)^2"
-
-[forces]
-drive = { on = "x", value = "u" }
-"#,
+    specification: crate::specifications::OSCILLATOR,
     channels: &[("x", "m", 1e-5)],
     uncertain: "m = { relative = 0.02 }",
     unit: "N",

@@ -8,3 +8,4 @@ mod friction_that_stops;
 mod next_experiment;
 mod nothing_compared;
 mod off_the_list;
+mod specifications;

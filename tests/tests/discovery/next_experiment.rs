@@ -6,6 +6,8 @@ use std::path::Path;
 use eomgen_tests::program;
 use serde_json::Value;
 
+use crate::specifications::OSCILLATOR;
+
 /// A machine of one coordinate `x` that an input `u` drives, and how its records are made.
 struct Machine<'m> {
     specification: &'m str,
@@ -47,34 +49,6 @@ rotor = "1/2*J*dot(x)^2"
 
 [forces]
 motor = { on = "x", value = "u" }
-"#;
-
-const OSCILLATOR: &str = r#"
-[model]
-name = "oscillator"
-
-[parameters]
-m = { value = 1, unit = "kg", min = 0 }
-k = { value = 400, unit = "N/m", min = 0 }
-c = { value = 4, unit = "N s/m", min = 0 }
-
-[coordinates]
-x = { unit = "m" }
-
-[inputs]
-u = { unit = "N" }
-
-[kinetic]
-mass = "1/2*m*dot(x)^2"
-
-[potential]
-spring = "1/2*k*x^2"
-
-[dissipation]
-damper = "1/2*c*dot(x)^2"
-
-[forces]
-drive = { on = "x", value = "u" }
 "#;
 
 impl Machine<'_> {

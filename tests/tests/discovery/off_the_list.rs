@@ -5,6 +5,8 @@
 use eomgen_tests::program;
 use serde_json::Value;
 
+use crate::specifications::OSCILLATOR;
+
 /// A machine of one coordinate: its specification, the unit of its coordinate and of its input, and
 /// the acceleration at a position, a rate and an input.
 struct Machine<'m> {
@@ -15,34 +17,6 @@ struct Machine<'m> {
     input: fn(f64, f64) -> f64,
     acceleration: &'m dyn Fn(f64, f64, f64) -> f64,
 }
-
-const OSCILLATOR: &str = r#"
-[model]
-name = "oscillator"
-
-[parameters]
-m = { value = 1, unit = "kg", min = 0 }
-k = { value = 400, unit = "N/m", min = 0 }
-c = { value = 4, unit = "N s/m", min = 0 }
-
-[coordinates]
-x = { unit = "m" }
-
-[inputs]
-u = { unit = "N" }
-
-[kinetic]
-mass = "1/2*m*dot(x)^2"
-
-[potential]
-spring = "1/2*k*x^2"
-
-[dissipation]
-damper = "1/2*c*dot(x)^2"
-
-[forces]
-drive = { on = "x", value = "u" }
-"#;
 
 const ROTOR: &str = r#"
 [model]

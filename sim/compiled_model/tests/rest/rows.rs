@@ -17,6 +17,31 @@ impl Numbers {
     }
 }
 
+/// A row's specification of its coordinates, kinetic and potential energies and forces.
+fn specification([coordinates, kinetic, potential, forces]: &[String; 4]) -> String {
+    format!(
+        r#"
+[model]
+name = "row"
+[parameters]
+m = {{ value = 1, unit = "kg" }}
+k = {{ value = 1, unit = "N/m" }}
+c = {{ value = 1, unit = "N s/m" }}
+F = {{ value = 1, unit = "N" }}
+v = {{ value = 1, unit = "m/s" }}
+s = {{ value = 1, unit = "s" }}
+[coordinates]
+{coordinates}
+[kinetic]
+{kinetic}
+[potential]
+{potential}
+[forces]
+{forces}
+"#
+    )
+}
+
 /// A row of masses between springs, each rubbed at the ground, on a belt or against the one before, and
 /// shaken. No two frictions hold one motion: what each of them bears then is not known.
 fn random_row(seed: u64) -> String {
@@ -64,27 +89,7 @@ fn random_row(seed: u64) -> String {
             number(0.0, 0.5)
         );
     }
-    format!(
-        r#"
-[model]
-name = "row"
-[parameters]
-m = {{ value = 1, unit = "kg" }}
-k = {{ value = 1, unit = "N/m" }}
-c = {{ value = 1, unit = "N s/m" }}
-F = {{ value = 1, unit = "N" }}
-v = {{ value = 1, unit = "m/s" }}
-s = {{ value = 1, unit = "s" }}
-[coordinates]
-{coordinates}
-[kinetic]
-{kinetic}
-[potential]
-{potential}
-[forces]
-{forces}
-"#
-    )
+    specification(&[coordinates, kinetic, potential, forces])
 }
 
 #[test]
@@ -111,8 +116,7 @@ fn random_rows_rest_and_move_as_the_exact_solver_has_them() {
                 .zip(&exact.trajectory.states);
             let mut worst = 0.0_f64;
             for (place, (a, b)) in pairs.enumerate() {
-                let apart = a.iter().zip(b).map(|(a, b)| (a - b).abs());
-                worst = apart.fold(worst, f64::max);
+                worst = worst.max(difference(a, b));
                 // Powers too, but for a row that stands just at a switch.
                 let power = (rows[place][1] - reference[place][1]).abs();
                 assert!(power < 1e-3, "{seed} {solver} {place}: power {power:e}");
@@ -201,28 +205,7 @@ impl Row {
                 );
             }
         }
-        let [coordinates, kinetic, potential, forces] = sections;
-        format!(
-            r#"
-[model]
-name = "row"
-[parameters]
-m = {{ value = 1, unit = "kg" }}
-k = {{ value = 1, unit = "N/m" }}
-c = {{ value = 1, unit = "N s/m" }}
-F = {{ value = 1, unit = "N" }}
-v = {{ value = 1, unit = "m/s" }}
-s = {{ value = 1, unit = "s" }}
-[coordinates]
-{coordinates}
-[kinetic]
-{kinetic}
-[potential]
-{potential}
-[forces]
-{forces}
-"#
-        )
+        specification(&sections)
     }
 
     /// Where the time stepping has it in the end, places and speeds.

@@ -59,7 +59,12 @@ fn planned(effect: Effect, on: &str, level: f64, draw: &mut Draw) -> Planned {
         (ForeignHum, _) => draw.between(9.0, 14.0),
         _ => 0.0,
     };
-    let sign = if either { draw.sign() } else { 1.0 };
+    let drawn = if either { draw.sign() } else { 1.0 };
+    let sign = match (effect, on) {
+        // A spring hardens by a law of its own, and by that only hardens.
+        (StiffnessNonlinearity, on) if on != "arm" => 1.0,
+        _ => drawn,
+    };
     let hidden = Hidden {
         effect,
         on: on.to_owned(),
@@ -185,10 +190,6 @@ pub fn singles(seed: u64, draw: &mut Draw) -> Vec<Case> {
         if on == "F_v" {
             hidden.hidden.sign = -1.0;
         }
-        // By a law of its own, which only hardens.
-        if matches!(machine, Kind::TwoBodies { .. }) && effect == StiffnessNonlinearity {
-            hidden.hidden.sign = 1.0;
-        }
         let mut made = case(Group::Single, machine, Manner::Usual, vec![hidden]);
         if number % 2 == 1 {
             made.nuisances = Nuisances::FULL;
@@ -285,13 +286,6 @@ pub fn pairs(seed: u64, draw: &mut Draw) -> Vec<Case> {
             planned(second.0, second.1, other, draw),
         ];
         let mut made = case(Group::Pair, machine, Manner::Usual, hidden);
-        for planned in &mut made.hidden {
-            if matches!(machine, Kind::TwoBodies { .. })
-                && planned.hidden.effect == StiffnessNonlinearity
-            {
-                planned.hidden.sign = 1.0;
-            }
-        }
         if number % 2 == 1 {
             made.nuisances = Nuisances::FULL;
         }
