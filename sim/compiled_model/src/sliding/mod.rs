@@ -61,6 +61,14 @@ impl Place {
     fn is_on(self) -> bool {
         matches!(self, Self::Holding { .. } | Self::Bearing { .. })
     }
+
+    /// By how much the surface's function is moved until the motion has left it.
+    fn moved(self) -> f64 {
+        match self {
+            Self::Leaving { side, moved } => side * moved,
+            Self::Free | Self::Holding { .. } | Self::Bearing { .. } => 0.0,
+        }
+    }
 }
 
 /// The surfaces of a motion under way.
@@ -191,10 +199,7 @@ impl Sliding {
         let came_from = self.came_from(&near);
         for (surface, place) in self.places.iter().enumerate() {
             let (from, to) = (near[surface], beyond[surface]);
-            let moved = match place {
-                Place::Leaving { side, moved } => side * moved,
-                _ => 0.0,
-            };
+            let moved = place.moved();
             let is_crossed = came_from[surface] * (to + moved) < 0.0;
             let near = NEAR * (to - from).abs();
             let near = near.min(NEAREST * self.sizes[surface]) + roundings[surface];
@@ -223,10 +228,7 @@ impl Sliding {
     fn came_from(&self, near: &[f64]) -> Vec<f64> {
         let kept = |surface: usize| self.kept.as_ref().map(|kept| kept[surface]);
         let side = |(surface, value): (usize, &f64)| {
-            let moved = match self.places[surface] {
-                Place::Leaving { side, moved } => side * moved,
-                _ => 0.0,
-            };
+            let moved = self.places[surface].moved();
             match kept(surface).filter(|side| *side != 0.0) {
                 Some(side) if value + moved == 0.0 => side,
                 _ => (value + moved).signum(),
@@ -408,8 +410,7 @@ impl Sliding {
                     sides.push(0.5 + 0.5 * side);
                     continue;
                 }
-                (Place::Free, None) => 0.0,
-                (Place::Leaving { side, moved }, None) => side * moved,
+                (Place::Free | Place::Leaving { .. }, None) => place.moved(),
             };
             if functions.is_empty() {
                 functions = self.sided.functions(at, inputs);
