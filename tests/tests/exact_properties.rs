@@ -250,6 +250,21 @@ proptest! {
     }
 }
 
+/// Two masses that rub move as one, and what acts on both comes through a filter: what rounding leaves of
+/// the friction between them is no rate of theirs.
+#[test]
+fn masses_that_move_as_one_beside_a_filter() {
+    let terms = [
+        (Term::Dry(6.116930067280249), 1, 0),
+        (Term::Damper(1.0), 0, 1),
+        (Term::Late(5.527418861885961, 1.0, 0.0), 0, 2),
+        (Term::Stop(100.0, 0.0, 0.1), 0, 0),
+    ];
+    let starts = [[0.0, 0.0], [-0.05756814641021024, 0.0], [0.0, 0.0]];
+    let spec = machine(&[1.0, 0.12259264311719222, 1.0], &starts, &terms);
+    agree(&Subject::new(spec.model(), 0), 0.3, 1e-4).expect("the same motion");
+}
+
 /// The implicit solver, with the models' own Jacobians, against the one that fits each model best.
 #[test]
 fn radau_follows_the_shipped_models() {

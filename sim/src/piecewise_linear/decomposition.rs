@@ -107,12 +107,23 @@ impl Decomposition {
 
 /// A unit of time in which positions and rates are of like size: 1 for the positions, which come
 /// first in the state, and for states of first order, a power of two near the fastest rate for
-/// the rates between them.
+/// the rates between them. Forces may act on rates through states of first order alone; then
+/// what rounding leaves of the others must not decide.
 fn time_scale(matrix: &DMatrix<f64>, degrees: usize, felt: &[usize]) -> Vec<f64> {
-    let rates = matrix.rows(degrees, degrees);
-    let stiffest = rates.columns(0, degrees).amax().sqrt();
-    let drag = rates.columns(degrees, degrees).amax();
-    let fastest = stiffest.max(drag);
+    let filters = matrix.ncols() - 2 * degrees;
+    let block = |row: usize, column: usize| {
+        let size = |place: usize| if place == 2 { filters } else { degrees };
+        let (shape, place) = ((size(row), size(column)), (row * degrees, column * degrees));
+        matrix.view(place, shape).amax()
+    };
+    let loops = [
+        block(1, 0).sqrt(),
+        block(1, 1),
+        block(2, 2),
+        (block(1, 2) * block(2, 1)).sqrt(),
+        (block(1, 2) * block(2, 0)).cbrt(),
+    ];
+    let fastest = loops.into_iter().fold(0.0, f64::max);
     let unit = if fastest > 0.0 {
         fastest.log2().round().exp2()
     } else {
