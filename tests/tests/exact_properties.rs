@@ -265,6 +265,20 @@ fn masses_that_move_as_one_beside_a_filter() {
     agree(&Subject::new(spec.model(), 0), 0.3, 1e-4).expect("the same motion");
 }
 
+/// A mass on a one-sided spring that rubs on a free one, beside an oscillator: eigenvalues that lie
+/// symmetrically.
+#[test]
+fn eigenvalues_that_lie_symmetrically() {
+    let terms = [
+        (Term::Dry(9.559507392151577), 0, 1),
+        (Term::Spring(15.020480209025736), 2, 2),
+        (Term::OneSided(100.0, 0.0), 1, 1),
+    ];
+    let starts = [[0.0, 0.0], [0.0, 0.633536162812156], [0.0, 0.0]];
+    let spec = machine(&[1.0, 1.0, 0.7818489250388482], &starts, &terms);
+    agree(&Subject::new(spec.model(), 0), 0.3, 1e-4).expect("the same motion");
+}
+
 /// The implicit solver, with the models' own Jacobians, against the one that fits each model best.
 #[test]
 fn radau_follows_the_shipped_models() {
