@@ -88,4 +88,6 @@ ids! {
     DefinitionId;
     /// One of [`Model::coefficients`](crate::model::Model::coefficients).
     CoefficientId;
+    /// One of [`RigidTree::frames`](crate::rigid_tree::RigidTree::frames).
+    FrameId;
 }

@@ -13,6 +13,7 @@ use crate::ids::{
     CoefficientId, ConstraintId, CoordinateId, DefinitionId, FieldId, InputId, ObservableId,
     ParameterId, PointId, StateId,
 };
+use crate::rigid_tree::RigidTree;
 use crate::shape_table::ShapeTable;
 use crate::source::Source;
 use crate::span::Span;
@@ -63,6 +64,9 @@ pub struct Model {
     pub kinetic: Vec<Term>,
     /// Terms of the potential energy, in J.
     pub potential: Vec<Term>,
+    /// The frames and the bodies, if there are any. The energies above hold those of the bodies,
+    /// as terms of the bodies' names.
+    pub rigid_tree: Option<RigidTree<Expr>>,
     /// Rayleigh functions, in W: the force on coordinate j is minus the derivative by
     /// its rate.
     pub dissipation: Vec<Term>,

@@ -13,6 +13,7 @@ use crate::mechanics::impacts::{Impact, impacts};
 use crate::mechanics::kinetic::KineticRows;
 use crate::mechanics::lagrange::Variables;
 use crate::mechanics::mass_matrix::{MassMatrix, ModalMassBlock};
+use crate::mechanics::rigid_tree::bodies::RigidBodies;
 use crate::mechanics::rows::RowNodes;
 use crate::mechanics::solve::{Accelerations, solve};
 use crate::mechanics::sweeps::Momenta;
@@ -39,6 +40,8 @@ pub struct Equations {
     pub velocity_terms: RowNodes,
     /// The momenta by a sweep over the velocities, where there are no fields.
     pub(crate) sweep: Option<Momenta>,
+    /// The rigid bodies, where there are no fields.
+    pub(crate) rigid_bodies: Option<RigidBodies>,
     /// Generalised forces f: -dV/dq - dR/dq' + Q.
     pub forces: RowNodes,
     /// The accelerations and how they were solved for.
@@ -150,6 +153,8 @@ pub fn derive(model: &Model, orders: &[usize]) -> Derived<Equations> {
     )?;
     let modal_blocks = mass.assembled_blocks(&mut translator.graph);
     let definitions = translator.definition_nodes();
+    // Last, so that no node of the equations stands elsewhere for it.
+    let rigid_bodies = RigidBodies::of(&mut translator, &variables, &applied)?;
     Ok(Equations {
         name: model.name.clone(),
         graph: translator.graph,
@@ -160,6 +165,7 @@ pub fn derive(model: &Model, orders: &[usize]) -> Derived<Equations> {
         mass,
         velocity_terms,
         sweep,
+        rigid_bodies,
         forces,
         accelerations,
         multipliers,

@@ -2,7 +2,7 @@
 //!
 //! `translate` with `fields` (expressions to nodes), `lagrange`, `sweeps` and `forces` (the rows of
 //! Lagrange's equations, of `rows`, `mass_matrix` and `guard`s), `kinetic` (the cheapest form of
-//! those of a kinetic energy), `constraints` (what stays zero),
+//! those of a kinetic energy), `rigid_tree` (inverse dynamics from frame to frame), `constraints` (what stays zero),
 //! `solve` (the accelerations), `impacts` (what impulses do),
 //! `coefficients` (names as in Eq. (22)), `equations` (all of it), `outputs` (what is derived on
 //! request), `linearity` (whether a model is linear between its switches), `sides` (switching functions
@@ -22,6 +22,7 @@ mod lagrange;
 pub mod linearity;
 pub mod mass_matrix;
 pub mod outputs;
+mod rigid_tree;
 pub mod rows;
 mod sides;
 pub mod sliding;

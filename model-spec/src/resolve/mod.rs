@@ -91,6 +91,8 @@ impl Builder {
             fields: self.all(document.fields, Self::field),
             kinetic: self.all(document.kinetic, Self::term),
             potential: self.all(document.potential, Self::term),
+            // Known when the names are.
+            rigid_tree: None,
             dissipation: self.all(document.dissipation, Self::term),
             forces: self.all(document.forces, Self::force),
             constraints,
@@ -151,6 +153,11 @@ impl Builder {
                 body: inertia.body,
                 span: inertia.span,
             }));
+        }
+        if let Some(tree) = demands.rigid_tree.filter(|_| self.found.is_empty()) {
+            let mut resolver = Resolver::new(&self.names, Scope::Motion);
+            let tree = tree.try_map(|syntax| resolver.resolve(syntax));
+            resolved.model.rigid_tree = self.found.keep(tree);
         }
     }
 

@@ -11,18 +11,25 @@ use super::vector::{Vector, cross, inner, sum, zero};
 use crate::ast::Syntax;
 use crate::diagnostic::{Diagnostic, Diagnostics, quoted};
 use crate::dimension::Dimension;
+use crate::ids::FrameId;
 use crate::raw::{Document, RawBody, RawTerm};
+use crate::rigid_tree::RigidBody;
 use crate::span::Span;
 use crate::table::Quantity;
 
 /// The pairs of axes of I_xx, I_yy, I_zz, I_xy, I_yz, I_xz.
 const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)];
 
-/// Adds the energies of all bodies to the document.
-pub fn expand(document: &mut Document, space: &mut Space, found: &mut Diagnostics) {
+/// Adds the energies of all bodies to the document. The bodies, as they are declared.
+pub fn expand(
+    document: &mut Document,
+    space: &mut Space,
+    found: &mut Diagnostics,
+) -> Vec<RigidBody<Syntax>> {
+    let mut bodies = Vec::with_capacity(document.bodies.len());
     for body in std::mem::take(&mut document.bodies) {
         if found.is_full() {
-            return;
+            break;
         }
         let terms = document.kinetic.iter().chain(&document.potential);
         if let Some(term) = terms.into_iter().find(|t| t.name.text == body.name.text) {
@@ -42,9 +49,10 @@ pub fn expand(document: &mut Document, space: &mut Space, found: &mut Diagnostic
             continue;
         };
         let frames = &space.frames;
-        let Some(motion) = frames.named(&body.frame.text).map(|frame| &frame.motion) else {
+        let Some(frame) = frames.named(&body.frame.text) else {
             continue;
         };
+        let motion = &frame.motion;
         let term = |value: Syntax| RawTerm {
             name: body.name.clone(),
             value: expansion(value),
@@ -66,7 +74,9 @@ pub fn expand(document: &mut Document, space: &mut Space, found: &mut Diagnostic
                 document.potential.push(term(potential));
             }
         }
+        bodies.push(parts.in_frame(body.name.text, frame.id));
     }
+    bodies
 }
 
 /// What a body is made of.
@@ -75,6 +85,23 @@ struct Parts {
     centre: Vector,
     inertia: Vec<Syntax>,
     span: Span,
+}
+
+impl Parts {
+    fn in_frame(self, name: String, frame: FrameId) -> RigidBody<Syntax> {
+        let element = |place: usize| match self.inertia.get(place) {
+            Some(element) => element.clone(),
+            None => number(0.0, self.span),
+        };
+        RigidBody {
+            name,
+            frame,
+            moments: [0, 1, 2].map(element),
+            products: [3, 4, 5].map(element),
+            mass: self.mass,
+            centre: self.centre,
+        }
+    }
 }
 
 fn parts(body: &RawBody, space: &mut Space, found: &mut Diagnostics) -> Option<Parts> {

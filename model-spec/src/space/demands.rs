@@ -1,6 +1,8 @@
 //! What short forms ask of the quantities in them, checked where units and values are known.
 
+use crate::ast::Syntax;
 use crate::dimension::Dimension;
+use crate::rigid_tree::RigidTree;
 use crate::span::Span;
 use crate::table::{Name, Quantity};
 
@@ -15,6 +17,8 @@ pub struct Demands {
     pub inertias: Vec<Inertia<Quantity>>,
     /// Vectors that nothing refers to.
     pub unused: Vec<Name>,
+    /// The frames and the bodies, if there are bodies.
+    pub rigid_tree: Option<RigidTree<Syntax>>,
 }
 
 /// A quantity that must have a unit.

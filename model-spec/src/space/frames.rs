@@ -6,9 +6,10 @@ use std::collections::HashMap;
 use super::definitions::{Definitions, Owner};
 use super::rotation::Turn;
 use super::scalar::{add, is, number};
-use super::vector::{AXES, Vector, cross, inner, sum, zero};
+use super::vector::{AXES, Vector, cross, inner, scaled, sum, zero};
 use crate::ast::Syntax;
 use crate::diagnostic::{Diagnostic, quoted};
+use crate::ids::FrameId;
 use crate::span::Span;
 use crate::suggest::did_you_mean;
 use crate::table::Written;
@@ -42,6 +43,8 @@ pub struct Frame {
     pub turns: Vec<Turn>,
     /// How it moves.
     pub motion: Motion,
+    /// Its place among the frames, in the order in which they are placed.
+    pub id: FrameId,
     /// How many frames it is away from the fixed axes.
     level: usize,
 }
@@ -78,6 +81,21 @@ impl Frames {
     /// The frame of this name.
     pub fn named(&self, name: &str) -> Option<&Frame> {
         self.frames.get(name)
+    }
+
+    /// All frames, each after the one it is placed in.
+    pub fn in_order(&self) -> Vec<&Frame> {
+        let mut frames: Vec<&Frame> = self.frames.values().collect();
+        frames.sort_by_key(|frame| frame.id);
+        frames
+    }
+
+    /// Gravity along the fixed axes, in m/s^2; 0 if there is none.
+    pub fn acceleration_of_free_fall(&self) -> Vector {
+        match &self.strength {
+            Some(strength) => scaled(&self.fixed.down, strength),
+            None => self.fixed.down.clone(),
+        }
     }
 
     /// The names of all frames.
@@ -121,6 +139,7 @@ impl Frames {
             origin,
             turns,
             motion,
+            id: FrameId::new(self.frames.len()),
             level,
             owner,
         };

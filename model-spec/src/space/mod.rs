@@ -10,7 +10,7 @@
 //! has a rate, `definitions` gives names; `frames` says how frames move and `placement` where they
 //! are; `expression`, with `operations` and `functions`, works out what is written, of a kind that
 //! `value` lists. `references` says in which order, `sections` does so entry by entry, and `bodies`
-//! writes energies; `known` has what is known on the way, `demands` what is checked later, and
+//! writes energies, beside which `tree` keeps what they are of; `known` has what is known on the way, `demands` what is checked later, and
 //! `inertia` asks whether a body can be.
 
 mod bodies;
@@ -29,6 +29,7 @@ mod rotation;
 mod scalar;
 mod sections;
 mod terms;
+mod tree;
 mod value;
 mod vector;
 

@@ -12,6 +12,7 @@ use super::placement::Placements;
 use super::references::{Entry, Expressions, FrameExpressions, in_order};
 use super::rotation::{Turn, turns};
 use super::scalar::{expansion, name, number};
+use super::tree::tree;
 use super::value::{Dimensions, Value};
 use super::vector::{AXES, Vector};
 use super::{bodies, terms};
@@ -94,7 +95,8 @@ pub fn expand(document: &mut Document, found: &mut Diagnostics) -> Option<Demand
     document.definitions = replaced.into_iter().flatten().collect();
     terms::expand(document, &mut space, found);
     if found.is_empty() {
-        bodies::expand(document, &mut space, found);
+        let bodies = bodies::expand(document, &mut space, found);
+        space.demands.rigid_tree = tree(&space.frames, bodies);
     }
     document.frames.clear();
     document.definitions.extend(space.definitions.take());

@@ -102,31 +102,51 @@ fn bias_forces(equations: &mut Equations) -> RowNodes {
     }
 }
 
-/// The rows of M a + bias, with a from the argument: by a sweep with these accelerations, which
-/// forms no mass matrix, where that takes fewer operations.
+/// The rows of M a + bias, with a from the argument: by the mass matrix, by a sweep with these
+/// accelerations or from frame to frame, neither of which forms a mass matrix. What takes fewest
+/// operations is kept.
 fn inverse_dynamics(equations: &mut Equations, bias: &RowNodes) -> RowNodes {
-    let by_mass = inverse_dynamics_by_mass(equations, bias);
-    let Some(momenta) = equations.sweep.clone() else {
-        return by_mass;
-    };
-    let graph = &mut equations.graph;
-    let rows = momenta.rates(graph, &|graph, index| {
-        let variable = Variable::Coordinate(index);
-        graph.intern(Operation::Argument(Argument::Accelerations, variable))
-    });
-    let rows: Vec<NodeId> = cheaper(graph, rows)
-        .iter()
-        .zip(&equations.forces.scalars)
-        .map(|(row, force)| graph.combine(&[(1.0, *row), (-1.0, *force)]))
-        .collect();
-    if shared_operations(graph, &rows) < shared_operations(graph, &by_mass.scalars) {
-        RowNodes {
-            scalars: rows,
-            modal: Vec::new(),
+    let mut best = inverse_dynamics_by_mass(equations, bias);
+    let scalars = [
+        inverse_dynamics_by_sweep(equations),
+        inverse_dynamics_by_recursion(equations),
+    ];
+    let graph = &equations.graph;
+    for scalars in scalars.into_iter().flatten() {
+        if shared_operations(graph, &scalars) < shared_operations(graph, &best.scalars) {
+            best = RowNodes {
+                scalars,
+                modal: Vec::new(),
+            };
         }
-    } else {
-        by_mass
     }
+    best
+}
+
+/// The acceleration of a coordinate as an argument.
+fn given_acceleration(graph: &mut Graph, index: CoordinateId) -> NodeId {
+    let variable = Variable::Coordinate(index);
+    graph.intern(Operation::Argument(Argument::Accelerations, variable))
+}
+
+fn inverse_dynamics_by_sweep(equations: &mut Equations) -> Option<Vec<NodeId>> {
+    let momenta = equations.sweep.clone()?;
+    let graph = &mut equations.graph;
+    let rows = momenta.rates(graph, &given_acceleration);
+    let rows = cheaper(graph, rows);
+    let rows = rows.iter().zip(&equations.forces.scalars);
+    Some(
+        rows.map(|(row, force)| graph.combine(&[(1.0, *row), (-1.0, *force)]))
+            .collect(),
+    )
+}
+
+fn inverse_dynamics_by_recursion(equations: &mut Equations) -> Option<Vec<NodeId>> {
+    let bodies = equations.rigid_bodies.clone()?;
+    let coordinates = equations.forces.scalars.len();
+    let graph = &mut equations.graph;
+    let rows = bodies.inverse_dynamics(graph, coordinates, &given_acceleration)?;
+    Some(cheaper(graph, rows))
 }
 
 fn inverse_dynamics_by_mass(equations: &mut Equations, bias: &RowNodes) -> RowNodes {

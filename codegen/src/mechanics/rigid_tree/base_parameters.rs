@@ -1,0 +1,36 @@
+//! Inertial parameters passed from link to link towards the fixed axes as far as the motion does
+//! not tell the difference. What stays are the base parameters (Gautier and Khalil, 1990: IEEE
+//! Trans. Robotics Automat. 6, 368-373), sums of parameters that are prepared; most of the others
+//! are 0, and take no operation.
+
+use super::links::{Joint, Link};
+use super::mass_properties::MassProperties;
+use crate::symbolic::graph::Graph;
+
+/// Passes inertial parameters on, outermost links first.
+pub(super) fn pass_on(graph: &mut Graph, links: &mut [Link]) {
+    for place in (0..links.len()).rev() {
+        let Link {
+            parent,
+            joint,
+            mass,
+        } = &links[place];
+        let parent = *parent;
+        let (passed, kept) = match joint {
+            Joint::Turn(turn) if joint.is_constant(graph) => {
+                (mass.turned_back(graph, turn), MassProperties::none(graph))
+            }
+            Joint::Turn(turn) => mass.parted_by_turn(graph, turn.axis),
+            Joint::Shift(origin) if joint.is_constant(graph) => (
+                mass.shifted_back(graph, origin),
+                MassProperties::none(graph),
+            ),
+            Joint::Shift(_) => mass.parted_by_shift(graph),
+        };
+        links[place].mass = kept;
+        // What is passed to the fixed axes does no work.
+        if let Some(parent) = parent {
+            links[parent].mass = links[parent].mass.plus(graph, &passed);
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! The rigid bodies of a model, and what of its energies and forces is not theirs.
+
+use eomgen_model_spec::ids::CoordinateId;
+use eomgen_model_spec::model::Term;
+use eomgen_model_spec::rigid_tree::RigidTree;
+
+use super::base_parameters::pass_on;
+use super::inward::generalised_forces;
+use super::links::links;
+use super::outward::motions;
+use crate::mechanics::lagrange::Variables;
+use crate::mechanics::rows::RowNodes;
+use crate::mechanics::sweeps::Velocities;
+use crate::mechanics::translate::{Derived, Translator};
+use crate::symbolic::graph::{Graph, NodeId};
+
+/// The rigid bodies of a model without fields.
+#[derive(Clone)]
+pub(crate) struct RigidBodies {
+    tree: RigidTree<NodeId>,
+    /// Kinetic energy of what is no body.
+    other_kinetic: NodeId,
+    /// Generalised forces but the bodies' weights.
+    other_forces: RowNodes,
+}
+
+impl RigidBodies {
+    /// Those of a model with these forces beside its potential; `None` where there are no bodies,
+    /// where there are fields, or where gravity moves.
+    pub(crate) fn of(
+        translator: &mut Translator,
+        variables: &Variables,
+        applied: &RowNodes,
+    ) -> Derived<Option<Self>> {
+        let model = translator.model;
+        let Some(tree) = model.rigid_tree.as_ref().filter(|_| variables.fields == 0) else {
+            return Ok(None);
+        };
+        let is_other = |term: &&Term| tree.bodies.iter().all(|body| body.name != term.name);
+        let tree = tree.try_map(|expression| translator.node(expression))?;
+        let constant = |id: &NodeId| translator.graph.dependence(*id).is_parameter_only();
+        if !tree.gravity.iter().all(constant) {
+            return Ok(None);
+        }
+        let mut others = |terms: &[Term]| -> Derived<NodeId> {
+            let mut nodes = Vec::new();
+            for term in terms.iter().filter(is_other) {
+                nodes.push((1.0, translator.node(&term.value)?));
+            }
+            Ok(translator.graph.combine(&nodes))
+        };
+        let (other_kinetic, other_potential) = (others(&model.kinetic)?, others(&model.potential)?);
+        Ok(Some(Self {
+            tree,
+            other_kinetic,
+            other_forces: variables.with_potential(&mut translator.graph, applied, other_potential),
+        }))
+    }
+
+    /// The rows of M a + c - f with these accelerations of so many coordinates: those of the bodies
+    /// by recursion, those of all else as Lagrange's. `None` if all else has no velocities.
+    pub(crate) fn inverse_dynamics(
+        &self,
+        graph: &mut Graph,
+        coordinates: usize,
+        acceleration: &dyn Fn(&mut Graph, CoordinateId) -> NodeId,
+    ) -> Option<Vec<NodeId>> {
+        let others = match graph.is_zero(self.other_kinetic) {
+            true => vec![graph.zero(); coordinates],
+            false => {
+                let velocities = Velocities::of(graph, self.other_kinetic)?;
+                let momenta = velocities.momenta(graph, coordinates);
+                momenta.rates(graph, acceleration)
+            }
+        };
+        let mut links = links(graph, &self.tree);
+        pass_on(graph, &mut links);
+        let motions = motions(graph, &links, &self.tree.gravity, acceleration);
+        let bodies = generalised_forces(graph, &links, &motions, coordinates);
+        let rows = bodies.iter().zip(&others).zip(&self.other_forces.scalars);
+        Some(
+            rows.map(|((body, other), force)| {
+                graph.combine(&[(1.0, *body), (1.0, *other), (-1.0, *force)])
+            })
+            .collect(),
+        )
+    }
+}

@@ -1,0 +1,108 @@
+//! Inward: the forces and moments that the motion takes, and their work along the coordinates.
+
+use eomgen_model_spec::ids::CoordinateId;
+
+use super::links::{Joint, Link};
+use super::mass_properties::MassProperties;
+use super::outward::Motion;
+use super::vector::{VectorTerms, cross, following, signed_sums, times, turned_back};
+use crate::symbolic::differentiate::by_scalar;
+use crate::symbolic::graph::{Graph, NodeId, Operation};
+
+/// A force and its moment about the origin of a link's axes: terms of both.
+#[derive(Clone, Default)]
+struct Wrench {
+    force: VectorTerms,
+    moment: VectorTerms,
+}
+
+/// The generalised force along each of so many coordinates that this motion of the links takes.
+pub(super) fn generalised_forces(
+    graph: &mut Graph,
+    links: &[Link],
+    motions: &[Motion],
+    coordinates: usize,
+) -> Vec<NodeId> {
+    let mut work: Vec<Vec<(f64, NodeId)>> = vec![Vec::new(); coordinates];
+    let mut carried: Vec<Wrench> = vec![Wrench::default(); links.len()];
+    for (place, link) in links.iter().enumerate().rev() {
+        let mut wrench = std::mem::take(&mut carried[place]);
+        wrench.add_inertia(graph, &link.mass, &motions[place]);
+        let force = signed_sums(graph, &wrench.force);
+        let moment = signed_sums(graph, &wrench.moment);
+        // By virtual work: what does it, along what.
+        let pairs = match &link.joint {
+            Joint::Turn(turn) => vec![(moment[turn.axis], turn.angle)],
+            Joint::Shift(origin) => force.into_iter().zip(*origin).collect(),
+        };
+        for (row, index) in work.iter_mut().zip(CoordinateId::first(coordinates)) {
+            let variable = graph.intern(Operation::Coordinate(index));
+            for &(effort, way) in &pairs {
+                let slope = by_scalar(graph, way, variable);
+                row.push((1.0, graph.multiply(effort, slope)));
+            }
+        }
+        let Some(parent) = link.parent else {
+            continue;
+        };
+        let (force, moment, lever) = match &link.joint {
+            Joint::Turn(turn) => {
+                let [force, moment] = [force, moment].map(|v| turned_back(graph, turn, &v));
+                (force, moment, None)
+            }
+            Joint::Shift(origin) => (force, moment, Some(cross(graph, origin, &force))),
+        };
+        let before = &mut carried[parent];
+        for axis in 0..3 {
+            before.force[axis].push((1.0, force[axis]));
+            before.moment[axis].push((1.0, moment[axis]));
+            if let Some(lever) = &lever {
+                before.moment[axis].extend(&lever[axis]);
+            }
+        }
+    }
+    work.iter().map(|terms| graph.combine(terms)).collect()
+}
+
+impl Wrench {
+    /// What the inertia of a link takes: m a + U h and h x a + the moment about the origin, with U
+    /// the gradient of the acceleration a, m the mass and h its first moments.
+    fn add_inertia(&mut self, graph: &mut Graph, mass: &MassProperties, motion: &Motion) {
+        let carried = times(graph, &motion.gradient, &mass.first_moment);
+        let lever = cross(graph, &mass.first_moment, &motion.acceleration);
+        for axis in 0..3 {
+            let product = graph.multiply(mass.mass, motion.acceleration[axis]);
+            self.force[axis].push((1.0, product));
+            self.force[axis].extend(&carried[axis]);
+            self.moment[axis].extend(&lever[axis]);
+            let rotation = moment_of_rotation(graph, mass, motion, axis);
+            self.moment[axis].extend(rotation);
+        }
+    }
+}
+
+/// The terms of J alpha + omega x J omega along an axis i. Those of products of inertia are gathered
+/// to entries of the gradient, which forces need as well: with j and k that follow i,
+/// J_ij alpha_j - J_ij omega_i omega_k = -J_ij U_ki.
+fn moment_of_rotation(
+    graph: &mut Graph,
+    mass: &MassProperties,
+    motion: &Motion,
+    axis: usize,
+) -> Vec<(f64, NodeId)> {
+    let (inertia, omega, gradient) = (&mass.inertia, &motion.omega, &motion.gradient);
+    let [j, k] = following(axis);
+    let difference = graph.combine_flat(&[(1.0, inertia[k][k]), (-1.0, inertia[j][j])]);
+    let squares = [k, j].map(|other| graph.multiply(omega[other], omega[other]));
+    let squares = graph.subtract(squares[0], squares[1]);
+    vec![
+        (1.0, graph.multiply(inertia[axis][axis], motion.alpha[axis])),
+        (
+            1.0,
+            graph.product(&[(difference, 1), (omega[j], 1), (omega[k], 1)]),
+        ),
+        (-1.0, graph.multiply(inertia[j][k], squares)),
+        (-1.0, graph.multiply(inertia[axis][j], gradient[k][axis])),
+        (1.0, graph.multiply(inertia[axis][k], gradient[j][axis])),
+    ]
+}

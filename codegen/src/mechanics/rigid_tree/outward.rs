@@ -1,0 +1,127 @@
+//! Outward: how every link moves, along its own axes.
+
+use eomgen_model_spec::ids::CoordinateId;
+
+use super::links::{Joint, Link};
+use super::vector::{Matrix, Vector, cross, following, signed_sum, times, turned, zero};
+use crate::mechanics::translate::along_motion;
+use crate::symbolic::differentiate::Direction;
+use crate::symbolic::graph::{Graph, NodeId, Operation};
+
+/// The acceleration of a coordinate.
+pub(crate) type Acceleration<'a> = dyn Fn(&mut Graph, CoordinateId) -> NodeId + 'a;
+
+/// How a link moves, along its own axes.
+#[derive(Clone)]
+pub(super) struct Motion {
+    /// Angular velocity, in 1/s.
+    pub(super) omega: Vector,
+    /// Angular acceleration, in 1/s^2.
+    pub(super) alpha: Vector,
+    /// Acceleration of the origin less gravity, in m/s^2.
+    pub(super) acceleration: Vector,
+    /// What the acceleration grows by from point to point: [alpha]x + [omega]x [omega]x, in 1/s^2.
+    pub(super) gradient: Matrix,
+}
+
+/// The motion of every link. The fixed axes accelerate against gravity, which stands for all
+/// weights.
+pub(super) fn motions(
+    graph: &mut Graph,
+    links: &[Link],
+    gravity: &Vector,
+    acceleration: &Acceleration<'_>,
+) -> Vec<Motion> {
+    let tangent = |graph: &mut Graph, leaf: NodeId| match *graph.operation(leaf) {
+        Operation::Rate(index) => acceleration(graph, index),
+        _ => along_motion(graph, leaf),
+    };
+    let mut along = Direction::new(&tangent);
+    let still = zero(graph);
+    let base = Motion {
+        omega: still,
+        alpha: still,
+        acceleration: gravity.map(|component| graph.negate(component)),
+        gradient: [still; 3],
+    };
+    let mut motions: Vec<Motion> = Vec::with_capacity(links.len());
+    for link in links {
+        let before = link.parent.map_or(&base, |parent| &motions[parent]).clone();
+        motions.push(match &link.joint {
+            Joint::Shift(origin) => shifted(graph, before, origin, &mut along),
+            Joint::Turn(turn) => {
+                let rate = along_motion(graph, turn.angle);
+                let second = along.derivative(graph, rate);
+                let axes = [&before.omega, &before.alpha, &before.acceleration];
+                let [omega, alpha, acceleration] = axes.map(|v| turned(graph, turn, v));
+                spun(
+                    graph,
+                    (omega, alpha, acceleration),
+                    turn.axis,
+                    [rate, second],
+                )
+            }
+        });
+    }
+    motions
+}
+
+/// The motion of axes with their origin elsewhere, which may move along them.
+fn shifted(
+    graph: &mut Graph,
+    mut motion: Motion,
+    origin: &Vector,
+    along: &mut Direction<'_>,
+) -> Motion {
+    let carried = times(graph, &motion.gradient, origin);
+    let rate = origin.map(|component| along_motion(graph, component));
+    let second = rate.map(|component| along.derivative(graph, component));
+    let coriolis = cross(graph, &motion.omega, &rate);
+    motion.acceleration = [0, 1, 2].map(|axis| {
+        let mut terms = vec![(1.0, motion.acceleration[axis]), (1.0, second[axis])];
+        terms.extend(&carried[axis]);
+        terms.extend(
+            coriolis[axis]
+                .iter()
+                .map(|(factor, term)| (2.0 * factor, *term)),
+        );
+        signed_sum(graph, &terms)
+    });
+    motion
+}
+
+/// The motion with a turn about an axis added, along axes that are turned already.
+fn spun(
+    graph: &mut Graph,
+    (mut omega, mut alpha, acceleration): (Vector, Vector, Vector),
+    axis: usize,
+    [rate, second]: [NodeId; 2],
+) -> Motion {
+    let [i, j] = following(axis);
+    for (to, other, sign) in [(i, j, 1.0), (j, i, -1.0)] {
+        let product = graph.multiply(omega[other], rate);
+        alpha[to] = signed_sum(graph, &[(1.0, alpha[to]), (sign, product)]);
+    }
+    alpha[axis] = signed_sum(graph, &[(1.0, alpha[axis]), (1.0, second)]);
+    omega[axis] = signed_sum(graph, &[(1.0, omega[axis]), (1.0, rate)]);
+    Motion {
+        gradient: gradient(graph, &omega, &alpha),
+        omega,
+        alpha,
+        acceleration,
+    }
+}
+
+/// [alpha]x + [omega]x [omega]x.
+fn gradient(graph: &mut Graph, omega: &Vector, alpha: &Vector) -> Matrix {
+    let mut gradient = [*omega; 3];
+    for axis in 0..3 {
+        let [i, j] = following(axis);
+        let squares = [i, j].map(|other| (-1.0, graph.multiply(omega[other], omega[other])));
+        gradient[axis][axis] = signed_sum(graph, &squares);
+        let product = graph.multiply(omega[i], omega[j]);
+        gradient[i][j] = signed_sum(graph, &[(1.0, product), (-1.0, alpha[axis])]);
+        gradient[j][i] = signed_sum(graph, &[(1.0, product), (1.0, alpha[axis])]);
+    }
+    gradient
+}

@@ -1,0 +1,86 @@
+//! Vectors and matrices of nodes along the axes of one frame.
+
+use eomgen_model_spec::rigid_tree::AxisTurn;
+
+use crate::symbolic::graph::{Graph, NodeId, Operation};
+
+/// Components along x, y, z.
+pub(super) type Vector = [NodeId; 3];
+
+/// Rows of components.
+pub(super) type Matrix = [Vector; 3];
+
+/// Terms of a sum for each component.
+pub(super) type VectorTerms = [Vec<(f64, NodeId)>; 3];
+
+/// 0.
+pub(super) fn zero(graph: &mut Graph) -> Vector {
+    [graph.zero(); 3]
+}
+
+/// The axes that follow an axis, so that the first is cross(second, third).
+pub(super) fn following(axis: usize) -> [usize; 2] {
+    [(axis + 1) % 3, (axis + 2) % 3]
+}
+
+/// A sum; one of negative terms alone as minus a sum, whose sign what is made of it takes for
+/// nothing.
+pub(super) fn signed_sum(graph: &mut Graph, terms: &[(f64, NodeId)]) -> NodeId {
+    let sum = graph.combine(terms);
+    let positive: Vec<(f64, NodeId)> = match graph.operation(sum) {
+        Operation::Sum(parts) if parts.iter().all(|(factor, _)| factor.value() < 0.0) => {
+            let negated = parts.iter().map(|(factor, id)| (-factor.value(), *id));
+            negated.collect()
+        }
+        _ => return sum,
+    };
+    let positive = graph.combine(&positive);
+    graph.negate(positive)
+}
+
+/// The sums of terms.
+pub(super) fn signed_sums(graph: &mut Graph, terms: &VectorTerms) -> Vector {
+    terms.each_ref().map(|terms| signed_sum(graph, terms))
+}
+
+/// The terms of the vector product, one component after the other.
+pub(super) fn cross(graph: &mut Graph, a: &Vector, b: &Vector) -> VectorTerms {
+    [0, 1, 2].map(|axis| {
+        let [i, j] = following(axis);
+        vec![
+            (1.0, graph.multiply(a[i], b[j])),
+            (-1.0, graph.multiply(a[j], b[i])),
+        ]
+    })
+}
+
+/// The terms of a matrix times a vector.
+pub(super) fn times(graph: &mut Graph, matrix: &Matrix, vector: &Vector) -> VectorTerms {
+    matrix.map(|row| {
+        let products = row.iter().zip(vector);
+        products
+            .map(|(element, component)| (1.0, graph.multiply(*element, *component)))
+            .collect()
+    })
+}
+
+/// The vector along the turned axes.
+pub(super) fn turned(graph: &mut Graph, turn: &AxisTurn<NodeId>, vector: &Vector) -> Vector {
+    by_angle(graph, turn, vector, 1.0)
+}
+
+/// A vector along the turned axes, along those before.
+pub(super) fn turned_back(graph: &mut Graph, turn: &AxisTurn<NodeId>, vector: &Vector) -> Vector {
+    by_angle(graph, turn, vector, -1.0)
+}
+
+fn by_angle(graph: &mut Graph, turn: &AxisTurn<NodeId>, vector: &Vector, way: f64) -> Vector {
+    let [i, j] = following(turn.axis);
+    let mut result = *vector;
+    for (to, other, sign) in [(i, j, way), (j, i, -way)] {
+        let along = graph.multiply(turn.cosine, vector[to]);
+        let across = graph.multiply(turn.sine, vector[other]);
+        result[to] = signed_sum(graph, &[(1.0, along), (sign, across)]);
+    }
+    result
+}
