@@ -494,6 +494,13 @@ pub const EXPERIMENT_SAMPLES: f64 = 4000.0;
 /// larger ones.
 pub const EXPERIMENT_SIZES: [f64; 6] = [1.0, 0.5, 0.25, 0.1, 0.05, 0.02];
 
+/// A rate of a spring or a damper of more terms, written out, is compared with nothing: those of machines
+/// have a handful, and what is multiplied out has more and more.
+pub const MOST_TERMS_OF_A_RATE: usize = 64;
+
+/// And so is one that holds a higher power.
+pub const HIGHEST_POWER_OF_A_RATE: u8 = 8;
+
 /// The band of a recorded input is where this part of its power is.
 pub const RECORDED_POWER: f64 = 0.99;
 

@@ -4,7 +4,7 @@ use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::edit::Section;
 use eomgen_model_spec::table::Entry;
 
-use super::effect::{Change, SiteKind, Within};
+use super::effect::{Change, DAMPER, SiteKind, Within};
 use super::fields::{new_name, some, text};
 use super::placeholders::{Placeholders, expression};
 
@@ -32,14 +32,28 @@ enum Replaced {
     Kinetic,
     /// In the terms of a site of this kind.
     Site(SiteKind),
+    /// In the dampers beside a spring.
+    Dampers,
     Measured,
 }
 
-const REPLACED: [(&str, Replaced); 5] = [
+impl Replaced {
+    /// The kind of site that it is for, if for one alone.
+    fn site(self) -> Option<SiteKind> {
+        match self {
+            Self::Site(kind) => Some(kind),
+            Self::Dampers => Some(SiteKind::Spring),
+            Self::Kinetic | Self::Measured => None,
+        }
+    }
+}
+
+const REPLACED: [(&str, Replaced); 6] = [
     ("kinetic", Replaced::Kinetic),
     ("mesh", Replaced::Site(SiteKind::Mesh)),
     ("arm", Replaced::Site(SiteKind::Arm)),
     ("spring", Replaced::Site(SiteKind::Spring)),
+    ("damper", Replaced::Dampers),
     ("measured", Replaced::Measured),
 ];
 
@@ -73,7 +87,7 @@ pub(super) fn change(
         }
         (None, Some(substitute)) => {
             let within = found.keep(substitute.word(&REPLACED))?;
-            if let Replaced::Site(kind) = within
+            if let Some(kind) = within.site()
                 && kind != site
             {
                 let wrong = Diagnostic::error("this effect sits at another kind of site");
@@ -142,13 +156,21 @@ fn substitution(
 ) -> Option<Change> {
     let known: &[&str] = match within {
         Replaced::Kinetic => &["substitute", "terms", "find", "replace"],
-        Replaced::Site(_) | Replaced::Measured => &["substitute", "find", "replace"],
+        Replaced::Site(_) | Replaced::Dampers | Replaced::Measured => {
+            &["substitute", "find", "replace"]
+        }
     };
     let record = entry.record(known, "{ substitute = \"mesh\", ... }", found)?;
+    // Nothing else fills this one.
+    if let Replaced::Dampers = within {
+        placeholders.known.push(DAMPER.to_owned());
+    }
     let find = expression(&record, "find", placeholders, found);
     let replace = expression(&record, "replace", placeholders, found);
+    placeholders.known.retain(|known| known != DAMPER);
     let within = match within {
         Replaced::Site(_) => Within::Site,
+        Replaced::Dampers => Within::Dampers,
         Replaced::Measured => Within::Measured,
         Replaced::Kinetic => {
             let mut terms = Vec::new();

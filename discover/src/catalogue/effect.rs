@@ -23,6 +23,9 @@ pub struct Effect {
     pub is_own: bool,
 }
 
+/// The placeholder of a damper's term, in edits that replace it.
+pub const DAMPER: &str = "damper";
+
 /// The kinds of places.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SiteKind {
@@ -165,6 +168,8 @@ pub enum Within {
     /// All terms of a pair of teeth, that of a spring, or of the kinetic energy of a body and of what it
     /// carries.
     Site,
+    /// The dampers beside a spring, each by itself.
+    Dampers,
     /// All definitions and observables.
     Measured,
 }

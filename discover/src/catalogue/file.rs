@@ -8,7 +8,7 @@ use eomgen_model_spec::table::{Entry, Name, Record, Written};
 use eomgen_model_spec::toml_file;
 
 use super::change::change;
-use super::effect::{Effect, EffectParameter, Scale, Shape, SiteKind};
+use super::effect::{DAMPER, Effect, EffectParameter, Scale, Shape, SiteKind};
 use super::fields::{new_name, some, text};
 use super::placeholders::Placeholders;
 
@@ -60,7 +60,10 @@ fn effect(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Effect> {
         .collect();
     let of_site = site.placeholders().iter().map(|blank| (*blank).to_owned());
     let of_site: Vec<String> = of_site.collect();
-    for name in own.iter().filter(|own| of_site.contains(&own.text)) {
+    let is_taken = |name: &str| {
+        of_site.iter().any(|blank| blank == name) || (site == SiteKind::Spring && name == DAMPER)
+    };
+    for name in own.iter().filter(|own| is_taken(&own.text)) {
         let wrong = format!("{} has a meaning at such a site", quoted(&name.text));
         found.push(Diagnostic::error(wrong).at(name.span, "expected another name"));
     }

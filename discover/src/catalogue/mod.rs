@@ -1,6 +1,8 @@
 //! What a model may lack: the effects that come with the program and a user's ([`effect`]), the
-//! places of a model where they may sit ([`site`], [`sites`], `springs`), how these move ([`usual_motion`]), and both together as [`candidate`]s (the edits
-//! of an effect at a place: [`template`]; its parameters as unknowns: [`candidate_unknown`]). What
+//! places of a model where they may sit ([`site`], [`sites`], `springs` and the `dampers` beside them,
+//! read by `products` and `polynomial`), how these move ([`usual_motion`]), and both together as
+//! [`candidate`]s (the edits of an effect at a place: [`template`]; its parameters as unknowns:
+//! [`candidate_unknown`]). What
 //! effects do is decided by nobody but the specification. How a file of effects is read is in
 //! `file` with `change`, `placeholders` and `fields`. Inputs that act otherwise than recorded are
 //! candidates of their own ([`input_faults`]).
@@ -8,11 +10,14 @@
 pub mod candidate;
 pub mod candidate_unknown;
 mod change;
+mod dampers;
 pub mod effect;
 mod fields;
 mod file;
 pub mod input_faults;
 mod placeholders;
+mod polynomial;
+mod products;
 pub mod site;
 pub mod sites;
 mod springs;

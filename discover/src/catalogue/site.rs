@@ -19,6 +19,19 @@ pub struct Site {
     pub arguments: BTreeMap<&'static str, String>,
     /// The terms that make up a mesh or hold a spring, or those of the kinetic energy that move with a body.
     pub terms: Vec<(Section, Vec<String>)>,
+    /// The dampers beside a spring.
+    pub dampers: Vec<Damper>,
+}
+
+/// A damper that acts on the rate of a spring's deflection.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Damper {
+    /// Where it stands: in the dissipation or among the forces.
+    pub section: Section,
+    /// The term that it is a part of.
+    pub term: String,
+    /// The part, as the specification writes it.
+    pub part: String,
 }
 
 /// An expression as the specification writes it.

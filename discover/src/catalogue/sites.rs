@@ -100,6 +100,7 @@ fn axis(name: &str, on: &str, unit: &str) -> Option<Site> {
         name: name.to_owned(),
         arguments: arguments.map(|(key, word)| (key, word.to_owned())).into(),
         terms: Vec::new(),
+        dampers: Vec::new(),
     })
 }
 
@@ -203,6 +204,7 @@ fn mesh(model: &Model, coordinate: CoordinateId) -> Option<Site> {
         arguments,
         name,
         terms,
+        dampers: Vec::new(),
     })
 }
 
@@ -273,6 +275,7 @@ fn arms(model: &Model) -> Vec<Site> {
             name: term.name.clone(),
             arguments,
             terms: vec![(Section::Kinetic, moving)],
+            dampers: Vec::new(),
         })
     };
     model.kinetic.iter().filter_map(arm).collect()

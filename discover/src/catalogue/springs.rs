@@ -6,7 +6,9 @@ use eomgen_model_spec::dimension::Dimension;
 use eomgen_model_spec::edit::Section;
 use eomgen_model_spec::model::{Expr, ExprKind, Model, Term};
 
+use crate::catalogue::dampers::dampers;
 use crate::catalogue::effect::SiteKind;
+use crate::catalogue::products::{is_fixed, square, summands};
 use crate::catalogue::site::{Site, text};
 
 /// All springs of a model.
@@ -26,9 +28,7 @@ struct Spring<'m> {
 
 /// The springs of a term: one has the term's name, of several each that of its stiffness behind it.
 fn of_term(model: &Model, term: &Term) -> Vec<Site> {
-    let mut summands = Vec::new();
-    summands_of(&term.value, &mut summands);
-    let springs: Vec<Spring<'_>> = summands
+    let springs: Vec<Spring<'_>> = summands(&term.value)
         .into_iter()
         .filter_map(|summand| spring(model, summand))
         .collect();
@@ -60,78 +60,20 @@ fn of_term(model: &Model, term: &Term) -> Vec<Site> {
             name,
             arguments: arguments.into_iter().collect(),
             terms: vec![(Section::Potential, vec![term.name.clone()])],
+            dampers: dampers(model, spring.deflection),
         })
     };
     springs.iter().enumerate().filter_map(site).collect()
 }
 
-/// What a sum adds up; what it takes away is no spring.
-fn summands_of<'m>(expr: &'m Expr, found: &mut Vec<&'m Expr>) {
-    match &expr.kind {
-        ExprKind::Binary(BinaryOperator::Add, left, right) => {
-            summands_of(left, found);
-            summands_of(right, found);
-        }
-        ExprKind::Binary(BinaryOperator::Subtract, left, _) => summands_of(left, found),
-        _ => found.push(expr),
-    }
-}
-
 /// A product as a spring; none if it is none.
 fn spring<'m>(model: &Model, product: &'m Expr) -> Option<Spring<'m>> {
-    let (mut deflection, mut parameters) = (None, Vec::new());
-    factors(model, product, &mut deflection, &mut parameters)?;
-    let deflection = deflection.filter(|_| !parameters.is_empty())?;
+    let (deflection, parameters) = square(model, product)?;
     let spring = Spring {
         deflection,
         parameters,
     };
-    is_position(model, spring.deflection).then_some(spring)
-}
-
-/// Goes through the factors of a product: one square of what moves, and parameters and numbers
-/// beside it; none if anything else is there.
-fn factors<'m>(
-    model: &Model,
-    expr: &'m Expr,
-    deflection: &mut Option<&'m Expr>,
-    parameters: &mut Vec<String>,
-) -> Option<()> {
-    match &expr.kind {
-        ExprKind::Binary(BinaryOperator::Multiply, left, right) => {
-            factors(model, left, deflection, parameters)?;
-            factors(model, right, deflection, parameters)
-        }
-        ExprKind::Binary(BinaryOperator::Divide, above, below) => {
-            factors(model, above, deflection, parameters)?;
-            is_fixed(model, below, parameters).then_some(())
-        }
-        ExprKind::Binary(BinaryOperator::Power, base, exponent)
-            if exponent.kind == ExprKind::Number(2.0)
-                && deflection.is_none()
-                && !is_fixed(model, base, &mut Vec::new()) =>
-        {
-            *deflection = Some(base);
-            Some(())
-        }
-        _ => is_fixed(model, expr, parameters).then_some(()),
-    }
-}
-
-/// Whether an expression is made of parameters and numbers alone; notes the parameters.
-fn is_fixed(model: &Model, expr: &Expr, parameters: &mut Vec<String>) -> bool {
-    match &expr.kind {
-        ExprKind::Number(_) | ExprKind::Pi => true,
-        ExprKind::Parameter(id) => {
-            parameters.push(model.parameters[*id].name.clone());
-            true
-        }
-        ExprKind::Negate(inner) => is_fixed(model, inner, parameters),
-        ExprKind::Binary(_, left, right) => {
-            is_fixed(model, left, parameters) && is_fixed(model, right, parameters)
-        }
-        _ => false,
-    }
+    (!spring.parameters.is_empty() && is_position(model, deflection)).then_some(spring)
 }
 
 /// Whether an expression is a position: sums of coordinates, times what is fixed.

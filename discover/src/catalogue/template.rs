@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use eomgen_model_spec::edit::{Edit, NewCoordinate, NewForce, NewTerm, Section, Substitution};
 use eomgen_model_spec::model::{Expr, Model};
 
-use crate::catalogue::effect::{Change, SiteKind, Within};
-use crate::catalogue::site::Site;
+use crate::catalogue::effect::{Change, DAMPER, SiteKind, Within};
+use crate::catalogue::site::{Damper, Site};
 
 /// The edits that a change of the catalogue comes to with these arguments;
 /// none if an argument is missing, or what is replaced is not there.
@@ -53,6 +53,9 @@ pub(crate) fn edits(
             find,
             replace,
         } => {
+            if *within == Within::Dampers {
+                return dampers(site, (find, replace), arguments);
+            }
             return substitutions(
                 model,
                 within,
@@ -81,6 +84,7 @@ fn substitutions(
             vec![(Section::Kinetic, terms?)]
         }
         Within::Site => holding(model, site, &find),
+        Within::Dampers => return None,
         Within::Measured => measured(model, &find),
     };
     let substitutions: Vec<Edit> = (places.into_iter())
@@ -95,6 +99,26 @@ fn substitutions(
         })
         .collect();
     (!substitutions.is_empty()).then_some(substitutions)
+}
+
+/// What is replaced in the dampers beside a spring, each by itself; none if there is none.
+fn dampers(
+    site: &Site,
+    (find, replace): (&str, &str),
+    arguments: &BTreeMap<String, String>,
+) -> Option<Vec<Edit>> {
+    let substitution = |damper: &Damper| {
+        let mut arguments = arguments.clone();
+        arguments.insert(DAMPER.to_owned(), damper.part.clone());
+        Some(Edit::Substitute(Substitution {
+            section: damper.section,
+            terms: vec![damper.term.clone()],
+            find: instantiated(find, &arguments)?,
+            replace: instantiated(replace, &arguments)?,
+        }))
+    };
+    let all: Option<Vec<Edit>> = site.dampers.iter().map(substitution).collect();
+    all.filter(|edits| !edits.is_empty())
 }
 
 /// The definitions and observables that hold an expression, however it is spaced.

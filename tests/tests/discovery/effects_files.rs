@@ -189,6 +189,30 @@ fn blanks_names_and_expressions_that_are_none_are_refused_with_their_place() {
 }
 
 #[test]
+fn a_damper_is_replaced_beside_springs_alone_and_named_nowhere_else() {
+    let on_springs = EFFECTS.replace("\"axis\"", "\"spring\"");
+    let on_axes = EFFECTS.replace(
+        "{ add = \"force\", name = \"rail\", on = \"{on}\", ",
+        "{ substitute = \"damper\", find = \"{damper}\", replace = \"{damper}*{B_r}\" }, { add = \"force\", name = \"rail\", on = \"{on}\", ",
+    );
+    let measured = Measured::stage(0.0);
+    for (effects, words) in [
+        (on_axes, "expected site = \"spring\""),
+        (
+            on_springs.replace("-{B_r}*", "-{B_r}*{damper}*"),
+            "nothing fills the blank `damper`",
+        ),
+        (
+            on_springs.replace("B_r", "damper"),
+            "`damper` has a meaning at such a site",
+        ),
+    ] {
+        let message = refused(&measured, &effects);
+        assert!(message.contains(words), "{words}: {message}");
+    }
+}
+
+#[test]
 fn files_of_effects_that_are_none_are_refused() {
     let measured = Measured::stage(0.0);
     for (text, part) in [

@@ -513,12 +513,14 @@ fn what_may_be_wrong_with_a_spring_is_found_on_it() {
     for (entry, hidden) in [
         (1, hidden("stiffness_nonlinearity", "spring", &[])),
         (0, hidden("backlash", "spring", &[])),
+        (1, hidden("backlash", "spring", &[])),
         (2, hidden("end_stop", "spring", &[])),
         (0, hidden("spring_saturation", "spring", &[])),
     ] {
         let by = match hidden.effect {
             "stiffness_nonlinearity" => By::Entry(entry, None, &[6e4]),
-            "backlash" => By::Entry(entry, None, &[3e-3]),
+            "backlash" if entry == 0 => By::Entry(0, None, &[3e-3]),
+            "backlash" => By::Entry(1, None, &[3e-3]),
             "end_stop" => By::Entry(2, None, &[900.0, 0.03]),
             _ => By::Entry(entry, None, &[250.0, 0.03]),
         };

@@ -172,3 +172,85 @@ fn springs_have_room_for_a_users_effect() {
     assert_eq!(places, ["spring"], "a cubic force is no linear spring");
     assert_eq!(found[0].term, "1/4*k_h*(p - q)^4");
 }
+
+/// Dampers beside a spring as they are written in more than one way, and what looks like one and is none.
+const DAMPERS: &str = r#"
+[model]
+name = "dampers"
+
+[parameters]
+J = { value = 0.1, unit = "kg m^2" }
+r_1 = { value = 0.2, unit = "m" }
+r_2 = { value = 0.3, unit = "m" }
+k = { value = 400, unit = "N/m" }
+d = { value = 2, unit = "N s/m" }
+d_t = { value = 0.1, unit = "N m s" }
+d_4 = { value = 0.1, unit = "N m s^3" }
+F = { value = 10, unit = "N" }
+
+[coordinates]
+theta = { unit = "rad" }
+phi = { unit = "rad" }
+psi = { unit = "rad" }
+
+[definitions]
+way = "r_1*theta - r_2*phi"
+slip = "phi*r_2/r_1 - theta"
+
+[kinetic]
+discs = "1/2*J*(dot(theta)^2 + dot(phi)^2 + dot(psi)^2)"
+
+[potential]
+belt = "1/2*k*(r_1*(theta - phi*r_2/r_1))^2"
+
+[dissipation]
+along = "1/2*d*dot(way)^2"
+both = "1/2*d_t*dot(psi)^2 + d_t*dot(slip)^2/2"
+bearings = "1/2*d_t*dot(theta)^2"
+shaft = "1/2*d_t*(dot(theta) - dot(phi))^2"
+fast = "1/4*d_4*dot(slip)^4"
+
+[forces]
+guide = { on = "way", value = "F - d*(r_1*dot(theta) - r_2*dot(phi))" }
+other = { on = "theta", value = "-d_t*dot(slip)" }
+"#;
+
+#[test]
+fn dampers_beside_a_spring_are_found_however_they_are_written() {
+    let checked = eomgen_model_spec::check(Source::new("dampers.toml", DAMPERS));
+    let model = checked.unwrap_or_else(|found| panic!("{found}")).model;
+    let belt = sites(&model).into_iter().find(|site| site.name == "belt");
+    let dampers = belt.expect("a spring").dampers.into_iter();
+    let dampers: Vec<[String; 2]> = dampers.map(|damper| [damper.term, damper.part]).collect();
+    let expected = [
+        ["along", "1/2*d*dot(way)^2"],
+        ["both", "d_t*dot(slip)^2/2"],
+        ["guide", "d*(r_1*dot(theta) - r_2*dot(phi))"],
+    ];
+    assert_eq!(dampers, expected.map(|words| words.map(str::to_owned)));
+}
+
+#[test]
+fn play_opens_the_dampers_beside_its_spring_or_none() {
+    let checked = eomgen_model_spec::check(Source::new("dampers.toml", DAMPERS));
+    let model = checked.unwrap_or_else(|found| panic!("{found}")).model;
+    let effects = effects(None).expect("the catalogue");
+    let play = effects.iter().filter(|effect| effect.name == "backlash");
+    let written: Vec<String> = play
+        .flat_map(|effect| placed(&model, effect))
+        .map(|candidate| candidate.written(DAMPERS, "dampers", &[1e-3], "a test"))
+        .map(|written| written.unwrap_or_else(|error| panic!("{error}")))
+        .collect();
+    let [opened, apart] = &written[..] else {
+        panic!("{written:#?}");
+    };
+    for line in [
+        "both = \"1/2*d_t*dot(psi)^2 + (d_t*dot(slip)^2/2*contact(",
+        "bearings = \"1/2*d_t*dot(theta)^2\"",
+        "value = \"F - (d*(r_1*dot(theta) - r_2*dot(phi))*contact(",
+    ] {
+        assert!(opened.contains(line), "{opened}");
+    }
+    assert!(!apart.contains("contact("), "{apart}");
+    assert!(apart.contains("deadzone("), "{apart}");
+}

@@ -8,4 +8,5 @@ mod friction_that_stops;
 mod next_experiment;
 mod nothing_compared;
 mod off_the_list;
+mod play_in_a_drive;
 mod specifications;

@@ -1,0 +1,84 @@
+//! Dampers beside a spring: parts `1/2*d*dot(p)^2` of the dissipation, and `-d*dot(p)` of a force on `p`, whose
+//! rate is that of what deflects, or in proportion to it, however either is written.
+
+use eomgen_model_spec::ast::BinaryOperator;
+use eomgen_model_spec::edit::Section;
+use eomgen_model_spec::model::{Expr, ExprKind, Force, Model};
+
+use crate::catalogue::polynomial::Polynomial;
+use crate::catalogue::products::{is_fixed, square, summands};
+use crate::catalogue::site::{Damper, text};
+
+/// All dampers of a model that act on the rate of a deflection alone.
+pub(super) fn dampers(model: &Model, deflection: &Expr) -> Vec<Damper> {
+    let rate = Polynomial::of(model, deflection).and_then(|deflection| deflection.rate());
+    let Some(rate) = rate else {
+        return Vec::new();
+    };
+    let is_along = |value: &Expr| {
+        Polynomial::of(model, value).is_some_and(|value| value.is_proportional_to(&rate))
+    };
+    let mut found: Vec<Damper> = Vec::new();
+    let mut note = |section: Section, term: &str, part: &Expr| {
+        let damper = Damper {
+            section,
+            term: term.to_owned(),
+            part: text(model, part),
+        };
+        if !found.contains(&damper) {
+            found.push(damper);
+        }
+    };
+    for term in &model.dissipation {
+        for part in summands(&term.value) {
+            if square(model, part).is_some_and(|(base, _)| is_along(base)) {
+                note(Section::Dissipation, &term.name, part);
+            }
+        }
+    }
+    for force in model.forces.iter().filter(|f| acts_along(model, f, &rate)) {
+        for part in parts(&force.value) {
+            if moving_factor(model, part).is_some_and(is_along) {
+                note(Section::Forces, &force.name, part);
+            }
+        }
+    }
+    found
+}
+
+/// Whether a force acts on a deflection of this rate, and is no component of a vector, which a
+/// specification names otherwise.
+fn acts_along(model: &Model, force: &Force, rate: &Polynomial) -> bool {
+    let named = model.source.text.get(force.span.start..force.span.end);
+    let on = || Polynomial::of(model, &force.on)?.rate();
+    named == Some(&force.name) && on().is_some_and(|on| on.is_proportional_to(rate))
+}
+
+/// What a force adds up and takes away.
+fn parts(value: &Expr) -> Vec<&Expr> {
+    match &value.kind {
+        ExprKind::Binary(BinaryOperator::Add | BinaryOperator::Subtract, left, right) => {
+            [parts(left), parts(right)].concat()
+        }
+        _ => vec![value],
+    }
+}
+
+/// The only factor of a product that is not fixed.
+fn moving_factor<'m>(model: &Model, product: &'m Expr) -> Option<&'m Expr> {
+    let is_fixed = |expr: &Expr| is_fixed(model, expr, &mut Vec::new());
+    match &product.kind {
+        ExprKind::Negate(inner) => moving_factor(model, inner),
+        ExprKind::Binary(BinaryOperator::Multiply, left, right) => {
+            match (is_fixed(left), is_fixed(right)) {
+                (true, false) => moving_factor(model, right),
+                (false, true) => moving_factor(model, left),
+                _ => None,
+            }
+        }
+        ExprKind::Binary(BinaryOperator::Divide, above, below) if is_fixed(below) => {
+            moving_factor(model, above)
+        }
+        _ => Some(product),
+    }
+}

@@ -1,0 +1,224 @@
+//! Polynomials in coordinates, their rates and parameters, as sums of products that are written in one
+//! way only: by them two expressions are the same however a specification writes them.
+
+use std::collections::BTreeMap;
+
+use eomgen_model_spec::ast::BinaryOperator;
+use eomgen_model_spec::ids::{CoordinateId, ParameterId};
+use eomgen_model_spec::model::{Expr, ExprKind, Model};
+
+use crate::thresholds;
+
+/// A letter of a polynomial.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Letter {
+    /// A coordinate.
+    Coordinate(CoordinateId),
+    /// Its rate.
+    Rate(CoordinateId),
+    /// A parameter.
+    Parameter(ParameterId),
+    /// One by a sum of parameters, by how that is printed.
+    Inverse(String),
+}
+
+/// A product of letters with their powers, which are not 0.
+type Monomial = BTreeMap<Letter, i32>;
+
+/// A sum of products, each with its factor.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Polynomial(BTreeMap<Monomial, f64>);
+
+impl Polynomial {
+    /// The polynomial that an expression is; none if it is something else, or too long.
+    pub(super) fn of(model: &Model, expr: &Expr) -> Option<Self> {
+        Reader::new(model).polynomial(expr)
+    }
+
+    /// Its derivative by the time; none if it holds a rate.
+    pub(super) fn rate(&self) -> Option<Self> {
+        let mut sum = Self::default();
+        for (monomial, factor) in &self.0 {
+            for (letter, power) in monomial {
+                let rate = match letter {
+                    Letter::Coordinate(id) => Letter::Rate(*id),
+                    Letter::Rate(_) => return None,
+                    Letter::Parameter(_) | Letter::Inverse(_) => continue,
+                };
+                let mut term = monomial.clone();
+                raise(&mut term, letter.clone(), -1);
+                raise(&mut term, rate, 1);
+                sum.add_term(term, factor * f64::from(*power));
+            }
+        }
+        Some(sum)
+    }
+
+    /// Whether two rates are in proportion, whatever the factor: both linear in the rates of coordinates, and
+    /// every coefficient of the one is to the other's as all are. Zero is in proportion to nothing.
+    pub(super) fn is_proportional_to(&self, other: &Self) -> bool {
+        let (Some(own), Some(others)) = (self.coefficients(), other.coefficients()) else {
+            return false;
+        };
+        let ids = || own.keys().chain(others.keys());
+        let zero = Self::default();
+        let of = |list: &BTreeMap<CoordinateId, Self>, id: &CoordinateId| {
+            list.get(id).unwrap_or(&zero).clone()
+        };
+        let agree = |a: &CoordinateId, b: &CoordinateId| {
+            let one = of(&own, a).times(&of(&others, b));
+            let two = of(&own, b).times(&of(&others, a));
+            matches!((one, two), (Some(one), Some(two)) if one.is_near(&two))
+        };
+        !own.is_empty() && !others.is_empty() && ids().all(|a| ids().all(|b| agree(a, b)))
+    }
+
+    /// The factor of each rate; none if something stands without a rate, or with more than one.
+    fn coefficients(&self) -> Option<BTreeMap<CoordinateId, Self>> {
+        let mut found: BTreeMap<CoordinateId, Self> = BTreeMap::new();
+        for (monomial, factor) in &self.0 {
+            let mut rates = monomial.iter().filter_map(|(letter, power)| match letter {
+                Letter::Rate(id) => Some((*id, *power)),
+                _ => None,
+            });
+            let (Some((id, 1)), None) = (rates.next(), rates.next()) else {
+                return None;
+            };
+            let mut rest = monomial.clone();
+            rest.remove(&Letter::Rate(id));
+            found.entry(id).or_default().add_term(rest, *factor);
+        }
+        found.retain(|_, coefficient| !coefficient.0.is_empty());
+        Some(found)
+    }
+
+    /// Whether two agree but for rounding.
+    fn is_near(&self, other: &Self) -> bool {
+        let of = |polynomial: &Self, monomial: &Monomial| {
+            polynomial.0.get(monomial).copied().unwrap_or(0.0)
+        };
+        let mut monomials = self.0.keys().chain(other.0.keys());
+        monomials.all(|monomial| {
+            let (a, b) = (of(self, monomial), of(other, monomial));
+            (a - b).abs() <= 1e-12 * a.abs().max(b.abs())
+        })
+    }
+
+    fn number(value: f64) -> Self {
+        let mut sum = Self::default();
+        sum.add_term(Monomial::new(), value);
+        sum
+    }
+
+    fn letter(letter: Letter) -> Self {
+        Self([([(letter, 1)].into(), 1.0)].into())
+    }
+
+    fn add_term(&mut self, monomial: Monomial, factor: f64) {
+        let sum = self.0.get(&monomial).copied().unwrap_or(0.0) + factor;
+        match sum == 0.0 {
+            true => self.0.remove(&monomial),
+            false => self.0.insert(monomial, sum),
+        };
+    }
+
+    fn plus(mut self, other: &Self, sign: f64) -> Option<Self> {
+        for (monomial, factor) in &other.0 {
+            self.add_term(monomial.clone(), sign * factor);
+        }
+        self.if_short()
+    }
+
+    fn times(&self, other: &Self) -> Option<Self> {
+        let mut product = Self::default();
+        for (one, factor) in &self.0 {
+            for (two, by) in &other.0 {
+                let mut monomial = one.clone();
+                for (letter, power) in two {
+                    raise(&mut monomial, letter.clone(), *power);
+                }
+                product.add_term(monomial, factor * by);
+            }
+        }
+        product.if_short()
+    }
+
+    /// One by it; none if it is 0, moves, or holds a quotient by a sum itself.
+    fn inverse(&self) -> Option<Self> {
+        let is_fixed = |letter: &Letter| matches!(letter, Letter::Parameter(_));
+        if self.0.is_empty() || !self.0.keys().flat_map(BTreeMap::keys).all(is_fixed) {
+            return None;
+        }
+        let mut terms = self.0.iter();
+        if let (Some((monomial, factor)), None) = (terms.next(), terms.next()) {
+            let inverse = monomial
+                .iter()
+                .map(|(letter, power)| (letter.clone(), -power));
+            return Some(Self([(inverse.collect(), 1.0 / factor)].into()));
+        }
+        Some(Self::letter(Letter::Inverse(format!("{self:?}"))))
+    }
+
+    fn if_short(self) -> Option<Self> {
+        (self.0.len() <= thresholds::MOST_TERMS_OF_A_RATE).then_some(self)
+    }
+}
+
+fn raise(monomial: &mut Monomial, letter: Letter, by: i32) {
+    let power = monomial.get(&letter).copied().unwrap_or(0) + by;
+    match power {
+        0 => monomial.remove(&letter),
+        _ => monomial.insert(letter, power),
+    };
+}
+
+/// Reads expressions of a model, each definition once.
+struct Reader<'m> {
+    model: &'m Model,
+    definitions: Vec<Option<Option<Polynomial>>>,
+}
+
+impl<'m> Reader<'m> {
+    fn new(model: &'m Model) -> Self {
+        Self {
+            model,
+            definitions: vec![None; model.definitions.len()],
+        }
+    }
+
+    fn polynomial(&mut self, expr: &Expr) -> Option<Polynomial> {
+        match &expr.kind {
+            ExprKind::Number(value) => Some(Polynomial::number(*value)),
+            ExprKind::Pi => Some(Polynomial::number(std::f64::consts::PI)),
+            ExprKind::Parameter(id) => Some(Polynomial::letter(Letter::Parameter(*id))),
+            ExprKind::Coordinate(id) => Some(Polynomial::letter(Letter::Coordinate(*id))),
+            ExprKind::Definition(id) => {
+                if self.definitions[*id].is_none() {
+                    let model = self.model;
+                    self.definitions[*id] = Some(self.polynomial(&model.definitions[*id].value));
+                }
+                self.definitions[*id].clone().flatten()
+            }
+            ExprKind::Dot(inner) => self.polynomial(inner)?.rate(),
+            ExprKind::Negate(inner) => Polynomial::default().plus(&self.polynomial(inner)?, -1.0),
+            ExprKind::Binary(operator, left, right) => {
+                let (left, right) = (self.polynomial(left)?, self.polynomial(right)?);
+                match operator {
+                    BinaryOperator::Add => left.plus(&right, 1.0),
+                    BinaryOperator::Subtract => left.plus(&right, -1.0),
+                    BinaryOperator::Multiply => left.times(&right),
+                    BinaryOperator::Divide => left.times(&right.inverse()?),
+                    BinaryOperator::Power => power(&left, &right),
+                }
+            }
+            _ => None,
+        }
+    }
+}
+
+/// A small whole power.
+fn power(base: &Polynomial, exponent: &Polynomial) -> Option<Polynomial> {
+    let mut powers = 1..=thresholds::HIGHEST_POWER_OF_A_RATE;
+    let exponent = powers.find(|n| *exponent == Polynomial::number(f64::from(*n)))?;
+    (1..exponent).try_fold(base.clone(), |product, _| product.times(base))
+}

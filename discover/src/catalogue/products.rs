@@ -1,0 +1,76 @@
+//! Terms of an energy or of the dissipation taken apart: sums into summands, and these into a square and what
+//! is fixed beside it.
+
+use eomgen_model_spec::ast::BinaryOperator;
+use eomgen_model_spec::model::{Expr, ExprKind, Model};
+
+/// What a sum adds up; what it takes away is left out.
+pub(super) fn summands(expr: &Expr) -> Vec<&Expr> {
+    let mut found = Vec::new();
+    summands_of(expr, &mut found);
+    found
+}
+
+fn summands_of<'m>(expr: &'m Expr, found: &mut Vec<&'m Expr>) {
+    match &expr.kind {
+        ExprKind::Binary(BinaryOperator::Add, left, right) => {
+            summands_of(left, found);
+            summands_of(right, found);
+        }
+        ExprKind::Binary(BinaryOperator::Subtract, left, _) => summands_of(left, found),
+        _ => found.push(expr),
+    }
+}
+
+/// The base of the only square in a product, and the parameters among what is fixed beside it; none if the
+/// product holds anything else.
+pub(super) fn square<'m>(model: &Model, product: &'m Expr) -> Option<(&'m Expr, Vec<String>)> {
+    let (mut base, mut parameters) = (None, Vec::new());
+    factors(model, product, &mut base, &mut parameters)?;
+    Some((base?, parameters))
+}
+
+/// Goes through the factors of a product: one square of what moves, and parameters and numbers
+/// beside it; none if anything else is there.
+fn factors<'m>(
+    model: &Model,
+    expr: &'m Expr,
+    moving: &mut Option<&'m Expr>,
+    parameters: &mut Vec<String>,
+) -> Option<()> {
+    match &expr.kind {
+        ExprKind::Binary(BinaryOperator::Multiply, left, right) => {
+            factors(model, left, moving, parameters)?;
+            factors(model, right, moving, parameters)
+        }
+        ExprKind::Binary(BinaryOperator::Divide, above, below) => {
+            factors(model, above, moving, parameters)?;
+            is_fixed(model, below, parameters).then_some(())
+        }
+        ExprKind::Binary(BinaryOperator::Power, base, exponent)
+            if exponent.kind == ExprKind::Number(2.0)
+                && moving.is_none()
+                && !is_fixed(model, base, &mut Vec::new()) =>
+        {
+            *moving = Some(base);
+            Some(())
+        }
+        _ => is_fixed(model, expr, parameters).then_some(()),
+    }
+}
+
+/// Whether an expression is made of parameters and numbers alone; notes the parameters.
+pub(super) fn is_fixed(model: &Model, expr: &Expr, parameters: &mut Vec<String>) -> bool {
+    match &expr.kind {
+        ExprKind::Number(_) | ExprKind::Pi => true,
+        ExprKind::Parameter(id) => {
+            parameters.push(model.parameters[*id].name.clone());
+            true
+        }
+        ExprKind::Negate(inner) => is_fixed(model, inner, parameters),
+        ExprKind::Binary(_, left, right) => {
+            is_fixed(model, left, parameters) && is_fixed(model, right, parameters)
+        }
+        _ => false,
+    }
+}

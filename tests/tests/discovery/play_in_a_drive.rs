@@ -1,0 +1,216 @@
+//! Play in the shaft of a drive of two masses is named alone, whether the damper beside the shaft's spring acts in
+//! contact only or inside the play too, and no damping is called shifted for it. Records are made by the
+//! midpoint rule from Newton's laws.
+
+use eomgen_tests::program;
+use serde_json::Value;
+
+const J_M: f64 = 1e-3;
+const J_L: f64 = 3e-3;
+const K: f64 = 12.0;
+const D: f64 = 8e-3;
+const B_M: f64 = 6e-4;
+const B_L: f64 = 5e-4;
+
+/// Half of the play, rad: sixty times what the encoders' noise is.
+const PLAY: f64 = 9e-3;
+
+/// One standard deviation of what an encoder shows, rad.
+const NOISE: f64 = 1.5e-4;
+
+/// Time between samples, s, and how many there are.
+const SAMPLE: f64 = 1e-3;
+const SAMPLES: usize = 1500;
+
+/// A specification without play, with the damper as it is written in one section or the other.
+fn specification(damper: &str) -> String {
+    format!(
+        r#"
+[model]
+name = "drive"
+
+[parameters]
+J_m = {{ value = 1e-3, unit = "kg m^2", min = 0 }}
+J_l = {{ value = 3e-3, unit = "kg m^2", min = 0 }}
+k = {{ value = 12, unit = "N m/rad", min = 0 }}
+d = {{ value = 8e-3, unit = "N m s/rad", min = 0 }}
+b_m = {{ value = 6e-4, unit = "N m s/rad", min = 0 }}
+b_l = {{ value = 5e-4, unit = "N m s/rad", min = 0 }}
+
+[coordinates]
+theta_m = {{ unit = "rad" }}
+theta_l = {{ unit = "rad" }}
+
+[inputs]
+u = {{ unit = "N m" }}
+
+[definitions]
+twist = "theta_m - theta_l"
+
+[kinetic]
+both = "1/2*J_m*dot(theta_m)^2 + 1/2*J_l*dot(theta_l)^2"
+
+[potential]
+shaft = "1/2*k*twist^2"
+
+[dissipation]
+motor = "1/2*b_m*dot(theta_m)^2"
+load = "1/2*b_l*dot(theta_l)^2"
+{damper}
+drive = {{ on = "theta_m", value = "u" }}
+"#
+    )
+}
+
+/// The damper as a part of the dissipation, and as a force.
+const AS_DISSIPATION: &str = "shaft = \"1/2*d*(dot(theta_m) - dot(theta_l))^2\"\n[forces]";
+const AS_FORCE: &str = "[forces]\ndamper = { on = \"twist\", value = \"-d*dot(twist)\" }";
+
+const DATASET: &str = r#"
+[records]
+train = ["train.csv"]
+test = ["test.csv"]
+
+[time]
+column = "t"
+unit = "s"
+
+[inputs.u]
+column = "u"
+unit = "N m"
+hold = "zero-order"
+
+[channels.theta_m]
+column = "theta_m"
+unit = "rad"
+noise = 1.5e-4
+
+[channels.theta_l]
+column = "theta_l"
+unit = "rad"
+noise = 1.5e-4
+
+[initial]
+state = "rest"
+
+[uncertain]
+J_l = { relative = 0.03 }
+b_m = { relative = 0.1 }
+
+[windows]
+length = 0.25
+"#;
+
+/// The torque of the shaft at a deflection and a rate.
+type Shaft = fn(f64, f64) -> f64;
+
+fn in_play(p: f64) -> f64 {
+    p - p.clamp(-PLAY, PLAY)
+}
+
+/// A record. `turn` makes another one.
+fn record(shaft: Shaft, turn: f64) -> String {
+    let parts = 50;
+    let h = SAMPLE / f64::from(parts);
+    let mut state = [0.0_f64; 4];
+    let mut chaos = 0.4_f64;
+    // The logistic map: a noise that is the same everywhere, of mean 0 once centred.
+    let mut noise = || {
+        chaos = 4.0 * chaos * (1.0 - chaos) * 0.999_999;
+        NOISE * 2.8 * (chaos - 0.5)
+    };
+    let mut text = "t,u,theta_m,theta_l\n".to_owned();
+    for sample in 0..SAMPLES {
+        let t = SAMPLE * sample as f64;
+        let u = 0.05 * (7.0 * t + turn).sin()
+            + 0.04 * (23.0 * t * (1.0 + 0.2 * turn)).cos()
+            + 0.03 * (61.0 * t + 2.0 * turn).sin();
+        let [m, l] = [state[0] + noise(), state[1] + noise()];
+        text += &format!("{t:.4},{u:.12},{m:.12},{l:.12}\n");
+        let rates = |[m, l, v, w]: [f64; 4]| {
+            let torque = shaft(m - l, v - w);
+            [v, w, (u - torque - B_M * v) / J_M, (torque - B_L * w) / J_L]
+        };
+        let moved = |from: [f64; 4], by: f64, rates: [f64; 4]| -> [f64; 4] {
+            std::array::from_fn(|i| from[i] + by * rates[i])
+        };
+        for _ in 0..parts {
+            let middle = moved(state, 0.5 * h, rates(state));
+            state = moved(state, h, rates(middle));
+        }
+    }
+    text
+}
+
+/// What `discover` answers, and the specification that it leaves.
+fn answer(specification: &str, shaft: Shaft) -> (Value, String) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let place = |name: &str| folder.path().join(name);
+    let files = [
+        ("spec.toml", specification.to_owned()),
+        ("dataset.toml", DATASET.to_owned()),
+        ("train.csv", record(shaft, 0.0)),
+        ("test.csv", record(shaft, 1.0)),
+    ];
+    for (name, text) in files {
+        std::fs::write(place(name), text).expect("a file");
+    }
+    let paths = [place("spec.toml"), place("dataset.toml"), place("found")];
+    let [model, dataset, out] = paths.map(|path| path.display().to_string());
+    let output = program::run(&["discover", &model, &dataset, "--out", &out]);
+    let message = program::text(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{message}");
+    let read = |name: &str| std::fs::read_to_string(place("found").join(name)).expect("a file");
+    let found = serde_json::from_str(&read("discovery.json")).expect("JSON");
+    (found, read("extended.toml"))
+}
+
+/// Play is named alone, and closes the gap; the specification with it, which is given back, reproduces the fit.
+fn is_play_alone(specification: &str, shaft: Shaft) -> String {
+    let (found, extended) = answer(specification, shaft);
+    let effects = found["effects"].as_array().expect("a list");
+    assert_eq!(effects.len(), 1, "{effects:#?}");
+    let play = &effects[0];
+    assert_eq!(play["effect"], "backlash", "{play:#}");
+    assert_eq!(play["on"], "shaft", "{play:#}");
+    assert_eq!(play["status"], "named", "{play:#}");
+    let half = play["parameters"]["b_0"]["value"].as_f64();
+    let half = half.unwrap_or_else(|| panic!("no b_0: {play:#}"));
+    assert!((half - PLAY).abs() < 0.01 * PLAY, "{half}");
+    let closure = found["closure"]["test"].as_f64();
+    assert!(closure.is_some_and(|part| part > 0.99), "{closure:?}");
+    assert_eq!(
+        found["validation"]["passed"], true,
+        "{}",
+        found["validation"]
+    );
+    extended
+}
+
+fn in_contact(p: f64, rate: f64) -> f64 {
+    let damping = if in_play(p) == 0.0 { 0.0 } else { D * rate };
+    K * in_play(p) + damping
+}
+
+#[test]
+fn play_lets_go_of_the_damper_of_its_coupling() {
+    for damper in [AS_DISSIPATION, AS_FORCE] {
+        let extended = is_play_alone(&specification(damper), in_contact);
+        assert!(extended.contains("*contact(twist, b_0)"), "{extended}");
+    }
+}
+
+#[test]
+fn play_leaves_a_damper_that_is_mounted_apart_as_it_is() {
+    let extended = is_play_alone(&specification(AS_DISSIPATION), |p, rate| {
+        K * in_play(p) + D * rate
+    });
+    assert!(!extended.contains("contact("), "{extended}");
+}
+
+#[test]
+fn no_play_is_found_in_a_shaft_that_has_none() {
+    let (found, _) = answer(&specification(AS_DISSIPATION), |p, rate| K * p + D * rate);
+    assert_eq!(found["verdict"], "no_significant_gap", "{found:#}");
+    assert_eq!(found["effects"].as_array().map(Vec::len), Some(0));
+}
