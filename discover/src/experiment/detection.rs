@@ -63,6 +63,18 @@ pub struct Detection {
     pub predicted: Vec<Vec<f64>>,
 }
 
+/// An experiment with a small size of an effect.
+struct Tried<'t> {
+    place: usize,
+    proposal: &'t Proposal,
+    size: f64,
+    /// How far it moves the outputs, in standard deviations.
+    moved: f64,
+    present: Prediction,
+    /// What the model without it leaves before it is fitted, by the size.
+    most: f64,
+}
+
 impl<'f> Hidden<'f> {
     /// An effect beside what a fit has.
     ///
@@ -202,6 +214,27 @@ impl<'f> Hidden<'f> {
         (sum / count).sqrt()
     }
 
+    /// Of experiments with a small size the one of whose outputs' motion most is its own, by the size
+    /// that makes it, and what that leaves by a straight line. Derivatives are dear: they are taken of
+    /// those alone that may still be the one.
+    fn most_shown<'t>(&self, mut tried: Vec<Tried<'t>>) -> Option<(Tried<'t>, f64)> {
+        tried.sort_by(|a, b| b.most.total_cmp(&a.most));
+        let mut best: Option<(Tried<'t>, f64)> = None;
+        for of in tried {
+            let known = best.as_ref().map(|(best, left)| left / best.size.abs());
+            if known.is_some_and(|known| of.most <= known) {
+                break;
+            }
+            let left = (self.without).leaves_by_tangents(self.problem, self.model(), &of.present);
+            if let Some(left) = left
+                && known.is_none_or(|known| left / of.size.abs() > known)
+            {
+                best = Some((of, left));
+            }
+        }
+        best
+    }
+
     /// The experiment of some that shows the smallest size. `None` where none of them can be played or
     /// shows anything at all.
     pub fn best(
@@ -209,19 +242,28 @@ impl<'f> Hidden<'f> {
         within: (&Bounds, &[f64]),
         family: &[(usize, &Proposal)],
     ) -> Option<Detection> {
-        let shown = family.par_iter().filter_map(|(place, proposal)| {
+        let tried = family.par_iter().filter_map(|(place, proposal)| {
             let (size, moved, present) = self.small(within, proposal)?;
-            let left = self
+            let most = self
                 .without
-                .leaves_by_tangents(self.problem, self.model(), &present)?;
-            Some((*place, *proposal, size, moved, left))
+                .leaves_unfitted(self.problem, self.model(), &present)?;
+            Some(Tried {
+                place: *place,
+                proposal,
+                size,
+                moved,
+                present,
+                most: most / size.abs(),
+            })
         });
-        let shown: Vec<(usize, &Proposal, f64, f64, f64)> = shown.collect();
-        // What of the outputs' motion is its own, by the size that makes it.
-        let order = |of: &(usize, &Proposal, f64, f64, f64)| of.4 / of.2.abs();
-        let (place, proposal, size, moved, left) = shown
-            .into_iter()
-            .max_by(|a, b| order(a).total_cmp(&order(b)))?;
+        let (tried, left) = self.most_shown(tried.collect())?;
+        let Tried {
+            place,
+            proposal,
+            size,
+            moved,
+            ..
+        } = tried;
         let is_own = left * left > thresholds::UNEXPLAINED_FRACTION * moved * moved;
         let mut size = match is_own {
             true => size * thresholds::SEPARATES / left,

@@ -75,6 +75,25 @@ impl<'f> Rival<'f> {
     }
 
     /// The root mean square over all channels of what it leaves of a prediction by a model whose states
+    /// `truth` has before it is fitted to that: it leaves no more by a straight line. None where it
+    /// cannot be followed.
+    pub fn leaves_unfitted(
+        &self,
+        problem: &EstimationProblem<'_>,
+        truth: &EstimationModel,
+        prediction: &Prediction,
+    ) -> Option<f64> {
+        let windows = Windows::cut(&prediction.records, problem.dataset.window);
+        let begin = self.begin(problem, truth, prediction, &windows);
+        let shooting = self.shooting(problem, &windows, &begin);
+        let theta = self.theta().to_vec();
+        let present = evaluated(&shooting, &begin.prior, theta, begin.states.clone());
+        let square = present.squares.iter().sum::<f64>();
+        let left = (square / windows.numbers()).sqrt();
+        left.is_finite().then_some(left)
+    }
+
+    /// The root mean square over all channels of what it leaves of a prediction by a model whose states
     /// `truth` has, by a straight line; none where it cannot be followed.
     pub fn leaves_by_tangents(
         &self,

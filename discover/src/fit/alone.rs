@@ -42,16 +42,15 @@ impl Place {
     }
 }
 
-/// Every record fitted by itself, its parameters as far off as it takes; those that can be.
-pub fn each_alone(problem: &EstimationProblem<'_>, fit: &Fit) -> Vec<Alone> {
-    let dataset = problem.dataset;
+/// The places of all records.
+pub fn places(dataset: &Dataset) -> Vec<Place> {
     let train = (0..dataset.train.len()).map(Place::Train);
-    let all = train.chain((0..dataset.test.len()).map(Place::Test));
-    all.filter_map(|place| alone(problem, fit, place, None))
-        .collect()
+    let test = (0..dataset.test.len()).map(Place::Test);
+    train.chain(test).collect()
 }
 
-/// A record fitted by itself, with an unknown more if there is one.
+/// A record fitted by itself, its parameters as far off as it takes, with an unknown more if there is
+/// one; none if it cannot be.
 pub fn alone(
     problem: &EstimationProblem<'_>,
     fit: &Fit,

@@ -3,7 +3,7 @@
 
 use eomgen_model_spec::model::{Parameter, ParameterValue};
 
-use crate::fit::alone::{Alone, alone, each_alone, most_left};
+use crate::fit::alone::{Alone, alone, most_left, places};
 use crate::fit::fitted::Fit;
 use crate::model::problem::EstimationProblem;
 use crate::model::unknowns::{Unknown, What, sign_bounds};
@@ -18,27 +18,62 @@ pub fn contradictions(problem: &EstimationProblem<'_>, fit: &Fit, floor: f64) ->
     if most_left(problem, fit) < thresholds::CONTRADICTS * floor {
         return Vec::new();
     }
-    let alone = each_alone(problem, fit);
+    let places = places(problem.dataset);
+    let mut records: Vec<Alone> = Vec::with_capacity(places.len());
+    for (number, place) in places.iter().enumerate() {
+        if !may_contradict(&records, places.len() - number, floor) {
+            return Vec::new();
+        }
+        records.extend(alone(problem, fit, *place, None));
+    }
     let mut sentences = Vec::new();
     for (place, unknown) in fit.unknowns.iter().enumerate() {
         if let What::Parameter(name) = &unknown.what
-            && let Some((a, b)) = furthest(&alone, place)
+            && let Some((a, b)) = furthest(&records, place)
         {
             sentences.push(said(fit, name, place, a, b));
         }
     }
     match sentences.is_empty() {
-        true => odd(problem, fit, &alone, floor),
+        true => odd(problem, fit, &records, floor),
         false => sentences,
     }
 }
 
+/// Whether records could still contradict each other, whatever so many more came to alone.
+fn may_contradict(records: &[Alone], more: usize, floor: f64) -> bool {
+    let count = |is: &dyn Fn(&Alone) -> bool| records.iter().filter(|of| is(of)).count();
+    let of_its_own = count(&is_better_alone);
+    let explained = count(&|record| is_explained(record, floor));
+    let odd = count(&|record| is_odd(record, floor));
+    // Two that have values of their own, or an odd one among more that are explained.
+    let may_be_odd = match odd {
+        0 => more > 0 && explained + more > 2,
+        odd => explained + more > odd,
+    };
+    of_its_own + more > 1 || may_be_odd
+}
+
+/// Whether a record is explained much better alone than with the others.
+fn is_better_alone(record: &Alone) -> bool {
+    record.rms.is_finite() && record.rms * thresholds::CONTRADICTS < record.together
+}
+
+/// Whether a record alone leaves no more than a right model would.
+fn is_explained(record: &Alone, floor: f64) -> bool {
+    record.rms < thresholds::CLOSE * floor
+}
+
+/// Whether a record alone leaves much.
+fn is_odd(record: &Alone, floor: f64) -> bool {
+    record.rms > thresholds::MUCH_IS_LEFT * floor
+}
+
 /// Records that leave much alone where others leave no more than a right model would.
 fn odd(problem: &EstimationProblem<'_>, fit: &Fit, alone: &[Alone], floor: f64) -> Vec<String> {
-    let is_explained = |record: &&Alone| record.rms < thresholds::CLOSE * floor;
-    let explained: Vec<&Alone> = alone.iter().filter(is_explained).collect();
-    let is_odd = |record: &&Alone| record.rms > thresholds::MUCH_IS_LEFT * floor;
-    let odd: Vec<&Alone> = alone.iter().filter(is_odd).collect();
+    let such = |is: fn(&Alone, f64) -> bool| alone.iter().filter(move |record| is(record, floor));
+    let explained: Vec<&Alone> = such(is_explained).collect();
+    let odd: Vec<&Alone> = such(is_odd).collect();
     // What is missing may show in a few records only; that most show it contradicts nothing.
     if odd.len() >= explained.len() {
         return Vec::new();
@@ -113,10 +148,10 @@ fn explaining(
 /// The two records that differ most in an unknown, if that is more than uncertainty makes of it and
 /// each is explained by its own value.
 fn furthest(alone: &[Alone], place: usize) -> Option<(&Alone, &Alone)> {
-    let is_explained = |record: &&Alone| {
-        record.rms.is_finite() && record.rms * thresholds::CONTRADICTS < record.together
-    };
-    let explained: Vec<&Alone> = alone.iter().filter(is_explained).collect();
+    let explained: Vec<&Alone> = alone
+        .iter()
+        .filter(|record| is_better_alone(record))
+        .collect();
     let apart = |a: &Alone, b: &Alone| {
         let ((x, sx), (y, sy)) = (a.estimates[place], b.estimates[place]);
         let is_large = (x - y).abs() > thresholds::CONTRADICTING_PART * x.abs().max(y.abs());
@@ -159,5 +194,66 @@ fn stated(parameter: Option<&Parameter>, (value, sd): (f64, f64)) -> String {
             p.unit
         ),
         None => format!("{value:.3e} +- {sd:.1e}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::alone::Place;
+
+    fn record((rms, together): (f64, f64)) -> Alone {
+        Alone {
+            name: String::new(),
+            record: Place::Train(0),
+            together,
+            rms,
+            estimates: Vec::new(),
+        }
+    }
+
+    /// Whether what was found of all records is a contradiction, but for their values.
+    fn contradicts(records: &[Alone]) -> bool {
+        let own = records.iter().filter(|of| is_better_alone(of)).count();
+        let explained = records.iter().filter(|of| is_explained(of, 1.0)).count();
+        let odd = records.iter().filter(|of| is_odd(of, 1.0)).count();
+        own > 1 || (odd > 0 && odd < explained)
+    }
+
+    #[test]
+    fn no_record_is_left_out_that_could_contradict_others() {
+        // At the floor or not with values of its own, in between, odd likewise.
+        let kinds = [
+            (1.0, 1.2),
+            (1.0, 9.0),
+            (2.0, 2.5),
+            (2.0, 9.0),
+            (9.0, 9.0),
+            (9.0, 99.0),
+        ];
+        let all = |count: usize| {
+            (0..kinds.len().pow(count as u32)).map(move |number| {
+                let kind =
+                    |place: usize| kinds[number / kinds.len().pow(place as u32) % kinds.len()];
+                (0..count).map(kind).collect::<Vec<(f64, f64)>>()
+            })
+        };
+        for known in 0..4 {
+            for begin in all(known) {
+                for more in 0..3 {
+                    let records: Vec<Alone> = begin.iter().copied().map(record).collect();
+                    let mut ends = all(more);
+                    let is_possible = ends.any(|end| {
+                        let whole = [&begin[..], &end].concat();
+                        contradicts(&whole.into_iter().map(record).collect::<Vec<Alone>>())
+                    });
+                    assert_eq!(
+                        may_contradict(&records, more, 1.0),
+                        is_possible,
+                        "{begin:?}, {more} more"
+                    );
+                }
+            }
+        }
     }
 }
