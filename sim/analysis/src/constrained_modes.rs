@@ -3,11 +3,12 @@
 //! They are the modes of N^T A N, with N from [`allowed_motions`](crate::allowed_motions). The eigenvalue 0 is counted by null spaces, as in
 //! [`natural_modes`](crate::natural_modes).
 
-use nalgebra::{Complex, DMatrix, DVector, Schur};
+use nalgebra::{Complex, DMatrix, DVector};
 
 use crate::allowed_motions::AllowedMotions;
 use crate::error::AnalysisError;
-use crate::natural_modes::{MOST_STEPS, NaturalMode, natural_modes, null_space, zero_eigenvalues};
+use crate::natural_modes::{NaturalMode, natural_modes, null_space, zero_eigenvalues};
+use crate::qr_iteration;
 
 /// The natural modes of d(q, q', z)/dt = A (q, q', z) with so many degrees of freedom within the
 /// motions for which C (q, q', z) = 0, lowest frequency first; `matrix` and `held` are A and C row by
@@ -34,9 +35,7 @@ pub fn constrained_modes(
     let allowed = AllowedMotions::new(held, states)?;
     let allowed = allowed.basis();
     let reduced = allowed.transpose() * DMatrix::from_row_slice(states, states, matrix) * allowed;
-    let schur = Schur::try_new(reduced.clone(), f64::EPSILON, MOST_STEPS * states.max(1));
-    let schur = schur.ok_or(AnalysisError::NotConverged)?;
-    let mut eigenvalues: Vec<Complex<f64>> = schur.complex_eigenvalues().iter().copied().collect();
+    let mut eigenvalues = qr_iteration::eigenvalues(&reduced).ok_or(AnalysisError::NotConverged)?;
     eigenvalues.sort_by(|a, b| a.norm().total_cmp(&b.norm()));
     let shape = |motion: DVector<Complex<f64>>| shape(&motion, degrees);
     let complex = allowed.map(Complex::from);

@@ -15,7 +15,7 @@
 //! and [`classify`] weighs these against each other by a stated rule. [`modes`] says which
 //! mode of a flexible body carries the motion, [`course`] has single numbers of a course over time, [`statistics`] numbers of many values, [`natural_modes`] which modes a
 //! linearised machine has, [`constrained_modes`] which one with constraints has, whose [`allowed_motions`]
-//! have matrices of their own.
+//! have matrices of their own; [`qr_iteration`] finds their eigenvalues.
 
 pub mod allowed_motions;
 pub mod classify;
@@ -26,6 +26,7 @@ pub mod exponent;
 pub mod modes;
 pub mod natural_modes;
 pub mod poincare;
+pub mod qr_iteration;
 pub mod spectrum;
 pub mod statistics;
 pub mod zero_one;

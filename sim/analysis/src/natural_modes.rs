@@ -10,9 +10,10 @@
 //! the other (Golub and Van Loan, 7.6.5).
 
 use nalgebra::linalg::balancing::balance_parlett_reinsch;
-use nalgebra::{Complex, DMatrix, DVector, Schur};
+use nalgebra::{Complex, DMatrix, DVector};
 
 use crate::error::AnalysisError;
+use crate::qr_iteration;
 
 /// Below this, relative to the largest, a singular value is rounding.
 const RANK: f64 = 1e-12;
@@ -23,9 +24,6 @@ const EQUAL: f64 = 1e-7;
 /// How far beside its eigenvalue the matrix of the inverse iteration is taken, relative to its size:
 /// there it is not singular, and one step gains as many digits.
 const BESIDE: f64 = 1e-11;
-
-/// Steps of the Schur form for each row, before it is given up.
-pub(crate) const MOST_STEPS: usize = 400;
 
 /// A natural mode: the motion exp(lambda t) v, or its real part.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,9 +75,8 @@ pub fn natural_modes(matrix: &[f64], degrees: usize) -> Result<Vec<NaturalMode>,
     }
     let mut balanced = DMatrix::from_row_slice(states, states, matrix);
     let sizes = balance_parlett_reinsch(&mut balanced);
-    let schur = Schur::try_new(balanced.clone(), f64::EPSILON, MOST_STEPS * states);
-    let schur = schur.ok_or(AnalysisError::NotConverged)?;
-    let mut eigenvalues: Vec<Complex<f64>> = schur.complex_eigenvalues().iter().copied().collect();
+    let mut eigenvalues =
+        qr_iteration::eigenvalues(&balanced).ok_or(AnalysisError::NotConverged)?;
     eigenvalues.sort_by(|a, b| a.norm().total_cmp(&b.norm()));
     let pencil = Pencil::of(&balanced, &sizes, degrees);
     let mut rigid = pencil.rigid();

@@ -2,6 +2,7 @@
 //! where u is a unit constant and the inputs. A state held on surfaces moves by the convex
 //! combination of the motions on both sides that keeps it there.
 
+use eomgen_analysis::qr_iteration;
 use eomgen_codegen::program::affine::{AffineEvaluator, AffineSystem};
 use nalgebra::DMatrix;
 
@@ -257,8 +258,10 @@ pub fn fastest(evaluator: &mut AffineEvaluator, surfaces: &Surfaces) -> f64 {
         let system = evaluator.system(&surfaces.numbers(&sides, |_| 0.0));
         let rates = Rates::of(&system);
         if rates.state.iter().all(|entry| entry.is_finite()) {
-            let eigenvalues = rates.state.complex_eigenvalues();
-            fastest = eigenvalues.iter().map(|e| e.norm()).fold(fastest, f64::max);
+            // A matrix whose iteration does not end has no steps that are short enough.
+            let eigenvalues = qr_iteration::eigenvalues(&rates.state);
+            let sizes = eigenvalues.map(|all| all.iter().map(|e| e.norm()).fold(0.0, f64::max));
+            fastest = fastest.max(sizes.unwrap_or(f64::INFINITY));
         }
     }
     fastest

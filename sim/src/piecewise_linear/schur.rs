@@ -1,13 +1,8 @@
 //! The complex Schur form of a real matrix, balanced and in an order of one's choice.
 
+use eomgen_analysis::qr_iteration::schur_form;
 use nalgebra::linalg::balancing::balance_parlett_reinsch;
-use nalgebra::{Complex, DMatrix, DVector, Schur};
-
-/// QR iterations per eigenvalue before one gives up; two or three are usual.
-const ITERATIONS: usize = 100;
-
-/// Reflections after which the iteration is tried again.
-const OTHER_BASES: usize = 3;
+use nalgebra::{Complex, DMatrix};
 
 /// Squares of larger entries overflow, where balancing never ends, 1/s.
 const LARGEST: f64 = 1e150;
@@ -32,27 +27,6 @@ fn balance(matrix: &DMatrix<f64>, mut scale: Vec<f64>) -> Vec<f64> {
             .for_each(|(slot, factor)| *slot *= factor);
     }
     scale
-}
-
-/// Q and T of a matrix Q T Q^H. The QR iteration has no exceptional shifts: where eigenvalues lie
-/// symmetrically it may go round in circles, which it leaves in another basis.
-fn unitary_and_triangle(
-    matrix: DMatrix<Complex<f64>>,
-) -> Option<(DMatrix<Complex<f64>>, DMatrix<Complex<f64>>)> {
-    let size = matrix.nrows();
-    let iterate = |matrix| Schur::try_new(matrix, f64::EPSILON, ITERATIONS * size);
-    if let Some(schur) = iterate(matrix.clone()) {
-        return Some(schur.unpack());
-    }
-    (1..=OTHER_BASES).find_map(|basis| {
-        let normal = DVector::from_fn(size, |place, _| {
-            Complex::new(1.0 / (place + basis) as f64, 0.0)
-        });
-        let reflection = DMatrix::identity(size, size)
-            - &normal * normal.transpose() * Complex::new(2.0 / normal.norm_squared(), 0.0);
-        let (unitary, triangle) = iterate(&reflection * &matrix * &reflection)?.unpack();
-        Some((reflection * unitary, triangle))
-    })
 }
 
 /// A = D Q T Q^H D^-1 with T upper triangular, Q unitary and D diagonal.
@@ -84,7 +58,7 @@ impl SchurForm {
         let complex = DMatrix::from_fn(size, size, |i, j| {
             Complex::new(matrix[(i, j)] * scale[j] / scale[i], 0.0)
         });
-        let (basis, triangle) = unitary_and_triangle(complex)?;
+        let (basis, triangle) = schur_form(&complex)?;
         Some(Self {
             triangle,
             basis,
@@ -169,8 +143,6 @@ mod tests {
         for (row, column, entry) in entries {
             matrix[(row, column)] = entry;
         }
-        let complex = matrix.map(|entry| Complex::new(entry, 0.0));
-        assert!(Schur::try_new(complex, f64::EPSILON, 1000).is_none());
         let form = SchurForm::of(&matrix, vec![1.0; 5]).expect("another basis");
         assert!(residual(&matrix, &form) < 1e-14);
         let mut turns: Vec<f64> = form.eigenvalues().iter().map(|e| e.im).collect();

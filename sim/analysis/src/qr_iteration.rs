@@ -1,0 +1,99 @@
+//! Schur forms and eigenvalues of small dense matrices by the QR iteration, which always ends.
+//!
+//! Nalgebra's iteration has no exceptional shifts: where eigenvalues lie symmetrically, as those of
+//! undamped machines do, it may go round in circles. In another basis it does not.
+
+use nalgebra::{Complex, ComplexField, DMatrix, DVector, Dyn, Schur};
+
+/// Iterations per eigenvalue before one gives up; two or three are usual.
+const ITERATIONS: usize = 400;
+
+/// Reflections after which the iteration is tried again.
+const OTHER_BASES: usize = 3;
+
+/// Q, unitary, and T, upper triangular (of a real matrix with blocks of two on its diagonal), of a square
+/// matrix Q T Q^H; nothing if the iteration ends in no basis that was tried.
+pub fn schur_form<T: ComplexField<RealField = f64>>(
+    matrix: &DMatrix<T>,
+) -> Option<(DMatrix<T>, DMatrix<T>)> {
+    let Iterated { reflection, schur } = iterated(matrix)?;
+    let (unitary, triangle) = schur.unpack();
+    Some(match reflection {
+        Some(reflection) => (reflection * unitary, triangle),
+        None => (unitary, triangle),
+    })
+}
+
+/// The eigenvalues of a square matrix, in no order; nothing where there is no [`schur_form`].
+pub fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
+    let schur = iterated(matrix)?.schur;
+    Some(schur.complex_eigenvalues().iter().copied().collect())
+}
+
+/// An iteration that ended, of the matrix between two reflections if there is one.
+struct Iterated<T: ComplexField<RealField = f64>> {
+    reflection: Option<DMatrix<T>>,
+    schur: Schur<T, Dyn>,
+}
+
+fn iterated<T: ComplexField<RealField = f64>>(matrix: &DMatrix<T>) -> Option<Iterated<T>> {
+    let size = matrix.nrows();
+    let most = ITERATIONS * size.max(1);
+    let iterate = |matrix| Schur::try_new(matrix, f64::EPSILON, most);
+    if let Some(schur) = iterate(matrix.clone()) {
+        let reflection = None;
+        return Some(Iterated { reflection, schur });
+    }
+    (1..=OTHER_BASES).find_map(|basis| {
+        let normal = DVector::from_fn(size, |place, _| T::from_real(1.0 / (place + basis) as f64));
+        let factor = T::from_real(2.0 / normal.norm_squared());
+        let reflection = DMatrix::identity(size, size) - &normal * normal.transpose() * factor;
+        let schur = iterate(&reflection * matrix * &reflection)?;
+        Some(Iterated {
+            reflection: Some(reflection),
+            schur,
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{eigenvalues, schur_form};
+    use nalgebra::{Complex, DMatrix, Schur};
+
+    /// Two masses on a spring beside one that is free: x' = v, v' = K x.
+    fn circling() -> DMatrix<f64> {
+        let mut matrix = DMatrix::zeros(6, 6);
+        for place in 0..3 {
+            matrix[(place, place + 3)] = 1.0;
+        }
+        let k = 251.31233257696744;
+        for (row, column, entry) in [(3, 0, -k), (3, 2, k), (5, 0, k), (5, 2, -k)] {
+            matrix[(row, column)] = entry;
+        }
+        matrix
+    }
+
+    #[test]
+    fn a_circle_is_left() {
+        let matrix = circling();
+        assert!(Schur::try_new(matrix.clone(), f64::EPSILON, 1000).is_none());
+        let found = eigenvalues(&matrix).expect("another basis");
+        let fastest = found.iter().map(|e| e.norm()).fold(0.0, f64::max);
+        assert!((fastest / (2.0 * 251.31233257696744_f64).sqrt() - 1.0).abs() < 1e-14);
+        // Four zeros, two and two of which share an eigenvector: rounding moves them by its root.
+        assert_eq!(found.iter().filter(|e| e.norm() < 1e-6).count(), 4);
+    }
+
+    #[test]
+    fn the_form_is_that_of_the_matrix() {
+        let matrix = circling();
+        let (unitary, triangle) = schur_form(&matrix).expect("another basis");
+        let back = &unitary * triangle * unitary.transpose();
+        assert!((back - &matrix).norm() < 1e-14 * matrix.norm());
+        let complex = matrix.map(|entry| Complex::new(entry, 0.0));
+        let (unitary, triangle) = schur_form(&complex).expect("another basis");
+        let back = &unitary * triangle * unitary.adjoint();
+        assert!((back - &complex).norm() < 1e-14 * complex.norm());
+    }
+}
