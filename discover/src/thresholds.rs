@@ -176,6 +176,13 @@ pub const UNNAMED_EQUATIONS: usize = 3;
 
 // Models and their records.
 
+/// What a late sensor shows is interpolated to this part of the noise: less is not seen.
+pub const INTERPOLATED: f64 = 0.25;
+
+/// Quantities are computed at most so many times from sample to sample: what would need more
+/// is hardly sampled.
+pub const MOST_BETWEEN: usize = 4;
+
 /// The cut-off of the zero-phase smoothing, in parts of the sampling frequency. A record is sampled
 /// for what it is to show; what moves faster than a fiftieth of that is noise or quantisation to an
 /// initial value.

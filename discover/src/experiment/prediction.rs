@@ -88,13 +88,14 @@ impl<'a> Predictor<'a> {
     ) -> Result<Prediction, Excluded> {
         let count = self.model.specification().inputs.len();
         let inputs = proposal.inputs(bounds, times, count);
-        let motion = self.simulation.motion(&self.initial, times, &inputs);
+        let output_times = self.problem.output_rate.times(times);
+        let motion = (self.simulation).motion(&self.initial, &output_times.times, &inputs);
         let Motion { states, outputs } = motion.map_err(|_| Excluded::Unfollowed)?;
         self.check(bounds, &states, &outputs)?;
-        let seen = self.shooting.seen(times, &self.sensors, &outputs);
+        let seen = self.shooting.seen(&output_times, &self.sensors, &outputs);
         Ok(Prediction {
             records: vec![recorded(times, inputs, &seen, bounds.channels.len())],
-            states,
+            states: output_times.at_samples(states),
         })
     }
 

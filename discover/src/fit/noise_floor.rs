@@ -65,10 +65,11 @@ fn replicas(problem: &EstimationProblem<'_>, fit: &Fit, seed: u64) -> Option<Vec
     let mut replicas = Vec::new();
     for record in &problem.dataset.train {
         let first = problem.first_state(&fit.model, record);
+        let times = problem.output_rate.times(&record.times);
         let outputs = simulation
-            .outputs(&first, &record.times, &record.inputs)
+            .outputs(&first, &times.times, &record.inputs)
             .ok()?;
-        let seen = shooting.seen(&record.times, &sensors, &outputs.values);
+        let seen = shooting.seen(&times, &sensors, &outputs.values);
         let count = problem.noise.len();
         let mut replica = record.clone();
         for (channel, column) in replica.channels.iter_mut().enumerate() {

@@ -7,8 +7,9 @@ use eomgen_codegen::program::evaluator::Evaluator;
 use nalgebra::{DMatrix, DVector};
 
 use crate::fit::acceleration_differences::{AccelerationDifferences, MovedEvaluator};
-use crate::fit::shooting::{Residual, Sensors, Shooting, samples_in};
+use crate::fit::shooting::{Residual, Sensors, Shooting};
 use crate::model::linear_outputs::LinearOutputs;
+use crate::model::output_times::OutputTimes;
 use crate::model::simulation::{NeighbourDrives, OutputTangents, Simulation};
 use crate::model::unknowns::{Unknown, What};
 use crate::thresholds;
@@ -150,7 +151,7 @@ impl<'a> SensitivityEvaluator<'a> {
         let shooting = self.shooting;
         let samples = &shooting.windows.list[window];
         let inputs = shooting.windows.inputs(samples);
-        let times = &samples.times[..samples_in(samples, shooting.part)];
+        let times = &shooting.output_times(samples);
         let moved = self.neighbours.iter_mut().flatten();
         let moved = moved.filter_map(|of| match &mut of.neighbour {
             Neighbour::Drives { evaluator, .. } => Some(MovedEvaluator {
@@ -165,7 +166,7 @@ impl<'a> SensitivityEvaluator<'a> {
         let by_state = shooting.ranges.is_some();
         let integrated = self
             .base
-            .linearised(start, times, inputs, by_state, driven)?;
+            .linearised(start, &times.times, inputs, by_state, driven)?;
         let seen = shooting.seen(times, &self.sensors, &integrated.outputs.values);
         let residual = DVector::from_vec(shooting.normalised(samples, &seen));
         let states = if by_state { start.len() } else { 0 };
@@ -224,9 +225,11 @@ impl<'a> SensitivityEvaluator<'a> {
         let shooting = self.shooting;
         let samples = &shooting.windows.list[window];
         let inputs = shooting.windows.inputs(samples);
-        let times = &samples.times[..samples_in(samples, shooting.part)];
+        let times = &shooting.output_times(samples);
         let count = driven.count;
-        let found = self.base.linearised(start, times, inputs, false, driven)?;
+        let found = self
+            .base
+            .linearised(start, &times.times, inputs, false, driven)?;
         Some(self.columns(samples, times, count, &found.by_drive))
     }
 
@@ -235,17 +238,17 @@ impl<'a> SensitivityEvaluator<'a> {
         let shooting = self.shooting;
         let samples = &shooting.windows.list[window];
         let inputs = shooting.windows.inputs(samples);
-        let times = &samples.times[..samples_in(samples, shooting.part)];
+        let times = &shooting.output_times(samples);
         let steps: Vec<f64> = (shooting.ranges.unwrap_or_default().iter())
             .map(|range| thresholds::LARGEST_QUOTIENT * range)
             .collect();
         let tangents = match shooting.ranges {
-            Some(_) => self.base.tangents(start, times, inputs, &steps),
+            Some(_) => self.base.tangents(start, &times.times, inputs, &steps),
             None => None,
         };
         let (outputs, derivatives) = match tangents {
             Some(OutputTangents { outputs, by_state }) => (outputs, Some(by_state)),
-            None => (self.base.outputs(start, times, inputs).ok()?, None),
+            None => (self.base.outputs(start, &times.times, inputs).ok()?, None),
         };
         let seen = shooting.seen(times, &self.sensors, &outputs.values);
         let residual = DVector::from_vec(shooting.normalised(samples, &seen));
@@ -264,7 +267,7 @@ impl<'a> SensitivityEvaluator<'a> {
                     let Neighbour::Runs(simulation) = neighbour else {
                         return None;
                     };
-                    let moved = simulation.outputs(start, times, inputs).ok()?;
+                    let moved = simulation.outputs(start, &times.times, inputs).ok()?;
                     (shooting.seen(times, &self.sensors, &moved.values), *step)
                 }
                 None => {
@@ -285,12 +288,12 @@ impl<'a> SensitivityEvaluator<'a> {
         })
     }
 
-    /// Derivatives of the quantities, for each sample a row per column, as the sensors show
+    /// Derivatives of the quantities, for each time a row per column, as the sensors show
     /// them, in standard deviations.
     fn columns(
         &self,
         samples: &Window,
-        times: &[f64],
+        times: &OutputTimes,
         count: usize,
         derivatives: &[f64],
     ) -> DMatrix<f64> {
@@ -300,13 +303,12 @@ impl<'a> SensitivityEvaluator<'a> {
             bias: vec![0.0; channels],
             ..self.sensors.clone()
         };
-        let rows = times.len() * channels;
-        let mut matrix = DMatrix::zeros(rows, count);
-        let mut column = vec![0.0; rows];
+        let mut matrix = DMatrix::zeros(times.samples() * channels, count);
+        let mut column = vec![0.0; times.times.len() * channels];
         for number in 0..count {
-            for sample in 0..times.len() {
-                let from = (sample * count + number) * channels;
-                let to = sample * channels;
+            for place in 0..times.times.len() {
+                let from = (place * count + number) * channels;
+                let to = place * channels;
                 column[to..to + channels].copy_from_slice(&derivatives[from..from + channels]);
             }
             let seen = shooting.seen(times, &sensors, &column);

@@ -7,6 +7,7 @@ use crate::ids::{ChannelId, WindowId, WindowRange};
 use rayon::prelude::*;
 
 use crate::model::estimation_model::EstimationModel;
+use crate::model::output_times::{OutputRate, OutputTimes};
 use crate::model::problem::EstimationProblem;
 use crate::model::simulation::Simulation;
 use crate::model::unknowns::{Unknown, What, expected_input_delay};
@@ -38,6 +39,8 @@ pub struct Shooting<'a> {
     pub input_delay: f64,
     /// The range of each state, where initial states are estimated.
     pub ranges: Option<&'a [f64]>,
+    /// How often quantities are computed from sample to sample.
+    pub output_rate: OutputRate,
     /// The part of each window that is compared, from its beginning.
     pub part: f64,
     /// How much the unknowns' priors count against the residuals: the square of the misfit that
@@ -78,6 +81,7 @@ impl<'a> Shooting<'a> {
             unknowns,
             input_delay: expected_input_delay(&problem.dataset.inputs, model.specification()),
             ranges: problem.estimates_initial_states().then_some(ranges),
+            output_rate: problem.output_rate,
             part: 1.0,
             prior_weight: 1.0,
         }
@@ -166,9 +170,9 @@ impl<'a> Shooting<'a> {
     ) -> Option<Residual> {
         let window = &self.windows.list[window];
         let inputs = self.windows.inputs(window);
-        let times = &window.times[..samples_in(window, self.part)];
-        let outputs = simulation.outputs(start, times, inputs).ok()?;
-        let seen = self.seen(times, sensors, &outputs.values);
+        let times = self.output_times(window);
+        let outputs = simulation.outputs(start, &times.times, inputs).ok()?;
+        let seen = self.seen(&times, sensors, &outputs.values);
         let values = self.normalised(window, &seen);
         (values.iter().all(|r| r.is_finite())).then_some(Residual {
             values,
@@ -176,14 +180,20 @@ impl<'a> Shooting<'a> {
         })
     }
 
-    /// What the sensors show of a window's quantities.
-    pub fn seen(&self, times: &[f64], sensors: &Sensors, quantities: &[f64]) -> Vec<f64> {
+    /// When the quantities of a window, as far as it is compared, are computed.
+    pub fn output_times(&self, window: &Window) -> OutputTimes {
+        let samples = samples_in(window, self.part);
+        self.output_rate.times(&window.times[..samples])
+    }
+
+    /// What the sensors show of a window's quantities, a row per sample.
+    pub fn seen(&self, times: &OutputTimes, sensors: &Sensors, quantities: &[f64]) -> Vec<f64> {
         let channels = self.channels();
-        let samples = times.len();
-        let mut seen = vec![0.0; quantities.len()];
+        let samples = times.samples();
+        let mut seen = vec![0.0; samples * channels];
         for channel in ChannelId::first(channels) {
             let column = Column {
-                times,
+                times: &times.times,
                 values: quantities,
                 channels,
                 channel,
@@ -191,11 +201,12 @@ impl<'a> Shooting<'a> {
             let (gain, bias) = (sensors.gain[channel], sensors.bias[channel]);
             let delay = sensors.delay[channel];
             for sample in 0..samples {
+                let place = times.of_sample(sample);
                 let quantity = if delay == 0.0 {
-                    column.values[sample * channels + channel.index()]
+                    column.values[place * channels + channel.index()]
                 } else {
-                    let at = times[sample] - delay;
-                    interpolated(&column, at, sample)
+                    let at = times.times[place] - delay;
+                    interpolated(&column, at, place)
                 };
                 seen[sample * channels + channel.index()] = gain * quantity + bias;
             }
@@ -255,16 +266,16 @@ pub(crate) fn samples_in(window: &Window, part: f64) -> usize {
     ((part * count as f64) as usize).clamp(count.min(8), count)
 }
 
-/// A channel's quantity at the samples of a window.
+/// A channel's quantity along a window.
 struct Column<'q> {
     times: &'q [f64],
-    /// Those of all channels, a row per sample.
+    /// Those of all channels, a row per time.
     values: &'q [f64],
     channels: usize,
     channel: ChannelId,
 }
 
-/// A channel's quantity at a time near a sample, by the cubic through its four neighbours.
+/// A channel's quantity at a time near one of the others, by the cubic through its four neighbours.
 fn interpolated(column: &Column<'_>, at: f64, near: usize) -> f64 {
     let times = column.times;
     let last = times.len() - 1;

@@ -13,6 +13,7 @@ use crate::ids::{ChannelId, ParameterId};
 use crate::model::linear_outputs::LinearOutputs;
 use crate::model::measured_outputs::MeasuredOutputs;
 use crate::model::nonlinear_remainder::NonlinearRemainder;
+use crate::model::output_times::OutputRate;
 use crate::model::simulation::Simulation;
 use crate::model::stop::Stop;
 use crate::model::unknowns::ExpectedSensor;
@@ -211,16 +212,23 @@ impl EstimationModel {
         given.unwrap_or_else(|_| vec![0.0; self.state_count()])
     }
 
-    /// Decides in how many steps a motion goes from sample to sample, where that is not
+    /// Decides in how many steps a motion goes from one output to the next, where that is not
     /// known beforehand: as many as change its outputs by less than a part of the noise, tested
     /// on the beginning of a record. Where there are none, a solver with error control goes on
     /// deciding.
-    pub fn choose_steps(&mut self, record: &Record, initial: &[f64], noise: &[f64]) {
-        self.sample = typical_step(&record.times);
+    pub fn choose_steps(
+        &mut self,
+        record: &Record,
+        initial: &[f64],
+        noise: &[f64],
+        output_rate: OutputRate,
+    ) {
+        let samples = record.times.len().min(thresholds::STEP_TEST_SAMPLES);
+        let times = &output_rate.times(&record.times[..samples]).times;
+        self.sample = typical_step(times);
         if self.is_linear() {
             return;
         }
-        let times = &record.times[..record.times.len().min(thresholds::STEP_TEST_SAMPLES)];
         let has_linear_part = self.linear.is_some();
         let run = |model: &mut Self, doubling: u32| {
             if has_linear_part {

@@ -2,7 +2,7 @@
 //! outputs ([`estimation_model`], [`simulation`]), records cut into
 //! [`windows`](eomgen_records::windows), the [`unknowns`] with their priors, inputs that act otherwise than recorded ([`input_faults`]), and the estimation
 //! [`problem`] that all fits to one dataset share. [`channel_checks`] compares columns with what the
-//! model expects of them; [`smoothing`] has no delay; [`stop`] ends all of it early.
+//! model expects of them; [`output_times`] are where quantities are computed; [`smoothing`] has no delay; [`stop`] ends all of it early.
 
 pub mod channel_checks;
 pub mod estimation_model;
@@ -11,6 +11,7 @@ pub mod input_faults;
 pub mod linear_outputs;
 pub(crate) mod measured_outputs;
 pub(crate) mod nonlinear_remainder;
+pub mod output_times;
 pub mod problem;
 pub mod simulation;
 pub mod smoothing;

@@ -8,6 +8,7 @@ use eomgen_model_spec::source::Source;
 use crate::error::DiscoverError;
 use crate::model::estimation_model::EstimationModel;
 use crate::model::first_state;
+use crate::model::output_times::OutputRate;
 use crate::model::stop::Stop;
 use crate::thresholds;
 use eomgen_records::dataset::{Dataset, Start};
@@ -20,6 +21,8 @@ pub struct EstimationProblem<'d> {
     pub dataset: &'d Dataset,
     /// The noise of each channel, SI.
     pub noise: Vec<f64>,
+    /// How often quantities are computed from sample to sample.
+    pub output_rate: OutputRate,
     /// The windows to fit to.
     pub train: Windows<'d>,
     /// The windows held out.
@@ -76,6 +79,7 @@ impl<'d> EstimationProblem<'d> {
                 .iter()
                 .map(|channel| channel.noise)
                 .collect(),
+            output_rate: OutputRate::of(dataset),
             train: Windows::cut(&dataset.train, dataset.window),
             test: Windows::cut(&dataset.test, dataset.window),
             order,
@@ -101,7 +105,7 @@ impl<'d> EstimationProblem<'d> {
         model.stop = self.stop.clone();
         let record = &self.dataset.train[0];
         let first = self.first_state(&model, record);
-        model.choose_steps(record, &first, &self.noise);
+        model.choose_steps(record, &first, &self.noise, self.output_rate);
         Ok(model)
     }
 

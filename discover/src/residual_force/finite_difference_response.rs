@@ -5,7 +5,7 @@ use crate::ids::WindowId;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use nalgebra::DMatrix;
 
-use crate::fit::shooting::{Sensors, Shooting, samples_in};
+use crate::fit::shooting::{Sensors, Shooting};
 use crate::model::measured_outputs::Buffers;
 use crate::model::simulation::NeighbourDrives;
 use crate::thresholds;
@@ -121,14 +121,9 @@ impl<'s> SteppedWindow<'s> {
             .map(|(a, b)| (a - b) / size)
             .collect();
         let window = &self.shooting.windows.list[self.window];
-        let times = self.times();
-        let seen = self.shooting.seen(times, &self.sensors, &changes);
+        let times = self.shooting.output_times(window);
+        let seen = self.shooting.seen(&times, &self.sensors, &changes);
         Some(self.shooting.differences(window, &seen, |seen, _| seen))
-    }
-
-    fn times(&self) -> &'s [f64] {
-        let window = &self.shooting.windows.list[self.window];
-        &window.times[..samples_in(window, self.shooting.part)]
     }
 
     /// The quantities along a motion, with a force if there is one, and its steps where they are wanted.
@@ -139,9 +134,11 @@ impl<'s> SteppedWindow<'s> {
         mut visited: Option<&mut Vec<Step>>,
     ) -> Option<Vec<f64>> {
         let degrees = self.evaluator.program().degrees_of_freedom();
-        let (forced, times) = (start.len() - degrees, self.times());
+        let forced = start.len() - degrees;
         let windows = self.shooting.windows;
-        let inputs = windows.inputs(&windows.list[self.window]);
+        let window = &windows.list[self.window];
+        let inputs = windows.inputs(window);
+        let times = self.shooting.output_times(window).times;
         let mut state = start.to_vec();
         let mut method = RungeKutta::new(start.len());
         let mut measured = Vec::with_capacity(times.len() * self.shooting.channels());

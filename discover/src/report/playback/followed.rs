@@ -82,7 +82,9 @@ fn seen(
     stretch: &Stretch,
     piece: &Piece,
 ) -> Option<(Vec<f64>, u64)> {
-    let times = &stretch.times[piece.first..piece.first + piece.samples];
+    let samples = &stretch.times[piece.first..piece.first + piece.samples];
+    let output_times = problem.output_rate.times(samples);
+    let times = &output_times.times;
     let evaluator = RefCell::new(model.evaluator(&model.values));
     let inputs = &problem.dataset.test[0].inputs;
     let settings = Settings {
@@ -110,5 +112,5 @@ fn seen(
     let shooting = best.shooting(problem);
     let sensors = shooting.sensors(&best.train.estimate.theta);
     let work = trajectory.work.steps + trajectory.work.rejected;
-    Some((shooting.seen(times, &sensors, &quantities), work))
+    Some((shooting.seen(&output_times, &sensors, &quantities), work))
 }

@@ -1,0 +1,130 @@
+//! The times at which a model's quantities are computed so that what a late sensor shows can be
+//! interpolated: at the samples, and where these are too far apart for that, at times between.
+
+use eomgen_records::dataset::Dataset;
+
+use crate::thresholds;
+
+/// How often quantities are computed from sample to sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OutputRate(usize);
+
+/// The times at which quantities are computed, s.
+#[derive(Clone, Debug)]
+pub struct OutputTimes {
+    /// The samples' times, and those between.
+    pub times: Vec<f64>,
+    rate: usize,
+}
+
+impl OutputRate {
+    /// As often as the cubic through four neighbours asks for, so that it errs by less than a part
+    /// of the noise. How much it errs is read off the records: what every other sample says of the one
+    /// between them, which errs sixteen times as much, less what noise does to that.
+    pub fn of(dataset: &Dataset) -> Self {
+        let channels = dataset.channels.iter().enumerate();
+        let error = channels.map(|(place, channel)| {
+            let records = dataset.train.iter();
+            let columns = records.map(|record| (&record.times[..], &record.channels[place][..]));
+            error_of_cubic(columns, channel.noise) / channel.noise
+        });
+        let mut error = error.fold(0.0, f64::max);
+        let mut rate = 1;
+        while error > thresholds::INTERPOLATED && rate < thresholds::MOST_BETWEEN {
+            rate *= 2;
+            error /= ORDER;
+        }
+        Self(rate)
+    }
+
+    /// The times for these samples.
+    pub fn times(self, samples: &[f64]) -> OutputTimes {
+        let mut times = Vec::with_capacity(self.0 * samples.len());
+        for pair in samples.windows(2) {
+            let step = (pair[1] - pair[0]) / self.0 as f64;
+            times.extend((0..self.0).map(|place| pair[0] + place as f64 * step));
+        }
+        times.extend(samples.last());
+        OutputTimes {
+            times,
+            rate: self.0,
+        }
+    }
+}
+
+impl OutputTimes {
+    /// How many samples there are.
+    pub fn samples(&self) -> usize {
+        self.times.len().div_ceil(self.rate)
+    }
+
+    /// Of something for each time, what stands at the samples.
+    pub fn at_samples<T>(&self, all: Vec<T>) -> Vec<T> {
+        all.into_iter().step_by(self.rate).collect()
+    }
+
+    /// Where a sample stands among the times.
+    pub fn of_sample(&self, sample: usize) -> usize {
+        sample * self.rate
+    }
+}
+
+/// By so much the error of a cubic falls where its points are twice as dense.
+const ORDER: f64 = 16.0;
+
+/// What a cubic through a column's neighbouring samples errs by, half way between two of them.
+fn error_of_cubic<'c>(columns: impl Iterator<Item = (&'c [f64], &'c [f64])>, noise: f64) -> f64 {
+    let (mut sum, mut expected, mut count) = (0.0, 0.0, 0.0);
+    for (times, values) in columns {
+        for middle in 3..times.len().saturating_sub(3) {
+            let nodes = [middle - 3, middle - 1, middle + 1, middle + 3];
+            let weights = cubic_weights(nodes.map(|node| times[node]), times[middle]);
+            let pairs = nodes.iter().zip(&weights);
+            let between: f64 = pairs.map(|(node, weight)| weight * values[*node]).sum();
+            let error = between - values[middle];
+            if error.is_finite() {
+                sum += error * error;
+                expected += 1.0 + weights.iter().map(|weight| weight * weight).sum::<f64>();
+                count += 1.0;
+            }
+        }
+    }
+    let square = (sum - noise * noise * expected) / f64::max(count, 1.0);
+    square.max(0.0).sqrt() / ORDER
+}
+
+/// What each of four points counts in the cubic through them (Lagrange).
+fn cubic_weights(nodes: [f64; 4], at: f64) -> [f64; 4] {
+    let weight = |own: usize| {
+        let others = (0..4).filter(|other| *other != own);
+        others
+            .map(|other| (at - nodes[other]) / (nodes[own] - nodes[other]))
+            .product()
+    };
+    [0, 1, 2, 3].map(weight)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{OutputRate, error_of_cubic};
+
+    #[test]
+    fn the_error_of_a_sine_is_the_one_of_the_remainder() {
+        // Half way between samples 0.1 rad apart: 9/16 of 0.1^4/24 of its fourth derivative.
+        let times: Vec<f64> = (0..2000).map(|i| 0.1 * f64::from(i)).collect();
+        let values: Vec<f64> = times.iter().map(|t| t.sin()).collect();
+        let found = error_of_cubic(std::iter::once((&times[..], &values[..])), 0.0);
+        let expected = 9.0 / 16.0 * 1e-4 / 24.0 / f64::sqrt(2.0);
+        assert!((found / expected - 1.0).abs() < 0.05, "{found} {expected}");
+    }
+
+    #[test]
+    fn samples_stand_among_the_times() {
+        let samples = [0.0, 1.0, 3.0];
+        let times = OutputRate(2).times(&samples);
+        assert_eq!(times.times, [0.0, 0.5, 1.0, 2.0, 3.0]);
+        assert_eq!(times.samples(), 3);
+        assert_eq!(times.times[times.of_sample(2)], 3.0);
+        assert_eq!(OutputRate(1).times(&samples).times, samples);
+    }
+}
