@@ -86,6 +86,7 @@ mod tests {
     use eomgen_sim::inputs::HeldInputs;
 
     use crate::model::estimation_model::EstimationModel;
+    use crate::model::output_times::OutputRate;
     use crate::model::simulation::NeighbourDrives;
     use eomgen_records::dataset::{Channel, Quantity, TransducerPriors};
     use eomgen_records::record::Record;
@@ -133,7 +134,7 @@ mod tests {
             EstimationModel::of(&with, Some(&rig), "rig", Some(4), &channels).expect("a model");
         let mut initial = vec![0.0; integrated.state_count()];
         initial[0] = 60e-6;
-        integrated.choose_steps(&record, &initial, &[1e-7]);
+        integrated.choose_steps(&record, &initial, &[1e-7], OutputRate::SAMPLES);
         (integrated, with, record, channels, initial)
     }
 

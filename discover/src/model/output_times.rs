@@ -18,6 +18,10 @@ pub struct OutputTimes {
 }
 
 impl OutputRate {
+    /// At the samples alone.
+    #[cfg(test)]
+    pub const SAMPLES: Self = Self(1);
+
     /// As often as the cubic through four neighbours asks for, so that it errs by less than a part
     /// of the noise. How much it errs is read off the records: what every other sample says of the one
     /// between them, which errs sixteen times as much, less what noise does to that.
@@ -125,6 +129,6 @@ mod tests {
         assert_eq!(times.times, [0.0, 0.5, 1.0, 2.0, 3.0]);
         assert_eq!(times.samples(), 3);
         assert_eq!(times.times[times.of_sample(2)], 3.0);
-        assert_eq!(OutputRate(1).times(&samples).times, samples);
+        assert_eq!(OutputRate::SAMPLES.times(&samples).times, samples);
     }
 }
