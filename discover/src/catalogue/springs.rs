@@ -1,9 +1,12 @@
 //! Springs of a model: parts `1/2*k*p^2` of terms of the potential energy, with what deflects as
 //! the specification writes it: a coordinate, a definition, or any expression of these.
 
+use std::collections::BTreeSet;
+
 use eomgen_model_spec::ast::BinaryOperator;
 use eomgen_model_spec::dimension::Dimension;
 use eomgen_model_spec::edit::Section;
+use eomgen_model_spec::ids::DefinitionId;
 use eomgen_model_spec::model::{Expr, ExprKind, Model, Term};
 
 use crate::catalogue::dampers::dampers;
@@ -73,19 +76,25 @@ fn spring<'m>(model: &Model, product: &'m Expr) -> Option<Spring<'m>> {
         deflection,
         parameters,
     };
-    (!spring.parameters.is_empty() && is_position(model, deflection)).then_some(spring)
+    (!spring.parameters.is_empty() && is_position(model, deflection, &mut BTreeSet::new()))
+        .then_some(spring)
 }
 
-/// Whether an expression is a position: sums of coordinates, times what is fixed.
-fn is_position(model: &Model, expr: &Expr) -> bool {
+/// Whether an expression is a position: sums of coordinates, times what is fixed. `read`: definitions
+/// that were read before, each but once.
+fn is_position(model: &Model, expr: &Expr, read: &mut BTreeSet<DefinitionId>) -> bool {
     match &expr.kind {
         ExprKind::Coordinate(_) | ExprKind::Parameter(_) | ExprKind::Number(_) | ExprKind::Pi => {
             true
         }
-        ExprKind::Definition(id) => is_position(model, &model.definitions[*id].value),
-        ExprKind::Negate(inner) => is_position(model, inner),
+        ExprKind::Definition(id) => {
+            !read.insert(*id) || is_position(model, &model.definitions[*id].value, read)
+        }
+        ExprKind::Negate(inner) => is_position(model, inner, read),
         ExprKind::Binary(BinaryOperator::Power, ..) => is_fixed(model, expr, &mut Vec::new()),
-        ExprKind::Binary(_, left, right) => is_position(model, left) && is_position(model, right),
+        ExprKind::Binary(_, left, right) => {
+            is_position(model, left, read) && is_position(model, right, read)
+        }
         _ => false,
     }
 }
@@ -97,7 +106,7 @@ fn dimension(model: &Model, expr: &Expr) -> Option<Dimension> {
         ExprKind::Coordinate(id) => Some(model.coordinates[*id].unit.dimension),
         ExprKind::Parameter(id) => Some(model.parameters[*id].unit.dimension),
         ExprKind::Number(_) | ExprKind::Pi => Some(Dimension::NONE),
-        ExprKind::Definition(id) => of(&model.definitions[*id].value),
+        ExprKind::Definition(id) => Some(model.definitions[*id].unit.dimension),
         ExprKind::Negate(inner) => of(inner),
         ExprKind::Binary(BinaryOperator::Add | BinaryOperator::Subtract, left, _) => of(left),
         ExprKind::Binary(BinaryOperator::Multiply, left, right) => of(left)?.times(of(right)?),
