@@ -265,6 +265,22 @@ fn masses_that_move_as_one_beside_a_filter() {
     agree(&Subject::new(spec.model(), 0), 0.3, 1e-4).expect("the same motion");
 }
 
+/// A spring that a fast filter hides between two slow masses, one of them in air.
+#[test]
+fn a_filter_much_faster_than_the_masses() {
+    let terms = [
+        (Term::Late(1.0, 0.0011986461370879227, 0.0), 0, 1),
+        (Term::Damper(0.016923112823417547), 1, 1),
+        (Term::Push(1.0, 0.0, 0.0), 0, 0),
+    ];
+    let spec = machine(
+        &[3.609018783178681, 9.921373460567043],
+        &[[0.0; 2]; 3],
+        &terms,
+    );
+    agree(&Subject::new(spec.model(), 0), 0.3, 1e-4).expect("the same motion");
+}
+
 /// A mass on a one-sided spring that rubs on a free one, beside an oscillator: eigenvalues that lie
 /// symmetrically.
 #[test]

@@ -116,12 +116,18 @@ fn time_scale(matrix: &DMatrix<f64>, degrees: usize, felt: &[usize]) -> Vec<f64>
         let (shape, place) = ((size(row), size(column)), (row * degrees, column * degrees));
         matrix.view(place, shape).amax()
     };
+    // Through a filter that is faster than what it drives at its gain, through a slower one as an integral.
+    let filter = block(2, 2);
+    let through = [block(1, 2) * block(2, 0), block(1, 2) * block(2, 1)];
+    let at_gain = through.map(|product| match product > 0.0 {
+        true => product / filter,
+        false => 0.0,
+    });
     let loops = [
         block(1, 0).sqrt(),
         block(1, 1),
-        block(2, 2),
-        (block(1, 2) * block(2, 1)).sqrt(),
-        (block(1, 2) * block(2, 0)).cbrt(),
+        through[0].cbrt().min(at_gain[0].sqrt()),
+        through[1].sqrt().min(at_gain[1]),
     ];
     let fastest = loops.into_iter().fold(0.0, f64::max);
     let unit = if fastest > 0.0 {
