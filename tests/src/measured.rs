@@ -3,6 +3,7 @@
 
 use std::path::PathBuf;
 
+use crate::logistic_noise::LogisticNoise;
 use crate::models::path;
 use crate::program;
 
@@ -76,16 +77,11 @@ pub fn record_of(other: &dyn Fn(Moment) -> f64, turn: f64) -> String {
     let (mass, viscous) = (95.0, 210.0);
     let (mut q, mut v): (f64, f64) = (0.0, 0.0);
     let mut text = "t,force,q\n".to_owned();
-    let mut noise = 0.5;
+    let mut noise = LogisticNoise::new(NOISE, 0.5);
     for sample in 0..SAMPLES {
         let t = STEP * sample as f64;
         let force = 300.0 * (5.0 * t + turn).cos() - 150.0 * (13.0 * t * (1.0 + 0.3 * turn)).sin();
-        // The logistic map: a noise that is the same everywhere, of mean 0 once centred.
-        noise = 4.0 * noise * (1.0_f64 - noise) * 0.999_999;
-        text += &format!(
-            "{t:.3},{force:.17},{:.9}\n",
-            q + NOISE * 2.8 * (noise - 0.5)
-        );
+        text += &format!("{t:.3},{force:.17},{:.9}\n", q + noise.draw());
         // Small steps in each of which friction has one direction.
         let parts = 50;
         let h = STEP / f64::from(parts);

@@ -5,6 +5,8 @@ use std::process::Output;
 use std::sync::OnceLock;
 use std::time::Duration;
 
+use serde_json::Value;
+
 use crate::models::project;
 
 /// The longest a run may take unless a test says otherwise.
@@ -86,6 +88,19 @@ pub fn accepted(arguments: &[&str]) -> String {
         text(&output.stderr)
     );
     text(&output.stdout)
+}
+
+/// What `compare` or `discover` answers to a specification and a dataset, and leaves in a folder: the
+/// command must succeed.
+pub fn answered(command: &str, paths: [&PathBuf; 3]) -> Value {
+    let [specification, dataset, out] = paths.map(|path| path.display().to_string());
+    accepted(&[command, &specification, &dataset, "--out", &out]);
+    let name = match command {
+        "compare" => "comparison.json",
+        _ => "discovery.json",
+    };
+    let document = std::fs::read_to_string(paths[2].join(name)).expect("a document");
+    serde_json::from_str(&document).expect("JSON")
 }
 
 /// Bytes as text.

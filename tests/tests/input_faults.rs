@@ -2,8 +2,6 @@
 //! nobody spoke of them, refitted where the dataset says how far they may be off. Records are Newton's law
 //! in small steps.
 
-use std::path::Path;
-
 use eomgen_tests::program;
 use serde_json::Value;
 
@@ -103,7 +101,7 @@ fn found(dataset: &str, specification: &str, (gain, bias): (f64, f64)) -> (Value
 /// The same in these records.
 fn found_in(dataset: &str, specification: &str, records: &[String; 2]) -> (Value, String) {
     let folder = tempfile::tempdir().expect("a folder");
-    let file = |name: &str| folder.path().join(name).display().to_string();
+    let file = |name: &str| folder.path().join(name);
     for (name, text) in [
         ("pendulum.toml", specification),
         ("dataset.toml", dataset),
@@ -112,11 +110,10 @@ fn found_in(dataset: &str, specification: &str, records: &[String; 2]) -> (Value
     ] {
         std::fs::write(file(name), text).expect("a file");
     }
-    let (model, dataset, out) = (file("pendulum.toml"), file("dataset.toml"), file("out"));
-    program::accepted(&["discover", &model, &dataset, "--out", &out]);
-    let read = |name: &str| std::fs::read_to_string(Path::new(&out).join(name)).expect("a file");
-    let document = serde_json::from_str(&read("discovery.json")).expect("JSON");
-    (document, read("extended.toml"))
+    let paths = ["pendulum.toml", "dataset.toml", "out"].map(file);
+    let document = program::answered("discover", paths.each_ref());
+    let extended = std::fs::read_to_string(file("out/extended.toml"));
+    (document, extended.expect("a file"))
 }
 
 /// The value of the only effect's parameter, and that effect with what is not told from it.

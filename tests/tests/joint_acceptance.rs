@@ -3,7 +3,6 @@
 
 use eomgen_tests::models::path;
 use eomgen_tests::program;
-use serde_json::Value;
 
 /// What the encoder of the angle resolves, rad.
 const STEP_OF_ENCODER: f64 = 1e-3;
@@ -76,19 +75,14 @@ fn friction_and_a_ripple_that_are_accepted_only_together_are_both_named() {
         std::fs::write(place(&format!("{from:.1}.csv")), swing(from)).expect("a file");
     }
     let paths = [path("pendulum"), place("dataset.toml"), place("found")];
-    let [model, dataset, out] = paths.map(|path| path.display().to_string());
-    let output = program::run(&["discover", &model, &dataset, "--out", &out]);
-    let message = program::text(&output.stderr);
-    assert_eq!(output.status.code(), Some(0), "{message}");
-    let text = std::fs::read_to_string(place("found/discovery.json")).expect("a document");
-    let found: Value = serde_json::from_str(&text).expect("JSON");
+    let found = program::answered("discover", paths.each_ref());
     let effects = found["effects"].as_array().expect("a list");
     let mut names: Vec<&str> = effects
         .iter()
         .filter_map(|e| e["effect"].as_str())
         .collect();
     names.sort_unstable();
-    assert_eq!(names, ["coulomb_friction", "torque_ripple"], "{message}");
+    assert_eq!(names, ["coulomb_friction", "torque_ripple"], "{effects:#?}");
     let ripple = effects.iter().find(|e| e["effect"] == "torque_ripple");
     assert_eq!(
         ripple.expect("a ripple")["order"]["order"],

@@ -2,8 +2,6 @@
 //! friction is found, alone or beside a position, and none where the mass rests; and two quantities in
 //! proportion, as both encoders of a joint show. Records are Newton's law and Coulomb's, in small steps.
 
-use std::path::Path;
-
 use eomgen_tests::program;
 use serde_json::Value;
 
@@ -118,7 +116,7 @@ fn record(friction: f64, turn: f64, idle: bool) -> String {
 /// What `command` finds in records of these channels.
 fn answered(command: &str, specification: &str, dataset: &str, records: [String; 2]) -> Value {
     let folder = tempfile::tempdir().expect("a folder");
-    let file = |name: &str| folder.path().join(name).display().to_string();
+    let file = |name: &str| folder.path().join(name);
     let [train, test] = &records;
     for (name, text) in [
         ("oscillator.toml", specification),
@@ -128,14 +126,8 @@ fn answered(command: &str, specification: &str, dataset: &str, records: [String;
     ] {
         std::fs::write(file(name), text).expect("a file");
     }
-    let (model, dataset, out) = (file("oscillator.toml"), file("dataset.toml"), file("out"));
-    program::accepted(&[command, &model, &dataset, "--out", &out]);
-    let name = match command {
-        "compare" => "comparison.json",
-        _ => "discovery.json",
-    };
-    let text = std::fs::read_to_string(Path::new(&out).join(name)).expect("a document");
-    serde_json::from_str(&text).expect("JSON")
+    let paths = ["oscillator.toml", "dataset.toml", "out"].map(file);
+    program::answered(command, paths.each_ref())
 }
 
 #[test]

@@ -53,16 +53,7 @@ pub(crate) fn edits(
             find,
             replace,
         } => {
-            if *within == Within::Dampers {
-                return dampers(site, (find, replace), arguments);
-            }
-            return substitutions(
-                model,
-                within,
-                site,
-                (fill(find)?, fill(replace)?),
-                arguments,
-            );
+            return substitutions(model, within, site, (find, replace), arguments);
         }
     }])
 }
@@ -72,9 +63,10 @@ fn substitutions(
     model: &Model,
     within: &Within,
     site: &Site,
-    (find, replace): (String, String),
+    (find, replace): (&str, &str),
     arguments: &BTreeMap<String, String>,
 ) -> Option<Vec<Edit>> {
+    let found = instantiated(find, arguments);
     let places: Vec<(Section, Vec<String>)> = match within {
         Within::Kinetic(terms) => {
             let terms: Option<Vec<String>> = terms
@@ -83,10 +75,12 @@ fn substitutions(
                 .collect();
             vec![(Section::Kinetic, terms?)]
         }
-        Within::Site => holding(model, site, &find),
-        Within::Dampers => return None,
-        Within::Measured => measured(model, &find),
+        Within::Site => holding(model, site, found.as_deref()?),
+        // Each damper is a blank of its own.
+        Within::Dampers => return dampers(site, (find, replace), arguments),
+        Within::Measured => measured(model, found.as_deref()?),
     };
+    let (find, replace) = (found?, instantiated(replace, arguments)?);
     let substitutions: Vec<Edit> = (places.into_iter())
         .filter(|(_, terms)| !terms.is_empty())
         .map(|(section, terms)| {

@@ -83,14 +83,9 @@ impl<'f> Rival<'f> {
         truth: &EstimationModel,
         prediction: &Prediction,
     ) -> Option<f64> {
-        let windows = Windows::cut(&prediction.records, problem.dataset.window);
-        let begin = self.begin(problem, truth, prediction, &windows);
-        let shooting = self.shooting(problem, &windows, &begin);
-        let theta = self.theta().to_vec();
-        let present = evaluated(&shooting, &begin.prior, theta, begin.states.clone());
-        let square = present.squares.iter().sum::<f64>();
-        let left = (square / windows.numbers()).sqrt();
-        left.is_finite().then_some(left)
+        self.leaves(problem, truth, prediction, |_, _, present| {
+            Some(present.squares.iter().sum::<f64>().sqrt())
+        })
     }
 
     /// The root mean square over all channels of what it leaves of a prediction by a model whose states
@@ -101,19 +96,28 @@ impl<'f> Rival<'f> {
         truth: &EstimationModel,
         prediction: &Prediction,
     ) -> Option<f64> {
+        self.leaves(problem, truth, prediction, |shooting, begin, present| {
+            let blocks = blocks(shooting, &begin.prior, present)?;
+            let factor = self.factor(&blocks, present);
+            let last = factor[(factor.nrows() - 1, factor.ncols() - 1)];
+            Some(last.abs())
+        })
+    }
+
+    /// The root mean square over all channels of the length `of` what it leaves before it is fitted.
+    fn leaves(
+        &self,
+        problem: &EstimationProblem<'_>,
+        truth: &EstimationModel,
+        prediction: &Prediction,
+        of: impl FnOnce(&Shooting<'_>, &Beginning, &Estimate) -> Option<f64>,
+    ) -> Option<f64> {
         let windows = Windows::cut(&prediction.records, problem.dataset.window);
         let begin = self.begin(problem, truth, prediction, &windows);
         let shooting = self.shooting(problem, &windows, &begin);
-        let present = evaluated(
-            &shooting,
-            &begin.prior,
-            self.theta().to_vec(),
-            begin.states.clone(),
-        );
-        let blocks = blocks(&shooting, &begin.prior, &present)?;
-        let factor = self.factor(&blocks, &present);
-        let last = factor[(factor.nrows() - 1, factor.ncols() - 1)];
-        let left = last.abs() / windows.numbers().sqrt();
+        let theta = self.theta().to_vec();
+        let present = evaluated(&shooting, &begin.prior, theta, begin.states.clone());
+        let left = of(&shooting, &begin, &present)? / windows.numbers().sqrt();
         left.is_finite().then_some(left)
     }
 

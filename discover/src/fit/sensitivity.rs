@@ -293,7 +293,7 @@ impl<'a> SensitivityEvaluator<'a> {
     fn columns(
         &self,
         samples: &Window,
-        times: &OutputTimes,
+        times: &OutputTimes<'_>,
         count: usize,
         derivatives: &[f64],
     ) -> DMatrix<f64> {

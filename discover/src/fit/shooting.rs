@@ -7,7 +7,7 @@ use crate::ids::{ChannelId, WindowId, WindowRange};
 use rayon::prelude::*;
 
 use crate::model::estimation_model::EstimationModel;
-use crate::model::output_times::{OutputRate, OutputTimes};
+use crate::model::output_times::{OutputRate, OutputTimes, lagrange_weight};
 use crate::model::problem::EstimationProblem;
 use crate::model::simulation::Simulation;
 use crate::model::unknowns::{Unknown, What, expected_input_delay};
@@ -181,13 +181,13 @@ impl<'a> Shooting<'a> {
     }
 
     /// When the quantities of a window, as far as it is compared, are computed.
-    pub fn output_times(&self, window: &Window) -> OutputTimes {
+    pub fn output_times<'w>(&self, window: &'w Window) -> OutputTimes<'w> {
         let samples = samples_in(window, self.part);
         self.output_rate.times(&window.times[..samples])
     }
 
     /// What the sensors show of a window's quantities, a row per sample.
-    pub fn seen(&self, times: &OutputTimes, sensors: &Sensors, quantities: &[f64]) -> Vec<f64> {
+    pub fn seen(&self, times: &OutputTimes<'_>, sensors: &Sensors, quantities: &[f64]) -> Vec<f64> {
         let channels = self.channels();
         let samples = times.samples();
         let mut seen = vec![0.0; samples * channels];
@@ -292,10 +292,7 @@ fn interpolated(column: &Column<'_>, at: f64, near: usize) -> f64 {
     nodes
         .clone()
         .map(|i| {
-            let weight: f64 = (nodes.clone())
-                .filter(|j| *j != i)
-                .map(|j| (at - times[j]) / (times[i] - times[j]))
-                .product();
+            let weight = lagrange_weight(times, nodes.clone(), i, at);
             weight * column.values[i * column.channels + column.channel.index()]
         })
         .sum()

@@ -1,6 +1,8 @@
 //! The times at which a model's quantities are computed so that what a late sensor shows can be
 //! interpolated: at the samples, and where these are too far apart for that, at times between.
 
+use std::borrow::Cow;
+
 use eomgen_records::dataset::Dataset;
 
 use crate::thresholds;
@@ -11,9 +13,9 @@ pub struct OutputRate(usize);
 
 /// The times at which quantities are computed, s.
 #[derive(Clone, Debug)]
-pub struct OutputTimes {
+pub struct OutputTimes<'s> {
     /// The samples' times, and those between.
-    pub times: Vec<f64>,
+    pub times: Cow<'s, [f64]>,
     rate: usize,
 }
 
@@ -42,7 +44,13 @@ impl OutputRate {
     }
 
     /// The times for these samples.
-    pub fn times(self, samples: &[f64]) -> OutputTimes {
+    pub fn times(self, samples: &[f64]) -> OutputTimes<'_> {
+        if self.0 == 1 {
+            return OutputTimes {
+                times: samples.into(),
+                rate: 1,
+            };
+        }
         let mut times = Vec::with_capacity(self.0 * samples.len());
         for pair in samples.windows(2) {
             let step = (pair[1] - pair[0]) / self.0 as f64;
@@ -50,13 +58,13 @@ impl OutputRate {
         }
         times.extend(samples.last());
         OutputTimes {
-            times,
+            times: times.into(),
             rate: self.0,
         }
     }
 }
 
-impl OutputTimes {
+impl OutputTimes<'_> {
     /// How many samples there are.
     pub fn samples(&self) -> usize {
         self.times.len().div_ceil(self.rate)
@@ -82,7 +90,10 @@ fn error_of_cubic<'c>(columns: impl Iterator<Item = (&'c [f64], &'c [f64])>, noi
     for (times, values) in columns {
         for middle in 3..times.len().saturating_sub(3) {
             let nodes = [middle - 3, middle - 1, middle + 1, middle + 3];
-            let weights = cubic_weights(nodes.map(|node| times[node]), times[middle]);
+            let weights = nodes.map(|node| {
+                let others = nodes.iter().copied();
+                lagrange_weight(times, others, node, times[middle])
+            });
             let pairs = nodes.iter().zip(&weights);
             let between: f64 = pairs.map(|(node, weight)| weight * values[*node]).sum();
             let error = between - values[middle];
@@ -97,15 +108,17 @@ fn error_of_cubic<'c>(columns: impl Iterator<Item = (&'c [f64], &'c [f64])>, noi
     square.max(0.0).sqrt() / ORDER
 }
 
-/// What each of four points counts in the cubic through them (Lagrange).
-fn cubic_weights(nodes: [f64; 4], at: f64) -> [f64; 4] {
-    let weight = |own: usize| {
-        let others = (0..4).filter(|other| *other != own);
-        others
-            .map(|other| (at - nodes[other]) / (nodes[own] - nodes[other]))
-            .product()
-    };
-    [0, 1, 2, 3].map(weight)
+/// What one of some points counts at a time in the polynomial through all of them (Lagrange).
+pub(crate) fn lagrange_weight(
+    times: &[f64],
+    points: impl Iterator<Item = usize>,
+    own: usize,
+    at: f64,
+) -> f64 {
+    let others = points.filter(|other| *other != own);
+    others
+        .map(|other| (at - times[other]) / (times[own] - times[other]))
+        .product()
 }
 
 #[cfg(test)]
@@ -126,9 +139,9 @@ mod tests {
     fn samples_stand_among_the_times() {
         let samples = [0.0, 1.0, 3.0];
         let times = OutputRate(2).times(&samples);
-        assert_eq!(times.times, [0.0, 0.5, 1.0, 2.0, 3.0]);
+        assert_eq!(*times.times, [0.0, 0.5, 1.0, 2.0, 3.0]);
         assert_eq!(times.samples(), 3);
         assert_eq!(times.times[times.of_sample(2)], 3.0);
-        assert_eq!(OutputRate::SAMPLES.times(&samples).times, samples);
+        assert_eq!(*OutputRate::SAMPLES.times(&samples).times, samples);
     }
 }

@@ -41,8 +41,10 @@ fn iterated<T: ComplexField<RealField = f64>>(matrix: &DMatrix<T>) -> Option<Ite
     let most = ITERATIONS * size.max(1);
     let iterate = |matrix| Schur::try_new(matrix, f64::EPSILON, most);
     if let Some(schur) = iterate(matrix.clone()) {
-        let reflection = None;
-        return Some(Iterated { reflection, schur });
+        return Some(Iterated {
+            reflection: None,
+            schur,
+        });
     }
     (1..=OTHER_BASES).find_map(|basis| {
         let normal = DVector::from_fn(size, |place, _| T::from_real(1.0 / (place + basis) as f64));

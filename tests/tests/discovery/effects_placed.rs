@@ -9,11 +9,12 @@ use eomgen_discover::catalogue::effect::{Effect, SiteKind};
 use eomgen_discover::catalogue::effects;
 use eomgen_discover::catalogue::sites::sites;
 use eomgen_discover::catalogue::usual_motion::UsualMotion;
+use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::Source;
 use eomgen_tests::models::shipped;
 
 /// The candidates of an effect in a model, of each place and angle the first order alone.
-fn placed(model: &eomgen_model_spec::model::Model, effect: &Effect) -> Vec<Candidate> {
+fn placed(model: &Model, effect: &Effect) -> Vec<Candidate> {
     let one = std::slice::from_ref(effect);
     let mut found = candidates(model, one, &sites(model), &UsualMotion::default());
     let key = |c: &Candidate| {
@@ -136,10 +137,15 @@ shaft = "0.5*k_t*(theta - phi)^2"
 other = "k_1*p*p - 1/2*k_1*p^2"
 "#;
 
+/// The model of a specification that is right.
+fn checked(text: &str) -> Model {
+    let checked = eomgen_model_spec::check(Source::new("machine.toml", text));
+    checked.unwrap_or_else(|found| panic!("{found}")).model
+}
+
 #[test]
 fn springs_are_found_however_they_are_written() {
-    let checked = eomgen_model_spec::check(Source::new("springs.toml", SPRINGS));
-    let model = checked.unwrap_or_else(|found| panic!("{found}")).model;
+    let model = checked(SPRINGS);
     let springs = sites(&model)
         .into_iter()
         .filter(|site| site.kind == SiteKind::Spring);
@@ -162,8 +168,7 @@ fn springs_have_room_for_a_users_effect() {
     let effects = effects(Some(&path)).unwrap_or_else(|found| panic!("{found}"));
     let own = effects.last().expect("an effect");
     assert!(own.is_own);
-    let checked = eomgen_model_spec::check(Source::new("two_carriages.toml", TWO_CARRIAGES));
-    let model = checked.expect("a specification").model;
+    let model = checked(TWO_CARRIAGES);
     let found = placed(&model, own);
     let places: Vec<&str> = found
         .iter()
@@ -217,8 +222,7 @@ other = { on = "theta", value = "-d_t*dot(slip)" }
 
 #[test]
 fn dampers_beside_a_spring_are_found_however_they_are_written() {
-    let checked = eomgen_model_spec::check(Source::new("dampers.toml", DAMPERS));
-    let model = checked.unwrap_or_else(|found| panic!("{found}")).model;
+    let model = checked(DAMPERS);
     let belt = sites(&model).into_iter().find(|site| site.name == "belt");
     let dampers = belt.expect("a spring").dampers.into_iter();
     let dampers: Vec<[String; 2]> = dampers.map(|damper| [damper.term, damper.part]).collect();
@@ -232,8 +236,7 @@ fn dampers_beside_a_spring_are_found_however_they_are_written() {
 
 #[test]
 fn play_opens_the_dampers_beside_its_spring_or_none() {
-    let checked = eomgen_model_spec::check(Source::new("dampers.toml", DAMPERS));
-    let model = checked.unwrap_or_else(|found| panic!("{found}")).model;
+    let model = checked(DAMPERS);
     let effects = effects(None).expect("the catalogue");
     let play = effects.iter().filter(|effect| effect.name == "backlash");
     let written: Vec<String> = play

@@ -1,8 +1,6 @@
 //! Dry friction that stops a pendulum is found by name, at its place and with its size, from records that a
 //! set-valued time stepping makes: it shares no code with the simulator.
 
-use std::path::Path;
-
 use eomgen_tests::program;
 use serde_json::Value;
 
@@ -125,16 +123,8 @@ fn discovered(records: [(String, f64); 2]) -> Value {
         assert!(*stood > 0.5, "{name}: {stood} s at rest");
         write(name, text);
     }
-    let path = |name: &str| Path::new(&place(name)).display().to_string();
-    program::accepted(&[
-        "discover",
-        &path("pendulum.toml"),
-        &path("dataset.toml"),
-        "--out",
-        &path("found"),
-    ]);
-    let text = std::fs::read_to_string(place("found").join("discovery.json")).expect("a file");
-    serde_json::from_str(&text).expect("JSON")
+    let paths = ["pendulum.toml", "dataset.toml", "found"].map(place);
+    program::answered("discover", paths.each_ref())
 }
 
 fn is_the_friction(found: &Value) {

@@ -3,6 +3,7 @@
 
 use std::path::Path;
 
+use eomgen_tests::logistic_noise::LogisticNoise;
 use eomgen_tests::program;
 use serde_json::Value;
 
@@ -57,12 +58,10 @@ impl Machine<'_> {
     fn record(&self, (mut x, mut v): (f64, f64), input: &[f64], seed: f64) -> String {
         let parts = 200;
         let h = SAMPLE / f64::from(parts);
-        let mut noise = 0.3 + 0.01 * seed;
+        let mut noise = LogisticNoise::new(self.noise, 0.3 + 0.01 * seed);
         let mut text = "t,u,x\n".to_owned();
         for (sample, u) in input.iter().enumerate() {
-            // The logistic map: a noise that is the same everywhere, of mean 0 once centred.
-            noise = 4.0 * noise * (1.0 - noise) * 0.999_999;
-            let seen = x + self.noise * 2.8 * (noise - 0.5);
+            let seen = x + noise.draw();
             text += &format!("{:.4},{u:.12},{seen:.12}\n", SAMPLE * sample as f64);
             for _ in 0..parts {
                 let free = v + h * (self.force)(x, v, *u) / self.mass;
@@ -95,17 +94,8 @@ impl Machine<'_> {
     fn document(&self, folder: &Path, command: &str, [train, test]: [&str; 2], out: &str) -> Value {
         let place = |name: &str| folder.join(name);
         std::fs::write(place("dataset.toml"), self.dataset(train, test)).expect("a file");
-        let paths = [place("spec.toml"), place("dataset.toml"), place(out)];
-        let [model, dataset, out] = paths.map(|path| path.display().to_string());
-        let output = program::run(&[command, &model, &dataset, "--out", &out]);
-        let message = program::text(&output.stderr);
-        assert_eq!(output.status.code(), Some(0), "{message}");
-        let name = match command {
-            "discover" => "discovery.json",
-            _ => "comparison.json",
-        };
-        let text = std::fs::read_to_string(Path::new(&out).join(name));
-        serde_json::from_str(&text.expect("a document")).expect("JSON")
+        let paths = ["spec.toml", "dataset.toml", out].map(place);
+        program::answered(command, paths.each_ref())
     }
 
     /// The class that the first records leave.

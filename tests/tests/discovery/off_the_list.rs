@@ -2,6 +2,7 @@
 //! springs that harden or meet a stop, a stiffness that nobody called uncertain, a ripple of seven
 //! per turn.
 
+use eomgen_tests::logistic_noise::LogisticNoise;
 use eomgen_tests::program;
 use serde_json::Value;
 
@@ -51,14 +52,13 @@ impl Machine<'_> {
     fn record(&self, turn: f64) -> String {
         let parts = 100;
         let h = SAMPLE / f64::from(parts);
-        let (mut x, mut v, mut noise) = (0.0_f64, 0.0_f64, 0.4_f64);
+        let (mut x, mut v) = (0.0_f64, 0.0_f64);
+        let mut noise = LogisticNoise::new(self.noise, 0.4);
         let mut text = "t,u,x\n".to_owned();
         for sample in 0..SAMPLES {
             let t = SAMPLE * sample as f64;
             let u = (self.input)(t, turn);
-            // The logistic map: a noise that is the same everywhere, of mean 0 once centred.
-            noise = 4.0 * noise * (1.0 - noise) * 0.999_999;
-            let seen = x + self.noise * 2.8 * (noise - 0.5);
+            let seen = x + noise.draw();
             text += &format!("{t:.4},{u:.12},{seen:.12}\n");
             for _ in 0..parts {
                 let middle = (x + 0.5 * h * v, v + 0.5 * h * (self.acceleration)(x, v, u));
@@ -90,13 +90,8 @@ impl Machine<'_> {
         for (name, text) in files {
             std::fs::write(place(name), text).expect("a file");
         }
-        let paths = [place("spec.toml"), place("dataset.toml"), place("found")];
-        let [model, dataset, out] = paths.map(|path| path.display().to_string());
-        let output = program::run(&["discover", &model, &dataset, "--out", &out]);
-        let message = program::text(&output.stderr);
-        assert_eq!(output.status.code(), Some(0), "{message}");
-        let text = std::fs::read_to_string(place("found/discovery.json")).expect("a document");
-        serde_json::from_str(&text).expect("JSON")
+        let paths = ["spec.toml", "dataset.toml", "found"].map(place);
+        program::answered("discover", paths.each_ref())
     }
 
     /// The only effect that is found: its document, with which it must have this name and place.

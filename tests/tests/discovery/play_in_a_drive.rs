@@ -2,6 +2,7 @@
 //! contact only or inside the play too, and no damping is called shifted for it. Records are made by the
 //! midpoint rule from Newton's laws.
 
+use eomgen_tests::logistic_noise::LogisticNoise;
 use eomgen_tests::program;
 use serde_json::Value;
 
@@ -113,19 +114,14 @@ fn record(shaft: Shaft, turn: f64) -> String {
     let parts = 50;
     let h = SAMPLE / f64::from(parts);
     let mut state = [0.0_f64; 4];
-    let mut chaos = 0.4_f64;
-    // The logistic map: a noise that is the same everywhere, of mean 0 once centred.
-    let mut noise = || {
-        chaos = 4.0 * chaos * (1.0 - chaos) * 0.999_999;
-        NOISE * 2.8 * (chaos - 0.5)
-    };
+    let mut noise = LogisticNoise::new(NOISE, 0.4);
     let mut text = "t,u,theta_m,theta_l\n".to_owned();
     for sample in 0..SAMPLES {
         let t = SAMPLE * sample as f64;
         let u = 0.05 * (7.0 * t + turn).sin()
             + 0.04 * (23.0 * t * (1.0 + 0.2 * turn)).cos()
             + 0.03 * (61.0 * t + 2.0 * turn).sin();
-        let [m, l] = [state[0] + noise(), state[1] + noise()];
+        let [m, l] = [state[0] + noise.draw(), state[1] + noise.draw()];
         text += &format!("{t:.4},{u:.12},{m:.12},{l:.12}\n");
         let rates = |[m, l, v, w]: [f64; 4]| {
             let torque = shaft(m - l, v - w);
@@ -155,14 +151,10 @@ fn answer(specification: &str, shaft: Shaft) -> (Value, String) {
     for (name, text) in files {
         std::fs::write(place(name), text).expect("a file");
     }
-    let paths = [place("spec.toml"), place("dataset.toml"), place("found")];
-    let [model, dataset, out] = paths.map(|path| path.display().to_string());
-    let output = program::run(&["discover", &model, &dataset, "--out", &out]);
-    let message = program::text(&output.stderr);
-    assert_eq!(output.status.code(), Some(0), "{message}");
-    let read = |name: &str| std::fs::read_to_string(place("found").join(name)).expect("a file");
-    let found = serde_json::from_str(&read("discovery.json")).expect("JSON");
-    (found, read("extended.toml"))
+    let paths = ["spec.toml", "dataset.toml", "found"].map(place);
+    let found = program::answered("discover", paths.each_ref());
+    let extended = std::fs::read_to_string(place("found/extended.toml"));
+    (found, extended.expect("a file"))
 }
 
 /// Play is named alone, and closes the gap; the specification with it, which is given back, reproduces the fit.
