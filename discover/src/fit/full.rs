@@ -102,7 +102,7 @@ pub fn complete(
     );
     let test = Residuals::of(&held_out, test);
     // A fit worse than noise does not know its unknowns better than its own misfit allows.
-    let inflation = (train.rms * train.rms).max(1.0) * train.correlation;
+    let inflation = train.inflation();
     let numbers = problem.train.numbers();
     Ok(Fit {
         by_alike_misfit: sd.iter().map(|sd| sd * numbers.sqrt()).collect(),
@@ -184,7 +184,7 @@ fn converged(
     let mut residuals = Residuals::of(all, free);
     // What remains where records are trusted as if noise were all that they hold says how
     // far they may be trusted against the priors.
-    all.prior_weight = (residuals.rms * residuals.rms).max(1.0) * residuals.correlation;
+    all.prior_weight = residuals.inflation();
     for _ in 0..thresholds::REFRESHES {
         let Estimate {
             theta,

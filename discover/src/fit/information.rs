@@ -51,6 +51,6 @@ pub fn information_of(problem: &EstimationProblem<'_>, fit: &Fit) -> DMatrix<f64
         level(&shooting, estimate),
     );
     let factor = information_factor(&shooting, &fit.prior, &estimate.initial_states, &linear);
-    let inflation = (fit.train.rms * fit.train.rms).max(1.0) * fit.train.correlation;
+    let inflation = fit.train.inflation();
     factor / (thresholds::WIDER * inflation.sqrt())
 }

@@ -41,6 +41,12 @@ impl Residuals {
 }
 
 impl Residuals {
+    /// How many times larger the variance of what is estimated is than were the residuals white noise
+    /// of one standard deviation: no less than once for their size, and for the samples that they are correlated over.
+    pub(crate) fn inflation(&self) -> f64 {
+        (self.rms * self.rms).max(1.0) * self.correlation
+    }
+
     /// What an estimate leaves.
     pub fn of(shooting: &Shooting<'_>, estimate: Estimate) -> Self {
         let channels = shooting.channels();

@@ -103,7 +103,7 @@ pub fn test_statistics(before: &Fit, after: &Fit, own: &[EffectUnknown]) -> Test
     let mean = falls.iter().sum::<f64>() / count;
     let variance = falls.iter().map(|f| (f - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
     let fall = before.train.blocks.iter().sum::<f64>() - after.train.blocks.iter().sum::<f64>();
-    let whitening = (after.train.rms * after.train.rms).max(1.0) * after.train.correlation;
+    let whitening = after.train.inflation();
     TestStatistics {
         held_out: 1.0 - new.rms / old.rms,
         held_out_errors: mean / (variance / count).sqrt(),
