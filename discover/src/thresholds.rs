@@ -349,6 +349,9 @@ pub const INNER_DECREASE: f64 = 1e-2;
 /// chance.
 pub const CORRELATED: f64 = 0.05;
 
+/// A time between samples may be longer than a step by this part of it: samples come late or early.
+pub const JITTER: f64 = 0.1;
+
 /// A parameter's difference quotient is taken over this part of its scale.
 pub const PARAMETER_QUOTIENT: f64 = 0.01;
 

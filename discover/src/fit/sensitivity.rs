@@ -16,6 +16,7 @@ use crate::thresholds;
 use eomgen_records::windows::Window;
 
 /// A window's residuals and derivatives.
+#[derive(Clone)]
 pub struct WindowDerivatives {
     /// Simulated minus measured, in standard deviations: row by row, a number per channel; 0 where
     /// nothing was measured.
@@ -120,10 +121,10 @@ impl<'a> SensitivityEvaluator<'a> {
     pub fn carried(&mut self, window: WindowId, start: &[f64], until: f64) -> Option<Vec<f64>> {
         let samples = &self.shooting.windows.list[window];
         let inputs = self.shooting.windows.inputs(samples);
-        let states = self
-            .base
-            .states(start, &[samples.times[0], until], inputs)
-            .ok()?;
+        // Steps end where inputs change.
+        let before = samples.times.iter().filter(|t| **t < until);
+        let times: Vec<f64> = before.copied().chain([until]).collect();
+        let states = self.base.states(start, &times, inputs).ok()?;
         states.into_iter().next_back()
     }
 

@@ -11,6 +11,7 @@ use eomgen_model_spec::model::{Model, Parameter, ParameterValue};
 use crate::error::SimulationError;
 use crate::ids::{ChannelId, ParameterId};
 use crate::model::linear_outputs::LinearOutputs;
+use crate::model::longest_step::LongestStep;
 use crate::model::measured_outputs::MeasuredOutputs;
 use crate::model::nonlinear_remainder::NonlinearRemainder;
 use crate::model::output_times::OutputRate;
@@ -40,9 +41,9 @@ pub struct EstimationModel {
     channels: Vec<String>,
     /// What is expected of each channel's sensor.
     pub sensors: Vec<ExpectedSensor>,
-    /// Runge-Kutta steps from sample to sample, where the motion has no linear part; none
-    /// where a solver decides.
-    pub(crate) steps: Option<usize>,
+    /// The longest Runge-Kutta step, where the motion has no linear part; none where a solver
+    /// decides.
+    pub(crate) longest_step: Option<LongestStep>,
     /// The usual time from sample to sample, s, and into how many parts of it steps are made
     /// shorter where the linear part is not all.
     sample: f64,
@@ -121,7 +122,7 @@ impl EstimationModel {
             states: compiled.state_names(),
             ranges,
             linear: None,
-            steps: None,
+            longest_step: None,
             sample: 0.0,
             refinement: 1.0,
             stop: Stop::default(),
@@ -234,7 +235,7 @@ impl EstimationModel {
             if has_linear_part {
                 model.refinement = f64::from(1 << doubling);
             } else {
-                model.steps = Some(1 << doubling);
+                model.longest_step = Some(LongestStep(model.sample / f64::from(1 << doubling)));
             }
             let mut simulation = model.simulation(&model.values).ok()?;
             if has_linear_part && !simulation.is_integrated() {
@@ -266,7 +267,7 @@ impl EstimationModel {
         if has_linear_part {
             self.refinement = 1.0;
         }
-        self.steps = None;
+        self.longest_step = None;
     }
 
     /// The model at these values of the independent parameters, ready to run.
@@ -282,7 +283,9 @@ impl EstimationModel {
             return Err(SimulationError::MassMatrix);
         }
         let linear_outputs = LinearOutputs::of(&self.measured, &mut evaluator);
-        let mut simulation = Simulation::new(&self.measured, evaluator, linear_outputs, self.steps);
+        let longest_step = self.longest_step;
+        let mut simulation =
+            Simulation::new(&self.measured, evaluator, linear_outputs, longest_step);
         simulation.stop = self.stop.clone();
         if self.measured.has_rates() {
             // What cannot be derived with sides is not held either.

@@ -89,12 +89,11 @@ pub fn ranges(
     let mut count = 0.0;
     if let Ok(mut simulation) = model.simulation(values) {
         for record in records {
-            // Every tenth sample shows how far a state goes.
-            let times: Vec<f64> = record.times.iter().step_by(10).copied().collect();
-            let Ok(motion) = simulation.states(initial, &times, &record.inputs) else {
+            let Ok(motion) = simulation.states(initial, &record.times, &record.inputs) else {
                 continue;
             };
-            for state in &motion {
+            // Every tenth sample shows how far a state goes.
+            for state in motion.iter().step_by(10) {
                 count += 1.0;
                 for (sum, value) in sums.iter_mut().zip(state) {
                     sum.0 += value;

@@ -9,6 +9,7 @@ pub mod estimation_model;
 pub mod first_state;
 pub mod input_faults;
 pub mod linear_outputs;
+pub(crate) mod longest_step;
 pub(crate) mod measured_outputs;
 pub(crate) mod nonlinear_remainder;
 pub mod output_times;

@@ -13,6 +13,7 @@ use eomgen_sim::piecewise_linear::Propagator;
 
 use crate::error::SimulationError;
 use crate::model::linear_outputs::LinearOutputs;
+use crate::model::longest_step::LongestStep;
 use crate::model::measured_outputs::{Buffers, MeasuredOutputs};
 use crate::model::nonlinear_remainder::NonlinearRemainder;
 use crate::model::stop::Stop;
@@ -26,8 +27,8 @@ pub struct Simulation<'m> {
     evaluator: RefCell<Evaluator>,
     buffers: Buffers,
     linear_outputs: Option<LinearOutputs>,
-    /// Runge-Kutta steps from sample to sample; none where a solver decides.
-    steps: Option<usize>,
+    /// The longest Runge-Kutta step; none where a solver decides.
+    longest_step: Option<LongestStep>,
     integrator: Option<ExponentialIntegrator>,
     remainder: Option<NonlinearRemainder>,
     propagator: Option<Propagator>,
@@ -93,14 +94,14 @@ impl<'m> Simulation<'m> {
         measured: &'m MeasuredOutputs,
         evaluator: Evaluator,
         linear_outputs: Option<LinearOutputs>,
-        steps: Option<usize>,
+        longest_step: Option<LongestStep>,
     ) -> Self {
         Self {
             measured,
             evaluator: RefCell::new(evaluator),
             buffers: measured.buffers(),
             linear_outputs,
-            steps,
+            longest_step,
             integrator: None,
             remainder: None,
             propagator: None,
@@ -130,7 +131,7 @@ impl<'m> Simulation<'m> {
     /// do not.
     pub(crate) fn hold(&mut self, sided: Sided) {
         self.sided = Some(sided);
-        self.steps = None;
+        self.longest_step = None;
     }
 
     /// Takes what surfaces do where they hold a motion, for accelerations that are measured there.
@@ -238,8 +239,8 @@ impl<'m> Simulation<'m> {
                 return Ok(trajectory.states);
             }
         }
-        if let Some(steps) = self.steps {
-            let states = self.by_runge_kutta(initial, samples, inputs, steps);
+        if let Some(longest_step) = self.longest_step {
+            let states = self.by_runge_kutta(initial, samples, inputs, longest_step);
             return states.ok_or(SimulationError::Unbounded);
         }
         let settings = Settings {
@@ -255,14 +256,14 @@ impl<'m> Simulation<'m> {
             .map_err(SimulationError::Solver)
     }
 
-    /// The states at the samples by classical Runge-Kutta steps, so many from sample to
-    /// sample; none if they do not stay finite.
+    /// The states at the samples by classical Runge-Kutta steps, none of them longer than the longest; none
+    /// if they do not stay finite. Inputs are looked at once per step.
     fn by_runge_kutta(
         &mut self,
         initial: &[f64],
         samples: &[f64],
         inputs: &HeldInputs,
-        steps: usize,
+        longest_step: LongestStep,
     ) -> Option<Vec<Vec<f64>>> {
         let mut state = initial.to_vec();
         let mut states = Vec::with_capacity(samples.len());
@@ -270,6 +271,7 @@ impl<'m> Simulation<'m> {
         let mut method = RungeKutta::new(state.len());
         let evaluator = self.evaluator.get_mut();
         for pair in samples.windows(2) {
+            let steps = longest_step.steps(pair[1] - pair[0]);
             let h = (pair[1] - pair[0]) / steps as f64;
             for step in 0..steps {
                 let begin = pair[0] + step as f64 * h;

@@ -6,6 +6,7 @@ use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use nalgebra::DMatrix;
 
 use crate::fit::shooting::{Sensors, Shooting};
+use crate::model::longest_step::LongestStep;
 use crate::model::measured_outputs::Buffers;
 use crate::model::simulation::NeighbourDrives;
 use crate::thresholds;
@@ -21,7 +22,7 @@ pub(crate) struct SteppedWindow<'s> {
     evaluator: Evaluator,
     buffers: Buffers,
     window: WindowId,
-    steps: usize,
+    longest_step: LongestStep,
 }
 
 /// A step: the time in its middle, which decides what its inputs are, and the times and states
@@ -46,7 +47,7 @@ impl<'s> SteppedWindow<'s> {
             },
             evaluator: model.evaluator(&shooting.values(theta)),
             buffers: model.measured.buffers(),
-            steps: model.steps?,
+            longest_step: model.longest_step?,
             window,
             shooting,
         })
@@ -82,7 +83,8 @@ impl<'s> SteppedWindow<'s> {
                 square += rates[first..].iter().map(|a| a * a).sum::<f64>();
             }
         }
-        let mut matrix = DMatrix::zeros(own.len(), count);
+        let samples = (self.shooting.output_times(&windows.list[self.window])).samples();
+        let mut matrix = DMatrix::zeros(samples * self.shooting.channels(), count);
         let mut part = thresholds::FIRST_FORCE;
         for (column, force) in accelerations.iter().enumerate() {
             let size: f64 = force.iter().map(|a| a * a).sum();
@@ -149,8 +151,9 @@ impl<'s> SteppedWindow<'s> {
         );
         let mut number = 0;
         for pair in times.windows(2) {
-            let h = (pair[1] - pair[0]) / self.steps as f64;
-            for step in 0..self.steps {
+            let steps = self.longest_step.steps(pair[1] - pair[0]);
+            let h = (pair[1] - pair[0]) / steps as f64;
+            for step in 0..steps {
                 let begin = pair[0] + step as f64 * h;
                 let middle = begin + 0.5 * h;
                 let held = inputs.held_at(middle);

@@ -93,7 +93,7 @@ pub fn force_responses(
         .simulation(&shooting.values(theta))
         .ok()?
         .carries_tangents();
-    if !carries_tangents && fit.model.steps.is_none() {
+    if !carries_tangents && fit.model.longest_step.is_none() {
         return None;
     }
     let count = columns.equations.len();
