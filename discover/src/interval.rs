@@ -35,6 +35,11 @@ impl Interval {
         Self::new(self.low.max(other.low), self.high.min(other.high))
     }
 
+    /// The smallest interval that holds both.
+    pub fn hull(self, other: Self) -> Self {
+        Self::new(self.low.min(other.low), self.high.max(other.high))
+    }
+
     /// The same, seen from `origin`.
     pub fn relative_to(self, origin: f64) -> Self {
         Self::new(self.low - origin, self.high - origin)

@@ -355,6 +355,22 @@ pub const JITTER: f64 = 0.1;
 /// A parameter's difference quotient is taken over this part of its scale.
 pub const PARAMETER_QUOTIENT: f64 = 0.01;
 
+/// Neighbouring motions that come along with an integrated one are off by this part at most, but for
+/// impacts.
+pub const TANGENT_ERROR: f64 = 0.1;
+
+/// A central difference is taken over this part of a parameter's scale or a state's range: far above
+/// rounding, and its error falls with the square.
+pub const CENTRAL_QUOTIENT: f64 = 0.001;
+
+/// The most Gauss-Newton steps along what the records hardly show: such a valley is curved, and the
+/// better it is seen, the shorter they are.
+pub const VALLEY_STEPS: usize = 12;
+
+/// Steps along what the records hardly show go on while they lower the cost by this part of what
+/// one standard deviation is worth.
+pub const LEAST_INFORMATION: f64 = 0.01;
+
 /// A sensor's, whose outputs are linear in it, over this part.
 pub const SENSOR_QUOTIENT: f64 = 0.1;
 

@@ -198,6 +198,7 @@ impl<'f> Rival<'f> {
             true => InitialStatePrior {
                 mean: states.clone(),
                 sd: spread(&ranges),
+                ..InitialStatePrior::default()
             },
             false => InitialStatePrior::default(),
         };

@@ -21,6 +21,9 @@ pub struct Fit {
     pub unknowns: Vec<Unknown>,
     /// One standard deviation of each, with correlated residuals allowed for.
     pub sd: Vec<f64>,
+    /// The same where no window's initial state is known from the window before: what is carried at
+    /// these unknowns does not hold at others, and makes scales more certain than they are.
+    pub sd_without_carried: Vec<f64>,
     /// How far off each would be by a misfit of one standard deviation of the noise in every sample
     /// that looks like what the unknown does.
     pub by_alike_misfit: Vec<f64>,
@@ -42,13 +45,13 @@ impl Fit {
         (0.5 * (self.train.rms.powi(2) + self.test.rms.powi(2))).sqrt()
     }
 
-    /// One standard deviation of an unknown with what a model that leaves more than a right one, of
-    /// `floor` standard deviations of the noise, may be off by. What is left is not noise, and looks in part like what
-    /// the unknown does.
+    /// One standard deviation of an unknown as it is reported, with what a model that leaves more than a
+    /// right one, of `floor` standard deviations of the noise, may be off by. What is left is not noise,
+    /// and looks in part like what the unknown does.
     pub fn sd_beside_misfit(&self, id: UnknownId, floor: f64) -> f64 {
         let left = (self.train.rms.powi(2) - floor.powi(2)).max(0.0).sqrt();
         let misfit = thresholds::MISFIT_ALIKE * left * self.by_alike_misfit[id];
-        self.sd[id].hypot(misfit)
+        self.sd_without_carried[id].hypot(misfit)
     }
 
     /// Unknowns to begin with where something is added: parameters and sensors that took up what

@@ -1,20 +1,19 @@
 //! A specification fitted to the records in full: from a preliminary fit to unknowns with their
 //! uncertainty and to its residuals on the records it was fitted to and on the others.
 
-use crate::ids::WindowId;
-use nalgebra::DVector;
-
 use crate::error::DiscoverError;
 use crate::fit::continuation::{continuation, continuation_by_secants, secants};
 use crate::fit::fitted::Fit;
 use crate::fit::gauss_newton::{Estimate, damped_gauss_newton, evaluated, level};
-use crate::fit::information::information_factor;
 use crate::fit::initial_states::{self, carried, following};
 use crate::fit::preliminary::{self, PreliminaryFit};
 use crate::fit::prior::{InitialStatePrior, InitialStates};
 use crate::fit::residuals::Residuals;
 use crate::fit::sensitivity::{WindowDerivatives, linearised};
 use crate::fit::shooting::Shooting;
+use crate::fit::uncertainty::{Uncertainty, uncertainties};
+use crate::fit::whole_motions::{is_ill_conditioned, refined};
+use crate::ids::WindowId;
 use crate::model::problem::EstimationProblem;
 use crate::model::specification_texts::SpecificationTexts;
 use crate::model::unknowns::Unknown;
@@ -65,28 +64,34 @@ pub fn complete(
         &preliminary.ranges,
     );
     let near = near(problem, &all, &preliminary);
-    let is_followed = near.is_followed;
-    let (prior, train) = converged(problem, &mut all, near);
+    let (is_followed, is_far) = (near.is_followed, near.is_far);
+    let (mut prior, mut train) = converged(problem, &mut all, near);
     let prior_weight = all.prior_weight;
-    let estimate = &train.estimate;
-    let level = level(&all, estimate);
-    let tangents = linearised(&all, &estimate.theta, &estimate.initial_states, level);
-    let mut sd = uncertainty(&all, &prior, estimate, &tangents);
-    if is_followed {
-        // Tangents through impacts grow without bound, secants of motions that ended in other
-        // folds are too steep: either would make unknowns too certain.
-        let follow = following(
-            problem,
-            &all,
-            &preliminary.ranges,
-            thresholds::HORIZONS.len(),
-        );
-        let secants = secants(&all, estimate, tangents, &follow);
-        let others = uncertainty(&all, &prior, estimate, &secants);
-        for (sd, other) in sd.iter_mut().zip(others) {
-            *sd = sd.max(other);
-        }
+    let loose = prior.without_carried();
+    let tangents = derivatives(&all, &train.estimate);
+    let mut differences = None;
+    if !is_far && is_ill_conditioned(&all, &loose, &train.estimate.initial_states, &tangents) {
+        let (estimate, by_motions) = refined(&all, &loose, train.estimate);
+        carry(&all, &mut prior, &estimate.theta, &estimate.initial_states);
+        train = Residuals::of(&all, estimate);
+        differences = Some(by_motions);
     }
+    let estimate = &train.estimate;
+    let tangents = match &differences {
+        Some(_) => derivatives(&all, estimate),
+        None => tangents,
+    };
+    // Tangents through impacts grow without bound, secants and differences of motions that ended in
+    // other folds are too steep: any of them would make unknowns too certain.
+    let secants = is_followed.then(|| {
+        let horizons = thresholds::HORIZONS.len();
+        let follow = following(problem, &all, &preliminary.ranges, horizons);
+        secants(&all, estimate, tangents.clone(), &follow)
+    });
+    let mut linear: Vec<_> = [Some(tangents), secants].into_iter().flatten().collect();
+    let known = uncertainties(&all, &prior, estimate, &linear);
+    linear.extend(differences);
+    let without_carried = uncertainties(&all, &loose, estimate, &linear);
     let held_out = Shooting {
         windows: &problem.test,
         prior_weight: 1.0,
@@ -104,12 +109,15 @@ pub fn complete(
     // A fit worse than noise does not know its unknowns better than its own misfit allows.
     let inflation = train.inflation();
     let numbers = problem.train.numbers();
+    let sd = |known: &[Uncertainty]| {
+        let sds = known.iter().map(|known| known.sd(thresholds::WIDER));
+        sds.map(|sd| sd * inflation.sqrt()).collect()
+    };
+    let by_noise = without_carried.iter().map(|known| known.by_noise);
     Ok(Fit {
-        by_alike_misfit: sd.iter().map(|sd| sd * numbers.sqrt()).collect(),
-        sd: sd
-            .iter()
-            .map(|sd| thresholds::WIDER * sd * inflation.sqrt())
-            .collect(),
+        by_alike_misfit: by_noise.map(|sd| sd * numbers.sqrt()).collect(),
+        sd_without_carried: sd(&without_carried),
+        sd: sd(&known),
         texts: preliminary.texts,
         unknowns: preliminary.unknowns,
         ranges: preliminary.ranges,
@@ -275,31 +283,28 @@ fn refreshed(
             prior.mean[window].clone_from(&restarted.mean[window]);
         }
     }
-    // What is known of a window from the one before holds at these unknowns, not at others.
-    let carried = carried(shooting, &found.theta, &initial_states);
+    carry(shooting, &mut prior, &found.theta, &initial_states);
+    let found = evaluated(shooting, &prior, found.theta, initial_states);
+    (prior, found)
+}
+
+/// Residuals and derivatives of every window at an estimate.
+fn derivatives(shooting: &Shooting<'_>, at: &Estimate) -> Vec<Option<WindowDerivatives>> {
+    linearised(shooting, &at.theta, &at.initial_states, level(shooting, at))
+}
+
+/// Takes for known of each window what the motion of the one before carries there: it holds at these
+/// unknowns, not at others.
+fn carry(
+    shooting: &Shooting<'_>,
+    prior: &mut InitialStatePrior,
+    theta: &[f64],
+    initial_states: &[Vec<f64>],
+) {
+    let carried = carried(shooting, theta, initial_states);
     for (mean, carried) in prior.mean.iter_mut().zip(carried) {
         if let Some(carried) = carried {
             *mean = carried;
         }
     }
-    let found = evaluated(shooting, &prior, found.theta, initial_states);
-    (prior, found)
-}
-
-/// One standard deviation of each unknown, were the residuals white noise.
-fn uncertainty(
-    shooting: &Shooting<'_>,
-    prior: &InitialStatePrior,
-    found: &Estimate,
-    linear: &[Option<WindowDerivatives>],
-) -> Vec<f64> {
-    let count = shooting.unknowns.len();
-    let square = information_factor(shooting, prior, &found.initial_states, linear);
-    (0..count)
-        .map(|column| {
-            let unit = DVector::from_fn(count, |row, _| f64::from(u8::from(row == column)));
-            let solved = square.transpose().solve_lower_triangular(&unit);
-            solved.map_or(f64::INFINITY, |v| v.norm())
-        })
-        .collect()
 }

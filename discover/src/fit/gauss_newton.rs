@@ -153,7 +153,7 @@ pub(crate) fn reduced_blocks(
 }
 
 /// The next estimate, if there is one that is better.
-fn step(
+pub(crate) fn step(
     shooting: &Shooting<'_>,
     prior: &InitialStatePrior,
     present: &Estimate,

@@ -21,6 +21,21 @@ pub(crate) fn information_factor(
     linear: &[Option<WindowDerivatives>],
 ) -> DMatrix<f64> {
     let count = shooting.unknowns.len();
+    let mut rows = DMatrix::zeros(count, count);
+    for (row, unknown) in shooting.unknowns.iter().enumerate() {
+        let sd = unknown.prior.map_or(f64::INFINITY, |prior| prior.sd);
+        rows[(row, row)] = shooting.prior_weight.sqrt() / sd;
+    }
+    triangular_factor(&record_factor(count, prior, initial_states, linear), &rows)
+}
+
+/// The same of the windows alone, for so many unknowns.
+pub(crate) fn record_factor(
+    count: usize,
+    prior: &InitialStatePrior,
+    initial_states: &[Vec<f64>],
+    linear: &[Option<WindowDerivatives>],
+) -> DMatrix<f64> {
     let mut factor = DMatrix::zeros(count + 1, count + 1);
     for (window, linear) in WindowId::first(linear.len()).zip(linear) {
         if let Some(linear) = linear {
@@ -28,12 +43,6 @@ pub(crate) fn information_factor(
             factor = triangular_factor(&factor, &block.unknowns());
         }
     }
-    let mut rows = DMatrix::zeros(count, count + 1);
-    for (row, unknown) in shooting.unknowns.iter().enumerate() {
-        let sd = unknown.prior.map_or(f64::INFINITY, |prior| prior.sd);
-        rows[(row, row)] = shooting.prior_weight.sqrt() / sd;
-    }
-    let factor = triangular_factor(&factor, &rows);
     factor.view((0, 0), (count, count)).into_owned()
 }
 

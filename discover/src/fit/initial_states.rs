@@ -7,15 +7,15 @@ use rayon::prelude::*;
 use crate::error::DiscoverError;
 use crate::fit::continuation::Follow;
 use crate::fit::gauss_newton::{Estimate, evaluated, inner_solve};
-use crate::fit::prior::{InitialStatePrior, InitialStates};
+use crate::fit::prior::{InitialStatePrior, InitialStates, Source};
 use crate::fit::sensitivity::SensitivityEvaluator;
 use crate::fit::shooting::Shooting;
 use crate::model::estimation_model::EstimationModel;
 use crate::model::problem::EstimationProblem;
 use crate::model::smoothing::{sloped, smoothed};
 use crate::thresholds;
-use eomgen_records::dataset::{Channel, Quantity};
-use eomgen_records::windows::Windows;
+use eomgen_records::dataset::{Channel, Initial, Quantity};
+use eomgen_records::windows::{Window, Windows};
 
 /// Initial states of all windows at these unknowns.
 pub fn at_unknowns(
@@ -37,7 +37,12 @@ pub fn at_unknowns(
     let firsts: Vec<Vec<f64>> = records
         .map(|r| problem.first_state(shooting.model, r))
         .collect();
-    Ok(followed(shooting, theta, &firsts, ranges, horizons, before))
+    let known = Known {
+        firsts: &firsts,
+        sd: &spread(ranges),
+        sources: &sources(problem, shooting.windows),
+    };
+    Ok(followed(shooting, theta, known, horizons, before))
 }
 
 /// Initial states of all windows at these unknowns, found as they are in a fit.
@@ -98,18 +103,42 @@ pub fn spread(ranges: &[f64]) -> Vec<f64> {
         .collect()
 }
 
+/// Where what is known of each window's initial state comes from.
+fn sources(problem: &EstimationProblem<'_>, windows: &Windows<'_>) -> Vec<Source> {
+    let of = |window: &Window| {
+        let is_stated = window.first == 0
+            && !windows.records[window.record].is_continued
+            && problem.dataset.initial != Initial::Estimate;
+        match (window.follows, is_stated) {
+            (Some(_), _) => Source::Carried,
+            (None, true) => Source::Stated,
+            (None, false) => Source::Measured,
+        }
+    };
+    windows.list.iter().map(of).collect()
+}
+
+/// What is known of windows' initial states beforehand.
+#[derive(Clone, Copy)]
+struct Known<'a> {
+    /// The first state of each record.
+    firsts: &'a [Vec<f64>],
+    /// One standard deviation of each state, where it is stated or carried.
+    sd: &'a [f64],
+    /// Where each window's mean comes from.
+    sources: &'a [Source],
+}
+
 /// Initial states followed from window to window: each begins where the one before ended and
 /// is then fitted to its own samples. `before`: those at other unknowns, from which parts of
 /// the records may be followed side by side.
 fn followed(
     shooting: &Shooting<'_>,
     theta: &[f64],
-    firsts: &[Vec<f64>],
-    ranges: &[f64],
+    known: Known<'_>,
     horizons: &[f64],
     before: Option<&[Vec<f64>]>,
 ) -> InitialStates {
-    let sd = spread(ranges);
     let count = shooting.windows.list.len();
     let chains = before.map_or(1, |_| thresholds::CHAINS).min(count).max(1);
     let parts: Vec<std::ops::Range<usize>> = (0..chains)
@@ -119,22 +148,25 @@ fn followed(
         .into_par_iter()
         .map(|windows| {
             let first = windows.start;
-            let known = before
+            let carried = before
                 .filter(|_| first > 0)
                 .map(|initial_states| initial_states[first].clone());
             let chain = Chain {
                 shooting,
-                firsts,
-                sd: &sd,
+                known,
                 horizons,
             };
-            chain.followed(theta, WindowId::range(windows), known)
+            chain.followed(theta, WindowId::range(windows), carried)
         })
         .collect();
     let followed = followed.into_iter().flatten();
     let (mean, states) = followed.map(|of| (of.mean, of.state)).unzip();
     InitialStates {
-        prior: InitialStatePrior { mean, sd },
+        prior: InitialStatePrior {
+            mean,
+            sd: known.sd.to_vec(),
+            sources: known.sources.to_vec(),
+        },
         states,
     }
 }
@@ -163,10 +195,7 @@ pub fn carried(
 /// How windows are followed one after the other.
 struct Chain<'a> {
     shooting: &'a Shooting<'a>,
-    /// The first state of each record.
-    firsts: &'a [Vec<f64>],
-    /// One standard deviation of what is known of each state.
-    sd: &'a [f64],
+    known: Known<'a>,
     horizons: &'a [f64],
 }
 
@@ -196,14 +225,15 @@ impl Chain<'_> {
         let list = &shooting.windows.list;
         let mut prior = InitialStatePrior {
             mean: vec![Vec::new(); list.len()],
-            sd: self.sd.to_vec(),
+            sd: self.known.sd.to_vec(),
+            sources: self.known.sources.to_vec(),
         };
         let mut found = Vec::with_capacity(windows.len());
         for id in windows {
             let window = &list[id];
             let mean = match (window.follows, carried.take()) {
                 (Some(_), Some(state)) => state,
-                _ => self.firsts[window.record].clone(),
+                _ => self.known.firsts[window.record].clone(),
             };
             prior.mean[id].clone_from(&mean);
             let solved = inner_solve(&mut sensitivities, &prior, id, mean.clone(), self.horizons);

@@ -1,9 +1,10 @@
 //! A specification fitted to records by multiple shooting: residuals of windows ([`shooting`]),
 //! how they depend on initial states and unknowns ([`sensitivity`]), initial states eliminated
 //! ([`variable_projection`]), steps ([`gauss_newton`] with [`bounded_least_squares`],
-//! [`continuation`] from far away), [`initial_states`]; a [`preliminary`] fit and a [`full`] one,
-//! the [`residuals`] that it leaves, the [`mod@noise_floor`] that a right model would leave, and the
-//! [`contradiction`]s among records, each fitted [`alone`].
+//! [`continuation`] from far away, `whole_motions` where unknowns share a direction),
+//! [`initial_states`]; a [`preliminary`] fit and a [`full`] one, the `uncertainty` of what is
+//! estimated, the [`residuals`] that are left, the [`mod@noise_floor`] that a right model would leave,
+//! and the [`contradiction`]s among records, each fitted [`alone`].
 
 pub(crate) mod acceleration_differences;
 pub mod alone;
@@ -25,4 +26,6 @@ pub mod residuals;
 pub mod sensitivity;
 pub mod shooting;
 pub mod travels;
+pub(crate) mod uncertainty;
 pub mod variable_projection;
+pub(crate) mod whole_motions;

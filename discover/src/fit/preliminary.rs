@@ -127,6 +127,7 @@ pub fn expected(
             true => Vec::new(),
             false => spread(&ranges),
         },
+        sources: fit.prior.sources.clone(),
     };
     Ok(PreliminaryFit {
         cost,

@@ -1,14 +1,29 @@
 //! What is known of the windows' initial states before their samples are looked at.
 
 use crate::ids::WindowId;
+use crate::thresholds;
+
+/// Where that comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// From the dataset: where the machine was at the beginning of the record.
+    Stated,
+    /// From the window before, whose motion ends there.
+    Carried,
+    /// From the first samples of a record, as far as these show it: it is known to about the range of
+    /// each state.
+    Measured,
+}
 
 /// What is known before of each window's initial state: mean and standard deviation.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct InitialStatePrior {
     /// One state per window.
     pub mean: Vec<Vec<f64>>,
-    /// One standard deviation per state.
+    /// One standard deviation per state, where the mean is stated or carried.
     pub sd: Vec<f64>,
+    /// Where each mean comes from; all are carried where nothing stands here.
+    pub sources: Vec<Source>,
 }
 
 impl InitialStatePrior {
@@ -17,8 +32,31 @@ impl InitialStatePrior {
         let Some(mean) = self.mean.get(window.index()) else {
             return 0.0;
         };
-        let terms = start.iter().zip(mean).zip(&self.sd);
+        let terms = start.iter().zip(mean).zip(self.sd_in(window));
         terms.map(|((x, m), sd)| ((x - m) / sd).powi(2)).sum()
+    }
+
+    /// The same with nothing carried from window to window: what a motion at these unknowns carries does
+    /// not hold at others, and would say more of them than records do.
+    pub fn without_carried(&self) -> Self {
+        let unknown = |source: &Source| match source {
+            Source::Stated => Source::Stated,
+            Source::Carried | Source::Measured => Source::Measured,
+        };
+        Self {
+            sources: self.sources.iter().map(unknown).collect(),
+            ..self.clone()
+        }
+    }
+
+    /// One standard deviation of each state of a window.
+    pub fn sd_in(&self, window: WindowId) -> impl Iterator<Item = f64> {
+        let source = self.sources.get(window.index());
+        let times = match source.unwrap_or(&Source::Carried) {
+            Source::Stated | Source::Carried => 1.0,
+            Source::Measured => 1.0 / thresholds::INITIAL_STATE_PRIOR,
+        };
+        self.sd.iter().map(move |sd| times * sd)
     }
 }
 

@@ -39,10 +39,9 @@ pub fn reduced_block(
         .view_mut((0, states + unknowns), (rows, 1))
         .copy_from(&linear.residual);
     if let Some(mean) = prior.mean.get(window.index()) {
-        for state in 0..states {
-            matrix[(rows + state, state)] = 1.0 / prior.sd[state];
-            matrix[(rows + state, states + unknowns)] =
-                (start[state] - mean[state]) / prior.sd[state];
+        for (state, sd) in prior.sd_in(window).enumerate().take(states) {
+            matrix[(rows + state, state)] = 1.0 / sd;
+            matrix[(rows + state, states + unknowns)] = (start[state] - mean[state]) / sd;
         }
     }
     ReducedBlock {
@@ -112,9 +111,9 @@ impl StateProjection {
             .copy_from(&linear.by_state);
         let mut prior_residual = DVector::zeros(states);
         if let Some(mean) = prior.mean.get(window.index()) {
-            for state in 0..states {
-                by_state[(rows + state, state)] = 1.0 / prior.sd[state];
-                prior_residual[state] = (start[state] - mean[state]) / prior.sd[state];
+            for (state, sd) in prior.sd_in(window).enumerate().take(states) {
+                by_state[(rows + state, state)] = 1.0 / sd;
+                prior_residual[state] = (start[state] - mean[state]) / sd;
             }
         }
         Self {

@@ -46,6 +46,7 @@ impl<'f> SplitSample<'f> {
             true => InitialStatePrior {
                 mean: estimate.initial_states.clone(),
                 sd: spread(&fit.ranges),
+                ..InitialStatePrior::default()
             },
             false => InitialStatePrior::default(),
         };

@@ -260,7 +260,7 @@ fn a_soft_spring_in_slow_motion_is_told_from_a_gain() {
         force: &|x, v, u| u - 0.82 * 400.0 * x - 4.0 * v,
         friction: 0.0,
         begin: (0.0, 0.0),
-        input: |t, turn| 18.0 * (3.0 * t + 0.3 * turn).sin() + 5.0 * (1.3 * t).sin(),
+        input: |t, turn| 12.0 * (1.0 - ((0.8 + 0.2 * turn) * t).cos()),
     }
     .is_told(folder().path(), "parameter_shift", "k");
 }

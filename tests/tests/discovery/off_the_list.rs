@@ -14,6 +14,8 @@ struct Machine<'m> {
     specification: &'m str,
     units: [&'m str; 2],
     noise: f64,
+    /// What the sensor shows of the coordinate.
+    gain: f64,
     uncertain: &'m str,
     input: fn(f64, f64) -> f64,
     acceleration: &'m dyn Fn(f64, f64, f64) -> f64,
@@ -58,7 +60,7 @@ impl Machine<'_> {
         for sample in 0..SAMPLES {
             let t = SAMPLE * sample as f64;
             let u = (self.input)(t, turn);
-            let seen = x + noise.draw();
+            let seen = self.gain * x + noise.draw();
             text += &format!("{t:.4},{u:.12},{seen:.12}\n");
             for _ in 0..parts {
                 let middle = (x + 0.5 * h * v, v + 0.5 * h * (self.acceleration)(x, v, u));
@@ -116,6 +118,7 @@ fn oscillator<'m>(acceleration: &'m dyn Fn(f64, f64, f64) -> f64) -> Machine<'m>
         specification: OSCILLATOR,
         units: ["m", "N"],
         noise: 1e-5,
+        gain: 1.0,
         uncertain: "m = { relative = 0.01 }",
         input: |t, turn| {
             18.0 * (11.0 * t + turn).cos() - 9.0 * (23.0 * t * (1.0 + 0.2 * turn)).sin()
@@ -140,6 +143,64 @@ fn a_spring_that_hardens_is_found_by_name_on_the_spring() {
         .only("stiffness_nonlinearity", "spring");
     is_near(&effect, "k_3", 6e4, 0.02);
     assert_eq!(effect["status"], "named", "{effect:#}");
+}
+
+#[test]
+fn what_a_gain_hides_is_known_as_well_as_the_gain() {
+    // Records show the same where a sensor shows more and all that moves is heavier and stiffer: the
+    // gain is as it was declared, and a cubic spring three times as uncertain.
+    let spring = |x: f64, v: f64, u: f64| u - 400.0 * x - 6e4 * x.powi(3) - 4.0 * v;
+    let machine = Machine {
+        gain: 1.01,
+        noise: 1e-4,
+        uncertain: "m = { relative = 0.3 }\nk = { relative = 0.3 }\nc = { relative = 0.3 }",
+        ..oscillator(&spring)
+    };
+    let found = machine.answer();
+    let gain = found["sensors"]["x"]["gain"].as_f64().expect("a gain");
+    assert!((gain - 1.0).abs() < 1e-3, "{gain}");
+    let effect = &found["effects"][0];
+    assert_eq!(effect["effect"], "stiffness_nonlinearity", "{effect:#}");
+    let (value, sd) = (
+        &effect["parameters"]["k_3"]["value"],
+        &effect["parameters"]["k_3"]["sd"],
+    );
+    let (value, sd) = (
+        value.as_f64().expect("a value"),
+        sd.as_f64().expect("its deviation"),
+    );
+    assert!((value - 6e4).abs() < 1.645 * sd, "{value} +- {sd}");
+    assert!((0.03..0.08).contains(&(sd / value)), "{value} +- {sd}");
+}
+
+/// A model that is nowhere linear is followed through its records by steps of one length.
+#[test]
+fn a_cubic_spring_that_is_declared_is_fitted_as_any_parameter() {
+    let specification = OSCILLATOR
+        .replace(
+            "[coordinates]",
+            "k_3 = { value = 4e4, unit = \"N/m^3\" }\n\n[coordinates]",
+        )
+        .replace("1/2*k*x^2", "1/2*k*x^2 + 1/4*k_3*x^4");
+    assert_eq!(specification.matches("k_3").count(), 2);
+    let spring = |x: f64, v: f64, u: f64| u - 400.0 * x - 6e4 * x.powi(3) - 4.0 * v;
+    let machine = Machine {
+        specification: &specification,
+        uncertain: "k_3 = { relative = 1 }",
+        ..oscillator(&spring)
+    };
+    let found = machine.answer();
+    assert_eq!(found["verdict"], "no_significant_gap", "{found:#}");
+    let (value, sd) = (
+        &found["refitted"]["k_3"]["value"],
+        &found["refitted"]["k_3"]["sd"],
+    );
+    let (value, sd) = (
+        value.as_f64().expect("a value"),
+        sd.as_f64().expect("its deviation"),
+    );
+    assert!((value - 6e4).abs() < 3.0 * sd, "{value} +- {sd}");
+    assert!(sd < 0.02 * value, "{value} +- {sd}");
 }
 
 #[test]
@@ -169,6 +230,7 @@ fn an_order_that_no_list_holds_is_seen_in_the_residual_force() {
         specification: ROTOR,
         units: ["rad", "N m"],
         noise: 1e-4,
+        gain: 1.0,
         uncertain: "J = { relative = 0.01 }",
         input: |t, turn| 0.5 * (2.1 * t + 0.7 * turn).cos() - 0.25 * (7.0 * t).sin(),
         acceleration: &|x, v, u| (u - 0.02 * v + 0.05 * (7.0 * x + 0.4).cos()) / 0.02,

@@ -55,6 +55,16 @@ impl Judged {
         let is_answer = !matches!(self.judgement, Judgement::Timeout | Judgement::Failed);
         is_answer && self.extra == 0 && self.wrong_signs == 0
     }
+
+    /// Whether what is hidden stands first in the answer, alone or before what is not told from it.
+    fn is_first(&self) -> bool {
+        let is_right = matches!(self.judgement, Judgement::Right | Judgement::Class);
+        let pairs = self.hidden.iter().zip(&self.found);
+        let is_same = |(hidden, found): (&(String, String, f64), &(String, String, String))| {
+            (&hidden.0, &hidden.1) == (&found.0, &found.1)
+        };
+        is_right && pairs.map(is_same).all(std::convert::identity)
+    }
 }
 
 /// A case in a word.
@@ -85,6 +95,8 @@ pub enum Judgement {
 pub struct Score {
     /// Single effects of 3 floors or more: named first at their place, and all of them.
     pub named: (usize, usize),
+    /// The same, where the first of a class is enough.
+    pub named_or_first_of_class: (usize, usize),
     /// The same, where a class that holds the effect is enough.
     pub named_or_class: (usize, usize),
     /// Those of the first with everything else off as the priors say.
@@ -187,6 +199,10 @@ pub fn summed(cases: Vec<Judged>) -> Score {
     let nothing: Vec<&Judged> = of(Group::Nothing).collect();
     Score {
         named: are(&singles, &[Judgement::Right]),
+        named_or_first_of_class: (
+            singles.iter().filter(|judged| judged.is_first()).count(),
+            singles.len(),
+        ),
         named_or_class: are(&singles, &[Judgement::Right, Judgement::Class]),
         named_at_full_priors: are(&full, &[Judgement::Right]),
         nothing_false: (

@@ -31,7 +31,11 @@ pub fn table(score: &Score) -> String {
     };
     for (name, figure) in [
         ("single effects of 3 floors named first", part(score.named)),
-        ("... or in a class", part(score.named_or_class)),
+        (
+            "... or first of a class",
+            part(score.named_or_first_of_class),
+        ),
+        ("... or anywhere in a class", part(score.named_or_class)),
         (
             "... named, with nuisances at full priors",
             part(score.named_at_full_priors),

@@ -1,0 +1,85 @@
+//! How well unknowns are known at an estimate, were the residuals white noise of one standard deviation.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::fit::gauss_newton::Estimate;
+use crate::fit::information::information_factor;
+use crate::fit::prior::InitialStatePrior;
+use crate::fit::sensitivity::WindowDerivatives;
+use crate::fit::shooting::Shooting;
+
+/// One standard deviation of an unknown, in two parts. Both are infinite where nothing tells it.
+#[derive(Clone, Copy)]
+pub(crate) struct Uncertainty {
+    /// What noise in the records makes of it.
+    pub by_noise: f64,
+    /// What the priors of the unknowns make of it: nuisances may be off by as much as they say.
+    pub by_priors: f64,
+}
+
+impl Uncertainty {
+    /// Both parts, where noise makes `wider` times as much.
+    pub fn sd(self, wider: f64) -> f64 {
+        (wider * self.by_noise).hypot(self.by_priors)
+    }
+
+    /// The larger of each part.
+    fn max(self, other: Self) -> Self {
+        Self {
+            by_noise: self.by_noise.max(other.by_noise),
+            by_priors: self.by_priors.max(other.by_priors),
+        }
+    }
+}
+
+/// The uncertainty of each unknown: the largest by several approximations of the windows' derivatives.
+pub(crate) fn uncertainties(
+    shooting: &Shooting<'_>,
+    prior: &InitialStatePrior,
+    found: &Estimate,
+    linear: &[Vec<Option<WindowDerivatives>>],
+) -> Vec<Uncertainty> {
+    let of = |linear: &Vec<_>| by_derivatives(shooting, prior, found, linear);
+    let larger = |some: Vec<Uncertainty>, other: Vec<Uncertainty>| {
+        let pairs = some.into_iter().zip(other);
+        pairs.map(|(some, other)| some.max(other)).collect()
+    };
+    linear.iter().map(of).reduce(larger).unwrap_or_default()
+}
+
+fn by_derivatives(
+    shooting: &Shooting<'_>,
+    prior: &InitialStatePrior,
+    found: &Estimate,
+    linear: &[Option<WindowDerivatives>],
+) -> Vec<Uncertainty> {
+    let factor = information_factor(shooting, prior, &found.initial_states, linear);
+    let weights = shooting.unknowns.iter().map(|unknown| {
+        let of = |sd: f64| shooting.prior_weight / (sd * sd);
+        unknown.prior.map_or(0.0, |prior| of(prior.sd))
+    });
+    let weights = DVector::from_iterator(factor.ncols(), weights);
+    (0..factor.ncols())
+        .map(|column| uncertainty(&factor, &weights, column))
+        .collect()
+}
+
+/// With information `R'R = J'J + P`, of records and priors, an estimate moves by `(R'R)^-1 J'` times the
+/// residuals and by `(R'R)^-1 P` times what the priors' means are off by: the variances are
+/// `(R'R)^-1 - (R'R)^-1 P (R'R)^-1` and `(R'R)^-1 P (R'R)^-1`.
+fn uncertainty(factor: &DMatrix<f64>, weights: &DVector<f64>, column: usize) -> Uncertainty {
+    let unit = DVector::from_fn(factor.ncols(), |row, _| f64::from(u8::from(row == column)));
+    let half = factor.transpose().solve_lower_triangular(&unit);
+    let covariances = half.as_ref().and_then(|v| factor.solve_upper_triangular(v));
+    let (Some(half), Some(covariances)) = (half, covariances) else {
+        return Uncertainty {
+            by_noise: f64::INFINITY,
+            by_priors: f64::INFINITY,
+        };
+    };
+    let by_priors = covariances.component_mul(&covariances).dot(weights);
+    Uncertainty {
+        by_noise: (half.norm_squared() - by_priors).max(0.0).sqrt(),
+        by_priors: by_priors.sqrt(),
+    }
+}
