@@ -59,11 +59,11 @@ impl Judged {
     /// Whether what is hidden stands first in the answer, alone or before what is not told from it.
     fn is_first(&self) -> bool {
         let is_right = matches!(self.judgement, Judgement::Right | Judgement::Class);
-        let pairs = self.hidden.iter().zip(&self.found);
+        let mut pairs = self.hidden.iter().zip(&self.found);
         let is_same = |(hidden, found): (&(String, String, f64), &(String, String, String))| {
             (&hidden.0, &hidden.1) == (&found.0, &found.1)
         };
-        is_right && pairs.map(is_same).all(std::convert::identity)
+        is_right && pairs.all(is_same)
     }
 }
 
