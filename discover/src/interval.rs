@@ -47,7 +47,7 @@ impl Interval {
 
     /// Widened until it holds 0.
     pub fn with_zero(self) -> Self {
-        Self::new(self.low.min(0.0), self.high.max(0.0))
+        self.hull(Self::ZERO)
     }
 
     /// Both ends times a positive number.

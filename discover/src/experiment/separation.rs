@@ -11,13 +11,12 @@ use crate::experiment::prediction::Prediction;
 use crate::fit::bounded_least_squares::least_squares;
 use crate::fit::fitted::Fit;
 use crate::fit::gauss_newton::{
-    Estimate, evaluated, followed, level, moved_unknowns, reduced_blocks,
+    Estimate, derivatives_at, evaluated, followed, moved_unknowns, reduced_blocks,
 };
 use crate::fit::information::information_of;
-use crate::fit::initial_states::spread;
+use crate::fit::initial_states::known_as;
 use crate::fit::prior::InitialStatePrior;
 use crate::fit::residuals::Residuals;
-use crate::fit::sensitivity::linearised;
 use crate::fit::shooting::Shooting;
 use crate::fit::variable_projection::{ReducedBlock, triangular_factor};
 use crate::interval::Interval;
@@ -194,18 +193,10 @@ impl<'f> Rival<'f> {
             range.max(spread)
         });
         let ranges: Vec<f64> = ranges.collect();
-        let prior = match problem.estimates_initial_states() {
-            true => InitialStatePrior {
-                mean: states.clone(),
-                sd: spread(&ranges),
-                ..InitialStatePrior::default()
-            },
-            false => InitialStatePrior::default(),
-        };
         Beginning {
+            prior: known_as(problem, &states, &ranges),
             states,
             ranges,
-            prior,
         }
     }
 
@@ -280,12 +271,7 @@ fn blocks(
     prior: &InitialStatePrior,
     present: &Estimate,
 ) -> Option<Vec<Option<ReducedBlock>>> {
-    let linear = linearised(
-        shooting,
-        &present.theta,
-        &present.initial_states,
-        level(shooting, present),
-    );
+    let linear = derivatives_at(shooting, present);
     let blocks = reduced_blocks(prior, present, &linear);
     blocks.iter().all(Option::is_some).then_some(blocks)
 }

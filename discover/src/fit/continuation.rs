@@ -6,10 +6,10 @@ use crate::ids::UnknownId;
 use nalgebra::DVector;
 
 use crate::fit::gauss_newton::{
-    Estimate, change_of_unknowns, evaluated, level, moved_unknowns, reduced_blocks,
+    Estimate, change_of_unknowns, derivatives_at, evaluated, moved_unknowns, reduced_blocks,
 };
 use crate::fit::prior::{InitialStatePrior, InitialStates};
-use crate::fit::sensitivity::{WindowDerivatives, linearised};
+use crate::fit::sensitivity::WindowDerivatives;
 use crate::fit::shooting::{Residual, Shooting};
 use crate::thresholds;
 
@@ -139,13 +139,7 @@ impl<'a> Continuation<'a> {
         let Continued {
             prior, estimate, ..
         } = present;
-        let level = level(self.shooting, estimate);
-        let mut linear = linearised(
-            self.shooting,
-            &estimate.theta,
-            &estimate.initial_states,
-            level,
-        );
+        let mut linear = derivatives_at(self.shooting, estimate);
         if derivatives == Derivatives::Secants && !self.take_secants(estimate, &mut linear) {
             return None;
         }

@@ -4,12 +4,11 @@
 use crate::error::DiscoverError;
 use crate::fit::continuation::{continuation, continuation_by_secants, secants};
 use crate::fit::fitted::Fit;
-use crate::fit::gauss_newton::{Estimate, damped_gauss_newton, evaluated, level};
+use crate::fit::gauss_newton::{Estimate, damped_gauss_newton, derivatives_at, evaluated};
 use crate::fit::initial_states::{self, carried, following};
 use crate::fit::preliminary::{self, PreliminaryFit};
 use crate::fit::prior::{InitialStatePrior, InitialStates};
 use crate::fit::residuals::Residuals;
-use crate::fit::sensitivity::{WindowDerivatives, linearised};
 use crate::fit::shooting::Shooting;
 use crate::fit::uncertainty::{Uncertainty, uncertainties};
 use crate::fit::whole_motions::{is_ill_conditioned, refined};
@@ -68,19 +67,16 @@ pub fn complete(
     let (mut prior, mut train) = converged(problem, &mut all, near);
     let prior_weight = all.prior_weight;
     let loose = prior.without_carried();
-    let tangents = derivatives(&all, &train.estimate);
+    let mut tangents = derivatives_at(&all, &train.estimate);
     let mut differences = None;
     if !is_far && is_ill_conditioned(&all, &loose, &train.estimate.initial_states, &tangents) {
         let (estimate, by_motions) = refined(&all, &loose, train.estimate);
         carry(&all, &mut prior, &estimate.theta, &estimate.initial_states);
         train = Residuals::of(&all, estimate);
+        tangents = derivatives_at(&all, &train.estimate);
         differences = Some(by_motions);
     }
     let estimate = &train.estimate;
-    let tangents = match &differences {
-        Some(_) => derivatives(&all, estimate),
-        None => tangents,
-    };
     // Tangents through impacts grow without bound, secants and differences of motions that ended in
     // other folds are too steep: any of them would make unknowns too certain.
     let secants = is_followed.then(|| {
@@ -286,11 +282,6 @@ fn refreshed(
     carry(shooting, &mut prior, &found.theta, &initial_states);
     let found = evaluated(shooting, &prior, found.theta, initial_states);
     (prior, found)
-}
-
-/// Residuals and derivatives of every window at an estimate.
-fn derivatives(shooting: &Shooting<'_>, at: &Estimate) -> Vec<Option<WindowDerivatives>> {
-    linearised(shooting, &at.theta, &at.initial_states, level(shooting, at))
 }
 
 /// Takes for known of each window what the motion of the one before carries there: it holds at these

@@ -40,8 +40,7 @@ pub fn damped_gauss_newton(
 ) -> Estimate {
     let mut present = evaluated(shooting, prior, theta.to_vec(), initial_states.to_vec());
     for _ in 0..steps {
-        let level = level(shooting, &present);
-        let linear = linearised(shooting, &present.theta, &present.initial_states, level);
+        let linear = derivatives_at(shooting, &present);
         let Some(next) = step(shooting, prior, &present, &linear) else {
             break;
         };
@@ -63,6 +62,15 @@ pub fn level(shooting: &Shooting<'_>, estimate: &Estimate) -> f64 {
     let per_window = samples as f64 / shooting.windows.list.len().max(1) as f64;
     let numbers = per_window * shooting.channels() as f64 * f64::from(count.max(1));
     (sum / numbers).sqrt().max(1.0)
+}
+
+/// Residuals and derivatives of every window at an estimate; quotients are taken over the size of its
+/// residuals.
+pub(crate) fn derivatives_at(
+    shooting: &Shooting<'_>,
+    at: &Estimate,
+) -> Vec<Option<WindowDerivatives>> {
+    linearised(shooting, &at.theta, &at.initial_states, level(shooting, at))
 }
 
 /// The cost at these unknowns and initial states.

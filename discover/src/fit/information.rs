@@ -3,9 +3,9 @@
 use nalgebra::DMatrix;
 
 use crate::fit::fitted::Fit;
-use crate::fit::gauss_newton::level;
+use crate::fit::gauss_newton::derivatives_at;
 use crate::fit::prior::InitialStatePrior;
-use crate::fit::sensitivity::{WindowDerivatives, linearised};
+use crate::fit::sensitivity::WindowDerivatives;
 use crate::fit::shooting::Shooting;
 use crate::fit::variable_projection::{reduced_block, triangular_factor};
 use crate::ids::WindowId;
@@ -53,12 +53,7 @@ pub fn information_of(problem: &EstimationProblem<'_>, fit: &Fit) -> DMatrix<f64
         ..fit.shooting(problem)
     };
     let estimate = &fit.train.estimate;
-    let linear = linearised(
-        &shooting,
-        &estimate.theta,
-        &estimate.initial_states,
-        level(&shooting, estimate),
-    );
+    let linear = derivatives_at(&shooting, estimate);
     let factor = information_factor(&shooting, &fit.prior, &estimate.initial_states, &linear);
     let inflation = fit.train.inflation();
     factor / (thresholds::WIDER * inflation.sqrt())

@@ -103,6 +103,23 @@ pub fn spread(ranges: &[f64]) -> Vec<f64> {
         .collect()
 }
 
+/// Initial states that are known as well as what one window carries to the next; nothing is known where
+/// they are read from the record and not estimated.
+pub fn known_as(
+    problem: &EstimationProblem<'_>,
+    states: &[Vec<f64>],
+    ranges: &[f64],
+) -> InitialStatePrior {
+    match problem.estimates_initial_states() {
+        true => InitialStatePrior {
+            mean: states.to_vec(),
+            sd: spread(ranges),
+            ..InitialStatePrior::default()
+        },
+        false => InitialStatePrior::default(),
+    }
+}
+
 /// Where what is known of each window's initial state comes from.
 fn sources(problem: &EstimationProblem<'_>, windows: &Windows<'_>) -> Vec<Source> {
     let of = |window: &Window| {

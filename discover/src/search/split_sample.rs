@@ -8,10 +8,8 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::fit::fitted::Fit;
-use crate::fit::gauss_newton::level;
-use crate::fit::initial_states::spread;
-use crate::fit::prior::InitialStatePrior;
-use crate::fit::sensitivity::linearised;
+use crate::fit::gauss_newton::derivatives_at;
+use crate::fit::initial_states::known_as;
 use crate::fit::shooting::Shooting;
 use crate::fit::variable_projection::StateProjection;
 use crate::ids::WindowId;
@@ -36,20 +34,8 @@ impl<'f> SplitSample<'f> {
             ..fit.shooting(problem)
         };
         let estimate = &fit.test.estimate;
-        let linear = linearised(
-            &shooting,
-            &estimate.theta,
-            &estimate.initial_states,
-            level(&shooting, estimate),
-        );
-        let prior = match problem.estimates_initial_states() {
-            true => InitialStatePrior {
-                mean: estimate.initial_states.clone(),
-                sd: spread(&fit.ranges),
-                ..InitialStatePrior::default()
-            },
-            false => InitialStatePrior::default(),
-        };
+        let linear = derivatives_at(&shooting, estimate);
+        let prior = known_as(problem, &estimate.initial_states, &fit.ranges);
         let count = fit.unknowns.len();
         let rows: usize = fit.test.residuals.iter().map(Vec::len).sum();
         let mut nuisances = DMatrix::zeros(rows.max(count), count);

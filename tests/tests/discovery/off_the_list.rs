@@ -137,6 +137,16 @@ fn is_near(effect: &Value, name: &str, hidden: f64, part: f64) {
     );
 }
 
+/// What was estimated, with one standard deviation.
+fn estimate(of: &Value) -> (f64, f64) {
+    let number = |key: &str| {
+        of[key]
+            .as_f64()
+            .unwrap_or_else(|| panic!("no {key}: {of:#}"))
+    };
+    (number("value"), number("sd"))
+}
+
 #[test]
 fn a_spring_that_hardens_is_found_by_name_on_the_spring() {
     let effect = oscillator(&|x, v, u| u - 400.0 * x - 6e4 * x.powi(3) - 4.0 * v)
@@ -161,14 +171,7 @@ fn what_a_gain_hides_is_known_as_well_as_the_gain() {
     assert!((gain - 1.0).abs() < 1e-3, "{gain}");
     let effect = &found["effects"][0];
     assert_eq!(effect["effect"], "stiffness_nonlinearity", "{effect:#}");
-    let (value, sd) = (
-        &effect["parameters"]["k_3"]["value"],
-        &effect["parameters"]["k_3"]["sd"],
-    );
-    let (value, sd) = (
-        value.as_f64().expect("a value"),
-        sd.as_f64().expect("its deviation"),
-    );
+    let (value, sd) = estimate(&effect["parameters"]["k_3"]);
     assert!((value - 6e4).abs() < 1.645 * sd, "{value} +- {sd}");
     assert!((0.03..0.08).contains(&(sd / value)), "{value} +- {sd}");
 }
@@ -191,14 +194,7 @@ fn a_cubic_spring_that_is_declared_is_fitted_as_any_parameter() {
     };
     let found = machine.answer();
     assert_eq!(found["verdict"], "no_significant_gap", "{found:#}");
-    let (value, sd) = (
-        &found["refitted"]["k_3"]["value"],
-        &found["refitted"]["k_3"]["sd"],
-    );
-    let (value, sd) = (
-        value.as_f64().expect("a value"),
-        sd.as_f64().expect("its deviation"),
-    );
+    let (value, sd) = estimate(&found["refitted"]["k_3"]);
     assert!((value - 6e4).abs() < 3.0 * sd, "{value} +- {sd}");
     assert!(sd < 0.02 * value, "{value} +- {sd}");
 }
