@@ -376,14 +376,11 @@ pub struct Force {
     pub span: Span,
 }
 
-impl Force {
-    /// The name as the specification writes it: that of the vector for a component.
-    pub(crate) fn written_name(&self, source: &Source) -> &str {
-        let written = source.text.get(self.span.start..self.span.end);
-        match written {
-            Some(text) if self.name.starts_with(text) => &self.name[..text.len()],
-            _ => &self.name,
-        }
+/// The name of an entry as the specification writes it at `span`: that of the vector for a component.
+pub fn written_name<'n>(name: &'n str, span: Span, source: &Source) -> &'n str {
+    match source.text.get(span.start..span.end) {
+        Some(text) if !text.is_empty() && name.starts_with(text) => &name[..text.len()],
+        _ => name,
     }
 }
 

@@ -7,7 +7,9 @@ use std::collections::BTreeSet;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::ids::{CoordinateId, FieldId, InputId, StateId};
-use crate::model::{Constraint, Expr, ExprKind, MAX_CONSTRAINTS, MAX_IMPACTS, Model, Term};
+use crate::model::{
+    Constraint, Expr, ExprKind, MAX_CONSTRAINTS, MAX_IMPACTS, Model, Term, written_name,
+};
 use crate::rate_order::{WrittenOut, rate_order};
 use crate::span::Span;
 
@@ -180,7 +182,7 @@ impl Checker<'_, '_> {
                 None
             };
             if let Some((place, why)) = problem {
-                let name = force.written_name(&self.model.source);
+                let name = written_name(&force.name, force.span, &self.model.source);
                 self.found.push(
                     Diagnostic::error(format!("the force `{name}` can do no work here"))
                         .at(place, why)

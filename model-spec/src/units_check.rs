@@ -7,6 +7,7 @@ use crate::dimension::Dimension;
 use crate::infer::{Inference, Words, difference};
 use crate::model::{
     CoefficientKind, Expr, ExprKind, Model, ParameterValue, Range, STABILISATION_RATE, Term,
+    written_name,
 };
 use crate::resolve::Resolved;
 use crate::unit::Unit;
@@ -164,7 +165,7 @@ impl Units<'_, '_> {
             let Some(expected) = Dimension::ENERGY.over(on) else {
                 continue;
             };
-            let name = force.written_name(&self.model.source);
+            let name = written_name(&force.name, force.span, &self.model.source);
             let subject = format!("the force `{name}`");
             let works = match force.on.kind {
                 ExprKind::Coordinate(index) => self.model.coordinates[index].unit.to_string(),

@@ -1,7 +1,7 @@
 //! Edits made by program: what is asked for changes, everything else stays byte for byte.
 
 use eomgen_model_spec::edit::{
-    Edit, EditError, NewCoordinate, NewForce, NewParameter, NewTerm, NewValue, Section,
+    Edit, EditError, NewCoordinate, NewForce, NewParameter, NewState, NewTerm, NewValue, Section,
     Substitution, apply,
 };
 use eomgen_model_spec::source::Source;
@@ -116,6 +116,42 @@ fn terms_and_coordinates_are_added_to_their_sections() {
         "gap = \"z - y\"",
     ];
     assert_eq!(added_lines(&edited), expected);
+}
+
+#[test]
+fn a_state_is_added_and_stands_in_the_place_of_an_input() {
+    let drive = "[inputs]\nu = { unit = \"N\" }\n\n[states]\nF = { unit = \"N\", rate = \"(u - F)/tau\" }\n\n\
+                 [forces]\npull = { on = \"y\", value = \"F + u\" }\n";
+    let tau = "tau = { value = 0.1, unit = \"s\" }\n\n[coordinates]";
+    let driven = SPRING.replacen("[coordinates]", tau, 1) + drive;
+    let source = Source::new("driven.toml", driven.as_str());
+    let state = Edit::AddState(NewState {
+        name: text("acting"),
+        unit: text("N"),
+        rate: text("(u - acting)/tau"),
+        doc: String::new(),
+    });
+    let substitute = |section, term| {
+        Edit::Substitute(Substitution {
+            section,
+            terms: vec![text(term)],
+            find: text("u"),
+            replace: text("acting"),
+        })
+    };
+    let edits = [
+        state,
+        substitute(Section::States, "F"),
+        substitute(Section::Forces, "pull"),
+    ];
+    let edited = apply(&source, &edits).expect("valid");
+    for line in [
+        "F = { unit = \"N\", rate = \"(acting - F)/tau\" }",
+        "acting = { unit = \"N\", rate = \"(u - acting)/tau\" }",
+        "pull = { on = \"y\", value = \"F + acting\" }",
+    ] {
+        assert!(edited.lines().any(|own| own == line), "{line}: {edited}");
+    }
 }
 
 #[test]

@@ -58,15 +58,46 @@ state = "rest"
 length = 0.5
 "#;
 
-/// A record of what acts: gain * (u + bias), N m.
-fn record(gain: f64, bias: f64, turn: f64) -> String {
-    late_record((gain, bias, 0.0), turn)
+/// What acts: gain * (u + bias), N m, with u so late and behind a low-pass of so long a time, s.
+#[derive(Clone, Copy)]
+struct Drive {
+    gain: f64,
+    bias: f64,
+    delay: f64,
+    lag: f64,
 }
 
-/// A record: t, u in mN m, theta. What acts is gain * (u + bias), N m, and u so late, s.
-fn late_record((gain, bias, delay): (f64, f64, f64), turn: f64) -> String {
+/// A drive that does what it is told.
+const IDEAL: Drive = Drive {
+    gain: 1.0,
+    bias: 0.0,
+    delay: 0.0,
+    lag: 0.0,
+};
+
+/// A record of what acts: gain * (u + bias), N m.
+fn record(gain: f64, bias: f64, turn: f64) -> String {
+    driven(
+        Drive {
+            gain,
+            bias,
+            ..IDEAL
+        },
+        turn,
+    )
+}
+
+/// A record: t, u in mN m, theta.
+fn driven(drive: Drive, turn: f64) -> String {
+    let Drive {
+        gain,
+        bias,
+        delay,
+        lag,
+    } = drive;
     let (inertia, damping, weight) = (0.05, 0.04, 1.2);
     let (mut theta, mut rate, mut noise): (f64, f64, f64) = (0.0, 0.0, 0.3 + 0.1 * turn);
+    let mut low_pass = 0.0;
     let mut text = "t,u,theta\n".to_owned();
     for sample in 0..800 {
         let t = 0.005 * f64::from(sample);
@@ -74,15 +105,21 @@ fn late_record((gain, bias, delay): (f64, f64, f64), turn: f64) -> String {
             let t = t.max(0.0);
             0.9 * (4.1 * t + turn).sin() + 0.5 * (9.7 * t * (1.0 + 0.1 * turn)).sin()
         };
-        let (u, acting) = (wave(t), wave(t - delay));
+        let (u, told) = (wave(t), wave(t - delay));
         noise = 4.0 * noise * (1.0 - noise) * 0.999_999;
         let shown = theta + 1e-4 * 2.8 * (noise - 0.5);
         text += &format!("{t:.3},{:.15},{shown:.9}\n", 1e3 * u);
-        let acceleration = |theta: f64, rate: f64| {
-            (gain * (acting + bias) - damping * rate - weight * theta.sin()) / inertia
-        };
         for _ in 0..50 {
             let h = 1e-4;
+            let before = low_pass;
+            low_pass = told + (before - told) * (-h / lag).exp();
+            let acting = match lag > 0.0 {
+                true => 0.5 * (before + low_pass),
+                false => told,
+            };
+            let acceleration = |theta: f64, rate: f64| {
+                (gain * (acting + bias) - damping * rate - weight * theta.sin()) / inertia
+            };
             let (half, slope) = (theta + 0.5 * h * rate, acceleration(theta, rate));
             let middle = rate + 0.5 * h * slope;
             theta += h * middle;
@@ -203,7 +240,13 @@ fn an_input_that_acts_late_is_one_unknown() {
     };
     // Four samples: the motor rests that long.
     let records = [0.0, 1.0].map(|turn| {
-        let lines = late_record((1.0, 0.0, 0.02), turn);
+        let lines = driven(
+            Drive {
+                delay: 0.02,
+                ..IDEAL
+            },
+            turn,
+        );
         let with_lever = |line: &str| {
             let theta = line
                 .rsplit(',')
@@ -226,4 +269,20 @@ fn an_input_that_acts_late_is_one_unknown() {
     let known = dataset("delay = { mean = 0.02, sd = 0 }");
     let (document, _) = found_in(&known, &specification, &records);
     assert_eq!(document["verdict"], "no_significant_gap", "{document:#}");
+}
+
+#[test]
+fn a_drive_that_follows_its_command_late_is_named() {
+    let drive = Drive { lag: 0.02, ..IDEAL };
+    let records = [0.0, 1.0].map(|turn| driven(drive, turn));
+    let (document, extended) = found_in(DATASET, PENDULUM, &records);
+    let (bandwidth, names) = only(&document);
+    assert_eq!(names, ["input_lag on u"], "{document:#}");
+    assert!((bandwidth - 50.0).abs() < 1.0, "{bandwidth}");
+    assert!(
+        extended.contains("rate = \"w_b*(u - acting)\""),
+        "{extended}"
+    );
+    let (again, _) = found_in(DATASET, &extended, &records);
+    assert_eq!(again["verdict"], "no_significant_gap", "{again:#}");
 }

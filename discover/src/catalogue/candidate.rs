@@ -8,6 +8,7 @@ use eomgen_model_spec::model::{Model, Parameter, ParameterValue};
 use eomgen_model_spec::source::Source;
 
 use crate::catalogue::effect::{Change, Effect, SiteKind};
+use crate::catalogue::loads::{Load, loads};
 use crate::catalogue::site::Site;
 use crate::catalogue::template::{edits, free_name, instantiated, terms};
 use crate::catalogue::usual_motion::UsualMotion;
@@ -32,6 +33,8 @@ pub struct Candidate {
     pub on: String,
     /// The angle and the order with which it repeats.
     pub order: Option<(String, u32)>,
+    /// What transmits the load with which it grows.
+    pub load: Option<String>,
     /// Whether it changes what happens between teeth with play.
     pub on_mesh: bool,
     /// Its parameters.
@@ -129,14 +132,13 @@ impl CandidateParameter {
 }
 
 impl Candidate {
-    /// Its effect and place, and its order where there are several.
+    /// Its effect and place, and its order or its load where there are several.
     pub fn label(&self) -> String {
-        match &self.order {
-            Some((angle, order)) => format!(
-                "{} on {} ({order} per turn of {angle})",
-                self.effect, self.on
-            ),
-            None => format!("{} on {}", self.effect, self.on),
+        let plain = format!("{} on {}", self.effect, self.on);
+        match (&self.order, &self.load) {
+            (Some((angle, order)), _) => format!("{plain} ({order} per turn of {angle})"),
+            (None, Some(load)) => format!("{plain} (by the load of {load})"),
+            (None, None) => plain,
         }
     }
 
@@ -207,6 +209,7 @@ pub fn candidates(
         .iter()
         .filter(|site| site.kind == SiteKind::Angle)
         .collect();
+    let loads = loads(model);
     let mut found = Vec::new();
     for effect in effects {
         for site in sites.iter().filter(|site| fits(effect.site, site.kind)) {
@@ -216,21 +219,22 @@ pub fn candidates(
                 true => &own,
                 false => &[],
             };
-            if !effect.orders {
-                found.extend(candidate(model, effect, site, None, motion));
-            }
-            for angle in turning {
-                for order in orders(model, motion.orders(angle)) {
-                    if !motion.covers(angle, order) {
-                        continue;
-                    }
-                    found.extend(candidate(
-                        model,
-                        effect,
-                        site,
-                        Some((*angle, order)),
-                        motion,
-                    ));
+            let orders = turning.iter().flat_map(|angle| {
+                let orders = orders(model, motion.orders(angle)).into_iter();
+                let covered = orders.filter(|order| motion.covers(angle, *order));
+                covered.map(|order| Some((*angle, order)))
+            });
+            let orders: Vec<Option<(&Site, u32)>> = match effect.orders {
+                true => orders.collect(),
+                false => vec![None],
+            };
+            let loads: Vec<Option<&Load>> = match effect.loads {
+                true => loads.iter().map(Some).collect(),
+                false => vec![None],
+            };
+            for load in loads {
+                for order in &orders {
+                    found.extend(candidate(model, effect, site, (*order, load), motion));
                 }
             }
         }
@@ -264,7 +268,7 @@ fn candidate(
     model: &Model,
     effect: &Effect,
     site: &Site,
-    order: Option<(&Site, u32)>,
+    (order, load): (Option<(&Site, u32)>, Option<&Load>),
     motion: &UsualMotion,
 ) -> Option<Candidate> {
     let mut arguments: BTreeMap<String, String> = site
@@ -275,6 +279,15 @@ fn candidate(
     if let Some((angle, order)) = order {
         arguments.insert("n".to_owned(), order.to_string());
         arguments.insert("angle".to_owned(), angle.arguments["on"].clone());
+    }
+    if let Some(load) = load {
+        let per_load = match (site.arguments.get("force")?.as_str(), load.unit) {
+            (force, unit) if force == unit => "1",
+            ("N m", _) => "m",
+            _ => "1/m",
+        };
+        arguments.insert("load".to_owned(), load.force.clone());
+        arguments.insert("per_load".to_owned(), per_load.to_owned());
     }
     let mut taken = names(model);
     let mut parameters = Vec::new();
@@ -294,7 +307,10 @@ fn candidate(
         });
     }
     for change in &effect.edits {
-        if let Change::Coordinate { name, .. } | Change::Definition { name, .. } = change {
+        if let Change::Coordinate { name, .. }
+        | Change::Definition { name, .. }
+        | Change::State { name, .. } = change
+        {
             let free = free_name(name, &site.name, &mut taken);
             arguments.insert(name.clone(), free);
         }
@@ -305,7 +321,8 @@ fn candidate(
         changes.extend(edits(model, change, site, &arguments)?);
         if let Change::Term { value, .. }
         | Change::Definition { value, .. }
-        | Change::Force { value, .. } = change
+        | Change::Force { value, .. }
+        | Change::State { rate: value, .. } = change
         {
             term = instantiated(value, &arguments)?;
         }
@@ -314,6 +331,7 @@ fn candidate(
         effect: effect.name.clone(),
         on: site.name.clone(),
         order: order.map(|(angle, order)| (angle.name.clone(), order)),
+        load: load.map(|load| load.name.clone()),
         on_mesh: site.kind == SiteKind::Mesh,
         parameters,
         says: effect.says.clone(),
@@ -336,6 +354,7 @@ pub fn dropped_prior(
         effect: effect.to_owned(),
         on: on.to_owned(),
         order: None,
+        load: None,
         on_mesh: false,
         parameters: Vec::new(),
         says: says.to_owned(),
@@ -394,6 +413,7 @@ pub(crate) fn names(model: &Model) -> Vec<String> {
             .collect::<Vec<_>>(),
         model.coordinates.iter().map(|c| c.name.clone()).collect(),
         model.inputs.iter().map(|i| i.name.clone()).collect(),
+        model.states.iter().map(|s| s.name.clone()).collect(),
         model.definitions.iter().map(|d| d.name.clone()).collect(),
         model
             .fields

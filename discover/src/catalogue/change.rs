@@ -2,7 +2,7 @@
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::edit::Section;
-use eomgen_model_spec::table::Entry;
+use eomgen_model_spec::table::{Entry, Record};
 
 use super::effect::{Change, DAMPER, SiteKind, Within};
 use super::fields::{new_name, some, text};
@@ -15,15 +15,17 @@ enum Added {
     Definition,
     Force,
     Coordinate,
+    State,
 }
 
-const ADDED: [(&str, Added); 6] = [
+const ADDED: [(&str, Added); 7] = [
     ("force", Added::Force),
     ("kinetic", Added::Term(Section::Kinetic)),
     ("potential", Added::Term(Section::Potential)),
     ("dissipation", Added::Term(Section::Dissipation)),
     ("definition", Added::Definition),
     ("coordinate", Added::Coordinate),
+    ("state", Added::State),
 ];
 
 /// Where an edit replaces.
@@ -35,6 +37,8 @@ enum Replaced {
     /// In the dampers beside a spring.
     Dampers,
     Measured,
+    /// Wherever an input stands.
+    Input,
 }
 
 impl Replaced {
@@ -43,28 +47,31 @@ impl Replaced {
         match self {
             Self::Site(kind) => Some(kind),
             Self::Dampers => Some(SiteKind::Spring),
+            Self::Input => Some(SiteKind::Input),
             Self::Kinetic | Self::Measured => None,
         }
     }
 }
 
-const REPLACED: [(&str, Replaced); 6] = [
+const REPLACED: [(&str, Replaced); 7] = [
     ("kinetic", Replaced::Kinetic),
     ("mesh", Replaced::Site(SiteKind::Mesh)),
     ("arm", Replaced::Site(SiteKind::Arm)),
     ("spring", Replaced::Site(SiteKind::Spring)),
     ("damper", Replaced::Dampers),
     ("measured", Replaced::Measured),
+    ("input", Replaced::Input),
 ];
 
 /// All keys of an edit.
-const KEYS: [&str; 10] = [
+const KEYS: [&str; 11] = [
     "add",
     "substitute",
     "name",
     "on",
     "value",
     "unit",
+    "rate",
     "doc",
     "terms",
     "find",
@@ -118,6 +125,7 @@ fn addition(
         Added::Term(_) | Added::Definition => &["add", "name", "value"],
         Added::Force => &["add", "name", "on", "value"],
         Added::Coordinate => &["add", "name", "unit", "doc"],
+        Added::State => &["add", "name", "unit", "rate", "doc"],
     };
     let record = entry.record(known, "{ add = \"force\", ... }", found)?;
     let name = new_name(&record, found);
@@ -136,16 +144,34 @@ fn addition(
             value: expression(&record, "value", placeholders, found)?,
             name: name?,
         },
-        Added::Coordinate => {
-            let unit = text(&record, "unit", "\"rad\"", found)?;
-            placeholders.note(&unit, found);
-            Change::Coordinate {
-                unit: unit.text,
-                doc: text(&record, "doc", "\"what it is\"", found)?.text,
-                name: name?,
-            }
-        }
+        Added::Coordinate => Change::Coordinate {
+            unit: unit(&record, placeholders, found)?,
+            doc: doc(&record, found)?,
+            name: name?,
+        },
+        Added::State => Change::State {
+            unit: unit(&record, placeholders, found)?,
+            rate: expression(&record, "rate", placeholders, found)?,
+            doc: doc(&record, found)?,
+            name: name?,
+        },
     })
+}
+
+/// The unit of what is added.
+fn unit(
+    record: &Record<'_>,
+    placeholders: &mut Placeholders,
+    found: &mut Diagnostics,
+) -> Option<String> {
+    let unit = text(record, "unit", "\"rad\"", found)?;
+    placeholders.note(&unit, found);
+    Some(unit.text)
+}
+
+/// What is added, in words.
+fn doc(record: &Record<'_>, found: &mut Diagnostics) -> Option<String> {
+    Some(text(record, "doc", "\"what it is\"", found)?.text)
 }
 
 fn substitution(
@@ -156,7 +182,7 @@ fn substitution(
 ) -> Option<Change> {
     let known: &[&str] = match within {
         Replaced::Kinetic => &["substitute", "terms", "find", "replace"],
-        Replaced::Site(_) | Replaced::Dampers | Replaced::Measured => {
+        Replaced::Site(_) | Replaced::Dampers | Replaced::Measured | Replaced::Input => {
             &["substitute", "find", "replace"]
         }
     };
@@ -172,6 +198,7 @@ fn substitution(
         Replaced::Site(_) => Within::Site,
         Replaced::Dampers => Within::Dampers,
         Replaced::Measured => Within::Measured,
+        Replaced::Input => Within::Input,
         Replaced::Kinetic => {
             let mut terms = Vec::new();
             for term in some(&record, "terms", "[\"{term}\"]", found)? {

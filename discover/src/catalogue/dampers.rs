@@ -31,7 +31,7 @@ pub(super) fn dampers(model: &Model, deflection: &Expr) -> Vec<Damper> {
     };
     for term in &model.dissipation {
         for part in summands(&term.value) {
-            if square(model, part).is_some_and(|(base, _)| is_along(base)) {
+            if square(model, part).is_some_and(|square| is_along(square.base)) {
                 note(Section::Dissipation, &term.name, part);
             }
         }

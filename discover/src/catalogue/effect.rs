@@ -15,6 +15,8 @@ pub struct Effect {
     pub experiment: String,
     /// Whether it repeats with an angle, so that it is tried at several shaft orders.
     pub orders: bool,
+    /// Whether it is tried with each load of a spring or of a pair of teeth.
+    pub loads: bool,
     /// Its parameters, at least one.
     pub parameters: Vec<EffectParameter>,
     /// What it changes, at least one thing.
@@ -39,16 +41,19 @@ pub enum SiteKind {
     Arm,
     /// A linear spring.
     Spring,
+    /// An input.
+    Input,
 }
 
 impl SiteKind {
     /// The kinds by their words in a file.
-    pub const WORDS: [(&'static str, Self); 5] = [
+    pub const WORDS: [(&'static str, Self); 6] = [
         ("axis", Self::Axis),
         ("angle", Self::Angle),
         ("mesh", Self::Mesh),
         ("arm", Self::Arm),
         ("spring", Self::Spring),
+        ("input", Self::Input),
     ];
 
     /// The placeholders that a site of this kind fills; `{root}`, `{stiffness}` and a spring's `{k}`
@@ -68,6 +73,7 @@ impl SiteKind {
                 "stiffness",
             ],
             Self::Spring => &["on", "p", "unit", "force", "k"],
+            Self::Input => &["on", "unit"],
         }
     }
 }
@@ -149,6 +155,17 @@ pub enum Change {
         /// What it is.
         doc: String,
     },
+    /// A state of first order.
+    State {
+        /// Its name, which is a placeholder of the effect.
+        name: String,
+        /// Its unit.
+        unit: String,
+        /// Its rate.
+        rate: String,
+        /// What it is.
+        doc: String,
+    },
     /// Something replaced.
     Substitution {
         /// Where.
@@ -172,4 +189,6 @@ pub enum Within {
     Dampers,
     /// All definitions and observables.
     Measured,
+    /// Wherever an input stands.
+    Input,
 }

@@ -40,6 +40,7 @@ fn effect(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Effect> {
         "says",
         "experiment",
         "orders",
+        "loads",
         "parameters",
         "edits",
     ];
@@ -50,11 +51,11 @@ fn effect(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Effect> {
     let site = record.require("site", "write site = \"axis\"", found);
     let site = site.cloned().map(|site| site.word(&SiteKind::WORDS));
     let site = site.and_then(|site| found.keep(site));
-    let orders = record.get("orders").map(|orders| orders.truth());
-    let orders = orders.map_or(Some(false), |orders| found.keep(orders));
+    let orders = truth(&record, "orders", found);
+    let loads = truth(&record, "loads", found);
     let parameters = some(&record, "parameters", "[{ name = ... }]", found)?;
     let edits = some(&record, "edits", "[{ add = \"force\", ... }]", found)?;
-    let (site, orders) = (site?, orders?);
+    let (site, orders, loads) = (site?, orders?, loads?);
     let own: Vec<Written> = (parameters.iter().chain(&edits))
         .filter_map(|entry| named(entry))
         .collect();
@@ -72,10 +73,22 @@ fn effect(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Effect> {
         (true, _) => &["n"],
         (false, _) => &[],
     };
+    let of_load: &[&str] = match loads {
+        true => &["load", "per_load"],
+        false => &[],
+    };
+    if loads
+        && !matches!(site, SiteKind::Axis | SiteKind::Angle)
+        && let Some(loads) = record.get("loads")
+    {
+        let wrong = Diagnostic::error("a load presses on an axis or an angle");
+        let expected = "expected site = \"axis\" or site = \"angle\" beside it";
+        found.push(wrong.at(loads.span(), expected));
+    }
     let mut placeholders = Placeholders {
         known: of_site
             .into_iter()
-            .chain(repeating.iter().map(|blank| (*blank).to_owned()))
+            .chain((repeating.iter().chain(of_load)).map(|blank| (*blank).to_owned()))
             .chain(own.iter().map(|own| own.text.clone()))
             .collect(),
         used: Vec::new(),
@@ -103,10 +116,17 @@ fn effect(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Effect> {
         says: says?.text,
         experiment: experiment?.text,
         orders,
+        loads,
         parameters: listed,
         edits: changes,
         is_own: false,
     })
+}
+
+/// Whether a key says true; false where it is absent.
+fn truth(record: &Record<'_>, key: &str, found: &mut Diagnostics) -> Option<bool> {
+    let truth = record.get(key).map(|entry| entry.truth());
+    truth.map_or(Some(false), |truth| found.keep(truth))
 }
 
 /// The name that a parameter or an addition gives to what it adds, where it is read by others.
@@ -114,7 +134,7 @@ fn named(entry: &Entry<'_>) -> Option<Written> {
     let entries = entry.table("").ok()?;
     let of = |key: &str| entries.iter().find(|e| e.name.text == key)?.written().ok();
     match of("add") {
-        Some(add) if !["coordinate", "definition"].contains(&add.text.as_str()) => None,
+        Some(add) if !["coordinate", "definition", "state"].contains(&add.text.as_str()) => None,
         _ => of("name"),
     }
 }
@@ -141,8 +161,7 @@ fn parameter(
         .cloned()
         .map(|sign| sign.word(&[("+", true), ("", false)]));
     let positive = sign.and_then(|sign| found.keep(sign));
-    let inverse = record.get("inverse").map(|inverse| inverse.truth());
-    let inverse = inverse.map_or(Some(false), |inverse| found.keep(inverse));
+    let inverse = truth(&record, "inverse", found);
     Some(EffectParameter {
         name: name?,
         unit: unit?.text,

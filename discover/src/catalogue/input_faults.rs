@@ -4,7 +4,8 @@ use eomgen_model_spec::model::{Input, Model};
 
 use crate::catalogue::candidate::{Candidate, CandidateParameter, ParameterOffset, dropped_prior};
 use crate::interval::Interval;
-use crate::model::input_faults::{InputFault, in_the_place_of};
+use crate::model::input_faults::InputFault;
+use crate::model::input_places::{in_the_place_of, replaceable};
 use crate::model::unknowns::What;
 
 /// What a fault is, and what would show it best.
@@ -24,9 +25,7 @@ pub(crate) fn words(fault: InputFault) -> (&'static str, &'static str) {
 /// The faults of a model's inputs of which it holds no parameter yet. `path`: the specification's, for
 /// messages.
 pub fn input_faults(model: &Model, path: &str) -> Vec<Candidate> {
-    let inputs = model.inputs.iter();
-    // Prescribed motion has rates, which would have to follow.
-    let inputs = inputs.filter(|input| input.rate.is_none() && input.rate_of.is_none());
+    let inputs = replaceable(model);
     let all = inputs.flat_map(|input| InputFault::ALL.map(|fault| candidate(model, input, fault)));
     let text = &model.source.text;
     let is_written = |candidate: &Candidate| {

@@ -1,6 +1,6 @@
 //! What a model may lack: the effects that come with the program and a user's ([`effect`]), the
 //! places of a model where they may sit ([`site`], [`sites`], `springs` and the `dampers` beside them,
-//! read by `products` and `polynomial`), how these move ([`usual_motion`]), and both together as
+//! read by `products` and `polynomial`), what `loads` these bear, how they move ([`usual_motion`]), and both together as
 //! [`candidate`]s (the edits of an effect at a place: [`template`]; its parameters as unknowns:
 //! [`candidate_unknown`]). What
 //! effects do is decided by nobody but the specification. How a file of effects is read is in
@@ -15,6 +15,7 @@ pub mod effect;
 mod fields;
 mod file;
 pub mod input_faults;
+mod loads;
 mod placeholders;
 mod polynomial;
 mod products;

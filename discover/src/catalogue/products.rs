@@ -22,12 +22,26 @@ fn summands_of<'m>(expr: &'m Expr, found: &mut Vec<&'m Expr>) {
     }
 }
 
-/// The base of the only square in a product, and the parameters among what is fixed beside it; none if the
-/// product holds anything else.
-pub(super) fn square<'m>(model: &Model, product: &'m Expr) -> Option<(&'m Expr, Vec<String>)> {
-    let (mut base, mut parameters) = (None, Vec::new());
-    factors(model, product, &mut base, &mut parameters)?;
-    Some((base?, parameters))
+/// The only square in a product of what is fixed otherwise.
+pub(super) struct Square<'m> {
+    /// The square.
+    pub(super) whole: &'m Expr,
+    /// What is squared.
+    pub(super) base: &'m Expr,
+    /// The parameters among what is fixed beside it.
+    pub(super) parameters: Vec<String>,
+}
+
+/// The only square in a product; none if the product holds anything else that is not fixed.
+pub(super) fn square<'m>(model: &Model, product: &'m Expr) -> Option<Square<'m>> {
+    let (mut found, mut parameters) = (None, Vec::new());
+    factors(model, product, &mut found, &mut parameters)?;
+    let (whole, base) = found?;
+    Some(Square {
+        whole,
+        base,
+        parameters,
+    })
 }
 
 /// Goes through the factors of a product: one square of what moves, and parameters and numbers
@@ -35,7 +49,7 @@ pub(super) fn square<'m>(model: &Model, product: &'m Expr) -> Option<(&'m Expr, 
 fn factors<'m>(
     model: &Model,
     expr: &'m Expr,
-    moving: &mut Option<&'m Expr>,
+    moving: &mut Option<(&'m Expr, &'m Expr)>,
     parameters: &mut Vec<String>,
 ) -> Option<()> {
     match &expr.kind {
@@ -52,7 +66,7 @@ fn factors<'m>(
                 && moving.is_none()
                 && !is_fixed(model, base, &mut Vec::new()) =>
         {
-            *moving = Some(base);
+            *moving = Some((expr, base));
             Some(())
         }
         _ => is_fixed(model, expr, parameters).then_some(()),

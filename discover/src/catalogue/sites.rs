@@ -1,4 +1,4 @@
-//! Where effects may sit in a model: axes, angles, meshes with play, flexible bodies and springs,
+//! Where effects may sit in a model: axes, angles, meshes with play, flexible bodies, springs and inputs,
 //! with the arguments that fill the placeholders of an effect there.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -7,11 +7,12 @@ use eomgen_model_spec::ast::BinaryOperator;
 use eomgen_model_spec::dimension::Dimension;
 use eomgen_model_spec::edit::Section;
 use eomgen_model_spec::ids::{CoordinateId, FieldId};
-use eomgen_model_spec::model::{Expr, ExprKind, Function, Model, Term};
+use eomgen_model_spec::model::{Expr, ExprKind, Function, Input, Model, Term};
 
 use crate::catalogue::effect::SiteKind;
 use crate::catalogue::site::{Site, text};
 use crate::catalogue::springs::springs;
+use crate::model::input_places::replaceable;
 
 /// All places of a model.
 pub fn sites(model: &Model) -> Vec<Site> {
@@ -20,7 +21,19 @@ pub fn sites(model: &Model) -> Vec<Site> {
     found.extend(meshes.iter().filter_map(|place| mesh(model, *place)));
     found.extend(arms(model));
     found.extend(springs(model));
+    found.extend(replaceable(model).map(input));
     found
+}
+
+fn input(input: &Input) -> Site {
+    let arguments = [("on", &input.name), ("unit", &input.unit.text)];
+    Site {
+        kind: SiteKind::Input,
+        name: input.name.clone(),
+        arguments: arguments.map(|(key, word)| (key, word.clone())).into(),
+        terms: Vec::new(),
+        dampers: Vec::new(),
+    }
 }
 
 /// What an expression is made of, definitions written out.

@@ -11,7 +11,7 @@ use eomgen_model_spec::model::{Expr, ExprKind, Model, Term};
 
 use crate::catalogue::dampers::dampers;
 use crate::catalogue::effect::SiteKind;
-use crate::catalogue::products::{is_fixed, square, summands};
+use crate::catalogue::products::{Square, is_fixed, square, summands};
 use crate::catalogue::site::{Site, text};
 
 /// All springs of a model.
@@ -38,29 +38,19 @@ fn of_term(model: &Model, term: &Term) -> Vec<Site> {
     let is_only = springs.len() == 1;
     let site = |(number, spring): (usize, &Spring<'_>)| {
         let deflection = text(model, spring.deflection);
-        let dimension = dimension(model, spring.deflection)?;
-        let (unit, force) = match (dimension == Dimension::NONE, dimension == Dimension::LENGTH) {
-            (true, _) => ("rad", "N m"),
-            (_, true) => ("m", "N"),
-            _ => return None,
-        };
+        let (unit, force) = units(model, spring.deflection)?;
         let mut arguments: Vec<(&'static str, String)> = vec![
             ("on", deflection.clone()),
             ("p", deflection),
             ("unit", unit.to_owned()),
             ("force", force.to_owned()),
         ];
-        let name = match (&spring.parameters[..], is_only) {
-            (_, true) => term.name.clone(),
-            ([stiffness], false) => format!("{}_{stiffness}", term.name),
-            (_, false) => format!("{}_{}", term.name, number + 1),
-        };
         if let [stiffness] = &spring.parameters[..] {
             arguments.push(("k", stiffness.clone()));
         }
         Some(Site {
             kind: SiteKind::Spring,
-            name,
+            name: name_of(term, &spring.parameters, number, is_only),
             arguments: arguments.into_iter().collect(),
             terms: vec![(Section::Potential, vec![term.name.clone()])],
             dampers: dampers(model, spring.deflection),
@@ -69,15 +59,40 @@ fn of_term(model: &Model, term: &Term) -> Vec<Site> {
     springs.iter().enumerate().filter_map(site).collect()
 }
 
+/// The name of a spring: that of its term, of several in one term with that of the stiffness behind it.
+pub(super) fn name_of(term: &Term, parameters: &[String], number: usize, is_only: bool) -> String {
+    match (parameters, is_only) {
+        (_, true) => term.name.clone(),
+        ([stiffness], false) => format!("{}_{stiffness}", term.name),
+        (_, false) => format!("{}_{}", term.name, number + 1),
+    }
+}
+
+/// The units of what deflects and of a force on it; none if it is neither an angle nor a length.
+pub(super) fn units(model: &Model, deflection: &Expr) -> Option<(&'static str, &'static str)> {
+    let dimension = dimension(model, deflection)?;
+    match (dimension == Dimension::NONE, dimension == Dimension::LENGTH) {
+        (true, _) => Some(("rad", "N m")),
+        (_, true) => Some(("m", "N")),
+        _ => None,
+    }
+}
+
 /// A product as a spring; none if it is none.
 fn spring<'m>(model: &Model, product: &'m Expr) -> Option<Spring<'m>> {
-    let (deflection, parameters) = square(model, product)?;
+    let Square {
+        base, parameters, ..
+    } = square(model, product)?;
     let spring = Spring {
-        deflection,
+        deflection: base,
         parameters,
     };
-    (!spring.parameters.is_empty() && is_position(model, deflection, &mut BTreeSet::new()))
-        .then_some(spring)
+    (!spring.parameters.is_empty() && is_deflection(model, base)).then_some(spring)
+}
+
+/// Whether an expression is a position: sums of coordinates, times what is fixed.
+pub(super) fn is_deflection(model: &Model, expr: &Expr) -> bool {
+    is_position(model, expr, &mut BTreeSet::new())
 }
 
 /// Whether an expression is a position: sums of coordinates, times what is fixed. `read`: definitions

@@ -2,11 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use eomgen_model_spec::edit::{Edit, NewCoordinate, NewForce, NewTerm, Section, Substitution};
+use eomgen_model_spec::edit::{
+    Edit, NewCoordinate, NewForce, NewState, NewTerm, Section, Substitution,
+};
 use eomgen_model_spec::model::{Expr, Model};
 
 use crate::catalogue::effect::{Change, DAMPER, SiteKind, Within};
 use crate::catalogue::site::{Damper, Site};
+use crate::model::input_places::standing;
 
 /// The edits that a change of the catalogue comes to with these arguments;
 /// none if an argument is missing, or what is replaced is not there.
@@ -48,6 +51,17 @@ pub(crate) fn edits(
             doc: doc.clone(),
             initial: None,
         }),
+        Change::State {
+            name,
+            unit,
+            rate,
+            doc,
+        } => Edit::AddState(NewState {
+            name: new(name),
+            unit: fill(unit)?,
+            rate: fill(rate)?,
+            doc: doc.clone(),
+        }),
         Change::Substitution {
             within,
             find,
@@ -75,6 +89,7 @@ fn substitutions(
                 .collect();
             vec![(Section::Kinetic, terms?)]
         }
+        Within::Input => standing(model, found.as_deref()?),
         Within::Site => holding(model, site, found.as_deref()?),
         // Each damper is a blank of its own.
         Within::Dampers => return dampers(site, (find, replace), arguments),
@@ -164,7 +179,7 @@ fn holding(model: &Model, site: &Site, name: &str) -> Vec<(Section, Vec<String>)
                     .span
             }
             Section::Kinetic => model.kinetic.iter().find(|t| t.name == term)?.value.span,
-            Section::Observables => return None,
+            Section::Observables | Section::States => return None,
         };
         model.source.text.get(span.start..span.end)
     };

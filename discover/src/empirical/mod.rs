@@ -206,6 +206,7 @@ fn written(model: &Model, expression: &Expression) -> Candidate {
         effect: EMPIRICAL.to_owned(),
         on: equation.name.clone(),
         order: None,
+        load: None,
         on_mesh: equation.is_mesh,
         parameters,
         says: "an expression that fits what is left".to_owned(),

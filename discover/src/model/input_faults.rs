@@ -5,12 +5,12 @@
 //! A delay of the input is one of all sensors, and estimated as such: initial states are free, and no model
 //! depends on when a motion begins but by its inputs.
 
-use eomgen_model_spec::edit::{
-    self, Edit, EditError, NewParameter, NewValue, Section, Substitution,
-};
-use eomgen_model_spec::model::{Expr, ExprKind, Input, Model};
+use eomgen_model_spec::edit::{self, Edit, EditError, NewParameter, NewValue};
+use eomgen_model_spec::model::Input;
 use eomgen_model_spec::source::Source;
 use eomgen_records::dataset::{Expected, InputPriors};
+
+use crate::model::input_places::in_the_place_of;
 
 /// The effect of an input that acts later than declared.
 pub const INPUT_DELAY: &str = "input_delay";
@@ -104,46 +104,6 @@ pub fn declared<'p>(
 pub fn delayed_input(inputs: &[InputPriors]) -> Option<(&str, Expected)> {
     let mut delayed = inputs.iter();
     delayed.find_map(|input| Some((input.name.as_str(), input.delay?)))
-}
-
-/// The edits that put an expression in the place of an input wherever it stands.
-pub fn in_the_place_of(model: &Model, input: &str, acting: &str) -> Vec<Edit> {
-    let holds = |expr: &Expr| {
-        let mut found = false;
-        expr.visit(&mut |part| {
-            if let ExprKind::Input(id) = part.kind {
-                found |= model.inputs[id].name == input;
-            }
-        });
-        found
-    };
-    let definitions = model.definitions.iter().map(|d| (&d.name, &d.value));
-    let kinetic = model.kinetic.iter().map(|t| (&t.name, &t.value));
-    let potential = model.potential.iter().map(|t| (&t.name, &t.value));
-    let dissipation = model.dissipation.iter().map(|t| (&t.name, &t.value));
-    let forces = model.forces.iter().map(|f| (&f.name, &f.value));
-    let observables = model.observables.iter().map(|o| (&o.name, &o.value));
-    let sections: [(Section, Vec<(&String, &Expr)>); 6] = [
-        (Section::Definitions, definitions.collect()),
-        (Section::Kinetic, kinetic.collect()),
-        (Section::Potential, potential.collect()),
-        (Section::Dissipation, dissipation.collect()),
-        (Section::Forces, forces.collect()),
-        (Section::Observables, observables.collect()),
-    ];
-    let edits = sections.into_iter().filter_map(|(section, entries)| {
-        let terms = entries.into_iter().filter(|(_, value)| holds(value));
-        let terms: Vec<String> = terms.map(|(name, _)| name.clone()).collect();
-        (!terms.is_empty()).then(|| {
-            Edit::Substitute(Substitution {
-                section,
-                terms,
-                find: input.to_owned(),
-                replace: acting.to_owned(),
-            })
-        })
-    });
-    edits.collect()
 }
 
 /// A specification's text in which the inputs of which a dataset speaks act as that says, to begin

@@ -8,6 +8,7 @@ pub mod channel_checks;
 pub mod estimation_model;
 pub mod first_state;
 pub mod input_faults;
+pub mod input_places;
 pub mod linear_outputs;
 pub(crate) mod longest_step;
 pub(crate) mod measured_outputs;

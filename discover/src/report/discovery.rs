@@ -119,11 +119,15 @@ pub(crate) fn steps(found: &Found) -> Vec<Step> {
     steps
 }
 
-/// Why a candidate was rejected; with the order where it has one.
+/// Why a candidate was rejected; with the order or the load where it has one.
 fn reason(rejected: &Rejected) -> String {
-    match &rejected.candidate.order {
-        Some((angle, order)) => format!("{order} per turn of {angle}: {}", rejected.reason),
-        None => rejected.reason.clone(),
+    let Rejected {
+        candidate, reason, ..
+    } = rejected;
+    match (&candidate.order, &candidate.load) {
+        (Some((angle, order)), _) => format!("{order} per turn of {angle}: {reason}"),
+        (None, Some(load)) => format!("by the load of {load}: {reason}"),
+        (None, None) => reason.clone(),
     }
 }
 
@@ -201,6 +205,7 @@ fn found_effect(
             .order
             .clone()
             .map(|(angle, order)| ShaftOrder { angle, order }),
+        load: candidate.load.clone(),
         experiment: has_equivalent.then(|| candidate.experiment.clone()),
         next_experiment: None,
     }

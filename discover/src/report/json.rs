@@ -164,6 +164,9 @@ fn effect(of: &FoundEffect, files: &[ExperimentFile]) -> Value {
     if let Some(order) = &of.order {
         entry["order"] = json!({"per_turn_of": order.angle, "order": order.order});
     }
+    if let Some(load) = &of.load {
+        entry["load"] = json!(load);
+    }
     if let Some(experiment) = &of.experiment {
         entry["experiment"] = json!(experiment);
     }

@@ -255,6 +255,8 @@ pub struct FoundEffect {
     pub adjusted_p_value: Option<f64>,
     /// With what it repeats.
     pub order: Option<ShaftOrder>,
+    /// The spring or the pair of teeth with whose load it grows.
+    pub load: Option<String>,
     /// What would separate it from its equivalents, where it has some.
     pub experiment: Option<String>,
     /// What to play for that, as it was computed.

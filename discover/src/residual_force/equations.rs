@@ -213,6 +213,8 @@ fn equations(model: &Model) -> Vec<Equation> {
             SiteKind::Mesh => Some("m"),
             // A force between both ends of a spring is in the equations of what it joins.
             SiteKind::Spring => None,
+            // No motion of its own.
+            SiteKind::Input => None,
             _ => site.arguments.get("unit").and_then(|text| unit(text)),
         };
         if let (Some(unit), Some(on)) = (unit, site.arguments.get("on")) {

@@ -29,7 +29,7 @@ pub fn perturbed_responses(
 ) -> Vec<Result<CandidateResponse, DiscoverError>> {
     let similar = |a: &Candidate, b: &Candidate| {
         let angle = |c: &Candidate| c.order.as_ref().map(|(angle, _)| angle.clone());
-        a.effect == b.effect && a.on == b.on && angle(a) == angle(b)
+        a.effect == b.effect && a.on == b.on && a.load == b.load && angle(a) == angle(b)
     };
     let groups: Vec<&[Candidate]> = candidates.chunk_by(similar).collect();
     let found: Vec<Vec<Result<CandidateResponse, DiscoverError>>> = groups

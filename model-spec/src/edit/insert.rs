@@ -3,7 +3,9 @@
 
 use toml_edit::{DocumentMut, InlineTable, Item, Table, Value};
 
-use super::{EditError, NewCoordinate, NewForce, NewParameter, NewTerm, NewValue};
+use super::{
+    EditError, NewCoordinate, NewForce, NewParameter, NewState, NewTerm, NewValue, Section,
+};
 
 /// Adds a term: an expression alone where there is nothing more to say.
 pub fn term(document: &mut DocumentMut, new: &NewTerm) -> Result<(), EditError> {
@@ -38,6 +40,13 @@ pub fn coordinate(document: &mut DocumentMut, new: &NewCoordinate) -> Result<(),
     }
     let value = with_texts(table, &[("doc", &new.doc)]);
     insert(document, "coordinates", &new.name, value)
+}
+
+/// Adds a state of first order.
+pub fn state(document: &mut DocumentMut, new: &NewState) -> Result<(), EditError> {
+    let texts = [("unit", &new.unit), ("rate", &new.rate), ("doc", &new.doc)];
+    let value = with_texts(InlineTable::new(), &texts);
+    insert(document, Section::States.name(), &new.name, value)
 }
 
 /// Adds a force.

@@ -1,4 +1,4 @@
-//! Changes of a specification made by program: terms, parameters and coordinates added,
+//! Changes of a specification made by program: terms, parameters, coordinates and states added,
 //! expressions replaced inside terms, numbers set. Comments, order and layout of everything else stay as
 //! they are. What to change is decided elsewhere; the result is checked here.
 
@@ -28,6 +28,8 @@ pub enum Section {
     Forces,
     /// `[observables]`
     Observables,
+    /// `[states]`, by their rates
+    States,
 }
 
 impl Section {
@@ -40,6 +42,15 @@ impl Section {
             Self::Dissipation => "dissipation",
             Self::Forces => "forces",
             Self::Observables => "observables",
+            Self::States => "states",
+        }
+    }
+
+    /// The key of an entry's expression, where the entry is a table.
+    fn expression_key(self) -> &'static str {
+        match self {
+            Self::States => "rate",
+            _ => "value",
         }
     }
 }
@@ -62,6 +73,8 @@ pub enum Edit {
     AddParameter(NewParameter),
     /// Adds a coordinate.
     AddCoordinate(NewCoordinate),
+    /// Adds a state of first order.
+    AddState(NewState),
     /// Adds a force.
     AddForce(NewForce),
     /// Replaces an expression inside terms.
@@ -113,7 +126,7 @@ pub struct SetSensor {
 /// A term to be added.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NewTerm {
-    /// Where; not `Forces`, which hold more than a value.
+    /// Where; not `Forces` or `States`, which hold more than a value.
     pub section: Section,
     /// The term's name, not yet used in the section.
     pub name: String,
@@ -151,6 +164,19 @@ pub struct NewCoordinate {
     pub doc: String,
     /// Its initial value, 0 if absent.
     pub initial: Option<NewValue>,
+}
+
+/// A state of first order to be added; it begins at 0.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NewState {
+    /// Its name.
+    pub name: String,
+    /// Its unit, coherent SI.
+    pub unit: String,
+    /// Its rate, in its unit per s.
+    pub rate: String,
+    /// What it is.
+    pub doc: String,
 }
 
 /// A force to be added.
@@ -295,6 +321,7 @@ fn make(document: &mut DocumentMut, edit: &Edit) -> Result<(), EditError> {
         Edit::AddTerm(term) => insert::term(document, term),
         Edit::AddParameter(parameter) => insert::parameter(document, parameter),
         Edit::AddCoordinate(coordinate) => insert::coordinate(document, coordinate),
+        Edit::AddState(state) => insert::state(document, state),
         Edit::AddForce(force) => insert::force(document, force),
         Edit::Substitute(substitution) => substitute::substitute(document, substitution),
         Edit::SetParameter(parameter) => set::parameter(document, parameter),

@@ -3,7 +3,7 @@
 
 use toml_edit::{DocumentMut, Item, Value};
 
-use super::{EditError, Substitution};
+use super::{EditError, Section, Substitution};
 use crate::ast::{Syntax, SyntaxKind};
 use crate::lexer::tokens;
 use crate::parser::parse;
@@ -13,7 +13,7 @@ use crate::span::Span;
 pub fn substitute(document: &mut DocumentMut, edit: &Substitution) -> Result<(), EditError> {
     let replacement = Replacement::new(&edit.find, &edit.replace)?;
     for term in &edit.terms {
-        replacement.make(document, edit.section.name(), term)?;
+        replacement.make(document, edit.section, term)?;
     }
     Ok(())
 }
@@ -48,20 +48,25 @@ impl<'e> Replacement<'e> {
     }
 
     /// Replaces every occurrence in the value of one term.
-    fn make(&self, document: &mut DocumentMut, section: &str, term: &str) -> Result<(), EditError> {
+    fn make(
+        &self,
+        document: &mut DocumentMut,
+        section: Section,
+        term: &str,
+    ) -> Result<(), EditError> {
         let entry = document
-            .get_mut(section)
+            .get_mut(section.name())
             .and_then(|item| item.get_mut(term));
-        let place = entry.and_then(expression_of);
+        let place = entry.and_then(|item| expression_of(item, section.expression_key()));
         let Some((value, text)) = place else {
             return Err(EditError::MissingTerm {
-                section: section.to_owned(),
+                section: section.name().to_owned(),
                 name: term.to_owned(),
             });
         };
         let Some(replaced) = self.replaced(&text)? else {
             return Err(EditError::MissingExpression {
-                section: section.to_owned(),
+                section: section.name().to_owned(),
                 name: term.to_owned(),
                 find: self.find.to_owned(),
             });
@@ -122,10 +127,10 @@ impl<'e> Replacement<'e> {
     }
 }
 
-/// The expression of a term, and the value that holds it.
-fn expression_of(item: &mut Item) -> Option<(&mut Value, String)> {
+/// The expression of a term, under this key where the term is a table, and the value that holds it.
+fn expression_of<'i>(item: &'i mut Item, key: &str) -> Option<(&'i mut Value, String)> {
     let value = if item.is_table_like() {
-        item.get_mut("value")?.as_value_mut()?
+        item.get_mut(key)?.as_value_mut()?
     } else {
         item.as_value_mut()?
     };

@@ -213,6 +213,39 @@ fn a_damper_is_replaced_beside_springs_alone_and_named_nowhere_else() {
 }
 
 #[test]
+fn inputs_are_replaced_at_inputs_and_loads_press_on_axes() {
+    let measured = Measured::stage(0.0);
+    let added = "{ add = \"force\", name = \"rail\", on = \"{on}\", ";
+    let replaced = "{ substitute = \"input\", find = \"{on}\", replace = \"{on}*{B_r}\" }, ";
+    for (effects, words) in [
+        (
+            EFFECTS.replace(added, &format!("{replaced}{added}")),
+            "expected site = \"input\"",
+        ),
+        (
+            EFFECTS
+                .replace("\"axis\"", "\"spring\"")
+                .replace("experiment =", "loads = true\nexperiment ="),
+            "expected site = \"axis\" or site = \"angle\"",
+        ),
+        (
+            EFFECTS.replace("-{B_r}*", "-{B_r}*{load}*"),
+            "nothing fills the blank `load`",
+        ),
+        (
+            EFFECTS.replace(
+                added,
+                &format!("{{ add = \"state\", name = \"z\" }}, {added}"),
+            ),
+            "has no `unit`",
+        ),
+    ] {
+        let message = refused(&measured, &effects);
+        assert!(message.contains(words), "{words}: {message}");
+    }
+}
+
+#[test]
 fn files_of_effects_that_are_none_are_refused() {
     let measured = Measured::stage(0.0);
     for (text, part) in [

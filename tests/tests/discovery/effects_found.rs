@@ -465,6 +465,7 @@ fn what_may_act_on_a_carriage_is_found_on_it() {
         hidden("quadratic_drag", "x", &[15.0]),
         hidden("force_offset", "x", &[-2.0]),
         hidden("elastic_restraint", "x", &[30.0]),
+        hidden("input_lag", "u", &[60.0]),
     ] {
         CARRIAGE.shows(&hidden);
     }
@@ -526,6 +527,7 @@ fn what_may_be_wrong_with_a_spring_is_found_on_it() {
         };
         OSCILLATOR.shows(&Hidden { by, ..hidden });
     }
+    OSCILLATOR.shows(&hidden("load_dependent_friction", "x", &[0.1]));
 }
 
 /// A spring that hardens takes the place of stops on both sides here, and leaves a part of the gap.

@@ -21,6 +21,7 @@ fn placed(model: &Model, effect: &Effect) -> Vec<Candidate> {
         (
             c.on.clone(),
             c.order.as_ref().map(|(angle, _)| angle.clone()),
+            c.load.clone(),
         )
     };
     found.dedup_by(|a, b| key(a) == key(b));
@@ -256,4 +257,82 @@ fn play_opens_the_dampers_beside_its_spring_or_none() {
     }
     assert!(!apart.contains("contact("), "{apart}");
     assert!(apart.contains("deadzone("), "{apart}");
+}
+
+/// A motor whose input drives a current, and acts on the shaft beside it.
+const MOTOR: &str = r#"
+[model]
+name = "motor"
+
+[parameters]
+J = { value = 0.1, unit = "kg m^2" }
+R = { value = 2, unit = "N m s" }
+tau = { value = 0.1, unit = "s" }
+
+[coordinates]
+theta = { unit = "rad" }
+
+[inputs]
+u = { unit = "N m" }
+v = { unit = "N m" }
+
+[states]
+T = { unit = "N m", rate = "(u - T)/tau" }
+
+[definitions]
+both = "u + v"
+
+[kinetic]
+rotor = "1/2*J*dot(theta)^2"
+
+[dissipation]
+bearing = "1/2*R*dot(theta)^2"
+
+[forces]
+drive = { on = "theta", value = "T + 0.1*both" }
+"#;
+
+/// The example of an effect on an input, as the documentation has it.
+fn documented() -> String {
+    let text = include_str!("../../../docs/discovery.md");
+    let examples = text.split("```toml\n").skip(1);
+    let mut blocks = examples.filter_map(|rest| rest.split_once("```").map(|(block, _)| block));
+    let effects = blocks.find(|block| block.contains("site = \"input\""));
+    effects.expect("an example").to_owned()
+}
+
+#[test]
+fn what_sits_at_an_input_acts_wherever_the_input_stands() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("effects.toml");
+    std::fs::write(&path, documented()).expect("a file");
+    let effects = effects(Some(&path)).unwrap_or_else(|found| panic!("{found}"));
+    let model = checked(MOTOR);
+    for (name, lines) in [
+        (
+            "valve_overlap",
+            &[
+                "T = { unit = \"N m\", rate = \"(deadzone(u, u_0) - T)/tau\" }",
+                "both = \"deadzone(u, u_0) + v\"",
+            ][..],
+        ),
+        (
+            "input_lag",
+            &[
+                "T = { unit = \"N m\", rate = \"(acting - T)/tau\" }",
+                "both = \"acting + v\"",
+                "acting = { unit = \"N m\", rate = \"w_b*(u - acting)\", doc = \"what acts in the place of the input\" }",
+            ],
+        ),
+    ] {
+        let mut named = effects.iter().filter(|effect| effect.name == name);
+        let found = placed(&model, named.next().expect("an effect"));
+        let places: Vec<&str> = found.iter().map(|c| c.on.as_str()).collect();
+        assert_eq!(places, ["u", "v"]);
+        let written = found[0].written(MOTOR, "motor.toml", &[0.5], "");
+        let written = written.unwrap_or_else(|error| panic!("{name}: {error}"));
+        for line in lines {
+            assert!(written.lines().any(|own| own == *line), "{line}: {written}");
+        }
+    }
 }

@@ -5,6 +5,7 @@ mod effects_files;
 mod effects_found;
 mod effects_placed;
 mod friction_that_stops;
+mod friction_under_load;
 mod next_experiment;
 mod nothing_compared;
 mod off_the_list;

@@ -44,6 +44,9 @@ fn effect(effect: &FoundEffect, files: &[ExperimentFile]) -> Markup {
             @if let Some(order) = &effect.order {
                 " It repeats " (order.order) " times per turn of " code { (order.angle) } "."
             }
+            @if let Some(load) = &effect.load {
+                " It grows with the load of " code { (load) } "."
+            }
             @if let Some(experiment) = &effect.experiment {
                 " To tell: " (experiment) "."
             }

@@ -75,6 +75,7 @@ fn discovery(text: &str) -> Discovery {
             },
             adjusted_p_value: Some(0.02),
             order: None,
+            load: None,
             experiment: Some(name()),
             next_experiment: Some(next_experiment(text)),
         }],

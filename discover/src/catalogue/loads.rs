@@ -1,0 +1,118 @@
+//! What springs and teeth transmit: the forces of parts `1/2*k*p^2` of the potential energy, of what
+//! deflects itself or of what is left of it beyond a play.
+
+use eomgen_model_spec::model::{Expr, ExprKind, Function, Model, Term};
+
+use crate::catalogue::products::{Square, is_fixed, square, summands};
+use crate::catalogue::site::text;
+use crate::catalogue::springs::{is_deflection, name_of, units};
+
+/// A force between what a spring or a pair of teeth joins.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Load {
+    /// The name of the term, with that of the stiffness where it holds several.
+    pub name: String,
+    /// The force, as an expression of the specification.
+    pub force: String,
+    /// Its unit.
+    pub unit: &'static str,
+}
+
+/// All loads of a model.
+pub fn loads(model: &Model) -> Vec<Load> {
+    let terms = model.potential.iter();
+    terms.flat_map(|term| of_term(model, term)).collect()
+}
+
+fn of_term(model: &Model, term: &Term) -> Vec<Load> {
+    let squares: Vec<(&Expr, Square<'_>)> = summands(&term.value)
+        .into_iter()
+        .filter_map(|summand| Some((summand, square(model, summand)?)))
+        .filter(|(_, square)| !square.parameters.is_empty())
+        .filter_map(|(summand, square)| is_load(model, square.base).then_some((summand, square)))
+        .collect();
+    let is_only = squares.len() == 1;
+    let load = |(number, (summand, square)): (usize, &(&Expr, Square<'_>))| {
+        let (_, unit) = units(model, beyond_play(square.base))?;
+        Some(Load {
+            name: name_of(term, &square.parameters, number, is_only),
+            force: slope(model, summand, square),
+            unit,
+        })
+    };
+    squares.iter().enumerate().filter_map(load).collect()
+}
+
+/// Whether what is squared is a deflection, or what is left of one beyond a play that does not move.
+fn is_load(model: &Model, base: &Expr) -> bool {
+    let is_play = match &base.kind {
+        ExprKind::Call(Function::Deadzone, arguments) => {
+            (arguments[1..].iter()).all(|play| is_fixed(model, play, &mut Vec::new()))
+        }
+        _ => true,
+    };
+    is_play && is_deflection(model, beyond_play(base))
+}
+
+/// What deflects, of what is left of it beyond a play.
+fn beyond_play(base: &Expr) -> &Expr {
+    match &base.kind {
+        ExprKind::Call(Function::Deadzone, arguments) => &arguments[0],
+        _ => base,
+    }
+}
+
+/// The derivative of a product by what is squared in it, as the specification would write it.
+fn slope(model: &Model, product: &Expr, square: &Square<'_>) -> String {
+    let source = &model.source.text;
+    let part = |from: usize, to: usize| source.get(from..to).unwrap_or_default();
+    let before = part(product.span.start, square.whole.span.start);
+    let after = part(square.whole.span.end, product.span.end);
+    let halved = format!("{before}{}{after}", text(model, square.base));
+    let halves = ["1/2*", "0.5*"].iter();
+    match halves.filter_map(|half| halved.strip_prefix(half)).next() {
+        Some(whole) => whole.to_owned(),
+        None => format!("2*{halved}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use eomgen_model_spec::source::Source;
+
+    use super::{Load, loads};
+
+    /// The loads of a mass on a spring whose energy is this.
+    fn of(energy: &str) -> Vec<Load> {
+        let text = format!(
+            "[model]\nname = \"one\"\n[parameters]\nm = {{ value = 1, unit = \"kg\" }}\n\
+             k = {{ value = 2, unit = \"N/m\" }}\nn = {{ value = 3 }}\nb = {{ value = 1, unit = \"m\" }}\n\
+             [coordinates]\nx = {{ unit = \"m\" }}\ny = {{ unit = \"m\" }}\n\
+             [kinetic]\nm = \"1/2*m*(dot(x)^2 + dot(y)^2)\"\n[potential]\nspring = \"{energy}\"\n"
+        );
+        let checked = eomgen_model_spec::check(Source::new("one.toml", text.as_str()));
+        loads(&checked.unwrap_or_else(|found| panic!("{found}")).model)
+    }
+
+    #[test]
+    fn a_load_is_the_derivative_of_the_energy_by_the_deflection() {
+        for (energy, force) in [
+            ("1/2*k*x^2", "k*x"),
+            ("0.5*k*(x - y)^2", "k*(x - y)"),
+            ("3/2*k*deadzone(x, b)^2", "2*3/2*k*deadzone(x, b)"),
+            ("x^2*k/n", "2*x*k/n"),
+            ("k*(x - n*y)^2/2", "2*k*(x - n*y)/2"),
+            ("(1/2*k)*x^2", "2*(1/2*k)*x"),
+        ] {
+            let found = of(energy);
+            let forces: Vec<&str> = found.iter().map(|load| load.force.as_str()).collect();
+            assert_eq!(forces, [force], "{energy}");
+            assert_eq!((found[0].name.as_str(), found[0].unit), ("spring", "N"));
+        }
+        let two = of("1/2*k*x^2 + 1/2*k*n*y^2");
+        let names: Vec<&str> = two.iter().map(|load| load.name.as_str()).collect();
+        assert_eq!(names, ["spring_k", "spring_2"]);
+        assert_eq!(of("1/4*k*x^4/b^2"), []);
+        assert_eq!(of("k*x*y"), []);
+    }
+}

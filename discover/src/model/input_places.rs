@@ -1,0 +1,115 @@
+//! Where inputs stand in a specification, and something else in their place. What that is, is said in
+//! [`crate::model::input_faults`] and in the catalogue.
+
+use eomgen_model_spec::edit::{Edit, Section, Substitution};
+use eomgen_model_spec::model::{Expr, ExprKind, Input, Model, Term, written_name};
+use eomgen_model_spec::span::Span;
+
+/// The inputs in whose place something else may stand: prescribed motion has rates, which would have to
+/// follow.
+pub fn replaceable(model: &Model) -> impl Iterator<Item = &Input> {
+    let inputs = model.inputs.iter();
+    inputs.filter(|input| input.rate.is_none() && input.rate_of.is_none())
+}
+
+/// An entry of a specification.
+struct Written<'m> {
+    section: Section,
+    name: &'m str,
+    span: Span,
+    value: &'m Expr,
+}
+
+/// The entries in which an input may stand.
+fn entries(model: &Model) -> Vec<Written<'_>> {
+    let of = |section: Section| {
+        move |(name, span, value)| Written {
+            section,
+            name: written_name(name, span, &model.source),
+            span,
+            value,
+        }
+    };
+    let forces = model
+        .forces
+        .iter()
+        .map(|f| (f.name.as_str(), f.span, &f.value));
+    let observables = model
+        .observables
+        .iter()
+        .map(|o| (o.name.as_str(), o.span, &o.value));
+    let states = model
+        .states
+        .iter()
+        .map(|s| (s.name.as_str(), s.span, &s.rate));
+    let mut found: Vec<Written<'_>> = Vec::new();
+    found.extend(model.kinetic.iter().map(term).map(of(Section::Kinetic)));
+    found.extend(model.potential.iter().map(term).map(of(Section::Potential)));
+    found.extend(
+        model
+            .dissipation
+            .iter()
+            .map(term)
+            .map(of(Section::Dissipation)),
+    );
+    found.extend(forces.map(of(Section::Forces)));
+    found.extend(observables.map(of(Section::Observables)));
+    found.extend(states.map(of(Section::States)));
+    for definition in &model.definitions {
+        // A vector of another section is written out by definitions, which no file holds.
+        let owner = found.iter().find(|entry| entry.span == definition.span);
+        let section = owner.map_or(Section::Definitions, |owner| owner.section);
+        let entry = (definition.name.as_str(), definition.span, &definition.value);
+        found.push(of(section)(entry));
+    }
+    found
+}
+
+fn term(term: &Term) -> (&str, Span, &Expr) {
+    (&term.name, term.span, &term.value)
+}
+
+/// Where an input stands: the entries of each section that hold it.
+pub fn standing(model: &Model, input: &str) -> Vec<(Section, Vec<String>)> {
+    let holds = |expr: &Expr| {
+        let mut found = false;
+        expr.visit(&mut |part| {
+            if let ExprKind::Input(id) = part.kind {
+                found |= model.inputs[id].name == input;
+            }
+        });
+        found
+    };
+    let mut found: Vec<(Section, Vec<String>)> = Vec::new();
+    for entry in entries(model).iter().filter(|entry| holds(entry.value)) {
+        let at = match found
+            .iter()
+            .position(|(section, _)| *section == entry.section)
+        {
+            Some(at) => at,
+            None => {
+                found.push((entry.section, Vec::new()));
+                found.len() - 1
+            }
+        };
+        let names = &mut found[at].1;
+        // Components of one vector have one name.
+        if !names.iter().any(|name| name == entry.name) {
+            names.push(entry.name.to_owned());
+        }
+    }
+    found
+}
+
+/// The edits that put an expression in the place of an input wherever it stands.
+pub fn in_the_place_of(model: &Model, input: &str, acting: &str) -> Vec<Edit> {
+    let edits = standing(model, input).into_iter().map(|(section, terms)| {
+        Edit::Substitute(Substitution {
+            section,
+            terms,
+            find: input.to_owned(),
+            replace: acting.to_owned(),
+        })
+    });
+    edits.collect()
+}
