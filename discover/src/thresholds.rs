@@ -302,7 +302,8 @@ pub const FULL_STEPS: usize = 4;
 /// The most further steps over beginnings of windows before whole ones are fitted.
 pub const FURTHER_STEPS: usize = 12;
 
-/// What leaves more standard deviations than this over whole windows is not worth following anew.
+/// What leaves more standard deviations than this over whole windows is not worth following anew, and what
+/// leaves so many times what a fit leaves is no place to begin beside it.
 pub const HOPELESS: f64 = 8.0;
 
 /// Windows are followed anew so often at most.

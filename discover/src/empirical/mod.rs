@@ -270,7 +270,7 @@ fn fitted(
             problem,
             texts.clone(),
             unknowns.clone(),
-            theta.clone(),
+            std::slice::from_ref(&theta),
             warm_start,
         )?;
         full::complete(problem, preliminary)

@@ -85,7 +85,8 @@ pub fn evaluated(
     totalled(shooting, prior, theta, initial_states, squares)
 }
 
-fn square(residual: &Option<Residual>) -> f64 {
+/// The sum of squares of a window; infinite where its motion cannot be followed.
+pub(crate) fn square(residual: &Option<Residual>) -> f64 {
     residual.as_ref().map_or(f64::INFINITY, Residual::square)
 }
 

@@ -43,7 +43,7 @@ pub fn null_fit(problem: &EstimationProblem<'_>, text: &str) -> Result<Fit, Disc
         };
         full::complete(
             problem,
-            preliminary::expected(problem, texts(), unknowns.clone(), theta, warm_start)?,
+            preliminary::expected(problem, texts(), unknowns.clone(), &[theta], warm_start)?,
         )
     };
     let (free, waiting) = rayon::join(

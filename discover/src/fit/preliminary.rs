@@ -4,7 +4,7 @@
 use crate::error::DiscoverError;
 use crate::fit::continuation::continuation;
 use crate::fit::fitted::Fit;
-use crate::fit::gauss_newton::damped_gauss_newton;
+use crate::fit::gauss_newton::{damped_gauss_newton, square};
 use crate::fit::initial_states::{self, following, spread};
 use crate::fit::prior::{InitialStatePrior, InitialStates};
 use crate::fit::shooting::Shooting;
@@ -100,7 +100,8 @@ pub fn preliminary(
 }
 
 /// The model's unknowns as they are expected, with whole windows started where those of a fit
-/// begin: close to a fit a straight line says enough.
+/// begin: close to a fit a straight line says enough. `guesses`: unknowns to begin with, at least one;
+/// the first is taken that is not hopeless beside the fit, or else what leaves least.
 ///
 /// # Errors
 /// As for [`crate::fit::full::fit`].
@@ -108,19 +109,21 @@ pub fn expected(
     problem: &EstimationProblem<'_>,
     texts: SpecificationTexts,
     unknowns: Vec<Unknown>,
-    theta: Vec<f64>,
+    guesses: &[Vec<f64>],
     warm_start: WarmStart<'_>,
 ) -> Result<PreliminaryFit, DiscoverError> {
     let WarmStart { fit, cost } = warm_start;
     let model = problem.model(&texts.whole, Some(&texts.linear))?;
     let bare = Shooting::new(problem, &model, &problem.train, &unknowns, &[]);
-    let ranges = problem.ranges(&model, &bare.values(&theta));
     let mapped = |states: &[Vec<f64>]| -> Vec<Vec<f64>> {
         states
             .iter()
             .map(|state| fit.mapped(&model, state))
             .collect()
     };
+    let initial_states = mapped(&fit.train.estimate.initial_states);
+    let theta = first_near(&bare, guesses, &initial_states, fit);
+    let ranges = problem.ranges(&model, &bare.values(&theta));
     let prior = InitialStatePrior {
         mean: mapped(&fit.prior.mean),
         sd: match fit.prior.sd.is_empty() {
@@ -133,11 +136,38 @@ pub fn expected(
         cost,
         whole: Some(prior),
         is_converged: true,
-        initial_states: mapped(&fit.train.estimate.initial_states),
+        initial_states,
         theta,
         texts,
         model,
         unknowns,
         ranges,
     })
+}
+
+/// The first of some unknowns that leave not many times what a fit does, or else those that leave least:
+/// what a straight line promises may be far too much, and initial states are not fitted to it yet.
+fn first_near(
+    shooting: &Shooting<'_>,
+    guesses: &[Vec<f64>],
+    initial_states: &[Vec<f64>],
+    fit: &Fit,
+) -> Vec<f64> {
+    if let [only] = guesses {
+        return only.clone();
+    }
+    let near = thresholds::HOPELESS.powi(2) * fit.train.estimate.squares.iter().sum::<f64>();
+    let mut least = (f64::INFINITY, guesses.first());
+    for theta in guesses {
+        let residuals = shooting.residuals(theta, initial_states);
+        let squares = residuals.iter().map(square);
+        let left: f64 = squares.sum();
+        if left < near {
+            return theta.clone();
+        }
+        if left < least.0 {
+            least = (left, Some(theta));
+        }
+    }
+    least.1.cloned().unwrap_or_default()
 }

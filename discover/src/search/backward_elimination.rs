@@ -92,7 +92,7 @@ pub(crate) fn without(
         fit,
         cost: fit.train.estimate.cost,
     };
-    let preliminary = preliminary::expected(problem, texts, unknowns, theta, warm_start)?;
+    let preliminary = preliminary::expected(problem, texts, unknowns, &[theta], warm_start)?;
     full::complete(problem, preliminary)
 }
 

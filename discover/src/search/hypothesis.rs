@@ -73,15 +73,15 @@ pub fn preliminary(
         let parameters = &pool.candidate(*response).parameters;
         parameters.iter().any(|parameter| parameter.inverse)
     });
-    if pool.is_whole && hypothesis.deleted.is_none() && !adds_states {
-        let cost = pool.screening.predicted(&hypothesis.responses).cost;
-        let warm_start = WarmStart { fit, cost };
-        return preliminary::expected(problem, texts, unknowns, theta, warm_start);
-    }
     let others = pool.parts[1..]
         .iter()
         .map(|part| unknowns_with(pool, hypothesis, *part).theta);
     let begins: Vec<Vec<f64>> = std::iter::once(theta).chain(others).collect();
+    if pool.is_whole && hypothesis.deleted.is_none() && !adds_states {
+        let cost = pool.screening.predicted(&hypothesis.responses).cost;
+        let warm_start = WarmStart { fit, cost };
+        return preliminary::expected(problem, texts, unknowns, &begins, warm_start);
+    }
     let mut preliminary = preliminary::preliminary(problem, texts, unknowns, &begins)?;
     if pool.is_whole {
         // Beside others that are promised and not fitted yet.
@@ -131,7 +131,7 @@ pub fn warm_started(
         theta[own.unknown] = unknowns[own.unknown].admissible(shape_ratio * theta[own.unknown]);
     }
     let texts = texts(pool, hypothesis, &unknowns, &theta)?;
-    preliminary::expected(pool.context.problem, texts, unknowns, theta, warm_start)
+    preliminary::expected(pool.context.problem, texts, unknowns, &[theta], warm_start)
 }
 
 /// The specification's texts with a hypothesis' candidates, at these values of the unknowns.
