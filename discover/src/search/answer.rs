@@ -1,13 +1,12 @@
 //! What a round answers: of the hypotheses that were tested the one that is named.
 
 use crate::search::alternatives::test_alternatives;
-use crate::search::joint::joint_acceptance;
 use crate::search::pool::Pool;
 use crate::search::round::Round;
 use crate::search::selected::{Selected, best_of, selected};
 use crate::search::tested::TestedPool;
 
-/// What is named of all that was tested; none if nothing is accepted, alone or together.
+/// What is named of all that was tested; none if nothing is accepted.
 pub fn answer(round: &Round<'_>, mut tested: Vec<TestedPool>) -> Option<Selected> {
     let least = |tested: &TestedPool| {
         let accepted = tested
@@ -20,17 +19,11 @@ pub fn answer(round: &Round<'_>, mut tested: Vec<TestedPool>) -> Option<Selected
     let best = (0..tested.len())
         .filter(|number| least(&tested[*number]).is_finite())
         .min_by(|a, b| least(&tested[*a]).total_cmp(&least(&tested[*b])));
-    let Some(best) = best else {
-        return round
-            .is_first
-            .then(|| joint_acceptance(round, &tested))
-            .flatten();
-    };
     let TestedPool {
         candidates,
         screening,
         mut fitted_hypotheses,
-    } = tested.swap_remove(best);
+    } = tested.swap_remove(best?);
     fitted_hypotheses.retain(|fitted| fitted.explains);
     if let Some(answer) = best_of(&fitted_hypotheses) {
         let pool = Pool::new(round.context, &candidates, &screening, true);

@@ -5,7 +5,7 @@
 //! [`mod@variational_response`] or [`mod@perturbed_response`] ([`mod@responses`] chooses),
 //! [`screening`], [`acceptance`], [`split_sample`]; `motion_of_fit`, [`context`], [`pool`], [`hypothesis`], [`fitted`];
 //! `shape_restarts`, `singles`, `pairs`; [`tested`], [`parameter_offsets`], [`selected`],
-//! `alternatives`; `excitation_window`, `dropped_priors`, `round`, `joint`, `answer`, `unfinished`;
+//! `alternatives`; `excitation_window`, `dropped_priors`, `round`, `answer`, `unfinished`;
 //! [`found`], `rejected`, [`backward_elimination`].
 
 pub mod acceptance;
@@ -18,7 +18,6 @@ mod excitation_window;
 pub mod fitted;
 pub mod found;
 pub mod hypothesis;
-mod joint;
 mod motion_of_fit;
 mod pairs;
 pub mod parameter_offsets;
