@@ -52,6 +52,28 @@ fn another_payload_in_one_record_is_said_where_nobody_spoke_of_the_mass() {
 }
 
 #[test]
+fn what_held_out_records_of_something_else_do_not_confirm_is_said_all_the_same() {
+    // Dry friction of 3 N in two records; the third was made on a bench that shakes.
+    let dry = |at: Moment| -3.0 * (at.v / 1e-4).tanh();
+    let shaken = |at: Moment| -3.0 * (at.v / 1e-4).tanh() + 90.0 * (61.0 * at.force).sin();
+    let measured = Measured::stage(3.0);
+    measured.write("other.csv", record_of(&dry, 0.4).as_bytes());
+    measured.write("test.csv", record_of(&shaken, 0.7).as_bytes());
+    let three = DESCRIPTION.replace("[\"train.csv\"]", "[\"train.csv\", \"other.csv\"]");
+    measured.write("dataset.toml", three.as_bytes());
+    let (result, _) = measured.answered("discover", "shaken");
+    assert_eq!(result["verdict"], "unexplained", "{result:#}");
+    let found = notes(&result);
+    for said in [
+        "with coulomb_friction on q",
+        "do not confirm it",
+        "test[0] does not go with train[0], train[1]",
+    ] {
+        assert!(found.contains(said), "{said}: {found}");
+    }
+}
+
+#[test]
 fn a_search_that_is_cut_off_leaves_what_is_known() {
     let measured = Measured::stage(3.0);
     let arguments = measured.arguments("discover", "cut");

@@ -42,16 +42,18 @@ pub fn contradictions(problem: &EstimationProblem<'_>, fit: &Fit, floor: f64) ->
 
 /// Whether records could still contradict each other, whatever so many more came to alone.
 fn may_contradict(records: &[Alone], more: usize, floor: f64) -> bool {
-    let count = |is: &dyn Fn(&Alone) -> bool| records.iter().filter(|of| is(of)).count();
-    let of_its_own = count(&is_better_alone);
-    let explained = count(&|record| is_explained(record, floor));
-    let odd = count(&|record| is_odd(record, floor));
-    // Two that have values of their own, or an odd one among more that are explained.
-    let may_be_odd = match odd {
-        0 => more > 0 && explained + more > 2,
-        odd => explained + more > odd,
-    };
-    of_its_own + more > 1 || may_be_odd
+    let of_its_own = records.iter().filter(|record| is_better_alone(record));
+    if of_its_own.count() + more > 1 {
+        return true;
+    }
+    // Those that are still to come leave nothing alone, or as much as can be.
+    let known: Vec<f64> = records.iter().map(|record| record.rms).collect();
+    (0..=more).any(|odd| {
+        let come = [vec![0.0; more - odd], vec![f64::INFINITY; odd]].concat();
+        !Oddness::of(&[known.clone(), come].concat(), floor)
+            .odd
+            .is_empty()
+    })
 }
 
 /// Whether a record is explained much better alone than with the others.
@@ -59,44 +61,62 @@ fn is_better_alone(record: &Alone) -> bool {
     record.rms.is_finite() && record.rms * thresholds::CONTRADICTS < record.together
 }
 
-/// Whether a record alone leaves no more than a right model would.
-fn is_explained(record: &Alone, floor: f64) -> bool {
-    record.rms < thresholds::CLOSE * floor
+/// Which of some records the others do not go with, by what each leaves alone.
+struct Oddness {
+    /// Places of those that leave much more than most do; none where they are as many as the others.
+    odd: Vec<usize>,
+    /// Places of those that are explained as most are.
+    explained: Vec<usize>,
 }
 
-/// Whether a record alone leaves much.
-fn is_odd(record: &Alone, floor: f64) -> bool {
-    record.rms > thresholds::MUCH_IS_LEFT * floor
-}
-
-/// Records that leave much alone where others leave no more than a right model would.
-fn odd(problem: &EstimationProblem<'_>, fit: &Fit, alone: &[Alone], floor: f64) -> Vec<String> {
-    let such = |is: fn(&Alone, f64) -> bool| alone.iter().filter(move |record| is(record, floor));
-    let explained: Vec<&Alone> = such(is_explained).collect();
-    let odd: Vec<&Alone> = such(is_odd).collect();
-    // What is missing may show in a few records only; that most show it contradicts nothing.
-    if odd.len() >= explained.len() {
-        return Vec::new();
+impl Oddness {
+    /// Of what records leave alone, in standard deviations. What is missing in a model leaves something
+    /// of each: much is much more than the median, or than a right model leaves.
+    fn of(alone: &[f64], floor: f64) -> Self {
+        let mut sorted = alone.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        let median = sorted.get(sorted.len().saturating_sub(1) / 2);
+        let usual = median.map_or(floor, |median| median.max(floor));
+        let such = |is: &dyn Fn(f64) -> bool| {
+            let places = 0..alone.len();
+            places.filter(|place| is(alone[*place])).collect()
+        };
+        let explained: Vec<usize> = such(&|rms| rms < thresholds::CLOSE * usual);
+        let odd: Vec<usize> = such(&|rms| rms > thresholds::MUCH_IS_LEFT * usual);
+        // What is missing may show in a few records only; that most show it contradicts nothing.
+        match odd.len() < explained.len() {
+            true => Self { odd, explained },
+            false => Self {
+                odd: Vec::new(),
+                explained,
+            },
+        }
     }
-    let names = |records: &[&Alone]| {
-        let names = records.iter().map(|record| record.name.as_str());
-        names.collect::<Vec<&str>>().join(", ")
-    };
-    let sentence = |record: &&Alone| {
+}
+
+/// Records that leave much alone where most others leave little.
+fn odd(problem: &EstimationProblem<'_>, fit: &Fit, alone: &[Alone], floor: f64) -> Vec<String> {
+    let left: Vec<f64> = alone.iter().map(|record| record.rms).collect();
+    let Oddness { odd, explained } = Oddness::of(&left, floor);
+    let names: Vec<&str> = (explained.iter())
+        .map(|place| alone[*place].name.as_str())
+        .collect();
+    let most = explained
+        .iter()
+        .map(|place| left[*place])
+        .fold(0.0, f64::max);
+    let sentence = |place: &usize| {
+        let record = &alone[*place];
         let by = explaining(problem, fit, record, floor);
         let by = match by.is_empty() {
             true => String::new(),
             false => format!(" Alone it is explained by {}.", by.join(", or by ")),
         };
         format!(
-            "{} does not go with {}: fitted alone, these leave at most {:.1} standard deviations, and it leaves {:.1}.{by} Was it \
+            "{} does not go with {}: fitted alone, these leave at most {most:.1} standard deviations, and it leaves {:.1}.{by} Was it \
              measured on the same machine, with the same payload?",
             record.name,
-            names(&explained),
-            explained
-                .iter()
-                .map(|record| record.rms)
-                .fold(0.0, f64::max),
+            names.join(", "),
             record.rms
         )
     };
@@ -185,7 +205,7 @@ fn said(fit: &Fit, name: &str, place: usize, a: &Alone, b: &Alone) -> String {
 }
 
 /// An estimate and its standard deviation, SI, in a parameter's unit.
-fn stated(parameter: Option<&Parameter>, (value, sd): (f64, f64)) -> String {
+pub(crate) fn stated(parameter: Option<&Parameter>, (value, sd): (f64, f64)) -> String {
     match parameter {
         Some(p) => format!(
             "{:.3e} +- {:.1e} {}",
@@ -215,9 +235,24 @@ mod tests {
     /// Whether what was found of all records is a contradiction, but for their values.
     fn contradicts(records: &[Alone]) -> bool {
         let own = records.iter().filter(|of| is_better_alone(of)).count();
-        let explained = records.iter().filter(|of| is_explained(of, 1.0)).count();
-        let odd = records.iter().filter(|of| is_odd(of, 1.0)).count();
-        own > 1 || (odd > 0 && odd < explained)
+        let left: Vec<f64> = records.iter().map(|of| of.rms).collect();
+        own > 1 || !Oddness::of(&left, 1.0).odd.is_empty()
+    }
+
+    #[test]
+    fn a_record_is_odd_that_leaves_much_more_than_most() {
+        let odd = |alone: &[f64]| Oddness::of(alone, 1.0).odd;
+        let none: [usize; 0] = [];
+        assert_eq!(odd(&[1.0, 1.1, 9.0]), [2]);
+        assert_eq!(odd(&[1.8, 14.6, 2.8]), [1]);
+        assert_eq!(odd(&[1.0, 9.0]), none);
+        assert_eq!(
+            odd(&[5.0, 7.0, 14.0]),
+            none,
+            "something is missing in all of them"
+        );
+        assert_eq!(odd(&[1.0, 1.0, 9.0, 9.0]), none);
+        assert_eq!(odd(&[]), none);
     }
 
     #[test]

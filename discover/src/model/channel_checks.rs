@@ -8,14 +8,21 @@ use crate::thresholds;
 use eomgen_records::Refusal;
 
 /// Factors between units that are often taken for each other.
-const FACTORS: [(f64, &str); 6] = [
-    (1e3, "a thousand times"),
-    (1e-3, "a thousandth of"),
-    (1e6, "a million times"),
-    (1e-6, "a millionth of"),
-    (57.295_779_513, "as if degrees were given, "),
-    (0.017_453_292_52, "as if radians were given for degrees, "),
+const FACTORS: [(f64, &str, &str); 6] = [
+    (1e3, "a thousand times", ""),
+    (1e-3, "a thousandth of", ""),
+    (1e6, "a million times", ""),
+    (1e-6, "a millionth of", ""),
+    (57.295_779_513, "57.3 times", ", as degrees are of radians"),
+    (0.017_453_292_52, "1/57.3 of", ", as radians are of degrees"),
 ];
+
+/// A factor that lies between units, in words, of what is expected.
+pub(crate) fn factor_of_units(factor: f64, expected: &str) -> Option<String> {
+    let is_near = |unit: f64| (factor / unit - 1.0).abs() < thresholds::AGREES;
+    let (_, times, as_units) = FACTORS.iter().find(|(unit, _, _)| is_near(*unit))?;
+    Some(format!("{times} {expected}{as_units}"))
+}
 
 /// Looks at the columns of the first training record; returns what is worth a remark.
 ///
@@ -60,12 +67,9 @@ pub fn check(problem: &EstimationProblem<'_>, text: &str) -> Result<Vec<String>,
                     .to_owned(),
             );
         }
-        let is = |factor: f64| (own.factor / factor - 1.0).abs() < thresholds::AGREES;
         if own.correlation > thresholds::FOLLOWS {
-            if let Some((_, words)) = FACTORS.iter().find(|(factor, _)| is(*factor)) {
-                return refuse(format!(
-                    "its column is {words} what the model expects; is its unit right?"
-                ));
+            if let Some(words) = factor_of_units(own.factor, "what the model expects") {
+                return refuse(format!("its column is {words}; is its unit right?"));
             }
             if (own.factor - 1.0).abs() < thresholds::NEAR_ONE {
                 continue;
@@ -146,7 +150,20 @@ fn without_line(pairs: &[(f64, f64)]) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Correspondence, without_line};
+    use super::{Correspondence, factor_of_units, without_line};
+
+    #[test]
+    fn a_factor_between_units_is_known_and_no_other() {
+        let words = |factor: f64| factor_of_units(factor, "that");
+        assert_eq!(words(998.5).as_deref(), Some("a thousand times that"));
+        assert_eq!(
+            words(0.01742).as_deref(),
+            Some("1/57.3 of that, as radians are of degrees")
+        );
+        for other in [1.0, -1e3, 900.0, 60.0, 0.0, f64::NAN] {
+            assert_eq!(words(other), None, "{other}");
+        }
+    }
 
     #[test]
     fn a_line_is_taken_out_and_nothing_else() {

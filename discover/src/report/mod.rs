@@ -2,7 +2,7 @@
 //! [`result`] put together in `discovery`, where model and records disagree ([`location`]), the
 //! specification with what was found ([`write_back`]) run again ([`mod@resimulation`]); how sure it is
 //! (`left`) and the answer in two sentences (`summary`); documents (`json`) and the page (`page`) with its `pictures` and what was measured over what is simulated
-//! (`overlay`), how numbers are written there (`quantity`), and what was found, to be moved in the page (`playback`), and what to play next (`experiment`).
+//! (`overlay`), how numbers are written there (`quantity`), sizes that look like a wrong unit (`units`), and what was found, to be moved in the page (`playback`), and what to play next (`experiment`).
 
 mod discovery;
 mod experiment;
@@ -19,4 +19,5 @@ pub mod resimulation;
 pub mod result;
 pub mod run;
 mod summary;
+mod units;
 pub mod write_back;

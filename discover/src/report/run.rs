@@ -9,10 +9,11 @@ use crate::empirical::unnamed;
 use crate::error::DiscoverError;
 use crate::experiment::experiments;
 use crate::experiment::next::Experiments;
-use crate::fit::contradiction::contradictions;
+use crate::fit::contradiction::{contradictions, stated};
 use crate::fit::fitted::Fit;
 use crate::fit::noise_floor::{NoiseFloor, noise_floor};
 use crate::fit::null_model::null_fit;
+use crate::ids::UnknownId;
 use crate::model::channel_checks;
 use crate::model::input_faults::with_declared;
 use crate::model::problem::EstimationProblem;
@@ -30,12 +31,14 @@ use crate::report::pictures::{figures, force_section};
 use crate::report::playback::Playback;
 use crate::report::resimulation::resimulated;
 use crate::report::result::{Compared, Comparison, Discovery, Nuisance, Pictures, Verdict};
+use crate::report::units::notes_of_units;
 use crate::report::write_back::extended;
 use crate::residual_force::residual_force;
 use crate::residual_force::types::ResidualForce;
 use crate::residual_force::wording::described_after;
 use crate::search::context::Context;
 use crate::search::search;
+use crate::search::unconfirmed::Unconfirmed;
 
 /// Is told, line by line, what is being done.
 pub type Progress<'p> = dyn Fn(&str) + Sync + 'p;
@@ -193,6 +196,10 @@ pub fn discover_until(
         &problem.dataset.inputs,
         null.model.specification(),
     ));
+    for note in notes_of_units(&problem, &found) {
+        progress(&format!("note: {note}"));
+        notes.push(note);
+    }
     if let Some(unfinished) = &found.unfinished {
         let most = stop.most().map_or(0.0, |most| most.as_secs_f64());
         let note = format!("the search was ended by its limit of {most} s: {unfinished}");
@@ -201,7 +208,16 @@ pub fn discover_until(
     }
     // Each record alone takes as long as all together: not after a limit.
     if found.unfinished.is_none() {
-        notes.extend(contradicting(&problem, best, floor.rms, progress));
+        // What has no name explains the records instead.
+        let unconfirmed = found.unconfirmed.as_ref();
+        let unconfirmed = unconfirmed.filter(|_| found.last.is_none());
+        if let Some(of) = unconfirmed {
+            let note = note_of_unconfirmed(of, null, floor.rms);
+            progress(&format!("note: {note}"));
+            notes.push(note);
+        }
+        let fit = unconfirmed.map_or(best, |of| &of.fit);
+        notes.extend(contradicting(&problem, fit, floor.rms, progress));
     }
     stop.check()?;
     let is_sure =
@@ -239,6 +255,39 @@ pub fn discover_until(
             pictures,
         },
     })
+}
+
+/// What training records speak for and held-out ones do not, in a sentence. What comes behind it holds
+/// with that in the model.
+fn note_of_unconfirmed(of: &Unconfirmed, null: &Fit, floor: f64) -> String {
+    let Unconfirmed { label, own, fit } = of;
+    let sizes: Vec<String> = own.iter().map(|id| size(fit, *id, floor)).collect();
+    format!(
+        "with {label} ({}) {:.1} standard deviations are left of the training records in place of {:.1}; the test records do not \
+         confirm it: {:.1} in place of {:.1}. They may lack something else, or come from another machine",
+        sizes.join(", "),
+        fit.train.rms,
+        null.train.rms,
+        fit.test.rms,
+        null.test.rms
+    )
+}
+
+/// An unknown of a fit with its standard deviation, in its parameter's unit.
+fn size(fit: &Fit, id: UnknownId, floor: f64) -> String {
+    let unknown = &fit.unknowns[id];
+    let (estimate, sd) = (
+        fit.train.estimate.theta[id],
+        fit.sd_beside_misfit(id, floor),
+    );
+    let value = unknown.what.stated(estimate);
+    let name = unknown.what.parameter().unwrap_or(&unknown.label);
+    let mut parameters = fit.model.specification().parameters.iter();
+    let parameter = parameters.find(|parameter| parameter.name == name);
+    format!(
+        "`{name}` = {}",
+        stated(parameter, (value, (sd * value / estimate).abs()))
+    )
 }
 
 /// Which records contradict each other. `progress` is told.

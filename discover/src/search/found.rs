@@ -4,6 +4,7 @@ use crate::catalogue::candidate::Candidate;
 use crate::fit::fitted::Fit;
 use crate::ids::UnknownId;
 use crate::search::acceptance::TestStatistics;
+use crate::search::unconfirmed::Unconfirmed;
 
 /// An effect that was accepted.
 #[derive(Clone, Debug)]
@@ -53,6 +54,8 @@ pub struct Found {
     pub accepted: Vec<Accepted>,
     /// What was not.
     pub rejected: Vec<Rejected>,
+    /// What explains the training records further, where held-out ones do not confirm it.
+    pub unconfirmed: Option<Unconfirmed>,
     /// What is known of a round that the time did not suffice for, in a sentence.
     pub unfinished: Option<String>,
 }

@@ -5,7 +5,7 @@
 //! [`mod@variational_response`] or [`mod@perturbed_response`] ([`mod@responses`] chooses),
 //! [`screening`], [`acceptance`], [`split_sample`]; `motion_of_fit`, [`context`], [`pool`], [`hypothesis`], [`fitted`];
 //! `shape_restarts`, `singles`, `pairs`; [`tested`], [`parameter_offsets`], [`selected`],
-//! `alternatives`; `excitation_window`, `dropped_priors`, `round`, `answer`, `unfinished`;
+//! `alternatives`; `excitation_window`, `dropped_priors`, `round`, `answer`, `unfinished`, [`mod@unconfirmed`];
 //! [`found`], `rejected`, [`backward_elimination`].
 
 pub mod acceptance;
@@ -34,6 +34,7 @@ mod shape_restarts;
 mod singles;
 pub mod split_sample;
 pub mod tested;
+pub mod unconfirmed;
 mod unfinished;
 pub mod variational_response;
 
@@ -50,6 +51,7 @@ use crate::search::found::{Accepted, Found, TestGap};
 use crate::search::rejected::note_rejected;
 use crate::search::round::Round;
 use crate::search::selected::Selected;
+use crate::search::unconfirmed::unconfirmed;
 use crate::search::unfinished::unfinished;
 use crate::thresholds;
 
@@ -70,6 +72,7 @@ pub fn search(
         last: None,
         accepted: Vec::new(),
         rejected: Vec::new(),
+        unconfirmed: None,
         unfinished: None,
     };
     while found.accepted.len() < thresholds::MOST_EFFECTS {
@@ -92,7 +95,7 @@ pub fn search(
             is_first: found.accepted.is_empty(),
             effects,
         };
-        let tested = round.round();
+        let mut tested = round.round();
         let so_far = unfinished(&tested);
         if problem.stop.is_late() {
             found.unfinished = Some(so_far);
@@ -100,12 +103,14 @@ pub fn search(
         }
         problem.stop.check()?;
         note_rejected(&mut found.rejected, &tested);
+        let unconfirmed = unconfirmed(&mut tested, fit);
         let selected = answer(&round, tested);
         if problem.stop.is_late() {
             found.unfinished = Some(so_far);
             break;
         }
         let Some(selected) = selected else {
+            found.unconfirmed = unconfirmed;
             break;
         };
         accept(&mut found, selected);

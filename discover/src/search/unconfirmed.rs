@@ -1,0 +1,57 @@
+//! What the training records speak for, and the held-out ones do not.
+
+use crate::fit::fitted::Fit;
+use crate::ids::UnknownId;
+use crate::search::fitted::FittedHypothesis;
+use crate::search::rejection::Rejection;
+use crate::search::tested::TestedPool;
+use crate::thresholds;
+
+/// A hypothesis that explains training records, and that held-out records do not confirm.
+pub struct Unconfirmed {
+    /// What it holds, in words.
+    pub label: String,
+    /// Its unknowns in the fit with it.
+    pub own: Vec<UnknownId>,
+    /// The fit with it.
+    pub fit: Fit,
+}
+
+/// Of a round in which nothing was accepted the hypothesis that leaves least of the training records, if they
+/// speak for it and nothing but the held-out records speaks against it. `before`: the fit without it.
+pub fn unconfirmed(tested: &mut [TestedPool], before: &Fit) -> Option<Unconfirmed> {
+    let accepted = |pool: &TestedPool| {
+        let mut fitted = pool.fitted_hypotheses.iter();
+        fitted.any(|fitted| fitted.verdict.is_ok())
+    };
+    if tested.iter().any(accepted) {
+        return None;
+    }
+    let found = tested.iter().enumerate().flat_map(|(pool, of)| {
+        let fitted = of.fitted_hypotheses.iter().enumerate();
+        let such = fitted.filter(|(_, fitted)| is_unconfirmed(fitted, before));
+        such.map(move |(place, fitted)| (pool, place, fitted.fit.train.rms))
+    });
+    let (pool, place, _) = found.min_by(|a, b| a.2.total_cmp(&b.2))?;
+    let pool = &mut tested[pool];
+    let fitted = pool.fitted_hypotheses.swap_remove(place);
+    let labels = fitted.responses.iter().map(|response| {
+        let candidate = pool.screening.responses[*response].candidate;
+        pool.candidates[candidate].label()
+    });
+    Some(Unconfirmed {
+        label: labels.collect::<Vec<String>>().join(" and "),
+        own: fitted.own.iter().map(|own| own.unknown).collect(),
+        fit: fitted.fit,
+    })
+}
+
+/// Whether a hypothesis was rejected by the held-out records alone, and takes a half of what is left of
+/// the training records.
+fn is_unconfirmed(fitted: &FittedHypothesis, before: &Fit) -> bool {
+    let by_held_out = matches!(
+        fitted.verdict,
+        Err(Rejection::HeldOut(_) | Rejection::StandardErrors(_))
+    );
+    by_held_out && fitted.fit.train.rms * thresholds::CONTRADICTS < before.train.rms
+}
