@@ -82,6 +82,8 @@ pub enum SimulationError {
     Solver(SolveError),
     /// The motion grows beyond all bounds.
     Unbounded,
+    /// The records give the motion, but not that of all states.
+    NotGiven,
     /// Somebody asked to stop.
     Stopped,
 }
@@ -93,6 +95,7 @@ impl fmt::Display for SimulationError {
             Self::Propagator(error) => error.fmt(f),
             Self::Integrator(reason) => f.write_str(reason),
             Self::Solver(error) => error.fmt(f),
+            Self::NotGiven => f.write_str("the records do not give the motion of all its states"),
             Self::Unbounded => f.write_str("the motion grows beyond all bounds"),
             Self::Stopped => f.write_str(STOPPED),
         }

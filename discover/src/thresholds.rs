@@ -521,6 +521,11 @@ pub const SEPARATES: f64 = 3.0;
 /// The most samples of an experiment of which nobody said how long it lasts: a hundred of it are simulated.
 pub const EXPERIMENT_SAMPLES: f64 = 4000.0;
 
+/// The most steps that a solver with error control may take from sample to sample of an experiment, and the most
+/// surfaces that a motion may cross there, on average: of a hundred inputs those that take more, as where a load
+/// holds a machine by friction, are not worth minutes. Teeth that rattle cross a few.
+pub const EXPERIMENT_STEPS: usize = 20;
+
 /// Sizes of an input that are tried, in parts of its range: what moves far leaves its limits at the
 /// larger ones.
 pub const EXPERIMENT_SIZES: [f64; 6] = [1.0, 0.5, 0.25, 0.1, 0.05, 0.02];
@@ -562,3 +567,11 @@ pub const REFIT_STEPS: usize = 30;
 
 /// And parts of a step, until it helps.
 pub const REFIT_PARTS: [f64; 4] = [1.0, 0.5, 0.2, 0.05];
+
+/// Steps of Newton's method to the inputs that a given motion takes: one where second rates are linear in
+/// them, a few more where a drive saturates.
+pub const REQUIRED_STEPS: usize = 12;
+
+/// By how much second rates may be off at these inputs, in parts of themselves: far more than rounding
+/// makes of a regular system, far less than any sensor shows.
+pub const REQUIRED_ERROR: f64 = 1e-9;

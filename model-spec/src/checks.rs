@@ -35,12 +35,14 @@ pub fn check_sensors(model: &Model, found: &mut Diagnostics) {
     );
     channels.extend(rates.chain(accelerations));
     channels.extend(model.states.iter().map(|state| state.name.clone()));
+    // What a motion takes that a record gives.
+    channels.extend(model.inputs.iter().map(|input| input.name.clone()));
     for sensor in &model.sensors {
         if !channels.contains(&sensor.observable) {
             let message = format!("no quantity {} to be measured", quoted(&sensor.observable));
             let near = did_you_mean(&sensor.observable, channels.iter().map(String::as_str));
             let rule = "a channel is an observable, a coordinate, its rate (NAME_dot) or acceleration \
-                        (NAME_ddot), or a state";
+                        (NAME_ddot), a state, or an input";
             found.push(
                 Diagnostic::error(message)
                     .at(sensor.span, "not a channel of this model")

@@ -272,11 +272,23 @@ fn symbol_named(symbol: &str) -> Result<Parsed, UnitError> {
         "h" => Scale::fraction(3600, 1).map(|scale| (Dimension::TIME, scale)),
         _ => prefixed(symbol, 0),
     };
-    let found = whole.or_else(|| {
-        let mut candidates = PREFIXES.iter();
-        candidates.find_map(|(prefix, power)| prefixed(symbol.strip_prefix(prefix)?, *power))
-    });
+    let found = whole.or_else(|| behind_prefix(symbol));
     found.ok_or_else(|| unknown(symbol))
+}
+
+fn behind_prefix(symbol: &str) -> Option<Parsed> {
+    let mut candidates = PREFIXES.iter();
+    candidates.find_map(|(prefix, power)| prefixed(symbol.strip_prefix(prefix)?, *power))
+}
+
+/// Two units that are written as one word, parted.
+fn parted(symbol: &str) -> Option<String> {
+    let is_unit = |part: &str| prefixed(part, 0).is_some() || behind_prefix(part).is_some();
+    let mut ends = symbol.char_indices().skip(1);
+    ends.find_map(|(end, _)| {
+        let (one, other) = symbol.split_at(end);
+        (is_unit(one) && is_unit(other)).then(|| format!("{one} {other}"))
+    })
 }
 
 fn prefixed(symbol: &str, prefix_power: i32) -> Option<Parsed> {
@@ -289,11 +301,14 @@ fn unknown(symbol: &str) -> UnitError {
     let help = match symbol {
         "rpm" => "give the speed in rad/s: 1 rpm is 2 pi/60 rad/s".to_owned(),
         "°" => "write deg".to_owned(),
-        "Nm" => "factors are parted by a space: N m".to_owned(),
+        "Nms" => "factors are parted by a space: N m s".to_owned(),
         "Kg" => "the kilogram is written kg".to_owned(),
         "sec" => "the second is written s".to_owned(),
         _ if symbol.starts_with(['µ', 'μ']) => "micro is written u: um".to_owned(),
-        _ => "known are SI units with prefixes, joined as in N s/m or kg m^2".to_owned(),
+        _ => match parted(symbol) {
+            Some(parted) => format!("factors are parted by a space: {parted}"),
+            None => "known are SI units with prefixes, joined as in N s/m or kg m^2".to_owned(),
+        },
     };
     UnitError::new(format!("unknown unit `{symbol}`"), Some(help))
 }
@@ -358,7 +373,9 @@ mod tests {
         for (text, message, help) in [
             ("N/m s", "ambiguous", "N/(m s) or N s/m"),
             ("kg/m/s", "at most one `/`", "kg/(m s)"),
-            ("Nm", "unknown unit `Nm`", "N m"),
+            ("Nm", "unknown unit `Nm`", "space: N m"),
+            ("mNm", "unknown unit `mNm`", "space: mN m"),
+            ("Nms", "unknown unit `Nms`", "space: N m s"),
             ("furlong", "unknown unit", "SI units"),
             ("rpm", "unknown unit", "rad/s"),
             ("µm", "unknown unit", "um"),

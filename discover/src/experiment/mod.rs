@@ -47,13 +47,18 @@ pub fn experiments(context: Context<'_>, found: &Found) -> Experiments {
     let inputs: Vec<String> = inputs.iter().map(|input| input.name.clone()).collect();
     let bounds = Bounds::of(problem, &inputs);
     let times = bounds.times();
-    let too_short = bounds.too_short(problem.dataset.window);
-    let family = match too_short {
+    let impossible = match problem.dataset.gives_motion() {
+        true => Some(
+            "the motion is given: which other motion would tell more is not computed".to_owned(),
+        ),
+        false => bounds.too_short(problem.dataset.window),
+    };
+    let family = match impossible {
         Some(_) => Vec::new(),
         None => Proposal::family(&bounds, &times),
     };
     let plan = Plan {
-        too_short,
+        impossible,
         context,
         inputs,
         units,
@@ -81,8 +86,8 @@ struct Plan<'r> {
     /// The SI unit of each.
     units: Vec<String>,
     bounds: Bounds,
-    /// Why nothing of these bounds is a record, if so.
-    too_short: Option<String>,
+    /// Why nothing of these bounds can be played, if so.
+    impossible: Option<String>,
     times: Vec<f64>,
     family: Vec<Proposal>,
 }
@@ -90,7 +95,7 @@ struct Plan<'r> {
 impl Plan<'_> {
     /// No experiment, where nothing can be played at all.
     fn none(&self) -> Option<NextExperiment> {
-        let reason = match (&self.too_short, self.family.is_empty()) {
+        let reason = match (&self.impossible, self.family.is_empty()) {
             (Some(reason), _) => reason.clone(),
             (None, true) => NoExperiment::NoInput.to_string(),
             (None, false) => return None,

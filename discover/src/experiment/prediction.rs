@@ -13,6 +13,7 @@ use crate::fit::shooting::{Sensors, Shooting};
 use crate::model::estimation_model::EstimationModel;
 use crate::model::problem::EstimationProblem;
 use crate::model::simulation::{Motion, Simulation};
+use crate::thresholds;
 
 /// A record that an experiment is predicted to leave, without noise.
 #[derive(Clone, Debug)]
@@ -89,6 +90,7 @@ impl<'a> Predictor<'a> {
         let count = self.model.specification().inputs.len();
         let inputs = proposal.inputs(bounds, times, count);
         let output_times = self.problem.output_rate.times(times);
+        (self.simulation).limit(thresholds::EXPERIMENT_STEPS * times.len());
         let motion = (self.simulation).motion(&self.initial, &output_times.times, &inputs);
         let Motion { states, outputs } = motion.map_err(|_| Excluded::Unfollowed)?;
         self.check(bounds, &states, &outputs)?;

@@ -27,10 +27,14 @@ pub fn at_unknowns(
     before: Option<&[Vec<f64>]>,
 ) -> Result<InitialStates, DiscoverError> {
     if !problem.estimates_initial_states() {
-        let read = read_smoothed(shooting.model, shooting.windows, &problem.dataset.channels);
+        let states = match problem.dataset.gives_motion() {
+            // The motion is not the model's.
+            true => vec![shooting.model.initial(); shooting.windows.list.len()],
+            false => read_smoothed(shooting.model, shooting.windows, &problem.dataset.channels)?,
+        };
         return Ok(InitialStates {
             prior: InitialStatePrior::default(),
-            states: read?,
+            states,
         });
     }
     let records = shooting.windows.records.iter();

@@ -10,6 +10,7 @@ use eomgen_model_spec::model::{Model, Parameter, ParameterValue};
 
 use crate::error::SimulationError;
 use crate::ids::{ChannelId, ParameterId};
+use crate::model::given_motion::GivenMotion;
 use crate::model::linear_outputs::LinearOutputs;
 use crate::model::longest_step::LongestStep;
 use crate::model::measured_outputs::MeasuredOutputs;
@@ -281,6 +282,14 @@ impl EstimationModel {
         let mut evaluator = self.compiled.evaluator(values);
         if !evaluator.pivots_are_positive() {
             return Err(SimulationError::MassMatrix);
+        }
+        if !self.measured.inputs().is_empty() {
+            let given = GivenMotion::of(&evaluator, &self.measured);
+            let given = given.ok_or(SimulationError::NotGiven)?;
+            let mut simulation = Simulation::new(&self.measured, evaluator, None, None);
+            simulation.stop = self.stop.clone();
+            simulation.give(given);
+            return Ok(simulation);
         }
         let linear_outputs = LinearOutputs::of(&self.measured, &mut evaluator);
         let longest_step = self.longest_step;

@@ -48,7 +48,7 @@ fn measured(
                 state[degrees + coordinate] = slope;
             }
             Quantity::Rate(coordinate) => state[degrees + coordinate] = value,
-            Quantity::Observable(_) | Quantity::Acceleration(_) => {}
+            Quantity::Observable(_) | Quantity::Acceleration(_) | Quantity::Input(_) => {}
         }
     }
     // Noise may put what is measured beyond where the model lives.

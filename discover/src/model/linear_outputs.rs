@@ -15,10 +15,10 @@ pub struct LinearOutputs {
 
 impl LinearOutputs {
     /// The quantities at an evaluator's parameters; none if they are not linear in the state, or
-    /// depend on more than it. Accelerations are not: what changes a force changes them at once, and not by
+    /// depend on more than it. Inputs that are measured are not, nor accelerations: what changes a force changes them at once, and not by
     /// the state alone.
     pub(crate) fn of(outputs: &MeasuredOutputs, evaluator: &mut Evaluator) -> Option<Self> {
-        if outputs.has_rates() {
+        if outputs.has_rates() || !outputs.inputs().is_empty() {
             return None;
         }
         let n = evaluator.program().states();

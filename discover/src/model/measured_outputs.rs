@@ -14,6 +14,8 @@ pub(crate) enum Output {
     Observable(usize),
     /// The rate of a state, by the state's place.
     Rate(usize),
+    /// An input, by its place.
+    Input(usize),
 }
 
 /// Room for what a model computes beside its states.
@@ -43,6 +45,7 @@ impl MeasuredOutputs {
             Quantity::Coordinate(coordinate) => Output::State(coordinate),
             Quantity::Rate(coordinate) => Output::State(degrees_of_freedom + coordinate),
             Quantity::Acceleration(coordinate) => Output::Rate(degrees_of_freedom + coordinate),
+            Quantity::Input(input) => Output::Input(input),
         });
         Self {
             outputs: outputs.collect(),
@@ -65,6 +68,19 @@ impl MeasuredOutputs {
     pub fn has_rates(&self) -> bool {
         let is_rate = |output: &Output| matches!(output, Output::Rate(_));
         self.outputs.iter().any(is_rate)
+    }
+
+    /// The inputs that are measured: what a motion takes that records give.
+    pub fn inputs(&self) -> Vec<usize> {
+        let mut found = Vec::new();
+        for output in &self.outputs {
+            if let Output::Input(input) = output
+                && !found.contains(input)
+            {
+                found.push(*input);
+            }
+        }
+        found
     }
 
     /// Room for what [`MeasuredOutputs::append`] computes.
@@ -98,6 +114,7 @@ impl MeasuredOutputs {
             Output::State(state) => point.state[state],
             Output::Observable(observable) => buffers.observables[observable],
             Output::Rate(state) => buffers.rates[state],
+            Output::Input(input) => point.inputs[input],
         }));
     }
 }

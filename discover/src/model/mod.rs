@@ -2,11 +2,12 @@
 //! outputs ([`estimation_model`], [`simulation`]), records cut into
 //! [`windows`](eomgen_records::windows), the [`unknowns`] with their priors, inputs that act otherwise than recorded ([`input_faults`]), and the estimation
 //! [`problem`] that all fits to one dataset share. [`channel_checks`] compares columns with what the
-//! model expects of them; [`output_times`] are where quantities are computed; [`smoothing`] has no delay; [`stop`] ends all of it early.
+//! model expects of them; [`output_times`] are where quantities are computed; `given_motion` is what a motion takes that the records give; [`smoothing`] has no delay; [`stop`] ends all of it early.
 
 pub mod channel_checks;
 pub mod estimation_model;
 pub mod first_state;
+pub(crate) mod given_motion;
 pub mod input_faults;
 pub mod input_places;
 pub mod linear_outputs;

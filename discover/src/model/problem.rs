@@ -114,9 +114,9 @@ impl<'d> EstimationProblem<'d> {
         first_state::first_state(model, record, &self.dataset.channels, &self.dataset.initial)
     }
 
-    /// Whether initial states are fitted.
+    /// Whether initial states are fitted: not where they are read from the record, or the motion is given.
     pub fn estimates_initial_states(&self) -> bool {
-        self.dataset.start == Start::Fitted
+        self.dataset.start == Start::Fitted && !self.dataset.gives_motion()
     }
 
     /// The range of each state in the training records. That of a coordinate which a candidate

@@ -1,6 +1,6 @@
 //! A model at fixed parameters as it runs: by the exponential integrator where it has a linear
 //! part, propagated from switch to switch where steps of one length would have to be too short,
-//! otherwise by Runge-Kutta steps or a solver with error control. Measured quantities come along,
+//! otherwise by Runge-Kutta steps or a solver with error control; or as the records give it. Measured quantities come along,
 //! and their derivatives where neighbouring motions do.
 
 use std::cell::RefCell;
@@ -12,6 +12,7 @@ use eomgen_sim::ode::{Settings, simulate};
 use eomgen_sim::piecewise_linear::Propagator;
 
 use crate::error::SimulationError;
+use crate::model::given_motion::GivenMotion;
 use crate::model::linear_outputs::LinearOutputs;
 use crate::model::longest_step::LongestStep;
 use crate::model::measured_outputs::{Buffers, MeasuredOutputs};
@@ -36,6 +37,10 @@ pub struct Simulation<'m> {
     sided: Option<Sided>,
     /// The same for accelerations that are measured.
     resting: Option<Sided>,
+    /// Where records give the motion: what it takes.
+    given: Option<GivenMotion>,
+    /// The most steps of the solver with error control in one motion.
+    most_steps: u64,
     /// Whether to follow no motion any more.
     pub(crate) stop: Stop,
 }
@@ -107,6 +112,8 @@ impl<'m> Simulation<'m> {
             propagator: None,
             sided: None,
             resting: None,
+            given: None,
+            most_steps: thresholds::MOST_SOLVER_STEPS,
             stop: Stop::default(),
         }
     }
@@ -137,6 +144,19 @@ impl<'m> Simulation<'m> {
     /// Takes what surfaces do where they hold a motion, for accelerations that are measured there.
     pub(crate) fn measure_at_rest(&mut self, sided: Option<Sided>) {
         self.resting = sided;
+    }
+
+    /// Takes the motion that records give, in the place of one of its own.
+    pub(crate) fn give(&mut self, given: GivenMotion) {
+        self.given = Some(given);
+    }
+
+    /// Gives up motions that take the solver with error control more steps, or cross more surfaces.
+    pub fn limit(&mut self, most: usize) {
+        self.most_steps = most as u64;
+        if let Some(integrator) = &mut self.integrator {
+            integrator.limit_crossings(most);
+        }
     }
 
     /// Whether the exponential integrator runs it.
@@ -222,6 +242,11 @@ impl<'m> Simulation<'m> {
         if self.stop.is_requested() {
             return Err(SimulationError::Stopped);
         }
+        if let Some(given) = &self.given {
+            let state = |t: &f64| Some(given.state(inputs.held_at(*t))?.to_vec());
+            let states: Option<Vec<Vec<f64>>> = samples.iter().map(state).collect();
+            return states.ok_or(SimulationError::NotGiven);
+        }
         if let Some(integrator) = &mut self.integrator {
             let mut states = Vec::with_capacity(samples.len());
             let options = Options {
@@ -244,7 +269,7 @@ impl<'m> Simulation<'m> {
             return states.ok_or(SimulationError::Unbounded);
         }
         let settings = Settings {
-            max_steps: thresholds::MOST_SOLVER_STEPS,
+            max_steps: self.most_steps,
             max_switch_rate: thresholds::FASTEST_SWITCHING,
             ..Settings::with_tolerance(thresholds::SOLVER_TOLERANCE)
         };
@@ -396,7 +421,19 @@ impl<'m> Simulation<'m> {
             return;
         }
         let inputs = inputs.held_at(t);
-        let (evaluator, point) = (self.evaluator.get_mut(), Point { t, state, inputs });
+        let evaluator = self.evaluator.get_mut();
+        let required = match &mut self.given {
+            None => None,
+            Some(given) => match given.required(evaluator, t, inputs) {
+                Some(required) => Some(required),
+                None => {
+                    values.resize(values.len() + self.measured.count(), f64::NAN);
+                    return;
+                }
+            },
+        };
+        let inputs = required.as_deref().unwrap_or(inputs);
+        let point = Point { t, state, inputs };
         self.measured
             .append(evaluator, point, &mut self.buffers, values);
     }

@@ -8,16 +8,20 @@ use crate::model::smoothing::{sloped, smoothed};
 use eomgen_records::dataset::{Dataset, Quantity};
 
 /// The usual rate of every observable and coordinate that is measured, by its name in the model:
-/// the root mean square of its slope, or of the rate itself where that is measured.
+/// the root mean square of its slope, or of the rate itself where that is measured or given.
 pub fn usual_rates(dataset: &Dataset, model: &Model) -> BTreeMap<String, f64> {
     let record = &dataset.train[0];
     let mut rates = BTreeMap::new();
+    for (place, coordinate) in dataset.motion.iter().enumerate() {
+        let slopes = record.given_rate(place, dataset.motion.len(), model.inputs.len());
+        rates.insert(coordinate.clone(), root_mean_square(&slopes));
+    }
     let channels = dataset.channels.iter().zip(&record.channels);
     for (channel, column) in channels {
         let smooth = smoothed(&record.times, column);
         let (name, slopes) = match channel.quantity {
             // How fast something moves is not known from how its speed changes.
-            Quantity::Acceleration(_) => continue,
+            Quantity::Acceleration(_) | Quantity::Input(_) => continue,
             Quantity::Rate(coordinate) => (&model.coordinates[coordinate].name, smooth),
             Quantity::Observable(observable) => (
                 &model.observables[observable].name,
@@ -28,8 +32,11 @@ pub fn usual_rates(dataset: &Dataset, model: &Model) -> BTreeMap<String, f64> {
                 sloped(&record.times, &smooth),
             ),
         };
-        let square = slopes.iter().map(|s| s * s).sum::<f64>() / slopes.len() as f64;
-        rates.insert(name.clone(), square.sqrt());
+        rates.insert(name.clone(), root_mean_square(&slopes));
     }
     rates
+}
+
+fn root_mean_square(values: &[f64]) -> f64 {
+    (values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64).sqrt()
 }

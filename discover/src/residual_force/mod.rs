@@ -43,6 +43,10 @@ pub fn residual_force(
     fit: &Fit,
     wanted: Option<&str>,
 ) -> Option<ResidualForce> {
+    // What is missing of a motion that is given is a channel's own residual.
+    if problem.dataset.gives_motion() {
+        return None;
+    }
     let equations = Equations::of(problem, fit)?;
     let at = LinearisedFit::of(problem, fit, 1.0);
     let of = Linearisation {

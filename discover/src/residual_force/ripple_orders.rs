@@ -18,7 +18,10 @@ use eomgen_records::samples::typical_step;
 /// best first: those of which the motion goes through a period, and which its samples resolve.
 /// Nothing where neighbouring motions cannot be followed.
 pub fn ripple_orders(problem: &EstimationProblem<'_>, fit: &Fit) -> BTreeMap<String, Vec<u32>> {
-    spectrum(problem, fit).unwrap_or_default()
+    match problem.dataset.gives_motion() {
+        true => BTreeMap::new(),
+        false => spectrum(problem, fit).unwrap_or_default(),
+    }
 }
 
 fn spectrum(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<BTreeMap<String, Vec<u32>>> {

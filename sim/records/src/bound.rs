@@ -4,6 +4,7 @@ use crate::description::Description;
 use crate::description::columns::{ChannelColumn, ColumnKey, InputColumn, Prior};
 use crate::description::motion::InitialState;
 use crate::experiment::{self, ExperimentBounds, Played};
+use crate::given_motion;
 use crate::units::unit;
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
 use eomgen_model_spec::dimension::Dimension;
@@ -28,6 +29,8 @@ pub struct Bound<'d> {
     pub inputs: Vec<Option<(&'d ColumnKey, Unit)>>,
     /// What is known of how inputs act, where the file says so.
     pub input_priors: Vec<InputPriors>,
+    /// Where the motion is given, for each coordinate of the model its column and the column's unit.
+    pub motion: Vec<(&'d ColumnKey, Unit)>,
     /// The channels.
     pub channels: Vec<Channel>,
     /// The unit of each channel's column.
@@ -53,12 +56,16 @@ pub fn bound<'d>(description: &'d Description, model: &Model) -> Result<Bound<'d
     let time = found.keep(time_unit(description));
     let inputs = inputs(description, model, &mut found);
     let input_priors = input_priors(description, model, &mut found);
+    let motion = given_motion::columns(description, model, &mut found);
     let (mut channels, mut channel_units) = (Vec::new(), Vec::new());
     for entry in &description.channels {
-        if let Some((channel, unit)) = found.keep(channel(entry, model)) {
+        if let Some((channel, unit)) = found.keep(channel(entry, description, model)) {
             channels.push(channel);
             channel_units.push(unit);
         }
+    }
+    if !description.motion.is_empty() {
+        given_motion::required_inputs(description, &channels, model, &mut found);
     }
     let initial = initial(&description.initial, model, &mut found);
     let mut uncertain = Vec::new();
@@ -79,6 +86,7 @@ pub fn bound<'d>(description: &'d Description, model: &Model) -> Result<Bound<'d
             time,
             inputs,
             input_priors,
+            motion,
             channels,
             channel_units,
             initial,
@@ -176,7 +184,11 @@ fn lists(description: &Description, found: &mut Diagnostics) {
     }
 }
 
-fn channel(entry: &ChannelColumn, model: &Model) -> Result<(Channel, Unit), Diagnostic> {
+fn channel(
+    entry: &ChannelColumn,
+    description: &Description,
+    model: &Model,
+) -> Result<(Channel, Unit), Diagnostic> {
     let (asked, span) = match &entry.observable {
         Some(written) => (&written.text, written.span),
         None => (&entry.name.text, entry.name.span),
@@ -184,17 +196,26 @@ fn channel(entry: &ChannelColumn, model: &Model) -> Result<(Channel, Unit), Diag
     let (quantity, expected) = quantity(model, asked).ok_or_else(|| {
         let known = || {
             let observables = model.observables.iter().map(|o| o.name.as_str());
-            observables.chain(model.coordinates.iter().map(|c| c.name.as_str()))
+            let inputs = model.inputs.iter().map(|input| input.name.as_str());
+            let inputs = inputs.filter(|_| !description.motion.is_empty());
+            let coordinates = model.coordinates.iter().map(|c| c.name.as_str());
+            let coordinates = coordinates.filter(|_| description.motion.is_empty());
+            observables.chain(coordinates).chain(inputs)
         };
         let listed: Vec<&str> = known().collect();
         let listed = format!("it has {}", listed.join(", "));
         Diagnostic::error(format!(
-            "the model has no observable or coordinate {}",
+            "the model has no {} {}",
+            match description.motion.is_empty() {
+                true => "observable or coordinate",
+                false => "observable or input",
+            },
             quoted(asked)
         ))
         .at(span, "this channel measures nothing")
         .help(did_you_mean(asked, known()).unwrap_or(listed))
     })?;
+    given_motion::admitted(quantity, !description.motion.is_empty(), asked, span)?;
     let unit = unit(&entry.column.unit, &expected)?;
     let noise = unit.to_si(entry.noise.value);
     if !(noise.is_finite() && noise > 0.0) {
@@ -212,6 +233,7 @@ fn channel(entry: &ChannelColumn, model: &Model) -> Result<(Channel, Unit), Diag
             Quantity::Observable(_) | Quantity::Coordinate(_) => asked.clone(),
             Quantity::Rate(place) => format!("{}_dot", model.coordinates[place].name),
             Quantity::Acceleration(place) => format!("{}_ddot", model.coordinates[place].name),
+            Quantity::Input(place) => model.inputs[place].name.clone(),
         },
         quantity,
         unit: expected,
@@ -242,6 +264,10 @@ fn quantity(model: &Model, name: &str) -> Option<(Quantity, String)> {
     if let Some(place) = model.coordinates.iter().position(|c| c.name == name) {
         let unit = model.coordinates[place].unit.text.clone();
         return Some((Quantity::Coordinate(place), unit));
+    }
+    if let Some(place) = model.inputs.iter().position(|input| input.name == name) {
+        let unit = model.inputs[place].unit.text.clone();
+        return Some((Quantity::Input(place), unit));
     }
     let of = |name: &str| model.coordinates.iter().position(|c| c.name == name);
     let unit = |place: usize| &model.coordinates[place].unit.text;

@@ -65,7 +65,7 @@ fn long_enough(length: Number, record: &Record) -> Result<(), Diagnostic> {
     ))
     .at(
         length.span,
-        format!("its samples are {step:.3e} s apart; expected a longer window"),
+        format!("its samples are {step:.3e} s apart; expected a longer window, or another unit of [time]"),
     ))
 }
 

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::path::Path;
 
 use csv::{ByteRecord, Position, Reader, ReaderBuilder};
+use eomgen_model_spec::unit::Unit;
 
 use crate::description::columns::ColumnKey;
 use crate::description::format::{Format, Separator};
@@ -90,6 +91,17 @@ impl<'t> TextFile<'t> {
         }
         file.first_line = file.line();
         file.header = file.cells();
+        let are_numbers = |cells: &[String]| {
+            let is_number = |cell: &String| parsed(cell, format.decimal).is_some();
+            cells.len() > 1 && cells.iter().all(is_number)
+        };
+        if format.names && are_numbers(&file.header) {
+            return Err(Refusal::line(
+                path,
+                file.first_line,
+                "numbers stand where the columns' names are expected; write names = false in [format], and columns by their numbers",
+            ));
+        }
         if !format.names {
             file.header = (1..=file.record.len()).map(|n| n.to_string()).collect();
         }
@@ -196,6 +208,9 @@ fn number(path: &Path, line: u64, cell: &[u8], place: usize, decimal: u8) -> Res
     let help = match (is_other, other) {
         (true, ',') => "; write decimal = \",\" in [format] if commas begin its fractions",
         (true, _) => ": decimal = \",\" stands in [format], so a point has no place in it",
+        (false, _) if Unit::parse(&cell).is_ok() => {
+            "; write units = true in [format] where a line of units stands behind that of the names"
+        }
         (false, _) => "",
     };
     let shown: String = cell.chars().take(40).collect();

@@ -16,6 +16,8 @@ pub enum Quantity {
     Rate(usize),
     /// The acceleration of a coordinate, by the coordinate's place.
     Acceleration(usize),
+    /// An input, by its place: what the motion takes, where that is given.
+    Input(usize),
 }
 
 /// A measured channel.
@@ -126,6 +128,16 @@ pub struct Dataset {
     pub experiment: ExperimentBounds,
     /// How it is written down.
     pub played: Played,
+    /// Where the records give the motion the coordinates, all that the model has: channels measure the
+    /// inputs that it takes. None where the motion is the model's.
+    pub motion: Vec<String>,
     /// What is worth a remark.
     pub notes: Vec<String>,
+}
+
+impl Dataset {
+    /// Whether the records give the motion.
+    pub fn gives_motion(&self) -> bool {
+        !self.motion.is_empty()
+    }
 }

@@ -17,6 +17,9 @@ pub struct Table {
     pub lines: Vec<u64>,
 }
 
+/// What lines often begin with that say nothing.
+const COMMENT: char = '#';
+
 /// Where the wanted columns stand among those that are there. `line`: that of the names.
 pub fn places(
     path: &Path,
@@ -57,9 +60,14 @@ pub fn places(
                     }
                 };
                 let shown: String = list.chars().take(200).map(visible).collect();
-                let parted = parted(there).map_or(String::new(), |by| {
-                    format!(": its columns are parted by {by}")
-                });
+                let parted = match parted(there) {
+                    _ if there[0].starts_with(COMMENT) => format!(
+                        ": that line says nothing of columns; write comment = \"{COMMENT}\" in [format], or skip = how many lines stand \
+                         above the names"
+                    ),
+                    Some(by) => format!(": its columns are parted by {by}"),
+                    None => String::new(),
+                };
                 Err(Refusal::line(
                     path,
                     line,

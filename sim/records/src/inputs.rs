@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use eomgen_model_spec::diagnostic::Diagnostics;
+use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::suggest::did_you_mean;
 use eomgen_sim::inputs::HeldInputs;
@@ -30,6 +30,13 @@ pub fn read_inputs(
     let description = Description::read(dataset)?;
     let file = numbered(&description, record).map_err(Refusal::Record)?;
     let mut found = Diagnostics::new(description.source.clone());
+    if let Some(given) = description.motion.first() {
+        found.push(
+            Diagnostic::error("the records give the motion, and no inputs that would make it")
+                .at(given.name.span, "here")
+                .help("`compare` and `discover` compute what such a motion takes"),
+        );
+    }
     let time = found.keep(bound::time_unit(&description));
     let inputs = bound::inputs(&description, model, &mut found);
     let Some(time) = time.filter(|_| found.is_empty()) else {
@@ -40,6 +47,7 @@ pub fn read_inputs(
         path: dataset,
         time: &time,
         inputs: &inputs,
+        motion: &[],
         channels: &[],
         model,
         decimation: &Decimation::new(description.time.every, description.time.filter),
@@ -67,7 +75,9 @@ pub fn notes_of_inputs(description: &Description, model: &Model) -> Vec<String> 
         }
     }
     for input in inputs() {
-        if (description.inputs.iter()).all(|column| column.name.text != input) {
+        let is_fed = (description.inputs.iter()).any(|column| column.name.text == input);
+        let is_measured = (description.channels.iter()).any(|channel| channel.measures() == input);
+        if !is_fed && !is_measured {
             notes.push(format!("the dataset has no input `{input}`: it is 0"));
         }
     }

@@ -6,12 +6,13 @@ use eomgen_model_spec::model::Model;
 
 use crate::bound::bound;
 use crate::checks::examine;
-use crate::coverage::can_be_cut;
+use crate::coverage::{self, can_be_cut};
 use crate::dataset::{Dataset, Start};
 use crate::decimation::Decimation;
 use crate::description::Description;
 use crate::description::records::Stretch;
 use crate::gaps::unbroken;
+use crate::given_motion::without_rest;
 use crate::inputs::notes_of_inputs;
 use crate::record::{Columns, Record};
 use crate::refusal::Refusal;
@@ -65,6 +66,10 @@ pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
         uncertain: bound.uncertain,
         experiment: bound.experiment,
         played: bound.played.clone(),
+        motion: match bound.motion.is_empty() {
+            true => Vec::new(),
+            false => model.coordinates.iter().map(|c| c.name.clone()).collect(),
+        },
         notes: notes_of_inputs(&description, model),
     };
     let decimation = Decimation::new(description.time.every, description.time.filter);
@@ -76,6 +81,7 @@ pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
         path,
         time: &bound.time,
         inputs: &bound.inputs,
+        motion: &bound.motion,
         channels: &bound.channel_units,
         model,
         decimation: &decimation,
@@ -97,5 +103,10 @@ pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
     dataset.notes.append(&mut notes);
     let notes = examine(&dataset, &description)?;
     dataset.notes.extend(notes);
+    if dataset.gives_motion() {
+        let notes = without_rest(&mut dataset, model);
+        dataset.notes.extend(notes);
+        coverage::check(&dataset, &description)?;
+    }
     Ok(dataset)
 }

@@ -15,9 +15,10 @@ use crate::description::Description;
 use crate::description::columns::ColumnKey;
 use crate::description::records::Stretch;
 use crate::files::beside;
+use crate::given_motion::with_rates;
 use crate::header::Table;
 use crate::refusal::Refusal;
-use crate::samples::{JITTER, check_input, check_times, typical_step};
+use crate::samples::{JITTER, check_known, check_times, typical_step};
 
 /// A record in SI.
 #[derive(Clone, Debug)]
@@ -28,7 +29,8 @@ pub struct Record {
     pub path: PathBuf,
     /// The times of the samples, s.
     pub times: Vec<f64>,
-    /// The model's inputs, held from sample to sample.
+    /// The model's inputs, held from sample to sample. Where the motion is given, all coordinates stand
+    /// behind them in a sample's row, then all rates, then all second rates.
     pub inputs: HeldInputs,
     /// The inputs as columns, NaN where a sample is missing.
     pub input_columns: Vec<Vec<f64>>,
@@ -36,6 +38,16 @@ pub struct Record {
     pub channels: Vec<Vec<f64>>,
     /// Whether it begins behind a lost stretch: what is known of first states does not hold.
     pub is_continued: bool,
+}
+
+impl Record {
+    /// The rate of a coordinate at the samples, where the motion is given: one of so many coordinates, of a
+    /// model of so many inputs.
+    pub fn given_rate(&self, coordinate: usize, coordinates: usize, inputs: usize) -> Vec<f64> {
+        let place = inputs + coordinates + coordinate;
+        let rate = |t: &f64| self.inputs.held_at(*t)[place];
+        self.times.iter().map(rate).collect()
+    }
 }
 
 /// Which columns of a record are what.
@@ -47,6 +59,8 @@ pub(crate) struct Columns<'d> {
     pub time: &'d Unit,
     /// For each input of the model its column and unit, if there is one.
     pub inputs: &'d [Option<(&'d ColumnKey, Unit)>],
+    /// Where the motion is given, for each coordinate of the model its column and unit.
+    pub motion: &'d [(&'d ColumnKey, Unit)],
     /// The unit of each channel's column.
     pub channels: &'d [Unit],
     pub model: &'d Model,
@@ -63,10 +77,12 @@ impl Columns<'_> {
             |diagnostic: Diagnostic| Diagnostics::one(self.description.source.clone(), diagnostic);
         let place = beside(self.path, &stretch.file).map_err(wrong)?;
         let mut table = self.table(&place)?;
+        self.add_rates(&place, &mut table)?;
         let is_continued = self.cut(&place, stretch, &mut table)?;
         self.decimate(&place, &mut table)?;
-        let first_channel = 1 + self.inputs.iter().flatten().count();
-        let channels = table.columns.split_off(first_channel);
+        let first_motion = 1 + self.inputs.iter().flatten().count();
+        let channels = (table.columns).split_off(first_motion + 3 * self.motion.len());
+        let motion = table.columns.split_off(first_motion);
         let mut columns = table.columns.into_iter();
         let times = columns.next().unwrap_or_default();
         let input_columns: Vec<Vec<f64>> = (self.inputs.iter())
@@ -75,11 +91,11 @@ impl Columns<'_> {
             .collect();
         check_times(&place, &times, &table.lines, self.fewest)?;
         for (input, column) in self.model.inputs.iter().zip(&input_columns) {
-            check_input(&place, &input.name, column)?;
+            check_known(&place, &format!("input `{}`", input.name), column)?;
         }
         Ok(Record {
             name: name.to_owned(),
-            inputs: self.driving(&times, &input_columns),
+            inputs: self.driving(&times, &input_columns, motion),
             path: place,
             times,
             input_columns,
@@ -88,11 +104,15 @@ impl Columns<'_> {
         })
     }
 
-    /// Time, the inputs that have columns, and the channels, in SI.
+    /// Time, the inputs that have columns, the motion where that is given, and the channels, in SI.
     fn table(&self, place: &Path) -> Result<Table, Refusal> {
         let mut wanted = vec![&self.description.time.column.column];
         let mut units = vec![self.time];
         for (column, unit) in self.inputs.iter().flatten() {
+            wanted.push(column);
+            units.push(unit);
+        }
+        for (column, unit) in self.motion {
             wanted.push(column);
             units.push(unit);
         }
@@ -110,6 +130,36 @@ impl Columns<'_> {
             }
         }
         Ok(table)
+    }
+
+    /// Puts rates and second rates behind a motion that is given. They are taken before samples are left
+    /// out, and go the same way as what is measured: a low-pass of both changes nothing of how they belong
+    /// together.
+    fn add_rates(&self, place: &Path, table: &mut Table) -> Result<(), Refusal> {
+        if self.motion.is_empty() {
+            return Ok(());
+        }
+        check_times(place, &table.columns[0], &table.lines, 1)?;
+        let first = 1 + self.inputs.iter().flatten().count();
+        let given = first..first + self.motion.len();
+        let mut rates = [const { Vec::new() }; 3];
+        for (coordinate, column) in
+            (self.model.coordinates.iter()).zip(&table.columns[given.clone()])
+        {
+            check_known(place, &format!("motion of `{}`", coordinate.name), column)?;
+            let Some(found) = with_rates(&table.columns[0], column) else {
+                let nothing = format!(
+                    "the motion of `{}` is empty; expected numbers",
+                    coordinate.name
+                );
+                return Err(Refusal::file(place, nothing));
+            };
+            for (all, column) in rates.iter_mut().zip(found) {
+                all.push(column);
+            }
+        }
+        table.columns.splice(given, rates.into_iter().flatten());
+        Ok(())
     }
 
     /// Leaves what lies between two times, where a dataset file gives them; whether something lay
@@ -198,9 +248,13 @@ impl Columns<'_> {
             .is_some_and(|(input, _)| input.rate.is_some())
     }
 
-    /// Inputs held from sample to sample, prescribed motion on a spline through its samples.
-    fn driving(&self, times: &[f64], columns: &[Vec<f64>]) -> HeldInputs {
-        let mut inputs = held(times, columns);
+    /// Inputs held from sample to sample, prescribed motion on a spline through its samples; behind them
+    /// the columns of a motion that is given.
+    fn driving(&self, times: &[f64], columns: &[Vec<f64>], motion: Vec<Vec<f64>>) -> HeldInputs {
+        let mut inputs = match motion.is_empty() {
+            true => held(times, columns),
+            false => held(times, &[columns, &motion].concat()),
+        };
         let places = self.model.inputs.iter().zip(self.inputs).enumerate();
         for (place, (input, column)) in places {
             if input.rate.is_none() || input.rate_of.is_some() || column.is_none() {

@@ -10,7 +10,7 @@ pub const FEWEST_SAMPLES: usize = 50;
 /// Fewer samples of inputs are no motion to be driven through.
 pub const FEWEST_OF_INPUTS: usize = 2;
 
-/// An input is held over what is missing of it; more than this part is refused.
+/// An input is held over what is missing of it, a motion goes on as a spline; more than this part is refused.
 const MOST_HELD: f64 = 0.1;
 
 /// Steps that differ from the usual one by more than this part of it are jitter.
@@ -49,17 +49,17 @@ pub fn check_times(
     Ok(())
 }
 
-/// An input is known nearly everywhere.
+/// An input, or a motion that is given, is known nearly everywhere.
 ///
 /// # Errors
-/// An input of which much is missing.
-pub fn check_input(path: &Path, name: &str, column: &[f64]) -> Result<(), Refusal> {
+/// One of which much is missing. `what` it is, for people.
+pub fn check_known(path: &Path, what: &str, column: &[f64]) -> Result<(), Refusal> {
     let missing = column.iter().filter(|value| !value.is_finite()).count();
     if missing as f64 > MOST_HELD * column.len() as f64 {
         return Err(Refusal::file(
             path,
             format!(
-                "input `{name}`: {missing} of {} samples are missing; expected nearly all of them",
+                "{what}: {missing} of {} samples are missing; expected nearly all of them",
                 column.len()
             ),
         ));

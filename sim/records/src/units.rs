@@ -12,7 +12,9 @@ pub fn unit(written: &Written, expected: &str) -> Result<Unit, Diagnostic> {
     let wrong = |message: String| Diagnostic::error(message);
     let text = &written.text;
     let unit = Unit::parse(text).map_err(|error| {
-        wrong(format!("unit \"{text}\": {error}")).at(written.span, format!("expected {expected}"))
+        wrong(format!("unit \"{text}\": {error}"))
+            .at(written.span, format!("expected {expected}"))
+            .help_if(error.help)
     })?;
     let wanted = Unit::parse(expected).map_err(|error| wrong(error.to_string()))?;
     if unit.dimension == wanted.dimension {

@@ -478,3 +478,215 @@ fn rates_and_accelerations_are_channels_in_their_units() {
     let folder = folder(&channel("theta_ddot", "rad/s"), "t,angle\n", plain);
     assert!(refused(&folder).contains("expected rad/s^2"));
 }
+
+/// A slide whose force is measured along a motion that is given.
+const SLIDE: &str = r#"
+[model]
+name = "slide"
+[parameters]
+m = { value = 2, unit = "kg" }
+[coordinates]
+x = { unit = "m" }
+y = { unit = "m" }
+[inputs]
+F = { unit = "N" }
+G = { unit = "N" }
+H = { unit = "N" }
+[kinetic]
+slide = "1/2*m*(dot(x)^2 + dot(y)^2)"
+[forces]
+drive = { on = "x", value = "F + H" }
+other = { on = "y", value = "G" }
+"#;
+
+const ALONG: &str = r#"
+[records]
+train = ["train.csv"]
+test = ["test.csv"]
+[time]
+column = "t"
+unit = "s"
+[motion.x]
+column = "x"
+unit = "mm"
+[motion.y]
+column = "x"
+unit = "m"
+[channels.F]
+column = "F"
+unit = "N"
+noise = 0.01
+[channels.second]
+column = "G"
+unit = "N"
+noise = 0.01
+observable = "G"
+"#;
+
+fn along(description: &str) -> Result<Dataset, Refusal> {
+    let folder = folder(description, "t,x,F,G\n", |t, angle| {
+        format!(
+            "{t},{:.12},{angle},{}\n",
+            100.0 * (3.0 * t).sin() + angle,
+            angle * angle
+        )
+    });
+    let source = eomgen_model_spec::source::Source::new("slide.toml", SLIDE);
+    let model = eomgen_model_spec::check(source).expect("a model").model;
+    read_dataset(&folder.path().join("dataset.toml"), &model)
+}
+
+#[test]
+fn a_motion_that_is_given_has_its_rates() {
+    for (every, decimated) in [(1, ""), (4, "unit = \"s\"\nevery = 4")] {
+        let description = match every {
+            1 => ALONG.to_owned(),
+            _ => ALONG.replacen("unit = \"s\"", decimated, 1),
+        };
+        let dataset = along(&description).unwrap_or_else(|refusal| panic!("{refusal}"));
+        assert_eq!(dataset.motion, ["x", "y"]);
+        let record = &dataset.train[0];
+        for (place, t) in record.times.iter().enumerate() {
+            // Three inputs, then coordinates, rates and second rates of the two.
+            let row = record.inputs.held_at(*t);
+            assert_eq!(row.len(), 3 + 6);
+            let (sine, cosine) = (3.0 * t).sin_cos();
+            let (a, b) = ((1.3 * t).sin_cos(), (3.1 * t).sin_cos());
+            let wanted = [
+                100.0 * sine + 100.0 * a.1 + 20.0 * b.0,
+                300.0 * cosine - 130.0 * a.0 + 62.0 * b.1,
+                -900.0 * sine - 169.0 * a.1 - 192.2 * b.0,
+            ];
+            if !(20..record.times.len() - 20).contains(&place) {
+                continue;
+            }
+            for (kind, (wanted, within)) in wanted.iter().zip([1e-2, 1e-1, 1.0]).enumerate() {
+                let (x, y) = (row[3 + 2 * kind], row[3 + 2 * kind + 1]);
+                assert!(
+                    (1e3 * x - wanted).abs() < within,
+                    "{kind} at {t}: {x} {wanted}"
+                );
+                assert!((y - wanted).abs() < within, "{kind} at {t}: {y} {wanted}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_a_motion_takes_is_left_out_where_it_turns_back() {
+    let dataset = along(ALONG).unwrap_or_else(|refusal| panic!("{refusal}"));
+    let left_out = dataset.train[0].channels[0]
+        .iter()
+        .filter(|v| v.is_nan())
+        .count();
+    assert!((4..40).contains(&left_out), "{left_out}");
+    let notes = dataset.notes.join("\n");
+    assert!(
+        notes.contains("samples of `second` are left out"),
+        "{notes}"
+    );
+    assert!(
+        notes.contains("the dataset has no input `H`") && !notes.contains("input `F`"),
+        "{notes}"
+    );
+}
+
+#[test]
+fn a_motion_that_is_given_drives_no_simulation_and_must_move() {
+    let folder = folder(ALONG, "t,x,F,G\n", |t, angle| {
+        format!("{t},3,{angle},{t}\n")
+    });
+    let source = eomgen_model_spec::source::Source::new("slide.toml", SLIDE);
+    let model = eomgen_model_spec::check(source).expect("a model").model;
+    let path = folder.path().join("dataset.toml");
+    let still = read_dataset(&path, &model)
+        .err()
+        .map(|refusal| refusal.to_string());
+    assert!(
+        still.is_some_and(|said| said.contains("`F`")),
+        "nothing moves"
+    );
+    let driven = eomgen_records::read_inputs(&path, "train[0]", &model);
+    let driven = driven.err().map(|refusal| refusal.to_string());
+    let said = "the records give the motion, and no inputs that would make it";
+    assert!(driven.is_some_and(|driven| driven.contains(said)));
+}
+
+#[test]
+fn half_a_motion_and_what_is_given_twice_are_refused() {
+    let without = |part: &str| ALONG.replace(part, "");
+    let y = "[motion.y]\ncolumn = \"x\"\nunit = \"m\"\n";
+    let both =
+        "[motion.x]\ncolumn = \"x\"\nunit = \"mm\"\n[motion.y]\ncolumn = \"x\"\nunit = \"m\"\n";
+    let second =
+        "[channels.second]\ncolumn = \"G\"\nunit = \"N\"\nnoise = 0.01\nobservable = \"G\"\n";
+    let fed = "[inputs.F]\ncolumn = \"F\"\nunit = \"N\"\n";
+    let rest = "[initial]\nstate = \"rest\"\n";
+    let third = "[channels.z]\ncolumn = \"G\"\nunit = \"m\"\nnoise = 1\nobservable = \"x\"\n";
+    for (description, said) in [
+        (without(y), "the motion of `y` is not given"),
+        (
+            without(both),
+            "`F` is an input of the model: it is measured where the motion is given",
+        ),
+        (
+            without(second),
+            "inputs that are measured: 1, coordinates: 2",
+        ),
+        (
+            ALONG.to_owned() + fed,
+            "`F` is an input here and a channel as well",
+        ),
+        (
+            ALONG.to_owned() + rest,
+            "[initial] says nothing where the motion is given",
+        ),
+        (ALONG.to_owned() + third, "`x` is given by [motion]"),
+        (
+            ALONG.replace("[motion.y]", "[motion.z]"),
+            "the model has no coordinate `z`",
+        ),
+        (
+            ALONG.replacen("unit = \"mm\"", "unit = \"N\"", 1),
+            "expected m",
+        ),
+        (
+            ALONG.replacen("unit = \"mm\"", "unit = \"mm\"\nnoise = 1", 1),
+            "noise",
+        ),
+    ] {
+        let refusal = along(&description).err().map(|refusal| refusal.to_string());
+        let refusal = refusal.unwrap_or_else(|| panic!("accepted: {description}"));
+        assert!(refusal.contains(said), "{said}: {refusal}");
+    }
+}
+
+#[test]
+fn what_a_newcomer_forgets_is_told_with_what_to_write() {
+    let refused_with = |description: &str, head: &str, line: &dyn Fn(f64, f64) -> String| {
+        let folder = folder(description, head, line);
+        refused(&folder)
+    };
+    let bench = "# bench 4, drive, run 7\n# by hand\nt,angle\n";
+    let said = refused_with(DESCRIPTION, bench, &plain);
+    assert!(said.contains("write comment = \"#\" in [format]"), "{said}");
+    let said = refused_with(DESCRIPTION, "t,angle\ns,mrad\n", &plain);
+    assert!(said.contains("write units = true in [format]"), "{said}");
+    let said = refused_with(DESCRIPTION, "", &plain);
+    assert!(said.contains("write names = false in [format]"), "{said}");
+    let quoted = DESCRIPTION
+        .replace("column = \"t\"", "column = \"1\"")
+        .replace("[time]", "[format]\nnames = false\n[time]");
+    let said = refused_with(&quoted, "", &plain);
+    assert!(said.contains("from 1 on: column = 1"), "{said}");
+    let joined = DESCRIPTION.replace("\"mrad\"", "\"mNm\"");
+    let said = refused_with(&joined, "t,angle\n", &plain);
+    assert!(said.contains("parted by a space: mN m"), "{said}");
+    let motion = along(&ALONG.replace("observable = \"G\"", ""));
+    let said = motion.err().map(|refusal| refusal.to_string());
+    let said = said.expect("no such input");
+    assert!(
+        said.contains("no observable or input `second`") && said.contains("F, G"),
+        "{said}"
+    );
+}

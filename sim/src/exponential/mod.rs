@@ -75,11 +75,19 @@ impl ExponentialIntegrator {
             regimes: Vec::new(),
             known: HashMap::new(),
             step: sample / steps,
+            most_crossings: usize::MAX,
+            crossings: 0,
             evaluator,
             own: Vec::new(),
             last_own: (Vec::new(), 0),
             apart: RegimeDifference::default(),
         })
+    }
+
+    /// Gives up motions that cross more surfaces: one that friction holds without a regime of its own
+    /// crosses back and forth in every step, which takes a hundred times as long.
+    pub fn limit_crossings(&mut self, most: usize) {
+        self.most_crossings = most;
     }
 
     /// Degrees of freedom of the model.
@@ -108,6 +116,7 @@ impl ExponentialIntegrator {
         let Some(begin) = samples.first() else {
             return Ok(());
         };
+        self.crossings = 0;
         let mut motion = self.start(*begin, initial, inputs, &mut options)?;
         show(0, &motion.state, options.tangents.as_deref());
         for (place, end) in samples.iter().enumerate().skip(1) {

@@ -70,6 +70,10 @@ impl ExponentialIntegrator {
             let t = end - rest;
             self.accompany(motion, tau, (t, true), inputs, options)?;
             self.cross(motion, t, (surface, slope), options)?;
+            self.crossings += 1;
+            if self.crossings > self.most_crossings {
+                return Err("surfaces are crossed too often".to_owned());
+            }
             if rest <= 0.0 {
                 self.prepare(motion);
                 return Ok(());

@@ -20,6 +20,9 @@ pub struct ExponentialIntegrator {
     pub(super) degrees: usize,
     /// The length of a step, s.
     pub(super) step: f64,
+    /// The most surfaces that a motion may cross, and how many it did.
+    pub(super) most_crossings: usize,
+    pub(super) crossings: usize,
     /// The sides on which the linear part alone would be, those for which that was asked last
     /// with their regime, and how that differs from the one where the motion is.
     pub(super) own: Vec<Side>,

@@ -6,6 +6,7 @@ mod effects_found;
 mod effects_placed;
 mod friction_that_stops;
 mod friction_under_load;
+mod motion_that_is_given;
 mod next_experiment;
 mod nothing_compared;
 mod off_the_list;

@@ -70,6 +70,7 @@ fn channels(
                 Output::State(place) => json!({ "state": place }),
                 Output::Observable(place) => json!({ "observable": place }),
                 Output::Rate(place) => json!({ "rate": place }),
+                Output::Input(place) => json!({ "input": place }),
             };
             json!({
                 "name": channel.name,

@@ -60,6 +60,9 @@ impl Playback {
         if model.measured.outputs().iter().any(is_rate) {
             return Self::Still("accelerations are measured".to_owned());
         }
+        if problem.dataset.gives_motion() {
+            return Self::Still("the motion is the records'".to_owned());
+        }
         let Ok(module) = wasm::emit(model.program()) else {
             return Self::Still("its equations cannot be emitted as WebAssembly".to_owned());
         };

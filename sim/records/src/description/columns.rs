@@ -1,4 +1,4 @@
-//! `[time]`, `[inputs.NAME]` and `[channels.NAME]`: columns of the records, and what is known of
+//! `[time]`, `[inputs.NAME]`, `[motion.NAME]` and `[channels.NAME]`: columns of the records, and what is known of
 //! the sensors behind them.
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
@@ -65,6 +65,15 @@ pub struct InputColumn {
     pub delay: Option<Prior>,
 }
 
+/// `[motion.NAME]`
+#[derive(Debug)]
+pub struct MotionColumn {
+    /// The coordinate.
+    pub name: Name,
+    /// Its column.
+    pub column: Column,
+}
+
 /// `[channels.NAME]`
 #[derive(Debug)]
 pub struct ChannelColumn {
@@ -82,6 +91,14 @@ pub struct ChannelColumn {
     pub bias: Option<Prior>,
     /// What is known of its delay, s.
     pub delay: Option<Prior>,
+}
+
+impl ChannelColumn {
+    /// What it measures, as the file calls it.
+    pub fn measures(&self) -> &str {
+        let observable = self.observable.as_ref();
+        observable.map_or(&self.name.text, |written| &written.text)
+    }
 }
 
 /// What is known of a gain, a bias or a delay.
@@ -162,6 +179,15 @@ pub(super) fn input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<InputC
         gain: gain?,
         bias: bias?,
         delay: delay?,
+    })
+}
+
+/// Reads an entry of `[motion]`.
+pub(super) fn motion(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<MotionColumn> {
+    let record = entry.record(&keys::MOTION, "{ column = \"q\", unit = \"rad\" }", found)?;
+    Some(MotionColumn {
+        name: entry.name.clone(),
+        column: column(&record, found)?,
     })
 }
 

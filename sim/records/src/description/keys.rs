@@ -3,11 +3,12 @@
 
 /// Tables with their keys; of those that hold entries by name, the keys of an entry. `title` and
 /// `source` stand outside of all tables.
-pub const TABLES: [(&str, &[&str]); 9] = [
+pub const TABLES: [(&str, &[&str]); 10] = [
     ("records", &RECORDS),
     ("format", &FORMAT),
     ("time", &TIME),
     ("inputs", &INPUT),
+    ("motion", &MOTION),
     ("channels", &CHANNEL),
     ("initial", &INITIAL),
     ("uncertain", &UNCERTAIN),
@@ -32,6 +33,9 @@ pub const TIME: [&str; 4] = ["column", "unit", "every", "filter"];
 
 /// `[inputs.NAME]`
 pub const INPUT: [&str; 6] = ["column", "unit", "hold", "gain", "bias", "delay"];
+
+/// `[motion.NAME]`
+pub const MOTION: [&str; 2] = ["column", "unit"];
 
 /// `[channels.NAME]`
 pub const CHANNEL: [&str; 7] = [

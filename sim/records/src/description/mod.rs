@@ -17,7 +17,7 @@ use eomgen_model_spec::span::Span;
 use eomgen_model_spec::table::{Entry, Name, Number, Record};
 use eomgen_model_spec::toml_file;
 
-use self::columns::{ChannelColumn, ColumnKey, InputColumn, Time};
+use self::columns::{ChannelColumn, ColumnKey, InputColumn, MotionColumn, Time};
 use self::experiment::Experiment;
 use self::format::Format;
 use self::motion::{InitialState, Windows};
@@ -42,6 +42,8 @@ pub struct Description {
     pub time: Time,
     /// `[inputs.NAME]`; each is held from sample to sample.
     pub inputs: Vec<InputColumn>,
+    /// `[motion.NAME]`
+    pub motion: Vec<MotionColumn>,
     /// `[channels.NAME]`
     pub channels: Vec<ChannelColumn>,
     /// `[initial]`
@@ -74,10 +76,15 @@ impl Description {
     /// All columns that are read.
     fn columns(&self) -> impl Iterator<Item = &ColumnKey> {
         let inputs = self.inputs.iter().map(|input| &input.column.column);
+        let motion = self
+            .motion
+            .iter()
+            .map(|coordinate| &coordinate.column.column);
         let channels = self.channels.iter().map(|channel| &channel.column.column);
         [&self.time.column.column]
             .into_iter()
             .chain(inputs)
+            .chain(motion)
             .chain(channels)
     }
 }
@@ -108,6 +115,7 @@ fn described(
         .cloned();
     let time = time.and_then(|entry| columns::time(&entry, found));
     let inputs = each(&top, "inputs", found, columns::input);
+    let motion = each(&top, "motion", found, columns::motion);
     let channels = each(&top, "channels", found, columns::channel);
     let uncertain = each(&top, "uncertain", found, uncertain);
     let initial = match top.get("initial") {
@@ -129,6 +137,7 @@ fn described(
         format: format?,
         time: time?,
         inputs,
+        motion,
         channels,
         initial: initial?,
         uncertain,
@@ -146,10 +155,16 @@ fn nameless(description: &Description, found: &mut Diagnostics) {
     }
     for column in description.columns() {
         if let ColumnKey::Name(name) = column {
+            let number = match name.text.parse::<usize>() {
+                Ok(number) => number,
+                Err(_) => 2,
+            };
             found.push(
                 Diagnostic::error(format!("no column is called \"{}\"", name.text))
                     .at(name.span, "[format] says that the columns have no names")
-                    .help("give the column's number, from 1 on: column = 2"),
+                    .help(format!(
+                        "give the column's number, from 1 on: column = {number}"
+                    )),
             );
         }
     }

@@ -4,7 +4,6 @@
 
 mod layout;
 mod matching;
-mod noise;
 mod written;
 
 use std::path::Path;

@@ -6,8 +6,8 @@ use eomgen_model_spec::model::ParameterValue;
 
 use super::Found;
 use super::matching::{FileColumn, Match};
-use super::noise::estimated;
 use crate::description::format::{DECIMALS, Format, SEPARATORS};
+use crate::noise::estimated;
 
 /// A channel whose noise cannot be seen gets this part of its span.
 const UNSEEN: f64 = 1e-6;

@@ -1,0 +1,157 @@
+//! Motions that records give: the inputs that such a motion takes, which are what channels measure there
+//! (inverse dynamics). Nothing is integrated. How records state a motion is decided where they are read.
+
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use nalgebra::{DMatrix, DVector};
+
+use crate::model::measured_outputs::MeasuredOutputs;
+use crate::thresholds;
+
+/// A model along motions that records give. A record's row holds its inputs, then all coordinates, all
+/// rates and all second rates.
+pub(crate) struct GivenMotion {
+    /// How many inputs there are.
+    inputs: usize,
+    degrees: usize,
+    /// The inputs that are sought, as many as degrees of freedom.
+    required: Vec<usize>,
+    /// The rates of the state.
+    rates: Vec<f64>,
+}
+
+impl GivenMotion {
+    /// Of a model whose inputs channels measure; none if it has states that no record gives.
+    pub fn of(evaluator: &Evaluator, measured: &MeasuredOutputs) -> Option<Self> {
+        let program = evaluator.program();
+        let (states, degrees) = (program.states(), program.degrees_of_freedom());
+        let required = measured.inputs();
+        (states == 2 * degrees && required.len() == degrees).then(|| Self {
+            inputs: program.inputs.len(),
+            degrees,
+            required,
+            rates: vec![0.0; states],
+        })
+    }
+
+    /// The state of a record's row; none if that is another model's.
+    pub fn state<'r>(&self, row: &'r [f64]) -> Option<&'r [f64]> {
+        let is_own = row.len() == self.inputs + 3 * self.degrees;
+        is_own.then(|| &row[self.inputs..self.inputs + 2 * self.degrees])
+    }
+
+    /// The inputs at a record's row, with those that the motion takes: the second rates are the model's
+    /// with them. None where no inputs do that. Second rates are linear in most inputs: one step of Newton's
+    /// method finds these.
+    pub fn required(&mut self, evaluator: &mut Evaluator, t: f64, row: &[f64]) -> Option<Vec<f64>> {
+        let state = self.state(row)?;
+        let given = &row[self.inputs + 2 * self.degrees..];
+        let mut inputs = row[..self.inputs].to_vec();
+        for place in &self.required {
+            inputs[*place] = 0.0;
+        }
+        let mut at = |inputs: &[f64]| -> DVector<f64> {
+            let point = Point { t, state, inputs };
+            evaluator.rates(point, &mut self.rates);
+            DVector::from_column_slice(&self.rates[self.degrees..])
+        };
+        let wanted = DVector::from_column_slice(given);
+        let mut present = at(&inputs);
+        for _ in 0..thresholds::REQUIRED_STEPS {
+            let mut columns = Vec::with_capacity(self.degrees);
+            for place in &self.required {
+                let size = inputs[*place].abs().max(1.0);
+                let here = inputs[*place];
+                inputs[*place] = here + size;
+                columns.push((at(&inputs) - &present) / size);
+                inputs[*place] = here;
+            }
+            let left = &wanted - &present;
+            let change = DMatrix::from_columns(&columns).lu().solve(&left)?;
+            for (place, change) in self.required.iter().zip(change.iter()) {
+                inputs[*place] += change;
+            }
+            present = at(&inputs);
+            // Terms that nearly cancel leave what rounding makes of them.
+            let scale = wanted.amax() + left.amax();
+            if (&wanted - &present).amax() <= thresholds::REQUIRED_ERROR * scale {
+                return Some(inputs);
+            }
+        }
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::estimation_model::EstimationModel;
+    use eomgen_records::dataset::{Channel, Quantity, TransducerPriors};
+
+    /// Two joints with a gear between them, whose motors both work on the second.
+    const ARM: &str = r#"[model]
+name = "arm"
+[parameters]
+m = { value = 2, unit = "kg" }
+l = { value = 0.4, unit = "m" }
+k = { value = 3, unit = "N*m" }
+[coordinates]
+p = { unit = "rad" }
+q = { unit = "rad" }
+[inputs]
+u = "N*m"
+v = "N*m"
+[kinetic]
+turning = "1/2*m*l^2*((2 + cos(q))*dot(p)^2 + dot(p)*dot(q) + dot(q)^2)"
+[potential]
+weight = "-k*cos(p + q)"
+[forces]
+first = { on = "p + 2*q", value = "u" }
+second = { on = "q", value = "v*(2 + sin(v/k)/2)" }
+"#;
+
+    fn channel(name: &str, input: usize) -> Channel {
+        Channel {
+            name: name.to_owned(),
+            observable: name.to_owned(),
+            quantity: Quantity::Input(input),
+            unit: "N*m".to_owned(),
+            noise: 0.1,
+            priors: TransducerPriors::default(),
+        }
+    }
+
+    #[test]
+    fn inputs_that_move_a_model_are_found_again() {
+        let channels = [channel("v", 1), channel("u", 0)];
+        let model = EstimationModel::equations(ARM, "arm", None, &channels).expect("a model");
+        let mut evaluator = model.evaluator(&model.values);
+        let mut given = GivenMotion::of(&evaluator, &model.measured).expect("a motion");
+        for turn in 0..50 {
+            let number = |k: i32| 2.0 * f64::from(k + 7 * turn).sin();
+            let inputs = [number(1), number(2)];
+            let state = [number(3), number(4), number(5), number(6)];
+            let mut rates = [0.0; 4];
+            let point = Point {
+                t: 0.0,
+                state: &state,
+                inputs: &inputs,
+            };
+            evaluator.rates(point, &mut rates);
+            let row = [&[9.0, 9.0], &state[..], &rates[2..]].concat();
+            let found = given.required(&mut evaluator, 0.0, &row).expect("inputs");
+            for (found, wanted) in found.iter().zip(inputs) {
+                assert!((found - wanted).abs() < 1e-9, "{found} {wanted}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_model_with_states_that_no_record_gives_is_not_followed() {
+        let late = ARM.replace("value = \"u\"", "value = \"F\"")
+            + "[states]\nF = { unit = \"N*m\", rate = \"(u - F)*w\" }\n";
+        let late = late.replace("k = {", "w = { value = 3, unit = \"1/s\" }\nk = {");
+        let channels = [channel("v", 1), channel("u", 0)];
+        let model = EstimationModel::equations(&late, "arm", None, &channels).expect("a model");
+        assert!(GivenMotion::of(&model.evaluator(&model.values), &model.measured).is_none());
+    }
+}

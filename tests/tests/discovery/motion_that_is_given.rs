@@ -1,0 +1,205 @@
+//! Records that give the motion of a machine and measure the torques that it takes, as start-stop and
+//! constant-speed runs do: an arm of two joints whose inverse dynamics are written here.
+
+use eomgen_tests::logistic_noise::LogisticNoise;
+use eomgen_tests::program;
+use serde_json::Value;
+
+const ARM: &str = r#"
+[model]
+name = "arm"
+
+[parameters]
+m_1 = { value = 2.0, unit = "kg" }
+m_2 = { value = 1.5, unit = "kg" }
+l_1 = { value = 0.4, unit = "m" }
+l_2 = { value = 0.3, unit = "m" }
+g   = { value = 9.81, unit = "m/s^2" }
+
+[coordinates]
+q_1 = { unit = "rad" }
+q_2 = { unit = "rad" }
+
+[inputs]
+tau_1 = { unit = "N m" }
+tau_2 = { unit = "N m" }
+
+[definitions]
+x_1 = "l_1*cos(q_1)"
+y_1 = "l_1*sin(q_1)"
+x_2 = "x_1 + l_2*cos(q_1 + q_2)"
+y_2 = "y_1 + l_2*sin(q_1 + q_2)"
+
+[kinetic]
+first  = "1/2*m_1*(dot(x_1)^2 + dot(y_1)^2)"
+second = "1/2*m_2*(dot(x_2)^2 + dot(y_2)^2)"
+
+[potential]
+weight = "g*(m_1*y_1 + m_2*y_2)"
+
+[forces]
+motor_1 = { on = "q_1", value = "tau_1" }
+motor_2 = { on = "q_2", value = "tau_2" }
+"#;
+
+const DATASET: &str = r#"
+[records]
+train = ["train.csv"]
+test = ["test.csv"]
+
+[time]
+column = "t"
+unit = "s"
+
+[motion.q_1]
+column = "q_1"
+unit = "rad"
+
+[motion.q_2]
+column = "q_2"
+unit = "mrad"
+
+[channels.first]
+column = "u_1"
+unit = "N m"
+noise = 0.05
+observable = "tau_1"
+
+[channels.tau_2]
+column = "u_2"
+unit = "N m"
+noise = 0.03
+
+[uncertain]
+m_1 = { relative = 0.05 }
+m_2 = { relative = 0.05 }
+"#;
+
+const SAMPLES: u32 = 1500;
+const STEP: f64 = 0.004;
+
+/// A polynomial of fifth degree from rest to rest in 1.5 s, with its rate and second rate.
+fn ramp(t: f64) -> [f64; 3] {
+    let s = (t / 1.5).clamp(0.0, 1.0);
+    [
+        s.powi(3) * (10.0 + s * (6.0 * s - 15.0)),
+        30.0 * s * s * (s - 1.0).powi(2) / 1.5,
+        60.0 * s * (s - 1.0) * (2.0 * s - 1.0) / (1.5 * 1.5),
+    ]
+}
+
+/// A joint's angle with its rate and second rate: swings, and a way forth and back with rest between.
+fn joint(t: f64, swing: f64, way: f64) -> [f64; 3] {
+    let (w, turn) = (2.7, 0.4);
+    let (forth, back) = (ramp(t - 0.5), ramp(t - 3.0));
+    let swings = [
+        (w * t + turn).sin(),
+        w * (w * t + turn).cos(),
+        -w * w * (w * t + turn).sin(),
+    ];
+    std::array::from_fn(|kind| swing * swings[kind] + way * (forth[kind] - back[kind]))
+}
+
+/// A record of the arm whose second joint rubs by so much, N m, with encoders of this noise, rad.
+fn record(friction: f64, encoders: f64, turn: f64) -> String {
+    let (m_1, m_2, l_1, l_2, g) = (2.02, 1.47, 0.4_f64, 0.3_f64, 9.81);
+    let mut noise = LogisticNoise::new(1.0, 0.3 + 0.1 * turn);
+    let mut text = "t,q_1,q_2,u_1,u_2\n".to_owned();
+    for sample in 0..SAMPLES {
+        let t = STEP * f64::from(sample);
+        let [p, v_p, a_p] = joint(t, 0.5 + 0.1 * turn, 0.7);
+        // The second joint swings, or goes from rest to rest.
+        let [q, v_q, a_q] = match turn > 0.5 {
+            true => joint(t, 0.9, -0.4),
+            false => joint(t, 0.0, 1.3),
+        };
+        let (c, s) = (q.cos(), q.sin());
+        let (own, both, coupled) = (m_1 * l_1 * l_1, m_2 * l_2 * l_2, m_2 * l_1 * l_2);
+        let weight_2 = m_2 * g * l_2 * (p + q).cos();
+        let u_1 = (own + m_2 * l_1 * l_1 + both + 2.0 * coupled * c) * a_p
+            + (both + coupled * c) * a_q
+            - coupled * s * (2.0 * v_p * v_q + v_q * v_q)
+            + (m_1 + m_2) * g * l_1 * p.cos()
+            + weight_2;
+        // At rest friction holds a part of what it may.
+        let rubbing = match v_q == 0.0 {
+            true => 0.4 * friction,
+            false => friction * v_q.signum(),
+        };
+        let u_2 =
+            both * a_q + (both + coupled * c) * a_p + coupled * s * v_p * v_p + weight_2 + rubbing;
+        let mut seen = |value: f64, sd: f64| value + sd * noise.draw();
+        text += &format!(
+            "{t:.4},{:.12},{:.9},{:.6},{:.6}\n",
+            seen(p, encoders),
+            1e3 * seen(q, encoders),
+            seen(u_1, 0.05),
+            seen(u_2, 0.03)
+        );
+    }
+    text
+}
+
+/// What is found in records of the arm.
+fn found(friction: f64, encoders: f64, dataset: &str) -> Value {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = |name: &str| folder.path().join(name);
+    let [train, test] = [0.0, 1.0].map(|turn| record(friction, encoders, turn));
+    for (name, text) in [
+        ("arm.toml", ARM),
+        ("dataset.toml", dataset),
+        ("train.csv", &train),
+        ("test.csv", &test),
+    ] {
+        std::fs::write(file(name), text).expect("a file");
+    }
+    let paths = ["arm.toml", "dataset.toml", "out"].map(file);
+    let found = program::answered("discover", paths.each_ref());
+    let page = std::fs::read_to_string(file("out/report.html")).expect("a page");
+    assert!(page.contains("tau_1") && !page.contains("NaN"), "{found:#}");
+    found
+}
+
+/// The only effect is dry friction of the second joint of 0.6 N m.
+fn is_friction(found: &Value, within: f64) {
+    let effects = found["effects"].as_array().expect("effects");
+    assert_eq!(effects.len(), 1, "{found:#}");
+    let first = &effects[0];
+    let place = ["effect", "on", "status"].map(|key| first[key].as_str().unwrap_or_default());
+    assert_eq!(place, ["coulomb_friction", "q_2", "named"], "{first:#}");
+    let size = first["parameters"]["T_c"]["value"].as_f64();
+    assert!(
+        size.is_some_and(|size| (size - 0.6).abs() < within),
+        "{first:#}"
+    );
+    assert!(
+        found["closure"]["held_out"]
+            .as_f64()
+            .is_none_or(|part| part > 0.95),
+        "{found:#}"
+    );
+}
+
+#[test]
+fn what_a_joint_takes_beyond_the_model_is_named() {
+    let found = found(0.6, 0.0, DATASET);
+    is_friction(&found, 0.01);
+    let notes = found["notes"].to_string();
+    let said = "of 1500 samples of `tau_2` are left out: at rest and beside it";
+    assert!(notes.contains(said), "{notes}");
+    // The masses are two percent off, and their gravity shows it.
+    let masses = found["refitted"].to_string();
+    assert!(masses.contains("m_1") && masses.contains("m_2"), "{masses}");
+}
+
+#[test]
+fn encoders_may_be_noisy_where_samples_are_averaged() {
+    let averaged = DATASET.replace("unit = \"s\"", "unit = \"s\"\nevery = 5");
+    is_friction(&found(0.6, 2e-6, &averaged), 0.02);
+}
+
+#[test]
+fn nothing_is_named_where_the_model_is_whole() {
+    let found = found(0.0, 0.0, DATASET);
+    assert_eq!(found["verdict"], "no_significant_gap", "{found:#}");
+}
