@@ -80,6 +80,8 @@ pub enum SimulationError {
     Integrator(String),
     /// The solver with error control stopped.
     Solver(SolveError),
+    /// A part of it moves too fast beside the samples.
+    TooFast,
     /// The motion grows beyond all bounds.
     Unbounded,
     /// The records give the motion, but not that of all states.
@@ -96,6 +98,9 @@ impl fmt::Display for SimulationError {
             Self::Integrator(reason) => f.write_str(reason),
             Self::Solver(error) => error.fmt(f),
             Self::NotGiven => f.write_str("the records do not give the motion of all its states"),
+            Self::TooFast => {
+                f.write_str("a part of it moves far too fast to be seen in the samples")
+            }
             Self::Unbounded => f.write_str("the motion grows beyond all bounds"),
             Self::Stopped => f.write_str(STOPPED),
         }

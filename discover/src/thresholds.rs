@@ -227,6 +227,10 @@ pub const LINEAR: f64 = 1e-9;
 /// the stiffest contact of the shipped machines makes.
 pub const FASTEST_SWITCHING: f64 = 1e5;
 
+/// In so many parts of one step from sample to sample a motion is followed at most: what is faster, such as a
+/// drive that is late by a thousandth of a sample, is given up, because nothing shows it and each part takes its time.
+pub const MOST_PARTS: f64 = 4096.0;
+
 /// Samples on which the number of steps from sample to sample is tried: some periods of what a record
 /// is sampled for.
 pub const STEP_TEST_SAMPLES: usize = 100;

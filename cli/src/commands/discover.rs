@@ -29,6 +29,10 @@ fn print(as_json: bool, result: &Value, out: &Path) -> Result {
         result["verdict"].as_str().unwrap_or("")
     );
     text += &format!("  {}\n", result["summary"].as_str().unwrap_or(""));
+    // Where nothing has a name yet the place is what is known.
+    if ["gap_found", "unexplained"].contains(&result["verdict"].as_str().unwrap_or("")) {
+        text += &format!("  {}\n", result["where"].as_str().unwrap_or(""));
+    }
     for effect in result["effects"].as_array().into_iter().flatten() {
         let word = |key: &str| effect[key].as_str().unwrap_or("").to_owned();
         text += &format!(

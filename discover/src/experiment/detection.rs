@@ -26,6 +26,16 @@ const CORRECTIONS: usize = 4;
 const CORRECTED: Interval = Interval::new(0.2, 5.0);
 const CLOSE_ENOUGH: Interval = Interval::new(0.9, 1.1);
 
+/// An experiment that a fit takes.
+pub struct Played<'p> {
+    /// Which of the proposals.
+    pub place: usize,
+    /// What is played.
+    pub proposal: &'p Proposal,
+    /// What the fit leaves of it.
+    pub without: Prediction,
+}
+
 /// An effect that the records could not have shown, of whatever size.
 pub struct Hidden<'f> {
     problem: &'f EstimationProblem<'f>,
@@ -178,18 +188,15 @@ impl<'f> Hidden<'f> {
     fn small(
         &self,
         within: (&Bounds, &[f64]),
-        proposal: &Proposal,
+        played: &Played<'_>,
     ) -> Option<(f64, f64, Prediction)> {
-        let absent = Predictor::of(self.problem, self.without.fit)?
-            .predicted(within.0, within.1, proposal)
-            .ok()?;
         let mut size = 1e-3 * self.unknown.scale;
         for _ in 0..TRIALS {
-            let Some(present) = self.predicted(within, proposal, size) else {
+            let Some(present) = self.predicted(within, played.proposal, size) else {
                 size *= 0.1;
                 continue;
             };
-            let moved = self.moved(&absent, &present);
+            let moved = self.moved(&played.without, &present);
             if thresholds::SHOWN_WITHIN.clamp(moved) == moved {
                 return Some((size, moved, present));
             }
@@ -237,13 +244,12 @@ impl<'f> Hidden<'f> {
 
     /// The experiment of some that shows the smallest size. `None` where none of them can be played or
     /// shows anything at all.
-    pub fn best(
-        &self,
-        within: (&Bounds, &[f64]),
-        family: &[(usize, &Proposal)],
-    ) -> Option<Detection> {
-        let tried = family.par_iter().filter_map(|(place, proposal)| {
-            let (size, moved, present) = self.small(within, proposal)?;
+    pub fn best(&self, within: (&Bounds, &[f64]), family: &[Played<'_>]) -> Option<Detection> {
+        let tried = family.par_iter().filter_map(|played| {
+            let Played {
+                place, proposal, ..
+            } = played;
+            let (size, moved, present) = self.small(within, played)?;
             let most = self
                 .without
                 .leaves_unfitted(self.problem, self.model(), &present)?;

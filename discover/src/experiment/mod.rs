@@ -20,14 +20,15 @@ pub mod separation;
 pub mod waveform;
 
 use eomgen_model_spec::unit::Unit;
+use rayon::prelude::*;
 
 use crate::catalogue::candidate::Candidate;
 use crate::experiment::bounds::Bounds;
-use crate::experiment::detection::Hidden;
+use crate::experiment::detection::{Hidden, Played};
 use crate::experiment::discrimination::{Discrimination, Members, NoExperiment, PairSeparation};
 use crate::experiment::members::equivalent_fits;
 use crate::experiment::next::{ExperimentFile, Experiments, MemberAt, NextExperiment, Pair, Shown};
-use crate::experiment::prediction::Predictor;
+use crate::experiment::prediction::{Prediction, Predictor};
 use crate::experiment::proposal::Proposal;
 use crate::experiment::separation::{Rival, Separation};
 use crate::fit::fitted::Fit;
@@ -271,24 +272,29 @@ impl Plan<'_> {
     }
 
     /// Of each form on each input the largest with which a fit stays within its limits.
-    fn largest(&self, fit: &Fit) -> Vec<(usize, &Proposal)> {
-        let Some(mut predictor) = Predictor::of(self.context.problem, fit) else {
-            return Vec::new();
+    fn largest(&self, fit: &Fit) -> Vec<Played<'_>> {
+        let numbered: Vec<(usize, &Proposal)> = self.family.iter().enumerate().collect();
+        let is_same = |one: &(usize, &Proposal), other: &(usize, &Proposal)| {
+            one.1.place == other.1.place && one.1.waveform == other.1.waveform
         };
-        let mut family: Vec<(usize, &Proposal)> = Vec::new();
-        for (place, proposal) in self.family.iter().enumerate() {
-            let is_same = |known: &(usize, &Proposal)| {
-                known.1.place == proposal.place && known.1.waveform == proposal.waveform
-            };
-            let is_admitted = |predictor: &mut Predictor<'_>| {
-                let predicted = predictor.predicted(&self.bounds, &self.times, proposal);
-                predicted.is_ok()
-            };
-            if !family.last().is_some_and(is_same) && is_admitted(&mut predictor) {
-                family.push((place, proposal));
-            }
-        }
-        family
+        let forms: Vec<&[(usize, &Proposal)]> = numbered.chunk_by(is_same).collect();
+        let largest = |sizes: &&[(usize, &'_ Proposal)]| {
+            let mut predictor = Predictor::of(self.context.problem, fit)?;
+            let mut sizes = sizes.iter();
+            sizes.find_map(|(place, proposal)| {
+                let without = predictor.predicted(&self.bounds, &self.times, proposal);
+                Some((*place, without.ok()?))
+            })
+        };
+        let found: Vec<Option<(usize, Prediction)>> = forms.par_iter().map(largest).collect();
+        let admitted = found.into_iter().flatten();
+        admitted
+            .map(|(place, without)| Played {
+                place,
+                proposal: &self.family[place],
+                without,
+            })
+            .collect()
     }
 
     /// What shows an effect best.
@@ -296,7 +302,7 @@ impl Plan<'_> {
         &self,
         hidden: &Hidden<'_>,
         candidate: &Candidate,
-        family: &[(usize, &Proposal)],
+        family: &[Played<'_>],
         files: &mut Vec<ExperimentFile>,
     ) -> NextExperiment {
         let Some(best) = hidden.best((&self.bounds, &self.times), family) else {

@@ -23,7 +23,7 @@ use crate::thresholds;
 use eomgen_records::dataset::Channel;
 use eomgen_records::record::Record;
 use eomgen_records::samples::typical_step;
-use eomgen_sim::exponential::ExponentialIntegrator;
+use eomgen_sim::exponential::{ExponentialIntegrator, NotIntegrated};
 
 /// A derived model with its measured outputs.
 pub struct EstimationModel {
@@ -320,17 +320,21 @@ impl EstimationModel {
         let integrator =
             ExponentialIntegrator::new(exact.evaluator(&own), self.sample, self.refinement);
         match (integrator, self.is_linear()) {
-            (None, true) => {
+            // A part that moves that much faster than the samples show is no longer seen to move.
+            (Err(NotIntegrated::Steps(steps)), _) if !(steps < thresholds::MOST_PARTS) => {
+                return Err(SimulationError::TooFast);
+            }
+            (Err(_), true) => {
                 let exact = exact.at(values).map_err(SimulationError::Propagator)?;
                 simulation.propagate(exact);
             }
-            (Some(integrator), true) => simulation.integrate(integrator, None),
-            (Some(integrator), false) => {
+            (Ok(integrator), true) => simulation.integrate(integrator, None),
+            (Ok(integrator), false) => {
                 let whole = self.compiled.evaluator(values);
                 let remainder = NonlinearRemainder::new(whole, linear.evaluator(&own));
                 simulation.integrate(integrator, Some(remainder));
             }
-            (None, false) => {}
+            (Err(_), false) => {}
         }
         Ok(simulation)
     }

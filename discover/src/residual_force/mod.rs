@@ -4,7 +4,7 @@
 //! `basis_functions` that it may be a sum of, `force_response` (what these do to the outputs;
 //! `finite_difference_response`, where no neighbouring motions come along) and `regression` (how
 //! much of each there is), `family_regression` (families of them), `ranking` (equations compared),
-//! `ripple_orders` (waves over an angle compared), `profiles` (one of them in detail), `wording` and `figures`; `types` is what is told.
+//! `ripple_orders` (waves over an angle compared; `orders_of_given_motion` where the motion is), `profiles` (one of them in detail), `wording` and `figures`; `types` is what is told.
 
 pub mod basis_functions;
 pub mod equations;
@@ -12,6 +12,7 @@ pub mod family_regression;
 pub mod figures;
 mod finite_difference_response;
 pub mod force_response;
+mod orders_of_given_motion;
 pub mod profiles;
 pub mod ranking;
 pub mod regression;

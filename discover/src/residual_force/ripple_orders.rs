@@ -11,6 +11,7 @@ use crate::residual_force::basis_functions::{Family, Over, Range};
 use crate::residual_force::equations::{Equations, OperatingPoint};
 use crate::residual_force::family_regression::FamilyRegression;
 use crate::residual_force::force_response::operating_points;
+use crate::residual_force::orders_of_given_motion;
 use crate::thresholds;
 use eomgen_records::samples::typical_step;
 
@@ -19,7 +20,7 @@ use eomgen_records::samples::typical_step;
 /// Nothing where neighbouring motions cannot be followed.
 pub fn ripple_orders(problem: &EstimationProblem<'_>, fit: &Fit) -> BTreeMap<String, Vec<u32>> {
     match problem.dataset.gives_motion() {
-        true => BTreeMap::new(),
+        true => orders_of_given_motion::orders(problem, fit),
         false => spectrum(problem, fit).unwrap_or_default(),
     }
 }

@@ -37,7 +37,7 @@ use slopes::Slopes;
 use surfaces::{Side, Surfaces, dot};
 pub use tangents::{Drives, Free, Tangents};
 use types::Motion;
-pub use types::{ExponentialIntegrator, Options, Show};
+pub use types::{ExponentialIntegrator, NotIntegrated, Options, Show};
 
 /// The fastest mode turns by so many radians in a step: the cubic through a step's ends then
 /// knows where a surface is crossed to a hundredth, and finds it from there.
@@ -56,19 +56,29 @@ const JITTER: f64 = 1e-4;
 
 impl ExponentialIntegrator {
     /// An integrator of a model at its parameters, for samples so far apart, s, in so many times the
-    /// steps that its linear part needs; none if it is not of a kind that can be integrated.
-    pub fn new(mut evaluator: AffineEvaluator, sample: f64, refinement: f64) -> Option<Self> {
-        let surfaces = Surfaces::of(&mut evaluator)?;
+    /// steps that its linear part needs.
+    ///
+    /// # Errors
+    /// A model that is not of a kind that can be integrated, or moves too fast beside the samples.
+    pub fn new(
+        mut evaluator: AffineEvaluator,
+        sample: f64,
+        refinement: f64,
+    ) -> Result<Self, NotIntegrated> {
+        let surfaces = Surfaces::of(&mut evaluator).ok_or(NotIntegrated::Kind)?;
         let system = evaluator.system(&vec![0.0; evaluator.guard_count()]);
         if !system.phases.is_empty()
             || !evaluator.half_widths_are_right()
             || !evaluator.pivots_are_positive()
         {
-            return None;
+            return Err(NotIntegrated::Kind);
         }
         let turns = sample * regime::fastest(&mut evaluator, &surfaces) / TURN;
         let steps = turns.ceil().max(LEAST_STEPS) * refinement;
-        (steps <= MOST_STEPS).then(|| Self {
+        if steps.is_nan() || steps > MOST_STEPS {
+            return Err(NotIntegrated::Steps(steps));
+        }
+        Ok(Self {
             states: evaluator.states(),
             degrees: evaluator.degrees_of_freedom(),
             surfaces,

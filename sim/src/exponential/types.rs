@@ -30,6 +30,15 @@ pub struct ExponentialIntegrator {
     pub(super) apart: RegimeDifference,
 }
 
+/// Why a model is not integrated in steps of one length.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NotIntegrated {
+    /// It is not of that kind.
+    Kind,
+    /// So many steps from sample to sample would be needed.
+    Steps(f64),
+}
+
 /// Where a motion stands.
 pub(super) struct Motion {
     pub(super) t: f64,

@@ -199,6 +199,48 @@ fn encoders_may_be_noisy_where_samples_are_averaged() {
 }
 
 #[test]
+fn a_ripple_of_an_unusual_order_is_found_in_runs_at_constant_speed() {
+    // Fourteen per turn, of a motor with seven pairs of poles.
+    let rotor = |turn: f64| {
+        let mut noise = LogisticNoise::new(0.01, 0.2 + 0.1 * turn);
+        let mut text = "t,q,u\n".to_owned();
+        for sample in 0..2000 {
+            let t = 0.004 * f64::from(sample);
+            let [start, v_start, a_start] = ramp(t);
+            let speed = 3.0 + turn;
+            let (q, v) = (speed * t * start, speed * (start + t * v_start));
+            let a = speed * (2.0 * v_start + t * a_start);
+            let torque = 0.05 * a + 0.02 * v + 0.06 * (14.0 * q + 0.7).sin();
+            text += &format!("{t:.4},{q:.12},{:.6}\n", torque + noise.draw());
+        }
+        text
+    };
+    let specification = "[model]\nname = \"rotor\"\n[parameters]\nJ = { value = 0.05, unit = \"kg m^2\" }\n\
+        c = { value = 0.02, unit = \"N m s/rad\" }\n[coordinates]\nq = { unit = \"rad\" }\n[inputs]\ntau = { unit = \"N m\" }\n\
+        [kinetic]\nrotor = \"1/2*J*dot(q)^2\"\n[dissipation]\nbearing = \"1/2*c*dot(q)^2\"\n\
+        [forces]\nmotor = { on = \"q\", value = \"tau\" }\n";
+    let dataset = "[records]\ntrain = [\"train.csv\"]\ntest = [\"test.csv\"]\n[time]\ncolumn = \"t\"\nunit = \"s\"\n\
+        [motion.q]\ncolumn = \"q\"\nunit = \"rad\"\n[channels.tau]\ncolumn = \"u\"\nunit = \"N m\"\nnoise = 0.01\n\
+        [uncertain]\nc = { relative = 0.3 }\n";
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = |name: &str| folder.path().join(name);
+    for (name, text) in [
+        ("rotor.toml", specification),
+        ("dataset.toml", dataset),
+        ("train.csv", &rotor(0.0)),
+        ("test.csv", &rotor(1.0)),
+    ] {
+        std::fs::write(file(name), text).expect("a file");
+    }
+    let paths = ["rotor.toml", "dataset.toml", "out"].map(file);
+    let found = program::answered("discover", paths.each_ref());
+    let effects = found["effects"].as_array().expect("effects");
+    assert_eq!(effects.len(), 1, "{found:#}");
+    assert_eq!(effects[0]["effect"], "torque_ripple", "{found:#}");
+    assert_eq!(effects[0]["order"]["order"], 14, "{found:#}");
+}
+
+#[test]
 fn nothing_is_named_where_the_model_is_whole() {
     let found = found(0.0, 0.0, DATASET);
     assert_eq!(found["verdict"], "no_significant_gap", "{found:#}");

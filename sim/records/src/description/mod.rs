@@ -155,10 +155,7 @@ fn nameless(description: &Description, found: &mut Diagnostics) {
     }
     for column in description.columns() {
         if let ColumnKey::Name(name) = column {
-            let number = match name.text.parse::<usize>() {
-                Ok(number) => number,
-                Err(_) => 2,
-            };
+            let number = name.text.parse::<usize>().unwrap_or(2);
             found.push(
                 Diagnostic::error(format!("no column is called \"{}\"", name.text))
                     .at(name.span, "[format] says that the columns have no names")

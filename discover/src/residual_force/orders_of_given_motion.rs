@@ -1,0 +1,113 @@
+//! What a motion takes beyond the model as a spectrum over its angles, where records give the motion: the
+//! residuals of the channels themselves, because nothing is integrated.
+
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::fit::fitted::Fit;
+use crate::ids::WindowId;
+use crate::model::problem::EstimationProblem;
+use crate::thresholds;
+use eomgen_records::samples::typical_step;
+
+/// The samples of all channels along one angle.
+struct Along {
+    /// Where the angle is at each sample of a window, rad.
+    angles: Vec<Vec<f64>>,
+    /// How far it goes in all windows, rad.
+    travel: f64,
+    /// The usual size of its rate, rad/s.
+    rate: f64,
+}
+
+/// For each coordinate that is an angle the orders, per turn, whose waves explain most of what a fit leaves
+/// of the training records, the best first: those of which the motion goes through a period, and which its
+/// samples resolve.
+pub(crate) fn orders(problem: &EstimationProblem<'_>, fit: &Fit) -> BTreeMap<String, Vec<u32>> {
+    let coordinates = &fit.model.specification().coordinates;
+    let angles = coordinates.iter().enumerate();
+    let angles = angles.filter(|(_, coordinate)| coordinate.unit.text == "rad");
+    angles
+        .map(|(place, coordinate)| {
+            let along = Along::of(problem, fit, place);
+            (coordinate.name.clone(), along.best(problem, fit))
+        })
+        .collect()
+}
+
+impl Along {
+    /// A coordinate, by its place.
+    fn of(problem: &EstimationProblem<'_>, fit: &Fit, place: usize) -> Self {
+        let (inputs, count) = (
+            fit.model.specification().inputs.len(),
+            fit.model.degrees_of_freedom(),
+        );
+        let windows = &problem.train;
+        let row = |window: usize, t: &f64| {
+            let window = &windows.list[window];
+            let row = windows.inputs(window).held_at(*t);
+            (row[inputs + place], row[inputs + count + place])
+        };
+        let (mut angles, mut squares, mut samples) = (Vec::new(), 0.0, 0.0);
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for window in 0..windows.list.len() {
+            let times = &windows.list[window].times;
+            let motion: Vec<(f64, f64)> = times.iter().map(|t| row(window, t)).collect();
+            for (angle, rate) in &motion {
+                (low, high) = (f64::min(low, *angle), f64::max(high, *angle));
+                squares += rate * rate;
+                samples += 1.0;
+            }
+            angles.push(motion.into_iter().map(|(angle, _)| angle).collect());
+        }
+        Self {
+            angles,
+            travel: high - low,
+            rate: f64::sqrt(squares / f64::max(samples, 1.0)),
+        }
+    }
+
+    /// The orders whose waves explain most.
+    fn best(&self, problem: &EstimationProblem<'_>, fit: &Fit) -> Vec<u32> {
+        let step = typical_step(&problem.dataset.train[0].times);
+        let is_seen = |order: &u32| {
+            let order = f64::from(*order);
+            order * self.travel >= TAU
+                && order * self.rate * step * thresholds::PERIOD_SAMPLES < TAU
+        };
+        let orders = (1..=thresholds::HIGHEST_ORDER).filter(is_seen);
+        let mut explained: Vec<(f64, u32)> = orders
+            .map(|order| (self.explained(problem, fit, order), order))
+            .collect();
+        explained.sort_by(|a, b| b.0.total_cmp(&a.0));
+        explained.truncate(thresholds::MOST_ORDERS);
+        explained.into_iter().map(|(_, order)| order).collect()
+    }
+
+    /// By how much a wave lowers the sum of squares of what is left, of all channels.
+    fn explained(&self, problem: &EstimationProblem<'_>, fit: &Fit, order: u32) -> f64 {
+        let channels = problem.noise.len();
+        let of_channel = |channel: usize| {
+            let (mut products, mut sums) = (Matrix3::zeros(), Vector3::zeros());
+            for (window, angles) in WindowId::first(self.angles.len()).zip(&self.angles) {
+                let residuals = fit.train.residuals[window].iter().skip(channel);
+                let residuals = residuals.step_by(channels);
+                for (angle, residual) in angles.iter().zip(residuals) {
+                    // What is not compared is 0, and no wave's.
+                    if *residual != 0.0 {
+                        let (sine, cosine) = (f64::from(order) * angle).sin_cos();
+                        let wave = Vector3::new(1.0, cosine, sine);
+                        products += wave * wave.transpose();
+                        sums += *residual * wave;
+                    }
+                }
+            }
+            let solved = products.cholesky().map(|factor| factor.solve(&sums));
+            let constant = sums[0] * sums[0] / products[(0, 0)];
+            solved.map_or(0.0, |solved| solved.dot(&sums) - constant)
+        };
+        (0..channels).map(of_channel).sum()
+    }
+}
