@@ -321,7 +321,9 @@ impl EstimationModel {
             ExponentialIntegrator::new(exact.evaluator(&own), self.sample, self.refinement);
         match (integrator, self.is_linear()) {
             // A part that moves that much faster than the samples show is no longer seen to move.
-            (Err(NotIntegrated::Steps(steps)), _) if !(steps < thresholds::MOST_PARTS) => {
+            (Err(NotIntegrated::Steps(steps)), _)
+                if steps.is_nan() || steps > thresholds::MOST_PARTS =>
+            {
                 return Err(SimulationError::TooFast);
             }
             (Err(_), true) => {

@@ -25,6 +25,7 @@ use crate::report::discovery::{
 use crate::report::experiment::drawn;
 use crate::report::left::{Left, Stage};
 use crate::report::location::located;
+use crate::report::motion_noise::notes_of_motion_noise;
 use crate::report::origin::{Origin, Specification};
 use crate::report::overlay::overlay;
 use crate::report::pictures::{figures, force_section};
@@ -81,6 +82,7 @@ pub fn compare(
         &dataset.inputs,
         fit.model.specification(),
     ));
+    notes.extend(notes_of_motion_noise(&problem, &fit));
     notes.extend(contradicting(&problem, &fit, floor.rms, progress));
     Ok(Comparison {
         has_gap: !fit.is_at_floor(floor.rms),
@@ -196,7 +198,11 @@ pub fn discover_until(
         &problem.dataset.inputs,
         null.model.specification(),
     ));
-    for note in notes_of_units(&problem, &found) {
+    let of_motion = notes_of_motion_noise(&problem, best);
+    for note in of_motion
+        .into_iter()
+        .chain(notes_of_units(&problem, &found))
+    {
         progress(&format!("note: {note}"));
         notes.push(note);
     }

@@ -10,7 +10,7 @@ const MEDIAN: f64 = 0.674_489_750_196_081_7;
 /// One standard deviation of the white noise of an evenly sampled column, at least that of its
 /// resolution; none if nothing differs. Differences of order n of white noise have the variance
 /// binomial(2n, n); the order that leaves least is taken, because motion only adds.
-pub(crate) fn estimated(column: &[f64]) -> Option<f64> {
+pub fn estimated(column: &[f64]) -> Option<f64> {
     let mut differences: Vec<f64> = column.to_vec();
     let mut least = f64::INFINITY;
     let mut variance = 1.0;

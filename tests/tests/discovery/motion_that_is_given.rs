@@ -4,6 +4,7 @@
 use eomgen_tests::logistic_noise::LogisticNoise;
 use eomgen_tests::program;
 use serde_json::Value;
+use tempfile::TempDir;
 
 const ARM: &str = r#"
 [model]
@@ -140,10 +141,9 @@ fn record(friction: f64, encoders: f64, turn: f64) -> String {
     text
 }
 
-/// What is found in records of the arm.
-fn found(friction: f64, encoders: f64, dataset: &str) -> Value {
+/// A folder with records of the arm.
+fn folder(friction: f64, encoders: f64, dataset: &str) -> TempDir {
     let folder = tempfile::tempdir().expect("a folder");
-    let file = |name: &str| folder.path().join(name);
     let [train, test] = [0.0, 1.0].map(|turn| record(friction, encoders, turn));
     for (name, text) in [
         ("arm.toml", ARM),
@@ -151,13 +151,27 @@ fn found(friction: f64, encoders: f64, dataset: &str) -> Value {
         ("train.csv", &train),
         ("test.csv", &test),
     ] {
-        std::fs::write(file(name), text).expect("a file");
+        std::fs::write(folder.path().join(name), text).expect("a file");
     }
-    let paths = ["arm.toml", "dataset.toml", "out"].map(file);
-    let found = program::answered("discover", paths.each_ref());
-    let page = std::fs::read_to_string(file("out/report.html")).expect("a page");
-    assert!(page.contains("tau_1") && !page.contains("NaN"), "{found:#}");
-    found
+    folder
+}
+
+/// What a command answers of a folder.
+fn answered(command: &str, folder: &TempDir) -> Value {
+    let paths = ["arm.toml", "dataset.toml", "out"].map(|name| folder.path().join(name));
+    let answer = program::answered(command, paths.each_ref());
+    let page = folder.path().join("out/report.html");
+    let page = std::fs::read_to_string(page).expect("a page");
+    assert!(
+        page.contains("first") && !page.contains("NaN"),
+        "{answer:#}"
+    );
+    answer
+}
+
+/// What is found in records of the arm.
+fn found(friction: f64, encoders: f64, dataset: &str) -> Value {
+    answered("discover", &folder(friction, encoders, dataset))
 }
 
 /// The only effect is dry friction of the second joint of 0.6 N m.
@@ -196,6 +210,13 @@ fn what_a_joint_takes_beyond_the_model_is_named() {
 fn encoders_may_be_noisy_where_samples_are_averaged() {
     let averaged = DATASET.replace("unit = \"s\"", "unit = \"s\"\nevery = 5");
     is_friction(&found(0.6, 2e-6, &averaged), 0.02);
+    // Not averaged, they make more of the torques than these have of their own.
+    let said = "noise of the motion makes";
+    let notes = |dataset: &str| {
+        let compared = answered("compare", &folder(0.6, 2e-6, dataset));
+        compared["notes"].to_string()
+    };
+    assert!(notes(DATASET).contains(said) && !notes(&averaged).contains(said));
 }
 
 #[test]

@@ -1,0 +1,46 @@
+//! What noise of a motion that is given makes of the torques that it takes.
+
+use eomgen_records::dataset::Quantity;
+use eomgen_records::noise;
+
+use crate::fit::fitted::Fit;
+use crate::ids::ChannelId;
+use crate::model::problem::EstimationProblem;
+
+/// For each torque a remark where what the model computes along the first training record is rougher than what was
+/// declared of the torque's noise: then noise of the motion is compared, and no effect.
+pub(crate) fn notes_of_motion_noise(problem: &EstimationProblem<'_>, fit: &Fit) -> Vec<String> {
+    let channels = problem.dataset.channels.iter();
+    let channels = ChannelId::first(problem.noise.len()).zip(channels);
+    let inputs = channels.filter(|(_, channel)| matches!(channel.quantity, Quantity::Input(_)));
+    let note = |(id, channel): (ChannelId, &eomgen_records::dataset::Channel)| {
+        let found = noise::estimated(&computed(problem, fit, id))?;
+        (found > channel.noise).then(|| {
+            format!(
+                "noise of the motion makes {found:.1e} {unit} of what is computed for `{}`, where {:.1e} {unit} is declared of its own noise: \
+                 keep fewer samples, [time] every, or measure the motion better",
+                channel.name,
+                channel.noise,
+                unit = channel.unit
+            )
+        })
+    };
+    inputs.filter_map(note).collect()
+}
+
+/// What a channel is computed to show along the first training record, NaN where nothing is compared, SI.
+fn computed(problem: &EstimationProblem<'_>, fit: &Fit, channel: ChannelId) -> Vec<f64> {
+    let count = problem.noise.len();
+    let windows = problem.train.list.iter().zip(&fit.train.residuals);
+    let first = windows.filter(|(window, _)| window.record == 0);
+    let values = first.flat_map(|(window, residuals)| {
+        let pairs = window.measured.iter().zip(residuals);
+        let own = pairs.skip(channel.index()).step_by(count);
+        // What is not compared has a residual of 0, and would be taken for the measured noise.
+        own.map(|(measured, residual)| match *residual {
+            0.0 => f64::NAN,
+            residual => measured + residual * problem.noise[channel.index()],
+        })
+    });
+    values.collect()
+}
