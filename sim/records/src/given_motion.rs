@@ -1,27 +1,17 @@
 //! Records that give the motion, with the torques and forces that it takes among the channels: what a
-//! dataset file must say of them, and the rates of the motion. What a motion takes is computed elsewhere.
+//! dataset file must say of them. What a motion takes is computed elsewhere.
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
-use eomgen_model_spec::ids::{CoordinateId, DefinitionId};
-use eomgen_model_spec::model::{Expr, ExprKind, Model};
+use eomgen_model_spec::model::Model;
 use eomgen_model_spec::span::Span;
 use eomgen_model_spec::suggest::did_you_mean;
 use eomgen_model_spec::unit::Unit;
-use eomgen_sim::cubic_spline::CubicSpline;
 
-use crate::dataset::{Channel, Dataset, Quantity};
+use crate::dataset::{Channel, Quantity};
 use crate::description::Description;
 use crate::description::columns::ColumnKey;
 use crate::description::motion::InitialState;
-use crate::noise;
-use crate::record::Record;
 use crate::units::unit;
-
-/// A rate of fewer standard deviations of its noise is rest.
-const AT_REST: f64 = 4.0;
-
-/// A rate below this part of the record's largest is rest, whatever its noise.
-const LEAST_RATE: f64 = 1e-9;
 
 /// For each coordinate of the model its column and the column's unit; none where no motion is given.
 pub(crate) fn columns<'d>(
@@ -163,117 +153,4 @@ pub(crate) fn required_inputs(
             .help("list a channel for each torque or force that moves the machine, with observable = its input"),
         );
     }
-}
-
-/// A coordinate's samples with their rates and second rates, on the cubic spline through those that are
-/// known; none if nothing is.
-pub(crate) fn with_rates(times: &[f64], column: &[f64]) -> Option<[Vec<f64>; 3]> {
-    let samples = times.iter().zip(column);
-    let known = samples.filter(|(_, value)| value.is_finite());
-    let (at, values) = known.map(|(t, value)| (*t, *value)).unzip();
-    let spline = CubicSpline::through(at, values)?;
-    let mut found = [const { Vec::new() }; 3];
-    for t in times {
-        for (column, value) in found.iter_mut().zip(spline.at(*t)) {
-            column.push(value);
-        }
-    }
-    Some(found)
-}
-
-/// Leaves out of the channels what was measured at rest: friction may hold any load there, and which
-/// one it is no model says. An input is left out where a coordinate that it works on rests. Returns
-/// what is worth a remark.
-pub(crate) fn without_rest(dataset: &mut Dataset, model: &Model) -> Vec<String> {
-    let mut notes = Vec::new();
-    for place in 0..dataset.channels.len() {
-        let Quantity::Input(input) = dataset.channels[place].quantity else {
-            continue;
-        };
-        let coordinates = worked_on(model, input);
-        let name = &dataset.channels[place].name;
-        for record in dataset.train.iter_mut().chain(&mut dataset.test) {
-            let resting = at_rest(record, model, &coordinates);
-            let mut count = 0;
-            for (value, rests) in record.channels[place].iter_mut().zip(resting) {
-                if rests && value.is_finite() {
-                    *value = f64::NAN;
-                    count += 1;
-                }
-            }
-            if count > 0 {
-                notes.push(format!(
-                    "{}: {count} of {} samples of `{name}` are left out: at rest and beside it friction may hold any load",
-                    record.name,
-                    record.times.len()
-                ));
-            }
-        }
-    }
-    notes
-}
-
-/// The coordinates on which an input works.
-fn worked_on(model: &Model, input: usize) -> Vec<usize> {
-    let mut found = Vec::new();
-    for force in &model.forces {
-        if !holds(
-            model,
-            &force.value,
-            &|kind| matches!(kind, ExprKind::Input(id) if id.index() == input),
-        ) {
-            continue;
-        }
-        for coordinate in 0..model.coordinates.len() {
-            let is = |kind: &ExprKind| matches!(kind, ExprKind::Coordinate(id) if *id == CoordinateId::new(coordinate));
-            if !found.contains(&coordinate) && holds(model, &force.on, &is) {
-                found.push(coordinate);
-            }
-        }
-    }
-    found
-}
-
-/// Whether an expression holds such a part, through definitions.
-fn holds(model: &Model, expr: &Expr, is: &dyn Fn(&ExprKind) -> bool) -> bool {
-    let mut found = false;
-    let mut definitions: Vec<DefinitionId> = Vec::new();
-    let mut look = |expr: &Expr, definitions: &mut Vec<DefinitionId>| {
-        expr.visit(&mut |part| {
-            found |= is(&part.kind);
-            if let ExprKind::Definition(id) = part.kind
-                && !definitions.contains(&id)
-            {
-                definitions.push(id);
-            }
-        });
-    };
-    look(expr, &mut definitions);
-    let mut next = 0;
-    while let Some(id) = definitions.get(next).copied() {
-        look(&model.definitions[id].value, &mut definitions);
-        next += 1;
-    }
-    found
-}
-
-/// For each sample of a record whether one of these coordinates rests, or turns back beside it: which
-/// way friction acts there is not known.
-fn at_rest(record: &Record, model: &Model, coordinates: &[usize]) -> Vec<bool> {
-    let (inputs, count) = (model.inputs.len(), model.coordinates.len());
-    let mut resting = vec![false; record.times.len()];
-    for coordinate in coordinates {
-        let rates = record.given_rate(*coordinate, count, inputs);
-        let largest = rates
-            .iter()
-            .fold(0.0, |most: f64, rate| most.max(rate.abs()));
-        let noise = noise::estimated(&rates).unwrap_or(0.0);
-        let least = (AT_REST * noise).max(LEAST_RATE * largest);
-        for (sample, rests) in resting.iter_mut().enumerate() {
-            let near = sample.saturating_sub(1)..(sample + 2).min(rates.len());
-            let turns = rates[near].windows(2).any(|pair| pair[0] * pair[1] <= 0.0);
-            *rests |= rates[sample].abs() <= least || turns;
-        }
-    }
-    resting
 }

@@ -12,10 +12,10 @@ use crate::decimation::Decimation;
 use crate::description::Description;
 use crate::description::records::Stretch;
 use crate::gaps::unbroken;
-use crate::given_motion::without_rest;
 use crate::inputs::notes_of_inputs;
 use crate::record::{Columns, Record};
 use crate::refusal::Refusal;
+use crate::rest::without_rest;
 use crate::samples::FEWEST_SAMPLES;
 
 /// Reads a dataset for a model.

@@ -15,8 +15,8 @@ use crate::description::Description;
 use crate::description::columns::ColumnKey;
 use crate::description::records::Stretch;
 use crate::files::beside;
-use crate::given_motion::with_rates;
 use crate::header::Table;
+use crate::motion_rates::with_rates;
 use crate::refusal::Refusal;
 use crate::samples::{JITTER, check_known, check_times, typical_step};
 
