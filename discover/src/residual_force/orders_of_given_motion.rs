@@ -44,23 +44,23 @@ impl Along {
             fit.model.specification().inputs.len(),
             fit.model.degrees_of_freedom(),
         );
-        let windows = &problem.train;
-        let row = |window: usize, t: &f64| {
-            let window = &windows.list[window];
-            let row = windows.inputs(window).held_at(*t);
-            (row[inputs + place], row[inputs + count + place])
-        };
+        let records = problem.train.records.iter();
+        let motions = records.map(|record| {
+            let rates = record.given_rate(place, count, inputs);
+            (record.given(place, inputs), rates)
+        });
+        let motions: Vec<(Vec<f64>, Vec<f64>)> = motions.collect();
         let (mut angles, mut squares, mut samples) = (Vec::new(), 0.0, 0.0);
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for window in 0..windows.list.len() {
-            let times = &windows.list[window].times;
-            let motion: Vec<(f64, f64)> = times.iter().map(|t| row(window, t)).collect();
-            for (angle, rate) in &motion {
+        for window in &problem.train.list {
+            let own = window.first..window.first + window.times.len();
+            let (all, rates) = &motions[window.record];
+            for (angle, rate) in all[own.clone()].iter().zip(&rates[own.clone()]) {
                 (low, high) = (f64::min(low, *angle), f64::max(high, *angle));
                 squares += rate * rate;
                 samples += 1.0;
             }
-            angles.push(motion.into_iter().map(|(angle, _)| angle).collect());
+            angles.push(all[own].to_vec());
         }
         Self {
             angles,

@@ -41,12 +41,19 @@ pub struct Record {
 }
 
 impl Record {
-    /// The rate of a coordinate at the samples, where the motion is given: one of so many coordinates, of a
-    /// model of so many inputs.
+    /// A coordinate at the samples, where the motion is given, of a model of so many inputs.
+    pub fn given(&self, coordinate: usize, inputs: usize) -> Vec<f64> {
+        self.column(inputs + coordinate)
+    }
+
+    /// Its rate, one of so many coordinates.
     pub fn given_rate(&self, coordinate: usize, coordinates: usize, inputs: usize) -> Vec<f64> {
-        let place = inputs + coordinates + coordinate;
-        let rate = |t: &f64| self.inputs.held_at(*t)[place];
-        self.times.iter().map(rate).collect()
+        self.column(inputs + coordinates + coordinate)
+    }
+
+    fn column(&self, place: usize) -> Vec<f64> {
+        let value = |t: &f64| self.inputs.held_at(*t)[place];
+        self.times.iter().map(value).collect()
     }
 }
 
