@@ -78,9 +78,29 @@ impl HeldInputs {
 
     /// The inputs of the last sample, prescribed motion as well.
     pub fn held_at(&self, t: f64) -> &[f64] {
-        let after = self.times.partition_point(|time| *time <= t);
-        let row = after.saturating_sub(1);
+        let row = self.times_until(t).saturating_sub(1);
         &self.values[row * self.count..(row + 1) * self.count]
+    }
+
+    /// How many of the times are not after `t`. Most records are sampled evenly: there the answer is
+    /// looked up, and searched only where it is not.
+    fn times_until(&self, t: f64) -> usize {
+        if self.count == 0 {
+            return 0;
+        }
+        let times = &self.times;
+        let (first, last) = (times[0], times[times.len() - 1]);
+        let part = (t - first) / (last - first);
+        let near = ((part * (times.len() - 1) as f64) as usize).min(times.len());
+        // Rounding may lead to a neighbour.
+        for count in [near + 1, near + 2, near] {
+            let is_before = count == 0 || times.get(count - 1).is_some_and(|time| *time <= t);
+            let is_after = times.get(count).is_none_or(|time| *time > t);
+            if is_before && is_after {
+                return count;
+            }
+        }
+        times.partition_point(|time| *time <= t)
     }
 
     /// The next time after `t` at which an input changes.
@@ -88,8 +108,7 @@ impl HeldInputs {
         if self.count == 0 {
             return None;
         }
-        let after = self.times.partition_point(|time| *time <= t);
-        self.times.get(after).copied()
+        self.times.get(self.times_until(t)).copied()
     }
 
     /// The times of the samples, in s.
@@ -117,6 +136,25 @@ mod tests {
         assert_eq!(held.next_change(0.0), Some(1.0));
         assert_eq!(held.next_change(1.5), Some(2.0));
         assert_eq!(held.next_change(2.0), None);
+    }
+
+    #[test]
+    fn uneven_times_are_found_as_even_ones_are() {
+        let even: Vec<f64> = (0..50).map(|k| 0.1 * f64::from(k)).collect();
+        let uneven: Vec<f64> = even.iter().map(|t| t * t * t).collect();
+        for times in [even, uneven, vec![2.0]] {
+            let held = HeldInputs {
+                values: (0..times.len()).map(|k| k as f64).collect(),
+                times: times.clone(),
+                count: 1,
+                prescribed: Vec::new(),
+            };
+            for t in (-10..1300).map(|k| 0.1 * f64::from(k)).chain(times.clone()) {
+                let row = times.iter().filter(|time| **time <= t).count().max(1) - 1;
+                assert_eq!(held.held_at(t), [row as f64], "at {t}");
+            }
+            assert_eq!(held.held_at(f64::INFINITY), [(times.len() - 1) as f64]);
+        }
     }
 
     #[test]

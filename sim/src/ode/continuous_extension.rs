@@ -36,26 +36,48 @@ impl ContinuousExtension {
         }
     }
 
-    /// The state at a `part` of a step from `start` to `end`; `swapped` gives the crate's
-    /// interpolation at a part, or nothing.
-    pub fn state(
+    /// The interior of a step from `start` to `end`; `swapped` gives the crate's interpolation at a
+    /// part of it, or nothing.
+    pub fn interior(
         &self,
-        part: f64,
         (start, end): (&[f64], &[f64]),
         mut swapped: impl FnMut(f64) -> Option<Vec<f64>>,
-    ) -> Option<Vec<f64>> {
-        let rest = |s: f64| s * (1.0 - s);
-        let weights = straight(part).transpose() * self.coefficients * rest(part);
-        let line = |s: f64| start.iter().zip(end).map(move |(a, b)| a + s * (b - a));
-        let mut state: Vec<f64> = line(part).collect();
-        for (s, weight) in PARTS.iter().zip(weights.iter()) {
-            let values = swapped(*s)?;
-            for ((y, value), line) in state.iter_mut().zip(values).zip(line(*s)) {
-                *y += weight * (value - line) / rest(*s);
+    ) -> Option<Interior> {
+        let mut values = vec![Vector6::zeros(); start.len()];
+        for (number, part) in PARTS.into_iter().enumerate() {
+            let states = swapped(part)?;
+            let components = values.iter_mut().zip(states).zip(start.iter().zip(end));
+            for ((values, value), (a, b)) in components {
+                values[number] = (value - line(part, *a, *b)) / (part * (1.0 - part));
             }
         }
-        Some(state)
+        let coefficients = values.iter().map(|values| self.coefficients * values);
+        Some(Interior {
+            coefficients: coefficients.collect(),
+        })
     }
+}
+
+/// What the extension gives inside one step.
+pub struct Interior {
+    /// For each state c_2 .. c_7.
+    coefficients: Vec<Vector6<f64>>,
+}
+
+impl Interior {
+    /// The state at a `part` of the step from `start` to `end`.
+    pub fn state(&self, part: f64, (start, end): (&[f64], &[f64])) -> Vec<f64> {
+        let powers = straight(part) * (part * (1.0 - part));
+        let ends = start.iter().zip(end);
+        ends.zip(&self.coefficients)
+            .map(|((a, b), coefficients)| line(part, *a, *b) + powers.dot(coefficients))
+            .collect()
+    }
+}
+
+/// The straight line from `a` to `b`.
+fn line(part: f64, a: f64, b: f64) -> f64 {
+    a + part * (b - a)
 }
 
 /// What multiplies c_2 .. c_7 in the extension's R at s.
@@ -81,8 +103,10 @@ mod tests {
         let of = |s: f64, levels: Vector6<f64>| 2.0 + s * (0.5 + (1.0 - s) * levels.dot(&c));
         let extension = ContinuousExtension::new();
         for part in [0.0, 0.2, 0.55, 1.0] {
-            let found = extension.state(part, (&start, &end), |s| Some(vec![of(s, swapped(s))]));
-            let error = found.expect("a state")[0] - of(part, straight(part));
+            let step = (&start[..], &end[..]);
+            let interior = extension.interior(step, |s| Some(vec![of(s, swapped(s))]));
+            let state = interior.expect("an interior").state(part, step);
+            let error = state[0] - of(part, straight(part));
             assert!(error.abs() < 1e-13, "{error:e} at {part}");
         }
     }

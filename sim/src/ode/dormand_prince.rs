@@ -8,7 +8,7 @@ use differential_equations::ode::OrdinaryNumericalMethod;
 use differential_equations::status::Status;
 use differential_equations::tolerance::Tolerance;
 
-use super::continuous_extension::ContinuousExtension;
+use super::continuous_extension::{ContinuousExtension, Interior};
 use super::error::SolveError;
 use super::magnitudes::Magnitudes;
 use super::stepper::{Outcome, Point, Stepper, refusal};
@@ -29,9 +29,14 @@ pub struct DormandPrince853 {
     magnitudes: Magnitudes,
     /// The method stands at `here`.
     ready: bool,
+    /// The next step is no continuation of the method's last one: it would refuse one that is much
+    /// shorter.
+    anew: bool,
     /// The method's last step is that from `last` to `here`.
     made_last: bool,
     extension: ContinuousExtension,
+    /// The last step's interior, once a state in it was asked for.
+    interior: Option<Interior>,
 }
 
 impl Stepper for DormandPrince853 {
@@ -45,11 +50,12 @@ impl Stepper for DormandPrince853 {
             here: start,
             step,
             ready: false,
+            anew: true,
             made_last: false,
             extension: ContinuousExtension::new(),
+            interior: None,
         };
         stepper.raise_floors();
-        stepper.set_step(step);
         stepper
     }
 
@@ -66,19 +72,17 @@ impl Stepper for DormandPrince853 {
     }
 
     fn set_step(&mut self, step: f64) {
+        // What the method knows of its last step stays until the next one begins.
         self.step = step;
         self.ready = false;
-        self.made_last = false;
-        // A new method, since it would refuse a step much shorter than its last one.
-        let tolerance = self.magnitudes.tolerance();
-        self.method = Method::dop853().rtol(tolerance).max_steps(usize::MAX);
-        self.method.atol = Tolerance::Vector(self.magnitudes.floors());
+        self.anew = true;
     }
 
     fn restart(&mut self, point: Point, step: f64) {
         self.last = std::mem::replace(&mut self.here, point);
         self.raise_floors();
         self.set_step(step);
+        self.made_last = false;
     }
 
     fn advance<S: System + ?Sized>(
@@ -89,6 +93,7 @@ impl Stepper for DormandPrince853 {
         let limit = until - self.here.t;
         let is_cut = limit <= self.step;
         let length = if is_cut { limit } else { self.step };
+        self.interior = None;
         if !self.ready {
             self.begin(watched, length)?;
         }
@@ -150,11 +155,15 @@ impl Stepper for DormandPrince853 {
         }
         let (begin, end) = (self.method.t_prev(), self.method.t());
         let part = ((t - begin) / (end - begin)).clamp(0.0, 1.0);
-        let method = &mut self.method;
-        self.extension
-            .state(part, (&self.last.y, &self.here.y), |part| {
-                method.interpolate(begin + part * (end - begin)).ok()
-            })
+        let step = (&self.last.y[..], &self.here.y[..]);
+        if self.interior.is_none() {
+            let method = &mut self.method;
+            let swapped = |part: f64| method.interpolate(begin + part * (end - begin)).ok();
+            self.interior = self.extension.interior(step, swapped);
+        }
+        self.interior
+            .as_ref()
+            .map(|interior| interior.state(part, step))
     }
 
     fn inside<S: System + ?Sized>(
@@ -190,6 +199,13 @@ impl DormandPrince853 {
         watched: &Watched<'_, S>,
         length: f64,
     ) -> Result<(), SolveError> {
+        self.made_last = false;
+        if self.anew {
+            let tolerance = self.magnitudes.tolerance();
+            self.method = Method::dop853().rtol(tolerance).max_steps(usize::MAX);
+            self.method.atol = Tolerance::Vector(self.magnitudes.floors());
+            self.anew = false;
+        }
         self.method.h0 = length;
         self.method
             .init(
