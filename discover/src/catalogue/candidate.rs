@@ -37,6 +37,8 @@ pub struct Candidate {
     pub load: Option<String>,
     /// Whether it changes what happens between teeth with play.
     pub on_mesh: bool,
+    /// Whether all that it does is to scale a spring's stiffness.
+    pub scales_stiffness: bool,
     /// Its parameters.
     pub parameters: Vec<CandidateParameter>,
     /// What the effect is.
@@ -199,9 +201,9 @@ impl Candidate {
 }
 
 /// All candidates for a model. `motion`: how its places move, as far as it is known.
-pub fn candidates(
+pub fn candidates<'e>(
     model: &Model,
-    effects: &[Effect],
+    effects: impl IntoIterator<Item = &'e Effect>,
     sites: &[Site],
     motion: &UsualMotion,
 ) -> Vec<Candidate> {
@@ -333,6 +335,7 @@ fn candidate(
         order: order.map(|(angle, order)| (angle.name.clone(), order)),
         load: load.map(|load| load.name.clone()),
         on_mesh: site.kind == SiteKind::Mesh,
+        scales_stiffness: effect.scales_stiffness(),
         parameters,
         says: effect.says.clone(),
         experiment: effect.experiment.clone(),
@@ -356,6 +359,7 @@ pub fn dropped_prior(
         order: None,
         load: None,
         on_mesh: false,
+        scales_stiffness: false,
         parameters: Vec::new(),
         says: says.to_owned(),
         experiment: experiment.to_owned(),

@@ -45,6 +45,15 @@ pub enum SiteKind {
     Input,
 }
 
+impl Effect {
+    /// Whether all that it does is to scale a spring's stiffness: a number of the model that is off does the
+    /// same.
+    pub fn scales_stiffness(&self) -> bool {
+        let scales = |edit: &Change| matches!(edit, Change::Substitution { within: Within::Site, find, .. } if find == "{k}");
+        self.site == SiteKind::Spring && self.edits.iter().all(scales)
+    }
+}
+
 impl SiteKind {
     /// The kinds by their words in a file.
     pub const WORDS: [(&'static str, Self); 6] = [
@@ -61,7 +70,7 @@ impl SiteKind {
     pub fn placeholders(self) -> &'static [&'static str] {
         match self {
             Self::Axis | Self::Angle => &["on", "unit", "force"],
-            Self::Mesh => &["on", "p", "k", "b"],
+            Self::Mesh => &["on", "p", "unit", "k", "b"],
             Self::Arm => &[
                 "term",
                 "velocity",

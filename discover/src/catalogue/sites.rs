@@ -11,14 +11,14 @@ use eomgen_model_spec::model::{Expr, ExprKind, Function, Input, Model, Term};
 
 use crate::catalogue::effect::SiteKind;
 use crate::catalogue::site::{Site, text};
-use crate::catalogue::springs::springs;
+use crate::catalogue::springs::{is_deflection, springs, units};
 use crate::model::input_places::replaceable;
 
 /// All places of a model.
 pub fn sites(model: &Model) -> Vec<Site> {
-    let meshes = mesh_coordinates(model);
-    let mut found = axes(model, &meshes);
-    found.extend(meshes.iter().filter_map(|place| mesh(model, *place)));
+    let deflections = deflections(model);
+    let mut found = axes(model, &mesh_coordinates(&deflections));
+    found.extend(deflections.iter().filter_map(|of| mesh(model, of)));
     found.extend(arms(model));
     found.extend(springs(model));
     found.extend(replaceable(model).map(input));
@@ -117,21 +117,48 @@ fn axis(name: &str, on: &str, unit: &str) -> Option<Site> {
     })
 }
 
-/// The coordinates that are deflections with play.
-fn mesh_coordinates(model: &Model) -> Vec<CoordinateId> {
-    let mut found = Vec::new();
+/// What deflects with play, each once: coordinates first, in their order.
+fn deflections(model: &Model) -> Vec<Expr> {
+    let mut found: Vec<Expr> = Vec::new();
     for (_, _, value) in values(model) {
-        value.visit(&mut |part| {
-            if let ExprKind::Call(Function::Deadzone, arguments) = &part.kind
-                && let ExprKind::Coordinate(id) = arguments[0].kind
-                && !found.contains(&id)
-            {
-                found.push(id);
+        visit_play(value, &mut |function, deflection| {
+            let is_known = found.iter().any(|known| is_same(model, known, deflection));
+            if function == Function::Deadzone && !is_known && is_deflection(model, deflection) {
+                found.push(deflection.clone());
             }
         });
     }
-    found.sort_unstable();
+    found.sort_by_key(|deflection| match deflection.kind {
+        ExprKind::Coordinate(id) => id.index(),
+        _ => usize::MAX,
+    });
     found
+}
+
+/// Calls `each` with every function with play in an expression, and what deflects in it.
+fn visit_play(expr: &Expr, each: &mut impl FnMut(Function, &Expr)) {
+    expr.visit(&mut |part| {
+        if let ExprKind::Call(function @ (Function::Deadzone | Function::Contact), arguments) =
+            &part.kind
+        {
+            each(*function, &arguments[0]);
+        }
+    });
+}
+
+/// Whether two deflections are written the same, however they are spaced.
+fn is_same(model: &Model, one: &Expr, other: &Expr) -> bool {
+    let plain = |expr: &Expr| text(model, expr).split_whitespace().collect::<String>();
+    plain(one) == plain(other)
+}
+
+/// The coordinates that are deflections with play.
+fn mesh_coordinates(deflections: &[Expr]) -> Vec<CoordinateId> {
+    let coordinate = |deflection: &Expr| match deflection.kind {
+        ExprKind::Coordinate(id) => Some(id),
+        _ => None,
+    };
+    deflections.iter().filter_map(coordinate).collect()
 }
 
 /// Every value in which an expression may be replaced.
@@ -159,14 +186,10 @@ fn values(model: &Model) -> Vec<(Section, &str, &Expr)> {
         .collect()
 }
 
-/// Whether an expression holds a function with play of a coordinate.
-fn has_play(expr: &Expr, coordinate: CoordinateId) -> bool {
+/// Whether an expression holds a function with play of what deflects.
+fn has_play(model: &Model, expr: &Expr, deflection: &Expr) -> bool {
     let mut found = false;
-    expr.visit(&mut |part| {
-        if let ExprKind::Call(Function::Deadzone | Function::Contact, arguments) = &part.kind {
-            found |= arguments[0].kind == ExprKind::Coordinate(coordinate);
-        }
-    });
+    visit_play(expr, &mut |_, of| found |= is_same(model, of, deflection));
     found
 }
 
@@ -187,11 +210,11 @@ pub fn plays(model: &Model) -> Vec<String> {
     found
 }
 
-fn mesh(model: &Model, coordinate: CoordinateId) -> Option<Site> {
+fn mesh(model: &Model, deflection: &Expr) -> Option<Site> {
     let mut terms: Vec<(Section, Vec<String>)> = Vec::new();
-    let mut stiffness = None;
+    let (mut stiffness, mut of) = (None, None);
     for (section, name, value) in values(model) {
-        if !has_play(value, coordinate) {
+        if !has_play(model, value, deflection) {
             continue;
         }
         if section == Section::Potential {
@@ -202,32 +225,60 @@ fn mesh(model: &Model, coordinate: CoordinateId) -> Option<Site> {
                     stiffness = Some(model.parameters[id].name.clone());
                 }
             });
+            of = of.or(Some(name));
         }
         match terms.iter_mut().find(|(known, _)| *known == section) {
             Some((_, names)) => names.push(name.to_owned()),
             None => terms.push((section, vec![name.to_owned()])),
         }
     }
-    let name = model.coordinates[coordinate].name.clone();
-    let mut arguments: BTreeMap<&'static str, String> =
-        [("p", name.clone()), ("k", stiffness?), ("on", name.clone())].into();
-    arguments.extend(half_play(model, coordinate).map(|play| ("b", play)));
+    let (unit, _) = units(model, deflection)?;
+    let p = text(model, deflection);
+    let mut arguments: BTreeMap<&'static str, String> = [
+        ("p", p.clone()),
+        ("k", stiffness?),
+        ("on", p),
+        ("unit", unit.to_owned()),
+    ]
+    .into();
+    arguments.extend(half_play(model, deflection).map(|play| ("b", play)));
     Some(Site {
         kind: SiteKind::Mesh,
         arguments,
-        name,
+        name: name_of_mesh(model, deflection).unwrap_or(of?).to_owned(),
         terms,
         dampers: Vec::new(),
     })
 }
 
-/// The half-play of a coordinate, as the specification writes it.
-fn half_play(model: &Model, coordinate: CoordinateId) -> Option<String> {
+/// The name of what deflects: a coordinate's, also where a middle of the play is taken from it, or a
+/// definition's; none if it is an expression.
+fn name_of_mesh<'m>(model: &'m Model, deflection: &Expr) -> Option<&'m str> {
+    match deflection.kind {
+        ExprKind::Coordinate(id) => Some(&model.coordinates[id].name),
+        ExprKind::Definition(id) => {
+            let definition = &model.definitions[id];
+            let moved = match &definition.value.kind {
+                ExprKind::Binary(BinaryOperator::Add | BinaryOperator::Subtract, of, by)
+                    if matches!(by.kind, ExprKind::Parameter(_)) =>
+                {
+                    name_of_mesh(model, of)
+                }
+                _ => None,
+            };
+            Some(moved.unwrap_or(&definition.name))
+        }
+        _ => None,
+    }
+}
+
+/// The half-play of what deflects, as the specification writes it.
+fn half_play(model: &Model, deflection: &Expr) -> Option<String> {
     let mut play = None;
     for (_, _, value) in values(model) {
         value.visit(&mut |part| {
             if let ExprKind::Call(Function::Deadzone, arguments) = &part.kind
-                && arguments[0].kind == ExprKind::Coordinate(coordinate)
+                && is_same(model, &arguments[0], deflection)
             {
                 play = arguments.get(1).map(|half| text(model, half));
             }

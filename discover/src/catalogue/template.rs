@@ -183,11 +183,14 @@ fn holding(model: &Model, site: &Site, name: &str) -> Vec<(Section, Vec<String>)
         };
         model.source.text.get(span.start..span.end)
     };
+    let is_letter = |c: char| c.is_alphanumeric() || c == '_';
+    let plain = |text: &str| text.split_whitespace().collect::<String>();
     let holds = |section: Section, term: &str| {
-        let arguments = text(section, term).unwrap_or_default();
-        arguments
-            .split(|c: char| !c.is_alphanumeric() && c != '_')
-            .any(|word| word == name)
+        let value = text(section, term).unwrap_or_default();
+        match name.chars().all(is_letter) {
+            true => value.split(|c| !is_letter(c)).any(|word| word == name),
+            false => plain(value).contains(&plain(name)),
+        }
     };
     let places = site.terms.iter();
     places

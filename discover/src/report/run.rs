@@ -173,6 +173,7 @@ pub fn discover_until(
         problem: &problem,
         fit: null,
         floor: floor.rms,
+        effects: catalogue,
         progress,
     };
     // An experiment takes as long as some fits: not after a limit.

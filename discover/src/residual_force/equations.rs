@@ -209,10 +209,16 @@ fn equations(model: &Model) -> Vec<Equation> {
     let mut found = Vec::new();
     for site in sites(model) {
         let is_mesh = site.kind == SiteKind::Mesh;
+        let is_coordinate = || {
+            let on = site.arguments.get("on");
+            let mut coordinates = model.coordinates.iter();
+            coordinates.any(|coordinate| Some(&coordinate.name) == on)
+        };
         let unit = match site.kind {
-            SiteKind::Mesh => Some("m"),
-            // A force between both ends of a spring is in the equations of what it joins.
+            // A force between both ends of a spring is in the equations of what it joins, as that of teeth is
+            // whose deflection is no coordinate.
             SiteKind::Spring => None,
+            SiteKind::Mesh if !is_coordinate() => None,
             // No motion of its own.
             SiteKind::Input => None,
             _ => site.arguments.get("unit").and_then(|text| unit(text)),

@@ -5,7 +5,7 @@
 use std::collections::BTreeMap;
 
 use crate::catalogue::candidate::{Candidate, candidates};
-use crate::catalogue::effect::{Effect, SiteKind};
+use crate::catalogue::effect::SiteKind;
 use crate::catalogue::site::Site;
 use crate::catalogue::sites::sites;
 use crate::catalogue::usual_motion::UsualMotion;
@@ -24,9 +24,8 @@ pub fn test_alternatives(
     pool: &Pool<'_>,
     fitted_hypotheses: &mut Vec<FittedHypothesis>,
     answer: FittedId,
-    effects: &[Effect],
 ) {
-    let preliminaries = alternatives(pool, fitted_hypotheses, answer, effects).unwrap_or_default();
+    let preliminaries = alternatives(pool, fitted_hypotheses, answer).unwrap_or_default();
     for new in full_fits(pool, preliminaries) {
         let known = fitted_hypotheses
             .iter_mut()
@@ -45,7 +44,6 @@ fn alternatives(
     pool: &Pool<'_>,
     fitted_hypotheses: &[FittedHypothesis],
     answer: FittedId,
-    effects: &[Effect],
 ) -> Option<Vec<(Hypothesis, PreliminaryFit)>> {
     let fitted = &fitted_hypotheses[answer];
     let [response] = fitted.responses[..] else {
@@ -55,7 +53,7 @@ fn alternatives(
         return None;
     }
     let rivals = rivals(pool, fitted_hypotheses, answer, response);
-    let (rivals, in_model) = in_model(pool, fitted, &rivals, effects);
+    let (rivals, in_model) = in_model(pool, fitted, &rivals);
     if in_model.is_empty() {
         return None;
     }
@@ -98,7 +96,6 @@ fn in_model(
     pool: &Pool<'_>,
     fitted: &FittedHypothesis,
     rivals: &[ResponseId],
-    effects: &[Effect],
 ) -> (Vec<ResponseId>, Vec<Candidate>) {
     if rivals.is_empty() {
         return Default::default();
@@ -109,7 +106,7 @@ fn in_model(
         orders: orders(pool, rivals, &sites),
         ..motion_of(pool.context.problem, &fitted.fit, &sites)
     };
-    let known = candidates(model, effects, &sites, &motion);
+    let known = candidates(model, pool.context.effects, &sites, &motion);
     let shape_ratio = shape_ratio(pool, fitted).unwrap_or(1.0);
     let again = |rival: &ResponseId| {
         let label = pool.candidate(*rival).label();

@@ -27,7 +27,7 @@ pub fn answer(round: &Round<'_>, mut tested: Vec<TestedPool>) -> Option<Selected
     fitted_hypotheses.retain(|fitted| fitted.explains);
     if let Some(answer) = best_of(&fitted_hypotheses) {
         let pool = Pool::new(round.context, &candidates, &screening, true);
-        test_alternatives(&pool, &mut fitted_hypotheses, answer, round.effects);
+        test_alternatives(&pool, &mut fitted_hypotheses, answer);
     }
     fitted_hypotheses.retain(|fitted| fitted.explains);
     selected(

@@ -1,5 +1,6 @@
 //! What a round of the search is about.
 
+use crate::catalogue::effect::Effect;
 use crate::fit::fitted::Fit;
 use crate::model::problem::EstimationProblem;
 use crate::thresholds;
@@ -13,6 +14,8 @@ pub struct Context<'r> {
     pub fit: &'r Fit,
     /// What a right model would leave, in standard deviations.
     pub floor: f64,
+    /// The catalogue.
+    pub effects: &'r [Effect],
     /// Is told what is done.
     pub progress: &'r (dyn Fn(&str) + Sync),
 }

@@ -90,10 +90,10 @@ pub fn search(
                 problem,
                 fit,
                 floor,
+                effects,
                 progress,
             },
             is_first: found.accepted.is_empty(),
-            effects,
         };
         let mut tested = round.round();
         let so_far = unfinished(&tested);

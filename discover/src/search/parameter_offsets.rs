@@ -1,9 +1,10 @@
 //! Parameters of the model that nobody called uncertain: candidates for being off where nothing
 //! else is accepted, and beside what is accepted where they look like it.
 
-use crate::catalogue::candidate::{self, Candidate};
+use crate::catalogue::candidate::{self, Candidate, candidates};
 use crate::catalogue::input_faults::input_faults;
-use crate::fit::fitted::Fit;
+use crate::catalogue::sites::sites;
+use crate::catalogue::usual_motion::UsualMotion;
 use crate::ids::{CandidateId, ResponseId};
 use crate::model::unknowns::{Unknown, What};
 use crate::search::context::Context;
@@ -22,8 +23,10 @@ pub struct SimilarOffsets {
     pub selected: ResponseId,
 }
 
-/// The parameters of a model that no unknown moves, and how its inputs may act otherwise than recorded.
-pub fn offsets(fit: &Fit, path: &str) -> Vec<Candidate> {
+/// The parameters of a model that no unknown moves, how its inputs may act otherwise than recorded, and
+/// what does the same as a shift of a stiffness.
+pub fn offsets(context: Context<'_>) -> Vec<Candidate> {
+    let (fit, path) = (context.fit, &context.problem.path);
     let is_known = |name: &str| {
         let of = |unknown: &Unknown| match &unknown.what {
             What::Parameter(known) | What::Inverse(known) => known == name,
@@ -34,8 +37,16 @@ pub fn offsets(fit: &Fit, path: &str) -> Vec<Candidate> {
     let parameters = fit.model.specification().parameters.iter();
     let free = parameters.filter(|parameter| !is_known(&parameter.name));
     let parameters = free.filter_map(candidate::offset_of);
+    let model = fit.model.specification();
+    let scaling = (context.effects.iter()).filter(|effect| effect.scales_stiffness());
     parameters
-        .chain(input_faults(fit.model.specification(), path))
+        .chain(input_faults(model, path))
+        .chain(candidates(
+            model,
+            scaling,
+            &sites(model),
+            &UsualMotion::default(),
+        ))
         .collect()
 }
 
@@ -44,7 +55,7 @@ pub fn offsets(fit: &Fit, path: &str) -> Vec<Candidate> {
 /// it: a gain and a number of the model may be two names of one thing. None where nothing looks like
 /// it. The context's fit is what was fitted before anything was named.
 pub fn similar_offsets(context: Context<'_>, selected: &Candidate) -> Option<SimilarOffsets> {
-    let offsets = offsets(context.fit, &context.problem.path);
+    let offsets = offsets(context);
     let (offsets, called) = match offsets.iter().any(|offset| offset.is_same_as(selected)) {
         true => (
             dropped_prior(context.problem, context.fit),

@@ -3,7 +3,6 @@
 //! uncertain.
 
 use crate::catalogue::candidate::{Candidate, candidates};
-use crate::catalogue::effect::Effect;
 use crate::catalogue::sites::sites;
 use crate::catalogue::usual_motion::UsualMotion;
 use crate::fit::fitted::Fit;
@@ -28,8 +27,6 @@ pub struct Round<'l> {
     pub context: Context<'l>,
     /// Whether nothing was found yet.
     pub is_first: bool,
-    /// The catalogue.
-    pub effects: &'l [Effect],
 }
 
 impl Round<'_> {
@@ -222,7 +219,7 @@ impl Round<'_> {
 
     /// Parameters that nobody called uncertain.
     fn offsets(&self) -> TestedPool {
-        let offsets = offsets(self.context.fit, &self.context.problem.path);
+        let offsets = offsets(self.context);
         (self.context.progress)(&format!(
             "screening {} parameters of the model and of inputs",
             offsets.len()
@@ -259,7 +256,8 @@ impl Round<'_> {
             orders: ripple_orders(problem, fit),
             ..motion_of(problem, fit, &sites)
         };
-        let mut all = candidates(model, self.effects, &sites, &motion);
+        let effects = (self.context.effects.iter()).filter(|effect| !effect.scales_stiffness());
+        let mut all = candidates(model, effects, &sites, &motion);
         all.extend(dropped_prior(problem, fit));
         all.retain(|c| (c.order.is_none() || c.on_mesh != has_play) && (has_play || c.on_mesh));
         all.into_iter()

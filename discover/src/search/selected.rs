@@ -127,13 +127,19 @@ fn best(tested: TestedPool) -> Option<Selected> {
         mut fitted_hypotheses,
     } = tested;
     let least = best_of(&fitted_hypotheses)?;
+    let candidate = |response: ResponseId| &candidates[screening.responses[response].candidate];
+    // A number that is off adds nothing to the model.
+    let scales = |fitted: &FittedHypothesis| {
+        let mut of = fitted.responses.iter();
+        of.any(|response| candidate(*response).scales_stiffness)
+    };
     let is_simpler = |id: &FittedId| {
         let (other, least) = (&fitted_hypotheses[*id], &fitted_hypotheses[least]);
         let is_less_off = match (off(other), off(least)) {
             (Some(other), Some(least)) => other < least,
             _ => false,
         };
-        (other.own.len() < least.own.len() || is_less_off)
+        (other.own.len() < least.own.len() || is_less_off || (scales(least) && !scales(other)))
             && other.verdict.is_ok()
             && indistinguishable_half(least, other, &screening).is_some()
     };
@@ -148,7 +154,6 @@ fn best(tested: TestedPool) -> Option<Selected> {
         .min_by(|a, b| order(a).partial_cmp(&order(b)).unwrap_or(Ordering::Equal))
         .unwrap_or(least);
     let fitted = fitted_hypotheses.remove(best.index());
-    let candidate = |response: ResponseId| &candidates[screening.responses[response].candidate];
     let own: Vec<Candidate> = (fitted.responses.iter())
         .map(|response| candidate(*response).clone())
         .collect();

@@ -1,6 +1,7 @@
 //! Play in the shaft of a drive of two masses is named alone, whether the damper beside the shaft's spring acts in
-//! contact only or inside the play too, and no damping is called shifted for it. Records are made by the
-//! midpoint rule from Newton's laws.
+//! contact only or inside the play too, and no damping is called shifted for it. Play that lies to one side is told
+//! where the model has play already, and a shaft that is softer has two names. Records are made by the midpoint rule
+//! from Newton's laws.
 
 use eomgen_tests::logistic_noise::LogisticNoise;
 use eomgen_tests::program;
@@ -140,11 +141,16 @@ fn record(shaft: Shaft, turn: f64) -> String {
 
 /// What `discover` answers, and the specification that it leaves.
 fn answer(specification: &str, shaft: Shaft) -> (Value, String) {
+    answer_of(specification, DATASET, shaft)
+}
+
+/// The same for other labels of the records.
+fn answer_of(specification: &str, dataset: &str, shaft: Shaft) -> (Value, String) {
     let folder = tempfile::tempdir().expect("a folder");
     let place = |name: &str| folder.path().join(name);
     let files = [
         ("spec.toml", specification.to_owned()),
-        ("dataset.toml", DATASET.to_owned()),
+        ("dataset.toml", dataset.to_owned()),
         ("train.csv", record(shaft, 0.0)),
         ("test.csv", record(shaft, 1.0)),
     ];
@@ -205,4 +211,66 @@ fn no_play_is_found_in_a_shaft_that_has_none() {
     let (found, _) = answer(&specification(AS_DISSIPATION), |p, rate| K * p + D * rate);
     assert_eq!(found["verdict"], "no_significant_gap", "{found:#}");
     assert_eq!(found["effects"].as_array().map(Vec::len), Some(0));
+}
+
+/// The names of what an effect of a document is not told from, itself first.
+fn class(effect: &Value) -> Vec<String> {
+    let name = |of: &Value| format!("{} {}", of["effect"], of["on"]).replace('"', "");
+    let others = effect["equivalent"].as_array().into_iter().flatten();
+    std::iter::once(effect).chain(others).map(name).collect()
+}
+
+#[test]
+fn a_softer_shaft_is_a_stiffness_that_is_off_or_a_joint_in_series() {
+    let (found, _) = answer(&specification(AS_DISSIPATION), |p, rate| {
+        0.8 * K * p + D * rate
+    });
+    let effects = found["effects"].as_array().expect("a list");
+    assert_eq!(effects.len(), 1, "{effects:#?}");
+    let names = class(&effects[0]);
+    assert_eq!(
+        names,
+        ["parameter_shift k", "joint_compliance shaft"],
+        "{found:#}"
+    );
+}
+
+/// The middle of a play that lies to one side, rad: three times its half beyond where the model has it.
+const MIDDLE: f64 = 3.0 * PLAY;
+
+#[test]
+fn play_that_lies_far_to_one_side_is_told_between_teeth_that_turn() {
+    let play = "b = { value = 9e-3, unit = \"rad\", min = 0 }\n[coordinates]";
+    let damper = "damper = \"1/2*d*dot(twist)^2*contact(twist, b)\"\n[forces]";
+    let of_two_angles = specification(damper)
+        .replace("k*twist^2", "k*deadzone(twist, b)^2")
+        .replace("[coordinates]", play)
+        + "[observables]\nmotor = { value = \"theta_m\", unit = \"rad\" }\n";
+    let of_a_deflection = of_two_angles
+        .replace("theta_m = {", "p = {")
+        .replace("twist = \"theta_m - theta_l\"", "theta_m = \"theta_l + p\"")
+        .replace("dot(twist)", "dot(p)")
+        .replace("(twist, b)", "(p, b)");
+    // Encoders whose zeros are known well: else a bias is the first name.
+    let dataset = DATASET
+        .replace("[channels.theta_m]", "[channels.motor]")
+        .replace("state = \"rest\"", "state = \"estimate\"")
+        .replace("noise = 1.5e-4", "noise = 1.5e-4\nbias = { sd = 3e-4 }");
+    for (specification, on) in [(of_a_deflection, "p"), (of_two_angles, "twist")] {
+        let (found, _) = answer_of(&specification, &dataset, |p, rate| {
+            in_contact(p - MIDDLE, rate)
+        });
+        let effects = found["effects"].as_array().expect("a list");
+        // An encoder whose zero is off is another name of it.
+        let names = class(&effects[0]);
+        assert_eq!(names[0], format!("asymmetric_backlash {on}"), "{found:#}");
+        let mut others = names[1..].iter();
+        assert!(
+            others.all(|name| name.starts_with("sensor_bias ")),
+            "{names:?}"
+        );
+        let middle = &effects[0]["parameters"]["d_b"];
+        let off = middle["value"].as_f64().map(|value| (value - MIDDLE).abs());
+        assert!(off.is_some_and(|off| off < 2e-3), "{middle:#}");
+    }
 }
