@@ -146,6 +146,7 @@ fn p_values(seed: u64, force: f64) -> Vec<Option<f64>> {
         problem: &problem,
         fit: &fit,
         floor: 1.0,
+        effects: &[],
         progress: &|_| {},
     };
     let pool = Pool::new(context, &all, &screening, true);
