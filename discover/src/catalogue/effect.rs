@@ -46,6 +46,12 @@ pub enum SiteKind {
 }
 
 impl Effect {
+    /// Whether it brings something that moves by itself.
+    pub fn adds_states(&self) -> bool {
+        let adds = |edit: &Change| matches!(edit, Change::State { .. } | Change::Coordinate { .. });
+        self.edits.iter().any(adds)
+    }
+
     /// Whether all that it does is to scale a spring's stiffness: a number of the model that is off does the
     /// same.
     pub fn scales_stiffness(&self) -> bool {

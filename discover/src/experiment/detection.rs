@@ -184,13 +184,35 @@ impl<'f> Hidden<'f> {
         predictor?.predicted(bounds, times, proposal).ok()
     }
 
+    /// An experiment with a small size, sought from a `start`.
+    fn tried<'t>(
+        &self,
+        within: (&Bounds, &[f64]),
+        played: &'t Played<'_>,
+        start: f64,
+    ) -> Option<Tried<'t>> {
+        let (size, moved, present) = self.small(within, played, start)?;
+        let most = self
+            .without
+            .leaves_unfitted(self.problem, self.model(), &present)?;
+        Some(Tried {
+            place: played.place,
+            proposal: played.proposal,
+            size,
+            moved,
+            present,
+            most: most / size.abs(),
+        })
+    }
+
     /// A size that moves the outputs of an experiment by as much as is small, and what it leaves.
     fn small(
         &self,
         within: (&Bounds, &[f64]),
         played: &Played<'_>,
+        start: f64,
     ) -> Option<(f64, f64, Prediction)> {
-        let mut size = 1e-3 * self.unknown.scale;
+        let mut size = start;
         for _ in 0..TRIALS {
             let Some(present) = self.predicted(within, played.proposal, size) else {
                 size *= 0.1;
@@ -245,24 +267,17 @@ impl<'f> Hidden<'f> {
     /// The experiment of some that shows the smallest size. `None` where none of them can be played or
     /// shows anything at all.
     pub fn best(&self, within: (&Bounds, &[f64]), family: &[Played<'_>]) -> Option<Detection> {
-        let tried = family.par_iter().filter_map(|played| {
-            let Played {
-                place, proposal, ..
-            } = played;
-            let (size, moved, present) = self.small(within, played)?;
-            let most = self
-                .without
-                .leaves_unfitted(self.problem, self.model(), &present)?;
-            Some(Tried {
-                place: *place,
-                proposal,
-                size,
-                moved,
-                present,
-                most: most / size.abs(),
-            })
-        });
-        let (tried, left) = self.most_shown(tried.collect())?;
+        // What is small in one experiment nearly is in the next.
+        let usual = 1e-3 * self.unknown.scale;
+        let (mut first, mut others) = (None, family);
+        while let (None, Some((played, rest))) = (&first, others.split_first()) {
+            (first, others) = (self.tried(within, played, usual), rest);
+        }
+        let start = first.as_ref().map_or(usual, |first| first.size);
+        let others = others.par_iter();
+        let others = others.filter_map(|played| self.tried(within, played, start));
+        let others: Vec<Tried<'_>> = others.collect();
+        let (tried, left) = self.most_shown(first.into_iter().chain(others).collect())?;
         let Tried {
             place,
             proposal,

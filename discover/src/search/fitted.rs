@@ -42,7 +42,7 @@ pub fn preliminary_fits(
         .collect();
     let mut found = Vec::new();
     for (hypothesis, preliminary) in hypotheses.into_iter().zip(preliminaries) {
-        let label = pool.label(&hypothesis.responses);
+        let label = hypothesis::label(pool, &hypothesis);
         match preliminary {
             Ok(preliminary) => {
                 let part = 100.0 * preliminary.cost / alone;
@@ -81,7 +81,7 @@ pub fn full_fits(
         false => SplitSample::of(pool.context.problem, pool.context.fit),
     };
     for (hypothesis, new) in fits {
-        let label = pool.label(&hypothesis.responses);
+        let label = hypothesis::label(pool, &hypothesis);
         match new {
             Ok(new) => {
                 let own = own_unknowns(pool, &hypothesis);

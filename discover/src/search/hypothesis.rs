@@ -27,6 +27,19 @@ struct Extended {
     theta: Vec<f64>,
 }
 
+/// The names of a hypothesis' candidates, and of what they replace.
+pub fn label(pool: &Pool<'_>, hypothesis: &Hypothesis) -> String {
+    let names = pool.label(&hypothesis.responses);
+    let unknowns = &pool.context.fit.unknowns;
+    match hypothesis
+        .deleted
+        .and_then(|id| unknowns[id].what.parameter())
+    {
+        Some(deleted) => format!("{names} without {deleted}"),
+        None => names,
+    }
+}
+
 /// The unknowns of a hypothesis' effects in a fit with them.
 pub fn own_unknowns(pool: &Pool<'_>, hypothesis: &Hypothesis) -> Vec<EffectUnknown> {
     let mut next = pool.context.fit.unknowns.len();

@@ -3,6 +3,7 @@
 //! uncertain.
 
 use crate::catalogue::candidate::{Candidate, candidates};
+use crate::catalogue::effect::Effect;
 use crate::catalogue::sites::sites;
 use crate::catalogue::usual_motion::UsualMotion;
 use crate::fit::fitted::Fit;
@@ -256,7 +257,11 @@ impl Round<'_> {
             orders: ripple_orders(problem, fit),
             ..motion_of(problem, fit, &sites)
         };
-        let effects = (self.context.effects.iter()).filter(|effect| !effect.scales_stiffness());
+        // Where the motion is given nothing is simulated beside it.
+        let is_given = problem.dataset.gives_motion();
+        let may_be =
+            |effect: &&Effect| !effect.scales_stiffness() && !(is_given && effect.adds_states());
+        let effects = self.context.effects.iter().filter(may_be);
         let mut all = candidates(model, effects, &sites, &motion);
         all.extend(dropped_prior(problem, fit));
         all.retain(|c| (c.order.is_none() || c.on_mesh != has_play) && (has_play || c.on_mesh));

@@ -1,6 +1,7 @@
 //! What `compare` and `discover` are given, and what they find.
 
 mod arm;
+mod documented_example;
 mod effects_files;
 mod effects_found;
 mod effects_placed;
