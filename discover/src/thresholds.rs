@@ -310,6 +310,10 @@ pub const FURTHER_STEPS: usize = 12;
 /// leaves so many times what a fit leaves is no place to begin beside it.
 pub const HOPELESS: f64 = 8.0;
 
+/// What begins where a fit ended, and leaves so many times what that leaves of the training records after the
+/// first steps, is judged as it stands.
+pub const FAR: f64 = 3.0;
+
 /// Windows are followed anew so often at most.
 pub const REFRESHES: usize = 2;
 

@@ -266,6 +266,7 @@ fn fitted(
         let warm_start = WarmStart {
             fit,
             cost: fit.train.estimate.cost,
+            most: f64::INFINITY,
         };
         let preliminary = preliminary::expected(
             problem,

@@ -23,8 +23,9 @@ use eomgen_model_spec::unit::Unit;
 use rayon::prelude::*;
 
 use crate::catalogue::candidate::Candidate;
+use crate::error::DiscoverError;
 use crate::experiment::bounds::Bounds;
-use crate::experiment::detection::{Hidden, Played};
+use crate::experiment::detection::{Detection, Hidden, Played};
 use crate::experiment::discrimination::{Discrimination, Members, NoExperiment, PairSeparation};
 use crate::experiment::members::equivalent_fits;
 use crate::experiment::next::{ExperimentFile, Experiments, MemberAt, NextExperiment, Pair, Shown};
@@ -261,10 +262,17 @@ impl Plan<'_> {
         ));
         let without = Rival::declared(found.best());
         let family = self.largest(found.best());
-        for place in wanted {
+        let sought = wanted.par_iter().map(|place| {
+            let candidate = &found.rejected[*place].candidate;
+            let hidden = Hidden::of(problem, &without, candidate)?;
+            let best = hidden.best((&self.bounds, &self.times), &family);
+            Ok((hidden, best))
+        });
+        let sought: Vec<Result<(Hidden<'_>, Option<Detection>), DiscoverError>> = sought.collect();
+        for (place, sought) in wanted.into_iter().zip(sought) {
             let candidate = &found.rejected[place].candidate;
-            let next = match Hidden::of(problem, &without, candidate) {
-                Ok(hidden) => self.shown(&hidden, candidate, &family, &mut experiments.files),
+            let next = match sought {
+                Ok((hidden, best)) => self.shown(&hidden, candidate, best, &mut experiments.files),
                 Err(error) => NextExperiment::none(&error.to_string(), &self.bounds),
             };
             experiments.of_rejected[place] = Some(next);
@@ -302,10 +310,10 @@ impl Plan<'_> {
         &self,
         hidden: &Hidden<'_>,
         candidate: &Candidate,
-        family: &[Played<'_>],
+        best: Option<Detection>,
         files: &mut Vec<ExperimentFile>,
     ) -> NextExperiment {
-        let Some(best) = hidden.best((&self.bounds, &self.times), family) else {
+        let Some(best) = best else {
             let reason = "nothing that was tried within the bounds shows it";
             return NextExperiment::none(reason, &self.bounds);
         };

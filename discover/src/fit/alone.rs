@@ -62,6 +62,16 @@ pub fn alone(
         Place::Test(record) => left_of(&problem.test, &fit.test, record)?,
     };
     let record = place.of(problem.dataset);
+    let is_fitted_alone = matches!(place, Place::Train(_)) && problem.dataset.train.len() == 1;
+    if is_fitted_alone && more.is_none() && !is_held(fit) {
+        return Some(Alone {
+            record: place,
+            name: record.name.clone(),
+            together,
+            rms: together,
+            estimates: estimates(fit),
+        });
+    }
     let dataset = Dataset {
         train: vec![record.clone()],
         test: vec![record.clone()],
@@ -82,14 +92,28 @@ pub fn alone(
     let mut theta = fit.train.estimate.theta.clone();
     theta.extend(more.map(|unknown| unknown.start));
     let found = full::fit(&own, fit.texts.clone(), unknowns, &theta).ok()?;
-    let estimates = found.train.estimate.theta.iter().zip(&found.sd);
     Some(Alone {
         record: place,
         name: record.name.clone(),
         together,
         rms: found.train.rms,
-        estimates: estimates.map(|(value, sd)| (*value, *sd)).collect(),
+        estimates: estimates(&found),
     })
+}
+
+/// Whether a parameter of a fit is held where its prior ends, and would go on alone.
+fn is_held(fit: &Fit) -> bool {
+    fit.unknowns().any(|(id, unknown)| {
+        let value = fit.train.estimate.theta[id];
+        let is_at = value <= unknown.bounds.low || value >= unknown.bounds.high;
+        matches!(unknown.what, What::Parameter(_)) && unknown.bounds != unknown.limits && is_at
+    })
+}
+
+/// A fit's unknowns with their standard deviations.
+fn estimates(fit: &Fit) -> Vec<(f64, f64)> {
+    let pairs = fit.train.estimate.theta.iter().zip(&fit.sd);
+    pairs.map(|(value, sd)| (*value, *sd)).collect()
 }
 
 /// The most that a fit leaves of any record, in standard deviations.

@@ -2,6 +2,7 @@
 //! What is off in one record only, as another payload or another supply, is no property of the machine.
 
 use eomgen_model_spec::model::{Parameter, ParameterValue};
+use rayon::prelude::*;
 
 use crate::fit::alone::{Alone, alone, most_left, places};
 use crate::fit::fitted::Fit;
@@ -9,22 +10,43 @@ use crate::model::problem::EstimationProblem;
 use crate::model::unknowns::{Unknown, What, sign_bounds};
 use crate::thresholds;
 
+/// How many records are fitted side by side before it is asked whether more are needed.
+const AT_ONCE: usize = 2;
+
 /// The contradictions among the records of a fit that leaves a gap, in sentences. Parameters, declared
 /// ones or those of what was found, to which two records alone give different values, where each alone
 /// is explained much better than all together. Or records that are not explained alone where others are, with the
 /// parameters that would explain them. `floor`: what a right model would leave, in standard deviations.
-pub fn contradictions(problem: &EstimationProblem<'_>, fit: &Fit, floor: f64) -> Vec<String> {
+pub fn contradictions(
+    problem: &EstimationProblem<'_>,
+    fit: &Fit,
+    floor: f64,
+    progress: &(dyn Fn(&str) + Sync),
+) -> Vec<String> {
     // What none leaves more of than each could alone is no contradiction.
     if most_left(problem, fit) < thresholds::CONTRADICTS * floor {
         return Vec::new();
     }
     let places = places(problem.dataset);
     let mut records: Vec<Alone> = Vec::with_capacity(places.len());
-    for (number, place) in places.iter().enumerate() {
-        if !may_contradict(&records, places.len() - number, floor) {
+    let mut tried = 0;
+    // The first by itself: of two records it may settle it.
+    let (first, others) = places.split_at(1.min(places.len()));
+    for some in std::iter::once(first).chain(others.chunks(AT_ONCE)) {
+        if !may_contradict(&records, places.len() - tried, floor) {
             return Vec::new();
         }
-        records.extend(alone(problem, fit, *place, None));
+        progress(&format!(
+            "fitting records alone, {} of {}",
+            tried + some.len(),
+            places.len()
+        ));
+        let of_its_own = some
+            .par_iter()
+            .map(|place| alone(problem, fit, *place, None));
+        let of_its_own: Vec<Option<Alone>> = of_its_own.collect();
+        records.extend(of_its_own.into_iter().flatten());
+        tried += some.len();
     }
     let mut sentences = Vec::new();
     for (place, unknown) in fit.unknowns.iter().enumerate() {

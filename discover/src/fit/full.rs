@@ -30,6 +30,16 @@ struct StartingPoint {
     is_far: bool,
 }
 
+/// Whole windows fitted.
+struct Converged {
+    /// What is known of their initial states.
+    prior: InitialStatePrior,
+    /// What is left of them.
+    residuals: Residuals,
+    /// Whether that is too much to be worth more.
+    is_far: bool,
+}
+
 /// Fits a specification: its unknowns from `theta`, then its residuals.
 ///
 /// # Errors
@@ -63,8 +73,12 @@ pub fn complete(
         &preliminary.ranges,
     );
     let near = near(problem, &all, &preliminary);
-    let (is_followed, is_far) = (near.is_followed, near.is_far);
-    let (mut prior, mut train) = converged(problem, &mut all, near);
+    let is_followed = near.is_followed;
+    let Converged {
+        mut prior,
+        residuals: mut train,
+        is_far,
+    } = converged(problem, &mut all, near, preliminary.most);
     let prior_weight = all.prior_weight;
     let loose = prior.without_carried();
     let mut tangents = derivatives_at(&all, &train.estimate);
@@ -168,12 +182,14 @@ fn near(
     }
 }
 
-/// Whole windows fitted, and those followed anew that are better for it, as long as that helps.
+/// Whole windows fitted, and those followed anew that are better for it, as long as that helps and no more
+/// than `most` standard deviations are left.
 fn converged(
     problem: &EstimationProblem<'_>,
     all: &mut Shooting<'_>,
     near: StartingPoint,
-) -> (InitialStatePrior, Residuals) {
+    most: f64,
+) -> Converged {
     let (mut prior, estimate) = (near.prior, near.estimate);
     let free = match near.is_far {
         true => estimate,
@@ -186,6 +202,7 @@ fn converged(
         ),
     };
     let mut residuals = Residuals::of(all, free);
+    let is_far = near.is_far || residuals.rms > most;
     // What remains where records are trusted as if noise were all that they hold says how
     // far they may be trusted against the priors.
     all.prior_weight = residuals.inflation();
@@ -196,8 +213,9 @@ fn converged(
             ..
         } = &residuals.estimate;
         let found = damped_gauss_newton(all, &prior, theta, initial_states, thresholds::FULL_STEPS);
-        if near.is_far {
-            return (prior, Residuals::of(all, found));
+        if is_far {
+            residuals = Residuals::of(all, found);
+            break;
         }
         let before = found.cost;
         let (new_prior, found) = refreshed(problem, all, prior, found);
@@ -208,7 +226,11 @@ fn converged(
             break;
         }
     }
-    (prior, residuals)
+    Converged {
+        prior,
+        residuals,
+        is_far,
+    }
 }
 
 /// Unknowns from a preliminary fit of the beginnings of windows, as far as these lead: longer

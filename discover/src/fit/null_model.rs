@@ -40,6 +40,7 @@ pub fn null_fit(problem: &EstimationProblem<'_>, text: &str) -> Result<Fit, Disc
         let warm_start = WarmStart {
             fit: &fit,
             cost: fit.train.estimate.cost,
+            most: f64::INFINITY,
         };
         full::complete(
             problem,

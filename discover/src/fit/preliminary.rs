@@ -20,6 +20,8 @@ pub struct PreliminaryFit {
     pub cost: f64,
     /// What is known of the initial states of whole windows, where they begin there already.
     pub(crate) whole: Option<InitialStatePrior>,
+    /// What leaves more standard deviations than this of whole windows is not worth following them anew.
+    pub(crate) most: f64,
     /// Whether further steps over beginnings of windows would help little.
     pub(crate) is_converged: bool,
     pub(crate) texts: SpecificationTexts,
@@ -37,6 +39,9 @@ pub struct WarmStart<'f> {
     pub fit: &'f Fit,
     /// The cost that the other is expected to come to, in squared standard deviations.
     pub cost: f64,
+    /// Where the other leaves more standard deviations than this of the training records, its windows are not
+    /// followed anew: it is not worth that.
+    pub most: f64,
 }
 
 /// Fits the model's unknowns to the beginnings of the windows, which tells good ones from
@@ -89,6 +94,7 @@ pub fn preliminary(
     Ok(PreliminaryFit {
         cost: found.cost,
         whole: None,
+        most: f64::INFINITY,
         is_converged,
         initial_states: found.initial_states,
         theta: found.theta,
@@ -112,7 +118,7 @@ pub fn expected(
     guesses: &[Vec<f64>],
     warm_start: WarmStart<'_>,
 ) -> Result<PreliminaryFit, DiscoverError> {
-    let WarmStart { fit, cost } = warm_start;
+    let WarmStart { fit, cost, most } = warm_start;
     let model = problem.model(&texts.whole, Some(&texts.linear))?;
     let bare = Shooting::new(problem, &model, &problem.train, &unknowns, &[]);
     let mapped = |states: &[Vec<f64>]| -> Vec<Vec<f64>> {
@@ -135,6 +141,7 @@ pub fn expected(
     Ok(PreliminaryFit {
         cost,
         whole: Some(prior),
+        most,
         is_converged: true,
         initial_states,
         theta,

@@ -304,7 +304,7 @@ fn contradicting(
     floor: f64,
     progress: &Progress<'_>,
 ) -> Vec<String> {
-    let found = contradictions(problem, fit, floor);
+    let found = contradictions(problem, fit, floor, progress);
     for sentence in &found {
         progress(&format!("note: {sentence}"));
     }

@@ -83,6 +83,7 @@ fn alternatives(
         let warm_start = WarmStart {
             fit: &fitted.fit,
             cost,
+            most: thresholds::FAR * fitted.fit.train.rms,
         };
         let preliminary = warm_started(pool, &hypothesis, warm_start, shape_ratio).ok()?;
         Some((hypothesis, preliminary))

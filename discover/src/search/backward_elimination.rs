@@ -91,6 +91,7 @@ pub(crate) fn without(
     let warm_start = WarmStart {
         fit,
         cost: fit.train.estimate.cost,
+        most: thresholds::FAR * fit.train.rms,
     };
     let preliminary = preliminary::expected(problem, texts, unknowns, &[theta], warm_start)?;
     full::complete(problem, preliminary)

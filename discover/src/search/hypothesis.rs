@@ -9,6 +9,7 @@ use crate::model::specification_texts::SpecificationTexts;
 use crate::model::unknowns::{NormalPrior, Unknown};
 use crate::search::acceptance::EffectUnknown;
 use crate::search::pool::Pool;
+use crate::thresholds;
 
 /// Candidates to be fitted together, and a parameter whose term they replace.
 #[derive(Clone)]
@@ -92,7 +93,8 @@ pub fn preliminary(
     let begins: Vec<Vec<f64>> = std::iter::once(theta).chain(others).collect();
     if pool.is_whole && hypothesis.deleted.is_none() && !adds_states {
         let cost = pool.screening.predicted(&hypothesis.responses).cost;
-        let warm_start = WarmStart { fit, cost };
+        let most = thresholds::FAR * fit.train.rms;
+        let warm_start = WarmStart { fit, cost, most };
         return preliminary::expected(problem, texts, unknowns, &begins, warm_start);
     }
     let mut preliminary = preliminary::preliminary(problem, texts, unknowns, &begins)?;
