@@ -260,7 +260,7 @@ impl Round<'_> {
         // Where the motion is given nothing is simulated beside it.
         let is_given = problem.dataset.gives_motion();
         let may_be =
-            |effect: &&Effect| !effect.scales_stiffness() && !(is_given && effect.adds_states());
+            |effect: &&Effect| !(effect.scales_stiffness() || is_given && effect.adds_states());
         let effects = self.context.effects.iter().filter(may_be);
         let mut all = candidates(model, effects, &sites, &motion);
         all.extend(dropped_prior(problem, fit));
