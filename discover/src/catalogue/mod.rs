@@ -1,12 +1,13 @@
 //! What a model may lack: the effects that come with the program and a user's ([`effect`]), the
-//! places of a model where they may sit ([`site`], [`sites`], `springs` and the `dampers` beside them,
-//! read by `products` and `polynomial`), what `loads` these bear, how they move ([`usual_motion`]), and both together as
+//! places of a model where they may sit ([`site`], [`sites`], `arms`, [`meshes`], `springs` and the `dampers` beside
+//! them, read by `products` and `polynomial`), what `loads` these bear, how they move ([`usual_motion`]), and both together as
 //! [`candidate`]s (the edits of an effect at a place: [`template`]; its parameters as unknowns:
 //! [`candidate_unknown`]). What
 //! effects do is decided by nobody but the specification. How a file of effects is read is in
 //! `file` with `change`, `placeholders` and `fields`. Inputs that act otherwise than recorded are
 //! candidates of their own ([`input_faults`]).
 
+mod arms;
 pub mod candidate;
 pub mod candidate_unknown;
 mod change;
@@ -16,6 +17,7 @@ mod fields;
 mod file;
 pub mod input_faults;
 mod loads;
+pub mod meshes;
 mod placeholders;
 mod polynomial;
 mod products;

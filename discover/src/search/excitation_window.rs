@@ -3,7 +3,7 @@
 use eomgen_model_spec::edit::{self, Edit, SetParameter};
 use eomgen_model_spec::source::Source;
 
-use crate::catalogue::sites::plays;
+use crate::catalogue::meshes::plays;
 use crate::fit::fitted::Fit;
 use crate::fit::full;
 use crate::model::problem::EstimationProblem;

@@ -1,0 +1,131 @@
+//! Flexible bodies of a model: fields whose deflection is a length, with the mass that is spread along them.
+
+use std::collections::BTreeMap;
+
+use eomgen_model_spec::ast::BinaryOperator;
+use eomgen_model_spec::dimension::Dimension;
+use eomgen_model_spec::edit::Section;
+use eomgen_model_spec::ids::FieldId;
+use eomgen_model_spec::model::{Expr, ExprKind, Model, Term};
+
+use crate::catalogue::effect::SiteKind;
+use crate::catalogue::site::{Site, text};
+
+/// All flexible bodies of a model.
+pub(super) fn arms(model: &Model) -> Vec<Site> {
+    let arm = |term: &Term| {
+        // What is spread along the body; a mass at its end is none.
+        let velocity = squared(
+            spread(&term.value)?,
+            &|part| matches!(&part.kind, ExprKind::Dot(of) if matches!(of.kind, ExprKind::Field(_))),
+        )?;
+        let mut field = None;
+        let mut root = None;
+        velocity.visit(&mut |part| {
+            if let ExprKind::Dot(of) = &part.kind {
+                match of.kind {
+                    ExprKind::Field(id) => field = Some(id),
+                    ExprKind::Definition(_) | ExprKind::Coordinate(_) => {
+                        root = Some(text(model, of))
+                    }
+                    _ => {}
+                }
+            }
+        });
+        let field = field?;
+        let bent = |part: &Expr| matches!(&part.kind, ExprKind::Diff(of, 2) if of.kind == ExprKind::Field(field));
+        let stiffness = model
+            .potential
+            .iter()
+            .find_map(|term| factor_of_square(&term.value, &bent));
+        let declared = &model.fields[field];
+        // Masses, springs and bending at an end are of a deflection: a shaft that twists has none.
+        if declared.unit.dimension != Dimension::LENGTH {
+            return None;
+        }
+        let mut arguments: BTreeMap<&'static str, String> = [
+            ("term", term.name.clone()),
+            ("velocity", text(model, velocity)),
+            ("field", declared.name.clone()),
+            ("x", declared.along.clone()),
+            ("end", text(model, &declared.to)),
+            ("lever", lever(model, &declared.from, &declared.to)),
+        ]
+        .into();
+        arguments.extend(root.map(|root| ("root", root)));
+        arguments.extend(stiffness.map(|factor| ("stiffness", text(model, factor))));
+        let moving = model
+            .kinetic
+            .iter()
+            .filter(|term| holds_field(&term.value, field));
+        let moving = moving.map(|term| term.name.clone()).collect();
+        Some(Site {
+            kind: SiteKind::Arm,
+            name: term.name.clone(),
+            arguments,
+            terms: vec![(Section::Kinetic, moving)],
+            dampers: Vec::new(),
+        })
+    };
+    model.kinetic.iter().filter_map(arm).collect()
+}
+
+/// What an expression integrates.
+fn spread(expr: &Expr) -> Option<&Expr> {
+    match &expr.kind {
+        ExprKind::Integral { integrand, .. } => Some(integrand),
+        ExprKind::Binary(_, left, right) => spread(left).or_else(|| spread(right)),
+        ExprKind::Negate(inner) => spread(inner),
+        _ => None,
+    }
+}
+
+/// Whether an expression holds a field.
+fn holds_field(expr: &Expr, field: FieldId) -> bool {
+    let mut found = false;
+    expr.visit(&mut |part| found |= part.kind == ExprKind::Field(field));
+    found
+}
+
+/// The distance of a body's end from its root.
+fn lever(model: &Model, from: &Expr, to: &Expr) -> String {
+    match from.kind {
+        ExprKind::Number(0.0) => text(model, to),
+        _ => format!("({} - ({}))", text(model, to), text(model, from)),
+    }
+}
+
+/// The base of a square that holds something wanted.
+fn squared<'m>(expr: &'m Expr, wanted: &dyn Fn(&Expr) -> bool) -> Option<&'m Expr> {
+    let holds = |expr: &Expr| {
+        let mut found = false;
+        expr.visit(&mut |part| found |= wanted(part));
+        found
+    };
+    match &expr.kind {
+        ExprKind::Binary(BinaryOperator::Power, base, _) => holds(base).then_some(base),
+        ExprKind::Binary(_, left, right) => {
+            squared(left, wanted).or_else(|| squared(right, wanted))
+        }
+        ExprKind::Integral { integrand, .. } => squared(integrand, wanted),
+        ExprKind::Negate(inner) => squared(inner, wanted),
+        _ => None,
+    }
+}
+
+/// What a square that holds something wanted is multiplied with, inside an integral.
+fn factor_of_square<'m>(expr: &'m Expr, wanted: &dyn Fn(&Expr) -> bool) -> Option<&'m Expr> {
+    match &expr.kind {
+        ExprKind::Binary(BinaryOperator::Multiply, left, right) => match squared(right, wanted) {
+            Some(_) if matches!(right.kind, ExprKind::Binary(BinaryOperator::Power, ..)) => {
+                Some(left)
+            }
+            _ => factor_of_square(left, wanted).or_else(|| factor_of_square(right, wanted)),
+        },
+        ExprKind::Binary(_, left, right) => {
+            factor_of_square(left, wanted).or_else(|| factor_of_square(right, wanted))
+        }
+        ExprKind::Integral { integrand, .. } => factor_of_square(integrand, wanted),
+        _ => None,
+    }
+}

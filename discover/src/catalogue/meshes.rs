@@ -1,0 +1,190 @@
+//! Teeth and couplings with play: functions with play of what deflects, a coordinate, a definition or an
+//! expression of these.
+
+use std::collections::BTreeMap;
+
+use eomgen_model_spec::ast::BinaryOperator;
+use eomgen_model_spec::edit::Section;
+use eomgen_model_spec::ids::CoordinateId;
+use eomgen_model_spec::model::{Expr, ExprKind, Function, Model};
+
+use crate::catalogue::effect::SiteKind;
+use crate::catalogue::site::{Site, text};
+use crate::catalogue::springs::{is_deflection, units};
+
+/// All meshes of a model.
+pub(super) fn meshes(model: &Model) -> Vec<Site> {
+    let deflections = deflections(model);
+    let found = deflections.iter().filter_map(|of| mesh(model, of));
+    found.collect()
+}
+
+/// What deflects with play, each once: coordinates first, in their order.
+fn deflections(model: &Model) -> Vec<Expr> {
+    let mut found: Vec<Expr> = Vec::new();
+    for (_, _, value) in values(model) {
+        visit_play(value, &mut |function, deflection| {
+            let is_known = found.iter().any(|known| is_same(model, known, deflection));
+            if function == Function::Deadzone && !is_known && is_deflection(model, deflection) {
+                found.push(deflection.clone());
+            }
+        });
+    }
+    found.sort_by_key(|deflection| match deflection.kind {
+        ExprKind::Coordinate(id) => id.index(),
+        _ => usize::MAX,
+    });
+    found
+}
+
+/// Calls `each` with every function with play in an expression, and what deflects in it.
+fn visit_play(expr: &Expr, each: &mut impl FnMut(Function, &Expr)) {
+    expr.visit(&mut |part| {
+        if let ExprKind::Call(function @ (Function::Deadzone | Function::Contact), arguments) =
+            &part.kind
+        {
+            each(*function, &arguments[0]);
+        }
+    });
+}
+
+/// Whether two deflections are written the same, however they are spaced.
+fn is_same(model: &Model, one: &Expr, other: &Expr) -> bool {
+    let plain = |expr: &Expr| text(model, expr).split_whitespace().collect::<String>();
+    plain(one) == plain(other)
+}
+
+/// The coordinates that are deflections with play.
+pub(super) fn mesh_coordinates(model: &Model) -> Vec<CoordinateId> {
+    let coordinate = |deflection: &Expr| match deflection.kind {
+        ExprKind::Coordinate(id) => Some(id),
+        _ => None,
+    };
+    deflections(model).iter().filter_map(coordinate).collect()
+}
+
+/// Every value in which an expression may be replaced.
+fn values(model: &Model) -> Vec<(Section, &str, &Expr)> {
+    let definitions = model
+        .definitions
+        .iter()
+        .map(|d| (Section::Definitions, d.name.as_str(), &d.value));
+    let potential = model
+        .potential
+        .iter()
+        .map(|t| (Section::Potential, t.name.as_str(), &t.value));
+    let dissipation = model
+        .dissipation
+        .iter()
+        .map(|t| (Section::Dissipation, t.name.as_str(), &t.value));
+    let forces = model
+        .forces
+        .iter()
+        .map(|f| (Section::Forces, f.name.as_str(), &f.value));
+    definitions
+        .chain(potential)
+        .chain(dissipation)
+        .chain(forces)
+        .collect()
+}
+
+/// Whether an expression holds a function with play of what deflects.
+fn has_play(model: &Model, expr: &Expr, deflection: &Expr) -> bool {
+    let mut found = false;
+    visit_play(expr, &mut |_, of| found |= is_same(model, of, deflection));
+    found
+}
+
+/// The parameters that say how much play there is.
+pub fn plays(model: &Model) -> Vec<String> {
+    let mut found: Vec<String> = Vec::new();
+    for (_, _, value) in values(model) {
+        value.visit(&mut |part| {
+            if let ExprKind::Call(Function::Deadzone | Function::Contact, arguments) = &part.kind
+                && let Some(ExprKind::Parameter(id)) = arguments.get(1).map(|arg| &arg.kind)
+            {
+                found.push(model.parameters[*id].name.clone());
+            }
+        });
+    }
+    found.sort();
+    found.dedup();
+    found
+}
+
+fn mesh(model: &Model, deflection: &Expr) -> Option<Site> {
+    let mut terms: Vec<(Section, Vec<String>)> = Vec::new();
+    let (mut stiffness, mut of) = (None, None);
+    for (section, name, value) in values(model) {
+        if !has_play(model, value, deflection) {
+            continue;
+        }
+        if section == Section::Potential {
+            value.visit(&mut |part| {
+                if let ExprKind::Parameter(id) = part.kind
+                    && stiffness.is_none()
+                {
+                    stiffness = Some(model.parameters[id].name.clone());
+                }
+            });
+            of = of.or(Some(name));
+        }
+        match terms.iter_mut().find(|(known, _)| *known == section) {
+            Some((_, names)) => names.push(name.to_owned()),
+            None => terms.push((section, vec![name.to_owned()])),
+        }
+    }
+    let (unit, _) = units(model, deflection)?;
+    let p = text(model, deflection);
+    let mut arguments: BTreeMap<&'static str, String> = [
+        ("p", p.clone()),
+        ("k", stiffness?),
+        ("on", p),
+        ("unit", unit.to_owned()),
+    ]
+    .into();
+    arguments.extend(half_play(model, deflection).map(|play| ("b", play)));
+    Some(Site {
+        kind: SiteKind::Mesh,
+        arguments,
+        name: name_of_mesh(model, deflection).unwrap_or(of?).to_owned(),
+        terms,
+        dampers: Vec::new(),
+    })
+}
+
+/// The name of what deflects: a coordinate's, also where a middle of the play is taken from it, or a
+/// definition's; none if it is an expression.
+fn name_of_mesh<'m>(model: &'m Model, deflection: &Expr) -> Option<&'m str> {
+    match deflection.kind {
+        ExprKind::Coordinate(id) => Some(&model.coordinates[id].name),
+        ExprKind::Definition(id) => {
+            let definition = &model.definitions[id];
+            let moved = match &definition.value.kind {
+                ExprKind::Binary(BinaryOperator::Add | BinaryOperator::Subtract, of, by)
+                    if matches!(by.kind, ExprKind::Parameter(_)) =>
+                {
+                    name_of_mesh(model, of)
+                }
+                _ => None,
+            };
+            Some(moved.unwrap_or(&definition.name))
+        }
+        _ => None,
+    }
+}
+
+/// The half-play of what deflects, as the specification writes it.
+fn half_play(model: &Model, deflection: &Expr) -> Option<String> {
+    let mut play = None;
+    for (_, _, value) in values(model) {
+        value.visit(&mut |part| {
+            if let ExprKind::Call(Function::Deadzone, arguments) = &part.kind
+                && is_same(model, &arguments[0], deflection)
+            {
+                play = arguments.get(1).map(|half| text(model, half));
+            }
+        });
+    }
+    play
+}
