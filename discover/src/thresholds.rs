@@ -489,6 +489,10 @@ pub const PERIOD_SAMPLES: f64 = 4.0;
 /// The highest degree of a product: with more, expressions differ in little but their ends.
 pub const MOST_DEGREE: u32 = 3;
 
+/// Where a force over a position may begin to act, on either side, in parts of the largest position; where it does
+/// is fitted.
+pub const KINKS: [f64; 4] = [0.2, 0.4, 0.6, 0.8];
+
 /// A step over the rate is made within this part of the largest rate: as steep as friction near
 /// rest is seldom seen to be otherwise, and no jump, so that it can be multiplied.
 pub const STEEP: f64 = 0.03;

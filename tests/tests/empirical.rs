@@ -99,6 +99,29 @@ fn a_force_that_no_catalogue_holds_becomes_an_expression() {
 }
 
 #[test]
+fn a_force_that_begins_somewhere_has_a_kink_there() {
+    // A cable that is stretched from 60 mm on, N/m: the model has no spring.
+    let (from, stiffness) = (0.06, 2e3);
+    let measured = Measured::stage_with(&|at| -stiffness * (at.q - from).max(0.0));
+    let (found, _) = measured.answered("discover", "found");
+    let effects = found["effects"].as_array().expect("a list");
+    assert_eq!(effects.len(), 1, "{effects:#?}");
+    let effect = &effects[0];
+    assert_eq!(effect["effect"], "empirical", "{effect:#}");
+    assert_eq!(effect["term"], "e_1*max(q/e_place - e_kink, 0)");
+    let scale = parameter(&measured.read("found/extended.toml"), "e_place");
+    for (name, wanted) in [("e_1", -stiffness * scale), ("e_kink", from / scale)] {
+        let found = &effect["parameters"][name];
+        let (value, sd) = (number(&found["value"]), number(&found["sd"]));
+        assert!((value - wanted).abs() < 4.0 * sd, "{name}: {value} +- {sd}");
+        assert!(sd < 0.01 * wanted.abs(), "{name}: {value} +- {sd}");
+    }
+    let closure = number(&found["closure"]["test"]);
+    assert!(closure > 0.99, "{closure}");
+    assert_eq!(found["validation"]["passed"], true, "{found:#}");
+}
+
+#[test]
 fn a_force_from_elsewhere_stays_unexplained() {
     let measured = Measured::stage_with(&|at| 6.0 * (TAU * 17.3 * at.t).sin());
     let (found, message) = measured.answered("discover", "found");

@@ -34,6 +34,10 @@ pub enum Function {
     Cosine(u32),
     /// A sine.
     Sine(u32),
+    /// What lies above a kink.
+    Above(f64),
+    /// What lies below a kink at so much below 0.
+    Below(f64),
 }
 
 /// A product of functions; none is 1.
@@ -73,6 +77,8 @@ impl Function {
             Self::Step => (scaled / STEEP).tanh(),
             Self::Cosine(order) => (f64::from(order) * plain).cos(),
             Self::Sine(order) => (f64::from(order) * plain).sin(),
+            Self::Above(kink) => (scaled - kink).max(0.0),
+            Self::Below(kink) => (scaled + kink).min(0.0),
         }
     }
 
@@ -80,12 +86,14 @@ impl Function {
         match self {
             Self::Power(power) => power,
             Self::Size | Self::Step | Self::Cosine(_) | Self::Sine(_) => 1,
+            Self::Above(_) | Self::Below(_) => 1,
             Self::Signed => 2,
         }
     }
 
-    /// As a specification writes it, of a quantity over its scale.
-    fn text(self, quantity: &str, scale: &str) -> String {
+    /// As a specification writes it, of a quantity over its scale; `kink`: the parameter that says where it has
+    /// one.
+    fn text(self, quantity: &str, scale: &str, kink: &str) -> String {
         let times = |order: u32| match order {
             1 => quantity.to_owned(),
             order => format!("{order}*{quantity}"),
@@ -98,6 +106,8 @@ impl Function {
             Self::Step => format!("tanh({quantity}/({STEEP}*{scale}))"),
             Self::Cosine(order) => format!("cos({})", times(order)),
             Self::Sine(order) => format!("sin({})", times(order)),
+            Self::Above(_) => format!("max({quantity}/{scale} - {kink}, 0)"),
+            Self::Below(_) => format!("min({quantity}/{scale} + {kink}, 0)"),
         }
     }
 
@@ -120,16 +130,40 @@ impl Term {
         self.factors.iter().map(factor).product()
     }
 
-    /// As a specification writes it, times a parameter.
-    pub fn text(&self, parameter: &str, arguments: &Words) -> String {
+    /// Where it has a kink, in parts of the scale.
+    pub fn kink(&self) -> Option<f64> {
+        self.factors
+            .iter()
+            .find_map(|(_, function)| match function {
+                Function::Above(kink) | Function::Below(kink) => Some(*kink),
+                _ => None,
+            })
+    }
+
+    /// The same with its kink elsewhere.
+    #[must_use]
+    pub fn with_kink(mut self, at: f64) -> Self {
+        for (_, function) in &mut self.factors {
+            if let Function::Above(kink) | Function::Below(kink) = function {
+                *kink = at;
+            }
+        }
+        self
+    }
+
+    /// As a specification writes it, times a parameter, its kink where another parameter says.
+    pub fn text(&self, parameter: &str, kink: &str, arguments: &Words) -> String {
         let mut text = parameter.to_owned();
         for (of, function) in &self.factors {
             let factor = match of {
-                Of::Rate => function.text(&format!("dot({})", arguments.on), &arguments.scales[0]),
-                Of::Position => function.text(&arguments.on, &arguments.scales[1]),
+                Of::Rate => {
+                    let rate = format!("dot({})", arguments.on);
+                    function.text(&rate, &arguments.scales[0], kink)
+                }
+                Of::Position => function.text(&arguments.on, &arguments.scales[1], kink),
                 Of::Input(input) => {
                     let (quantity, scale) = &arguments.inputs[*input];
-                    function.text(quantity, scale)
+                    function.text(quantity, scale, kink)
                 }
             };
             text += &format!("*{factor}");
@@ -150,11 +184,15 @@ impl Term {
 
 /// All terms that are tried where a force works on an angle, or not, that goes so far.
 pub fn terms(scales: &Scales, is_angle: bool, width: f64) -> Vec<Term> {
-    use Function::{Cosine, Power, Signed, Sine, Size, Step};
+    use Function::{Above, Below, Cosine, Power, Signed, Sine, Size, Step};
     let rates = [Power(1), Size, Power(2), Signed, Power(3), Step].map(|f| (Of::Rate, f));
     let rates = if scales.rate > 0.0 { &rates[..] } else { &[] };
-    let mut positions = Vec::new();
+    let (mut positions, mut kinks) = (Vec::new(), Vec::new());
     if scales.position > 0.0 && !(is_angle && width > TAU) {
+        let both = thresholds::KINKS
+            .iter()
+            .flat_map(|at| [Above(*at), Below(*at)]);
+        kinks.extend(both.map(|f| (Of::Position, f)));
         positions.extend([Power(1), Power(2), Power(3)].map(|f| (Of::Position, f)));
     }
     if is_angle {
@@ -169,7 +207,7 @@ pub fn terms(scales: &Scales, is_angle: bool, width: f64) -> Vec<Term> {
     let mut found = vec![Term {
         factors: Vec::new(),
     }];
-    let alone = rates.iter().chain(&positions).chain(&inputs);
+    let alone = rates.iter().chain(&positions).chain(&kinks).chain(&inputs);
     found.extend(alone.map(|factor| Term {
         factors: vec![*factor],
     }));
@@ -217,7 +255,7 @@ mod tests {
             (Of::Position, Function::Sine(2)),
         ]);
         assert_eq!(
-            product.text("e_1", &arguments),
+            product.text("e_1", "", &arguments),
             "e_1*(dot(theta)/w_0)*abs(dot(theta)/w_0)*sin(2*theta)"
         );
         let value = product.at(&operating_point, &[3.0], &scales);
@@ -227,12 +265,22 @@ mod tests {
             (Of::Position, Function::Power(2)),
         ]);
         assert_eq!(
-            with_inputs.text("e_2", &arguments),
+            with_inputs.text("e_2", "", &arguments),
             "e_2*(u/u_0)*(theta/theta_0)^2"
         );
         assert!((with_inputs.at(&operating_point, &[3.0], &scales) - 0.3 * 0.25).abs() < 1e-15);
         assert!(with_inputs.scales(Of::Input(0)) && !product.scales(Of::Position));
-        assert_eq!(term(&[]).text("e_3", &arguments), "e_3");
+        assert_eq!(term(&[]).text("e_3", "", &arguments), "e_3");
+        for (function, text, value) in [
+            (Function::Above(0.2), "e_4*max(theta/theta_0 - e_k, 0)", 0.3),
+            (Function::Below(0.2), "e_4*min(theta/theta_0 + e_k, 0)", 0.0),
+        ] {
+            let kinked = term(&[(Of::Position, function)]);
+            assert_eq!(kinked.text("e_4", "e_k", &arguments), text);
+            assert!((kinked.at(&operating_point, &[3.0], &scales) - value).abs() < 1e-15);
+            assert_eq!(kinked.kink(), Some(0.2));
+            assert_eq!(kinked.with_kink(0.4).kink(), Some(0.4));
+        }
     }
 
     #[test]

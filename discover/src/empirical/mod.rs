@@ -14,7 +14,7 @@ use crate::catalogue::candidate::{Candidate, CandidateParameter, names};
 use crate::catalogue::candidate_unknown::CandidateUnknown;
 use crate::catalogue::template::free_name;
 use crate::empirical::chosen::{Expression, chosen};
-use crate::empirical::expressions::{Of, Words};
+use crate::empirical::expressions::{Of, Term, Words};
 use crate::error::DiscoverError;
 use crate::fit::fitted::Fit;
 use crate::fit::full;
@@ -84,7 +84,7 @@ fn add_empirical(
     let unknowns: Vec<UnknownId> = UnknownId::first(fit.unknowns.len())
         .skip(before.unknowns.len())
         .collect();
-    let verdict = accepted(before, &fit, &unknowns, floor);
+    let verdict = accepted((before, &fit), &candidate, &unknowns, floor);
     let outcome = verdict
         .as_ref()
         .err()
@@ -181,20 +181,34 @@ fn written(model: &Model, expression: &Expression) -> Candidate {
             })
             .collect(),
     };
-    let parameters: Vec<CandidateParameter> = (1..=expression.terms.len())
-        .map(|number| CandidateParameter {
-            name: name(&format!("e_{number}")),
-            unit: equation.force_unit().to_owned(),
-            positive: false,
-            inverse: false,
-            shape: None,
-            offset: None,
-            doc: "size of a term of an empirical force".to_owned(),
-        })
-        .collect();
-    let terms = expression.terms.iter().zip(&parameters);
-    let terms = terms.map(|(term, parameter)| term.text(&parameter.name, &arguments));
-    let value = terms.collect::<Vec<String>>().join(" + ");
+    let size = |name: String| CandidateParameter {
+        name,
+        unit: equation.force_unit().to_owned(),
+        positive: false,
+        inverse: false,
+        shape: None,
+        offset: None,
+        doc: "size of a term of an empirical force".to_owned(),
+    };
+    let place = |name: String, at: f64| CandidateParameter {
+        unit: "1".to_owned(),
+        positive: true,
+        shape: Some(at),
+        doc: "place where a term of an empirical force begins, over its scale".to_owned(),
+        ..size(name)
+    };
+    // Sizes first, one for each term, then the places of kinks.
+    let (mut parameters, mut kinks, mut terms) = (Vec::new(), Vec::new(), Vec::new());
+    for (number, term) in (1..).zip(&expression.terms) {
+        let own = size(name(&format!("e_{number}")));
+        let kink = term.kink().map(|at| place(name("e_kink"), at));
+        let at = kink.as_ref().map_or("", |kink| kink.name.as_str());
+        terms.push(term.text(&own.name, at, &arguments));
+        parameters.push(own);
+        kinks.extend(kink);
+    }
+    parameters.extend(kinks);
+    let value = terms.join(" + ");
     changes.push(Edit::AddForce(NewForce {
         name: name(EMPIRICAL),
         on: equation.on.clone(),
@@ -228,14 +242,22 @@ fn simplest(
     loop {
         let candidate = written(before.model.specification(), &expression);
         let fit = fitted(problem, before, &candidate, &expression)?;
-        let known = before.unknowns.len();
-        let own = &fit.train.estimate.theta[known..];
-        let sizes = own.iter().zip(&fit.sd[known..]);
+        let (first, count) = (before.unknowns.len(), expression.terms.len());
+        let (own, kinks) = fit.train.estimate.theta[first..].split_at(count);
+        let sizes = own.iter().zip(&fit.sd[first..]);
         let t: Vec<f64> = sizes.map(|(value, sd)| (value / sd).abs()).collect();
         let weakest = (0..t.len()).min_by(|a, b| t[*a].total_cmp(&t[*b]));
         match weakest.filter(|term| t.len() > 1 && t[*term] < thresholds::SIGNIFICANCE) {
             Some(term) => {
                 expression.sizes = own.to_vec();
+                let mut kinks = kinks.iter();
+                for own in &mut expression.terms {
+                    if own.kink().is_some()
+                        && let Some(at) = kinks.next()
+                    {
+                        *own = own.clone().with_kink(*at);
+                    }
+                }
                 expression.sizes.remove(term);
                 expression.terms.remove(term);
             }
@@ -252,16 +274,17 @@ fn fitted(
     candidate: &Candidate,
     expression: &Expression,
 ) -> Result<Fit, DiscoverError> {
-    let sizes = &expression.sizes;
+    let kinks = expression.terms.iter().filter_map(Term::kink);
+    let values: Vec<f64> = expression.sizes.iter().copied().chain(kinks).collect();
     let mut unknowns = fit.unknowns.clone();
     let mut theta = fit.restarted();
-    for (parameter, size) in candidate.parameters.iter().zip(sizes) {
+    for (parameter, value) in candidate.parameters.iter().zip(&values) {
         let mut unknown = CandidateUnknown::of(parameter).unknown;
-        unknown.scale = size.abs();
+        unknown.scale = value.abs();
         unknowns.push(unknown);
-        theta.push(*size);
+        theta.push(*value);
     }
-    let texts = candidate.added(problem, &fit.texts, sizes)?;
+    let texts = candidate.added(problem, &fit.texts, &values)?;
     let near = || {
         let warm_start = WarmStart {
             fit,
@@ -288,20 +311,24 @@ fn fitted(
 /// Whether an expression is accepted: by all that is asked of an effect, each of its terms by
 /// itself, and by how much of the gap it closes.
 fn accepted(
-    before: &Fit,
-    after: &Fit,
+    (before, after): (&Fit, &Fit),
+    candidate: &Candidate,
     unknowns: &[UnknownId],
     floor: f64,
 ) -> Result<TestStatistics, Rejection> {
-    let own: Vec<EffectUnknown> = (EffectId::first(unknowns.len()).zip(unknowns))
-        .map(|(effect, unknown)| EffectUnknown {
+    let parameters = candidate.parameters.iter().zip(unknowns).enumerate();
+    let own = parameters.map(|(number, (parameter, unknown))| {
+        let is_shape = parameter.shape.is_some();
+        EffectUnknown {
             unknown: *unknown,
-            effect,
+            // Where a kink is has no size of its own, and goes with any term.
+            effect: EffectId::new(if is_shape { 0 } else { number }),
             base: 0.0,
-            is_shape: false,
+            is_shape,
             prior: None,
-        })
-        .collect();
+        }
+    });
+    let own: Vec<EffectUnknown> = own.collect();
     let statistics = acceptance_test(before, after, &own)?;
     let asked = thresholds::INFORMATION * (1 + own.len()) as f64;
     if statistics.information < asked {
