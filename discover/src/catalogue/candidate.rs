@@ -37,8 +37,8 @@ pub struct Candidate {
     pub load: Option<String>,
     /// Whether it changes what happens between teeth with play.
     pub on_mesh: bool,
-    /// Whether all that it does is to scale a spring's stiffness.
-    pub scales_stiffness: bool,
+    /// The stiffness, if all that it does is to scale one.
+    pub scaled: Option<String>,
     /// Its parameters.
     pub parameters: Vec<CandidateParameter>,
     /// What the effect is.
@@ -150,6 +150,15 @@ impl Candidate {
         self.dropped_prior.is_some()
             || self.effect == PARAMETER_OFFSET
             || faults.contains(&self.effect.as_str())
+    }
+
+    /// Whether one is a shift of the stiffness that the other scales: two names of one thing where the
+    /// stiffness is of one spring alone.
+    pub(crate) fn is_other_name_of(&self, other: &Self) -> bool {
+        let shifts = |one: &Self, other: &Self| {
+            one.effect == PARAMETER_OFFSET && other.scaled.as_ref() == Some(&one.on)
+        };
+        shifts(self, other) || shifts(other, self)
     }
 
     /// Whether it is the same effect at the same place, of whatever order.
@@ -335,7 +344,7 @@ fn candidate(
         order: order.map(|(angle, order)| (angle.name.clone(), order)),
         load: load.map(|load| load.name.clone()),
         on_mesh: site.kind == SiteKind::Mesh,
-        scales_stiffness: effect.scales_stiffness(),
+        scaled: (site.arguments.get("k").cloned()).filter(|_| effect.scales_stiffness()),
         parameters,
         says: effect.says.clone(),
         experiment: effect.experiment.clone(),
@@ -359,7 +368,7 @@ pub fn dropped_prior(
         order: None,
         load: None,
         on_mesh: false,
-        scales_stiffness: false,
+        scaled: None,
         parameters: Vec::new(),
         says: says.to_owned(),
         experiment: experiment.to_owned(),

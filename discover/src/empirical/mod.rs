@@ -222,7 +222,7 @@ fn written(model: &Model, expression: &Expression) -> Candidate {
         order: None,
         load: None,
         on_mesh: equation.is_mesh,
-        scales_stiffness: false,
+        scaled: None,
         parameters,
         says: "an expression that fits what is left".to_owned(),
         experiment: "the same rates, places and inputs in other combinations".to_owned(),

@@ -108,7 +108,7 @@ pub fn test_statistics(before: &Fit, after: &Fit, own: &[EffectUnknown]) -> Test
         held_out: 1.0 - new.rms / old.rms,
         held_out_errors: mean / (variance / count).sqrt(),
         information: fall / (2.0 * whitening),
-        t: significance(after, own),
+        t: least_significance(after, own),
         size: size(before, after),
         p_value: None,
     }
@@ -126,19 +126,21 @@ fn size(before: &Fit, after: &Fit) -> f64 {
 
 /// The size of an effect in standard deviations; of several the smallest. The two parts of a
 /// wave count together.
-fn significance(fit: &Fit, own: &[EffectUnknown]) -> f64 {
+fn least_significance(fit: &Fit, own: &[EffectUnknown]) -> f64 {
     let effects = own.iter().map(|own| own.effect.index() + 1).max();
-    let of = |effect: EffectId| {
-        let scaling = own
-            .iter()
-            .filter(|own| own.effect == effect && !own.is_shape);
-        let ratios = scaling
-            .map(|own| (fit.train.estimate.theta[own.unknown] - own.base) / fit.sd[own.unknown]);
-        ratios.map(|t| t * t).sum::<f64>().sqrt()
-    };
     EffectId::first(effects.unwrap_or(0))
-        .map(of)
+        .map(|effect| significance(fit, own, effect))
         .fold(f64::INFINITY, f64::min)
+}
+
+/// The size of one of the effects that are tested together, in standard deviations.
+pub fn significance(fit: &Fit, own: &[EffectUnknown], effect: EffectId) -> f64 {
+    let scaling = own
+        .iter()
+        .filter(|own| own.effect == effect && !own.is_shape);
+    let ratios =
+        scaling.map(|own| (fit.train.estimate.theta[own.unknown] - own.base) / fit.sd[own.unknown]);
+    ratios.map(|t| t * t).sum::<f64>().sqrt()
 }
 
 /// A parameter that a bound holds.

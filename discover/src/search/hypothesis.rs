@@ -2,6 +2,7 @@
 //! how a fit begins.
 
 use crate::error::DiscoverError;
+use crate::fit::fitted::Fit;
 use crate::fit::preliminary::{self, PreliminaryFit, WarmStart};
 use crate::ids::{EffectId, ResponseId, UnknownId};
 use crate::interval::Interval;
@@ -146,6 +147,25 @@ pub fn warm_started(
         theta[own.unknown] = unknowns[own.unknown].admissible(shape_ratio * theta[own.unknown]);
     }
     let texts = texts(pool, hypothesis, &unknowns, &theta)?;
+    preliminary::expected(pool.context.problem, texts, unknowns, &[theta], warm_start)
+}
+
+/// A hypothesis of one candidate, started where a pair that has it ended; `own`: its unknowns there, SI.
+pub fn half_alone(
+    pool: &Pool<'_>,
+    hypothesis: &Hypothesis,
+    pair: &Fit,
+    own: &[f64],
+) -> Result<PreliminaryFit, DiscoverError> {
+    let Extended { unknowns, .. } = unknowns_with(pool, hypothesis, 1.0);
+    let count = pool.context.fit.unknowns.len();
+    let theta = [&pair.train.estimate.theta[..count], own].concat();
+    let texts = texts(pool, hypothesis, &unknowns, &theta)?;
+    let warm_start = WarmStart {
+        fit: pair,
+        cost: pair.train.estimate.cost,
+        most: thresholds::FAR * pair.train.rms,
+    };
     preliminary::expected(pool.context.problem, texts, unknowns, &[theta], warm_start)
 }
 

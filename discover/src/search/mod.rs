@@ -4,7 +4,7 @@
 //! The files, in the order in which they read each other: [`response`] by
 //! [`mod@variational_response`] or [`mod@perturbed_response`] ([`mod@responses`] chooses),
 //! [`screening`], [`acceptance`], [`split_sample`]; `motion_of_fit`, [`context`], [`pool`], [`hypothesis`], [`fitted`];
-//! `shape_restarts`, `singles`, `pairs`; [`tested`], [`parameter_offsets`], [`selected`],
+//! `shape_restarts`, `singles`, `halves_alone`, `pairs`; [`tested`], [`parameter_offsets`], [`selected`],
 //! `alternatives`; `excitation_window`, `dropped_priors`, `round`, `answer`, `unfinished`, [`mod@unconfirmed`];
 //! [`found`], `rejected`, [`backward_elimination`].
 
@@ -17,6 +17,7 @@ mod dropped_priors;
 mod excitation_window;
 pub mod fitted;
 pub mod found;
+mod halves_alone;
 pub mod hypothesis;
 mod motion_of_fit;
 mod pairs;

@@ -5,6 +5,7 @@ use crate::ids::{FittedId, ResponseId, UnknownId};
 use crate::model::unknowns::What;
 use crate::search::acceptance::{EffectUnknown, is_held};
 use crate::search::fitted::{FittedHypothesis, full_fits, preliminary_fits};
+use crate::search::halves_alone::halves_alone;
 use crate::search::hypothesis::Hypothesis;
 use crate::search::pool::Pool;
 use crate::search::rejection::Rejection;
@@ -31,6 +32,8 @@ pub fn pairs(pool: &Pool<'_>, singles: &[FittedHypothesis]) -> Vec<FittedHypothe
         hypothesis.deleted.is_some() || added <= thresholds::FITS_AT_ONCE
     });
     let mut fitted_hypotheses = full_fits(pool, preliminaries);
+    let alone = halves_alone(pool, &fitted_hypotheses);
+    fitted_hypotheses.extend(alone);
     for fitted in &mut fitted_hypotheses {
         let mut own = fitted.responses.iter();
         let repeats = own.any(|response| pool.candidate(*response).order.is_some());
@@ -161,8 +164,9 @@ pub fn other_halves(
         responses,
         deleted: None,
     };
-    full_fits(
-        pool,
-        preliminary_fits(pool, found.into_iter().map(hypothesis).collect()),
-    )
+    let hypotheses = found.into_iter().map(hypothesis).collect();
+    let mut fitted_hypotheses = full_fits(pool, preliminary_fits(pool, hypotheses));
+    let alone = halves_alone(pool, &fitted_hypotheses);
+    fitted_hypotheses.extend(alone);
+    fitted_hypotheses
 }

@@ -75,11 +75,8 @@ pub fn selected(context: Context<'_>, tested: TestedPool) -> Option<Selected> {
     let of =
         |fitted: &FittedHypothesis| &candidates[screening.responses[fitted.responses[0]].candidate];
     let indistinguishable = others.iter().filter(|fitted| {
-        is_indistinguishable(
-            fit,
-            &fitted.fit,
-            screening.similarity(own, fitted.responses[0]),
-        )
+        let similarity = similarity(&candidates, &screening, own, fitted.responses[0]);
+        is_indistinguishable(fit, &fitted.fit, similarity)
     });
     let undeclared: Vec<Candidate> = indistinguishable.map(|fitted| of(fitted).clone()).collect();
     let equivalent = [&selected.equivalent[0][..], &undeclared].concat();
@@ -131,7 +128,7 @@ fn best(tested: TestedPool) -> Option<Selected> {
     // A number that is off adds nothing to the model.
     let scales = |fitted: &FittedHypothesis| {
         let mut of = fitted.responses.iter();
-        of.any(|response| candidate(*response).scales_stiffness)
+        of.any(|response| candidate(*response).scaled.is_some())
     };
     let is_simpler = |id: &FittedId| {
         let (other, least) = (&fitted_hypotheses[*id], &fitted_hypotheses[least]);
@@ -141,7 +138,7 @@ fn best(tested: TestedPool) -> Option<Selected> {
         };
         (other.own.len() < least.own.len() || is_less_off || (scales(least) && !scales(other)))
             && other.verdict.is_ok()
-            && indistinguishable_half(least, other, &screening).is_some()
+            && indistinguishable_half(least, other, &candidates, &screening).is_some()
     };
     let simpler = FittedId::first(fitted_hypotheses.len()).filter(is_simpler);
     let order = |id: &FittedId| {
@@ -159,7 +156,7 @@ fn best(tested: TestedPool) -> Option<Selected> {
         .collect();
     let mut equivalent = vec![Vec::new(); own.len()];
     for other in &fitted_hypotheses {
-        let Some(half) = indistinguishable_half(&fitted, other, &screening) else {
+        let Some(half) = indistinguishable_half(&fitted, other, &candidates, &screening) else {
             continue;
         };
         let (other, own) = (candidate(half.response), &own[half.effect]);
@@ -220,6 +217,7 @@ fn is_clearly_better(one: &Fit, other: &Fit) -> bool {
 fn indistinguishable_half(
     fitted: &FittedHypothesis,
     other: &FittedHypothesis,
+    candidates: &[Candidate],
     screening: &Screening,
 ) -> Option<IndistinguishableHalf> {
     if fitted.responses.len() != other.responses.len() {
@@ -234,13 +232,30 @@ fn indistinguishable_half(
         .iter()
         .filter(|own| other.responses.contains(own));
     let is_all_else = shared.count() + 1 == fitted.responses.len();
-    let similarity = screening.similarity(fitted.responses[half], response);
+    let similarity = similarity(candidates, screening, fitted.responses[half], response);
     (is_all_else && is_indistinguishable(&fitted.fit, &other.fit, similarity)).then_some(
         IndistinguishableHalf {
             effect: EffectId::new(half),
             response,
         },
     )
+}
+
+/// How similar two responses are, 0 to 1; two names of one thing entirely.
+fn similarity(
+    candidates: &[Candidate],
+    screening: &Screening,
+    a: ResponseId,
+    b: ResponseId,
+) -> f64 {
+    let candidate = |response: ResponseId| &candidates[screening.responses[response].candidate];
+    let similarity = screening.similarity(a, b);
+    let is_same =
+        similarity > thresholds::INDISTINGUISHABLE && candidate(a).is_other_name_of(candidate(b));
+    match is_same {
+        true => 1.0,
+        false => similarity,
+    }
 }
 
 /// Whether records do not distinguish what led to a fit from what led to another: the responses are

@@ -208,6 +208,19 @@ fn a_stop_on_one_side_is_no_friction_and_no_spring() {
 }
 
 #[test]
+fn a_soft_stop_on_both_sides_is_no_spring_that_hardens() {
+    // It begins over a few millimetres; a cubic spring comes close to it, and needs a second effect beside it.
+    let beyond = |x: f64| {
+        let past = x.abs() - 0.024;
+        0.5 * (past.hypot(2e-3) + past) * x.signum()
+    };
+    let effect = oscillator(&|x, v, u| u - 400.0 * x - 90.0 * beyond(x) - 4.0 * v)
+        .only("end_stop", "spring");
+    is_near(&effect, "k_s", 90.0, 0.2);
+    is_near(&effect, "p_s", 0.024, 0.1);
+}
+
+#[test]
 fn play_in_a_coupling_is_called_backlash() {
     let play = |x: f64| x - x.clamp(-3e-3, 3e-3);
     let effect = oscillator(&|x, v, u| u - 400.0 * play(x) - 4.0 * v).only("backlash", "spring");

@@ -1,0 +1,76 @@
+//! Halves of pairs alone: where a pair explains the records and one of its effects comes to nothing
+//! there, the other may do without it. Alone it may have ended elsewhere, so that it is fitted from where
+//! the pair ended.
+
+use crate::fit::preliminary::PreliminaryFit;
+use crate::ids::{EffectId, ResponseId};
+use crate::search::acceptance::{EffectUnknown, is_held, significance};
+use crate::search::fitted::{FittedHypothesis, full_fits};
+use crate::search::hypothesis::{Hypothesis, half_alone};
+use crate::search::pool::Pool;
+use crate::thresholds;
+
+/// What is left of pairs without the half that comes to nothing, each effect once; nothing of pairs that
+/// leave much, or need both.
+pub fn halves_alone(pool: &Pool<'_>, pairs: &[FittedHypothesis]) -> Vec<FittedHypothesis> {
+    let mut known: Vec<ResponseId> = Vec::new();
+    let mut preliminaries = Vec::new();
+    for pair in pairs {
+        let Some(half) = needed(pool, pair) else {
+            continue;
+        };
+        let response = pair.responses[half.index()];
+        if known.contains(&response) {
+            continue;
+        }
+        if let Some(found) = begun(pool, pair, half) {
+            known.push(response);
+            preliminaries.push(found);
+        }
+    }
+    full_fits(pool, preliminaries)
+}
+
+/// The half of a pair that is needed, where the other is not.
+fn needed(pool: &Pool<'_>, pair: &FittedHypothesis) -> Option<EffectId> {
+    let little = thresholds::CLOSE * pool.context.floor;
+    let has_terms = |response: &ResponseId| {
+        let response = &pool.screening.responses[*response];
+        response.dropped_prior.is_none()
+    };
+    let is_pair = pair.responses.len() == 2 && pair.responses.iter().all(has_terms);
+    if !is_pair || pair.verdict.is_ok() || !pair.fit.leaves_less(little) {
+        return None;
+    }
+    let is_needed = |effect: &EffectId| {
+        let of = |own: &&EffectUnknown| own.effect == *effect && !own.is_shape;
+        let mut own = pair.own.iter().filter(of);
+        let is_free = own.all(|own| !is_held(&pair.fit, own));
+        is_free && significance(&pair.fit, &pair.own, *effect) >= thresholds::SIGNIFICANCE
+    };
+    let needed: Vec<EffectId> = EffectId::first(2).filter(is_needed).collect();
+    match needed[..] {
+        [only] => Some(only),
+        _ => None,
+    }
+}
+
+/// A half of a pair, begun where the pair ended.
+fn begun(
+    pool: &Pool<'_>,
+    pair: &FittedHypothesis,
+    half: EffectId,
+) -> Option<(Hypothesis, PreliminaryFit)> {
+    let theta = &pair.fit.train.estimate.theta;
+    let own = pair.own.iter().filter(|own| own.effect == half);
+    let own: Vec<&EffectUnknown> = own.collect();
+    let scaling = own.iter().filter(|own| !own.is_shape);
+    let hypothesis = Hypothesis {
+        responses: vec![pair.responses[half.index()]],
+        deleted: None,
+        sizes: scaling.map(|own| theta[own.unknown] - own.base).collect(),
+    };
+    let values: Vec<f64> = own.iter().map(|own| theta[own.unknown]).collect();
+    let preliminary = half_alone(pool, &hypothesis, &pair.fit, &values).ok()?;
+    Some((hypothesis, preliminary))
+}
