@@ -166,6 +166,18 @@ impl Stepper for DormandPrince853 {
             .map(|interior| interior.state(part, step))
     }
 
+    fn tells_interior<S: System + ?Sized>(&mut self, watched: &Watched<'_, S>) -> bool {
+        let (begin, half) = (self.last.t, 0.5 * (self.here.t - self.last.t));
+        let Ok(middle) = single_step(watched, &self.last, half) else {
+            return false;
+        };
+        let Some(told) = self.interpolated(begin + half) else {
+            return false;
+        };
+        let errors = told.iter().zip(&middle.y).map(|(told, y)| told - y);
+        self.magnitudes.norm(errors, &middle.y) <= 1.0
+    }
+
     fn inside<S: System + ?Sized>(
         &mut self,
         watched: &Watched<'_, S>,

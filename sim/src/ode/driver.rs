@@ -38,6 +38,9 @@ const MOST_SHORTENED: u32 = 12;
 /// And by this at most each time.
 const SHORTENED: f64 = 0.2;
 
+/// More samples than this in a step are many.
+const MANY: usize = 2;
+
 /// In a step that is this short beside the time, times inside are rounding.
 const SHORTEST_SEEN: f64 = 1e-12;
 
@@ -343,10 +346,10 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         (guards.iter().enumerate()).any(|(guard, value)| self.watched.is_beyond(guard, *value))
     }
 
-    /// The state at `t` (s), which lies inside the last step. Where a surface was stepped over
-    /// nothing is interpolated.
-    fn inside(&mut self, t: f64) -> Result<Vec<f64>, SolveError> {
-        if let Some(state) = self.stepper.interpolated(t) {
+    /// The state at `t` (s), which lies inside the last step, interpolated if the interior `is_told`. Where
+    /// a surface was stepped over nothing is interpolated.
+    fn inside(&mut self, t: f64, is_told: bool) -> Result<Vec<f64>, SolveError> {
+        if is_told && let Some(state) = self.stepper.interpolated(t) {
             return Ok(state);
         }
         self.check_steps()?;
@@ -362,8 +365,9 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         self.trajectory.work.steps += 1;
         self.watched.arrive();
         let t = self.stepper.here().t;
+        let is_told = self.is_interior_told(t);
         while let Some(sample) = self.next_sample().filter(|sample| *sample < t) {
-            let mut state = self.inside(sample)?;
+            let mut state = self.inside(sample, is_told)?;
             self.watched.project(sample, &mut state);
             check_finite(begin, &state)?;
             self.trajectory.times.push(sample);
@@ -379,6 +383,21 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             self.trajectory.states.push(self.stepper.here().y.clone());
         }
         self.enter_regime()
+    }
+
+    /// Whether samples inside the last step, which ends at `t` (s), are interpolated. Beside switching surfaces,
+    /// where states are to be right to the last digit, the interior is looked at first: that takes as long as a
+    /// sample that is not interpolated, and is worth it where there are many.
+    fn is_interior_told(&mut self, t: f64) -> bool {
+        if !self.watched.has_guards() {
+            return true;
+        }
+        let next = self.trajectory.times.len() + MANY;
+        if self.samples.get(next).is_none_or(|sample| *sample >= t) {
+            return false;
+        }
+        self.watched.reset();
+        self.stepper.tells_interior(self.watched)
     }
 
     fn next_sample(&self) -> Option<f64> {

@@ -65,9 +65,16 @@ pub trait Stepper: Sized {
         length: f64,
     ) -> Result<Point, SolveError>;
 
-    /// The state at time `t` (s) inside the last step by interpolation, with the accuracy of the
-    /// step and without an evaluation; `None` if this method made none to here.
+    /// The state at time `t` (s) inside the last step by interpolation, without an evaluation; `None` if this
+    /// method made none to here.
     fn interpolated(&mut self, t: f64) -> Option<Vec<f64>>;
+
+    /// Whether interpolation inside the last step is as accurate as the step: one that stability keeps short
+    /// ends where it should, and may swing in between.
+    fn tells_interior<S: System + ?Sized>(&mut self, watched: &Watched<'_, S>) -> bool {
+        let _ = watched;
+        true
+    }
 
     /// The state at time `t` (s) inside the last step, with the accuracy of the step.
     fn inside<S: System + ?Sized>(
