@@ -479,26 +479,15 @@ fn rows_between_steps_have_their_tolerance_and_cost_no_evaluation() {
 }
 
 /// x'' = -c x' - k x beside a surface that it never meets.
-struct Swinging {
-    c: f64,
-    k: f64,
-}
-
-impl System for Swinging {
-    fn states(&self) -> usize {
-        2
-    }
-
-    fn rates(&self, _: f64, y: &[f64], out: &mut [f64]) {
-        out.copy_from_slice(&[y[1], -self.c * y[1] - self.k * y[0]]);
-    }
-
-    fn guard_count(&self) -> usize {
-        1
-    }
-
-    fn guards(&self, _: f64, y: &[f64], out: &mut [f64]) {
-        out[0] = 100.0 + y[0];
+fn swinging(c: f64, k: f64) -> impl System {
+    Functions {
+        guard_count: 1,
+        guards: |y: &[f64], out: &mut [f64]| out[0] = 100.0 + y[0],
+        states: 2,
+        rates: move |_, y: &[f64], out: &mut [f64]| {
+            out.copy_from_slice(&[y[1], -c * y[1] - k * y[0]]);
+        },
+        breakpoints: Vec::new(),
     }
 }
 
@@ -506,7 +495,7 @@ impl System for Swinging {
 fn samples_beside_a_surface_are_as_accurate_as_steps_and_interpolated_where_that_is() {
     let samples: Vec<f64> = (0..=20_000).map(|k| 0.001 * f64::from(k)).collect();
     let settings = Settings::with_tolerance(1e-9);
-    let of = |system: &Swinging, start: [f64; 2], wanted: &dyn Fn(f64) -> f64| {
+    let of = |system: &dyn System, start: [f64; 2], wanted: &dyn Fn(f64) -> f64| {
         let span = (0.0, 20.0);
         let found = simulate(system, &start, span, &samples, &settings, &mut |_| {});
         let found = found.expect("a trajectory");
@@ -517,9 +506,9 @@ fn samples_beside_a_surface_are_as_accurate_as_steps_and_interpolated_where_that
         found.work
     };
     // Most steps that follow a swing tell their interior.
-    let work = of(&Swinging { c: 0.0, k: 1.0 }, [1.0, 0.0], &|t| t.cos());
+    let work = of(&swinging(0.0, 1.0), [1.0, 0.0], &|t| t.cos());
     assert!(work.trials < samples.len() as u64 / 10, "{work:?}");
     // Those that stability keeps short, of x = 2 exp(-10 t) - exp(-20 t), end where they should and swing in between.
     let decay = |t: f64| 2.0 * (-10.0 * t).exp() - (-20.0 * t).exp();
-    of(&Swinging { c: 30.0, k: 200.0 }, [1.0, 0.0], &decay);
+    of(&swinging(30.0, 200.0), [1.0, 0.0], &decay);
 }

@@ -23,7 +23,8 @@ pub(super) fn meshes(model: &Model) -> Vec<Site> {
 fn deflections(model: &Model) -> Vec<Expr> {
     let mut found: Vec<Expr> = Vec::new();
     for (_, _, value) in values(model) {
-        visit_play(value, &mut |function, deflection| {
+        visit_play(value, &mut |function, arguments| {
+            let deflection = &arguments[0];
             let is_known = found.iter().any(|known| is_same(model, known, deflection));
             if function == Function::Deadzone && !is_known && is_deflection(model, deflection) {
                 found.push(deflection.clone());
@@ -37,13 +38,14 @@ fn deflections(model: &Model) -> Vec<Expr> {
     found
 }
 
-/// Calls `each` with every function with play in an expression, and what deflects in it.
-fn visit_play(expr: &Expr, each: &mut impl FnMut(Function, &Expr)) {
+/// Calls `each` with every function with play in an expression and its arguments, the first of which is what
+/// deflects.
+fn visit_play(expr: &Expr, each: &mut impl FnMut(Function, &[Expr])) {
     expr.visit(&mut |part| {
         if let ExprKind::Call(function @ (Function::Deadzone | Function::Contact), arguments) =
             &part.kind
         {
-            each(*function, &arguments[0]);
+            each(*function, arguments);
         }
     });
 }
@@ -91,7 +93,9 @@ fn values(model: &Model) -> Vec<(Section, &str, &Expr)> {
 /// Whether an expression holds a function with play of what deflects.
 fn has_play(model: &Model, expr: &Expr, deflection: &Expr) -> bool {
     let mut found = false;
-    visit_play(expr, &mut |_, of| found |= is_same(model, of, deflection));
+    visit_play(expr, &mut |_, arguments| {
+        found |= is_same(model, &arguments[0], deflection);
+    });
     found
 }
 
@@ -99,10 +103,8 @@ fn has_play(model: &Model, expr: &Expr, deflection: &Expr) -> bool {
 pub fn plays(model: &Model) -> Vec<String> {
     let mut found: Vec<String> = Vec::new();
     for (_, _, value) in values(model) {
-        value.visit(&mut |part| {
-            if let ExprKind::Call(Function::Deadzone | Function::Contact, arguments) = &part.kind
-                && let Some(ExprKind::Parameter(id)) = arguments.get(1).map(|arg| &arg.kind)
-            {
+        visit_play(value, &mut |_, arguments| {
+            if let Some(ExprKind::Parameter(id)) = arguments.get(1).map(|arg| &arg.kind) {
                 found.push(model.parameters[*id].name.clone());
             }
         });
@@ -178,10 +180,8 @@ fn name_of_mesh<'m>(model: &'m Model, deflection: &Expr) -> Option<&'m str> {
 fn half_play(model: &Model, deflection: &Expr) -> Option<String> {
     let mut play = None;
     for (_, _, value) in values(model) {
-        value.visit(&mut |part| {
-            if let ExprKind::Call(Function::Deadzone, arguments) = &part.kind
-                && is_same(model, &arguments[0], deflection)
-            {
+        visit_play(value, &mut |function, arguments| {
+            if function == Function::Deadzone && is_same(model, &arguments[0], deflection) {
                 play = arguments.get(1).map(|half| text(model, half));
             }
         });

@@ -104,9 +104,8 @@ pub fn alone(
 /// Whether a parameter of a fit is held where its prior ends, and would go on alone.
 fn is_held(fit: &Fit) -> bool {
     fit.unknowns().any(|(id, unknown)| {
-        let value = fit.train.estimate.theta[id];
-        let is_at = value <= unknown.bounds.low || value >= unknown.bounds.high;
-        matches!(unknown.what, What::Parameter(_)) && unknown.bounds != unknown.limits && is_at
+        let is_narrowed = unknown.bounds != unknown.limits;
+        matches!(unknown.what, What::Parameter(_)) && is_narrowed && fit.is_held(id)
     })
 }
 

@@ -40,6 +40,12 @@ pub struct Fit {
 }
 
 impl Fit {
+    /// Whether an unknown is held by one of its bounds.
+    pub fn is_held(&self, id: UnknownId) -> bool {
+        let (value, bounds) = (self.train.estimate.theta[id], self.unknowns[id].bounds);
+        value <= bounds.low || value >= bounds.high
+    }
+
     /// The root mean square of its residuals on all records, in standard deviations.
     pub fn rms(&self) -> f64 {
         (0.5 * (self.train.rms.powi(2) + self.test.rms.powi(2))).sqrt()

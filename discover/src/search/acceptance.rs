@@ -145,19 +145,14 @@ pub fn significance(fit: &Fit, own: &[EffectUnknown], effect: EffectId) -> f64 {
 
 /// A parameter that a bound holds.
 fn at_bound(fit: &Fit, own: &[EffectUnknown]) -> Option<Rejection> {
-    let held = own.iter().find(|own| !own.is_shape && is_held(fit, own))?;
+    let held = own
+        .iter()
+        .find(|own| !own.is_shape && fit.is_held(own.unknown))?;
     let name = fit.unknowns[held.unknown].label.clone();
     Some(match held.prior {
         Some(_) => Rejection::AtLimit(name),
         None => Rejection::WrongSign(name),
     })
-}
-
-/// Whether an unknown is held by one of its bounds.
-pub fn is_held(fit: &Fit, own: &EffectUnknown) -> bool {
-    let unknown = &fit.unknowns[own.unknown];
-    let value = fit.train.estimate.theta[own.unknown];
-    value <= unknown.bounds.low || value >= unknown.bounds.high
 }
 
 /// An unknown that gave up its prior and is within it still, or may be: so many standard errors

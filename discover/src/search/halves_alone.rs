@@ -4,7 +4,7 @@
 
 use crate::fit::preliminary::PreliminaryFit;
 use crate::ids::{EffectId, ResponseId};
-use crate::search::acceptance::{EffectUnknown, is_held, significance};
+use crate::search::acceptance::{EffectUnknown, significance};
 use crate::search::fitted::{FittedHypothesis, full_fits};
 use crate::search::hypothesis::{Hypothesis, half_alone};
 use crate::search::pool::Pool;
@@ -45,7 +45,7 @@ fn needed(pool: &Pool<'_>, pair: &FittedHypothesis) -> Option<EffectId> {
     let is_needed = |effect: &EffectId| {
         let of = |own: &&EffectUnknown| own.effect == *effect && !own.is_shape;
         let mut own = pair.own.iter().filter(of);
-        let is_free = own.all(|own| !is_held(&pair.fit, own));
+        let is_free = own.all(|own| !pair.fit.is_held(own.unknown));
         is_free && significance(&pair.fit, &pair.own, *effect) >= thresholds::SIGNIFICANCE
     };
     let needed: Vec<EffectId> = EffectId::first(2).filter(is_needed).collect();

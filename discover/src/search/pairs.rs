@@ -3,7 +3,7 @@
 
 use crate::ids::{FittedId, ResponseId, UnknownId};
 use crate::model::unknowns::What;
-use crate::search::acceptance::{EffectUnknown, is_held};
+use crate::search::acceptance::EffectUnknown;
 use crate::search::fitted::{FittedHypothesis, full_fits, preliminary_fits};
 use crate::search::halves_alone::halves_alone;
 use crate::search::hypothesis::Hypothesis;
@@ -16,7 +16,7 @@ use crate::thresholds;
 pub fn pairs(pool: &Pool<'_>, singles: &[FittedHypothesis]) -> Vec<FittedHypothesis> {
     // A sensor that runs to the end of what is admitted stands in for something else.
     let is_at_limit = |fitted: &&FittedHypothesis| {
-        let of = |own: &EffectUnknown| own.prior.is_some() && is_held(&fitted.fit, own);
+        let of = |own: &EffectUnknown| own.prior.is_some() && fitted.fit.is_held(own.unknown);
         fitted.own.iter().any(of)
     };
     let at_limit = singles.iter().filter(is_at_limit);
