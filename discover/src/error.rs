@@ -124,7 +124,7 @@ impl fmt::Display for DiscoverError {
             Self::Records(refusal) => refusal.fmt(f),
             Self::StateNotMeasured(state) => write!(
                 f,
-                "windows.start = \"smoothed\" needs a channel for every coordinate, and none shows \
+                "windows.start = \"smoothed\" needs a channel for every coordinate and state of first order, and none shows \
                  `{state}`; expected start = \"fitted\""
             ),
             Self::Unfollowed(windows) => write!(

@@ -137,7 +137,7 @@ def test_wrong_datasets_are_refused(stage, dataset, tmp_path):
     (tmp_path / "dataset.toml").write_text(wrong, encoding="utf-8")
     with pytest.raises(eomgen.SpecificationError) as raised:
         eomgen.discover(stage, tmp_path / "dataset.toml")
-    assert "no observable or coordinate" in str(raised.value) and "^" in str(raised.value)
+    assert "no observable, coordinate or state" in str(raised.value) and "^" in str(raised.value)
     with pytest.raises(ValueError, match="train.csv"):
         (tmp_path / "dataset.toml").write_text(dataset.read_text(encoding="utf-8"))
         eomgen.discover(stage, tmp_path / "dataset.toml")

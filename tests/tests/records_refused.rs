@@ -135,7 +135,7 @@ fn datasets_that_say_something_else_are_refused() {
         (
             "[channels.q]",
             "[channels.elbow]",
-            "no observable or coordinate `elbow`",
+            "no observable, coordinate or state `elbow`",
         ),
         (
             "length = 0.25",

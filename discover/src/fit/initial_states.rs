@@ -268,7 +268,7 @@ impl Chain<'_> {
     }
 }
 
-/// Initial states read from smoothed records, where the channels show all coordinates.
+/// Initial states read from smoothed records, where the channels show all coordinates and states of first order.
 ///
 /// # Errors
 /// The coordinate, or the state of first order, that no channel shows.
@@ -278,18 +278,16 @@ fn read_smoothed(
     channels: &[Channel],
 ) -> Result<Vec<Vec<f64>>, DiscoverError> {
     let degrees = model.degrees_of_freedom();
-    if let Some(state) = model.states.get(2 * degrees) {
-        return Err(DiscoverError::StateNotMeasured(state.clone()));
-    }
-    let mut sources = Vec::with_capacity(degrees);
-    for coordinate in 0..degrees {
-        let shown = (channels.iter())
-            .position(|channel| channel.quantity == Quantity::Coordinate(coordinate));
-        sources
-            .push(shown.ok_or_else(|| {
-                DiscoverError::StateNotMeasured(model.states[coordinate].clone())
-            })?);
-    }
+    let source = |quantity: Quantity, state: usize| {
+        let shown = (channels.iter()).position(|channel| channel.quantity == quantity);
+        shown.ok_or_else(|| DiscoverError::StateNotMeasured(model.states[state].clone()))
+    };
+    let coordinates = (0..degrees).map(|place| source(Quantity::Coordinate(place), place));
+    let first_order = 2 * degrees..model.states.len();
+    let first_order = first_order.map(|state| source(Quantity::State(state - 2 * degrees), state));
+    let sources = coordinates
+        .chain(first_order)
+        .collect::<Result<Vec<usize>, _>>()?;
     let mut initial_states = vec![Vec::new(); windows.list.len()];
     for (number, record) in windows.records.iter().enumerate() {
         let smooth: Vec<(Vec<f64>, Vec<f64>)> = sources
@@ -302,9 +300,11 @@ fn read_smoothed(
             .collect();
         for (window, start) in windows.list.iter().zip(&mut initial_states) {
             if window.record == number {
-                let values = smooth.iter().map(|(values, _)| values[window.first]);
-                let slopes = smooth.iter().map(|(_, slopes)| slopes[window.first]);
-                *start = values.chain(slopes).collect();
+                let (coordinates, first_order) = smooth.split_at(degrees);
+                let values = coordinates.iter().map(|(values, _)| values[window.first]);
+                let slopes = coordinates.iter().map(|(_, slopes)| slopes[window.first]);
+                let first_order = first_order.iter().map(|(values, _)| values[window.first]);
+                *start = values.chain(slopes).chain(first_order).collect();
             }
         }
     }

@@ -48,6 +48,7 @@ fn measured(
                 state[degrees + coordinate] = slope;
             }
             Quantity::Rate(coordinate) => state[degrees + coordinate] = value,
+            Quantity::State(first_order) => state[2 * degrees + first_order] = value,
             Quantity::Observable(_) | Quantity::Acceleration(_) | Quantity::Input(_) => {}
         }
     }

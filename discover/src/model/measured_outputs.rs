@@ -45,6 +45,7 @@ impl MeasuredOutputs {
             Quantity::Coordinate(coordinate) => Output::State(coordinate),
             Quantity::Rate(coordinate) => Output::State(degrees_of_freedom + coordinate),
             Quantity::Acceleration(coordinate) => Output::Rate(degrees_of_freedom + coordinate),
+            Quantity::State(state) => Output::State(2 * degrees_of_freedom + state),
             Quantity::Input(input) => Output::Input(input),
         });
         Self {

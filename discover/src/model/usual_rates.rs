@@ -20,8 +20,8 @@ pub fn usual_rates(dataset: &Dataset, model: &Model) -> BTreeMap<String, f64> {
     for (channel, column) in channels {
         let smooth = smoothed(&record.times, column);
         let (name, slopes) = match channel.quantity {
-            // How fast something moves is not known from how its speed changes.
-            Quantity::Acceleration(_) | Quantity::Input(_) => continue,
+            // How fast something moves is not known from how its speed changes, and nothing else moves.
+            Quantity::Acceleration(_) | Quantity::State(_) | Quantity::Input(_) => continue,
             Quantity::Rate(coordinate) => (&model.coordinates[coordinate].name, smooth),
             Quantity::Observable(observable) => (
                 &model.observables[observable].name,

@@ -26,7 +26,7 @@ struct Points {
     states: Vec<Vec<f64>>,
     inputs: Vec<Vec<f64>>,
     rates: Vec<Vec<f64>>,
-    /// The mean square of each acceleration.
+    /// The sum of squares of each acceleration and of the rate of each state of first order.
     squares: Vec<f64>,
 }
 
@@ -125,13 +125,13 @@ fn points(at: &LinearisedFit, problem: &EstimationProblem<'_>, fit: &Fit) -> Opt
     if !simulation.carries_tangents() {
         return None;
     }
-    let n = fit.model.state_count();
+    let first = fit.model.degrees_of_freedom();
     let mut points = Points {
         times: Vec::new(),
         states: Vec::new(),
         inputs: Vec::new(),
         rates: Vec::new(),
-        squares: vec![0.0; n / 2],
+        squares: vec![0.0; fit.model.state_count() - first],
     };
     for id in [0, windows.len() / 2, windows.len() - 1].map(|k| windows[k]) {
         let window = &problem.train.list[id];
@@ -143,7 +143,7 @@ fn points(at: &LinearisedFit, problem: &EstimationProblem<'_>, fit: &Fit) -> Opt
         let samples = window.times.iter().zip(states).step_by(thresholds::SAMPLED);
         for (t, state) in samples {
             let rates = simulation.rates(*t, &state, inputs.held_at(*t));
-            for (sum, rate) in points.squares.iter_mut().zip(&rates[n / 2..]) {
+            for (sum, rate) in points.squares.iter_mut().zip(&rates[first..]) {
                 *sum += rate * rate;
             }
             points.times.push(*t);
@@ -221,7 +221,8 @@ fn ready(
     }))
 }
 
-/// The size of a parameter that changes accelerations by a small part; none if none does.
+/// The size of a parameter that changes accelerations, or rates of states of first order, by a small part;
+/// none if none does.
 fn small(model: &EstimationModel, at: &dyn Fn(f64) -> Vec<f64>, points: &Points) -> Option<f64> {
     let small = thresholds::SMALL_NEAR.times(thresholds::SMALL_CHANGE);
     let mut size = 1.0;
@@ -242,11 +243,12 @@ fn small(model: &EstimationModel, at: &dyn Fn(f64) -> Vec<f64>, points: &Points)
     None
 }
 
-/// The largest part by which any acceleration differs, root mean square.
+/// The largest part by which any acceleration or rate of a state of first order differs, root mean square.
 fn change(evaluator: &mut Evaluator, points: &Points) -> f64 {
-    let half = points.squares.len();
-    let mut sums = vec![0.0; half];
-    let mut rates = vec![0.0; 2 * half];
+    let program = evaluator.program();
+    let (first, states) = (program.degrees_of_freedom(), program.states());
+    let mut sums = vec![0.0; states - first];
+    let mut rates = vec![0.0; states];
     for (number, t) in points.times.iter().enumerate() {
         let (state, inputs) = (&points.states[number], &points.inputs[number]);
         evaluator.rates(
@@ -257,7 +259,7 @@ fn change(evaluator: &mut Evaluator, points: &Points) -> f64 {
             },
             &mut rates,
         );
-        let pairs = rates[half..].iter().zip(&points.rates[number][half..]);
+        let pairs = rates[first..].iter().zip(&points.rates[number][first..]);
         for (sum, (a, b)) in sums.iter_mut().zip(pairs) {
             *sum += (a - b) * (a - b);
         }

@@ -199,15 +199,16 @@ fn channel(
             let inputs = model.inputs.iter().map(|input| input.name.as_str());
             let inputs = inputs.filter(|_| !description.motion.is_empty());
             let coordinates = model.coordinates.iter().map(|c| c.name.as_str());
-            let coordinates = coordinates.filter(|_| description.motion.is_empty());
-            observables.chain(coordinates).chain(inputs)
+            let states = model.states.iter().map(|state| state.name.as_str());
+            let moving = (coordinates.chain(states)).filter(|_| description.motion.is_empty());
+            observables.chain(moving).chain(inputs)
         };
         let listed: Vec<&str> = known().collect();
         let listed = format!("it has {}", listed.join(", "));
         Diagnostic::error(format!(
             "the model has no {} {}",
             match description.motion.is_empty() {
-                true => "observable or coordinate",
+                true => "observable, coordinate or state",
                 false => "observable or input",
             },
             quoted(asked)
@@ -230,7 +231,7 @@ fn channel(
     let channel = Channel {
         name: entry.name.text.clone(),
         observable: match quantity {
-            Quantity::Observable(_) | Quantity::Coordinate(_) => asked.clone(),
+            Quantity::Observable(_) | Quantity::Coordinate(_) | Quantity::State(_) => asked.clone(),
             Quantity::Rate(place) => format!("{}_dot", model.coordinates[place].name),
             Quantity::Acceleration(place) => format!("{}_ddot", model.coordinates[place].name),
             Quantity::Input(place) => model.inputs[place].name.clone(),
@@ -264,6 +265,10 @@ fn quantity(model: &Model, name: &str) -> Option<(Quantity, String)> {
     if let Some(place) = model.coordinates.iter().position(|c| c.name == name) {
         let unit = model.coordinates[place].unit.text.clone();
         return Some((Quantity::Coordinate(place), unit));
+    }
+    if let Some(place) = model.states.iter().position(|state| state.name == name) {
+        let unit = model.states[place].unit.text.clone();
+        return Some((Quantity::State(place), unit));
     }
     if let Some(place) = model.inputs.iter().position(|input| input.name == name) {
         let unit = model.inputs[place].unit.text.clone();

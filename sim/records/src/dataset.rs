@@ -16,6 +16,8 @@ pub enum Quantity {
     Rate(usize),
     /// The acceleration of a coordinate, by the coordinate's place.
     Acceleration(usize),
+    /// A state of first order, by its place among these.
+    State(usize),
     /// An input, by its place: what the motion takes, where that is given.
     Input(usize),
 }

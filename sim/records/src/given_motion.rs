@@ -98,6 +98,11 @@ pub(crate) fn admitted(
         .help(
             "give the motion of every coordinate, [motion.NAME], or list the column under [inputs]",
         ),
+        (Quantity::State(_), true) => {
+            Diagnostic::error(format!("{} follows from the motion of no coordinate", quoted(asked)))
+                .at(span, "states of first order are not followed where the motion is given")
+                .help("leave [motion] out, and take the coordinates as channels")
+        }
         (Quantity::Coordinate(_) | Quantity::Rate(_) | Quantity::Acceleration(_), true) => {
             Diagnostic::error(format!("{} is given by [motion]", quoted(asked)))
                 .at(span, "a channel measures what is not given")

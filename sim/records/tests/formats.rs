@@ -479,6 +479,30 @@ fn rates_and_accelerations_are_channels_in_their_units() {
     assert!(refused(&folder).contains("expected rad/s^2"));
 }
 
+#[test]
+fn a_state_of_first_order_is_a_channel() {
+    let description = DESCRIPTION.replace("[channels.theta]", "[channels.i]");
+    let description = description.replace("\"mrad\"", "\"mA\"");
+    let of_current = folder(&description, "t,angle\n", plain);
+    let source = eomgen_model_spec::models::LOUDSPEAKER.source();
+    let model = eomgen_model_spec::check(source).expect("a model").model;
+    let read = |folder: &TempDir| read_dataset(&folder.path().join("dataset.toml"), &model);
+    let dataset = read(&of_current).unwrap_or_else(|refusal| panic!("{refusal}"));
+    let channel = &dataset.channels[0];
+    assert_eq!(
+        channel.quantity,
+        eomgen_records::dataset::Quantity::State(0)
+    );
+    assert!((channel.noise - 1e-4).abs() < 1e-12, "{}", channel.noise);
+    let misspelt = folder(
+        &description.replace("channels.i", "channels.i_3"),
+        "t,angle\n",
+        plain,
+    );
+    let refused = read(&misspelt).map(|_| ()).expect_err("no such state");
+    assert!(refused.to_string().contains("`i_2`"), "{refused}");
+}
+
 /// A slide whose force is measured along a motion that is given.
 const SLIDE: &str = r#"
 [model]

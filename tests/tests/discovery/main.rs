@@ -7,6 +7,7 @@ mod effects_found;
 mod effects_placed;
 mod friction_that_stops;
 mod friction_under_load;
+mod measured_current;
 mod motion_that_is_given;
 mod next_experiment;
 mod nothing_compared;

@@ -195,12 +195,18 @@ fn channels_and_records_that_are_not_there_are_refused_with_their_place() {
         (
             "[channels.q]",
             "[channels.q_dott]",
-            ["dataset.toml:15:11", "no observable or coordinate `q_dott`"],
+            [
+                "dataset.toml:15:11",
+                "no observable, coordinate or state `q_dott`",
+            ],
         ),
         (
             "noise = 1e-6",
             "noise = 1e-6\nobservable = \"p\"",
-            ["dataset.toml:19:14", "no observable or coordinate `p`"],
+            [
+                "dataset.toml:19:14",
+                "no observable, coordinate or state `p`",
+            ],
         ),
         (
             "[\"train.csv\"]",

@@ -71,7 +71,7 @@ pub(crate) struct Quantity {
     pub is_input: bool,
 }
 
-/// Inputs, observables, coordinates and rates that a record may hold.
+/// Inputs, observables, coordinates, rates and states of first order that a record may hold.
 pub(crate) fn quantities(model: &Model) -> Vec<Quantity> {
     let quantity = |name: &str, unit: &Unit, is_input: bool| Quantity {
         name: name.to_owned(),
@@ -90,8 +90,11 @@ pub(crate) fn quantities(model: &Model) -> Vec<Quantity> {
         let unit = Unit::parse(&format!("{}/s", c.unit.text)).ok()?;
         Some(quantity(&format!("{}_dot", c.name), &unit, false))
     });
+    let states = model.states.iter();
+    let states = states.map(|state| quantity(&state.name, &state.unit, false));
+    let moving = coordinates.chain(rates).chain(states);
     let mut all: Vec<Quantity> = Vec::new();
-    for quantity in inputs.chain(observables).chain(coordinates).chain(rates) {
+    for quantity in inputs.chain(observables).chain(moving) {
         // An observable may have the name of a coordinate.
         if all.iter().all(|known| known.name != quantity.name) {
             all.push(quantity);
