@@ -1,9 +1,10 @@
 //! Hypotheses fitted, side by side: to the beginnings of windows, and in full.
 
+use std::fmt;
+
 use crate::ids::ResponseId;
 use rayon::prelude::*;
 
-use crate::error::DiscoverError;
 use crate::fit::fitted::Fit;
 use crate::fit::full;
 use crate::fit::preliminary::PreliminaryFit;
@@ -36,27 +37,23 @@ pub fn preliminary_fits(
     hypotheses: Vec<Hypothesis>,
 ) -> Vec<(Hypothesis, PreliminaryFit)> {
     let alone = pool.screening.predicted(&[]).cost;
-    let preliminaries: Vec<Result<PreliminaryFit, DiscoverError>> = hypotheses
-        .par_iter()
-        .map(|hypothesis| hypothesis::preliminary(pool, hypothesis))
-        .collect();
-    let mut found = Vec::new();
-    for (hypothesis, preliminary) in hypotheses.into_iter().zip(preliminaries) {
+    let of = match pool.is_whole {
+        true => "squares",
+        false => "beginnings of windows",
+    };
+    // Said as each ends: some take long.
+    let fitted = |hypothesis: Hypothesis| {
+        let preliminary = hypothesis::preliminary(pool, &hypothesis);
+        let left = match &preliminary {
+            Ok(fit) => format!("{:.1} % left of the {of}", 100.0 * fit.cost / alone),
+            Err(error) => error.to_string(),
+        };
         let label = hypothesis::label(pool, &hypothesis);
-        match preliminary {
-            Ok(preliminary) => {
-                let part = 100.0 * preliminary.cost / alone;
-                let of = if pool.is_whole {
-                    "squares"
-                } else {
-                    "beginnings of windows"
-                };
-                (pool.context.progress)(&format!("  {label}: {part:.1} % left of the {of}"));
-                found.push((hypothesis, preliminary));
-            }
-            Err(error) => (pool.context.progress)(&format!("  {label}: {error}")),
-        }
-    }
+        (pool.context.progress)(&format!("  {label}: {left}"));
+        Some((hypothesis, preliminary.ok()?))
+    };
+    let mut found: Vec<(Hypothesis, PreliminaryFit)> =
+        hypotheses.into_par_iter().filter_map(fitted).collect();
     found.sort_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
     found
 }
@@ -66,52 +63,59 @@ pub fn full_fits(
     pool: &Pool<'_>,
     preliminaries: Vec<(Hypothesis, PreliminaryFit)>,
 ) -> Vec<FittedHypothesis> {
-    let fits: Vec<(Hypothesis, Result<Fit, DiscoverError>)> = preliminaries
-        .into_par_iter()
-        .map(|(hypothesis, preliminary)| {
-            (
-                hypothesis,
-                full::complete(pool.context.problem, preliminary),
-            )
-        })
-        .collect();
-    let mut fitted_hypotheses = Vec::new();
-    let held_out = match fits.is_empty() {
+    let held_out = match preliminaries.is_empty() {
         true => None,
         false => SplitSample::of(pool.context.problem, pool.context.fit),
     };
-    for (hypothesis, new) in fits {
+    let fitted = |(hypothesis, preliminary): (Hypothesis, PreliminaryFit)| {
+        let new = full::complete(pool.context.problem, preliminary);
+        let tested = new.map(|new| tested(pool, &hypothesis, new, held_out.as_ref()));
+        let outcome = match &tested {
+            Ok(fitted) => fitted.to_string(),
+            Err(error) => error.to_string(),
+        };
         let label = hypothesis::label(pool, &hypothesis);
-        match new {
-            Ok(new) => {
-                let own = own_unknowns(pool, &hypothesis);
-                let p_value = held_out.as_ref().and_then(|of| of.p_value(&new, &own));
-                pool.context.problem.judged.count();
-                let verdict = acceptance_test(pool.context.fit, &new, &own);
-                let verdict = verdict.map(|statistics| TestStatistics {
-                    p_value,
-                    ..statistics
-                });
-                let explains = explains(pool.context.fit, &new, &own).is_ok();
-                let outcome = verdict
-                    .as_ref()
-                    .err()
-                    .map_or_else(|| "accepted".to_owned(), Rejection::to_string);
-                let (train, test) = (new.train.rms, new.test.rms);
-                (pool.context.progress)(&format!(
-                    "  {label}: residuals of {train:.2} standard deviations of the noise in training, {test:.2} in test; {outcome}"
-                ));
-                fitted_hypotheses.push(FittedHypothesis {
-                    responses: hypothesis.responses,
-                    own,
-                    fit: new,
-                    verdict,
-                    explains,
-                    p_value,
-                });
-            }
-            Err(error) => (pool.context.progress)(&format!("  {label}: {error}")),
+        (pool.context.progress)(&format!("  {label}: {outcome}"));
+        tested.ok()
+    };
+    preliminaries.into_par_iter().filter_map(fitted).collect()
+}
+
+/// A hypothesis judged by its fit in full.
+fn tested(
+    pool: &Pool<'_>,
+    hypothesis: &Hypothesis,
+    fit: Fit,
+    held_out: Option<&SplitSample>,
+) -> FittedHypothesis {
+    let own = own_unknowns(pool, hypothesis);
+    let p_value = held_out.and_then(|of| of.p_value(&fit, &own));
+    pool.context.problem.judged.count();
+    let verdict = acceptance_test(pool.context.fit, &fit, &own);
+    let verdict = verdict.map(|statistics| TestStatistics {
+        p_value,
+        ..statistics
+    });
+    FittedHypothesis {
+        responses: hypothesis.responses.clone(),
+        explains: explains(pool.context.fit, &fit, &own).is_ok(),
+        own,
+        fit,
+        verdict,
+        p_value,
+    }
+}
+
+impl fmt::Display for FittedHypothesis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (train, test) = (self.fit.train.rms, self.fit.test.rms);
+        write!(
+            f,
+            "residuals of {train:.2} standard deviations of the noise in training, {test:.2} in test; "
+        )?;
+        match &self.verdict {
+            Ok(_) => write!(f, "accepted"),
+            Err(rejection) => write!(f, "{rejection}"),
         }
     }
-    fitted_hypotheses
 }
