@@ -510,6 +510,9 @@ pub const ONE_FLOOR: f64 = 1.5;
 /// of it.
 pub const AT_BOUND: f64 = 0.99;
 
+/// Channels are late alike if the least of their delays is at least this part of the greatest.
+pub const LATE_ALIKE: f64 = 0.9;
+
 /// Where nothing was found, a parameter or a sensor is written back if its estimate moved by this
 /// part of its standard deviation. With an effect all are: they were estimated together.
 pub const WRITTEN_FROM: f64 = 0.5;

@@ -23,6 +23,7 @@ use crate::report::discovery::{
     Certainty, bound_notes, closure, effects, gap, nuisances, refitted, rejected, sensors, steps,
 };
 use crate::report::experiment::drawn;
+use crate::report::late_channels::note_of_late_channels;
 use crate::report::left::{Left, Stage};
 use crate::report::location::located;
 use crate::report::motion_noise::notes_of_motion_noise;
@@ -82,6 +83,7 @@ pub fn compare(
         &dataset.inputs,
         fit.model.specification(),
     ));
+    notes.extend(note_of_late_channels(&problem, &fit));
     notes.extend(notes_of_motion_noise(&problem, &fit));
     notes.extend(contradicting(&problem, &fit, floor.rms, progress));
     Ok(Comparison {
@@ -199,9 +201,9 @@ pub fn discover_until(
         &problem.dataset.inputs,
         null.model.specification(),
     ));
-    let of_motion = notes_of_motion_noise(&problem, best);
-    for note in of_motion
-        .into_iter()
+    let late = note_of_late_channels(&problem, best);
+    for note in (late.into_iter())
+        .chain(notes_of_motion_noise(&problem, best))
         .chain(notes_of_units(&problem, &found))
     {
         progress(&format!("note: {note}"));

@@ -32,7 +32,10 @@ impl Summary {
                 ),
             },
             false => Self {
-                first: "The model explains the records.".to_owned(),
+                first: match at_bounds(&comparison.compared.nuisances) {
+                    None => "The model explains the records.".to_owned(),
+                    Some(at_bounds) => explained_only(&at_bounds),
+                },
                 rest: format!("It leaves {left}, no more than a right model would."),
             },
         }
@@ -44,8 +47,13 @@ impl Summary {
         let [before, after] = [Stage::Before, Stage::After].map(|stage| Left::of(gap, stage));
         let answer = match discovery.verdict {
             Verdict::NoSignificantGap => Self {
-                first: "The model explains the records; nothing is missing that they could show."
-                    .to_owned(),
+                first: match at_bounds(&discovery.compared.nuisances) {
+                    None => {
+                        "The model explains the records; nothing is missing that they could show."
+                            .to_owned()
+                    }
+                    Some(at_bounds) => explained_only(&at_bounds),
+                },
                 rest: format!(
                     "It leaves {}, no more than a right model would.",
                     after.words()
@@ -75,23 +83,32 @@ impl Summary {
     }
 }
 
+/// What was fitted beside and is as far off as the fit admits; none if nothing is.
+fn at_bounds(nuisances: &[Nuisance]) -> Option<String> {
+    let at_bound = nuisances.iter().filter(|of| of.is_at_bound());
+    let names: Vec<String> = at_bound.map(Nuisance::name).collect();
+    let which = match &names[..] {
+        [] => return None,
+        [only] => only.clone(),
+        [first, rest @ ..] => format!("{first} and {} more", rest.len()),
+    };
+    Some(format!("with {which} as far off as the fit admits"))
+}
+
+/// The first sentence of a model that explains the records only so.
+fn explained_only(at_bounds: &str) -> String {
+    format!("The model explains the records only {at_bounds}: what is missing may look like that.")
+}
+
 /// Of a search that found something: where that is not sure, this is said first.
 fn found(discovery: &Discovery, before: &Left, after: &Left) -> Summary {
     let (found, closed) = (listed(&discovery.effects), closed(discovery.closure));
-    let at_bounds: Vec<String> = (discovery.compared.nuisances.iter())
-        .filter(|nuisance| nuisance.is_at_bound())
-        .map(Nuisance::name)
-        .collect();
-    let held = match &at_bounds[..] {
-        [] => String::new(),
-        [only] => format!(", with {only} as far off as the fit admits"),
-        [first, rest @ ..] => format!(
-            ", with {first} and {} more as far off as the fit admits",
-            rest.len()
-        ),
-    };
+    let at_bounds = at_bounds(&discovery.compared.nuisances);
+    let held = at_bounds
+        .as_ref()
+        .map_or(String::new(), |at| format!(", {at}"));
     let left = after.words();
-    if after.is_much() || !at_bounds.is_empty() {
+    if after.is_much() || at_bounds.is_some() {
         return Summary {
             first: format!(
                 "What was found {closed}; {left} are left{held}: what is named may stand in for something else."

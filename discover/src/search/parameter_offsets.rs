@@ -1,5 +1,6 @@
 //! Parameters of the model that nobody called uncertain: candidates for being off where nothing
-//! else is accepted, and beside what is accepted where they look like it.
+//! else is accepted, and beside what is accepted where they look like it; and waves over an angle that
+//! look like it.
 
 use crate::catalogue::candidate::{self, Candidate, candidates};
 use crate::catalogue::input_faults::input_faults;
@@ -9,13 +10,14 @@ use crate::ids::{CandidateId, ResponseId};
 use crate::model::unknowns::{Unknown, What};
 use crate::search::context::Context;
 use crate::search::dropped_priors::dropped_prior;
+use crate::search::motion_of_fit::motion_of;
 use crate::search::pool::Pool;
 use crate::search::screening::{ScreenedResponse, screening};
 use crate::search::singles::similar;
 use crate::search::tested::TestedPool;
 use crate::thresholds;
 
-/// Parameters that look like what was named.
+/// Parameters and waves that look like what was named.
 pub struct SimilarOffsets {
     /// What was screened, what was named among it, and the fits of those that look like it.
     pub tested: TestedPool,
@@ -50,10 +52,10 @@ pub fn offsets(context: Context<'_>) -> Vec<Candidate> {
         .collect()
 }
 
-/// Parameters that look like what was named, fitted in its place: those that explain the records; and
-/// where what was named is such a parameter itself, sensors and declared parameters that look like
-/// it: a gain and a number of the model may be two names of one thing. None where nothing looks like
-/// it. The context's fit is what was fitted before anything was named.
+/// Parameters that look like what was named, and waves over its angle that do, fitted in its place: those that
+/// explain the records; and where what was named is such a parameter itself, sensors and declared parameters
+/// that look like it: a gain and a number of the model may be two names of one thing. None where nothing
+/// looks like it. The context's fit is what was fitted before anything was named.
 pub fn similar_offsets(context: Context<'_>, selected: &Candidate) -> Option<SimilarOffsets> {
     let offsets = offsets(context);
     let (offsets, called) = match offsets.iter().any(|offset| offset.is_same_as(selected)) {
@@ -61,7 +63,10 @@ pub fn similar_offsets(context: Context<'_>, selected: &Candidate) -> Option<Sim
             dropped_prior(context.problem, context.fit),
             "sensors and declared parameters",
         ),
-        false => (offsets, "parameters of the model and of inputs"),
+        false => (
+            [offsets, waves(context, selected)].concat(),
+            "parameters of the model and of inputs",
+        ),
     };
     if offsets.is_empty() {
         return None;
@@ -94,4 +99,19 @@ pub fn similar_offsets(context: Context<'_>, selected: &Candidate) -> Option<Sim
         tested,
         selected: own,
     })
+}
+
+/// What repeats with the angle on which something was named that does not: an unbalanced weight and a torque
+/// that repeats once per turn are one term. A round looks at them only where all else promises little.
+fn waves(context: Context<'_>, selected: &Candidate) -> Vec<Candidate> {
+    if selected.order.is_some() {
+        return Vec::new();
+    }
+    let (problem, fit) = (context.problem, context.fit);
+    let model = fit.model.specification();
+    let sites = sites(model);
+    let motion = motion_of(problem, fit, &sites);
+    let mut waves = candidates(model, context.effects, &sites, &motion);
+    waves.retain(|wave| wave.order.is_some() && wave.on == selected.on);
+    waves
 }

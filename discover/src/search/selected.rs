@@ -259,15 +259,14 @@ fn similarity(
 }
 
 /// Whether records do not distinguish what led to a fit from what led to another: the responses are
-/// similar, and so is what the fits leave of the test records; and, but for two names of one thing,
-/// the other explains the training records as well.
+/// similar, and the other leaves no more of the test records; nor, but for two names of one thing, of
+/// the training records. One that leaves less, though not so clearly that it is named instead, is no worse a name.
 fn is_indistinguishable(one: &Fit, other: &Fit, similarity: f64) -> bool {
     let statistics = test_statistics(one, other, &[]);
-    let (part, errors) = (statistics.held_out.abs(), statistics.held_out_errors);
+    let (part, errors) = (-statistics.held_out, -statistics.held_out_errors);
     // Fits that leave the same to the last digit have no error to be judged by.
-    let as_good = errors.is_nan()
-        || errors.abs() < thresholds::STANDARD_ERRORS
-        || part < thresholds::DISTINGUISHED;
+    let as_good =
+        errors.is_nan() || errors < thresholds::STANDARD_ERRORS || part < thresholds::DISTINGUISHED;
     let is_told = other.train.rms > (1.0 + thresholds::DISTINGUISHED) * one.train.rms
         && statistics.information < -thresholds::INFORMATION;
     let is_same = similarity > thresholds::SAME && part < thresholds::HELD_OUT;

@@ -17,6 +17,8 @@ struct Machine<'m> {
     /// What the sensor shows of the coordinate.
     gain: f64,
     uncertain: &'m str,
+    /// How late the input acts, s.
+    late: f64,
     input: fn(f64, f64) -> f64,
     acceleration: &'m dyn Fn(f64, f64, f64) -> f64,
 }
@@ -62,7 +64,9 @@ impl Machine<'_> {
             let u = (self.input)(t, turn);
             let seen = self.gain * x + noise.draw();
             text += &format!("{t:.4},{u:.12},{seen:.12}\n");
-            for _ in 0..parts {
+            for part in 0..parts {
+                let acts = t + h * (f64::from(part) + 0.5) - self.late;
+                let u = (self.input)(SAMPLE * (acts / SAMPLE).floor(), turn);
                 let middle = (x + 0.5 * h * v, v + 0.5 * h * (self.acceleration)(x, v, u));
                 x += h * middle.1;
                 v += h * (self.acceleration)(middle.0, middle.1, u);
@@ -120,6 +124,7 @@ fn oscillator<'m>(acceleration: &'m dyn Fn(f64, f64, f64) -> f64) -> Machine<'m>
         noise: 1e-5,
         gain: 1.0,
         uncertain: "m = { relative = 0.01 }",
+        late: 0.0,
         input: |t, turn| {
             18.0 * (11.0 * t + turn).cos() - 9.0 * (23.0 * t * (1.0 + 0.2 * turn)).sin()
         },
@@ -241,9 +246,43 @@ fn an_order_that_no_list_holds_is_seen_in_the_residual_force() {
         noise: 1e-4,
         gain: 1.0,
         uncertain: "J = { relative = 0.01 }",
+        late: 0.0,
         input: |t, turn| 0.5 * (2.1 * t + 0.7 * turn).cos() - 0.25 * (7.0 * t).sin(),
         acceleration: &|x, v, u| (u - 0.02 * v + 0.05 * (7.0 * x + 0.4).cos()) / 0.02,
     };
     let effect = rotor.only("torque_ripple", "x");
     assert_eq!(effect["order"]["order"], 7, "{effect:#}");
+}
+
+/// Over several turns an unbalanced weight and a torque that repeats once per turn are one term.
+#[test]
+fn a_weight_on_a_shaft_that_turns_is_told_from_no_torque_that_repeats_once_per_turn() {
+    let rotor = Machine {
+        specification: ROTOR,
+        units: ["rad", "N m"],
+        noise: 1e-4,
+        gain: 1.0,
+        uncertain: "J = { relative = 0.01 }",
+        late: 0.0,
+        input: |t, turn| 1.2 * (2.1 * t + 0.7 * turn).cos() - 0.25 * (7.0 * t).sin(),
+        acceleration: &|x, v, u| (u - 0.02 * v + 0.05 * (x + 0.4).cos()) / 0.02,
+    };
+    let effect = rotor.only("gravity", "x");
+    assert_eq!(effect["status"], "class", "{effect:#}");
+    let other = &effect["equivalent"][0];
+    assert_eq!(other["effect"], "torque_ripple", "{effect:#}");
+    assert_eq!(other["on"], "x", "{effect:#}");
+}
+
+/// A drive that acts late makes every sensor late: more than sensors admit is said to be that.
+#[test]
+fn an_input_that_acts_late_is_thought_of_where_all_sensors_are_late() {
+    let late = Machine {
+        late: 0.01,
+        ..oscillator(&|x, v, u| u - 400.0 * x - 4.0 * v)
+    };
+    let found = late.answer();
+    let notes = found["notes"].to_string();
+    assert!(notes.contains("an input that acts late"), "{notes}");
+    assert!(notes.contains("[inputs.u]"), "{notes}");
 }

@@ -221,6 +221,23 @@ fn a_nuisance_at_its_bound_makes_an_answer_uncertain() {
 }
 
 #[test]
+fn a_nuisance_at_its_bound_is_said_where_nothing_else_is_missing() {
+    let mut found = discovery("x");
+    found.verdict = Verdict::NoSignificantGap;
+    found.effects.clear();
+    let summary = |found: &Discovery| found.to_json()["summary"].as_str().unwrap_or("").to_owned();
+    found.compared.nuisances[0].fitted.value = 1.0;
+    let text = summary(&found);
+    assert!(text.contains("nothing is missing"), "{text}");
+    found.compared.nuisances[0].fitted.value = 1.03;
+    let text = summary(&found);
+    let first =
+        "The model explains the records only with the gain of x as far off as the fit admits";
+    assert!(text.starts_with(first), "{text}");
+    assert!(!text.contains("nothing is missing"), "{text}");
+}
+
+#[test]
 fn nothing_refers_to_the_outside() {
     let page = discovery("x").page();
     for forbidden in ["http", "//", "<script", "<link", "src=", "url(", "href"] {

@@ -76,13 +76,19 @@ fn planned(effect: Effect, on: &str, level: f64, draw: &mut Draw) -> Planned {
     Planned {
         hidden,
         level,
-        alike: alike(effect, on),
+        alike: alike(effect, on, order),
     }
 }
 
 /// What no record of these can tell from it.
-fn alike(effect: Effect, on: &str) -> Vec<(String, String)> {
+fn alike(effect: Effect, on: &str, order: f64) -> Vec<(String, String)> {
+    if effect == Effect::TorqueRipple && order == 1.0 {
+        // An unbalanced weight, whatever turns.
+        return vec![("gravity".to_owned(), on.to_owned())];
+    }
     let list: &[(&str, &str)] = match (effect, on) {
+        // A torque that repeats once per turn.
+        (Effect::Gravity, "theta_c") => &[("torque_ripple", "theta_c")],
         // Only the sum of the plays' middles moves what is measured.
         (Effect::AsymmetricBacklash, "x_sp") => &[("asymmetric_backlash", "x_pr")],
         // E and I stand together everywhere.

@@ -1,0 +1,44 @@
+//! Channels that are all late alike: sensors do that together less often than an input that acts late.
+
+use crate::fit::fitted::Fit;
+use crate::ids::UnknownId;
+use crate::model::problem::EstimationProblem;
+use crate::model::unknowns::{NormalPrior, Unknown, What};
+use crate::thresholds;
+
+/// What it may mean that every channel came out as late as the fit admits, or later, and all by the same.
+pub(crate) fn note_of_late_channels(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<String> {
+    if fit
+        .unknowns()
+        .any(|(_, unknown)| unknown.what == What::InputDelay)
+    {
+        return None;
+    }
+    let input = match &fit.model.specification().inputs[..] {
+        [only] => &only.name,
+        _ => return None,
+    };
+    let delays = fit
+        .unknowns()
+        .filter(|(_, unknown)| matches!(unknown.what, What::Delay(_)));
+    let delays: Vec<f64> = delays.filter_map(|of| lateness(fit, of)).collect();
+    let (least, most) = (delays.iter()).fold((f64::INFINITY, 0.0_f64), |(least, most), delay| {
+        (least.min(*delay), most.max(*delay))
+    });
+    let is_alike = delays.len() == problem.noise.len() && least > thresholds::LATE_ALIKE * most;
+    is_alike.then(|| {
+        format!(
+            "every channel is late by {:.3} ms or nearly: an input that acts late, behind a current loop or a bus, does \
+             the same; `delay` in [inputs.{input}] says how late it may be",
+            1e3 * most
+        )
+    })
+}
+
+/// How late a channel is, s, if that is as much as its prior admits, or what was found.
+fn lateness(fit: &Fit, (id, unknown): (UnknownId, &Unknown)) -> Option<f64> {
+    let value = fit.train.estimate.theta[id];
+    let reach = thresholds::AT_BOUND * thresholds::SHIFTED;
+    let is_off = |prior: NormalPrior| value - prior.mean >= reach * prior.sd;
+    (value > 0.0 && unknown.prior.is_none_or(is_off)).then_some(value)
+}
