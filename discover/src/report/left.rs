@@ -54,6 +54,21 @@ impl Left {
         most > thresholds::MAY_STAND_IN || !self.floors.is_finite()
     }
 
+    /// That what is missing acts in the records held out alone: no search among records to learn from finds it.
+    pub(crate) fn note(&self) -> Option<String> {
+        let is_hidden = self.training < thresholds::CLOSE
+            && self.floors > thresholds::MAY_STAND_IN
+            && self.floors.is_finite();
+        is_hidden.then(|| {
+            format!(
+                "the records to learn from leave {} noise floors, those held out {}: what is missing hardly acts in the \
+                 first; list a record that shows it under `train`",
+                counted(self.training),
+                self.words()
+            )
+        })
+    }
+
     /// As `1.2 noise floors in tip`.
     pub(crate) fn words(&self) -> String {
         let number = match self.floors {

@@ -203,6 +203,7 @@ pub fn discover_until(
     ));
     let late = note_of_late_channels(&problem, best);
     for note in (late.into_iter())
+        .chain(Left::of(&gap, Stage::After).note())
         .chain(notes_of_motion_noise(&problem, best))
         .chain(notes_of_units(&problem, &found))
     {

@@ -277,12 +277,28 @@ fn a_weight_on_a_shaft_that_turns_is_told_from_no_torque_that_repeats_once_per_t
 /// A drive that acts late makes every sensor late: more than sensors admit is said to be that.
 #[test]
 fn an_input_that_acts_late_is_thought_of_where_all_sensors_are_late() {
+    let acceleration = |x: f64, v: f64, u: f64| u - 400.0 * x - 4.0 * v;
     let late = Machine {
         late: 0.01,
-        ..oscillator(&|x, v, u| u - 400.0 * x - 4.0 * v)
+        ..oscillator(&acceleration)
     };
     let found = late.answer();
     let notes = found["notes"].to_string();
     assert!(notes.contains("an input that acts late"), "{notes}");
     assert!(notes.contains("[inputs.u]"), "{notes}");
+}
+
+/// A stop that only the records held out reach.
+#[test]
+fn what_only_the_records_held_out_show_is_said_to() {
+    let stop = |x: f64| 900.0 * (x - 0.08).max(0.0);
+    let acceleration = |x: f64, v: f64, u: f64| u - 400.0 * x - stop(x) - 4.0 * v;
+    let machine = Machine {
+        input: |t, turn| (4.0 + 26.0 * turn) * ((11.0 * t + turn).cos() - (23.0 * t).sin()),
+        ..oscillator(&acceleration)
+    };
+    let found = machine.answer();
+    assert_eq!(found["verdict"], "unexplained", "{found:#}");
+    let notes = found["notes"].to_string();
+    assert!(notes.contains("hardly acts in the first"), "{notes}");
 }
