@@ -103,6 +103,34 @@ pub fn answered(command: &str, paths: [&PathBuf; 3]) -> Value {
     serde_json::from_str(&document).expect("JSON")
 }
 
+/// The same to texts, in a folder of their own.
+pub fn answered_to(command: &str, texts: Texts<'_>) -> Value {
+    let folder = tempfile::tempdir().expect("a folder");
+    let place = |name: &str| folder.path().join(name);
+    for (name, text) in [
+        ("spec.toml", texts.specification),
+        ("dataset.toml", texts.dataset),
+        ("train.csv", texts.train),
+        ("test.csv", texts.test),
+    ] {
+        std::fs::write(place(name), text).expect("a file");
+    }
+    let paths = ["spec.toml", "dataset.toml", "found"].map(place);
+    answered(command, paths.each_ref())
+}
+
+/// What a comparison or a discovery reads; the records are `train.csv` and `test.csv` in the dataset.
+pub struct Texts<'t> {
+    /// The specification.
+    pub specification: &'t str,
+    /// The dataset file.
+    pub dataset: &'t str,
+    /// The record to learn from.
+    pub train: &'t str,
+    /// The record held out.
+    pub test: &'t str,
+}
+
 /// Bytes as text.
 pub fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()

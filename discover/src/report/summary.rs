@@ -32,10 +32,7 @@ impl Summary {
                 ),
             },
             false => Self {
-                first: match at_bounds(&comparison.compared.nuisances) {
-                    None => "The model explains the records.".to_owned(),
-                    Some(at_bounds) => explained_only(&at_bounds),
-                },
+                first: explained(&comparison.compared.nuisances, "."),
                 rest: format!("It leaves {left}, no more than a right model would."),
             },
         }
@@ -47,13 +44,10 @@ impl Summary {
         let [before, after] = [Stage::Before, Stage::After].map(|stage| Left::of(gap, stage));
         let answer = match discovery.verdict {
             Verdict::NoSignificantGap => Self {
-                first: match at_bounds(&discovery.compared.nuisances) {
-                    None => {
-                        "The model explains the records; nothing is missing that they could show."
-                            .to_owned()
-                    }
-                    Some(at_bounds) => explained_only(&at_bounds),
-                },
+                first: explained(
+                    &discovery.compared.nuisances,
+                    "; nothing is missing that they could show.",
+                ),
                 rest: format!(
                     "It leaves {}, no more than a right model would.",
                     after.words()
@@ -95,9 +89,13 @@ fn at_bounds(nuisances: &[Nuisance]) -> Option<String> {
     Some(format!("with {which} as far off as the fit admits"))
 }
 
-/// The first sentence of a model that explains the records only so.
-fn explained_only(at_bounds: &str) -> String {
-    format!("The model explains the records only {at_bounds}: what is missing may look like that.")
+/// The first sentence of a model that explains the records: how it ends where nothing is at its bounds.
+fn explained(nuisances: &[Nuisance], end: &str) -> String {
+    let end = match at_bounds(nuisances) {
+        None => end.to_owned(),
+        Some(at_bounds) => format!(" only {at_bounds}: what is missing may look like that."),
+    };
+    format!("The model explains the records{end}")
 }
 
 /// Of a search that found something: where that is not sure, this is said first.

@@ -2,7 +2,7 @@
 //! begin from fitted states and from states that are read.
 
 use eomgen_tests::logistic_noise::LogisticNoise;
-use eomgen_tests::program;
+use eomgen_tests::program::{self, Texts};
 use serde_json::Value;
 
 const MOTOR: &str = r#"
@@ -103,18 +103,13 @@ fn record(resistance: f64, drag: f64, turn: f64) -> String {
 
 /// What a command answers to records of the motor with this resistance, ohm, and drag, N m s^2.
 fn answered(command: &str, (resistance, drag): (f64, f64), dataset: &str) -> Value {
-    let folder = tempfile::tempdir().expect("a folder");
-    let place = |name: &str| folder.path().join(name);
-    for (name, text) in [
-        ("spec.toml", MOTOR.to_owned()),
-        ("dataset.toml", dataset.to_owned()),
-        ("train.csv", record(resistance, drag, 0.0)),
-        ("test.csv", record(resistance, drag, 1.0)),
-    ] {
-        std::fs::write(place(name), text).expect("a file");
-    }
-    let paths = ["spec.toml", "dataset.toml", "found"].map(place);
-    program::answered(command, paths.each_ref())
+    let texts = Texts {
+        specification: MOTOR,
+        dataset,
+        train: &record(resistance, drag, 0.0),
+        test: &record(resistance, drag, 1.0),
+    };
+    program::answered_to(command, texts)
 }
 
 #[test]

@@ -3,7 +3,7 @@
 //! per turn.
 
 use eomgen_tests::logistic_noise::LogisticNoise;
-use eomgen_tests::program;
+use eomgen_tests::program::{self, Texts};
 use serde_json::Value;
 
 use crate::specifications::OSCILLATOR;
@@ -77,8 +77,6 @@ impl Machine<'_> {
 
     /// What `discover` answers.
     fn answer(&self) -> Value {
-        let folder = tempfile::tempdir().expect("a folder");
-        let place = |name: &str| folder.path().join(name);
         let [unit, input] = self.units;
         let dataset = format!(
             "[records]\ntrain = [\"train.csv\"]\ntest = [\"test.csv\"]\n\n[time]\ncolumn = \"t\"\nunit = \"s\"\n\n\
@@ -87,17 +85,13 @@ impl Machine<'_> {
              [uncertain]\n{}\n\n[windows]\nlength = 0.5\n",
             self.noise, self.uncertain
         );
-        let files = [
-            ("dataset.toml", dataset),
-            ("spec.toml", self.specification.to_owned()),
-            ("train.csv", self.record(0.0)),
-            ("test.csv", self.record(1.0)),
-        ];
-        for (name, text) in files {
-            std::fs::write(place(name), text).expect("a file");
-        }
-        let paths = ["spec.toml", "dataset.toml", "found"].map(place);
-        program::answered("discover", paths.each_ref())
+        let texts = Texts {
+            specification: self.specification,
+            dataset: &dataset,
+            train: &self.record(0.0),
+            test: &self.record(1.0),
+        };
+        program::answered_to("discover", texts)
     }
 
     /// The only effect that is found: its document, with which it must have this name and place.
