@@ -1,0 +1,45 @@
+//! `studies`: runs one study over many random machines or records and prints a line for each
+//! failure and a summary. The exit status is 1 if a run fails.
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use eomgen_studies::sample::Sample;
+use eomgen_studies::{coverage, grazing, solvers};
+
+/// Studies of the program over many random machines and records.
+#[derive(Parser)]
+#[command(after_help = "Example:\n  studies grazing --count 200 --seed 1")]
+struct Options {
+    #[command(subcommand)]
+    study: Study,
+}
+
+/// One study.
+#[derive(Subcommand)]
+enum Study {
+    /// Energy and agreement of the solvers for passive machines that graze their stops
+    Grazing(Sample),
+    /// Coverage of the 90 % intervals of fitted parameters
+    Coverage(Sample),
+    /// Agreement of the solvers on random machines
+    Solvers(Sample),
+}
+
+fn main() -> ExitCode {
+    let report = match Options::parse().study {
+        Study::Grazing(sample) => grazing::run(&sample),
+        Study::Coverage(sample) => coverage::run(&sample),
+        Study::Solvers(sample) => solvers::run(&sample),
+    };
+    match report {
+        Ok(summary) => {
+            println!("{summary}");
+            ExitCode::SUCCESS
+        }
+        Err(failures) => {
+            eprintln!("{failures}");
+            ExitCode::FAILURE
+        }
+    }
+}
