@@ -1,0 +1,194 @@
+//! Study `solvers`: random machines by every solver. The motions of two solvers may differ by ten
+//! tolerances times the growth of a small difference along the motion, at each of several
+//! tolerances; the energy of a passive machine may not rise.
+
+mod growth;
+mod machine;
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use eomgen_compiled_model::{CompiledModel, Error, Instance, Motion, Orders, Request, Solver};
+use eomgen_validate::random::Random;
+
+use crate::sample::Sample;
+use growth::{difference, growth, magnitudes};
+use machine::{Machine, draw};
+
+/// Tolerances of the solvers.
+const TOLERANCES: [f64; 3] = [1e-6, 1e-8, 1e-10];
+
+/// Tolerance of the motions that measure the growth.
+const GROWTH_TOLERANCE: f64 = 1e-11;
+
+/// Allowed difference of two solvers in tolerances times the growth.
+const ALLOWED_TOLERANCES: f64 = 10.0;
+
+/// Relative change of an energy over that of the states between two samples: energies have up to
+/// the fourth power of a coordinate, and each of the two samples has an error.
+const ENERGY_SENSITIVITY: f64 = 8.0;
+
+/// Samples of a motion.
+const SAMPLES: usize = 61;
+
+/// Outcome of one machine.
+struct Outcome {
+    /// Largest difference of two solvers over what is allowed.
+    worst: f64,
+    /// Whether the exact solver took the machine.
+    is_exact: bool,
+    /// Whether the machine is passive, so that its energy was judged.
+    is_passive: bool,
+}
+
+/// Runs the study and returns its summary.
+///
+/// # Errors
+///
+/// A report of every machine whose solvers disagree, stop or panic, or whose energy rises.
+pub fn run(sample: &Sample) -> Result<String, String> {
+    let mut outcomes = Vec::new();
+    let mut failures = String::new();
+    for index in 0..sample.count {
+        let seed = sample
+            .seed
+            .wrapping_mul(1_000_003)
+            .wrapping_add(index as u64);
+        let mut random = Random::new(seed);
+        let machine = draw(&mut random);
+        let judged = catch_unwind(AssertUnwindSafe(|| judge(&machine, &mut random)));
+        let problem = match judged {
+            Ok(Ok(outcome)) => {
+                outcomes.push(outcome);
+                continue;
+            }
+            Ok(Err(problem)) => problem,
+            Err(_) => "panics".to_owned(),
+        };
+        failures += &format!(
+            "machine {index} with {:?}: {problem}\n{}\n",
+            machine.features, machine.text
+        );
+    }
+    let worst = outcomes.iter().map(|o| o.worst).fold(0.0, f64::max);
+    let exact = outcomes.iter().filter(|o| o.is_exact).count();
+    let passive = outcomes.iter().filter(|o| o.is_passive).count();
+    let summary = format!(
+        "{} of {} machines agree: {exact} by the exact solver too, {passive} passive; largest \
+         difference {worst:.2} of what is allowed",
+        outcomes.len(),
+        sample.count
+    );
+    match failures.is_empty() {
+        true => Ok(summary),
+        false => Err(failures + &summary),
+    }
+}
+
+fn judge(machine: &Machine, random: &mut Random) -> Result<Outcome, String> {
+    let model = CompiledModel::of_text("drawn.toml", &machine.text, Orders::Declared)
+        .map_err(|error| error.to_string())?;
+    let instance = model.at_declared().map_err(|error| error.to_string())?;
+    let times: Vec<f64> = (0..SAMPLES)
+        .map(|k| machine.until * k as f64 / (SAMPLES - 1) as f64)
+        .collect();
+    let request = |solver, tolerance| Request {
+        initial: instance.initial(),
+        times: &times,
+        inputs: &machine.inputs,
+        solver,
+        tolerance,
+    };
+    let reference = complete(&instance, &request(Solver::Rk, GROWTH_TOLERANCE))?;
+    let states = &reference.trajectory.states;
+    let sizes = magnitudes(states, &model.state_units());
+    let initial_request = request(Solver::Rk, GROWTH_TOLERANCE);
+    let growth = growth(&instance, &initial_request, states, &sizes, random)
+        .map_err(|error| format!("a neighbour of the motion: {error}"))?;
+    check_energy(
+        machine,
+        &instance,
+        &reference,
+        ALLOWED_TOLERANCES * GROWTH_TOLERANCE * growth,
+    )?;
+    let exact = exact_motion(&instance, &request(Solver::Exact, GROWTH_TOLERANCE))?;
+    let mut worst = 0.0_f64;
+    for tolerance in TOLERANCES {
+        let allowed = ALLOWED_TOLERANCES * tolerance * growth;
+        let rk = complete(&instance, &request(Solver::Rk, tolerance))?;
+        let radau = complete(&instance, &request(Solver::Radau, tolerance))?;
+        let motions = [Some(&rk), Some(&radau), exact.as_ref()];
+        let motions: Vec<&Motion> = motions.into_iter().flatten().collect();
+        for motion in &motions {
+            check_energy(machine, &instance, motion, allowed)?;
+        }
+        for (place, a) in motions.iter().enumerate() {
+            for b in &motions[place + 1..] {
+                let gap = difference(&a.trajectory.states, &b.trajectory.states, &sizes);
+                if gap.is_nan() || gap > allowed {
+                    let names = (a.solver.name(), b.solver.name());
+                    return Err(format!(
+                        "{} and {} differ by {gap:.1e} at a tolerance of {tolerance:.0e} and a \
+                         growth of {growth:.1e}",
+                        names.0, names.1
+                    ));
+                }
+                worst = worst.max(gap / allowed);
+            }
+        }
+    }
+    Ok(Outcome {
+        worst,
+        is_exact: exact.is_some(),
+        is_passive: machine.is_passive(),
+    })
+}
+
+/// A motion to the end of its times.
+fn complete(instance: &Instance<'_>, request: &Request<'_>) -> Result<Motion, String> {
+    let solver = request.solver.name();
+    let motion = instance.follow(request, &mut |_| {});
+    motion
+        .and_then(Motion::complete)
+        .map_err(|error| format!("{solver} at {:.0e}: {error}", request.tolerance))
+}
+
+/// The motion by the exact solver; none if it does not take the model.
+fn exact_motion(instance: &Instance<'_>, request: &Request<'_>) -> Result<Option<Motion>, String> {
+    if instance.model().piecewise_linear().is_err() || !instance.model().model().impacts.is_empty()
+    {
+        return Ok(None);
+    }
+    complete(instance, request).map(Some)
+}
+
+/// Checks that the energy of a passive machine never rises by more than the `allowed` part of its
+/// largest magnitude from one sample to a later one.
+fn check_energy(
+    machine: &Machine,
+    instance: &Instance<'_>,
+    motion: &Motion,
+    allowed: f64,
+) -> Result<(), String> {
+    if !machine.is_passive() {
+        return Ok(());
+    }
+    let rows = instance
+        .observables(motion)
+        .map_err(|error: Error| error.to_string())?;
+    let energies: Vec<f64> = rows.iter().map(|row| row[row.len() - 2]).collect();
+    let allowed =
+        ENERGY_SENSITIVITY * allowed * energies.iter().fold(0.0_f64, |size, e| size.max(e.abs()));
+    let mut lowest = f64::INFINITY;
+    for (energy, t) in energies.iter().zip(&motion.trajectory.times) {
+        lowest = lowest.min(*energy);
+        let rise = energy - lowest;
+        if rise.is_nan() || rise > allowed {
+            return Err(format!(
+                "by {} the energy rises by {rise:.1e} J to {energy:e} J until {t:e} s, {allowed:.1e} J are \
+                 allowed",
+                motion.solver.name(),
+            ));
+        }
+    }
+    Ok(())
+}
