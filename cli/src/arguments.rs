@@ -623,6 +623,9 @@ pub struct Page {
     /// The file to write, or `-` for stdout.
     #[arg(long)]
     pub out: PathBuf,
+    /// Print one JSON document on the page instead of the summary.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// Options of `tour`.

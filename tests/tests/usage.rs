@@ -333,3 +333,25 @@ fn the_exact_solver_is_refused_what_is_not_linear_and_has_no_tolerance() {
     );
     assert_eq!(said("adams", "planetary_arm", &[]).0, "adams");
 }
+
+/// The README lists the commands that have no `--json`: `schema`, `completions` and `man`.
+#[test]
+fn every_command_on_a_specification_prints_one_json_document() {
+    for command in COMMANDS {
+        let folder = tempfile::tempdir().expect("a folder");
+        let mut program = eomgen();
+        program.args([command, &spec("pendulum"), "--json"]);
+        match command {
+            "generate" => program.args(["--out", "made"]),
+            "page" => program.args(["--out", "page.html"]),
+            "simulate" => program.args(["--out", "motion.csv", "--until", "0.01"]),
+            _ => &mut program,
+        };
+        let output = program.current_dir(folder.path()).output();
+        let output = output.expect("the program can be run");
+        assert_eq!(output.status.code(), Some(0), "{command}");
+        let document: serde_json::Value =
+            serde_json::from_slice(&output.stdout).expect("one document");
+        assert!(document.is_object(), "{command}");
+    }
+}

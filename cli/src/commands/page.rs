@@ -1,8 +1,10 @@
 //! `eomgen page`: a page on which a model can be played with.
 
+use serde_json::json;
+
 use crate::arguments::Page;
 use crate::emission::without_impacts;
-use crate::error::Result;
+use crate::error::{Result, say};
 use crate::model::{derive, load, orders};
 use crate::output::Destination;
 use crate::page::playable;
@@ -10,12 +12,23 @@ use crate::settings::stabilised;
 
 /// Runs the command.
 pub fn run(options: &Page) -> Result {
-    let destination = Destination::of(&options.out, false)?;
+    let destination = Destination::of(&options.out, options.json)?;
     let model = load(&options.spec)?.model;
     without_impacts(&model, "a page")?;
     let model = stabilised(model)?;
     let orders = orders(&model, options.order.as_deref())?;
     let compiled = derive(model, &orders)?;
-    destination.write(playable(&compiled)?.as_bytes())?;
+    let page = playable(&compiled)?;
+    destination.write(page.as_bytes())?;
+    if options.json {
+        let document = json!({
+            "schema": 1,
+            "model": compiled.program().name,
+            "orders": compiled.orders(),
+            "file": options.out.display().to_string(),
+            "bytes": page.len(),
+        });
+        return say(&format!("{document:#}\n"));
+    }
     destination.summarise(&format!("open {}\n", options.out.display()))
 }
