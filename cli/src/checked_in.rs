@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 
 use crate::certification::document;
 use crate::emission::source;
-use crate::error::{Error, Result, say, warn};
+use crate::error::{Error, Result, say, say_json, warn};
 use crate::model::{derive, load};
 use crate::output::write_file;
 use crate::progress::Note;
@@ -87,7 +87,7 @@ fn different_sources(root: &Path, variants: &[CheckedIn], check: bool) -> Result
 fn say_what_differs(files: usize, different: &[String], check: bool, json: bool) -> Result {
     if json {
         let document = json!({"files": files, "different": different, "written": !check});
-        return say(&format!("{document:#}\n"));
+        return say_json(&document);
     }
     let verb = if check { "differ" } else { "written" };
     say(&format!("{files} files, {} {verb}\n", different.len()))

@@ -9,6 +9,7 @@ use eomgen_discover::error::DiscoverError;
 use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_model_spec::source::Source;
 use eomgen_model_spec::variant::ModelError;
+use eomgen_model_spec::visible::{visible, visible_in_strings};
 use eomgen_records::Refusal;
 
 /// What a command comes to.
@@ -68,27 +69,39 @@ impl Error {
 
     /// Says what is wrong on stderr and gives the exit status.
     pub fn report(&self) -> ExitCode {
-        let text = match self {
-            Self::Input(message) => format!("error: {message}"),
-            Self::Specification(diagnostics) => diagnostics.render(std::io::stderr().is_terminal()),
+        match self {
+            Self::Input(message) => warn(&format!("error: {message}")),
+            Self::Specification(diagnostics) => warn_of(diagnostics),
             Self::Failed => return ExitCode::from(1),
-        };
-        warn(&text);
+        }
         ExitCode::from(2)
     }
 }
 
-/// Says something on stderr; a program goes on when nobody can hear it.
+/// Prints a message to stderr, with control characters escaped. Errors of writing are ignored.
 pub fn warn(text: &str) {
-    let _ = writeln!(std::io::stderr(), "{text}");
+    let _ = writeln!(std::io::stderr(), "{}", visible(text));
 }
 
-/// Writes to stdout; a closed pipe ends the program quietly.
+/// Prints findings to stderr, with colours on a terminal.
+pub fn warn_of(findings: &Diagnostics) {
+    let mut stderr = std::io::stderr();
+    let text = findings.render(stderr.is_terminal());
+    let _ = writeln!(stderr, "{text}");
+}
+
+/// Prints text for people to stdout, with control characters escaped; a closed pipe ends the program quietly.
 pub fn say(text: &str) -> Result {
-    say_bytes(text.as_bytes())
+    say_bytes(visible(text).as_bytes())
 }
 
-/// The same for what need not be text.
+/// Prints a JSON document to stdout, with control characters escaped.
+pub fn say_json(document: &serde_json::Value) -> Result {
+    let text = format!("{document:#}\n");
+    say_bytes(visible_in_strings(&text).as_bytes())
+}
+
+/// Prints a document to stdout as it is; a closed pipe ends the program quietly.
 pub fn say_bytes(bytes: &[u8]) -> Result {
     let mut out = std::io::stdout().lock();
     match out.write_all(bytes).and_then(|()| out.flush()) {

@@ -1,19 +1,18 @@
 //! From the path of a specification to a compiled model, with messages for people.
 
-use std::io::IsTerminal;
 use std::path::Path;
 
 use eomgen_compiled_model::{CompiledModel, Orders};
 use eomgen_model_spec::Checked;
 use eomgen_model_spec::model::Model;
 
-use crate::error::{Error, Result, warn};
+use crate::error::{Error, Result, warn_of};
 
 /// Reads and checks a specification; warnings go to stderr.
 pub fn load(path: &Path) -> Result<Checked> {
     let checked = eomgen_model_spec::load(path).map_err(Error::Specification)?;
     if !checked.warnings.is_empty() {
-        warn(&checked.warnings.render(std::io::stderr().is_terminal()));
+        warn_of(&checked.warnings);
     }
     Ok(checked)
 }

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use crate::source::{Source, character_start};
 use crate::span::Span;
+use crate::visible::visible;
 
 /// The most findings listed; one bad file can hold thousands.
 pub const MAX_LISTED: usize = 20;
@@ -251,7 +252,12 @@ impl Diagnostics {
         if self.omitted > 0 {
             parts.push(format!("and {} more", self.omitted));
         }
-        parts.join("\n\n")
+        let text = parts.join("\n\n");
+        // With colour the renderer escapes what it is given, and adds escapes of its own.
+        match colour {
+            true => text,
+            false => visible(&text).into_owned(),
+        }
     }
 
     /// For each kind of thing of which any is not used, their names and places.

@@ -71,6 +71,7 @@ pub mod uncertainty;
 pub mod unit;
 mod units_check;
 pub mod variant;
+pub mod visible;
 
 pub use functions::reserved;
 pub use load::{Checked, MAX_SIZE, check, load, load_from};

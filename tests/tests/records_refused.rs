@@ -338,3 +338,40 @@ fn what_weakens_a_record_is_noted() {
     assert!(warned.contains("differ from 0.005"), "{warned}");
     assert_eq!(SAMPLES, 400);
 }
+
+#[test]
+fn hidden_characters_of_files_do_not_reach_the_terminal_or_the_report() {
+    let hostile = "x\u{1b}[31m\u{202e}\u{9b}";
+    let is_hidden = |letter: char| letter != '\n' && (letter.is_control() || letter == '\u{202e}');
+    let measured = Measured::stage(0.0);
+    let sound = record(0.0, 0.0);
+    let renamed = sound.replacen("force", hostile, 1);
+    measured.write("train.csv", renamed.as_bytes());
+    let said = measured.refused();
+    assert!(said.contains("x\\u{1b}[31m\\u{202e}\\u{9b}"), "{said:?}");
+    assert!(!said.contains(is_hidden), "{said:?}");
+    measured.write("train.csv", sound.as_bytes());
+    let channel = format!(
+        "[channels.\"{}\"]\nobservable = \"q\"",
+        "x\\u001b[31m\\u202e"
+    );
+    let description = DESCRIPTION.replace("[channels.q]", &channel);
+    let titled = format!("title = \"a\\u202eb\"\n{description}");
+    measured.write("dataset.toml", titled.as_bytes());
+    let (result, warned) = measured.answered("compare", "out");
+    assert!(!warned.contains(is_hidden), "{warned:?}");
+    assert!(
+        result["gap"].get("x\u{1b}[31m\u{202e}").is_some(),
+        "{result:#}"
+    );
+    let page = std::fs::read_to_string(measured.file("out/report.html")).expect("a page");
+    assert!(
+        !page.contains(|letter| letter != '\t' && is_hidden(letter)),
+        "{page}"
+    );
+    assert!(page.contains("a\\u{202e}b"), "{page}");
+    assert!(
+        page.contains("http-equiv=\"Content-Security-Policy\""),
+        "{page}"
+    );
+}

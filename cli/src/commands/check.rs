@@ -1,13 +1,11 @@
 //! `eomgen check`: reads a specification, checks it, and says what it holds.
 
-use std::io::IsTerminal;
-
 use eomgen_compiled_model::CompiledModel;
 use eomgen_model_spec::diagnostic::Diagnostics;
 use serde_json::{Value, json};
 
 use crate::arguments::Check;
-use crate::error::{Error, Result, say, warn};
+use crate::error::{Error, Result, say, say_json, warn_of};
 use crate::model::{derive, orders};
 
 /// Runs the command. A derivation is part of the check: what cannot be derived is an
@@ -18,16 +16,16 @@ pub fn run(options: &Check) -> Result {
         Err(error) => {
             if let (true, Error::Specification(found)) = (options.json, &error) {
                 let document = json!({"passed": false, "diagnostics": found.records()});
-                say(&format!("{document:#}\n"))?;
+                say_json(&document)?;
             }
             return Err(error);
         }
     };
     if options.json {
-        return say(&format!("{:#}\n", record(&compiled, &warnings)));
+        return say_json(&record(&compiled, &warnings));
     }
     if !warnings.is_empty() {
-        warn(&warnings.render(std::io::stderr().is_terminal()));
+        warn_of(&warnings);
     }
     say(&summary(&compiled))
 }

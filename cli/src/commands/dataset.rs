@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde_json::json;
 
 use crate::arguments::Dataset;
-use crate::error::{Error, Result, say, warn};
+use crate::error::{Error, Result, say, say_bytes, say_json, warn};
 use crate::model::load;
 use crate::output::write_file;
 
@@ -16,22 +16,22 @@ pub fn run(options: &Dataset) -> Result {
     let text = eomgen_records::proposed(&options.record, &name, &model).map_err(Error::records)?;
     if let Some(out) = &options.out {
         write_file(out, text.as_bytes())?;
-        // What is guessed may be wrong: whoever reads it will say so, and so does this.
+        // A guess may be wrong: report what `compare` would.
         match eomgen_records::read_dataset(out, &model) {
             Ok(dataset) => dataset
                 .notes
                 .iter()
                 .for_each(|n| warn(&format!("note: {n}"))),
-            Err(refusal) => warn(&format!("note: as it stands it will be refused: {refusal}")),
+            Err(refusal) => warn(&format!("note: it cannot be used as it is: {refusal}")),
         }
     }
     match (&options.out, options.json) {
-        (out, true) => say(&format!(
-            "{:#}\n",
-            json!({ "schema": 1, "out": out, "dataset": text })
+        (out, true) => say_json(&json!({ "schema": 1, "out": out, "dataset": text })),
+        (Some(out), false) => say(&format!(
+            "{}: check the lines that are marked as guessed\n",
+            out.display()
         )),
-        (Some(out), false) => say(&format!("{}: look at what is guessed\n", out.display())),
-        (None, false) => say(&text),
+        (None, false) => say_bytes(text.as_bytes()),
     }
 }
 
@@ -65,7 +65,7 @@ fn name(options: &Dataset) -> Result<String> {
     });
     inside.ok_or_else(|| {
         Error::input(format!(
-            "--out {}: a dataset file stands in the folder of its records or above it; expected a file in {} or above",
+            "--out {}: a dataset file must be in the folder of its records or above it; expected a file in {} or above",
             out.display(),
             record.parent().unwrap_or(Path::new("/")).display()
         ))

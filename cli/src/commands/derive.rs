@@ -4,7 +4,7 @@ use eomgen_codegen::program::evaluator::Evaluator;
 use eomgen_codegen::report::Report;
 
 use crate::arguments::{Derive, Format};
-use crate::error::{Error, Result, say};
+use crate::error::{Error, Result, say, say_bytes};
 use crate::model::load_to_read;
 
 /// Runs the command.
@@ -19,11 +19,11 @@ pub fn run(options: &Derive) -> Result {
     let report = Report::new(compiled.model(), compiled.equations(), &evaluator);
     match format {
         Format::Text => say(&report.text()),
-        Format::Latex => say(&report.latex()),
+        Format::Latex => say_bytes(report.latex().as_bytes()),
         Format::Json => {
             let text = serde_json::to_string_pretty(&report)
                 .map_err(|error| Error::input(error.to_string()))?;
-            say(&format!("{text}\n"))
+            say_bytes(format!("{text}\n").as_bytes())
         }
     }
 }

@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use crate::arguments;
 use crate::discovery::{compared, discovered};
-use crate::error::{Result, say};
+use crate::error::{Result, say, say_json};
 
 /// Runs `compare`.
 pub fn compare(options: &arguments::Compare) -> Result {
@@ -21,7 +21,7 @@ pub fn discover(options: &arguments::Discover) -> Result {
 /// The verdict, the effects and the gap by channel.
 fn print(as_json: bool, result: &Value, out: &Path) -> Result {
     if as_json {
-        return say(&format!("{result:#}\n"));
+        return say_json(result);
     }
     let mut text = format!(
         "{}: {}\n",

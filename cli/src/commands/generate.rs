@@ -14,7 +14,7 @@ use crate::bench_files;
 use crate::certification::document;
 use crate::checked_in;
 use crate::emission;
-use crate::error::{Error, Result, say, warn};
+use crate::error::{Error, Result, say, say_json, warn};
 use crate::model::{load, orders};
 use crate::output::write_file;
 
@@ -64,7 +64,7 @@ fn one(options: &Generate, spec: &Path, out: &Path) -> Result {
             "bytes": first.len(),
             "certified": certificate.as_ref().map(|certificate| certificate.passed),
         });
-        say(&format!("{document:#}\n"))?;
+        say_json(&document)?;
     } else {
         let size = emission::size(options.target, first);
         say(&format!("{}: {size}\n", files[0]))?;

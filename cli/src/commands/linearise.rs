@@ -3,7 +3,7 @@
 use eomgen_compiled_model::CompiledModel;
 
 use crate::arguments::Linearise;
-use crate::error::{Result, say};
+use crate::error::{Result, say_bytes};
 use crate::linearisation::{arrays, document};
 use crate::operating_point::{assignments, consistent, linearised, model};
 use crate::output::Destination;
@@ -24,7 +24,7 @@ pub fn run(options: &Linearise) -> Result {
     let found = linearised(&run, &at)?;
     let text = || document(&compiled, &at, &found).map(|document| format!("{document:#}\n"));
     let Some(destination) = destination else {
-        return say(&text()?);
+        return say_bytes(text()?.as_bytes());
     };
     let extension = options.out.as_deref().and_then(|out| out.extension());
     let contents = match extension.is_some_and(|extension| extension == "npz") {

@@ -3,7 +3,7 @@
 use eomgen_sweep::Folder;
 
 use crate::arguments::Merge;
-use crate::error::{Error, Result, say};
+use crate::error::{Error, Result, say, say_json};
 use crate::sweep_files::finish;
 
 /// Runs the command.
@@ -11,7 +11,7 @@ pub fn run(options: &Merge) -> Result {
     let folder = Folder::existing(&options.dir).map_err(|error| Error::input(error.to_string()))?;
     let finished = finish(&folder)?;
     if options.json {
-        return say(&format!("{:#}\n", finished.json()));
+        return say_json(&finished.json());
     }
     say(&finished.text())
 }

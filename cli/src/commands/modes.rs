@@ -6,7 +6,7 @@ use eomgen_compiled_model::CompiledModel;
 use serde_json::{Value, json};
 
 use crate::arguments::Modes;
-use crate::error::{Error, Result, say};
+use crate::error::{Error, Result, say, say_json};
 use crate::mode_figure::figure;
 use crate::operating_point::{
     assignments, consistent, head, linearised, model, named, shape_names,
@@ -43,7 +43,7 @@ pub fn run(options: &Modes) -> Result {
     let regime = regime.iter().map(Side::json);
     document.insert("regime".to_owned(), regime.collect());
     document.insert("modes".to_owned(), modes.iter().map(record).collect());
-    say(&format!("{:#}\n", Value::Object(document)))
+    say_json(&Value::Object(document))
 }
 
 fn record(mode: &NaturalMode) -> Value {

@@ -4,7 +4,7 @@ use serde_json::json;
 
 use crate::arguments::Page;
 use crate::emission::without_impacts;
-use crate::error::{Result, say};
+use crate::error::{Result, say_json};
 use crate::model::{derive, load, orders};
 use crate::output::Destination;
 use crate::page::playable;
@@ -28,7 +28,7 @@ pub fn run(options: &Page) -> Result {
             "file": options.out.display().to_string(),
             "bytes": page.len(),
         });
-        return say(&format!("{document:#}\n"));
+        return say_json(&document);
     }
     destination.summarise(&format!("open {}\n", options.out.display()))
 }

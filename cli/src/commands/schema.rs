@@ -2,9 +2,9 @@
 
 use eomgen_model_spec::schema::SCHEMA;
 
-use crate::error::{Result, say};
+use crate::error::{Result, say_bytes};
 
 /// Runs the command.
 pub fn run() -> Result {
-    say(SCHEMA)
+    say_bytes(SCHEMA.as_bytes())
 }

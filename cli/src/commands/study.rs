@@ -8,7 +8,7 @@ use eomgen_paper::studies::{StudyError, order, report, responses};
 use serde_json::Value;
 
 use crate::arguments::{Study, StudyName};
-use crate::error::{Error, Result, say};
+use crate::error::{Error, Result, say, say_bytes};
 use crate::output::{file_place, write_file};
 use crate::progress::Bar;
 use crate::table::Table;
@@ -37,11 +37,10 @@ pub fn run(options: &Study) -> Result {
     // Last, so that a folder with this file is whole.
     let text = format!("{document:#}\n");
     write_file(&document_path, text.as_bytes())?;
-    say(&if options.json {
-        text
-    } else {
-        summary(&study, &options.out)
-    })
+    match options.json {
+        true => say_bytes(text.as_bytes()),
+        false => say(&summary(&study, &options.out)),
+    }
 }
 
 fn write(study: &report::Study, out: &Path) -> Result {

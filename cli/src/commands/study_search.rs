@@ -11,7 +11,7 @@ use eomgen_paper::studies::search_report;
 use eomgen_paper::studies::tally::shares;
 
 use crate::arguments::{ModeShapes, StudySearch};
-use crate::error::{Error, Result, say};
+use crate::error::{Error, Result, say, say_json};
 use crate::output::{file_place, write_file};
 use crate::progress::Bar;
 
@@ -67,7 +67,7 @@ pub fn run(options: &StudySearch) -> Result {
     let report = search_report::document(&request, &assumed, &found);
     write_file(&document, format!("{report:#}\n").as_bytes())?;
     if options.json {
-        return say(&format!("{report:#}\n"));
+        return say_json(&report);
     }
     say(&format!(
         "{}{}\n",

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use crate::arguments::Sweep;
 use crate::engines::{self, Submitted};
-use crate::error::{Result, say};
+use crate::error::{Result, say, say_json};
 use crate::model::load;
 use crate::progress::Bar;
 use crate::settings::setting;
@@ -74,5 +74,5 @@ fn end(options: &Sweep, mut counts: Value, document: Value, text: &str) -> Resul
     if let (Value::Object(all), Value::Object(more)) = (&mut counts, document) {
         all.extend(more);
     }
-    say(&format!("{counts:#}\n"))
+    say_json(&counts)
 }

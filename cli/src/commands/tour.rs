@@ -3,13 +3,17 @@
 use serde_json::json;
 
 use crate::arguments::Tour;
-use crate::error::{Error, Result, say};
+use crate::error::{Error, Result, say, say_bytes};
 use crate::tour::{TourResult, walk};
 
 /// Runs the command.
 pub fn run(options: &Tour) -> Result {
     let walked = walk(&options.out)?;
-    say(&summary(options.json, &walked))?;
+    let summary = summary(options.json, &walked);
+    match options.json {
+        true => say_bytes(summary.as_bytes())?,
+        false => say(&summary)?,
+    }
     if walked.certificate.passed {
         Ok(())
     } else {

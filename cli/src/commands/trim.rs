@@ -5,7 +5,7 @@ use eomgen_compiled_model::{CompiledModel, Equilibrium, Error as Failure};
 use serde_json::{Value, json};
 
 use crate::arguments::Trim;
-use crate::error::{Error, Result, say, warn};
+use crate::error::{Error, Result, say_json, warn};
 use crate::operating_point::{assignments, head, inputs, linearised, model, named};
 
 /// A real part is 0 if it is this small beside the largest eigenvalue.
@@ -38,7 +38,7 @@ pub fn run(options: &Trim) -> Result {
     if found.depends_on_time {
         warn("warning: the forces depend on the time: this is an equilibrium at t = 0 s alone");
     }
-    say(&format!("{:#}\n", document(&compiled, &found, stability)))
+    say_json(&document(&compiled, &found, stability))
 }
 
 fn document(compiled: &CompiledModel, found: &Equilibrium, stability: &str) -> Value {

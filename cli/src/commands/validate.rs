@@ -4,7 +4,7 @@ use eomgen_paper::certification::certify;
 
 use crate::arguments::{Extra, Validate};
 use crate::certification::{document, summary};
-use crate::error::{Error, Result, say};
+use crate::error::{Error, Result, say, say_bytes};
 use crate::model::{load, orders};
 use crate::output::Destination;
 use crate::progress::Note;
@@ -26,7 +26,7 @@ pub fn run(options: &Validate) -> Result {
         destination.write(text.as_bytes())?;
     }
     match destination {
-        _ if options.json => say(&text)?,
+        _ if options.json => say_bytes(text.as_bytes())?,
         Some(destination) => destination.summarise(&summary(&certificate))?,
         None => say(&summary(&certificate))?,
     }

@@ -1,18 +1,22 @@
 //! The document around a page's body.
 
+use eomgen_model_spec::visible::{is_hidden, visible};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 /// Of every page; `prefers-color-scheme` has the dark one.
 const STYLE: &str = include_str!("style.css");
 
-/// What a page with a script may do: run that script and no other, and load nothing.
-const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; \
-                      script-src 'unsafe-inline' 'wasm-unsafe-eval'";
+/// Content security policy of a page without a script: its own styles, and nothing from elsewhere.
+const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src data:";
 
-/// A complete document. Control characters, of terminals say, have no place in HTML, not even
-/// escaped, and are replaced.
+/// Content security policy of a page with a script: that script besides.
+const SCRIPT_POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; \
+                             script-src 'unsafe-inline' 'wasm-unsafe-eval'";
+
+/// A complete document that loads nothing and runs no script: its content security policy forbids both.
+/// Control characters and those that reverse the direction of writing are shown as `\u{202e}`.
 pub fn document(title: &str, body: &Markup) -> String {
-    around(title, &html! {}, body)
+    around(title, POLICY, &html! {}, body)
 }
 
 /// What a page with a script is made of.
@@ -33,26 +37,40 @@ pub struct ScriptedDocument<'a> {
 /// A complete document with a script. It may compute with WebAssembly and may load nothing, from
 /// the network or otherwise: browsers see to that.
 pub fn scripted_document(parts: &ScriptedDocument<'_>) -> String {
-    // In JSON this is a letter as any other, in HTML it might begin the end of the data.
-    let data = parts.data.replace('<', "\\u003c");
-    let head = html! {
-        meta http-equiv="Content-Security-Policy" content=(POLICY);
-        style { (PreEscaped(parts.style)) }
-    };
+    let data = data_text(parts.data);
+    let head = html! { style { (PreEscaped(parts.style)) } };
     let body = html! {
         (parts.body)
         script #model type="application/json" { (PreEscaped(data)) }
         script { (PreEscaped(parts.script)) }
     };
-    around(parts.title, &head, &body)
+    around(parts.title, SCRIPT_POLICY, &head, &body)
 }
 
-fn around(title: &str, head: &Markup, body: &Markup) -> String {
+/// JSON that ends no element of HTML, and whose strings hold the escapes of hidden characters instead of
+/// these.
+fn data_text(json: &str) -> String {
+    let mut text = String::with_capacity(json.len());
+    for letter in json.chars() {
+        match letter {
+            '<' => text += "\\u003c",
+            letter if is_hidden(letter) => {
+                text.push('\\');
+                text += &visible(letter.encode_utf8(&mut [0; 4]));
+            }
+            letter => text.push(letter),
+        }
+    }
+    text
+}
+
+fn around(title: &str, policy: &str, head: &Markup, body: &Markup) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
             head {
                 meta charset="utf-8";
+                meta http-equiv="Content-Security-Policy" content=(policy);
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 title { (title) }
                 style { (PreEscaped(STYLE)) }
@@ -62,14 +80,7 @@ fn around(title: &str, head: &Markup, body: &Markup) -> String {
         }
         "\n"
     };
-    page.into_string()
-        .chars()
-        .map(|c| match c {
-            '\n' | '\t' => c,
-            c if c.is_control() => '\u{fffd}',
-            c => c,
-        })
-        .collect()
+    visible(&page.into_string()).into_owned()
 }
 
 #[cfg(test)]
@@ -104,9 +115,29 @@ mod tests {
     }
 
     #[test]
-    fn what_html_forbids_is_replaced() {
-        let page = document("a\u{1b}[0m\0\n", &html! {});
-        assert!(page.contains("<title>a\u{fffd}[0m\u{fffd}\n</title>"));
+    fn hidden_characters_are_escaped_in_text_and_data() {
+        let page = document("a\u{1b}[0m\0\u{202e}\n", &html! {});
+        assert!(
+            page.contains("<title>a\\u{1b}[0m\\u{0}\\u{202e}\n</title>"),
+            "{page}"
+        );
+        let page = scripted_document(&ScriptedDocument {
+            title: "a",
+            style: "",
+            body: &html! {},
+            data: "[\"a\u{202e}b \\\\u{7}\"]",
+            script: "",
+        });
+        // JSON for the text a\u{202e}b \u{7}.
+        assert!(page.contains(r#"["a\\u{202e}b \\u{7}"]"#), "{page}");
+    }
+
+    #[test]
+    fn every_page_forbids_what_is_not_its_own() {
+        let page = document("a", &html! {});
+        let policy = "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; ";
+        assert_eq!(page.matches(policy).count(), 1, "{page}");
+        assert!(!page.contains("script-src"), "{page}");
     }
 
     #[test]

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use eomgen_model_spec::visible::visible;
+
 use crate::description::columns::ColumnKey;
 use crate::refusal::Refusal;
 
@@ -52,14 +54,8 @@ pub fn places(
             )),
             (None, _) => {
                 let list = there.join(", ");
-                let visible = |c: char| {
-                    if c.is_control() {
-                        char::REPLACEMENT_CHARACTER
-                    } else {
-                        c
-                    }
-                };
-                let shown: String = list.chars().take(200).map(visible).collect();
+                let shown: String = list.chars().take(200).collect();
+                let shown = visible(&shown);
                 let parted = match parted(there) {
                     _ if there[0].starts_with(COMMENT) => format!(
                         ": that line says nothing of columns; write comment = \"{COMMENT}\" in [format], or skip = how many lines stand \

@@ -176,6 +176,21 @@ fn text_from_outside_stays_text() {
 }
 
 #[test]
+fn hidden_characters_are_escaped_and_the_policy_forbids_scripts() {
+    let hostile = "\u{1b}[31m\u{202e}x";
+    for page in [discovery(hostile).page(), comparison(hostile).page()] {
+        let is_hidden = eomgen_model_spec::visible::is_hidden;
+        assert!(!page.contains(is_hidden), "{page}");
+        assert!(page.matches("\\u{1b}[31m\\u{202e}x").count() >= 8, "{page}");
+        let policy = "http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'";
+        assert!(
+            page.contains(policy) && !page.contains("script-src"),
+            "{page}"
+        );
+    }
+}
+
+#[test]
 fn what_leaves_much_is_said_to_be_uncertain_first() {
     let mut found = discovery("x");
     found.effects[0].status = Status::Named;
@@ -240,7 +255,9 @@ fn a_nuisance_at_its_bound_is_said_where_nothing_else_is_missing() {
 #[test]
 fn nothing_refers_to_the_outside() {
     let page = discovery("x").page();
-    for forbidden in ["http", "//", "<script", "<link", "src=", "url(", "href"] {
+    for forbidden in [
+        "http:", "https:", "//", "<script", "<link", "src=", "url(", "href",
+    ] {
         assert!(!page.contains(forbidden), "{forbidden}");
     }
 }

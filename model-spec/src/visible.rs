@@ -1,0 +1,57 @@
+//! Text of files, as it may be shown on a terminal or a page: control characters and those that reverse
+//! the direction of writing are escaped.
+
+use std::borrow::Cow;
+
+/// Whether a character is a control character other than a line feed or a tab, or changes the direction
+/// of writing. Shown as it is, it can hide or forge text.
+pub fn is_hidden(letter: char) -> bool {
+    let is_directional = matches!(
+        letter,
+        '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}'
+    );
+    is_directional || (letter.is_control() && !matches!(letter, '\n' | '\t'))
+}
+
+/// Text with hidden characters written as `\u{202e}`.
+pub fn visible(text: &str) -> Cow<'_, str> {
+    escaped(text, |letter| format!("\\u{{{:x}}}", u32::from(letter)))
+}
+
+/// The text of a JSON document or of a quoted TOML string with hidden characters written as `\u202e`, as
+/// both allow within strings.
+pub fn visible_in_strings(text: &str) -> Cow<'_, str> {
+    // All hidden characters have four hexadecimal digits.
+    escaped(text, |letter| format!("\\u{:04x}", u32::from(letter)))
+}
+
+fn escaped(text: &str, escape: impl Fn(char) -> String) -> Cow<'_, str> {
+    if !text.contains(is_hidden) {
+        return Cow::Borrowed(text);
+    }
+    let mut shown = String::with_capacity(text.len() + 16);
+    for letter in text.chars() {
+        match is_hidden(letter) {
+            true => shown += &escape(letter),
+            false => shown.push(letter),
+        }
+    }
+    Cow::Owned(shown)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{visible, visible_in_strings};
+
+    #[test]
+    fn hidden_characters_are_escaped_and_all_others_stay() {
+        let plain = "θ [°]\n\tשלום 转速";
+        assert_eq!(visible(plain), plain);
+        let hostile = "a\u{1b}[2J\u{202e}b\u{9b}\r";
+        assert_eq!(visible(hostile), "a\\u{1b}[2J\\u{202e}b\\u{9b}\\u{d}");
+        assert_eq!(
+            visible_in_strings(hostile),
+            "a\\u001b[2J\\u202eb\\u009b\\u000d"
+        );
+    }
+}
