@@ -1,4 +1,4 @@
-//! Parameter values given as `NAME=VALUE`, and inputs that nothing gives.
+//! Parameter values given as `NAME=VALUE`, and inputs that nothing drives.
 
 use eomgen_model_spec::edit::{self, Edit, EditError, PrescribeInput};
 use eomgen_model_spec::model::{Model, ParameterValue, STABILISATION_RATE};
@@ -84,14 +84,14 @@ fn said(error: &EditError) -> String {
     }
 }
 
-/// Says at which values inputs rest where there is no record.
+/// Warns of inputs that nothing drives, with the values that they are taken as.
 pub fn warn_of_inputs(model: &Model) {
     let values = model.typical_inputs(0.0).unwrap_or_default();
     let own = model.inputs.iter().zip(values);
     for (input, value) in own.filter(|(input, _)| input.rate_of.is_none()) {
+        let name = &input.name;
         warn(&format!(
-            "warning: no record gives the input `{}`: it is {value}",
-            input.name
+            "warning: input `{name}` is not driven and is taken as {value}; set it with --input {name}=..."
         ));
     }
 }

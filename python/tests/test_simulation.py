@@ -63,7 +63,7 @@ def test_inputs_are_numbers_samples_or_functions(cart):
 
 
 def test_an_input_that_nothing_gives_is_said_to_be_0(cart):
-    with pytest.warns(UserWarning, match=f"nothing gives the input {cart.inputs[0]}: it is 0"):
+    with pytest.warns(UserWarning, match=f"not driven and taken as 0: {cart.inputs[0]}"):
         r = cart.simulate(until=0.01)
     assert np.array_equal(r.states, cart.simulate(until=0.01, inputs={cart.inputs[0]: 0}).states)
 

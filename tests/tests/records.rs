@@ -305,7 +305,10 @@ fn an_input_without_a_record_is_zero_with_a_warning() {
     let output = eomgen_tests::program::run(&arguments);
     let message = eomgen_tests::program::text(&output.stderr);
     assert_eq!(output.status.code(), Some(0), "{message}");
-    assert!(message.contains("no input `force`: it is 0"), "{message}");
+    assert!(
+        message.contains("input `force` is not driven and is taken as 0"),
+        "{message}"
+    );
     assert!(message.contains("no input `torque`"), "{message}");
     assert!(rows(&dataset.file("a.csv")).iter().all(|row| row[1] == 0.0));
 }

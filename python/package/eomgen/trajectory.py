@@ -171,7 +171,10 @@ def held_inputs(names: Sequence[str], given: Any, times: Array) -> Tuple[Array, 
     _arguments.check_names("input", given, names)
     missing = [name for name in names if name not in given]
     if missing:
-        warnings.warn(f"nothing gives the input {', '.join(missing)}: it is 0", stacklevel=4)
+        warnings.warn(
+            f"not driven and taken as 0: {', '.join(missing)}; give inputs={{NAME: ...}}",
+            stacklevel=4,
+        )
     columns = [_column(name, given.get(name, 0.0), times) for name in names]
     if all(len(column) == 1 for column in columns):
         return times[:1], np.array([[column[0] for column in columns]]).reshape(1, len(names))

@@ -338,7 +338,7 @@ impl Independent {
     }
 }
 
-/// A constraint whose derivative is made of that of others.
+/// A constraint whose derivative is a combination of the derivatives of others, or zero.
 struct Follows<'a> {
     constraint: &'a Constraint,
     of: Vec<&'a Constraint>,
@@ -354,6 +354,12 @@ impl Follows<'_> {
     fn reason(&self) -> String {
         let names: Vec<String> = self.of.iter().map(|of| format!("`{}`", of.name)).collect();
         let (name, others) = (&self.constraint.name, names.join(", "));
+        if self.of.is_empty() {
+            return format!(
+                "the constraint `{name}` holds nothing at the initial state: its derivative is zero there; start \
+                 elsewhere (--initial), or write it so that it crosses zero, as x instead of x^2"
+            );
+        }
         let kind = self.constraint.is_nonholonomic;
         let of_one_kind = self.of.iter().all(|of| of.is_nonholonomic == kind);
         if of_one_kind && self.apart.abs() > CONTRADICTION * self.scale {
@@ -365,8 +371,8 @@ impl Follows<'_> {
             );
         }
         format!(
-            "the constraint `{name}` is redundant at the initial state: its derivative is made of that \
-             of {others}; leave one of them out"
+            "the constraint `{name}` is redundant at the initial state: its derivative is a combination of the \
+             derivatives of {others}; leave one of them out"
         )
     }
 }

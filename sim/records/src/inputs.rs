@@ -49,17 +49,18 @@ pub fn read_inputs(
         inputs: &inputs,
         motion: &[],
         channels: &[],
+        starts: &[],
         model,
         decimation: &Decimation::new(description.time.every, description.time.filter),
         fewest: FEWEST_OF_INPUTS,
     };
-    let record = columns.record(record, file)?;
     let mut warnings = notes_of_inputs(&description, model);
+    let record = columns.record(record, file, &mut warnings)?;
     warnings.extend(held_inputs(&record));
     Ok((record.inputs, warnings))
 }
 
-/// Inputs that the model or the dataset lacks.
+/// Notes on columns of inputs that the model does not have, and on inputs that are not driven.
 pub fn notes_of_inputs(description: &Description, model: &Model) -> Vec<String> {
     // Rates of prescribed motion are those of the curve through its samples.
     let own = || model.inputs.iter().filter(|input| input.rate_of.is_none());
@@ -70,7 +71,7 @@ pub fn notes_of_inputs(description: &Description, model: &Model) -> Vec<String> 
         if inputs().all(|input| input != name) {
             let meant = did_you_mean(name, inputs()).map_or(String::new(), |m| format!("; {m}"));
             notes.push(format!(
-                "the model has no input `{name}`: that column is not used{meant}"
+                "the model has no input `{name}`: its column is not used{meant}"
             ));
         }
     }
@@ -78,7 +79,9 @@ pub fn notes_of_inputs(description: &Description, model: &Model) -> Vec<String> 
         let is_fed = (description.inputs.iter()).any(|column| column.name.text == input);
         let is_measured = (description.channels.iter()).any(|channel| channel.measures() == input);
         if !is_fed && !is_measured {
-            notes.push(format!("the dataset has no input `{input}`: it is 0"));
+            notes.push(format!(
+                "input `{input}` is not driven and is taken as 0; give its column in [inputs.{input}]"
+            ));
         }
     }
     notes
