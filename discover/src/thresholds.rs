@@ -517,6 +517,14 @@ pub const LATE_ALIKE: f64 = 0.9;
 /// part of its standard deviation. With an effect all are: they were estimated together.
 pub const WRITTEN_FROM: f64 = 0.5;
 
+/// A line stands out of a spectrum, averaged over n windows, if it exceeds the mean of the others by this
+/// factor over the square root of n: of white noise, one spectrum in some thousand holds such a line.
+pub const SPECTRAL_PEAK: f64 = 10.0;
+
+/// First line of a window's spectrum that is a frequency: fewer periods cannot be told from a drift, whose
+/// straight line is removed and which the taper spreads.
+pub const FIRST_LINE: usize = 3;
+
 /// A ratio between the residuals of slow and of fast motion below this is not worth a word.
 pub const WORTH_SAYING: f64 = 1.5;
 

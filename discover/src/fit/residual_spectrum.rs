@@ -1,38 +1,195 @@
-//! The frequency at which a fit's residuals are largest.
+//! The spectrum of a fit's residuals, and what stands out of it.
 
-use eomgen_analysis::spectrum::{PowerSpectrum, periodogram};
+use eomgen_analysis::spectrum::{PowerSpectrum, Trend, welch};
 
 use crate::fit::fitted::Fit;
+use crate::fit::residuals::residual_column;
 use crate::ids::ChannelId;
 use crate::model::problem::EstimationProblem;
+use crate::thresholds;
 use eomgen_records::samples::typical_step;
+use eomgen_records::windows::{Window, judged};
 
-/// The frequency at which the residual of the channel that shows most of it is largest, Hz.
+/// The fewest samples of a window that has a spectrum.
+const FEWEST: usize = 16;
+
+/// What a spectrum shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SpectralPeak {
+    /// A line at this frequency, Hz.
+    At(f64),
+    /// Most of it is slower than a few periods per window.
+    Slow,
+}
+
+/// The frequency at which the residual of the channel that shows most of it is largest, Hz; none if no
+/// frequency stands out.
 pub fn peak_frequency(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<f64> {
     let sizes = &fit.train.normalised_rms;
     let worst = ChannelId::first(sizes.len()).max_by(|a, b| sizes[*a].total_cmp(&sizes[*b]))?;
-    frequency(problem, fit, worst)
+    match training_peak(problem, fit, worst)? {
+        SpectralPeak::At(frequency) => Some(frequency),
+        SpectralPeak::Slow => None,
+    }
 }
 
-/// The frequency at which the residual's spectrum, summed over windows of one length, is
-/// largest, Hz.
-pub fn frequency(problem: &EstimationProblem<'_>, fit: &Fit, channel: ChannelId) -> Option<f64> {
-    let count = problem.noise.len();
-    let length = fit.train.residuals.iter().map(|r| r.len() / count).max()?;
-    let step = typical_step(&problem.train.list.first()?.times);
-    if length < 8 || step <= 0.0 {
-        return None;
-    }
-    let whole = (fit.train.residuals.iter()).filter(|r| r.len() / count == length);
-    let spectra: Vec<PowerSpectrum> = whole
-        .map(|residual| {
-            let samples = residual.iter().skip(channel.index()).step_by(count);
-            periodogram(&samples.copied().collect::<Vec<f64>>(), step)
+/// What stands out of the spectrum of a channel's residuals on the training records.
+pub fn training_peak(
+    problem: &EstimationProblem<'_>,
+    fit: &Fit,
+    channel: ChannelId,
+) -> Option<SpectralPeak> {
+    let windows: Vec<(&Window, &[f64])> = problem
+        .train
+        .list
+        .iter()
+        .zip(fit.train.residuals.iter().map(Vec::as_slice))
+        .collect();
+    let (spectrum, count) = residual_spectrum(&windows, channel.index(), problem.noise.len())?;
+    peak(&spectrum, count)
+}
+
+/// The spectrum of a channel's residuals, and over how many windows it is a mean. Every window begins from a
+/// state of its own: its straight line is removed and its ends are tapered, so that neither its beginning nor
+/// its length shows. Windows shorter than the longest are left out.
+pub fn residual_spectrum(
+    windows: &[(&Window, &[f64])],
+    channel: usize,
+    channels: usize,
+) -> Option<(PowerSpectrum, usize)> {
+    let columns: Vec<Vec<f64>> = windows
+        .iter()
+        .filter(|(_, residual)| !residual.is_empty())
+        .map(|(window, residual)| {
+            let column = residual_column(window, residual, (channel, channels));
+            bridged(&column[judged(column.len())])
         })
-        .collect::<Result<_, _>>()
-        .ok()?;
-    let sum = |k: usize| spectra.iter().map(|of| of.density[k]).sum::<f64>();
-    let frequencies = &spectra.first()?.frequency;
-    let peak = (1..frequencies.len()).max_by(|a, b| sum(*a).total_cmp(&sum(*b)))?;
-    Some(frequencies[peak])
+        .collect();
+    let length = columns
+        .iter()
+        .map(Vec::len)
+        .max()
+        .filter(|length| *length >= FEWEST)?;
+    let step = typical_step(&windows.first()?.0.times);
+    let mut mean = PowerSpectrum::default();
+    let mut count = 0;
+    for column in columns.iter().filter(|column| column.len() == length) {
+        let spectrum = welch(column, step, length, Trend::Line).ok()?;
+        match count {
+            0 => mean = spectrum,
+            _ => (mean.density.iter_mut().zip(&spectrum.density)).for_each(|(sum, d)| *sum += d),
+        }
+        count += 1;
+    }
+    mean.density.iter_mut().for_each(|sum| *sum /= count as f64);
+    Some((mean, count))
+}
+
+/// A column with straight lines over its missing samples.
+fn bridged(column: &[f64]) -> Vec<f64> {
+    let known: Vec<usize> = (0..column.len())
+        .filter(|k| column[*k].is_finite())
+        .collect();
+    let value = |k: usize| {
+        let after = known.partition_point(|known| *known < k);
+        match (after.checked_sub(1).map(|b| known[b]), known.get(after)) {
+            (_, Some(b)) if *b == k => column[k],
+            (Some(a), Some(b)) => {
+                let part = (k - a) as f64 / (b - a) as f64;
+                column[a] + part * (column[*b] - column[a])
+            }
+            (Some(one), None) => column[one],
+            (None, Some(one)) => column[*one],
+            (None, None) => 0.0,
+        }
+    };
+    (0..column.len()).map(value).collect()
+}
+
+/// What stands out of a spectrum that is a mean over so many windows: its largest density, if that exceeds
+/// what white noise shows by chance. The first lines hold what is slower than a window, whatever its frequency.
+fn peak(spectrum: &PowerSpectrum, windows: usize) -> Option<SpectralPeak> {
+    let density = &spectrum.density;
+    let lines = 1..density.len();
+    let peak = lines
+        .clone()
+        .max_by(|a, b| density[*a].total_cmp(&density[*b]))?;
+    // A tapered line spreads over both neighbours.
+    let others = lines.filter(|line| line.abs_diff(peak) > 2);
+    let (sum, count) = others.fold((0.0, 0.0), |(sum, n), line| (sum + density[line], n + 1.0));
+    let expected = 1.0 + thresholds::SPECTRAL_PEAK / (windows as f64).sqrt();
+    let stands_out = density[peak] * count > expected * sum && density[peak] > 0.0;
+    match peak < thresholds::FIRST_LINE {
+        _ if !stands_out => None,
+        true => Some(SpectralPeak::Slow),
+        false => Some(SpectralPeak::At(spectrum.frequency[peak])),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STEP: f64 = 0.01;
+
+    /// Windows of a residual, each of so many samples, with what stands out of their spectrum.
+    fn found(samples: usize, count: usize, of: impl Fn(f64, f64) -> f64) -> Option<SpectralPeak> {
+        let time = |k: usize| STEP * k as f64;
+        let windows: Vec<(Window, Vec<f64>)> = (0..count)
+            .map(|number| {
+                let first = number * samples;
+                let times: Vec<f64> = (first..first + samples).map(time).collect();
+                let residual = times.iter().map(|t| of(*t, *t - times[0])).collect();
+                let window = Window {
+                    record: 0,
+                    first,
+                    measured: vec![0.0; samples],
+                    times,
+                    follows: None,
+                };
+                (window, residual)
+            })
+            .collect();
+        let pairs: Vec<(&Window, &[f64])> = windows
+            .iter()
+            .map(|(window, residual)| (window, residual.as_slice()))
+            .collect();
+        let (spectrum, count) = residual_spectrum(&pairs, 0, 1)?;
+        peak(&spectrum, count)
+    }
+
+    fn noise(t: f64) -> f64 {
+        2.0 * ((t * 1298.98).sin() * 43_758.545).fract().abs() - 1.0
+    }
+
+    #[test]
+    fn what_drifts_through_windows_of_any_length_is_no_line() {
+        for samples in [50, 100, 200] {
+            // Each window begins at 0 and drifts, as a slow force drives it.
+            let drift = |t: f64, inside: f64| (0.5 * t).sin() * inside * inside + 1e-3 * noise(t);
+            assert_eq!(
+                found(samples, 12, drift),
+                Some(SpectralPeak::Slow),
+                "{samples}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_line_is_found_in_noise_and_beside_a_drift_and_noise_has_none() {
+        let line =
+            |t: f64, inside: f64| (std::f64::consts::TAU * 7.0 * t).sin() + 0.3 * inside + noise(t);
+        for samples in [100, 200, 400] {
+            let Some(SpectralPeak::At(frequency)) = found(samples, 8, line) else {
+                panic!("{samples}: no line");
+            };
+            assert!(
+                (frequency - 7.0).abs() < 1.0 / (STEP * samples as f64),
+                "{frequency}"
+            );
+        }
+        for count in [1, 8, 40] {
+            assert_eq!(found(200, count, |t, _| noise(t)), None, "{count}");
+        }
+    }
 }

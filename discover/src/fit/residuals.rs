@@ -5,6 +5,7 @@ use crate::fit::gauss_newton::Estimate;
 use crate::fit::shooting::Shooting;
 use crate::ids::WindowId;
 use crate::thresholds;
+use eomgen_records::windows::{Window, judged};
 
 /// The residuals of one set of records.
 #[derive(Clone, Debug, Default)]
@@ -85,6 +86,24 @@ impl Residuals {
             unfollowed,
         }
     }
+}
+
+/// One channel's residuals at the samples of a window, in standard deviations; NaN at samples that are not
+/// compared, or missing, and if the motion cannot be followed.
+pub(crate) fn residual_column(
+    window: &Window,
+    residual: &[f64],
+    (channel, channels): (usize, usize),
+) -> Vec<f64> {
+    let samples = window.times.len();
+    let inside = judged(samples);
+    let value = |sample: usize| {
+        let number = sample * channels + channel;
+        let is_compared = inside.contains(&sample) && window.measured[number].is_finite();
+        let value = residual.get(number).copied();
+        value.filter(|_| is_compared).unwrap_or(f64::NAN)
+    };
+    (0..samples).map(value).collect()
 }
 
 /// Sums of squares of blocks of time: windows parted, or put together, into about so many.

@@ -2,7 +2,7 @@
 //! speed, at which frequency.
 
 use crate::fit::fitted::Fit;
-use crate::fit::residual_spectrum::frequency;
+use crate::fit::residual_spectrum::{SpectralPeak, training_peak};
 use crate::ids::{ChannelId, WindowId};
 use crate::model::problem::EstimationProblem;
 use crate::model::smoothing::sloped;
@@ -43,12 +43,7 @@ fn by_channel(problem: &EstimationProblem<'_>, fit: &Fit) -> String {
         "The difference is largest in {}: {:.3e} {} or {:.1} times its noise.",
         channel.name, fit.train.channels[worst], channel.unit, normalised_rms[worst]
     );
-    let squares = &fit.train.estimate.squares;
-    let per_sample = |id: WindowId| squares[id] / problem.train.list[id].times.len() as f64;
-    let windows = WindowId::first(squares.len());
-    if squares.len() > 1
-        && let Some(worst) = windows.max_by(|a, b| per_sample(*a).total_cmp(&per_sample(*b)))
-    {
+    if let Some(worst) = worst_window(problem, fit) {
         let window = &problem.train.list[worst];
         text += &format!(
             " It is worst from {:.3} s to {:.3} s of {}.",
@@ -60,10 +55,24 @@ fn by_channel(problem: &EstimationProblem<'_>, fit: &Fit) -> String {
     if let Some(more) = by_speed(problem, fit, worst) {
         text += &more;
     }
-    if let Some(frequency) = frequency(problem, fit, worst) {
-        text += &format!(" Its spectrum is largest at {frequency:.3} Hz.");
+    match training_peak(problem, fit, worst) {
+        Some(SpectralPeak::At(frequency)) => {
+            text += &format!(" Its spectrum is largest at {frequency:.3} Hz.");
+        }
+        Some(SpectralPeak::Slow) => {
+            text += " Most of it varies too slowly for windows of this length to show a frequency.";
+        }
+        None => {}
     }
     text
+}
+
+/// The training window with the largest residuals; none if there is only one.
+pub(crate) fn worst_window(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<WindowId> {
+    let squares = &fit.train.estimate.squares;
+    let per_sample = |id: WindowId| squares[id] / problem.train.list[id].times.len() as f64;
+    let windows = WindowId::first(squares.len()).filter(|_| squares.len() > 1);
+    windows.max_by(|a, b| per_sample(*a).total_cmp(&per_sample(*b)))
 }
 
 /// Whether the residual's size follows the channel's speed.

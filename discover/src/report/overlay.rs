@@ -1,13 +1,16 @@
-//! What was measured and what is simulated, over each other, on the first held-out record: the whole
-//! of it, and the stretch where the model as it was is furthest off.
+//! Measured and simulated motion over each other: the first held-out record, and the stretch of the training
+//! records where the model as it was is furthest off.
 
 use eomgen_page::{Figure, figure};
 use eomgen_plot::{Panel, Series, TimeHistory, time_history};
-use eomgen_records::windows::{Window, judged};
+use eomgen_records::windows::{Window, Windows};
 use maud::{Markup, html};
 
 use crate::fit::fitted::Fit;
+use crate::fit::residuals::{Residuals, residual_column};
+use crate::ids::WindowId;
 use crate::model::problem::EstimationProblem;
+use crate::report::location::worst_window;
 
 /// The part of a record that is drawn once more, larger.
 const STRETCH: f64 = 0.1;
@@ -21,19 +24,39 @@ pub(crate) fn overlay(
     before: &Fit,
     after: Option<&Fit>,
 ) -> Markup {
-    let seen = Seen::of(problem, before, after);
-    let stretch = seen.stretch();
+    let test = fits(before, after, |fit| &fit.test);
+    let seen = Seen::of(problem, (&problem.test, 0), &test);
     let whole = seen.drawn(
         0..seen.times.len(),
         "Measured and simulated on the test record",
     );
+    let train = fits(before, after, |fit| &fit.train);
+    // The window that the sentence on the page names.
+    let worst = worst_window(problem, before).unwrap_or(WindowId::new(0));
+    let record = problem.train.list[worst].record;
+    let trained = Seen::of(problem, (&problem.train, record), &train);
+    let stretch = trained.stretch(&problem.train.list[worst]);
+    let title = format!(
+        "Where the model as it was is furthest off, {}",
+        problem.train.records[record].name
+    );
     html! {
         (whole)
-        @if stretch.len() < seen.times.len() && !stretch.is_empty() {
-            h3 { "Where the model as it was is furthest off" }
-            (seen.drawn(stretch, "Measured and simulated where the model as it was is furthest off"))
+        @if !stretch.is_empty() {
+            h3 { (title) }
+            (trained.drawn(stretch, &title))
         }
     }
+}
+
+/// The residuals of one set of records that the models leave, by the models' names.
+fn fits<'f>(
+    before: &'f Fit,
+    after: Option<&'f Fit>,
+    of: fn(&Fit) -> &Residuals,
+) -> Vec<(&'static str, &'f Residuals)> {
+    let after = after.map(|after| ("after", of(after)));
+    [("before", of(before))].into_iter().chain(after).collect()
 }
 
 /// The columns of one record, sample by sample.
@@ -53,20 +76,27 @@ struct Channel {
 }
 
 impl Seen {
-    fn of(problem: &EstimationProblem<'_>, before: &Fit, after: Option<&Fit>) -> Self {
+    /// The columns of a record of a set, with what each model leaves of them.
+    fn of(
+        problem: &EstimationProblem<'_>,
+        (set, record): (&Windows<'_>, usize),
+        fits: &[(&'static str, &Residuals)],
+    ) -> Self {
         let windows = || {
-            let all = problem.test.list.iter().enumerate();
-            all.filter(|(_, window)| window.record == 0)
+            let all = set.list.iter().enumerate();
+            all.filter(|(_, window)| window.record == record)
         };
         let count = problem.noise.len();
-        let mut fits = vec![("before", before)];
-        fits.extend(after.map(|after| ("after", after)));
         let channels = problem.dataset.channels.iter().zip(&problem.noise);
         let channels = channels.enumerate().map(|(place, (channel, noise))| {
             let measured = |window: &Window| column(&window.measured, place, count);
-            let simulated = |fit: &Fit| -> Vec<f64> {
+            let simulated = |fit: &Residuals| -> Vec<f64> {
                 let of = |(at, window): (usize, &Window)| {
-                    simulated(window, &fit.test.residuals[at], (place, count, *noise))
+                    let residuals = residual_column(window, &fit.residuals[at], (place, count));
+                    let pairs = measured(window).into_iter().zip(residuals);
+                    pairs
+                        .map(|(measured, residual)| measured + noise * residual)
+                        .collect::<Vec<f64>>()
                 };
                 windows().flat_map(of).collect()
             };
@@ -89,12 +119,16 @@ impl Seen {
         }
     }
 
-    /// The samples around the largest difference of the first model, in noises.
-    fn stretch(&self) -> std::ops::Range<usize> {
+    /// The samples of a window; of a long one those around the largest difference of the first model, in
+    /// noises.
+    fn stretch(&self, window: &Window) -> std::ops::Range<usize> {
         let samples = self.times.len();
-        let length = ((STRETCH * samples as f64) as usize)
+        let first = self.times.partition_point(|t| *t < window.times[0]);
+        let inside = first..(first + window.times.len()).min(samples);
+        let most = ((STRETCH * samples as f64) as usize)
             .max(FEWEST)
             .min(samples);
+        let length = inside.len().clamp(FEWEST.min(samples), most);
         let off = |sample: usize| {
             let of = |channel: &Channel| {
                 let difference = channel.simulated[0].1[sample] - channel.measured[sample];
@@ -103,10 +137,15 @@ impl Seen {
             let squares = self.channels.iter().map(of);
             squares.filter(|square| square.is_finite()).sum::<f64>()
         };
-        let worst = (0..samples).max_by(|a, b| off(*a).total_cmp(&off(*b)));
-        let first = worst.unwrap_or(0).saturating_sub(length / 2);
-        let first = first.min(samples - length);
-        first..first + length
+        let middle = match inside.len() > length {
+            true => inside
+                .clone()
+                .max_by(|a, b| off(*a).total_cmp(&off(*b)))
+                .unwrap_or(first),
+            false => first + inside.len() / 2,
+        };
+        let begin = middle.saturating_sub(length / 2).min(samples - length);
+        begin..begin + length
     }
 
     /// A panel for each channel.
@@ -155,23 +194,4 @@ fn column(rows: &[f64], channel: usize, channels: usize) -> Vec<f64> {
         .step_by(channels)
         .copied()
         .collect()
-}
-
-/// What is simulated of a channel in a window: measured and residual together. Nothing where they
-/// are not compared, or the motion cannot be followed.
-fn simulated(
-    window: &Window,
-    residual: &[f64],
-    (channel, channels, noise): (usize, usize, f64),
-) -> Vec<f64> {
-    let samples = window.times.len();
-    let inside = judged(samples);
-    let value = |sample: usize| {
-        let number = sample * channels + channel;
-        let residual = residual.get(number).filter(|_| inside.contains(&sample));
-        residual.map_or(f64::NAN, |residual| {
-            window.measured[number] + noise * residual
-        })
-    };
-    (0..samples).map(value).collect()
 }

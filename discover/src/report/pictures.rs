@@ -1,11 +1,14 @@
 //! Pictures for a page: residuals of the test record, and the residual force.
 
-use eomgen_analysis::spectrum::{PowerSpectrum, periodogram};
+use eomgen_analysis::spectrum::PowerSpectrum;
 use eomgen_page::{Figure, figure, table};
 use eomgen_plot::{FrequencyAxis, Panel, Series, Spectrum, TimeHistory, spectrum, time_history};
+use eomgen_records::windows::Window;
 use maud::{Markup, html};
 
 use crate::fit::fitted::Fit;
+use crate::fit::residual_spectrum::residual_spectrum;
+use crate::fit::residuals::residual_column;
 use crate::model::problem::EstimationProblem;
 use crate::residual_force::figures::figures as figures_of_force;
 use crate::residual_force::types::ResidualForce;
@@ -57,26 +60,15 @@ pub(crate) fn figures(
         .flat_map(|w| w.times.iter().copied())
         .collect();
     let column = |fit: &Fit, channel: usize| -> Vec<f64> {
-        let windows = problem
-            .test
-            .list
-            .iter()
-            .zip(&fit.test.residuals)
-            .filter(|(w, _)| w.record == 0);
-        let mut values = Vec::new();
-        for (window, residual) in windows {
-            let own = residual
-                .iter()
-                .skip(channel)
-                .step_by(count)
-                .map(|r| r * problem.noise[channel]);
-            let begin = values.len();
-            values.extend(own);
-            values.resize(begin + window.times.len(), f64::NAN);
-        }
-        values
+        let windows = windows_of_first_record(problem, fit);
+        let columns =
+            windows.map(|(window, residual)| residual_column(window, residual, (channel, count)));
+        columns
+            .flatten()
+            .map(|r| r * problem.noise[channel])
+            .collect()
     };
-    let mut fits = vec![("before", before)];
+    let mut fits: Vec<(&'static str, &Fit)> = vec![("before", before)];
     fits.extend(after.map(|after| ("after", after)));
     let columns: Vec<Vec<(&str, Vec<f64>)>> = (0..count)
         .map(|channel| {
@@ -113,14 +105,10 @@ pub(crate) fn figures(
             .collect(),
     };
     let over_time = time_history(&history).unwrap_or_default();
-    let step = eomgen_records::samples::typical_step(&times);
-    let spectra: Vec<Vec<(&str, PowerSpectrum)>> = columns
-        .iter()
-        .map(|series| {
-            series
-                .iter()
-                .map(|(label, values)| (*label, density(values, step)))
-                .collect()
+    let spectra: Vec<Vec<(&str, PowerSpectrum)>> = (0..count)
+        .map(|channel| {
+            let of = |(name, fit): &(&'static str, &Fit)| (*name, density(problem, fit, channel));
+            fits.iter().map(of).collect()
         })
         .collect();
     let plot = Spectrum {
@@ -151,16 +139,29 @@ pub(crate) fn figures(
     }
 }
 
-/// The power spectral density of a residual, missing samples as 0, without the one at 0 Hz; empty
-/// if the record is too short for any.
-fn density(values: &[f64], step: f64) -> PowerSpectrum {
-    let signal = (values.iter()).map(|v| if v.is_finite() { *v } else { 0.0 });
-    match periodogram(&signal.collect::<Vec<f64>>(), step) {
-        Ok(mut spectrum) => {
-            spectrum.frequency.remove(0);
-            spectrum.density.remove(0);
-            spectrum
-        }
-        Err(_) => PowerSpectrum::default(),
-    }
+/// The windows of the first test record, with their residuals.
+fn windows_of_first_record<'a>(
+    problem: &'a EstimationProblem<'_>,
+    fit: &'a Fit,
+) -> impl Iterator<Item = (&'a Window, &'a [f64])> {
+    let windows = problem.test.list.iter().zip(&fit.test.residuals);
+    let first = windows.filter(|(window, _)| window.record == 0);
+    first.map(|(window, residual)| (window, residual.as_slice()))
+}
+
+/// The spectrum of a channel's residuals in windows of the first test record, SI, without the density at
+/// 0 Hz; empty if windows are too short.
+fn density(problem: &EstimationProblem<'_>, fit: &Fit, channel: usize) -> PowerSpectrum {
+    let windows: Vec<_> = windows_of_first_record(problem, fit).collect();
+    let Some((mut spectrum, _)) = residual_spectrum(&windows, channel, problem.noise.len()) else {
+        return PowerSpectrum::default();
+    };
+    spectrum.frequency.remove(0);
+    spectrum.density.remove(0);
+    let square = problem.noise[channel].powi(2);
+    spectrum
+        .density
+        .iter_mut()
+        .for_each(|density| *density *= square);
+    spectrum
 }
