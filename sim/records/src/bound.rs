@@ -1,10 +1,10 @@
 //! What a dataset file says, bound to a model: names looked up, units and numbers checked.
 
 use crate::description::Description;
-use crate::description::columns::{ChannelColumn, ColumnKey, InputColumn, Prior};
+use crate::description::columns::{ChannelColumn, Column, InputColumn, Prior};
 use crate::description::motion::InitialState;
 use crate::experiment::{self, ExperimentBounds, Played};
-use crate::given_motion;
+use crate::given_motion::{self, GivenColumn};
 use crate::units::unit;
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
 use eomgen_model_spec::dimension::Dimension;
@@ -26,11 +26,11 @@ pub struct Bound<'d> {
     /// The unit of the time's column.
     pub time: Unit,
     /// For each input of the model its column and the column's unit.
-    pub inputs: Vec<Option<(&'d ColumnKey, Unit)>>,
+    pub inputs: Vec<Option<(&'d Column, Unit)>>,
     /// What is known of how inputs act, where the file says so.
     pub input_priors: Vec<InputPriors>,
-    /// Where the motion is given, for each coordinate of the model its column and the column's unit.
-    pub motion: Vec<(&'d ColumnKey, Unit)>,
+    /// For each coordinate of the model its column, if the motion is given.
+    pub(crate) motion: Vec<GivenColumn<'d>>,
     /// The channels.
     pub channels: Vec<Channel>,
     /// The unit of each channel's column.
@@ -110,7 +110,7 @@ pub fn inputs<'d>(
     description: &'d Description,
     model: &Model,
     found: &mut Diagnostics,
-) -> Vec<Option<(&'d ColumnKey, Unit)>> {
+) -> Vec<Option<(&'d Column, Unit)>> {
     let of = |input: &eomgen_model_spec::model::Input| {
         let mut columns = description.inputs.iter();
         // Rates of prescribed motion are those of the curve through its samples.
@@ -119,7 +119,7 @@ pub fn inputs<'d>(
         }
         let column = columns.find(|column| column.name.text == input.name)?;
         let unit = found.keep(unit(&column.column.unit, &input.unit.text))?;
-        Some((&column.column.column, unit))
+        Some((&column.column, unit))
     };
     model.inputs.iter().map(of).collect()
 }
@@ -221,7 +221,7 @@ fn channel(
     let noise = unit.to_si(entry.noise.value);
     if !(noise.is_finite() && noise > 0.0) {
         return Err(
-            Diagnostic::error(format!("noise = {} is none", entry.noise.value)).at(
+            Diagnostic::error(format!("noise cannot be {}", entry.noise.value)).at(
                 entry.noise.span,
                 "expected its standard deviation, greater than 0",
             ),

@@ -154,7 +154,7 @@ fn values(record: &Record, name: &str, noise: f64, column: &[f64]) -> Result<Vec
             .count();
         if at as f64 > CLIPPED * known.len() as f64 {
             notes.push(format!(
-                "{}: `{name}` stands at {limit} for {at} samples: it may be clipped",
+                "{}: `{name}` is exactly {limit} (SI) for {at} samples: it may be clipped; leave the channel out, or cut the record there",
                 record.name
             ));
         }

@@ -5,7 +5,7 @@ use crate::record::Record;
 use crate::samples::{FEWEST_SAMPLES, typical_step};
 
 /// So many of the usual steps without a sample are a lost stretch; fewer are jitter.
-const LOST: f64 = 5.0;
+pub(crate) const LOST: f64 = 5.0;
 
 /// A record that more gaps part is taken as it is: its steps differ, nothing was lost.
 const MOST: usize = 20;

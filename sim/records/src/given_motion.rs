@@ -9,16 +9,40 @@ use eomgen_model_spec::unit::Unit;
 
 use crate::dataset::{Channel, Quantity};
 use crate::description::Description;
-use crate::description::columns::ColumnKey;
+use crate::description::columns::{Column, MotionColumn};
 use crate::description::motion::InitialState;
 use crate::units::unit;
 
-/// For each coordinate of the model its column and the column's unit; none where no motion is given.
+/// The column of a coordinate whose motion is given.
+pub(crate) struct GivenColumn<'d> {
+    /// The coordinate.
+    pub name: &'d str,
+    /// Its column.
+    pub column: &'d Column,
+    /// The column's unit.
+    pub unit: Unit,
+    /// What the column holds.
+    pub kind: GivenKind,
+}
+
+/// What the column of a given motion holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum GivenKind {
+    /// The position.
+    Position,
+    /// The speed, and the position at the first sample, SI.
+    Speed {
+        /// That position.
+        initial: f64,
+    },
+}
+
+/// For each coordinate of the model its column; none if no motion is given.
 pub(crate) fn columns<'d>(
     description: &'d Description,
     model: &Model,
     found: &mut Diagnostics,
-) -> Vec<(&'d ColumnKey, Unit)> {
+) -> Vec<GivenColumn<'d>> {
     let Some(first) = description.motion.first() else {
         return Vec::new();
     };
@@ -30,7 +54,7 @@ pub(crate) fn columns<'d>(
             let listed = format!("it has {}", own().collect::<Vec<&str>>().join(", "));
             found.push(
                 Diagnostic::error(format!("the model has no coordinate {}", quoted(name)))
-                    .at(given.name.span, "this motion is nothing's")
+                    .at(given.name.span, "expected the name of a coordinate")
                     .help(did_you_mean(name, own()).unwrap_or(listed)),
             );
         }
@@ -62,8 +86,8 @@ pub(crate) fn columns<'d>(
         let mut given = description.motion.iter();
         match given.find(|given| given.name.text == coordinate.name) {
             Some(given) => {
-                let unit = found.keep(unit(&given.column.unit, &coordinate.unit.text));
-                columns.extend(unit.map(|unit| (&given.column.column, unit)));
+                let start = initial_position(model, &coordinate.name);
+                columns.extend(found.keep(given_column(given, &coordinate.unit, start)));
             }
             None if found.list().len() == before => found.push(
                 Diagnostic::error(format!(
@@ -77,6 +101,78 @@ pub(crate) fn columns<'d>(
         }
     }
     columns
+}
+
+/// The column of a coordinate in this unit. Its own unit shows whether it holds the position or the speed.
+/// `initial`: the position at the first sample if the file does not give it.
+fn given_column<'d>(
+    given: &'d MotionColumn,
+    own: &Unit,
+    initial: f64,
+) -> Result<GivenColumn<'d>, Diagnostic> {
+    let written = &given.column.unit;
+    let of_speed = format!("{own}/s");
+    let kind_and_unit = |kind: GivenKind, unit: Unit| GivenColumn {
+        name: &given.name.text,
+        column: &given.column,
+        unit,
+        kind,
+    };
+    if let Ok(unit) = unit(written, &of_speed) {
+        if given.column.wrap.is_some() {
+            return Err(
+                Diagnostic::error("`wrap` is not used: a speed does not wrap around")
+                    .at(written.span, "this is the unit of a speed")
+                    .help("leave `wrap` out, or give the unit of the position"),
+            );
+        }
+        let initial = given.initial.map_or(initial, |number| number.value);
+        return Ok(kind_and_unit(GivenKind::Speed { initial }, unit));
+    }
+    let unit = unit(written, &own.to_string())
+        .map_err(|wrong| wrong.help(format!("a position is in {own}, a speed in {of_speed}")))?;
+    match given.initial {
+        Some(number) => Err(Diagnostic::error(
+            "`initial` is not used: the column holds the position",
+        )
+        .at(number.span, "this is for a column of speeds")
+        .also(written.span, "this is the unit of a position")
+        .help(format!(
+            "leave `initial` out, or give the unit of a speed, as {of_speed}"
+        ))),
+        None => Ok(kind_and_unit(GivenKind::Position, unit)),
+    }
+}
+
+/// The specification's initial position of a coordinate, SI; 0 if it gives none.
+fn initial_position(model: &Model, coordinate: &str) -> f64 {
+    let place = model.coordinates.iter().position(|c| c.name == coordinate);
+    let orders: Vec<usize> = model.fields.iter().map(|field| field.order).collect();
+    let state = model.initial_state(&orders).unwrap_or_default();
+    place
+        .and_then(|place| state.get(place).copied())
+        .unwrap_or(0.0)
+}
+
+/// Notes on motions that are given as speeds, at an initial position that the dataset file does not state.
+pub(crate) fn notes_of_speeds(
+    columns: &[GivenColumn<'_>],
+    description: &Description,
+) -> Vec<String> {
+    let is_stated = |name: &str| {
+        let mut given = description.motion.iter();
+        given.any(|given| given.name.text == name && given.initial.is_some())
+    };
+    let unstated = columns.iter().filter(|column| !is_stated(column.name));
+    let note = |column: &GivenColumn<'_>| match column.kind {
+        GivenKind::Position => None,
+        GivenKind::Speed { initial } => Some(format!(
+            "the position of `{name}` is integrated from its speed and begins at {initial} (SI) in every file; if the \
+             model depends on the position, set initial in [motion.{name}]",
+            name = column.name
+        )),
+    };
+    unstated.filter_map(note).collect()
 }
 
 /// Where the motion is given channels measure what it takes, or what a model shows along it.

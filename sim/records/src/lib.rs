@@ -3,7 +3,7 @@
 //!
 //! The pipeline: a [`description`] is the dataset file by itself, `bound` its names and units
 //! looked up in a model; `files` and `columns` (text by `csv_file`, Parquet by `parquet_file`) bring
-//! the numbers of a [`record`], of which `decimation` may leave some, checked by [`samples`] and parted by `gaps`, with `motion_rates` and without `rest` where the motion is given (`given_motion`); all records are a [`dataset`], examined by
+//! the numbers of a [`record`], unwrapped by `wrapped_columns` (`unwrapping`, `wrap_detection`), of which `decimation` may leave some, checked by [`samples`] and parted by `gaps`, with `motion_rates` and without `rest` where the motion is given (`given_motion`); all records are a [`dataset`], examined by
 //! [`checks`] and `coverage`, cut into [`windows`]. [`inputs`] are read alone for a simulation, [`mod@noise`] is estimated from a column alone.
 //! A [`proposal`] is a dataset file for a record that has none. What is wrong is a [`refusal`]. Nothing here is simulated or fitted.
 //!
@@ -64,7 +64,10 @@ pub mod refusal;
 mod rest;
 pub mod samples;
 mod units;
+mod unwrapping;
 pub mod windows;
+mod wrap_detection;
+mod wrapped_columns;
 
 pub use inputs::read_inputs;
 pub use proposal::proposed;

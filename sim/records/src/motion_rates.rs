@@ -1,4 +1,4 @@
-//! The rates of a motion that records give.
+//! Position, rate and second rate of a motion that records give by its positions or its speeds.
 
 use eomgen_sim::cubic_spline::CubicSpline;
 
@@ -16,4 +16,47 @@ pub(crate) fn with_rates(times: &[f64], column: &[f64]) -> Option<[Vec<f64>; 3]>
         }
     }
     Some(found)
+}
+
+/// A coordinate's positions, rates and second rates from samples of its speed: the speed is the cubic
+/// spline through the known samples, the position its integral from `initial` at the first sample, and the
+/// second rate its derivative. None if no sample is known.
+pub(crate) fn integrated(times: &[f64], speeds: &[f64], initial: f64) -> Option<[Vec<f64>; 3]> {
+    let [rates, second, bends] = with_rates(times, speeds)?;
+    let mut position = initial;
+    let mut positions = Vec::with_capacity(times.len());
+    positions.push(position);
+    for k in 1..times.len() {
+        let h = times[k] - times[k - 1];
+        // The exact integral of a cubic.
+        position +=
+            0.5 * h * (rates[k - 1] + rates[k]) - h.powi(3) / 24.0 * (bends[k - 1] + bends[k]);
+        positions.push(position);
+    }
+    Some([positions, rates, second])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::integrated;
+
+    #[test]
+    fn positions_rates_and_accelerations_of_a_speed_belong_together() {
+        let times: Vec<f64> = (0..=300).map(|k| 0.01 * f64::from(k)).collect();
+        let speed = |t: f64| 2.0 + 3.0 * (4.0 * t).cos();
+        let mut speeds: Vec<f64> = times.iter().map(|t| speed(*t)).collect();
+        speeds[150] = f64::NAN;
+        let [positions, rates, second] = integrated(&times, &speeds, 0.5).expect("a motion");
+        for (k, t) in times.iter().enumerate() {
+            let wanted = [
+                0.5 + 2.0 * t + 0.75 * (4.0 * t).sin(),
+                speed(*t),
+                -12.0 * (4.0 * t).sin(),
+            ];
+            let found = [positions[k], rates[k], second[k]];
+            for ((found, wanted), within) in found.iter().zip(wanted).zip([1e-7, 1e-5, 2e-2]) {
+                assert!((found - wanted).abs() < within, "{t}: {found} {wanted}");
+            }
+        }
+    }
 }

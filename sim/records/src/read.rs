@@ -7,11 +7,12 @@ use eomgen_model_spec::model::Model;
 use crate::bound::bound;
 use crate::checks::examine;
 use crate::coverage::{self, can_be_cut};
-use crate::dataset::{Dataset, Start};
+use crate::dataset::{Dataset, Initial, Quantity, Start};
 use crate::decimation::Decimation;
 use crate::description::Description;
 use crate::description::records::Stretch;
 use crate::gaps::unbroken;
+use crate::given_motion::notes_of_speeds;
 use crate::inputs::notes_of_inputs;
 use crate::record::{Columns, Record};
 use crate::refusal::Refusal;
@@ -72,6 +73,9 @@ pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
         },
         notes: notes_of_inputs(&description, model),
     };
+    let speeds = notes_of_speeds(&bound.motion, &description);
+    dataset.notes.extend(speeds);
+    let starts = starts(&dataset, model);
     let decimation = Decimation::new(description.time.every, description.time.filter);
     for channel in &mut dataset.channels {
         channel.noise *= decimation.noise();
@@ -83,6 +87,7 @@ pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
         inputs: &bound.inputs,
         motion: &bound.motion,
         channels: &bound.channel_units,
+        starts: &starts,
         model,
         decimation: &decimation,
         fewest: FEWEST_SAMPLES,
@@ -92,7 +97,7 @@ pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
         let files = files.iter().enumerate();
         let mut records = Vec::new();
         for (place, file) in files {
-            let record = columns.record(&format!("{kind}[{place}]"), file)?;
+            let record = columns.record(&format!("{kind}[{place}]"), file, &mut notes)?;
             can_be_cut(&record, &description)?;
             records.extend(unbroken(record, &mut notes));
         }
@@ -109,4 +114,26 @@ pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
         coverage::check(&dataset, &description)?;
     }
     Ok(dataset)
+}
+
+/// The values of channels at a record's beginning, SI: those of coordinates, if the initial state is known.
+fn starts(dataset: &Dataset, model: &Model) -> Vec<Option<f64>> {
+    let orders: Vec<usize> = model.fields.iter().map(|field| field.order).collect();
+    let state = model.initial_state(&orders).unwrap_or_default();
+    let of = |place: usize| match &dataset.initial {
+        Initial::Estimate => None,
+        Initial::Rest => state.get(place).copied(),
+        Initial::Given(values) => {
+            let name = &model.coordinates[place].name;
+            let given = values.iter().find(|(given, _)| given == name);
+            given.map(|(_, value)| *value).or(state.get(place).copied())
+        }
+    };
+    let channels = dataset.channels.iter();
+    channels
+        .map(|channel| match channel.quantity {
+            Quantity::Coordinate(place) => of(place),
+            _ => None,
+        })
+        .collect()
 }

@@ -12,13 +12,15 @@ use eomgen_sim::inputs::HeldInputs;
 use crate::columns;
 use crate::decimation::Decimation;
 use crate::description::Description;
-use crate::description::columns::ColumnKey;
+use crate::description::columns::Column;
 use crate::description::records::Stretch;
 use crate::files::beside;
+use crate::given_motion::{GivenColumn, GivenKind};
 use crate::header::Table;
-use crate::motion_rates::with_rates;
+use crate::motion_rates::{integrated, with_rates};
 use crate::refusal::Refusal;
 use crate::samples::{JITTER, check_known, check_times, typical_step};
+use crate::wrapped_columns::{ReadColumn, unwrap_columns};
 
 /// A record in SI.
 #[derive(Clone, Debug)]
@@ -65,11 +67,13 @@ pub(crate) struct Columns<'d> {
     /// The time's unit.
     pub time: &'d Unit,
     /// For each input of the model its column and unit, if there is one.
-    pub inputs: &'d [Option<(&'d ColumnKey, Unit)>],
-    /// Where the motion is given, for each coordinate of the model its column and unit.
-    pub motion: &'d [(&'d ColumnKey, Unit)],
+    pub inputs: &'d [Option<(&'d Column, Unit)>],
+    /// For each coordinate of the model its column, if the motion is given.
+    pub motion: &'d [GivenColumn<'d>],
     /// The unit of each channel's column.
     pub channels: &'d [Unit],
+    /// The value of each channel at the beginning of a record, SI, if it is known.
+    pub starts: &'d [Option<f64>],
     pub model: &'d Model,
     /// How one of several samples is kept.
     pub decimation: &'d Decimation,
@@ -78,14 +82,19 @@ pub(crate) struct Columns<'d> {
 }
 
 impl Columns<'_> {
-    /// Reads one record.
-    pub fn record(&self, name: &str, stretch: &Stretch) -> Result<Record, Refusal> {
+    /// Reads one record. What is worth a remark goes to `notes`.
+    pub fn record(
+        &self,
+        name: &str,
+        stretch: &Stretch,
+        notes: &mut Vec<String>,
+    ) -> Result<Record, Refusal> {
         let wrong =
             |diagnostic: Diagnostic| Diagnostics::one(self.description.source.clone(), diagnostic);
         let place = beside(self.path, &stretch.file).map_err(wrong)?;
-        let mut table = self.table(&place)?;
+        let mut table = self.table(&place, name, stretch, notes)?;
         self.add_rates(&place, &mut table)?;
-        let is_continued = self.cut(&place, stretch, &mut table)?;
+        let is_continued = self.cut(stretch, &mut table)?;
         self.decimate(&place, &mut table)?;
         let first_motion = 1 + self.inputs.iter().flatten().count();
         let channels = (table.columns).split_off(first_motion + 3 * self.motion.len());
@@ -111,24 +120,41 @@ impl Columns<'_> {
         })
     }
 
-    /// Time, the inputs that have columns, the motion where that is given, and the channels, in SI.
-    fn table(&self, place: &Path) -> Result<Table, Refusal> {
+    /// Columns besides the time, in the order in which they are read.
+    fn read(&self) -> Vec<ReadColumn<'_>> {
+        let fed = self.model.inputs.iter().zip(self.inputs);
+        let inputs = fed.filter_map(|(input, fed)| {
+            let (column, unit) = fed.as_ref()?;
+            Some(ReadColumn::of("inputs", &input.name, column, unit))
+        });
+        let motion = self.motion.iter();
+        let motion =
+            motion.map(|given| ReadColumn::of("motion", given.name, given.column, &given.unit));
+        let channels = self.description.channels.iter().zip(self.channels);
+        let channels = channels.zip(self.starts).map(|((channel, unit), start)| {
+            let column = ReadColumn::of("channels", &channel.name.text, &channel.column, unit);
+            column.starting_at(*start)
+        });
+        inputs.chain(motion).chain(channels).collect()
+    }
+
+    /// Time, the inputs that have columns, the motion where that is given, and the channels, in SI and
+    /// unwrapped.
+    fn table(
+        &self,
+        place: &Path,
+        name: &str,
+        stretch: &Stretch,
+        notes: &mut Vec<String>,
+    ) -> Result<Table, Refusal> {
+        let read = self.read();
         let mut wanted = vec![&self.description.time.column.column];
-        let mut units = vec![self.time];
-        for (column, unit) in self.inputs.iter().flatten() {
-            wanted.push(column);
-            units.push(unit);
-        }
-        for (column, unit) in self.motion {
-            wanted.push(column);
-            units.push(unit);
-        }
-        for (channel, unit) in self.description.channels.iter().zip(self.channels) {
-            wanted.push(&channel.column.column);
-            units.push(unit);
-        }
+        wanted.extend(read.iter().map(|column| &column.column.column));
+        let units = [self.time]
+            .into_iter()
+            .chain(read.iter().map(|column| column.unit));
         let mut table = columns::read(place, &self.description.format, &wanted)?;
-        for (column, unit) in table.columns.iter_mut().zip(&units) {
+        for (column, unit) in table.columns.iter_mut().zip(units) {
             for value in column.iter_mut() {
                 // What is too large for a number in SI is as good as missing.
                 *value = Some(unit.to_si(*value))
@@ -136,7 +162,23 @@ impl Columns<'_> {
                     .unwrap_or(f64::NAN);
             }
         }
+        check_times(place, &table.columns[0], &table.lines, 1)?;
+        let (from, to) = self.ends(stretch);
+        let gaps = unwrap_columns(&read, (place, from..to), &mut table)
+            .map_err(|wrong| Diagnostics::one(self.description.source.clone(), wrong))?;
+        notes.extend(gaps.into_iter().map(|gap| format!("{name}: {gap}")));
         Ok(table)
+    }
+
+    /// The first time of a stretch and the one behind its last, s.
+    fn ends(&self, stretch: &Stretch) -> (f64, f64) {
+        let end = |number: Option<Number>, open: f64| {
+            number.map_or(open, |number| self.time.to_si(number.value))
+        };
+        (
+            end(stretch.from, f64::NEG_INFINITY),
+            end(stretch.to, f64::INFINITY),
+        )
     }
 
     /// Puts rates and second rates behind a motion that is given. They are taken before samples are left
@@ -146,15 +188,17 @@ impl Columns<'_> {
         if self.motion.is_empty() {
             return Ok(());
         }
-        check_times(place, &table.columns[0], &table.lines, 1)?;
         let first = 1 + self.inputs.iter().flatten().count();
         let given = first..first + self.motion.len();
         let mut rates = [const { Vec::new() }; 3];
-        for (coordinate, column) in
-            (self.model.coordinates.iter()).zip(&table.columns[given.clone()])
-        {
+        for (coordinate, column) in self.motion.iter().zip(&table.columns[given.clone()]) {
             check_known(place, &format!("motion of `{}`", coordinate.name), column)?;
-            let Some(found) = with_rates(&table.columns[0], column) else {
+            let times = &table.columns[0];
+            let motion = match coordinate.kind {
+                GivenKind::Position => with_rates(times, column),
+                GivenKind::Speed { initial } => integrated(times, column, initial),
+            };
+            let Some(found) = motion else {
                 let nothing = format!(
                     "the motion of `{}` is empty; expected numbers",
                     coordinate.name
@@ -171,19 +215,11 @@ impl Columns<'_> {
 
     /// Leaves what lies between two times, where a dataset file gives them; whether something lay
     /// before.
-    fn cut(&self, place: &Path, stretch: &Stretch, table: &mut Table) -> Result<bool, Refusal> {
+    fn cut(&self, stretch: &Stretch, table: &mut Table) -> Result<bool, Refusal> {
         if stretch.from.is_none() && stretch.to.is_none() {
             return Ok(false);
         }
-        // A part of the file is looked at, all of its times must be in order.
-        check_times(place, &table.columns[0], &table.lines, 1)?;
-        let end = |number: Option<Number>, open: f64| {
-            number.map_or(open, |number| self.time.to_si(number.value))
-        };
-        let (from, to) = (
-            end(stretch.from, f64::NEG_INFINITY),
-            end(stretch.to, f64::INFINITY),
-        );
+        let (from, to) = self.ends(stretch);
         let times = &table.columns[0];
         let kept = times.partition_point(|t| *t < from)..times.partition_point(|t| *t < to);
         if kept.is_empty() {
@@ -193,7 +229,7 @@ impl Columns<'_> {
                 .or(stretch.to)
                 .map_or(stretch.file.span, |n| n.span);
             let nothing = Diagnostic::error(format!(
-                "\"{}\" holds nothing there: it goes from {} to {} {}",
+                "\"{}\" has no samples in this part: its times are {} to {} {}",
                 stretch.file.text,
                 self.time.from_si(first),
                 self.time.from_si(last),
@@ -221,7 +257,6 @@ impl Columns<'_> {
         if decimation.is_idle() {
             return Ok(());
         }
-        check_times(place, &table.columns[0], &table.lines, 1)?;
         let step = typical_step(&table.columns[0]);
         let mut steps = table.columns[0].windows(2).map(|pair| pair[1] - pair[0]);
         let uneven = steps.position(|s| (s - step).abs() > JITTER * step);

@@ -2,6 +2,8 @@
 //! without names, parts of a file, fewer samples. Each is read to the numbers that were written,
 //! or refused with its place and what to write.
 
+mod wrapped;
+
 use std::fmt::Write;
 use std::path::Path;
 
@@ -242,7 +244,7 @@ fn a_file_is_parted_by_its_times() {
             "from = 3600",
             "nothing lies between 3600 and 3500",
         ),
-        ("to = 2500", "to = -1", "it goes from 0 to 3990 ms"),
+        ("to = 2500", "to = -1", "its times are 0 to 3990 ms"),
         ("to = 2500", "until = 2500", "known here: file, from, to"),
         ("to = 2500", "to = 100", "holds 10 samples; expected 50"),
     ] {
@@ -386,6 +388,52 @@ fn a_dataset_file_is_proposed_that_reads_what_was_written() {
 }
 
 #[test]
+fn proposals_never_match_another_dimension() {
+    let proposal = |head: &str| {
+        let folder = folder("", head, |t, a| format!("{t:.2},{:.6},{a:.6}\n", 1e-3 * a));
+        proposed(&folder.path().join("train.csv"), "train.csv", &pendulum())
+            .unwrap_or_else(|refusal| panic!("{head}: {refusal}"))
+    };
+    for unit in ["m/s^2", "parsec", "V", "m"] {
+        let text = proposal(&format!("t,theta,theta_dot [{unit}]\n"));
+        assert!(text.contains("# Not used: \"theta_dot ["), "{unit}: {text}");
+    }
+    for unit in ["deg/s^2", "°/s²", "rad s-2", "rad·s⁻²"] {
+        let text = proposal(&format!("t,theta,theta_dot [{unit}]\n"));
+        assert!(!text.contains("[channels.theta_dot]"), "{unit}: {text}");
+    }
+    let text = proposal("t,theta,theta_ddot [deg/s2]\n");
+    assert!(
+        text.contains("[channels.theta_ddot]") && text.contains("unit = \"deg/s^2\""),
+        "{text}"
+    );
+    let said = folder("", "t [mm],theta\n", |t, a| format!("{t:.2},{a:.6}\n"));
+    let said = proposed(&said.path().join("train.csv"), "train.csv", &pendulum());
+    let said = said.expect_err("no time").to_string();
+    assert!(
+        said.contains("`t [mm]`, is not in a unit of time"),
+        "{said}"
+    );
+}
+
+#[test]
+fn hidden_characters_of_names_are_escaped_in_proposals_and_read_again() {
+    let head = "t,theta,force\u{1b}[31m\u{202e}\"x\\\n";
+    let folder = folder("", &head.replace(['"', '\\'], "'"), |t, a| {
+        format!("{t:.2},{:.6},{a:.6}\n", 1e-3 * a)
+    });
+    let text = proposed(&folder.path().join("train.csv"), "train.csv", &pendulum());
+    let text = text.unwrap_or_else(|refusal| panic!("{refusal}"));
+    assert!(
+        !text.contains(eomgen_model_spec::visible::is_hidden),
+        "{text}"
+    );
+    assert!(text.contains("\\u001b[31m\\u202e"), "{text}");
+    write(folder.path(), "dataset.toml", &text);
+    read(&folder).unwrap_or_else(|refusal| panic!("{refusal}: {text}"));
+}
+
+#[test]
 fn records_for_which_nothing_can_be_proposed_are_refused() {
     let cases = [
         ("a,b\nno,numbers\n", "no two columns of numbers"),
@@ -394,7 +442,7 @@ fn records_for_which_nothing_can_be_proposed_are_refused() {
             "t,elbow\n",
             "no column is an observable, coordinate or rate",
         ),
-        ("theta,other\n", "no column increases"),
+        ("theta,other\n", "no column that can be a time increases"),
     ];
     for (head, part) in cases {
         let folder = folder("", head, |t, a| match head {
@@ -596,6 +644,55 @@ fn a_motion_that_is_given_has_its_rates() {
     }
 }
 
+/// Of a motion that is given as a speed the position is integrated, and all three belong together.
+#[test]
+fn a_motion_is_given_by_its_speed_and_a_start() {
+    let y = "[motion.y]\ncolumn = \"x\"\nunit = \"m\"\n";
+    let speed = "[motion.y]\ncolumn = \"G\"\nunit = \"m/min\"\ninitial = 0.25\n";
+    let given = ALONG.replace(y, speed);
+    let dataset = along(&given).unwrap_or_else(|refusal| panic!("{refusal}"));
+    let record = &dataset.train[0];
+    for (place, t) in record.times.iter().enumerate().skip(1) {
+        let row = record.inputs.held_at(*t);
+        let before = record.inputs.held_at(record.times[place - 1]);
+        // Columns of y, y_dot and y_ddot.
+        let [y, rate, second] = [4, 6, 8].map(|column| (before[column], row[column]));
+        let angle = angle(place, 0.0);
+        assert!((rate.1 - angle * angle / 60.0).abs() < 1e-6, "{rate:?}");
+        let step = t - record.times[place - 1];
+        assert!((y.1 - y.0 - 0.5 * step * (rate.0 + rate.1)).abs() < 1e-3);
+        assert!((rate.1 - rate.0 - 0.5 * step * (second.0 + second.1)).abs() < 1e-2);
+    }
+    assert_eq!(record.given(1, 3)[0], 0.25);
+    assert!(
+        !dataset.notes.join("\n").contains("integrated"),
+        "{:?}",
+        dataset.notes
+    );
+    let unstated = along(&given.replace("initial = 0.25\n", ""));
+    let notes = unstated
+        .unwrap_or_else(|refusal| panic!("{refusal}"))
+        .notes
+        .join("\n");
+    assert!(notes.contains("set initial in [motion.y]"), "{notes}");
+    for (wrong, part) in [
+        (
+            ALONG.replace("[motion.y]", "[motion.y]\ninitial = 1"),
+            "the column holds the position",
+        ),
+        (
+            given.replace("initial = 0.25", "wrap = 1"),
+            "a speed does not wrap around",
+        ),
+    ] {
+        let said = along(&wrong)
+            .err()
+            .map(|refusal| refusal.to_string())
+            .unwrap_or_default();
+        assert!(said.contains(part), "{part}: {said}");
+    }
+}
+
 #[test]
 fn what_a_motion_takes_is_left_out_where_it_turns_back() {
     let dataset = along(ALONG).unwrap_or_else(|refusal| panic!("{refusal}"));
@@ -610,7 +707,7 @@ fn what_a_motion_takes_is_left_out_where_it_turns_back() {
         "{notes}"
     );
     assert!(
-        notes.contains("the dataset has no input `H`") && !notes.contains("input `F`"),
+        notes.contains("input `H` is not driven") && !notes.contains("input `F`"),
         "{notes}"
     );
 }

@@ -37,6 +37,17 @@ pub struct Column {
     pub column: ColumnKey,
     /// Its unit.
     pub unit: Written,
+    /// Whether its values wrap around, if the file says it.
+    pub wrap: Option<Wrap>,
+}
+
+/// What a dataset file says of values that jump from one end of a range to the other.
+#[derive(Clone, Copy, Debug)]
+pub enum Wrap {
+    /// They wrap around after this much, in the column's unit.
+    Period(Number),
+    /// Jumps are real.
+    Never,
 }
 
 /// `[time]`
@@ -70,8 +81,10 @@ pub struct InputColumn {
 pub struct MotionColumn {
     /// The coordinate.
     pub name: Name,
-    /// Its column.
+    /// Its column: the position or, by its unit, the speed.
     pub column: Column,
+    /// The position at a file's first sample, in SI, beside a speed.
+    pub initial: Option<Number>,
 }
 
 /// `[channels.NAME]`
@@ -115,10 +128,34 @@ fn column(record: &Record<'_>, found: &mut Diagnostics) -> Option<Column> {
     let unit = required(record, "unit", "\"m\"", found).cloned();
     let column = column.and_then(|entry| key(&entry, found));
     let unit = unit.and_then(|entry| found.keep(entry.written()));
+    let wrap = wrap(record, found);
     Some(Column {
         column: column?,
         unit: unit?,
+        wrap: wrap?,
     })
+}
+
+/// What the file says of wrapping; none if that is wrong.
+fn wrap(record: &Record<'_>, found: &mut Diagnostics) -> Option<Option<Wrap>> {
+    let Some(entry) = record.get("wrap") else {
+        return Some(None);
+    };
+    if entry.written().is_ok() {
+        let never = found.keep(entry.word(&[("none", Wrap::Never)]))?;
+        return Some(Some(never));
+    }
+    let period = found.keep(entry.number())?;
+    if period.value <= 0.0 {
+        found.push(
+            Diagnostic::error(format!("values cannot wrap around after {}", period.value)).at(
+                period.span,
+                "expected a number greater than 0, in the column's unit, or \"none\"",
+            ),
+        );
+        return None;
+    }
+    Some(Some(Wrap::Period(period)))
 }
 
 /// A column by its name, or by its number.
@@ -185,9 +222,11 @@ pub(super) fn input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<InputC
 /// Reads an entry of `[motion]`.
 pub(super) fn motion(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<MotionColumn> {
     let record = entry.record(&keys::MOTION, "{ column = \"q\", unit = \"rad\" }", found)?;
+    let initial = record.number("initial", found);
     Some(MotionColumn {
         name: entry.name.clone(),
         column: column(&record, found)?,
+        initial,
     })
 }
 

@@ -32,15 +32,16 @@ pub const FORMAT: [&str; 6] = ["separator", "decimal", "skip", "comment", "names
 pub const TIME: [&str; 4] = ["column", "unit", "every", "filter"];
 
 /// `[inputs.NAME]`
-pub const INPUT: [&str; 6] = ["column", "unit", "hold", "gain", "bias", "delay"];
+pub const INPUT: [&str; 7] = ["column", "unit", "wrap", "hold", "gain", "bias", "delay"];
 
 /// `[motion.NAME]`
-pub const MOTION: [&str; 2] = ["column", "unit"];
+pub const MOTION: [&str; 4] = ["column", "unit", "wrap", "initial"];
 
 /// `[channels.NAME]`
-pub const CHANNEL: [&str; 7] = [
+pub const CHANNEL: [&str; 8] = [
     "column",
     "unit",
+    "wrap",
     "noise",
     "observable",
     "gain",

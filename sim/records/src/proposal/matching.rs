@@ -5,17 +5,13 @@ use eomgen_model_spec::suggest::nearest;
 use eomgen_model_spec::unit::Unit;
 
 /// How people write units that are written otherwise here.
-const UNITS: [(&str, &str); 10] = [
-    ("°", "deg"),
+const UNITS: [(&str, &str); 6] = [
     ("degree", "deg"),
     ("degrees", "deg"),
     ("sec", "s"),
     ("Nm", "N m"),
     ("mNm", "mN m"),
     ("N*m", "N m"),
-    ("m/s2", "m/s^2"),
-    ("rad/s2", "rad/s^2"),
-    ("µs", "us"),
 ];
 
 /// A column as its file describes it.
@@ -27,23 +23,27 @@ pub(crate) struct FileColumn {
     pub name: String,
     /// The name without a unit in it.
     pub stem: String,
-    /// Its unit, if the file says one that is known.
+    /// Its unit, if the file states one that is known.
     pub unit: Option<Unit>,
+    /// What the file states as its unit, if that is not known.
+    pub unknown_unit: Option<String>,
 }
 
 impl FileColumn {
     /// A column of a file by its name and by what stands in its line of units.
     pub fn of(number: usize, name: &str, unit: &str) -> Self {
         let (stem, inside) = parted(name);
-        let unit = [unit.to_owned(), inside.to_owned()]
+        let stated: Vec<String> = [unit, inside]
             .into_iter()
-            .map(|text| bare_unit(&text))
+            .map(bare_unit)
             .filter(|text| !text.is_empty() && text != "-")
-            .find_map(|text| Unit::parse(&text).ok());
+            .collect();
+        let unit = stated.iter().find_map(|text| Unit::parse(text).ok());
         Self {
             number,
             name: name.to_owned(),
             stem: stem.to_owned(),
+            unknown_unit: stated.into_iter().next().filter(|_| unit.is_none()),
             unit,
         }
     }
@@ -53,7 +53,8 @@ impl FileColumn {
         let Some((stem, unit)) = self.stem.rsplit_once('_') else {
             return;
         };
-        if let (None, Ok(unit)) = (&self.unit, Unit::parse(&bare_unit(unit))) {
+        let is_stated = self.unit.is_some() || self.unknown_unit.is_some();
+        if let (false, Ok(unit)) = (is_stated, Unit::parse(&bare_unit(unit))) {
             self.unit = Some(unit);
             self.stem = stem.to_owned();
         }
@@ -71,7 +72,7 @@ pub(crate) struct Quantity {
     pub is_input: bool,
 }
 
-/// Inputs, observables, coordinates, rates and states of first order that a record may hold.
+/// Inputs, observables, coordinates with their rates and accelerations, and states of first order.
 pub(crate) fn quantities(model: &Model) -> Vec<Quantity> {
     let quantity = |name: &str, unit: &Unit, is_input: bool| Quantity {
         name: name.to_owned(),
@@ -86,13 +87,16 @@ pub(crate) fn quantities(model: &Model) -> Vec<Quantity> {
         .map(|observable| quantity(&observable.name, &observable.unit, false));
     let coordinates = model.coordinates.iter();
     let coordinates = coordinates.map(|c| quantity(&c.name, &c.unit, false));
-    let rates = model.coordinates.iter().filter_map(|c| {
-        let unit = Unit::parse(&format!("{}/s", c.unit.text)).ok()?;
-        Some(quantity(&format!("{}_dot", c.name), &unit, false))
+    let derivatives = [("dot", "s"), ("ddot", "s^2")];
+    let derivatives = derivatives.into_iter().flat_map(|(name, per)| {
+        model.coordinates.iter().filter_map(move |c| {
+            let unit = Unit::parse(&format!("{}/{per}", c.unit)).ok()?;
+            Some(quantity(&format!("{}_{name}", c.name), &unit, false))
+        })
     });
     let states = model.states.iter();
     let states = states.map(|state| quantity(&state.name, &state.unit, false));
-    let moving = coordinates.chain(rates).chain(states);
+    let moving = coordinates.chain(derivatives).chain(states);
     let mut all: Vec<Quantity> = Vec::new();
     for quantity in inputs.chain(observables).chain(moving) {
         // An observable may have the name of a coordinate.
@@ -155,10 +159,11 @@ fn by_rules(columns: &[FileColumn], quantities: &[Quantity], matches: &mut Vec<M
     for (rule, why) in RULES {
         let may = |column: usize, quantity: usize| {
             let (c, q) = (&columns[column], &quantities[quantity]);
-            let of_unit = c
-                .unit
-                .as_ref()
-                .is_none_or(|unit| unit.dimension == q.unit.dimension);
+            // A unit that is not known may be of any dimension.
+            let of_unit = match (&c.unit, &c.unknown_unit) {
+                (Some(unit), _) => unit.dimension == q.unit.dimension,
+                (None, unknown) => unknown.is_none(),
+            };
             of_unit && !(c.name.is_empty() && c.unit.is_none()) && rule(c, q)
         };
         let free = |matches: &[Match], column: usize, quantity: usize| {
@@ -206,7 +211,39 @@ fn parted(name: &str) -> (&str, &str) {
 pub(crate) fn bare_unit(text: &str) -> String {
     let bare = text.trim().trim_matches(['[', ']', '(', ')']).trim();
     let known = UNITS.iter().find(|(theirs, _)| *theirs == bare);
-    known.map_or(bare, |(_, ours)| ours).to_owned()
+    let symbols = [
+        ("°", "deg"),
+        ("µ", "u"),
+        ("μ", "u"),
+        ("Ω", "ohm"),
+        ("·", " "),
+        ("⋅", " "),
+    ];
+    let spelt = |text: String, (theirs, ours): &(&str, &str)| text.replace(theirs, ours);
+    known.map_or_else(
+        || with_exponents(&symbols.iter().fold(bare.to_owned(), spelt)),
+        |(_, ours)| (*ours).to_owned(),
+    )
+}
+
+/// A unit with `^` before its exponents, which others write as `m/s2`, `m/s²` or `m s⁻²`.
+fn with_exponents(text: &str) -> String {
+    const RAISED: &str = "⁰¹²³⁴⁵⁶⁷⁸⁹";
+    let mut found = String::new();
+    for letter in text.chars() {
+        let raised = RAISED.chars().position(|digit| digit == letter);
+        let digit = raised.and_then(|digit| char::from_digit(digit as u32, 10));
+        let letter = match letter {
+            '⁻' | '−' => '-',
+            letter => digit.unwrap_or(letter),
+        };
+        let follows_a_name = found.chars().last().is_some_and(char::is_alphabetic);
+        if follows_a_name && (letter == '-' || letter.is_ascii_digit()) {
+            found.push('^');
+        }
+        found.push(letter);
+    }
+    found
 }
 
 /// A name without what people write differently.
@@ -274,6 +311,13 @@ mod tests {
                 pair("TIP_mm", "tip")
             ]
         );
+        // Accelerations are neither positions nor rates, however their unit is written.
+        for unit in ["m/s2", "m/s²", "m·s⁻²", "m s-2"] {
+            assert_eq!(names(&[("x_c", unit)]), [], "{unit}");
+            assert_eq!(names(&[("x_c_ddot", unit)]), [pair("x_c_ddot", "x_c_ddot")]);
+        }
+        assert_eq!(names(&[("x_c [furlong]", ""), ("x_c_dot", "knots")]), []);
+        assert_eq!(names(&[("x_c_ddot", "")]), [pair("x_c_ddot", "x_c_ddot")]);
         // Two columns that would do are none.
         assert!(names(&[("thetas", "m"), ("note", "")]).is_empty());
         assert!(names(&[("THETA_S", ""), ("theta s", "")]).is_empty());

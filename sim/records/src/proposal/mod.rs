@@ -20,6 +20,8 @@ use crate::description::format::Format;
 use crate::parquet_file;
 use crate::refusal::Refusal;
 use crate::samples::{FEWEST_SAMPLES, JITTER, typical_step};
+use crate::wrap_detection::{WrapPattern, wrap_pattern};
+use crate::wrapped_columns::{can_wrap, full_turn};
 
 use self::matching::{FileColumn, Match, Quantity, matched, quantities};
 
@@ -57,6 +59,15 @@ struct Found<'m> {
 impl Found<'_> {
     fn times(&self) -> &[f64] {
         &self.values[self.time]
+    }
+
+    /// The pattern of a matched column that looks wrapped, in the column's unit.
+    fn wrap_pattern(&self, matched: &Match) -> Option<WrapPattern> {
+        let own = &self.quantities[matched.quantity].unit;
+        let unit = self.columns[matched.column].unit.as_ref().unwrap_or(own);
+        let values = &self.values[matched.column];
+        let pattern = || wrap_pattern(self.times(), values, full_turn(unit));
+        can_wrap(unit).then(pattern).flatten()
     }
 
     /// The usual time from sample to sample, s.
@@ -197,9 +208,16 @@ fn time(
             column.take_suffix();
         }
     }
+    let is_of_time = |column: &FileColumn| match (&column.unit, &column.unknown_unit) {
+        (Some(unit), _) => unit.dimension == Dimension::TIME,
+        (None, unknown) => unknown.is_none() || is_time(&column.stem),
+    };
     let rises = |column: &usize| {
         let values = &values[*column];
-        values.iter().all(|v| v.is_finite()) && values.windows(2).all(|pair| pair[0] < pair[1])
+        let can_be_time = is_of_time(&columns[*column]);
+        can_be_time
+            && values.iter().all(|v| v.is_finite())
+            && values.windows(2).all(|pair| pair[0] < pair[1])
     };
     let is_called = |column: &usize| is_time(&columns[*column].stem);
     let all = 0..columns.len();
@@ -212,18 +230,21 @@ fn time(
         return Err(Refusal::file(
             record,
             match called {
+                Some(column) if !is_of_time(&columns[column]) => format!(
+                    "column {}, `{}`, is not in a unit of time, and no other column increases; expected a time, as in s",
+                    columns[column].number, columns[column].name
+                ),
                 Some(column) => format!(
                     "the time does not increase in column {}, `{}`; expected samples in order, each once",
                     columns[column].number, columns[column].name
                 ),
-                None => "no column increases from line to line; expected one of time".to_owned(),
+                None => "no column that can be a time increases from line to line; expected one"
+                    .to_owned(),
             },
         ));
     };
-    let seconds = Unit::coherent(Dimension::TIME);
     let unit = columns[time].unit.clone();
-    let unit = unit.filter(|unit| unit.dimension == seconds.dimension);
-    Ok((time, unit.unwrap_or(seconds)))
+    Ok((time, unit.unwrap_or(Unit::coherent(Dimension::TIME))))
 }
 
 fn nothing_measured(record: &Path, found: &Found<'_>) -> Refusal {
@@ -240,8 +261,8 @@ fn nothing_measured(record: &Path, found: &Found<'_>) -> Refusal {
     Refusal::file(
         record,
         format!(
-            "no column is an observable, coordinate or rate of the model by its name or unit: it has {}, \
-             the model {}; rename columns, or write the dataset file by hand",
+            "no column is an observable, coordinate or rate of the model by its name or unit; columns: {}; \
+             quantities of the model: {}; rename columns, or write the dataset file by hand",
             names.join(", "),
             measured.join(", ")
         ),

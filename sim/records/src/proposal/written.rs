@@ -3,11 +3,15 @@
 use std::fmt::Write;
 
 use eomgen_model_spec::model::ParameterValue;
+use eomgen_model_spec::visible::{is_hidden, visible_in_strings};
 
 use super::Found;
 use super::matching::{FileColumn, Match};
+use crate::coverage::span;
 use crate::description::format::{DECIMALS, Format, SEPARATORS};
 use crate::noise::estimated;
+use crate::unwrapping::unwrapped;
+use crate::wrap_detection::WrapPattern;
 
 /// A channel whose noise cannot be seen gets this part of its span.
 const UNSEEN: f64 = 1e-6;
@@ -49,9 +53,18 @@ fn aligned(text: &str) -> String {
     text.lines().map(line).collect()
 }
 
-/// A TOML string.
+/// A TOML string without hidden characters.
 fn quoted(text: &str) -> String {
-    toml_edit::Value::from(text).to_string()
+    if !text.contains(is_hidden) {
+        return toml_edit::Value::from(text).to_string();
+    }
+    let escapes = [("\\", "\\\\"), ("\"", "\\\""), ("\n", "\\n"), ("\t", "\\t")];
+    let escaped = escapes
+        .iter()
+        .fold(text.to_owned(), |text, (letter, escape)| {
+            text.replace(letter, escape)
+        });
+    format!("\"{}\"", visible_in_strings(&escaped))
 }
 
 fn records(found: &Found<'_>, name: &str) -> String {
@@ -124,9 +137,10 @@ fn key(found: &Found<'_>, column: &FileColumn) -> String {
 
 fn time(found: &Found<'_>) -> String {
     let column = &found.columns[found.time];
-    let why = match column.unit.is_some() {
-        true => "as the file says",
-        false => "guessed: the file says none",
+    let why = match (&column.unit, &column.unknown_unit) {
+        (Some(_), _) => "as the file says".to_owned(),
+        (None, Some(unknown)) => format!("guessed: {} is no known unit", quoted(unknown)),
+        (None, None) => "guessed: the file says none".to_owned(),
     };
     let mut text = format!(
         "\n[time]\ncolumn = {}\nunit = {}\u{1}{why}; samples are {:.6} s apart\n",
@@ -161,36 +175,54 @@ fn unit(found: &Found<'_>, matched: &Match) -> String {
 
 fn input(found: &Found<'_>, matched: &Match) -> String {
     let column = &found.columns[matched.column];
+    let pattern = found.wrap_pattern(matched);
     format!(
-        "\n[inputs.{}]\u{1}{}\ncolumn = {}\n{}\n",
+        "\n[inputs.{}]\u{1}{}\ncolumn = {}\n{}\n{}",
         found.quantities[matched.quantity].name,
         matched.why,
         key(found, column),
-        unit(found, matched)
+        unit(found, matched),
+        wrap(pattern.filter(|pattern| pattern.is_wrapped(true)))
     )
+}
+
+/// The key of a column that wraps around.
+fn wrap(pattern: Option<WrapPattern>) -> String {
+    pattern.map_or_else(String::new, |pattern| {
+        format!(
+            "wrap = {}\u{1}it jumps by about this; \"none\" if the jumps are real\n",
+            pattern.written(pattern.period)
+        )
+    })
 }
 
 fn channel(found: &Found<'_>, matched: &Match) -> String {
     let column = &found.columns[matched.column];
-    let values = &found.values[matched.column];
+    let pattern = found.wrap_pattern(matched);
+    let pattern = pattern.filter(|pattern| pattern.is_wrapped(false));
+    let read = &found.values[matched.column];
+    let values = match pattern {
+        Some(pattern) => unwrapped(found.times(), read, pattern.period).values,
+        None => read.clone(),
+    };
     let name = &found.quantities[matched.quantity].name;
-    let known = || values.iter().copied().filter(|v| v.is_finite());
-    let span = known().fold(f64::NEG_INFINITY, f64::max) - known().fold(f64::INFINITY, f64::min);
+    let span = span(&values);
     if span.is_nan() || span <= 0.0 {
         return format!(
             "\n# `{name}` does not move in column {}: it is left out.\n",
             column.number
         );
     }
-    let (noise, why) = match estimated(values) {
+    let (noise, why) = match estimated(&values) {
         Some(noise) => (noise, "guessed from what differs from sample to sample"),
         None => (UNSEEN * span, "guessed: none can be seen"),
     };
     format!(
-        "\n[channels.{name}]\u{1}{}\ncolumn = {}\n{}\nnoise = {noise:.1e}\u{1}{why}\n",
+        "\n[channels.{name}]\u{1}{}\ncolumn = {}\n{}\n{}noise = {noise:.1e}\u{1}{why}\n",
         matched.why,
         key(found, column),
         unit(found, matched),
+        wrap(pattern),
     )
 }
 
@@ -201,9 +233,16 @@ fn unmatched(found: &Found<'_>) -> String {
     };
     let columns = found.columns.iter().enumerate();
     let columns = columns.filter(|(place, _)| !is_used(*place));
-    let named = columns.map(|(_, column)| match column.name.as_str() {
-        "" => format!("column {}", column.number),
-        name => quoted(name),
+    let named = columns.map(|(_, column)| {
+        let name = match column.name.as_str() {
+            "" => format!("column {}", column.number),
+            name => quoted(name),
+        };
+        let unknown = column.unknown_unit.as_ref();
+        unknown.map_or_else(
+            || name.clone(),
+            |unit| format!("{name} ({} is no known unit)", quoted(unit)),
+        )
     });
     let named: Vec<String> = named.collect();
     let quantities = found.quantities.iter().enumerate();
@@ -222,7 +261,7 @@ fn unmatched(found: &Found<'_>) -> String {
     if !inputs.is_empty() {
         let _ = writeln!(
             text,
-            "\n# No column was found for the inputs {}: they are 0.",
+            "\n# No column was found for these inputs, which are taken as 0: {}.",
             inputs.join(", ")
         );
     }

@@ -1,0 +1,184 @@
+//! Unwrapping: the continuous motion behind values that are known only up to whole periods, as those of
+//! an angle between -180 and 180 degrees or of a counter that rolls over.
+
+use crate::samples::typical_step;
+
+/// A step longer than this many usual ones has a gap in it.
+const GAP: f64 = 1.5;
+
+/// The largest difference, in periods, between the motions that the speeds before and after a gap make of it.
+const MOST_UNKNOWN: f64 = 0.25;
+
+/// Number of steps whose median rate predicts the next value. A single outlier does not move the median.
+const RECENT: usize = 5;
+
+/// An unwrapped column.
+pub(crate) struct Unwrapped {
+    /// The values; NaN where a sample is missing.
+    pub values: Vec<f64>,
+    /// Gaps over which the number of periods is not known: the times of the samples before and after.
+    pub unknown: Vec<(f64, f64)>,
+}
+
+/// Unwraps a column with missing samples as NaN. The first sample keeps its value. Of the values that a
+/// sample can stand for, the one nearest to the extrapolated motion is taken: the motion may turn by more
+/// than half a period from sample to sample if its rate changes by less.
+pub(crate) fn unwrapped(times: &[f64], column: &[f64], period: f64) -> Unwrapped {
+    let samples: Vec<usize> = (0..column.len())
+        .filter(|sample| column[*sample].is_finite())
+        .collect();
+    let at: Vec<f64> = samples.iter().map(|sample| times[*sample]).collect();
+    let longest = GAP * typical_step(&at);
+    let motion = Wrapped {
+        times: at,
+        values: samples.iter().map(|sample| column[*sample]).collect(),
+        period,
+        longest,
+    };
+    let mut values = column.to_vec();
+    let mut unknown = Vec::new();
+    let (mut turns, mut recent) = (0.0, Vec::new());
+    for k in 1..samples.len() {
+        let duration = motion.times[k] - motion.times[k - 1];
+        let before = median(&recent);
+        let mut more = motion.turns(k, before.unwrap_or(0.0));
+        if duration > longest {
+            let after = motion.rate_from(k, before.unwrap_or(0.0));
+            if let Some(after) = after {
+                let before = before.unwrap_or(after);
+                more = motion.turns(k, 0.5 * (before + after));
+                if (after - before).abs() * duration > MOST_UNKNOWN * period {
+                    unknown.push((motion.times[k - 1], motion.times[k]));
+                }
+            }
+        }
+        turns += more;
+        values[samples[k]] += period * turns;
+        remember(&mut recent, motion.rate(k, more));
+    }
+    Unwrapped { values, unknown }
+}
+
+/// The samples of a column that are not missing.
+struct Wrapped {
+    times: Vec<f64>,
+    values: Vec<f64>,
+    period: f64,
+    /// The longest step without a gap.
+    longest: f64,
+}
+
+impl Wrapped {
+    /// The periods to add at a sample, relative to the sample before, for a motion at this rate.
+    fn turns(&self, k: usize, rate: f64) -> f64 {
+        let expected = rate * (self.times[k] - self.times[k - 1]);
+        ((expected - (self.values[k] - self.values[k - 1])) / self.period).round()
+    }
+
+    /// The rate up to a sample, with these periods added.
+    fn rate(&self, k: usize, turns: f64) -> f64 {
+        let step = self.values[k] - self.values[k - 1] + self.period * turns;
+        step / (self.times[k] - self.times[k - 1])
+    }
+
+    /// The rate from a sample on, if steps without a gap follow. `guess` is an approximate rate.
+    fn rate_from(&self, first: usize, guess: f64) -> Option<f64> {
+        let mut rates = Vec::new();
+        for k in first + 1..self.times.len().min(first + 1 + RECENT) {
+            if self.times[k] - self.times[k - 1] > self.longest {
+                break;
+            }
+            let expected = median(&rates).unwrap_or(guess);
+            rates.push(self.rate(k, self.turns(k, expected)));
+        }
+        median(&rates)
+    }
+}
+
+/// Appends a rate and drops the oldest one.
+fn remember(recent: &mut Vec<f64>, rate: f64) {
+    if recent.len() == RECENT {
+        recent.remove(0);
+    }
+    recent.push(rate);
+}
+
+/// The median; none of no numbers.
+pub(crate) fn median(numbers: &[f64]) -> Option<f64> {
+    let mut sorted = numbers.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::unwrapped;
+
+    const STEP: f64 = 0.01;
+
+    fn times(count: usize) -> Vec<f64> {
+        (0..count).map(|k| STEP * k as f64).collect()
+    }
+
+    /// The values in 0..360, rounded to what a counter of 4096 per turn shows.
+    fn wrapped(motion: &[f64]) -> Vec<f64> {
+        let counter = |v: &f64| (v.rem_euclid(360.0) / 360.0 * 4096.0).floor() / 4096.0 * 360.0;
+        motion.iter().map(counter).collect()
+    }
+
+    /// The largest error of an unwrapped motion that begins between 0 and 360.
+    fn error(motion: &[f64], column: &[f64]) -> f64 {
+        let found = unwrapped(&times(motion.len()), column, 360.0);
+        assert!(found.unknown.is_empty(), "{:?}", found.unknown);
+        let pairs = motion.iter().zip(&found.values);
+        let known = pairs.filter(|(_, value)| value.is_finite());
+        known.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn motion_is_recovered_up_to_nearly_half_a_turn_per_sample_and_beyond() {
+        for per_sample in [0.3, 90.0, 175.0] {
+            for sign in [1.0, -1.0] {
+                let motion: Vec<f64> = (0..500)
+                    .map(|k| 10.0 + sign * per_sample * f64::from(k))
+                    .collect();
+                assert!(error(&motion, &wrapped(&motion)) < 0.1, "{per_sample}");
+            }
+        }
+        // From rest to 270 degrees per sample.
+        let faster: Vec<f64> = (0..900).map(|k| 0.15 * f64::from(k * k)).collect();
+        assert!(error(&faster, &wrapped(&faster)) < 0.1);
+    }
+
+    #[test]
+    fn noise_beside_the_wrap_and_outliers_leave_no_turn_behind() {
+        let motion: Vec<f64> = (0..600)
+            .map(|k| 360.0 + 30.0 * (0.05 * f64::from(k)).sin() + 5.0 * (2.7 * f64::from(k)).sin())
+            .collect();
+        let mut column = wrapped(&motion);
+        column[300] = 170.0;
+        let found = unwrapped(&times(600), &column, 360.0);
+        let offset = motion[0] - found.values[0];
+        for k in (0..600).filter(|k| *k != 300) {
+            assert!((motion[k] - found.values[k] - offset).abs() < 0.2, "{k}");
+        }
+    }
+
+    #[test]
+    fn turns_in_a_gap_follow_from_the_speed_around_it_or_are_unknown() {
+        let motion: Vec<f64> = (0..400).map(|k| 5.0 + 100.0 * f64::from(k)).collect();
+        let mut column = wrapped(&motion);
+        column[200..230].fill(f64::NAN);
+        assert!(error(&motion, &column) < 0.1);
+        // Twice as fast behind the gap.
+        let motion: Vec<f64> = (0..400)
+            .map(|k| 50.0 * f64::from(k.min(215)) + 100.0 * f64::from((k - 215).max(0)))
+            .collect();
+        let mut column = wrapped(&motion);
+        column[200..230].fill(f64::NAN);
+        let found = unwrapped(&times(400), &column, 360.0);
+        assert_eq!(found.unknown.len(), 1);
+        let (from, to) = found.unknown[0];
+        assert!((from - 1.99).abs() < 1e-9 && (to - 2.3).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,260 @@
+//! Detection of wrapped columns. A motion that crosses the end of a sensor's range jumps to the other
+//! end and goes on at the same speed, against the jump. A square wave jumps as far, but rests at its
+//! levels; what rests proves nothing.
+
+use crate::noise;
+use crate::unwrapping::{median, unwrapped};
+
+/// The fewest samples that are examined.
+const FEWEST: usize = 10;
+
+/// The largest relative difference between the jumps of one column, of the range from the period, and of a
+/// declared period from the one that is seen.
+pub(crate) const ALIKE: f64 = 0.1;
+
+/// The largest relative difference of jumps that are full turns from a turn.
+const TURN: f64 = 0.05;
+
+/// Motion beyond this many standard deviations of the noise is motion.
+const MOVES: f64 = 5.0;
+
+/// Jumps forth and back within this many samples are one crossing with noise.
+const CHATTER: usize = 20;
+
+/// Number of samples beside a crossing in which the motion must leave its noise.
+const REACH: usize = 1000;
+
+/// The part of all crossings that must continue at the same speed.
+const MOST: f64 = 0.8;
+
+/// Number of steps beside a jump that give its speed.
+const BESIDE: usize = 5;
+
+/// Jumps of one common size in a column.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct WrapPattern {
+    /// Their size, in the column's unit: a full turn exactly if it is about that.
+    pub period: f64,
+    /// The time of the first.
+    pub first: f64,
+    /// How many there are.
+    pub count: usize,
+    /// Whether the period is a full turn.
+    pub is_turn: bool,
+    /// Whether the motion goes on in one direction from one jump to the next: between these it travels
+    /// through the whole range.
+    pub travels: bool,
+}
+
+impl WrapPattern {
+    /// Whether it shows that the column is wrapped. An input may have any shape: only jumps of a full turn
+    /// show that one is.
+    pub fn is_wrapped(&self, is_input: bool) -> bool {
+        self.is_turn || (self.travels && !is_input)
+    }
+
+    /// Its period as it is written in a dataset file, from the number in a unit: a full turn in full, others
+    /// to four digits.
+    pub fn written(&self, period: f64) -> String {
+        let rounded = format!("{period:.3e}").parse::<f64>();
+        format!(
+            "{}",
+            rounded.ok().filter(|_| !self.is_turn).unwrap_or(period)
+        )
+    }
+}
+
+/// The pattern of a wrapped column; none if it has no jumps or they do not look like crossings of a
+/// range's end. `turn`: a full turn in the column's unit, if it holds an angle or a number.
+pub(crate) fn wrap_pattern(
+    times: &[f64],
+    column: &[f64],
+    turn: Option<f64>,
+) -> Option<WrapPattern> {
+    let samples: Vec<usize> = (0..column.len())
+        .filter(|sample| column[*sample].is_finite())
+        .collect();
+    if samples.len() < FEWEST {
+        return None;
+    }
+    let times: Vec<f64> = samples.iter().map(|sample| times[*sample]).collect();
+    let values: Vec<f64> = samples.iter().map(|sample| column[*sample]).collect();
+    let (period, jumps) = common_jumps(&values)?;
+    let is_turn = turn.is_some_and(|turn| (period - turn).abs() < TURN * turn);
+    let period = turn.filter(|_| is_turn).unwrap_or(period);
+    let motion = unwrapped(&times, &values, period).values;
+    let crossings = crossings(&jumps, &values);
+    let threshold = MOVES * noise::estimated(&motion).unwrap_or(0.0);
+    let decided: Vec<bool> = crossings
+        .iter()
+        .filter_map(|crossing| crossing.is_continued(&motion, threshold))
+        .collect();
+    let continued = decided.iter().filter(|is_continued| **is_continued).count();
+    if decided.is_empty() || (continued as f64) < MOST * decided.len() as f64 {
+        return None;
+    }
+    let mut neighbours = crossings.windows(2);
+    Some(WrapPattern {
+        period,
+        first: times[jumps[0] + 1],
+        count: jumps.len(),
+        is_turn,
+        travels: neighbours.any(|pair| pair[0].direction == pair[1].direction),
+    })
+}
+
+/// The size of the jumps of a column, with the motion at each allowed for, and the samples before them;
+/// none if their sizes differ or are not that of the range.
+fn common_jumps(values: &[f64]) -> Option<(f64, Vec<usize>)> {
+    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let range = high - low;
+    let step = |k: usize| values[k + 1] - values[k];
+    let is_jump = |k: &usize| step(*k).abs() > 0.5 * range;
+    let jumps: Vec<usize> = (0..values.len() - 1).filter(is_jump).collect();
+    let beside = |jump: usize| -> f64 {
+        let near = jump.saturating_sub(BESIDE)..(jump + BESIDE + 1).min(values.len() - 1);
+        let regular: Vec<f64> = near.filter(|k| !is_jump(k)).map(step).collect();
+        median(&regular).unwrap_or(0.0)
+    };
+    let sizes: Vec<f64> = jumps
+        .iter()
+        .map(|jump| (step(*jump) - beside(*jump)).abs())
+        .collect();
+    let period = median(&sizes)?;
+    let alike = sizes
+        .iter()
+        .filter(|size| (**size - period).abs() < ALIKE * period)
+        .count();
+    let speeds: Vec<f64> = jumps.iter().map(|jump| beside(*jump).abs()).collect();
+    let fastest = speeds.into_iter().fold(0.0, f64::max);
+    let fills = (period - range).abs() < fastest + ALIKE * period;
+    (fills && alike as f64 >= MOST * sizes.len() as f64).then_some((period, jumps))
+}
+
+/// A crossing of the range's end: one jump, or several forth and back by noise.
+struct Crossing {
+    /// The last sample before its first jump.
+    before: usize,
+    /// The first sample after its last jump.
+    after: usize,
+    /// The sign of the motion.
+    direction: f64,
+}
+
+impl Crossing {
+    /// Whether the motion goes through the crossing in its direction, on both sides of it; none if it does
+    /// not leave its noise on one of them.
+    fn is_continued(&self, motion: &[f64], threshold: f64) -> Option<bool> {
+        let level = 0.5 * (motion[self.before] + motion[self.after]);
+        let away = |value: &&f64| (**value - level).abs() > threshold;
+        let before = motion[..=self.before].iter().rev();
+        let came_from = before.take(REACH).find(away)?;
+        let went_to = motion[self.after..].iter().take(REACH).find(away)?;
+        let rises = |from: f64, to: f64| (to - from) * self.direction > 0.0;
+        Some(rises(*came_from, level) && rises(level, *went_to))
+    }
+}
+
+/// The crossings that jumps make. Those that end where they began are left out.
+fn crossings(jumps: &[usize], values: &[f64]) -> Vec<Crossing> {
+    let mut found: Vec<(Crossing, f64)> = Vec::new();
+    for jump in jumps {
+        let sign = -(values[jump + 1] - values[*jump]).signum();
+        match found.last_mut() {
+            Some((last, sum)) if sign != last.direction && jump - last.after < CHATTER => {
+                last.after = jump + 1;
+                last.direction = sign;
+                *sum += sign;
+            }
+            _ => found.push((
+                Crossing {
+                    before: *jump,
+                    after: jump + 1,
+                    direction: sign,
+                },
+                sign,
+            )),
+        }
+    }
+    let net = found.into_iter().filter(|(_, sum)| *sum != 0.0);
+    net.map(|(crossing, _)| crossing).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{WrapPattern, wrap_pattern};
+
+    /// Reproducible numbers between -1 and 1.
+    fn noise(k: usize) -> f64 {
+        2.0 * ((k as f64 * 12.9898).sin() * 43_758.545).fract().abs() - 1.0
+    }
+
+    fn pattern(column: impl Fn(usize) -> f64) -> Option<WrapPattern> {
+        let times: Vec<f64> = (0..1000).map(|k| 0.01 * k as f64).collect();
+        let column: Vec<f64> = (0..1000).map(column).collect();
+        wrap_pattern(&times, &column, Some(360.0))
+    }
+
+    fn between(low: f64, period: f64, value: f64) -> f64 {
+        low + (value - low).rem_euclid(period)
+    }
+
+    #[test]
+    fn wrapped_angles_are_found_with_their_turn() {
+        let swing = |k: usize| 170.0 + 40.0 * (0.03 * k as f64).sin() + 0.5 * noise(k);
+        let fast = |k: usize| 130.0 * k as f64 + 0.2 * noise(k);
+        let slow = |k: usize| 0.4 * k as f64 + 0.5 * noise(k);
+        let motions: [(&str, &dyn Fn(usize) -> f64, bool); 3] = [
+            ("swing", &swing, false),
+            ("fast", &fast, true),
+            ("slow", &slow, true),
+        ];
+        for (name, motion, travels) in motions {
+            for low in [-180.0, 0.0] {
+                let found = pattern(|k| between(low, 360.0, motion(k)));
+                if name == "swing" && low == 0.0 {
+                    assert!(found.is_none(), "never at 0");
+                    continue;
+                }
+                let found = found.unwrap_or_else(|| panic!("{name} from {low}"));
+                assert_eq!((found.period, found.is_turn), (360.0, true), "{name}");
+                assert!(found.travels || !travels || name == "slow", "{name}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_counter_that_rolls_over_is_found_with_its_size() {
+        let found = pattern(|k| (between(0.0, 4096.0, 61.3 * k as f64)).floor());
+        let found = found.expect("a counter");
+        assert!((found.period - 4096.0).abs() < 10.0, "{}", found.period);
+        assert!(found.travels && !found.is_turn);
+        assert_eq!(found.count, 14);
+        assert!((found.first - 0.67).abs() < 1e-9, "{}", found.first);
+    }
+
+    #[test]
+    fn jumps_that_are_real_are_no_wrapping() {
+        let square = |k: usize| {
+            if (k / 70).is_multiple_of(2) {
+                180.0
+            } else {
+                -180.0
+            }
+        };
+        let columns: [(&str, &dyn Fn(usize) -> f64); 7] = [
+            ("a square wave of a turn", &square),
+            ("with noise", &|k| square(k) + noise(k)),
+            ("and a drift", &|k| square(k) + noise(k) + 0.02 * k as f64),
+            ("on a sine", &|k| square(k) + 20.0 * (0.05 * k as f64).cos()),
+            ("noise alone", &|k| 180.0 * noise(k)),
+            ("spikes", &|k| if k % 90 == 5 { 360.0 } else { noise(k) }),
+            ("a sine", &|k| 180.0 * (0.8 * k as f64).sin()),
+        ];
+        for (name, column) in columns {
+            let found = pattern(column);
+            assert!(found.is_none(), "{name}: {found:?}");
+        }
+    }
+}

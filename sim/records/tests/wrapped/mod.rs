@@ -1,0 +1,258 @@
+//! Columns that wrap around: refused with what to write, unwrapped by `wrap`, and told from jumps that are
+//! real.
+
+use std::fmt::Write;
+
+use eomgen_model_spec::model::Model;
+use eomgen_records::dataset::Dataset;
+use eomgen_records::{Refusal, proposed, read_dataset};
+use tempfile::TempDir;
+
+use super::write;
+
+const ROTOR: &str = r#"
+[model]
+name = "rotor"
+[parameters]
+J = { value = 0.01, unit = "kg m^2" }
+k = { value = 0.2, unit = "N m" }
+[coordinates]
+phi = { unit = "rad" }
+[inputs]
+u = { unit = "N m" }
+[kinetic]
+wheel = "1/2*J*dot(phi)^2"
+[forces]
+motor = { on = "phi", value = "u" }
+"#;
+
+const DESCRIPTION: &str = r#"
+[records]
+train = ["train.csv"]
+test = ["test.csv"]
+[time]
+column = "t"
+unit = "s"
+[channels.phi]
+column = "phi"
+unit = "deg"
+noise = 0.1
+"#;
+
+const COUNT: usize = 400;
+
+fn rotor() -> Model {
+    let source = eomgen_model_spec::source::Source::new("rotor.toml", ROTOR);
+    eomgen_model_spec::check(source).expect("a model").model
+}
+
+/// The angle in degrees: over many turns, with reversals.
+fn angle(k: usize, turn: f64) -> f64 {
+    let t = 0.01 * k as f64;
+    900.0 * (1.1 * t + turn).sin() + 700.0 * t
+}
+
+/// A folder with records of an angle, as a sensor shows it, and of an input.
+fn folder(description: &str, sensor: impl Fn(f64) -> f64, u: impl Fn(usize) -> f64) -> TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    write(folder.path(), "dataset.toml", description);
+    for (name, turn) in [("train.csv", 0.0), ("test.csv", 1.0)] {
+        let mut text = "t,u,phi\n".to_owned();
+        for k in 0..COUNT {
+            let (t, phi) = (0.01 * k as f64, sensor(angle(k, turn)));
+            writeln!(text, "{t:.2},{},{phi:.6}", u(k)).expect("a string");
+        }
+        write(folder.path(), name, &text);
+    }
+    folder
+}
+
+fn wrapped(value: f64) -> f64 {
+    (value + 180.0).rem_euclid(360.0) - 180.0
+}
+
+fn read(folder: &TempDir) -> Result<Dataset, Refusal> {
+    read_dataset(&folder.path().join("dataset.toml"), &rotor())
+}
+
+fn refused(folder: &TempDir) -> String {
+    read(folder)
+        .map(|_| ())
+        .expect_err("it is taken")
+        .to_string()
+}
+
+/// With further keys of the channel.
+fn with(keys: &str) -> String {
+    format!("{DESCRIPTION}{keys}\n")
+}
+
+/// The largest difference of a channel from the angle, degrees, but for one offset of whole turns.
+fn error(values: &[f64], turn: f64, every: usize) -> f64 {
+    let degrees = |k: usize| values[k].to_degrees() - angle(k * every, turn);
+    let offset = (degrees(0) / 360.0).round() * 360.0;
+    // The low-pass of `every` reaches over the ends.
+    let inside = 10 * (every - 1)..values.len() - 10 * (every - 1);
+    inside
+        .map(|k| (degrees(k) - offset).abs())
+        .fold(0.0, f64::max)
+}
+
+#[test]
+fn a_wrapped_channel_is_refused_with_the_key_to_write() {
+    let said = refused(&folder(DESCRIPTION, wrapped, |_| 0.0));
+    for part in [
+        "train.csv: `phi` jumps ",
+        " times by about 360.0000 deg, first at 0.",
+        "write wrap = 360 in [channels.phi]",
+    ] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+    let radians = DESCRIPTION.replace("\"deg\"", "\"rad\"");
+    let said = refused(&folder(&radians, |v| wrapped(v).to_radians(), |_| 0.0));
+    assert!(said.contains("write wrap = 6.283185307179586 in"), "{said}");
+    let counts = DESCRIPTION.replace("\"deg\"", "\"1\"").replace("0.1", "1");
+    let said = refused(&folder(
+        &counts,
+        |v| (v / 360.0 * 4096.0).floor().rem_euclid(4096.0),
+        |_| 0.0,
+    ));
+    assert!(
+        said.contains("write wrap = 4096 in [channels.phi]") || said.contains("write wrap = 409"),
+        "{said}"
+    );
+    assert!(read(&folder(&with("wrap = \"none\""), wrapped, |_| 0.0)).is_ok());
+}
+
+#[test]
+fn a_declared_channel_is_unwrapped_before_samples_are_left_out() {
+    for (unit, keys, scale) in [
+        ("deg", "wrap = 360", 1.0),
+        ("rad", "wrap = 6.283", 1f64.to_radians()),
+    ] {
+        for every in [1, 4] {
+            let description = with(keys)
+                .replace("\"deg\"", &format!("\"{unit}\""))
+                .replace(
+                    "column = \"t\"",
+                    &format!("column = \"t\"\nevery = {every}"),
+                );
+            let dataset = read(&folder(&description, |v| scale * wrapped(v), |_| 0.0));
+            let dataset = dataset.unwrap_or_else(|refusal| panic!("{refusal}"));
+            for (record, turn) in [(&dataset.train[0], 0.0), (&dataset.test[0], 1.0)] {
+                let error = error(&record.channels[0], turn, every);
+                assert!(error < 0.05, "{unit}, {every}: {error}");
+            }
+        }
+    }
+}
+
+#[test]
+fn parts_of_a_file_keep_its_turns_and_a_known_start_decides_the_first() {
+    let parts =
+        "train = [{ file = \"train.csv\", to = 2 }]\ntest = [{ file = \"train.csv\", from = 2 }]";
+    let whole = "train = [\"train.csv\"]\ntest = [\"test.csv\"]";
+    let folder_of = folder(&with("wrap = 360").replace(whole, parts), wrapped, |_| 0.0);
+    let dataset = read(&folder_of).unwrap_or_else(|refusal| panic!("{refusal}"));
+    let [before, after] = [&dataset.train[0], &dataset.test[0]].map(|record| &record.channels[0]);
+    let step = (after[0] - before[before.len() - 1]).to_degrees();
+    assert!(
+        (step - angle(200, 0.0) + angle(199, 0.0)).abs() < 1e-3,
+        "{step}"
+    );
+    // A sensor from 0 to 360 degrees shows 359.9 at rest.
+    let resting = with("wrap = 360\n[initial]\nstate = \"rest\"");
+    let from_zero = folder(&resting, |v| (v - 0.1).rem_euclid(360.0), |_| 0.0);
+    let dataset = read(&from_zero).unwrap_or_else(|refusal| panic!("{refusal}"));
+    let first = dataset.train[0].channels[0][0].to_degrees();
+    assert!((first + 0.1).abs() < 1e-3, "{first}");
+}
+
+#[test]
+fn a_period_that_is_not_the_columns_is_refused() {
+    for (keys, part) in [
+        ("wrap = 100", "spans 357."),
+        ("wrap = 720", "jumps by about 360.0000 deg"),
+        ("wrap = 0", "cannot wrap around after 0"),
+        ("wrap = \"no\"", "expected \"none\""),
+    ] {
+        let said = refused(&folder(&with(keys), wrapped, |_| 0.0));
+        assert!(said.contains(part), "{part}: {said}");
+    }
+}
+
+#[test]
+fn a_gap_with_an_unknown_number_of_turns_is_refused_inside_a_part_only() {
+    let with_gap = |description: &str| {
+        let folder = folder(description, wrapped, |_| 0.0);
+        let mut text = "t,u,phi\n".to_owned();
+        for k in 0..COUNT {
+            // Stands still up to the gap, turns by 90 degrees per sample after it.
+            let phi = wrapped(90.0 * k.saturating_sub(215) as f64 + 0.01 * k as f64);
+            let phi = if (200..230).contains(&k) {
+                String::new()
+            } else {
+                format!("{phi:.3}")
+            };
+            writeln!(text, "{:.2},0,{phi}", 0.01 * k as f64).expect("a string");
+        }
+        write(folder.path(), "train.csv", &text);
+        folder
+    };
+    let said = refused(&with_gap(&with("wrap = 360")));
+    assert!(
+        said.contains("`phi` is missing from 1.990000 s to 2.300000 s"),
+        "{said}"
+    );
+    let parts =
+        "train = [{ file = \"train.csv\", to = 1.99 }, { file = \"train.csv\", from = 2.3 }]";
+    let parted = with("wrap = 360").replace("train = [\"train.csv\"]", parts);
+    let dataset = read(&with_gap(&parted)).unwrap_or_else(|refusal| panic!("{refusal}"));
+    assert_eq!(dataset.train.len(), 2);
+}
+
+#[test]
+fn a_square_wave_is_no_wrapped_input_and_a_wrapped_one_is() {
+    let fed = "[inputs.u]\ncolumn = \"u\"\nunit = \"rad\"\n";
+    let model = ROTOR.replace("u = { unit = \"N m\" }", "u = { unit = \"rad\" }");
+    let model = model.replace("value = \"u\"", "value = \"k*u\"");
+    let model = eomgen_model_spec::source::Source::new("rotor.toml", model);
+    let model = eomgen_model_spec::check(model).expect("a model").model;
+    let read = |u: &dyn Fn(usize) -> f64| {
+        let folder = folder(&with(&format!("wrap = 360\n{fed}")), wrapped, u);
+        read_dataset(&folder.path().join("dataset.toml"), &model).map(|_| ())
+    };
+    let turn = std::f64::consts::TAU;
+    let square = |k: usize| {
+        if (k / 50) % 2 == 0 {
+            0.5 * turn
+        } else {
+            -0.5 * turn
+        }
+    };
+    let sawtooth = |k: usize| 0.03 * (k % 50) as f64;
+    let angle = |k: usize| (0.11 * k as f64).rem_euclid(turn);
+    for (name, u, is_taken) in [
+        ("square", &square as &dyn Fn(usize) -> f64, true),
+        ("sawtooth", &sawtooth, true),
+        ("angle", &angle, false),
+    ] {
+        let found = read(u);
+        assert_eq!(found.is_ok(), is_taken, "{name}: {found:?}");
+        if let Err(refusal) = found {
+            assert!(refusal.to_string().contains("in [inputs.u]"), "{refusal}");
+        }
+    }
+}
+
+#[test]
+fn the_proposed_file_declares_the_wrap() {
+    let folder = folder("", |v| wrapped(v).to_radians(), |k| (0.1 * k as f64).sin());
+    let text = proposed(&folder.path().join("train.csv"), "train.csv", &rotor());
+    let text = text.unwrap_or_else(|refusal| panic!("{refusal}"));
+    assert!(text.contains("wrap = 6.283185307179586"), "{text}");
+    write(folder.path(), "dataset.toml", &text);
+    let dataset = read(&folder).unwrap_or_else(|refusal| panic!("{refusal}: {text}"));
+    assert!(error(&dataset.train[0].channels[0], 0.0, 1) < 0.05);
+    assert!(dataset.channels[0].noise < 1e-3, "{text}");
+}
