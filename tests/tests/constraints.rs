@@ -200,6 +200,11 @@ fn constraints_that_cannot_hold_are_named() {
     let satisfied = changed("x^2 + y^2 - l^2", twice);
     let redundant = refusal(&satisfied);
     assert!(redundant.contains("`again` is redundant"), "{redundant}");
+    let steep = refusal(&changed("x^2 + y^2 - l^2", "sqrt((x - l)*l) + y"));
+    assert!(
+        steep.contains("derivative of the constraint `rod` is not finite"),
+        "{steep}"
+    );
     let flat = refusal(&changed("initial = \"l\"", "initial = 0"));
     assert!(flat.contains("`rod` holds nothing"), "{flat}");
 }

@@ -338,7 +338,7 @@ impl Independent {
     }
 }
 
-/// A constraint whose derivative is a combination of the derivatives of others, or zero.
+/// A constraint whose derivative is a combination of the derivatives of others, or not finite.
 struct Follows<'a> {
     constraint: &'a Constraint,
     of: Vec<&'a Constraint>,
@@ -356,8 +356,8 @@ impl Follows<'_> {
         let (name, others) = (&self.constraint.name, names.join(", "));
         if self.of.is_empty() {
             return format!(
-                "the constraint `{name}` holds nothing at the initial state: its derivative is zero there; start \
-                 elsewhere (--initial), or write it so that it crosses zero, as x instead of x^2"
+                "the derivative of the constraint `{name}` is not finite at the initial state, as that of \
+                 sqrt(x) at x = 0; start elsewhere (--initial), or write the constraint without it"
             );
         }
         let kind = self.constraint.is_nonholonomic;
