@@ -3,11 +3,11 @@
 
 use crate::description::Description;
 
-use crate::coverage::{self, STILL, span};
+use crate::coverage::{self, STILL};
 use crate::dataset::Dataset;
 use crate::record::Record;
 use crate::refusal::Refusal;
-use crate::samples::{JITTER, typical_step};
+use crate::samples::{JITTER, span, typical_step};
 use crate::windows::{LONGEST_DELAY, LONGEST_LEAD};
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 

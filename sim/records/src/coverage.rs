@@ -8,7 +8,7 @@ use eomgen_model_spec::table::Number;
 use crate::dataset::Dataset;
 use crate::record::Record;
 use crate::refusal::Refusal;
-use crate::samples::typical_step;
+use crate::samples::{span, typical_step};
 use crate::windows::{Windows, judged};
 
 /// A window with fewer samples says nothing of what happens inside it.
@@ -181,10 +181,4 @@ fn moving(
         ),
     )
     .help("expected one standard deviation of the sensor's noise, in the column's unit"))
-}
-
-/// From a column's smallest value to its largest.
-pub(crate) fn span(column: &[f64]) -> f64 {
-    let known = || column.iter().copied().filter(|v| v.is_finite());
-    known().fold(f64::NEG_INFINITY, f64::max) - known().fold(f64::INFINITY, f64::min)
 }

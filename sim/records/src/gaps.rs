@@ -2,10 +2,7 @@
 //! lies before and behind are records of their own.
 
 use crate::record::Record;
-use crate::samples::{FEWEST_SAMPLES, typical_step};
-
-/// So many of the usual steps without a sample are a lost stretch; fewer are jitter.
-pub(crate) const LOST: f64 = 5.0;
+use crate::samples::{FEWEST_SAMPLES, LOST, typical_step};
 
 /// A record that more gaps part is taken as it is: its steps differ, nothing was lost.
 const MOST: usize = 20;

@@ -9,33 +9,10 @@ use eomgen_model_spec::unit::Unit;
 
 use crate::dataset::{Channel, Quantity};
 use crate::description::Description;
-use crate::description::columns::{Column, MotionColumn};
+use crate::description::columns::MotionColumn;
 use crate::description::motion::InitialState;
+use crate::motion_rates::{GivenColumn, GivenKind};
 use crate::units::unit;
-
-/// The column of a coordinate whose motion is given.
-pub(crate) struct GivenColumn<'d> {
-    /// The coordinate.
-    pub name: &'d str,
-    /// Its column.
-    pub column: &'d Column,
-    /// The column's unit.
-    pub unit: Unit,
-    /// What the column holds.
-    pub kind: GivenKind,
-}
-
-/// What the column of a given motion holds.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum GivenKind {
-    /// The position.
-    Position,
-    /// The speed, and the position at the first sample, SI.
-    Speed {
-        /// That position.
-        initial: f64,
-    },
-}
 
 /// For each coordinate of the model its column; none if no motion is given.
 pub(crate) fn columns<'d>(

@@ -1,6 +1,33 @@
 //! Position, rate and second rate of a motion that records give by its positions or its speeds.
 
+use eomgen_model_spec::unit::Unit;
 use eomgen_sim::cubic_spline::CubicSpline;
+
+use crate::description::columns::Column;
+
+/// The column of a coordinate whose motion is given.
+pub(crate) struct GivenColumn<'d> {
+    /// The coordinate.
+    pub name: &'d str,
+    /// Its column.
+    pub column: &'d Column,
+    /// The column's unit.
+    pub unit: Unit,
+    /// What the column holds.
+    pub kind: GivenKind,
+}
+
+/// What the column of a given motion holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum GivenKind {
+    /// The position.
+    Position,
+    /// The speed, and the position at the first sample, SI.
+    Speed {
+        /// That position.
+        initial: f64,
+    },
+}
 
 /// A coordinate's samples with their rates and second rates, on the cubic spline through those that are
 /// known; none if nothing is.

@@ -13,6 +13,9 @@ pub const FEWEST_OF_INPUTS: usize = 2;
 /// An input is held over what is missing of it, a motion goes on as a spline; more than this part is refused.
 const MOST_HELD: f64 = 0.1;
 
+/// So many of the usual steps without a sample are a lost stretch; fewer are jitter.
+pub(crate) const LOST: f64 = 5.0;
+
 /// Steps that differ from the usual one by more than this part of it are jitter.
 pub(crate) const JITTER: f64 = 0.1;
 
@@ -72,4 +75,10 @@ pub fn typical_step(times: &[f64]) -> f64 {
     let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     steps.sort_by(f64::total_cmp);
     steps.get(steps.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// From a column's smallest value to its largest.
+pub(crate) fn span(column: &[f64]) -> f64 {
+    let known = || column.iter().copied().filter(|v| v.is_finite());
+    known().fold(f64::NEG_INFINITY, f64::max) - known().fold(f64::INFINITY, f64::min)
 }

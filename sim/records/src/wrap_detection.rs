@@ -185,6 +185,9 @@ fn crossings(jumps: &[usize], values: &[f64]) -> Vec<Crossing> {
 mod tests {
     use super::{WrapPattern, wrap_pattern};
 
+    /// Values by sample.
+    type Motion<'a> = &'a dyn Fn(usize) -> f64;
+
     /// Reproducible numbers between -1 and 1.
     fn noise(k: usize) -> f64 {
         2.0 * ((k as f64 * 12.9898).sin() * 43_758.545).fract().abs() - 1.0
@@ -205,7 +208,7 @@ mod tests {
         let swing = |k: usize| 170.0 + 40.0 * (0.03 * k as f64).sin() + 0.5 * noise(k);
         let fast = |k: usize| 130.0 * k as f64 + 0.2 * noise(k);
         let slow = |k: usize| 0.4 * k as f64 + 0.5 * noise(k);
-        let motions: [(&str, &dyn Fn(usize) -> f64, bool); 3] = [
+        let motions: [(&str, Motion<'_>, bool); 3] = [
             ("swing", &swing, false),
             ("fast", &fast, true),
             ("slow", &slow, true),
@@ -243,7 +246,7 @@ mod tests {
                 -180.0
             }
         };
-        let columns: [(&str, &dyn Fn(usize) -> f64); 7] = [
+        let columns: [(&str, Motion<'_>); 7] = [
             ("a square wave of a turn", &square),
             ("with noise", &|k| square(k) + noise(k)),
             ("and a drift", &|k| square(k) + noise(k) + 0.02 * k as f64),

@@ -10,11 +10,9 @@ use eomgen_model_spec::dimension::Dimension;
 use eomgen_model_spec::table::Number;
 use eomgen_model_spec::unit::Unit;
 
-use crate::coverage::span;
 use crate::description::columns::{Column, Wrap};
-use crate::gaps::LOST;
 use crate::header::Table;
-use crate::samples::typical_step;
+use crate::samples::{LOST, span, typical_step};
 use crate::unwrapping::unwrapped;
 use crate::wrap_detection::{ALIKE, WrapPattern, wrap_pattern};
 

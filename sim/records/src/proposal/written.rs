@@ -7,9 +7,9 @@ use eomgen_model_spec::visible::{is_hidden, visible_in_strings};
 
 use super::Found;
 use super::matching::{FileColumn, Match};
-use crate::coverage::span;
 use crate::description::format::{DECIMALS, Format, SEPARATORS};
 use crate::noise::estimated;
+use crate::samples::span;
 use crate::unwrapping::unwrapped;
 use crate::wrap_detection::WrapPattern;
 

@@ -224,7 +224,7 @@ fn a_square_wave_is_no_wrapped_input_and_a_wrapped_one_is() {
     };
     let turn = std::f64::consts::TAU;
     let square = |k: usize| {
-        if (k / 50) % 2 == 0 {
+        if (k / 50).is_multiple_of(2) {
             0.5 * turn
         } else {
             -0.5 * turn
