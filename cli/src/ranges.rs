@@ -1,5 +1,4 @@
-//! Whether a motion stays where its model lives: what is said when a coordinate or an input
-//! leaves its range.
+//! Warnings about coordinates, states and inputs that leave their ranges.
 
 use eomgen_model_spec::model::Model;
 use eomgen_sim::inputs::HeldInputs;
@@ -7,8 +6,8 @@ use eomgen_sim::ode::Trajectory;
 
 use crate::error::{Error, Result, warn};
 
-/// Warns of every coordinate and input that leaves its range, with the first time at which a
-/// sample shows it.
+/// Warns of every coordinate, state and input that leaves its range, with the time of the first
+/// sample outside.
 pub fn warn_of_ranges(model: &Model, trajectory: &Trajectory, inputs: &HeldInputs) -> Result {
     let error = |error| Error::model(&model.source, error);
     let coordinates = model.coordinate_ranges().map_err(error)?;
@@ -17,6 +16,16 @@ pub fn warn_of_ranges(model: &Model, trajectory: &Trajectory, inputs: &HeldInput
         let values = samples.map(|(t, state)| (*t, state[place]));
         let unit = coordinate.unit.to_string();
         say_first(&coordinate.name, &unit, coordinates[place], values);
+    }
+    let states = model.state_ranges().map_err(error)?;
+    for (place, first_order) in model.states.iter().enumerate() {
+        let samples = trajectory.times.iter().zip(&trajectory.states);
+        let values = samples.map(|(t, state)| {
+            let first = state.len() - model.states.len();
+            (*t, state[first + place])
+        });
+        let unit = first_order.unit.to_string();
+        say_first(&first_order.name, &unit, states[place], values);
     }
     let ranges = model.input_ranges().map_err(error)?;
     for (place, input) in model.inputs.iter().enumerate() {

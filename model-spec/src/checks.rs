@@ -176,7 +176,8 @@ fn for_each_expression(model: &Model, see: &mut impl FnMut(&Expr)) {
     }
     let coordinates = model.coordinates.iter().map(|c| &c.range);
     let inputs = model.inputs.iter().map(|input| &input.range);
-    for range in coordinates.chain(inputs).flatten() {
+    let states = model.states.iter().map(|state| &state.range);
+    for range in coordinates.chain(inputs).chain(states).flatten() {
         see(&range.low);
         see(&range.high);
     }

@@ -94,7 +94,7 @@ pub fn coordinate(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawCoord
     })
 }
 
-/// The `range` of a coordinate or an input, if it has one.
+/// Reads the `range` of a coordinate, an input or a state, if it has one.
 fn range(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawRange> {
     let entry = record.get("range")?;
     let [low, high] = found.keep(entry.pair())?;
@@ -153,6 +153,7 @@ pub fn state(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawState> {
         unit,
         rate: found.keep(rate)?,
         initial: record.quantity("initial", found),
+        range: range(&record, found),
         doc: record.text("doc", found),
     })
 }

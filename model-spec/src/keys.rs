@@ -22,7 +22,7 @@ pub const COORDINATE: [&str; 5] = ["unit", "doc", "initial", "initial_rate", "ra
 /// Keys of an entry of `[inputs]`.
 pub const INPUT: [&str; 4] = ["unit", "rates", "doc", "range"];
 /// Keys of an entry of `[states]`.
-pub const STATE: [&str; 4] = ["unit", "rate", "initial", "doc"];
+pub const STATE: [&str; 5] = ["unit", "rate", "initial", "range", "doc"];
 /// Keys of a `[fields.NAME]`.
 pub const FIELD: [&str; 9] = [
     "along",

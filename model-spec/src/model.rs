@@ -196,7 +196,7 @@ pub struct Coordinate {
     pub span: Span,
 }
 
-/// Where a coordinate or an input lives: nothing is said of the model outside.
+/// Interval of a coordinate, an input or a state. The model makes no statement outside.
 #[derive(Clone, Debug)]
 pub struct Range {
     /// The lower end (parameters only).
@@ -242,6 +242,8 @@ pub struct State {
     pub rate: Expr,
     /// Initial value (parameters only), 0 if absent.
     pub initial: Option<Expr>,
+    /// Interval outside which the model makes no statement, if the specification gives one.
+    pub range: Option<Range>,
     /// Where its name stands.
     pub span: Span,
 }

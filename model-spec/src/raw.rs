@@ -161,7 +161,7 @@ pub struct RawCoordinate {
     pub range: Option<RawRange>,
 }
 
-/// A `range`: where a coordinate or an input lives.
+/// A `range` of a coordinate, an input or a state.
 #[derive(Debug)]
 pub struct RawRange {
     /// The lower end.
@@ -234,6 +234,8 @@ pub struct RawState {
     pub rate: Quantity,
     /// `initial`
     pub initial: Option<Quantity>,
+    /// `range`
+    pub range: Option<RawRange>,
     /// `doc`
     pub doc: String,
 }

@@ -103,6 +103,7 @@ impl Units<'_, '_> {
                 let because = format!("expected {}: {} per s", Words(rate), state.unit);
                 self.expect(&state.rate, rate, &subject, &because);
             }
+            self.range(state.range.as_ref(), own, &state.name);
         }
     }
 

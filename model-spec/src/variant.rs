@@ -134,6 +134,18 @@ impl Model {
             .collect())
     }
 
+    /// Intervals of the states of first order, in SI; `None` without a `range`.
+    ///
+    /// # Errors
+    /// As [`Model::parameter_values`].
+    pub fn state_ranges(&self) -> Result<Vec<Option<(f64, f64)>>, ModelError> {
+        let values = self.parameter_values()?;
+        let ranges = self.states.iter().map(|state| state.range.as_ref());
+        Ok(ranges
+            .map(|range| range.map(|range| range.ends(&values)))
+            .collect())
+    }
+
     /// Inputs where nobody gives them, in SI: of prescribed motion, which may stand in the energies,
     /// the middle of its range, or this number without one; 0 of all others.
     ///
@@ -286,6 +298,13 @@ impl Model {
                 check_inside(name, range, &values, *initial)?;
             }
         }
+        let first_order = state.iter().skip(2 * self.coordinates.len());
+        for (state, initial) in self.states.iter().zip(first_order) {
+            if let Some(range) = &state.range {
+                check_range(&state.name, range, &values)?;
+                check_inside(&state.name, range, &values, *initial)?;
+            }
+        }
         for input in &self.inputs {
             if let Some(range) = &input.range {
                 check_range(&input.name, range, &values)?;
@@ -355,7 +374,7 @@ fn check_range(name: &str, range: &Range, values: &[f64]) -> Result<(), ModelErr
         .help("give two finite ends, the lower one first"))
 }
 
-/// Whether a coordinate begins where it lives.
+/// Checks that an initial value lies in its range.
 fn check_inside(name: &str, range: &Range, values: &[f64], initial: f64) -> Result<(), ModelError> {
     let (low, high) = range.ends(values);
     if (low..=high).contains(&initial) {

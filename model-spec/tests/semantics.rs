@@ -523,3 +523,22 @@ fn points_are_placed_by_numbers_coordinates_and_observables() {
     let (without, _) = text.split_once("[drawing").expect("a drawing");
     assert!(checked(without).model.drawing.is_none());
 }
+
+#[test]
+fn states_have_ranges_in_which_they_begin() {
+    let state = "[states]\nz = { unit = \"m\", rate = \"dot(x)\", initial = 0.002, range = [\"-b\", 0.004] }\n\n[kinetic]";
+    let text = SPEAKER.replace("[kinetic]", state);
+    let model = checked(&text).model;
+    assert_eq!(
+        model.state_ranges().expect("values"),
+        [Some((-0.005, 0.004))]
+    );
+    let outside = text.replace("initial = 0.002", "initial = 0.02");
+    let message = refused(&outside);
+    assert!(
+        message.contains("`z` begins at 0.02, outside its range -0.005 to 0.004"),
+        "{message}"
+    );
+    let wrong = text.replace("[\"-b\", 0.004]", "[\"-b\", \"m\"]");
+    assert!(refused(&wrong).contains("the upper end of `z` is in kg"));
+}

@@ -66,3 +66,16 @@ fn a_motion_inside_its_range_is_not_remarked_upon() {
         .replace("range = [1, 2]", "range = [-1, 2]");
     assert!(!simulated(&text).contains("leaves"));
 }
+
+#[test]
+fn a_state_that_leaves_its_range_is_a_warning() {
+    let state =
+        "[states]\nz = { unit = \"m\", rate = \"dot(x)\", range = [-0.1, 0.25] }\n[kinetic]";
+    let text = SPRING.replace("[kinetic]", state);
+    let text = text.replace("range = [1, 2]", "range = [-1, 2]");
+    let said = simulated(&text);
+    assert!(
+        said.contains("`z` leaves its range -0.1 to 0.25 m"),
+        "{said}"
+    );
+}

@@ -411,12 +411,14 @@ impl Builder {
             Some(quantity) => self.expression(&quantity, Scope::Parameters).map(Some),
             None => Some(None),
         };
+        let range = self.range(raw.range);
         Some(State {
             name: raw.name.text,
             unit: unit?,
             doc: raw.doc,
             rate: rate?,
             initial: initial?,
+            range: range?,
             span: raw.name.span,
         })
     }
