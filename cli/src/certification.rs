@@ -1,6 +1,6 @@
 //! Certificates of variants as they are written and summarised.
 
-use eomgen_validate::certificate::{Certificate, Check};
+use eomgen_validate::certificate::{Certificate, Check, SkipKind, Verdict};
 
 use crate::error::{Error, Result};
 
@@ -23,10 +23,13 @@ pub fn summary(certificate: &Certificate) -> String {
     for check in &certificate.checks {
         text.push_str(&format!("  {:width$}  {}\n", check.name, verdict(check)));
     }
-    text.push_str(if certificate.passed {
-        "passed\n"
-    } else {
-        "FAILED\n"
+    if let Some(coverage) = &certificate.coverage {
+        text.push_str(&format!("coverage: {}\n", coverage.sentence()));
+    }
+    text.push_str(match certificate.verdict {
+        Verdict::Passed => "passed\n",
+        Verdict::Partial => "PARTIAL: no check failed, but some were not run\n",
+        Verdict::Failed => "FAILED\n",
     });
     text
 }
@@ -37,8 +40,10 @@ fn verdict(check: &Check) -> String {
     } else {
         format!("  ({})", check.detail)
     };
-    if check.skipped {
-        return format!("skipped{detail}");
+    match check.skipped.as_ref().map(|skip| skip.kind) {
+        Some(SkipKind::NotApplicable) => return format!("not applicable{detail}"),
+        Some(SkipKind::NotRun) => return format!("NOT RUN{detail}"),
+        None => {}
     }
     let value = check
         .value

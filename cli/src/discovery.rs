@@ -10,7 +10,7 @@ use eomgen_model_spec::source::Source;
 use eomgen_paper::certification::certify;
 use eomgen_records::dataset::Dataset;
 use eomgen_records::read_dataset;
-use eomgen_validate::certificate::Check;
+use eomgen_validate::certificate::{Check, Verdict};
 use serde_json::{Value, json};
 
 use crate::arguments;
@@ -92,9 +92,9 @@ fn validated(path: &str, text: &str, order: Option<usize>) -> Result<Option<Vali
         checks.map(|check| check.name.clone()).collect()
     };
     Ok(Some(Validation {
-        passed: certificate.passed,
-        checks: names(|check| !check.skipped),
-        failed: names(|check| !check.passed && !check.skipped),
+        passed: certificate.verdict != Verdict::Failed,
+        checks: names(|check| check.skipped.is_none()),
+        failed: names(|check| !check.passed && check.skipped.is_none()),
     }))
 }
 

@@ -8,7 +8,7 @@ use eomgen_discover::{Specification, catalogue, discover_until};
 use eomgen_model_spec::source::Source;
 use eomgen_paper::certification::certify;
 use eomgen_records::read_dataset;
-use eomgen_validate::certificate::Check;
+use eomgen_validate::certificate::{Check, Verdict};
 use pyo3::prelude::*;
 
 use crate::error;
@@ -87,8 +87,8 @@ fn validated(extended: Source, order: Option<usize>) -> Result<Option<Validation
         checks.map(|check| check.name.clone()).collect()
     };
     Ok(Some(Validation {
-        passed: certificate.passed,
-        checks: names(|check| !check.skipped),
-        failed: names(|check| !check.passed && !check.skipped),
+        passed: certificate.verdict != Verdict::Failed,
+        checks: names(|check| check.skipped.is_none()),
+        failed: names(|check| !check.passed && check.skipped.is_none()),
     }))
 }

@@ -74,7 +74,11 @@ pub fn samples(model: &Model, order: usize, seed: u64, count: usize) -> Vec<Samp
     let oracle = Oracle::new(model, order, &parameters).expect("the oracle knows the model");
     let mut sampler = Sampler::new(&oracle, seed).expect("states can be drawn");
     let mut samples = Vec::new();
-    for regime in sampler.regimes().expect("the oracle knows the model") {
+    for regime in sampler
+        .regimes()
+        .expect("the oracle knows the model")
+        .visited
+    {
         for _ in 0..count {
             let drawn = sampler
                 .draw_in(&regime)

@@ -43,7 +43,11 @@ fn passes(certificate: &Certificate, may_skip: &[&str]) {
         certificate.passed && failures.is_empty(),
         "{shown}: {failures:#?}"
     );
-    for check in certificate.checks.iter().filter(|check| check.skipped) {
+    for check in certificate
+        .checks
+        .iter()
+        .filter(|check| check.skipped.is_some())
+    {
         let expected = may_skip.iter().any(|name| check.name.starts_with(name));
         assert!(
             expected,
@@ -95,7 +99,7 @@ fn is_checked_in(certificate: &Certificate) {
     let text = std::fs::read_to_string(&path).expect("the certificate is checked in");
     let found: serde_json::Value = serde_json::from_str(&text).expect("one document");
     let made = |check: &serde_json::Value| {
-        let skipped = check["skipped"] == true;
+        let skipped = check["skipped"].is_object();
         assert!(skipped || check["passed"] == true, "{name}: {check}");
         (
             check["name"].as_str().unwrap_or_default().to_owned(),
@@ -105,7 +109,7 @@ fn is_checked_in(certificate: &Certificate) {
     // What has been judged since is in it from the next `generate --all` on.
     for (found, skipped) in found["checks"].as_array().expect("checks").iter().map(made) {
         let mut checks = certificate.checks.iter();
-        let known = checks.any(|check| check.name == found && check.skipped == skipped);
+        let known = checks.any(|check| check.name == found && check.skipped.is_some() == skipped);
         assert!(known, "{name}: {found}: run `eomgen generate --all`");
     }
 }

@@ -137,3 +137,39 @@ fn without_certify_there_is_no_certificate() {
     accepted(&["generate", &spec, "--out", &out.display().to_string()]);
     assert!(!out.join("certificate.json").exists());
 }
+
+#[test]
+fn a_partial_certificate_says_so_and_ends_with_1() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("lever.toml");
+    let unreached =
+        "motor = { on = \"theta\", value = \"u*(1 + above(theta*exp(-theta^2) - 0.5))\" }";
+    let changed = LEVER.replace("motor = { on = \"theta\", value = \"u\" }", unreached);
+    std::fs::write(&path, changed).expect("a file can be written");
+    let spec = path.display().to_string();
+    let output = run(&["validate", &spec, "--json"]);
+    let certificate = document(&text(&output.stdout));
+    assert_eq!(output.status.code(), Some(1), "{certificate:#}");
+    assert_eq!(certificate["verdict"], "partial");
+    assert_eq!(certificate["passed"], false);
+    let coverage = serde_json::json!({ "regimes": 6, "sampled": 3, "unreachable": 0 });
+    assert_eq!(certificate["coverage"], coverage);
+    let checks = certificate["checks"].as_array().expect("checks");
+    let of = |name: &str| {
+        checks
+            .iter()
+            .find(|check| check["name"] == name)
+            .expect("a check")
+    };
+    assert_eq!(of("coverage")["skipped"]["kind"], "not_run");
+    assert_eq!(of("nesting_mass")["skipped"]["kind"], "not_applicable");
+    assert_eq!(of("energy")["skipped"], false);
+    let output = run(&["validate", &spec]);
+    assert_eq!(output.status.code(), Some(1));
+    let shown = text(&output.stdout);
+    assert!(
+        shown.contains("coverage: states were tried in 3 of 6 regimes"),
+        "{shown}"
+    );
+    assert!(shown.contains("PARTIAL"), "{shown}");
+}

@@ -63,7 +63,7 @@ pub fn reference_equations(model: &Model, order: usize, values: &[f64]) -> Refer
 fn absent(name: &str, reason: String) -> ReferenceEquations {
     ReferenceEquations {
         references: Vec::new(),
-        absent: vec![Check::skipped(name, ROW_TOLERANCE, reason)],
+        absent: vec![Check::not_applicable(name, ROW_TOLERANCE, reason)],
     }
 }
 
@@ -114,7 +114,7 @@ fn arm(parameters: PlanetaryArmParameters, order: usize) -> ReferenceEquations {
     };
     match scaled(&parameters, order) {
         Some(reference) => found.references.push(reference),
-        None => found.absent.push(Check::skipped(
+        None => found.absent.push(Check::not_applicable(
             "reference equation_22_dimensionless",
             ROW_TOLERANCE,
             "written out for 1 to 8, 16, 32, 64 and 128 modes",

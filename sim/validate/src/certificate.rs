@@ -3,6 +3,8 @@
 
 use serde::{Serialize, Serializer};
 
+pub use crate::coverage::Coverage;
+
 /// The version of the certificate's form.
 pub const SCHEMA: u32 = 1;
 
@@ -26,10 +28,71 @@ pub struct Certificate {
     /// The values of all parameters, in SI, in the order of the specification.
     #[serde(serialize_with = "by_name")]
     pub parameters: Vec<(String, f64)>,
-    /// Whether no check failed; skipped checks do not count.
+    /// The result of all checks.
+    pub verdict: Verdict,
+    /// Whether the verdict is [`Verdict::Passed`].
     pub passed: bool,
+    /// Regimes in which states were tried; none (null) if no check was made.
+    pub coverage: Option<Coverage>,
     /// The checks in the order they were made.
     pub checks: Vec<Check>,
+}
+
+/// The result of all checks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// Every check that applies was run and passed.
+    Passed,
+    /// No check failed, but one that applies was not run, or not for all regimes.
+    Partial,
+    /// A check failed, or none was run.
+    Failed,
+}
+
+impl Verdict {
+    fn of(checks: &[Check]) -> Self {
+        let is_not_run = |check: &Check| {
+            let skipped = check.skipped.as_ref();
+            skipped.is_some_and(|skip| skip.kind == SkipKind::NotRun)
+        };
+        let has_failed = |check: &Check| !check.passed && check.skipped.is_none();
+        if checks.iter().any(has_failed) || !checks.iter().any(|check| check.passed) {
+            Self::Failed
+        } else if checks.iter().any(is_not_run) {
+            Self::Partial
+        } else {
+            Self::Passed
+        }
+    }
+
+    /// The word in JSON.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Passed => "passed",
+            Self::Partial => "partial",
+            Self::Failed => "failed",
+        }
+    }
+}
+
+/// Why a check was skipped.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Skip {
+    /// Whether there was anything to check.
+    pub kind: SkipKind,
+    /// The reason.
+    pub reason: String,
+}
+
+/// Whether a skipped check applies to the model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SkipKind {
+    /// The model has nothing that this check compares.
+    NotApplicable,
+    /// The check applies and could not be run.
+    NotRun,
 }
 
 /// One check.
@@ -44,8 +107,9 @@ pub struct Check {
     pub tolerance: f64,
     /// Whether it was made and the deviation is within the tolerance.
     pub passed: bool,
-    /// Whether it could not be made.
-    pub skipped: bool,
+    /// Why it was skipped; none (`false` in JSON) if it was made.
+    #[serde(serialize_with = "or_false")]
+    pub skipped: Option<Skip>,
     /// How many states were used, where the worst was found, why it was skipped.
     pub detail: String,
 }
@@ -69,7 +133,8 @@ pub struct Certified {
 
 impl Certificate {
     /// The certificate of `about` with `checks`; an empty one does not pass.
-    pub fn new(about: Certified, checks: Vec<Check>) -> Self {
+    pub fn new(about: Certified, coverage: Option<Coverage>, checks: Vec<Check>) -> Self {
+        let verdict = Verdict::of(&checks);
         Self {
             schema: SCHEMA,
             model: about.model,
@@ -79,8 +144,9 @@ impl Certificate {
             source_sha256: about.source_sha256,
             with: about.with,
             parameters: about.parameters,
-            passed: checks.iter().any(|check| check.passed)
-                && checks.iter().all(|check| check.passed || check.skipped),
+            verdict,
+            passed: verdict == Verdict::Passed,
+            coverage,
             checks,
         }
     }
@@ -89,7 +155,15 @@ impl Certificate {
     pub fn failures(&self) -> impl Iterator<Item = &Check> {
         self.checks
             .iter()
-            .filter(|check| !check.passed && !check.skipped)
+            .filter(|check| !check.passed && check.skipped.is_none())
+    }
+}
+
+/// What there is, or `false`.
+fn or_false<S: Serializer>(skip: &Option<Skip>, serializer: S) -> Result<S::Ok, S::Error> {
+    match skip {
+        Some(skip) => skip.serialize(serializer),
+        None => serializer.serialize_bool(false),
     }
 }
 
@@ -106,20 +180,39 @@ impl Check {
             value: worst.value.is_finite().then_some(worst.value),
             tolerance,
             passed: worst.value <= tolerance,
-            skipped: false,
+            skipped: None,
             detail: worst.detail,
         }
     }
 
-    /// A check that could not be made.
-    pub fn skipped(name: impl Into<String>, tolerance: f64, reason: impl Into<String>) -> Self {
+    /// A check that has nothing to compare in this model.
+    pub fn not_applicable(
+        name: impl Into<String>,
+        tolerance: f64,
+        reason: impl Into<String>,
+    ) -> Self {
+        Self::skipped(
+            name.into(),
+            tolerance,
+            SkipKind::NotApplicable,
+            reason.into(),
+        )
+    }
+
+    /// A check that applies to this model and could not be run.
+    pub fn not_run(name: impl Into<String>, tolerance: f64, reason: impl Into<String>) -> Self {
+        Self::skipped(name.into(), tolerance, SkipKind::NotRun, reason.into())
+    }
+
+    /// A check that was not made.
+    pub fn skipped(name: String, tolerance: f64, kind: SkipKind, reason: String) -> Self {
         Self {
-            name: name.into(),
+            name,
             value: None,
             tolerance,
             passed: false,
-            skipped: true,
-            detail: reason.into(),
+            detail: reason.clone(),
+            skipped: Some(Skip { kind, reason }),
         }
     }
 }
@@ -191,9 +284,9 @@ mod tests {
     fn a_certificate_has_the_agreed_fields() {
         let checks = vec![
             Check::made("made", Worst::of(1e-15, "200 states"), 1e-12),
-            Check::skipped("skipped", 0.0, "no compiler"),
+            Check::not_applicable("skipped", 0.0, "no field"),
         ];
-        let json = serde_json::to_value(Certificate::new(arm(), checks)).unwrap_or_default();
+        let json = serde_json::to_value(Certificate::new(arm(), None, checks)).unwrap_or_default();
         assert_eq!(json["schema"], 1);
         assert_eq!((&json["model"], &json["order"]), (&"arm".into(), &4.into()));
         assert_eq!(
@@ -207,7 +300,13 @@ mod tests {
         assert_eq!(json["passed"], true);
         assert_eq!(json["checks"][0]["value"], 1e-15);
         assert_eq!(json["checks"][0]["tolerance"], 1e-12);
-        assert_eq!(json["checks"][1]["skipped"], true);
+        assert_eq!(json["verdict"], "passed");
+        assert_eq!(json["checks"][0]["skipped"], false);
+        let skipped = &json["checks"][1]["skipped"];
+        assert_eq!(
+            (&skipped["kind"], &skipped["reason"]),
+            (&"not_applicable".into(), &"no field".into())
+        );
     }
 
     #[test]
@@ -219,11 +318,29 @@ mod tests {
             Worst::default(),
         ] {
             let checks = vec![good.clone(), Check::made("bad", bad, 1e-12)];
-            assert!(!Certificate::new(arm(), checks).passed);
+            assert!(!Certificate::new(arm(), None, checks).passed);
         }
-        assert!(!Certificate::new(arm(), Vec::new()).passed);
-        let skipped = vec![Check::skipped("s", 0.0, "")];
-        assert!(!Certificate::new(arm(), skipped).passed);
+        assert!(!Certificate::new(arm(), None, Vec::new()).passed);
+        let skipped = vec![Check::not_applicable("s", 0.0, "")];
+        assert!(!Certificate::new(arm(), None, skipped).passed);
+    }
+
+    #[test]
+    fn checks_not_run_make_it_partial_and_those_not_applicable_do_not() {
+        let good = Check::made("good", Worst::of(0.0, ""), 0.0);
+        let absent = Check::not_applicable("a", 0.0, "no field");
+        let missed = Check::not_run("b", 0.0, "no compiler");
+        let bad = Check::made("bad", Worst::of(1.0, ""), 0.0);
+        for (others, verdict) in [
+            (vec![absent.clone()], Verdict::Passed),
+            (vec![absent, missed.clone()], Verdict::Partial),
+            (vec![missed, bad], Verdict::Failed),
+        ] {
+            let checks = [vec![good.clone()], others].concat();
+            let certificate = Certificate::new(arm(), None, checks);
+            assert_eq!(certificate.verdict, verdict);
+            assert_eq!(certificate.passed, verdict == Verdict::Passed);
+        }
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Runs every check that applies to a model at one order and writes the certificate.
 
-use super::certificate::{Certificate, Certified, Check, Worst};
+use super::certificate::{Certificate, Certified, Check, Coverage, SkipKind, Worst};
 use super::checks::outputs::Judged;
 use super::checks::{
     MASS_TOLERANCE, ROW_TOLERANCE, balance, emitted, exact, nesting, outputs, regimes, states,
@@ -52,13 +52,14 @@ pub struct Subject<'s> {
 /// The certificate of `subject`. What keeps a check from being made at all, such as a
 /// variant that cannot be derived, is a failed check.
 pub fn certify(subject: &Subject<'_>) -> Certificate {
-    let checks = all_checks(subject).unwrap_or_else(|message| {
+    let (checks, coverage) = all_checks(subject).unwrap_or_else(|message| {
         let worst = Worst::of(f64::INFINITY, message);
-        vec![Check::made("accelerations", worst, ROW_TOLERANCE)]
+        let check = Check::made("accelerations", worst, ROW_TOLERANCE);
+        (vec![check], Coverage::default())
     });
     let emitted = subject.emitted.as_ref().ok();
     let about = about(subject.model, subject.order, subject.parameters, emitted);
-    Certificate::new(about, checks)
+    Certificate::new(about, Some(coverage), checks)
 }
 
 /// What the certificate of a model at an order, with parameters in SI, is about.
@@ -81,11 +82,12 @@ pub fn about(
     }
 }
 
-fn all_checks(subject: &Subject<'_>) -> Result<Vec<Check>, String> {
+fn all_checks(subject: &Subject<'_>) -> Result<(Vec<Check>, Coverage), String> {
     let oracle = oracle(subject, subject.order)?;
     let mut variant = (subject.variants)(subject.order)?;
     let variant = variant.as_mut();
-    let mut checks = states::check(&oracle, variant, subject.references).map_err(text)?;
+    let found = states::check(&oracle, variant, subject.references);
+    let (mut checks, coverage) = found.map_err(text)?;
     checks.extend_from_slice(subject.absent);
     checks.push(balance::check(&oracle, variant).map_err(text)?);
     checks.extend(nested(subject, &oracle, variant)?);
@@ -106,7 +108,7 @@ fn all_checks(subject: &Subject<'_>) -> Result<Vec<Check>, String> {
             let outputs = outputs.as_deref_mut();
             emitted::check(&oracle, variant, outputs, emitted).map_err(text)?
         }
-        Err(reason) => emitted::skipped(None, reason),
+        Err(reason) => emitted::skipped(None, SkipKind::NotApplicable, reason),
     });
     checks.push(match &subject.regimes {
         Ok(emitted) => regimes::check(&oracle, variant, emitted).map_err(text)?,
@@ -116,7 +118,7 @@ fn all_checks(subject: &Subject<'_>) -> Result<Vec<Check>, String> {
         Ok(derivative) => exact::check(&oracle, variant, *derivative).map_err(text)?,
         Err(reason) => exact::skipped(reason),
     });
-    Ok(checks)
+    Ok((checks, coverage))
 }
 
 fn oracle(subject: &Subject<'_>, order: usize) -> Result<Oracle, String> {
@@ -173,6 +175,6 @@ fn skipped(name: &str, reason: &str) -> Vec<Check> {
         ("bias", ROW_TOLERANCE),
         ("forces", ROW_TOLERANCE),
     ]
-    .map(|(part, tolerance)| Check::skipped(format!("{name}_{part}"), tolerance, reason))
+    .map(|(part, tolerance)| Check::not_applicable(format!("{name}_{part}"), tolerance, reason))
     .into()
 }

@@ -76,7 +76,7 @@ pub fn unchecked(
     let parameters = model.parameter_values()?;
     let emitted = source(model, outputs, emitted);
     let about = about(model, order, &parameters, Some(&emitted));
-    Ok(Certificate::new(about, Vec::new()))
+    Ok(Certificate::new(about, None, Vec::new()))
 }
 
 /// The emitted source with what is to be compared of it.

@@ -9,10 +9,14 @@
 
 use super::oracle::{Equations, Oracle, OracleError, Side, SwitchValue};
 use super::random::Random;
+pub use super::regimes::Regime;
+use super::regimes::{combinations, possible_regimes};
+pub use super::sample::Sample;
+use super::seek::{Sizes, seek};
 use super::sizes;
 
-/// The most regimes that are visited; of more, this many of drawn states.
-const MAX_REGIMES: usize = 81;
+/// The most regimes that are visited if all of them are too many to be listed.
+const DRAWN_REGIMES: usize = 81;
 /// States drawn before a regime counts as out of reach.
 const ATTEMPTS: usize = 60;
 /// Corrections of one drawn state.
@@ -23,17 +27,6 @@ const MISSES: usize = 8;
 /// How much larger than its size an entry may become when it is moved into a regime.
 const LARGEST: f64 = 1e6;
 
-/// A state with its time and inputs.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Sample {
-    /// Time, in s.
-    pub time: f64,
-    /// Coordinates, their rates, states of first order.
-    pub state: Vec<f64>,
-    /// Inputs in the order of the model.
-    pub inputs: Vec<f64>,
-}
-
 /// A state of the model's domain with the equations of motion there.
 #[derive(Clone, Debug)]
 pub struct Drawn {
@@ -43,34 +36,16 @@ pub struct Drawn {
     pub equations: Equations,
 }
 
-/// One side for every switch of the model.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Regime {
-    /// The sides, in the order of [`Oracle::switches`].
-    pub sides: Vec<Side>,
-}
-
-impl Regime {
-    /// The regime a state is in.
-    ///
-    /// # Errors
-    /// [`OracleError`] as from [`Oracle::switch_values`].
-    pub fn of(oracle: &Oracle, sample: &Sample) -> Result<Self, OracleError> {
-        let values = oracle.switch_values(sample.time, &sample.state, &sample.inputs)?;
-        let sides = values.iter().map(SwitchValue::side).collect();
-        Ok(Self { sides })
-    }
-
-    /// Names and sides, as `x_sp+ x_pr0`; empty for a model without switches.
-    pub fn label(&self, oracle: &Oracle) -> String {
-        let parts: Vec<String> = oracle
-            .switches()
-            .iter()
-            .zip(&self.sides)
-            .map(|(switch, side)| format!("{}{}", switch.name, side.symbol()))
-            .collect();
-        parts.join(" ")
-    }
+/// The regimes of a model that are visited, of all combinations of sides.
+#[derive(Clone, Debug)]
+pub struct Regimes {
+    /// Combinations of sides.
+    pub combinations: u64,
+    /// Combinations that bounds prove empty.
+    pub unreachable: u64,
+    /// Regimes to draw states in. If there are too many to be listed, those that random states
+    /// are in.
+    pub visited: Vec<Regime>,
 }
 
 /// Draws states of one variant.
@@ -80,6 +55,10 @@ pub struct Sampler<'o> {
     random: Random,
     /// Size of every entry of the state.
     sizes: Vec<f64>,
+    /// Size of every input.
+    input_sizes: Vec<f64>,
+    /// The last regime that single changes did not reach.
+    remote: Option<Regime>,
     /// How much of the way from the initial state to a drawn one is gone, 1 at first.
     reach: f64,
     /// States outside the domain, one after another.
@@ -98,6 +77,8 @@ impl<'o> Sampler<'o> {
             oracle,
             random: Random::new(seed),
             sizes: sizes::of_state(oracle)?,
+            input_sizes: sizes::of_inputs(oracle),
+            remote: None,
             reach: 1.0,
             missed: 0,
             redrawn: 0,
@@ -125,37 +106,32 @@ impl<'o> Sampler<'o> {
         frequencies.fold(1.0, f64::max)
     }
 
-    /// Every combination of sides; of very many, those that drawn states have.
+    /// The regimes to visit.
     ///
     /// # Errors
     /// [`OracleError`] as from [`Oracle::equations`].
-    pub fn regimes(&mut self) -> Result<Vec<Regime>, OracleError> {
-        let switches = self.oracle.switches();
-        let count = switches.iter().try_fold(1_usize, |count, switch| {
-            count.checked_mul(switch.sides().len())
-        });
-        if count.is_some_and(|count| count <= MAX_REGIMES) {
-            let mut regimes = vec![Regime { sides: Vec::new() }];
-            for switch in switches {
-                let extended = |regime: &Regime| {
-                    let sides = regime.sides.clone();
-                    switch.sides().iter().map(move |side| Regime {
-                        sides: sides.iter().chain([side]).copied().collect(),
-                    })
-                };
-                regimes = regimes.iter().flat_map(extended).collect();
-            }
-            return Ok(regimes);
+    pub fn regimes(&mut self) -> Result<Regimes, OracleError> {
+        let combinations = combinations(self.oracle);
+        if let Some(visited) = possible_regimes(self.oracle, &self.sizes, &self.input_sizes) {
+            return Ok(Regimes {
+                unreachable: combinations.saturating_sub(visited.len() as u64),
+                combinations,
+                visited,
+            });
         }
-        let mut regimes = Vec::new();
-        for _ in 0..2 * MAX_REGIMES {
+        let mut visited = Vec::new();
+        for _ in 0..2 * DRAWN_REGIMES {
             let sample = self.draw();
             let regime = Regime::of(self.oracle, &sample)?;
-            if regimes.len() < MAX_REGIMES && !regimes.contains(&regime) {
-                regimes.push(regime);
+            if visited.len() < DRAWN_REGIMES && !visited.contains(&regime) {
+                visited.push(regime);
             }
         }
-        Ok(regimes)
+        Ok(Regimes {
+            combinations,
+            unreachable: 0,
+            visited,
+        })
     }
 
     /// A random state, whatever its regime, in the model's domain or not.
@@ -164,7 +140,7 @@ impl<'o> Sampler<'o> {
         let time = random.unit();
         let entries = self.sizes.iter().zip(self.oracle.initial()).enumerate();
         let state = entries.map(|(row, (size, initial))| {
-            let range = ranges.coordinates.get(row).copied().flatten();
+            let range = ranges.state.get(row).copied().flatten();
             let middle = range.map_or(0.0, |(low, high)| 0.5 * (low + high));
             let drawn = middle + size * random.away_from_zero();
             if reach < 1.0 {
@@ -174,8 +150,9 @@ impl<'o> Sampler<'o> {
             }
         });
         let state = state.collect();
-        let inputs = ranges.inputs.iter().map(|range| {
-            let (low, high) = range.unwrap_or((-1.0, 1.0));
+        let inputs = ranges.inputs.iter().zip(&self.input_sizes);
+        let inputs = inputs.map(|(range, size)| {
+            let (low, high) = range.unwrap_or((-size, *size));
             0.5 * (low + high) + 0.5 * (high - low) * random.symmetric()
         });
         Sample {
@@ -206,6 +183,31 @@ impl<'o> Sampler<'o> {
     /// [`OracleError`] as from [`Oracle::equations`].
     pub fn draw_in(&mut self, regime: &Regime) -> Result<Option<Drawn>, OracleError> {
         let reach = self.reach;
+        if self.remote.as_ref() != Some(regime)
+            && let Some(drawn) = self.draw_near(regime)?
+        {
+            return Ok(Some(drawn));
+        }
+        for _ in 0..ATTEMPTS {
+            let mut sample = self.draw();
+            let sizes = Sizes {
+                state: &self.sizes,
+                inputs: &self.input_sizes,
+            };
+            if seek(self.oracle, &mut sample, regime, &sizes, &mut self.random)?
+                && let Some(drawn) = self.admit(sample)?
+            {
+                self.remote = Some(regime.clone());
+                return Ok(Some(drawn));
+            }
+        }
+        // A regime outside the domain says nothing of the others.
+        self.reach = reach;
+        Ok(None)
+    }
+
+    /// A random state in `regime` by changes of single entries.
+    fn draw_near(&mut self, regime: &Regime) -> Result<Option<Drawn>, OracleError> {
         for _ in 0..ATTEMPTS {
             let mut sample = self.draw();
             for _ in 0..SWEEPS {
@@ -217,8 +219,6 @@ impl<'o> Sampler<'o> {
                 }
             }
         }
-        // A regime outside the domain says nothing of the others.
-        self.reach = reach;
         Ok(None)
     }
 
@@ -245,9 +245,11 @@ impl<'o> Sampler<'o> {
     /// Whether every coordinate is where it lives, and no entry is out of all proportion:
     /// moved into its regime, it may be anywhere.
     fn is_within(&self, sample: &Sample) -> bool {
-        let ranges = self.oracle.ranges().coordinates.iter();
-        let ranged = ranges
-            .zip(&sample.state)
+        let ranges = self.oracle.ranges();
+        let states = ranges.state.iter().zip(&sample.state);
+        let inputs = ranges.inputs.iter().zip(&sample.inputs);
+        let ranged = states
+            .chain(inputs)
             .all(|(range, entry)| range.is_none_or(|(low, high)| (low..=high).contains(entry)));
         let entries = sample.state.iter().zip(&self.sizes);
         let mut sized = entries.map(|(entry, size)| entry.abs() <= LARGEST * size);

@@ -38,24 +38,57 @@ pub(super) fn of_state(oracle: &Oracle) -> Result<Vec<f64>, OracleError> {
     Ok(sizes)
 }
 
-/// The sizes of states of first order: where the rate of one is 0 while the others are 0 and
-/// coordinates and rates as large as their sizes, if it decays; its initial value, or 1 in SI, if
-/// not.
+/// The sizes of the inputs: half of the range, or the geometric mean of the parameters of the
+/// same dimension, or 1 in SI.
+pub(super) fn of_inputs(oracle: &Oracle) -> Vec<f64> {
+    let ranges = oracle.ranges();
+    let inputs = ranges.inputs.iter().zip(&ranges.input_scales);
+    inputs
+        .map(|(range, scales)| match range {
+            Some((low, high)) => 0.5 * (high - low),
+            None => geometric_mean(scales.iter().copied()),
+        })
+        .collect()
+}
+
+/// The geometric mean of positive numbers, 1 of none.
+fn geometric_mean(sizes: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = sizes.fold((0.0, 0.0), |(sum, count), size| {
+        (sum + size.ln(), count + 1.0)
+    });
+    if count > 0.0 {
+        (sum / count).exp()
+    } else {
+        1.0
+    }
+}
+
+/// The sizes of states of first order. The first of these that is known: half of the range; the
+/// value at which a decaying state rests while the others are 0 and coordinates and rates as large
+/// as their sizes; the geometric mean of the initial value and of the parameters of the same
+/// dimension; 1 in SI.
 fn of_states(oracle: &Oracle, sizes: &[f64], inputs: &[f64]) -> Result<Vec<f64>, OracleError> {
     let mut state = sizes.to_vec();
     state.resize(oracle.state_length(), 0.0);
     let equations = oracle.equations(0.0, &state, inputs)?;
     let decays = oracle.state_decays(0.0, &state, inputs)?;
     let initial = oracle.initial().iter().skip(sizes.len());
-    let rates = equations.state_rates.iter().zip(decays).zip(initial);
-    Ok(rates
-        .map(|((addends, decay), initial)| {
+    let ranges = oracle.ranges();
+    let stated = ranges.state.iter().skip(sizes.len());
+    let stated = stated.zip(&ranges.first_order_scales);
+    let rates = equations.state_rates.iter().zip(decays);
+    let states = rates.zip(initial.zip(stated));
+    Ok(states
+        .map(|((addends, decay), (initial, (range, scales)))| {
             let rate: f64 = addends.iter().map(|addend| addend.value).sum();
-            let usual = if *initial == 0.0 { 1.0 } else { initial.abs() };
             let balanced = (rate / decay).abs();
-            match balanced > 0.0 && balanced.is_finite() {
-                true => balanced,
-                false => usual,
+            match range {
+                Some((low, high)) => 0.5 * (high - low),
+                None if balanced > 0.0 && balanced.is_finite() => balanced,
+                None => {
+                    let initial = Some(initial.abs()).filter(|initial| *initial > 0.0);
+                    geometric_mean(scales.iter().copied().chain(initial))
+                }
             }
         })
         .collect())
@@ -85,7 +118,7 @@ fn of_coordinates(oracle: &Oracle, inputs: &[f64]) -> Result<Vec<f64>, OracleErr
             *entry = 2.0 * value.half_width;
         }
     }
-    for (entry, range) in sizes.iter_mut().zip(&oracle.ranges().coordinates) {
+    for (entry, range) in sizes.iter_mut().zip(&oracle.ranges().state) {
         if let Some((low, high)) = range {
             *entry = 0.5 * (high - low);
         }

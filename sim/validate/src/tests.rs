@@ -114,8 +114,8 @@ fn find<'c>(certificate: &'c Certificate, name: &str) -> &'c Check {
 fn right_equations_pass() {
     let pendulum = pendulum(Fault::None);
     assert!(pendulum.passed, "{:?}", failures(&pendulum));
-    assert!(find(&pendulum, "guards").skipped);
-    assert!(find(&pendulum, "nesting_mass").skipped);
+    assert!(find(&pendulum, "guards").skipped.is_some());
+    assert!(find(&pendulum, "nesting_mass").skipped.is_some());
     assert!(find(&pendulum, "power_balance").passed);
     let spring = spring(Fault::None, Err("not emitted".into()));
     assert!(spring.passed, "{:?}", failures(&spring));
@@ -235,7 +235,7 @@ fn where_no_state_is_in_the_domain_the_certificate_fails_and_says_so() {
     let nowhere = single(&text, || LOGARITHMIC);
     assert!(!nowhere.passed);
     assert!(!find(&nowhere, "domain").passed);
-    assert!(find(&nowhere, "accelerations").skipped);
+    assert!(find(&nowhere, "accelerations").skipped.is_some());
 }
 
 #[test]
@@ -333,7 +333,7 @@ fn emitted_source_is_compared_bit_for_bit() {
         find(&certificate, "emitted_rust").clone()
     };
     let good = check(EMITTED);
-    if good.skipped {
+    if good.skipped.is_some() {
         skips::skip(&good.detail);
         return;
     }
@@ -403,7 +403,7 @@ fn an_output_passes_where_it_is_right_and_fails_by_a_thousandth() {
     assert!(right.passed, "{:?}", failures(&right));
     for name in REQUESTED {
         let check = find(&right, name);
-        assert!(check.passed && !check.skipped, "{check:?}");
+        assert!(check.passed && check.skipped.is_none(), "{check:?}");
         assert_eq!(failures(&outputs_with_fault(name)), [name]);
     }
 }

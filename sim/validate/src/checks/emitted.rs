@@ -3,7 +3,7 @@
 //! skipped and says so; source that does not compile fails it. What goes beyond rates of
 //! plain numbers is in `kinds`.
 
-use super::super::certificate::{Check, Worst};
+use super::super::certificate::{Check, SkipKind, Worst};
 use super::super::compiler::{Compiler, Optimization};
 use super::super::oracle::{Oracle, OracleError};
 use super::super::sampler::{Sample, Sampler};
@@ -39,7 +39,11 @@ pub fn check(
     }
     if samples.is_empty() {
         let reason = "no state of the model's domain was found";
-        return Ok(skipped(emitted.outputs.as_deref(), reason));
+        return Ok(skipped(
+            emitted.outputs.as_deref(),
+            SkipKind::NotRun,
+            reason,
+        ));
     }
     let found = tempfile::tempdir().map_err(|error| format!("no temporary folder: {error}"));
     let (folder, compiler) = match found.and_then(|folder| {
@@ -47,7 +51,10 @@ pub fn check(
         Ok((folder, compiler))
     }) {
         Ok(found) => found,
-        Err(reason) => return Ok(skipped(emitted.outputs.as_deref(), &reason)),
+        Err(reason) => {
+            let outputs = emitted.outputs.as_deref();
+            return Ok(skipped(outputs, SkipKind::NotRun, &reason));
+        }
     };
     let folder = folder.path();
     let calls = calls(&emitted.functions);
@@ -69,9 +76,10 @@ pub fn check(
 }
 
 /// The checks of emitted source with `outputs`, none of which can be made.
-pub fn skipped(outputs: Option<&[String]>, reason: &str) -> Vec<Check> {
-    let mut checks = vec![Check::skipped(NAME, 0.0, reason)];
-    checks.extend(outputs.map_or_else(Vec::new, |names| kinds::skipped(names, reason)));
+pub fn skipped(outputs: Option<&[String]>, kind: SkipKind, reason: &str) -> Vec<Check> {
+    let check = Check::skipped(NAME.to_owned(), 0.0, kind, reason.to_owned());
+    let mut checks = vec![check];
+    checks.extend(outputs.map_or_else(Vec::new, |names| kinds::skipped(names, kind, reason)));
     checks
 }
 

@@ -56,7 +56,7 @@ pub fn check(
 
 /// The check of a model that the exact solver does not know.
 pub fn skipped(reason: impl Into<String>) -> Check {
-    Check::skipped(NAME, TOLERANCE, reason)
+    Check::not_applicable(NAME, TOLERANCE, reason)
 }
 
 /// The largest deviation relative to the sizes; what is no number is infinitely far away.

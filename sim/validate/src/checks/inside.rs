@@ -27,7 +27,7 @@ pub fn samples(
         };
         drawn.push(found.sample);
     }
-    for regime in sampler.regimes()? {
+    for regime in sampler.regimes()?.visited {
         for _ in 0..per_regime {
             let Some(found) = sampler.draw_in(&regime)? else {
                 break;

@@ -3,7 +3,7 @@
 //! for bit; single precision against a bound of what it rounds away, found by running the
 //! same source with numbers that carry such a bound.
 
-use super::super::certificate::{Check, Worst};
+use super::super::certificate::{Check, SkipKind, Worst};
 use super::super::compiler::{Compiler, Optimization};
 use super::super::outputs::{JACOBIANS, Outputs};
 use super::super::random::Random;
@@ -86,10 +86,10 @@ fn tolerance(name: &str) -> f64 {
 }
 
 /// The checks of `outputs`, none of which can be made.
-pub fn skipped(outputs: &[String], reason: &str) -> Vec<Check> {
+pub fn skipped(outputs: &[String], kind: SkipKind, reason: &str) -> Vec<Check> {
     let names = names(outputs).into_iter();
     names
-        .map(|name| Check::skipped(name, tolerance(name), reason))
+        .map(|name| Check::skipped(name.to_owned(), tolerance(name), kind, reason.to_owned()))
         .collect()
 }
 
@@ -327,7 +327,7 @@ impl Reading<'_, '_> {
             };
             checks.push(if name == "f32" && at(&single, 1) == 0.0 {
                 let reason = "single precision holds none of its numbers";
-                Check::skipped(name, SINGLE_TOLERANCE, reason)
+                Check::not_applicable(name, SINGLE_TOLERANCE, reason)
             } else {
                 Check::made(name, worst, tolerance(name))
             });

@@ -37,12 +37,12 @@ pub fn check(
         Ok(folder) => folder,
         Err(error) => {
             let reason = format!("no temporary folder: {error}");
-            return Ok(Check::skipped(NAME, 0.0, reason));
+            return Ok(Check::not_run(NAME, 0.0, reason));
         }
     };
     let compiler = match Compiler::find(folder.path()) {
         Ok(compiler) => compiler,
-        Err(reason) => return Ok(Check::skipped(NAME, 0.0, reason)),
+        Err(reason) => return Ok(Check::not_run(NAME, 0.0, reason)),
     };
     let found = samples.and_then(|samples| {
         let (samples, numbers) = in_regimes(variant, samples)?;
@@ -62,7 +62,7 @@ pub fn check(
 
 /// The check of a variant of which there are no kernels, or that has no regimes.
 pub fn skipped(reason: impl Into<String>) -> Check {
-    Check::skipped(NAME, 0.0, reason)
+    Check::not_applicable(NAME, 0.0, reason)
 }
 
 /// The samples with the numbers of their regimes, as many of these as are compiled.

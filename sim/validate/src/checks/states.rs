@@ -1,7 +1,7 @@
 //! Checks at random states in every regime: accelerations, mass matrix, energy, power
 //! and switching functions against the oracle, accelerations against references.
 
-use super::super::certificate::{Check, Worst};
+use super::super::certificate::{Check, Coverage, Worst};
 use super::super::oracle::{Conditioned, Equations, Oracle, OracleError};
 use super::super::sampler::{Drawn, Regime, Sample, Sampler};
 use super::super::variant::Variant;
@@ -11,8 +11,10 @@ use super::{
 use nalgebra::{Cholesky, DMatrix};
 use std::collections::HashMap;
 
-/// States drawn in every regime.
+/// States drawn in every regime, fewer if there are many regimes.
 const STATES_PER_REGIME: usize = 200;
+/// States drawn in all regimes together.
+const STATES: usize = 81 * STATES_PER_REGIME;
 /// The fewest states of a regime that say anything about it.
 const FEWEST: usize = 20;
 /// Draws without a state after which no more of a regime are looked for.
@@ -47,9 +49,13 @@ struct Findings<'f> {
     scleronomic: bool,
     /// States that were compared, in all regimes.
     examined: usize,
+    /// Regimes with enough states.
+    sampled: u64,
+    /// States to draw in every regime.
+    per_regime: usize,
 }
 
-/// All checks at random states.
+/// All checks at random states, and the regimes these are in.
 ///
 /// # Errors
 /// [`OracleError`] as from [`Oracle::equations`].
@@ -57,7 +63,9 @@ pub fn check(
     oracle: &Oracle,
     variant: &mut dyn Variant,
     references: &[Reference],
-) -> Result<Vec<Check>, OracleError> {
+) -> Result<(Vec<Check>, Coverage), OracleError> {
+    let mut sampler = Sampler::new(oracle, SEED)?;
+    let regimes = sampler.regimes()?;
     let mut findings = Findings {
         oracle,
         references,
@@ -72,11 +80,17 @@ pub fn check(
         guards: Guards::default(),
         scleronomic: is_scleronomic(oracle)?,
         examined: 0,
+        sampled: 0,
+        per_regime: (STATES / regimes.visited.len().max(1)).clamp(FEWEST, STATES_PER_REGIME),
     };
-    let mut sampler = Sampler::new(oracle, SEED)?;
-    for regime in sampler.regimes()? {
-        findings.visit(&mut sampler, Some(&regime), variant)?;
+    for regime in &regimes.visited {
+        findings.visit(&mut sampler, Some(regime), variant)?;
     }
+    let coverage = Coverage {
+        regimes: regimes.combinations.saturating_sub(regimes.unreachable),
+        sampled: findings.sampled,
+        unreachable: regimes.unreachable,
+    };
     if findings.examined == 0 && !oracle.switches().is_empty() {
         findings.visit(&mut sampler, None, variant)?;
     }
@@ -91,7 +105,23 @@ pub fn check(
             .checks
             .push(Check::made("domain", worst, ROW_TOLERANCE));
     }
-    Ok(findings.into_checks())
+    if !oracle.switches().is_empty() {
+        findings.checks.push(every_regime(&coverage));
+    }
+    Ok((findings.into_checks(), coverage))
+}
+
+/// The check that there are states in every regime.
+fn every_regime(coverage: &Coverage) -> Check {
+    const NAME: &str = "coverage";
+    if coverage.sampled >= coverage.regimes {
+        return Check::made(NAME, Worst::of(0.0, coverage.sentence()), 0.0);
+    }
+    let reason = format!(
+        "{}; give coordinates, states and inputs a `range` that leads to the others or excludes them",
+        coverage.sentence()
+    );
+    Check::not_run(NAME, 0.0, reason)
 }
 
 /// Whether the forces alone change T + V at every one of a few states. At one state a term
@@ -145,7 +175,7 @@ impl Findings<'_> {
         let mut worst = Worst::default();
         let (mut examined, mut fruitless) = (0, 0);
         let before = sampler.redrawn();
-        for count in 1..=STATES_PER_REGIME {
+        for count in 1..=self.per_regime {
             let drawn = match regime {
                 Some(regime) => sampler.draw_in(regime)?,
                 None => sampler.draw_inside()?,
@@ -167,16 +197,17 @@ impl Findings<'_> {
             }
         }
         self.examined += examined;
+        self.sampled += u64::from(regime.is_some() && examined >= FEWEST);
         let redrawn = sampler.redrawn() - before;
         self.checks.push(match (examined, redrawn) {
-            (0, 0) => Check::skipped(name, ROW_TOLERANCE, "no state of this regime was found"),
+            (0, 0) => Check::not_run(name, ROW_TOLERANCE, "no state of this regime was found"),
             (0, _) => {
                 let reason = "no state of this regime was found in the model's domain";
-                Check::skipped(name, ROW_TOLERANCE, reason)
+                Check::not_run(name, ROW_TOLERANCE, reason)
             }
             (1..FEWEST, _) if worst.value() <= ROW_TOLERANCE => {
                 let reason = format!("too few states of this regime were found: {examined}");
-                Check::skipped(name, ROW_TOLERANCE, reason)
+                Check::not_run(name, ROW_TOLERANCE, reason)
             }
             (_, 0) => Check::made(name, worst.among(examined, "states"), ROW_TOLERANCE),
             _ => {
@@ -328,7 +359,7 @@ impl Guards {
 
     fn into_check(self, oracle: &Oracle) -> Check {
         if oracle.switches().is_empty() {
-            return Check::skipped("guards", 0.0, "the model has no piecewise function");
+            return Check::not_applicable("guards", 0.0, "the model has no piecewise function");
         }
         Check::made("guards", self.worst, 0.0)
     }

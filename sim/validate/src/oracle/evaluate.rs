@@ -188,6 +188,7 @@ impl<'s> Pass<'s> {
                 let rates = (*rate, *second);
                 N::of(self.scene.prescribed(*input, rates, self.directions))
             }
+            Tree::Input(index) => N::of(self.scene.held(*index, self.directions)),
             Tree::Multiplier(index) => {
                 let known = self.scene.multipliers.get(*index).copied();
                 N::of(Motion::still(known.unwrap_or_else(|| f64::NAN.into())))
@@ -223,7 +224,6 @@ impl<'s> Pass<'s> {
         let number = match tree {
             Tree::Constant(value) => Some(*value),
             Tree::PerMode { field, values } => values.get(frame.mode(*field)).copied(),
-            Tree::Input(index) => self.scene.inputs.get(*index).copied(),
             Tree::Position { set } => {
                 let places = self.scene.system.places.get(*set);
                 places.and_then(|places| places.positions.get(frame.node()).copied())

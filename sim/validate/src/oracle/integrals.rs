@@ -175,7 +175,10 @@ impl Scene<'_> {
             Direction::Time => Some(self.by_rate(table, integral).along_motion),
             Direction::Position(row) => self.by_position(table, integral).by_row.get(row),
             Direction::Rate(row) => self.by_rate(table, integral).by_row.get(row),
-            Direction::LeafPosition(_) | Direction::LeafRate(_) => None,
+            Direction::LeafPosition(_)
+            | Direction::LeafRate(_)
+            | Direction::Input(_)
+            | Direction::Clock => None,
         }
     }
 
@@ -337,7 +340,7 @@ impl Integral {
 
 fn rank(direction: Direction) -> u8 {
     match direction {
-        Direction::Still | Direction::State(_) => 0,
+        Direction::Still | Direction::State(_) | Direction::Input(_) | Direction::Clock => 0,
         Direction::Time => 1,
         Direction::Position(_) | Direction::LeafPosition(_) => 2,
         Direction::Rate(_) | Direction::LeafRate(_) => 3,

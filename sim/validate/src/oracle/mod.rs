@@ -20,9 +20,11 @@
 //! z' - rate = 0, where d/dt dT/dq_j' = sum over k of M_jk q_k'' + (the derivative of dT/dq_j' along
 //! the motion with the rates held).
 
+mod affine;
 mod conditioned;
 mod constraints;
 mod double_double;
+mod emptiness;
 mod energy;
 mod equations;
 mod error;
@@ -30,10 +32,12 @@ mod evaluate;
 mod fold;
 mod functions;
 mod integrals;
+mod interval;
 mod legendre;
 mod lower;
 mod observables;
 mod places;
+mod ranges;
 mod scene;
 mod shapes;
 mod splines;
@@ -48,11 +52,12 @@ mod tests;
 pub use conditioned::Conditioned;
 pub use equations::{Equations, Residual, RowTerm, RowTermKind};
 pub use error::OracleError;
-pub use switches::{Side, Switch, SwitchValue};
+pub use ranges::Ranges;
+pub use switches::{Side, Switch, SwitchGradient, SwitchValue};
 
 use constraints::{LoweredConstraint, lower_constraints, stabilisation_rate};
 use eomgen_model_spec::evaluate::evaluate as evaluate_constant;
-use eomgen_model_spec::model::{Expr, Model, Range};
+use eomgen_model_spec::model::{Expr, Model};
 use evaluate::Pass;
 use lower::Lowering;
 use nalgebra::DMatrix;
@@ -113,7 +118,7 @@ impl Oracle {
                 .unwrap_or_else(|_| vec![0.0; model.inputs.len()]),
             states: model.states.len(),
             initial: initial_state(model, order, parameters),
-            ranges: Ranges::of(model, parameters),
+            ranges: Ranges::of(model, order, parameters),
             kinetic,
             potential,
             dissipation,
@@ -169,7 +174,7 @@ impl Oracle {
         &self.initial
     }
 
-    /// Where coordinates and inputs live.
+    /// Intervals and scales of the state and the inputs.
     pub fn ranges(&self) -> &Ranges {
         &self.ranges
     }
@@ -359,27 +364,6 @@ impl Oracle {
             }
         }
         (mass, magnitude)
-    }
-}
-
-/// Where a model lives, in SI.
-#[derive(Clone, Debug)]
-pub struct Ranges {
-    /// For each coordinate that is no mode; none for one that may be anywhere.
-    pub coordinates: Vec<Option<(f64, f64)>>,
-    /// For each input.
-    pub inputs: Vec<Option<(f64, f64)>>,
-}
-
-impl Ranges {
-    fn of(model: &Model, parameters: &[f64]) -> Self {
-        let ends = |range: &Range| range.ends(parameters);
-        let coordinates = model.coordinates.iter().map(|c| c.range.as_ref());
-        let inputs = model.inputs.iter().map(|input| input.range.as_ref());
-        Self {
-            coordinates: coordinates.map(|range| range.map(ends)).collect(),
-            inputs: inputs.map(|range| range.map(ends)).collect(),
-        }
     }
 }
 

@@ -23,6 +23,10 @@ pub(super) enum Direction {
     Rate(usize),
     /// A state of first order.
     State(usize),
+    /// An input, the others held.
+    Input(usize),
+    /// The time where an expression names it, everything else held.
+    Clock,
     /// A field value at the current place, its rate held.
     LeafPosition(Leaf),
     /// The rate of a field value at the current place.
@@ -174,18 +178,32 @@ impl<'s> Scene<'s> {
     pub fn prescribed(
         &self,
         input: usize,
-        (rate, second): (usize, Option<usize>),
+        (rate_input, second): (usize, Option<usize>),
         directions: [Direction; 2],
     ) -> Motion {
         let at = |place: usize| self.inputs.get(place).copied().unwrap_or(f64::NAN);
-        let (value, rate) = (at(input), at(rate));
+        let (value, rate) = (at(input), at(rate_input));
         // What holds a rate without the next one is nowhere differentiated by the time.
         let second = second.map_or(0.0, at);
         let seeds = directions.map(|direction| match direction {
             Direction::Time => (rate, second),
+            Direction::Input(moved) => {
+                let seed = |place| if moved == place { 1.0 } else { 0.0 };
+                (seed(input), seed(rate_input))
+            }
             _ => (0.0, 0.0),
         });
         Motion::new((value, rate), seeds)
+    }
+
+    /// An input that is held along the motion, in two directions.
+    pub fn held(&self, input: usize, directions: [Direction; 2]) -> Motion {
+        let value = self.inputs.get(input).copied().unwrap_or(f64::NAN);
+        let seeds = directions.map(|direction| match direction {
+            Direction::Input(moved) if moved == input => (1.0, 0.0),
+            _ => (0.0, 0.0),
+        });
+        Motion::new((value, 0.0), seeds)
     }
 
     /// A state of first order and how fast it changes in two directions, where it moves at `rate`.
@@ -251,7 +269,7 @@ impl<'s> Scene<'s> {
 
     /// How fast the time changes in a direction.
     pub fn time_seed(direction: Direction) -> f64 {
-        if direction == Direction::Time {
+        if matches!(direction, Direction::Time | Direction::Clock) {
             1.0
         } else {
             0.0

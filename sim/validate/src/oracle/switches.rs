@@ -52,7 +52,24 @@ impl SwitchValue {
     }
 }
 
+/// How a switch changes with the entries of the state, then with the inputs, then with the time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SwitchGradient {
+    /// Of the quantity.
+    pub quantity: Vec<f64>,
+    /// Of the half-width, 0 for a switch at 0.
+    pub half_width: Vec<f64>,
+}
+
 impl Switch {
+    pub(super) fn quantity(&self) -> &Tree {
+        &self.quantity
+    }
+
+    pub(super) fn half_width(&self) -> Option<&Tree> {
+        self.half_width.as_ref()
+    }
+
     /// Whether the side between the others is a region of its own only where the quantity
     /// rests at zero.
     pub fn rests_at_zero(&self) -> bool {
@@ -140,18 +157,56 @@ impl Oracle {
         let Some(switch) = self.switches.get(index) else {
             return Ok(vec![0.0; state.len()]);
         };
-        let rows = 0..self.size();
-        let directions = rows
-            .clone()
-            .map(Direction::Position)
-            .chain(rows.map(Direction::Rate))
-            .chain((0..self.states).map(Direction::State));
-        Ok(directions
+        Ok(self
+            .state_directions()
             .map(|direction| {
                 let pass = Pass::new(&scene, Direction::Still, direction);
                 pass.value(&switch.quantity).eps2.value
             })
             .collect())
+    }
+}
+
+impl Oracle {
+    /// How the quantity and the half-width of switch `index` change with every entry of the
+    /// state, every input and the time.
+    ///
+    /// # Errors
+    /// [`OracleError::Length`] if the state or the inputs do not fit.
+    pub fn switch_gradient(
+        &self,
+        index: usize,
+        time: f64,
+        state: &[f64],
+        inputs: &[f64],
+    ) -> Result<SwitchGradient, OracleError> {
+        let scene = self.scene(time, state, None, inputs)?;
+        let directions: Vec<Direction> = self
+            .state_directions()
+            .chain((0..self.input_count()).map(Direction::Input))
+            .chain([Direction::Clock])
+            .collect();
+        let switch = self.switches.get(index);
+        let along = |tree: Option<&Tree>| {
+            let slope = |direction: &Direction| {
+                let pass = Pass::new(&scene, Direction::Still, *direction);
+                tree.map_or(0.0, |tree| pass.value(tree).eps2.value)
+            };
+            directions.iter().map(slope).collect()
+        };
+        Ok(SwitchGradient {
+            quantity: along(switch.map(Switch::quantity)),
+            half_width: along(switch.and_then(Switch::half_width)),
+        })
+    }
+
+    /// Every entry of the state in its order.
+    fn state_directions(&self) -> impl Iterator<Item = Direction> + use<> {
+        let rows = 0..self.size();
+        rows.clone()
+            .map(Direction::Position)
+            .chain(rows.map(Direction::Rate))
+            .chain((0..self.states).map(Direction::State))
     }
 }
 
@@ -229,16 +284,7 @@ impl Search<'_> {
 
     fn is_piecewise(&self, tree: &Tree) -> bool {
         let own = match tree {
-            Tree::Call(
-                Function::Abs
-                | Function::Sign
-                | Function::Above
-                | Function::Deadzone
-                | Function::Contact
-                | Function::Min
-                | Function::Max,
-                _,
-            ) => true,
+            Tree::Call(function, _) if is_piecewise_function(*function) => true,
             Tree::Definition(index) => {
                 let definition = self.oracle.system.definitions.get(*index);
                 definition.is_some_and(|definition| self.is_piecewise(definition))
@@ -261,6 +307,20 @@ impl Search<'_> {
             _ => None,
         }
     }
+}
+
+/// Whether a function has sides.
+pub(super) fn is_piecewise_function(function: Function) -> bool {
+    matches!(
+        function,
+        Function::Abs
+            | Function::Sign
+            | Function::Above
+            | Function::Deadzone
+            | Function::Contact
+            | Function::Min
+            | Function::Max
+    )
 }
 
 fn difference(left: &Tree, right: &Tree) -> Tree {

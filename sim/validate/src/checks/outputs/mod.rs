@@ -81,7 +81,7 @@ fn samples(oracle: &Oracle) -> Result<Vec<Sample>, OracleError> {
     let mut sampler = Sampler::new(oracle, SEED)?;
     let (most, fewest) = STATES;
     let mut samples = Vec::new();
-    let regimes = sampler.regimes()?;
+    let regimes = sampler.regimes()?.visited;
     for regime in regimes
         .iter()
         .cycle()

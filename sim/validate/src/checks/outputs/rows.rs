@@ -1,7 +1,7 @@
 //! How far rows are from what they should be, and the checks that come of it.
 
 use super::judged::Judged;
-use crate::certificate::{Check, Worst};
+use crate::certificate::{Check, SkipKind, Worst};
 use crate::outputs::JACOBIANS;
 
 /// Deviation from a difference that passes, relative to the largest term of the row for a
@@ -58,7 +58,15 @@ impl Rows {
                 Some((_, tolerance, worst)) => {
                     Check::made(name, worst.clone().among(states, "states"), *tolerance)
                 }
-                None => Check::skipped(name, DIFFERENCE_TOLERANCE, reason(judged, name)),
+                None => {
+                    let (kind, reason) = reason(judged, name);
+                    Check::skipped(
+                        name.to_owned(),
+                        DIFFERENCE_TOLERANCE,
+                        kind,
+                        reason.to_owned(),
+                    )
+                }
             });
         }
         checks
@@ -88,12 +96,14 @@ pub(super) fn expected(names: &[String]) -> Vec<&'static str> {
 }
 
 /// Why a check that belongs to what was asked for was not made.
-pub(super) fn reason(judged: &Judged<'_>, name: &str) -> &'static str {
+pub(super) fn reason(judged: &Judged<'_>, name: &str) -> (SkipKind, &'static str) {
     if name.ends_with("_by_inputs") && judged.oracle.input_count() == 0 {
-        "the model has no input"
+        (SkipKind::NotApplicable, "the model has no input")
     } else if name == "guard_rates" && judged.oracle.switches().is_empty() {
-        "the model has no piecewise function"
+        let reason = "the model has no piecewise function";
+        (SkipKind::NotApplicable, reason)
     } else {
-        "no state was found whose neighbours are in its regime"
+        let reason = "no state was found whose neighbours are in its regime";
+        (SkipKind::NotRun, reason)
     }
 }

@@ -1,0 +1,189 @@
+//! Linear inequalities: whether any point satisfies them, and the nearest point that does.
+//! Both are nonnegative least squares (Lawson and Hanson, Solving Least Squares Problems, 1974,
+//! chapter 23).
+
+use nalgebra::{DMatrix, DVector};
+
+/// Residual, for rows of length 1, below which inequalities contradict each other.
+const CONTRADICTION: f64 = 1e-12;
+/// Corrections per unknown before the solution counts as found.
+const ROUNDS: usize = 10;
+
+/// Whether no point z has a positive product with every row (Gordan: a combination of rows with
+/// weights that are not negative is then 0). Rows of zeros are left out.
+pub(crate) fn cone_is_empty(rows: &[Vec<f64>]) -> bool {
+    let rows: Vec<DVector<f64>> = rows
+        .iter()
+        .map(|row| DVector::from_column_slice(row))
+        .filter_map(|row| {
+            let length = row.norm();
+            (length > 0.0 && length.is_finite()).then(|| row / length)
+        })
+        .collect();
+    let Some(residual) = residual(&rows) else {
+        return false;
+    };
+    residual.norm() <= CONTRADICTION
+}
+
+/// The shortest x with `row * x >= bound` for every row and bound; `None` if there is none.
+pub(crate) fn nearest_point(rows: &[(Vec<f64>, f64)]) -> Option<Vec<f64>> {
+    let mut columns = Vec::new();
+    for (row, bound) in rows {
+        let mut column = row.clone();
+        column.push(*bound);
+        let column = DVector::from_vec(column);
+        let length = column.norm();
+        if !length.is_finite() {
+            return None;
+        }
+        if length > 0.0 {
+            columns.push(column / length);
+        }
+    }
+    let size = rows.first()?.0.len();
+    let mut target = DVector::zeros(size + 1);
+    target[size] = 1.0;
+    let residual = if columns.is_empty() {
+        -target
+    } else {
+        let matrix = DMatrix::from_columns(&columns);
+        &matrix * nonnegative_least_squares(&matrix, &target) - target
+    };
+    let last = residual[size];
+    if residual.norm() <= CONTRADICTION {
+        return None;
+    }
+    Some(
+        residual
+            .iter()
+            .take(size)
+            .map(|entry| -entry / last)
+            .collect(),
+    )
+}
+
+/// What is left of (0, 1) by the best combination of the rows, each with a 1 behind it.
+fn residual(rows: &[DVector<f64>]) -> Option<DVector<f64>> {
+    let size = rows.first()?.len();
+    let columns: Vec<DVector<f64>> = rows.iter().map(|row| row.clone().push(1.0)).collect();
+    let matrix = DMatrix::from_columns(&columns);
+    let mut target = DVector::zeros(size + 1);
+    target[size] = 1.0;
+    Some(&matrix * nonnegative_least_squares(&matrix, &target) - target)
+}
+
+/// The y with no negative entry that makes |A y - b| least.
+fn nonnegative_least_squares(matrix: &DMatrix<f64>, target: &DVector<f64>) -> DVector<f64> {
+    let count = matrix.ncols();
+    let mut solution = DVector::zeros(count);
+    let mut active: Vec<usize> = Vec::new();
+    for _ in 0..ROUNDS * count {
+        let gradient = matrix.tr_mul(&(target - matrix * &solution));
+        let candidates = (0..count).filter(|place| !active.contains(place));
+        let steepest = candidates.max_by(|a, b| gradient[*a].total_cmp(&gradient[*b]));
+        let Some(entering) = steepest.filter(|place| gradient[*place] > 1e-14) else {
+            break;
+        };
+        active.push(entering);
+        while !active.is_empty() {
+            let Some(trial) = least_squares(matrix, target, &active) else {
+                active.pop();
+                return solution;
+            };
+            let step = longest_step(&solution, &trial, &active);
+            for (place, value) in active.iter().zip(trial.iter()) {
+                solution[*place] += step * (value - solution[*place]);
+            }
+            if step >= 1.0 {
+                break;
+            }
+            let left: Vec<usize> = active
+                .iter()
+                .zip(trial.iter())
+                .filter(|(place, value)| **value > 0.0 || solution[**place] > 1e-15)
+                .map(|(place, _)| *place)
+                .collect();
+            for place in active.iter().filter(|place| !left.contains(place)) {
+                solution[*place] = 0.0;
+            }
+            if left.len() == active.len() {
+                return solution;
+            }
+            active = left;
+        }
+    }
+    solution
+}
+
+/// The longest share of the way to `trial` on which no entry turns negative, at most 1.
+fn longest_step(solution: &DVector<f64>, trial: &DVector<f64>, active: &[usize]) -> f64 {
+    let shares = active.iter().zip(trial.iter()).map(|(place, value)| {
+        if *value > 0.0 {
+            1.0
+        } else {
+            solution[*place] / (solution[*place] - value)
+        }
+    });
+    shares.fold(1.0, f64::min)
+}
+
+/// The least squares solution with the columns at `active` alone.
+fn least_squares(
+    matrix: &DMatrix<f64>,
+    target: &DVector<f64>,
+    active: &[usize],
+) -> Option<DVector<f64>> {
+    let part = matrix.select_columns(active);
+    part.svd(true, true).solve(target, 1e-14).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn opposite_half_spaces_leave_nothing() {
+        // x > b and -x > b.
+        for b in [0.0, 1e-6, 1.0, 1e5] {
+            assert!(cone_is_empty(&[
+                vec![1.0, -b],
+                vec![-1.0, -b],
+                vec![0.0, 1.0]
+            ]));
+        }
+        // x > b and -x > -2 b.
+        for b in [1e-6, 1.0, 1e5] {
+            assert!(!cone_is_empty(&[
+                vec![1.0, -b],
+                vec![-1.0, 2.0 * b],
+                vec![0.0, 1.0]
+            ]));
+        }
+    }
+
+    #[test]
+    fn three_half_planes_of_a_triangle_turned_outside_leave_nothing() {
+        let triangle = |sign: f64| {
+            vec![
+                vec![-sign, 0.0, -1.0],
+                vec![0.0, -sign, -1.0],
+                vec![sign, sign, -1.0],
+                vec![0.0, 0.0, 1.0],
+            ]
+        };
+        assert!(cone_is_empty(&triangle(1.0)));
+        let mut open = triangle(1.0);
+        open.remove(2);
+        assert!(!cone_is_empty(&open));
+    }
+
+    #[test]
+    fn the_nearest_point_is_the_foot_of_the_normal() {
+        let x = nearest_point(&[(vec![3.0, 4.0], 10.0)]).unwrap();
+        assert!((x[0] - 1.2).abs() < 1e-12 && (x[1] - 1.6).abs() < 1e-12);
+        assert_eq!(nearest_point(&[(vec![1.0], 1.0), (vec![-1.0], 1.0)]), None);
+        let inside = nearest_point(&[(vec![1.0], -1.0), (vec![-1.0], -1.0)]).unwrap();
+        assert!(inside[0].abs() < 1e-14);
+    }
+}

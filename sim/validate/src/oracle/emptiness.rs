@@ -1,0 +1,191 @@
+//! Proofs that no state has a combination of sides: the guards' affine forms, the ranges and the
+//! bounds of what is not affine contradict each other.
+
+use super::affine::{Affine, Forms, Variable};
+use super::interval::Interval;
+use super::switches::{Imposed, Side, is_piecewise_function};
+use super::tree::Tree;
+use super::{Oracle, Switch};
+use crate::feasibility::cone_is_empty;
+use eomgen_model_spec::model::Function;
+
+/// Relative widening of bounds, so that a range of rounding width is no contradiction.
+const SLACK: f64 = 1e-9;
+
+/// Whether an inequality excludes equality.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Relation {
+    Positive,
+    NotNegative,
+}
+
+impl Oracle {
+    /// Whether bounds prove that no state has these sides of the first switches, in the order of
+    /// [`Oracle::switches`]. `sizes` are those of the state, `input_sizes` of the inputs; they
+    /// scale the inequalities and decide nothing else.
+    ///
+    /// A state on a boundary of a range or of a function's domain does not count.
+    pub fn is_empty(&self, sides: &[Side], sizes: &[f64], input_sizes: &[f64]) -> bool {
+        let switches = self.switches.get(..sides.len()).unwrap_or_default();
+        let imposed = Imposed { switches, sides };
+        let mut forms = Forms::new(self, imposed);
+        let mut rows = Vec::new();
+        for (switch, side) in switches.iter().zip(sides) {
+            rows.extend(side_rows(&mut forms, switch, *side));
+        }
+        for argument in self.domain_arguments() {
+            rows.push((forms.of(argument), Relation::NotNegative));
+        }
+        let is_false = |(form, relation): &(Affine, Relation)| {
+            form.terms.is_empty()
+                && match relation {
+                    Relation::Positive => form.constant <= 0.0,
+                    Relation::NotNegative => form.constant < 0.0,
+                }
+        };
+        if rows.iter().any(is_false) {
+            return true;
+        }
+        let rows = rows.into_iter().map(|(form, _)| form);
+        let rows: Vec<Affine> = rows.filter(|form| !form.terms.is_empty()).collect();
+        cone_is_empty(&self.homogeneous(&rows, &forms, sizes, input_sizes))
+    }
+
+    /// The rows with those of the variables' bounds, over the variables in units of their sizes
+    /// and a last one that is 1.
+    fn homogeneous(
+        &self,
+        rows: &[Affine],
+        forms: &Forms<'_>,
+        sizes: &[f64],
+        input_sizes: &[f64],
+    ) -> Vec<Vec<f64>> {
+        let mut variables: Vec<Variable> = Vec::new();
+        for (variable, _) in rows.iter().flat_map(|row| &row.terms) {
+            if !variables.contains(variable) {
+                variables.push(*variable);
+            }
+        }
+        let size = |variable: &Variable| match variable {
+            Variable::Time => 1.0,
+            Variable::Entry(entry) => sizes.get(*entry).copied().unwrap_or(1.0),
+            Variable::Input(input) => input_sizes.get(*input).copied().unwrap_or(1.0),
+            Variable::Atom(atom) => forms.atoms.get(*atom).map_or(1.0, |(_, b)| extent(*b)),
+        };
+        let scales: Vec<f64> = variables.iter().map(size).collect();
+        let last = variables.len();
+        let mut matrix = Vec::new();
+        for row in rows {
+            let mut line = vec![0.0; last + 1];
+            for (variable, coefficient) in &row.terms {
+                if let Some(place) = variables.iter().position(|known| known == variable) {
+                    line[place] = coefficient * scales[place];
+                }
+            }
+            line[last] = row.constant;
+            matrix.push(line);
+        }
+        for (place, (variable, scale)) in variables.iter().zip(&scales).enumerate() {
+            let bounds = self.variable_bounds(*variable, forms);
+            for (end, sign) in [(bounds.low, 1.0), (bounds.high, -1.0)] {
+                if end.is_finite() {
+                    let mut line = vec![0.0; last + 1];
+                    line[place] = sign;
+                    line[last] = SLACK * (1.0 + (end / scale).abs()) - sign * end / scale;
+                    matrix.push(line);
+                }
+            }
+        }
+        let mut positive = vec![0.0; last + 1];
+        positive[last] = 1.0;
+        matrix.push(positive);
+        matrix
+    }
+
+    fn variable_bounds(&self, variable: Variable, forms: &Forms<'_>) -> Interval {
+        let range = match variable {
+            Variable::Time => None,
+            Variable::Entry(entry) => self.ranges.state.get(entry).copied().flatten(),
+            Variable::Input(input) => self.ranges.inputs.get(input).copied().flatten(),
+            Variable::Atom(atom) => return forms.atoms.get(atom).map_or(Interval::ALL, |a| a.1),
+        };
+        range.map_or(Interval::ALL, |(low, high)| Interval { low, high })
+    }
+
+    /// Arguments of roots and logarithms that stand in every motion: below 0 a term is no number.
+    fn domain_arguments(&self) -> Vec<&Tree> {
+        let mut found = Vec::new();
+        let mut visited = vec![false; self.system.definitions.len()];
+        let energies = self.kinetic.iter().chain(&self.potential);
+        for term in energies.chain(&self.dissipation) {
+            self.collect_arguments(&term.tree, &mut visited, &mut found);
+        }
+        for force in &self.forces {
+            self.collect_arguments(&force.value, &mut visited, &mut found);
+        }
+        for addend in self.system.state_rates.iter().flatten() {
+            self.collect_arguments(addend, &mut visited, &mut found);
+        }
+        found
+    }
+
+    fn collect_arguments<'t>(
+        &'t self,
+        tree: &'t Tree,
+        visited: &mut [bool],
+        found: &mut Vec<&'t Tree>,
+    ) {
+        match tree {
+            // A piecewise function may drop an argument that is no number.
+            Tree::Call(function, _) if is_piecewise_function(*function) => return,
+            // Each place or mode has an argument of its own.
+            Tree::Places { .. } | Tree::Sum { .. } => return,
+            Tree::Call(Function::Sqrt | Function::Ln, arguments) => found.extend(arguments),
+            Tree::Power(base, exponent) if exponent.fract() != 0.0 => found.push(base),
+            Tree::Definition(index) => {
+                if let Some(visited) = visited.get_mut(*index)
+                    && std::mem::replace(visited, true)
+                {
+                    return;
+                }
+                if let Some(definition) = self.system.definitions.get(*index) {
+                    self.collect_arguments(definition, visited, found);
+                }
+            }
+            _ => {}
+        }
+        for child in tree.children() {
+            self.collect_arguments(child, visited, found);
+        }
+    }
+}
+
+/// The inequalities that a side of a switch means.
+fn side_rows(forms: &mut Forms<'_>, switch: &Switch, side: Side) -> Vec<(Affine, Relation)> {
+    let quantity = forms.of(switch.quantity());
+    let width = switch.half_width().map(|width| forms.of(width));
+    let signed = |sign: f64| Affine::default().plus(sign, &quantity);
+    match (side, width) {
+        (Side::Free, Some(width)) => [1.0, -1.0]
+            .map(|sign| (signed(sign).plus(1.0, &width), Relation::NotNegative))
+            .into(),
+        // Whether an atom rests at 0 is not known.
+        (Side::Free, None) if quantity.has_atoms() => Vec::new(),
+        // A region where the quantity rests at 0: no state has both signs.
+        (Side::Free, None) => [1.0, -1.0]
+            .map(|sign| (signed(sign), Relation::NotNegative))
+            .into(),
+        (side, Some(width)) => {
+            vec![(signed(side.sign()).plus(-1.0, &width), Relation::Positive)]
+        }
+        (side, None) => vec![(signed(side.sign()), Relation::Positive)],
+    }
+}
+
+/// A size of what lies in an interval.
+fn extent(bounds: Interval) -> f64 {
+    let ends = [bounds.low, bounds.high];
+    let sizes = ends.into_iter().map(f64::abs);
+    let largest = sizes.filter(|end| end.is_finite()).fold(0.0, f64::max);
+    if largest > 0.0 { largest } else { 1.0 }
+}

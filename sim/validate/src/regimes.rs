@@ -1,0 +1,67 @@
+//! The regimes of a model: combinations of sides of its switches.
+
+use super::oracle::{Oracle, OracleError, Side, SwitchValue};
+use super::sample::Sample;
+
+/// The most regimes that are listed.
+const MAX_REGIMES: usize = 810;
+
+/// One side for every switch of the model.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Regime {
+    /// The sides, in the order of [`Oracle::switches`].
+    pub sides: Vec<Side>,
+}
+
+impl Regime {
+    /// The regime a state is in.
+    ///
+    /// # Errors
+    /// [`OracleError`] as from [`Oracle::switch_values`].
+    pub fn of(oracle: &Oracle, sample: &Sample) -> Result<Self, OracleError> {
+        let values = oracle.switch_values(sample.time, &sample.state, &sample.inputs)?;
+        let sides = values.iter().map(SwitchValue::side).collect();
+        Ok(Self { sides })
+    }
+
+    /// Names and sides, as `x_sp+ x_pr0`; empty for a model without switches.
+    pub fn label(&self, oracle: &Oracle) -> String {
+        let parts: Vec<String> = oracle
+            .switches()
+            .iter()
+            .zip(&self.sides)
+            .map(|(switch, side)| format!("{}{}", switch.name, side.symbol()))
+            .collect();
+        parts.join(" ")
+    }
+}
+
+/// Combinations of sides of all switches of a model.
+pub(super) fn combinations(oracle: &Oracle) -> u64 {
+    let sides = oracle.switches().iter().map(|switch| switch.sides().len());
+    sides.fold(1, |count: u64, sides| count.saturating_mul(sides as u64))
+}
+
+/// Every combination of sides that bounds do not prove empty; `None` if they are too many.
+/// `sizes` and `input_sizes` as for [`Oracle::is_empty`].
+pub(super) fn possible_regimes(
+    oracle: &Oracle,
+    sizes: &[f64],
+    input_sizes: &[f64],
+) -> Option<Vec<Regime>> {
+    let mut regimes = vec![Regime { sides: Vec::new() }];
+    for switch in oracle.switches() {
+        let extended = |regime: &Regime| {
+            let sides = regime.sides.clone();
+            switch.sides().iter().map(move |side| Regime {
+                sides: sides.iter().chain([side]).copied().collect(),
+            })
+        };
+        regimes = regimes.iter().flat_map(extended).collect();
+        regimes.retain(|regime| !oracle.is_empty(&regime.sides, sizes, input_sizes));
+        if regimes.len() > MAX_REGIMES {
+            return None;
+        }
+    }
+    Some(regimes)
+}

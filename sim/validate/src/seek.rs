@@ -1,0 +1,166 @@
+//! Moves a state into a regime by the shortest change that puts every switch, to first order, on
+//! its side.
+
+use super::feasibility::nearest_point;
+use super::oracle::{Oracle, OracleError, Side, SwitchValue};
+use super::random::Random;
+use super::regimes::Regime;
+use super::sample::Sample;
+
+/// Corrections of one state. Each halves the distance from the surfaces that is asked for, so
+/// that narrow regimes are reached too.
+const CORRECTIONS: i32 = 24;
+
+/// Sizes of the entries of the state and of the inputs.
+pub(super) struct Sizes<'s> {
+    /// Of the state.
+    pub state: &'s [f64],
+    /// Of the inputs.
+    pub inputs: &'s [f64],
+}
+
+/// An inequality `row * change >= bound` of a change in sizes.
+type Inequality = (Vec<f64>, f64);
+
+/// Moves `sample` into `regime`; false if that failed.
+///
+/// # Errors
+/// [`OracleError`] as from [`Oracle::switch_values`].
+pub(super) fn seek(
+    oracle: &Oracle,
+    sample: &mut Sample,
+    regime: &Regime,
+    sizes: &Sizes<'_>,
+    random: &mut Random,
+) -> Result<bool, OracleError> {
+    for correction in 0..CORRECTIONS {
+        if is_inside(oracle, sample, regime)? {
+            return Ok(true);
+        }
+        let margin = 0.5_f64.powi(correction) * random.unit();
+        let rows = inequalities(oracle, sample, regime, sizes, margin)?;
+        // Too large a margin may contradict; the next one is smaller.
+        if let Some(change) = nearest_point(&rows) {
+            shift(sample, &change, sizes);
+        }
+    }
+    is_inside(oracle, sample, regime)
+}
+
+/// Whether a state is in `regime`, and not only on a surface where a quantity passes 0.
+fn is_inside(oracle: &Oracle, sample: &Sample, regime: &Regime) -> Result<bool, OracleError> {
+    if Regime::of(oracle, sample)? != *regime {
+        return Ok(false);
+    }
+    let sides = oracle.switches().iter().zip(&regime.sides);
+    for (index, (switch, side)) in sides.enumerate() {
+        if *side == Side::Free && switch.rests_at_zero() {
+            let (time, state, inputs) = (sample.time, &sample.state, &sample.inputs);
+            let gradient = oracle.switch_gradient(index, time, state, inputs)?;
+            if gradient.quantity.iter().any(|slope| *slope != 0.0) {
+                return Ok(false);
+            }
+        }
+    }
+    Ok(true)
+}
+
+/// The sides of `regime` and the ranges as inequalities of a change, to first order.
+fn inequalities(
+    oracle: &Oracle,
+    sample: &Sample,
+    regime: &Regime,
+    sizes: &Sizes<'_>,
+    margin: f64,
+) -> Result<Vec<Inequality>, OracleError> {
+    let Sample {
+        time,
+        state,
+        inputs,
+    } = sample;
+    let scales: Vec<f64> = sizes.state.iter().chain(sizes.inputs).copied().collect();
+    let values = oracle.switch_values(*time, state, inputs)?;
+    let mut rows = Vec::new();
+    let sides = oracle.switches().iter().zip(&regime.sides);
+    for (index, (value, (switch, side))) in values.iter().zip(sides).enumerate() {
+        // The sides of other switches lead to where a quantity rests at 0.
+        if *side == Side::Free && switch.rests_at_zero() {
+            continue;
+        }
+        let gradient = oracle.switch_gradient(index, *time, state, inputs)?;
+        // The time counts in s.
+        let scaled = |slopes: &[f64]| -> Vec<f64> {
+            let scales = scales.iter().chain([&1.0]);
+            slopes
+                .iter()
+                .zip(scales)
+                .map(|(s, size)| s * size)
+                .collect()
+        };
+        let slopes = (scaled(&gradient.quantity), scaled(&gradient.half_width));
+        rows.extend(side_inequalities(value, &slopes, *side, margin));
+    }
+    let ranges = oracle.ranges();
+    let entries = state.iter().zip(&ranges.state);
+    let entries = entries.chain(inputs.iter().zip(&ranges.inputs));
+    for (place, ((entry, range), size)) in entries.zip(&scales).enumerate() {
+        if let Some((low, high)) = range {
+            let unit = |sign: f64| {
+                let mut row = vec![0.0; scales.len() + 1];
+                row[place] = sign;
+                row
+            };
+            rows.push((unit(1.0), (low - entry) / size));
+            rows.push((unit(-1.0), (entry - high) / size));
+        }
+    }
+    let finite =
+        |(row, bound): &Inequality| bound.is_finite() && row.iter().all(|entry| entry.is_finite());
+    rows.retain(finite);
+    Ok(rows)
+}
+
+/// The inequalities of one switch whose slopes, in sizes, are those of the quantity and of the
+/// half-width. What is satisfied stays so.
+fn side_inequalities(
+    value: &SwitchValue,
+    (quantity, half_width): &(Vec<f64>, Vec<f64>),
+    side: Side,
+    margin: f64,
+) -> Vec<Inequality> {
+    let row = |sign: f64, widths: f64| -> Vec<f64> {
+        let pairs = quantity.iter().zip(half_width);
+        pairs.map(|(q, h)| sign * q + widths * h).collect()
+    };
+    let bound =
+        |row: Vec<f64>, distance: f64, wanted: f64| (row, wanted.min(distance.max(0.0)) - distance);
+    match side {
+        Side::Free => [1.0, -1.0]
+            .into_iter()
+            .map(|sign| {
+                let distance = value.half_width + sign * value.quantity;
+                (row(sign, 1.0), margin * value.half_width - distance)
+            })
+            .collect(),
+        side => {
+            let row = row(side.sign(), -1.0);
+            let distance = side.sign() * value.quantity - value.half_width;
+            let slope = row.iter().map(|entry| entry * entry).sum::<f64>().sqrt();
+            if distance > 0.0 {
+                return vec![bound(row, distance, margin * slope)];
+            }
+            vec![(row, margin * slope - distance)]
+        }
+    }
+}
+
+fn shift(sample: &mut Sample, change: &[f64], sizes: &Sizes<'_>) {
+    let entries = sample.state.iter_mut().zip(sizes.state);
+    let entries = entries.chain(sample.inputs.iter_mut().zip(sizes.inputs));
+    for ((entry, size), change) in entries.zip(change) {
+        *entry += size * change;
+    }
+    if let Some(change) = change.last() {
+        sample.time += change;
+    }
+}
