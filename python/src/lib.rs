@@ -13,6 +13,7 @@ mod equations;
 mod error;
 mod evaluation;
 mod evaluators;
+mod inputs;
 mod interruption;
 mod linearisation;
 mod model;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use eomgen_codegen::program::evaluator::Evaluator;
 use eomgen_compiled_model::{CompiledModel, Error, Instance, JacobianEvaluator, Orders};
 use eomgen_model_spec::Checked;
-use eomgen_model_spec::edit::{Edit, SetParameter, apply};
+use eomgen_model_spec::edit::{Edit, EditError, PrescribeInput, SetParameter, apply};
 use eomgen_model_spec::model::ParameterValue;
 use eomgen_model_spec::source::Source;
 use eomgen_model_spec::suggest;
@@ -158,6 +158,34 @@ impl Model {
         Ok(Self::at(compiled, self.order, all, self.warnings.clone()))
     }
 
+    /// The model with expressions of the time and of parameters in place of inputs.
+    fn with_inputs(&self, py: Python<'_>, given: Vec<(String, String)>) -> PyResult<Self> {
+        let mut source = self.compiled.model().source.edited(self.specification()?);
+        let derived = || {
+            for (name, value) in given {
+                let edit = Edit::PrescribeInput(PrescribeInput {
+                    name: name.clone(),
+                    value,
+                });
+                let edited = apply(&source, &[edit]).map_err(|error| {
+                    Error::Request(format!("the input {name}: {}", in_words(&error)))
+                })?;
+                source = source.edited(edited);
+            }
+            let checked = eomgen_model_spec::check(source)?;
+            let orders = Orders::Each(self.compiled.orders());
+            CompiledModel::derive(checked.model, orders)
+        };
+        let compiled = py.detach(derived).map_err(error::model)?;
+        let none = Vec::new();
+        Ok(Self::at(
+            Arc::new(compiled),
+            self.order,
+            none,
+            self.warnings.clone(),
+        ))
+    }
+
     /// The model's name.
     #[getter]
     fn name(&self) -> &str {
@@ -241,6 +269,17 @@ impl Model {
     fn initial(&self) -> PyResult<Vec<f64>> {
         let instance = self.instance().map_err(error::model)?;
         Ok(instance.initial().to_vec())
+    }
+}
+
+/// What is wrong with an edit, without places in the edited text, which nobody has.
+fn in_words(error: &EditError) -> String {
+    match error {
+        EditError::Invalid(found) => {
+            let messages = found.list().iter().map(|one| one.message.clone());
+            messages.collect::<Vec<_>>().join("; ")
+        }
+        error => error.to_string(),
     }
 }
 

@@ -2,6 +2,7 @@
 
 import subprocess
 import threading
+import warnings
 
 import numpy as np
 import pytest
@@ -52,7 +53,8 @@ def test_inputs_are_numbers_samples_or_functions(cart):
     t = np.arange(101) * 0.01
     of = lambda force: cart.simulate(until=1, sample=0.01, inputs={name: force})
     held = of(np.sin(t))
-    assert np.array_equal(held.states, of(lambda t: np.sin(t)).states)
+    assert not np.array_equal(held.states, of(lambda t: np.sin(t)).states)
+    assert np.allclose(of(lambda t: np.sin(t)).states, of("sin(t)").states, rtol=2e-8, atol=2e-8)
     # Rows inside long steps are held to 20 times the tolerance, 1e-9.
     assert np.allclose(of(0.5).states, of(np.full(101, 0.5)).states, rtol=2e-8, atol=2e-8)
     # From sample to sample the force is what it was at the first of them.
@@ -115,12 +117,125 @@ def test_wrong_inputs_are_refused(cart):
     for force, said in [
         (np.zeros(7), "expected a number, or 101 numbers"),
         (np.full(101, np.nan), "not finite"),
-        (lambda t: float("nan"), "expected a finite number"),
+        (lambda t: np.nan if t > 0.5 else 1.0, f"the input {name} at t = 0.5.*: NaN: expected a"),
+        ("sin(t", f"the input {name}: .* is missing"),
     ]:
         with pytest.raises(ValueError, match=said):
             cart.simulate(until=1, sample=0.01, inputs={name: force})
-    with pytest.raises(ZeroDivisionError):
-        cart.simulate(until=1, inputs={name: lambda t: 1 / 0})
+    with pytest.raises(TypeError, match=f"the input {name} at t = 0: expected a number"):
+        cart.simulate(until=1, inputs={name: lambda t: "1"})
+
+
+def test_an_exception_of_an_input_names_it_and_is_the_cause(cart):
+    name = cart.inputs[0]
+    with pytest.raises(eomgen.SimulationError, match=f"the input {name} at t = 0.3") as raised:
+        cart.simulate(until=1, inputs={name: lambda t: 1 / 0 if t > 0.3 else 0.0})
+    assert isinstance(raised.value.__cause__, ZeroDivisionError)
+    with pytest.raises(eomgen.SimulationError, match=f"the input {name} at t = 0 ") as raised:
+        cart.simulate(until=1, inputs={name: lambda t: {}["missing"]})
+    assert isinstance(raised.value.__cause__, KeyError)
+
+
+AXIS = """
+[model]
+name = "axis"
+[parameters]
+J_m = { value = 2.1e-4, unit = "kg m^2" }
+m = { value = 18, unit = "kg" }
+k = { value = 24, unit = "N/um" }
+c = { value = 9, unit = "N s/mm" }
+p = { value = 10, unit = "mm" }
+b = { value = 55, unit = "N s/m" }
+[coordinates]
+phi = { unit = "rad" }
+x = { unit = "m" }
+[inputs]
+M = { unit = "N m" }
+[definitions]
+s = "p/(2*pi)*phi - x"
+[kinetic]
+motor = "1/2*J_m*dot(phi)^2"
+table = "1/2*m*dot(x)^2"
+[potential]
+nut = "1/2*k*s^2"
+[dissipation]
+nut = "1/2*c*dot(s)^2"
+guides = "1/2*b*dot(x)^2"
+[forces]
+motor = { on = "phi", value = "M" }
+"""
+
+
+@pytest.mark.parametrize("torque", [lambda t: 0.3 * np.sin(50 * t), "0.3*sin(50*t)"])
+def test_the_output_interval_does_not_change_the_motion(torque):
+    axis = eomgen.load(AXIS)
+    ends = [axis.simulate(1, sample=h, inputs={"M": torque})["x"][-1] for h in (0.1, 0.05, 0.001)]
+    # SciPy's Radau at 1e-12 on the model's own rates.
+    assert np.allclose(ends, 0.028995, rtol=0, atol=1e-6)
+    assert np.ptp(ends) < 1e-9
+
+
+def test_steps_end_where_a_function_jumps(cart):
+    name = cart.inputs[0]
+    jump = 0.123456789
+    of = lambda force, **more: cart.simulate(until=0.5, sample=0.1, inputs={name: force}, **more)
+    exact = of(f"3*above(t - {jump})")
+    calls = []
+
+    def stepped(t):
+        calls.append(t)
+        return 3.0 if t >= jump else 0.0
+
+    r = of(stepped, breaks=[jump])
+    assert np.allclose(r.states, exact.states, rtol=1e-7, atol=1e-7)
+    assert jump in calls and np.nextafter(jump, 0) in calls
+
+
+def test_a_motion_starts_at_a_given_time(cart):
+    name = cart.inputs[0]
+    whole = cart.simulate(until=1, sample=0.1, inputs={name: lambda t: np.sin(9 * t)})
+    rest = cart.simulate(
+        until=1, sample=0.1, start=0.5, initial=whole.states[5], inputs={name: lambda t: np.sin(9 * t)}
+    )
+    assert rest.t[0] == 0.5 and rest.t[-1] == pytest.approx(1) and len(rest) == 6
+    assert np.allclose(rest.states, whole.states[5:], rtol=1e-7, atol=1e-8)
+    with pytest.raises(ValueError, match="expected a time in s after 2"):
+        cart.simulate(until=1, start=2)
+
+
+def test_the_longest_step_finds_a_short_pulse(cart):
+    name = cart.inputs[0]
+    pulse = lambda t: 100.0 * np.exp(-(((t - 31.4) / 0.005) ** 2))
+    of = lambda **more: cart.simulate(
+        until=40, sample=4, solver="rk", initial=[0.0] * len(cart.states), inputs={name: pulse}, **more
+    )
+    seen, exact = of(max_step=0.004), of(breaks=[31.38, 31.39, 31.4, 31.41, 31.42])
+    assert np.abs(exact.states[-1]).max() > 1e-3
+    assert np.allclose(seen.states[-1], exact.states[-1], rtol=1e-3, atol=1e-3)
+    for wrong in (0, -1, float("nan")):
+        with pytest.raises(ValueError, match="max_step"):
+            of(max_step=wrong)
+
+
+def test_energy_from_nothing_is_a_warning():
+    base = """
+[model]
+name = "base"
+[parameters]
+m = { value = 1, unit = "kg" }
+U = { value = 1, unit = "J" }
+[coordinates]
+x = { unit = "m", initial = -1, initial_rate = 1 }
+[kinetic]
+mass = "1/2*m*dot(x)^2"
+[potential]
+step = "U*above(x)"
+"""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        r = eomgen.load(base).simulate(until=3, solver="rk")
+    kept = np.ptp(r["energy"]) < 1e-6
+    assert kept != any("J without work" in str(one.message) for one in caught)
 
 
 def test_an_unknown_column_is_refused(pendulum):
@@ -211,3 +326,8 @@ def test_prescribed_motion_moves_with_the_rates_of_its_samples():
     known = solve_ivp(rates, (0, 3), [0.1, 0], t_eval=r.t, rtol=1e-10, atol=1e-12, method="DOP853")
     assert np.abs(r["theta"] - known.y[0]).max() < 1e-8
     assert np.allclose(r["place"], drive(r.t) + 6 * np.sin(r["theta"]), rtol=0, atol=1e-12)
+    with_rates = lambda t: (drive(t), 0.6 * t - 0.15 * t**2, 0.6 - 0.3 * t)
+    r = crane.simulate(until=3, sample=0.1, inputs={"s": with_rates, "l": 6.0})
+    assert np.abs(r["theta"] - known.y[0][::10]).max() < 1e-8
+    with pytest.raises(TypeError, match="the input s at t = .*: expected 3 numbers"):
+        crane.simulate(until=3, inputs={"s": lambda t: (drive(t), 0.0), "l": 6.0})

@@ -1,12 +1,36 @@
 //! Inputs of a model over time.
 
 use std::borrow::Cow;
+use std::fmt::Debug;
+use std::sync::Arc;
 
 use crate::cubic_spline::CubicSpline;
 
+/// Inputs as a function of time, evaluated at every time that a solver looks at.
+pub trait InputFunction: Debug + Send + Sync {
+    /// Writes the inputs at time `t` (s) to `out`, which has as many entries as there are inputs.
+    /// A function without a value there writes NaN, which ends the motion.
+    fn write(&self, t: f64, out: &mut [f64]);
+}
+
+/// A function that gives some inputs next to each other.
+#[derive(Clone, Debug)]
+struct GivenInputs {
+    place: usize,
+    count: usize,
+    function: Arc<dyn InputFunction>,
+}
+
+impl PartialEq for GivenInputs {
+    fn eq(&self, other: &Self) -> bool {
+        let same_place = (self.place, self.count) == (other.place, other.count);
+        same_place && Arc::ptr_eq(&self.function, &other.function)
+    }
+}
+
 /// Inputs that are constant between the times of a record, but for prescribed motion, which follows
 /// a spline through its samples with the spline's rates. Before the first sample the
-/// first one holds, after the last one the last.
+/// first one holds, after the last one the last. Some inputs may be functions of time instead.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeldInputs {
     times: Vec<f64>,
@@ -15,6 +39,9 @@ pub struct HeldInputs {
     count: usize,
     /// Prescribed motion: its place among the inputs, its rate and second rate being the next two.
     prescribed: Vec<(usize, CubicSpline)>,
+    functions: Vec<GivenInputs>,
+    /// Times at which functions jump, ascending, s.
+    breaks: Vec<f64>,
 }
 
 impl HeldInputs {
@@ -25,6 +52,8 @@ impl HeldInputs {
             values: vec![0.0; count],
             count,
             prescribed: Vec::new(),
+            functions: Vec::new(),
+            breaks: Vec::new(),
         }
     }
 
@@ -35,6 +64,8 @@ impl HeldInputs {
             count: values.len(),
             values,
             prescribed: Vec::new(),
+            functions: Vec::new(),
+            breaks: Vec::new(),
         }
     }
 
@@ -47,6 +78,8 @@ impl HeldInputs {
             values,
             count,
             prescribed: Vec::new(),
+            functions: Vec::new(),
+            breaks: Vec::new(),
         })
     }
 
@@ -58,18 +91,48 @@ impl HeldInputs {
         self
     }
 
+    /// The same with `count` inputs from a place on given by a function.
+    #[must_use]
+    pub fn with_function(
+        mut self,
+        place: usize,
+        count: usize,
+        function: Arc<dyn InputFunction>,
+    ) -> Self {
+        self.functions.push(GivenInputs {
+            place,
+            count,
+            function,
+        });
+        self
+    }
+
+    /// The same with times (s) at which functions jump: steps of solvers end there. Times that are
+    /// no numbers are left out.
+    #[must_use]
+    pub fn with_breaks(mut self, mut breaks: Vec<f64>) -> Self {
+        breaks.retain(|time| time.is_finite());
+        breaks.sort_by(f64::total_cmp);
+        self.breaks = breaks;
+        self
+    }
+
     /// Whether an input moves between samples.
     pub fn moves(&self) -> bool {
-        !self.prescribed.is_empty()
+        !(self.prescribed.is_empty() && self.functions.is_empty())
     }
 
     /// The inputs at a time, in the order of the model.
     pub fn at(&self, t: f64) -> Cow<'_, [f64]> {
         let held = self.held_at(t);
-        if self.prescribed.is_empty() {
+        if !self.moves() {
             return Cow::Borrowed(held);
         }
         let mut inputs = held.to_vec();
+        for given in &self.functions {
+            let places = given.place..given.place + given.count;
+            given.function.write(t, &mut inputs[places]);
+        }
         for (place, spline) in &self.prescribed {
             inputs[*place..*place + 3].copy_from_slice(&spline.at(t));
         }
@@ -108,7 +171,12 @@ impl HeldInputs {
         if self.count == 0 {
             return None;
         }
-        self.times.get(self.times_until(t)).copied()
+        let sample = self.times.get(self.times_until(t)).copied();
+        let jump = self.breaks.iter().copied().find(|time| *time > t);
+        match (sample, jump) {
+            (Some(sample), Some(jump)) => Some(sample.min(jump)),
+            (sample, jump) => sample.or(jump),
+        }
     }
 
     /// The times of the samples, in s.
@@ -128,6 +196,8 @@ mod tests {
             values: vec![5.0, 6.0, 7.0],
             count: 1,
             prescribed: Vec::new(),
+            functions: Vec::new(),
+            breaks: Vec::new(),
         };
         assert_eq!(*held.at(-1.0), [5.0]);
         assert_eq!(*held.at(0.999), [5.0]);
@@ -148,6 +218,8 @@ mod tests {
                 times: times.clone(),
                 count: 1,
                 prescribed: Vec::new(),
+                functions: Vec::new(),
+                breaks: Vec::new(),
             };
             for t in (-10..1300).map(|k| 0.1 * f64::from(k)).chain(times.clone()) {
                 let row = times.iter().filter(|time| **time <= t).count().max(1) - 1;
@@ -161,5 +233,26 @@ mod tests {
     fn no_input_never_changes() {
         assert_eq!(HeldInputs::zero(0).next_change(0.0), None);
         assert_eq!(*HeldInputs::zero(2).at(3.0), [0.0, 0.0]);
+    }
+
+    #[derive(Debug)]
+    struct Ramp;
+
+    impl super::InputFunction for Ramp {
+        fn write(&self, t: f64, out: &mut [f64]) {
+            out.fill(2.0 * t);
+        }
+    }
+
+    #[test]
+    fn a_function_is_evaluated_at_every_time_and_its_breaks_are_changes() {
+        let held = HeldInputs::constant(vec![5.0, 6.0])
+            .with_function(1, 1, std::sync::Arc::new(Ramp))
+            .with_breaks(vec![3.0, f64::NAN, 1.0]);
+        assert!(held.moves());
+        assert_eq!(*held.at(0.25), [5.0, 0.5]);
+        assert_eq!(held.next_change(0.0), Some(1.0));
+        assert_eq!(held.next_change(1.0), Some(3.0));
+        assert_eq!(held.next_change(3.0), None);
     }
 }

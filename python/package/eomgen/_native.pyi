@@ -22,6 +22,7 @@ class Model:
     @staticmethod
     def of_file(path: str, order: Optional[int]) -> Model: ...
     def with_parameters(self, settings: List[Tuple[str, float]]) -> Model: ...
+    def with_inputs(self, given: List[Tuple[str, str]]) -> Model: ...
     @property
     def name(self) -> str: ...
     @property
@@ -60,11 +61,21 @@ def simulate(
     times: _Array,
     input_times: _Array,
     input_values: _Array,
+    functions: List[Tuple[str, int, Callable[[float], object]]],
+    breaks: List[float],
     solver: str,
     tolerance: float,
+    max_step: float,
     progress: Optional[Callable[[float], object]],
 ) -> Tuple[
-    str, Optional[str], Optional[Tuple[Optional[float], str]], _Array, _Array, _Array, int
+    str,
+    Optional[str],
+    Optional[Tuple[Optional[float], str]],
+    _Array,
+    _Array,
+    _Array,
+    int,
+    List[str],
 ]: ...
 def discover(
     model: Model, dataset: str, seed: int, progress: Callable[[str], object]

@@ -196,28 +196,37 @@ class Model:
         *,
         tolerance: float = 1e-9,
         progress: Any = None,
+        start: float = 0.0,
+        max_step: Optional[float] = None,
+        breaks: Any = None,
     ) -> Trajectory:
-        """The motion from t = 0.
+        """The motion from t = `start`.
 
         until: its end, s. sample: the time from sample to sample, s; a thousandth of the whole if
         None. solver: "auto", "exact" (for models that are linear between their switches), "rk",
-        "adams" or "radau" (for stiff models); tolerance: the relative one of all but "exact".
+        "adams" or "radau" (for stiff models); tolerance: the relative one of all but "exact";
+        max_step: the longest step of these, s, for inputs with pulses that longer steps may miss.
 
         initial: (states,), or names to numbers; the others as the specification says.
 
-        inputs: names to a number, to an array with a number per sample, or to a function of t (s)
-        that is called with each sample's time. Numbers are held from their sample to the next.
-        Inputs that are not given are 0.
+        inputs: names to a number, to an array with a number per sample, to an expression such as
+        "0.3*sin(50*t)" with t in s, or to a function of t (s). Arrays are held from their sample
+        to the next; arrays for prescribed motion follow a cubic spline, which gives its rates.
+        Functions are called at the times that the solver needs; times at which one jumps are
+        `breaks`. For prescribed motion a function returns (s, s', s''). Inputs that are not given
+        are 0.
 
         progress: called with the part that is done, 0 to 1, about ten times a second; by default a
         line is shown in terminals and notebooks once it takes longer than two seconds.
 
+        Warns if the energy changes without work or if bodies overlap.
+
         Raises SimulationError where the motion cannot be followed; its `trajectory` holds the
-        samples until there. Ctrl-C stops it.
+        samples until there. An exception of an input function is its cause. Ctrl-C stops it.
         """
-        return simulated(
-            self, until, sample, solver, self.state(initial), inputs, tolerance, progress
-        )
+        span = (start, until, sample)
+        settings = (solver, tolerance, max_step)
+        return simulated(self, span, settings, self.state(initial), (inputs, breaks), progress)
 
     def state(self, values: Any = None) -> Array:
         """A whole state, (states,): the initial one of the specification with some names set to

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from typing import TYPE_CHECKING, Any, Callable, Mapping, Optional, Sequence, Tuple
+from typing import TYPE_CHECKING, Any, Callable, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,9 +36,9 @@ class Trajectory:
         self,
         names: Tuple[Tuple[str, ...], Tuple[str, ...]],
         units: Mapping[str, str],
-        found: Tuple[str, Optional[str], Any, Array, Array, Array, int],
+        found: Tuple[str, Optional[str], Any, Array, Array, Array, int, List[str]],
     ):
-        self.solver, self.reason, _, self.t, self.states, self.observables, self.switches = found
+        self.solver, self.reason, _, self.t, self.states, self.observables, self.switches = found[:7]
         self.state_names, self.observable_names = names
         self._units = units
 
@@ -100,15 +100,15 @@ class Trajectory:
 
 def simulated(
     model: "Model",
-    until: Any,
-    sample: Any,
-    solver: Any,
+    span: Tuple[Any, Any, Any],
+    settings: Tuple[Any, Any, Any],
     initial: Array,
-    inputs: Any,
-    tolerance: Any,
+    driven: Tuple[Any, Any],
     progress: Optional[Callable[[float], object]],
 ) -> Trajectory:
-    """The motion of a model; `Model.simulate` says what the arguments are."""
+    """The motion of a model over a span (start, until, sample) with settings (solver, tolerance,
+    max_step), driven by (inputs, breaks); `Model.simulate` says what the arguments are."""
+    solver, tolerance, max_step = settings
     if not isinstance(solver, str):
         raise TypeError(f"solver = {solver!r}: expected the name of a solver")
     if not np.isfinite(initial).all():
@@ -117,19 +117,29 @@ def simulated(
     tolerance = _arguments.real("tolerance", tolerance)
     if not 0.0 < tolerance < 1.0:
         raise ValueError(f"tolerance = {tolerance}: expected a number between 0 and 1")
-    times = sample_times(until, sample, len(model.states) + len(model.observable_names))
-    input_times, input_values = held_inputs(model.inputs, inputs, times)
+    longest = np.inf if max_step is None else _arguments.real("max_step", max_step)
+    if longest <= 0.0:
+        raise ValueError(f"max_step = {longest}: expected a time in s above 0")
+    times = sample_times(*span, len(model.states) + len(model.observable_names))
+    given, breaks = driven
+    native, names, given = prescribe(model, given)
+    input_times, input_values, functions = driving(names, given, times)
     with Fraction("simulating", times[-1], progress) as line:
         found = _native.simulate(
-            model._native,
+            native,
             initial,
             times,
             input_times,
             input_values,
+            functions,
+            break_times(breaks),
             solver,
             tolerance,
+            longest,
             line.tell,
         )
+    for warning in found[7]:
+        warnings.warn(warning, stacklevel=3)
     names = (model.states, model.observable_names)
     trajectory = Trajectory(names, model.units, found)
     stopped = found[2]
@@ -140,26 +150,39 @@ def simulated(
     return trajectory
 
 
-def sample_times(until: Any, sample: Any, columns: int) -> Array:
-    """The times of the samples, s, from 0 on; as the command line has them, to the bit."""
-    end = _arguments.real("until", until)
-    if end <= 0.0:
-        raise ValueError(f"until = {end}: expected a time in s after 0")
-    step = end / DEFAULT_SAMPLES if sample is None else _arguments.real("sample", sample)
-    if not 0.0 < step <= end:
-        raise ValueError(f"sample = {step}: expected a time in s above 0 and at most {end}")
-    steps = np.floor(end / step * (1.0 + 1e-12))
+def sample_times(start: Any, until: Any, sample: Any, columns: int) -> Array:
+    """The times of the samples, s, from the start on; as the command line has them, to the bit."""
+    begin, end = _arguments.real("start", start), _arguments.real("until", until)
+    if end <= begin:
+        raise ValueError(f"until = {end}: expected a time in s after {begin:g}")
+    whole = end - begin
+    step = whole / DEFAULT_SAMPLES if sample is None else _arguments.real("sample", sample)
+    if not 0.0 < step <= whole:
+        raise ValueError(f"sample = {step}: expected a time in s above 0 and at most {whole}")
+    steps = np.floor(whole / step * (1.0 + 1e-12))
     if (steps + 1.0) * columns > MOST_NUMBERS:
         raise ValueError(
             f"sample = {step}: too many samples: the limit is {MOST_NUMBERS:.0e} numbers; "
             "give a longer time"
         )
-    times: Array = np.minimum(np.arange(int(steps) + 1) * step, end)
+    times: Array = np.minimum(begin + np.arange(int(steps) + 1) * step, end)
     return times
 
 
-def held_inputs(names: Sequence[str], given: Any, times: Array) -> Tuple[Array, Array]:
-    """Times (s) and a row of inputs for each, held until the next."""
+def break_times(given: Any) -> List[float]:
+    """The times at which input functions jump, s."""
+    if given is None:
+        return []
+    breaks = _arguments.numbers("breaks", given).reshape(-1)
+    if not np.isfinite(breaks).all():
+        raise ValueError("breaks: expected finite times in s")
+    return [float(time) for time in breaks]
+
+
+def prescribe(model: "Model", given: Any) -> Tuple[Any, Tuple[str, ...], Mapping[str, Any]]:
+    """The compiled model with expressions in place of the inputs that these give, the names of the
+    other inputs, and what gives these."""
+    names = model.inputs
     if given is None:
         given = {}
     if not isinstance(given, Mapping):
@@ -169,22 +192,35 @@ def held_inputs(names: Sequence[str], given: Any, times: Array) -> Tuple[Array, 
             else "inputs: the model has none"
         )
     _arguments.check_names("input", given, names)
-    missing = [name for name in names if name not in given]
+    expressions = [(name, value) for name, value in given.items() if isinstance(value, str)]
+    if not expressions:
+        return model._native, names, given
+    native = model._native.with_inputs(expressions)
+    others = {name: value for name, value in given.items() if not isinstance(value, str)}
+    return native, tuple(name for name, _ in native.inputs), others
+
+
+def driving(names: Sequence[str], given: Mapping[str, Any], times: Array) -> Tuple[Array, Array, Any]:
+    """Times (s) and a row of inputs for each, held until the next, and functions of the time with
+    the name and the place of the input that each gives."""
+    functions = [(name, names.index(name), f) for name, f in given.items() if callable(f)]
+    rates = {f"{name}_{order}" for name in given for order in ("dot", "ddot")}
+    missing = [name for name in names if name not in given and name not in rates]
     if missing:
         warnings.warn(
             f"not driven and taken as 0: {', '.join(missing)}; give inputs={{NAME: ...}}",
             stacklevel=4,
         )
-    columns = [_column(name, given.get(name, 0.0), times) for name in names]
+    held = {name: value for name, value in given.items() if not callable(value)}
+    columns = [_column(name, held.get(name, 0.0), times) for name in names]
     if all(len(column) == 1 for column in columns):
-        return times[:1], np.array([[column[0] for column in columns]]).reshape(1, len(names))
+        rows = np.array([[column[0] for column in columns]]).reshape(1, len(names))
+        return times[:1], rows, functions
     rows = np.stack([np.broadcast_to(column, times.shape) for column in columns], axis=-1)
-    return times, np.ascontiguousarray(rows)
+    return times, np.ascontiguousarray(rows), functions
 
 
 def _column(name: str, given: Any, times: Array) -> Array:
-    if callable(given):
-        given = [_arguments.real(f"the input {name} at t = {t}", given(float(t))) for t in times]
     column = _arguments.numbers(f"the input {name}", given).reshape(-1)
     if np.ndim(given) > 1 or len(column) not in (1, len(times)):
         raise ValueError(

@@ -1,0 +1,210 @@
+//! Inputs that are functions of Python, called at every time that a solver looks at.
+
+use std::fmt;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use eomgen_model_spec::model::Input;
+use eomgen_sim::cubic_spline::CubicSpline;
+use eomgen_sim::inputs::{HeldInputs, InputFunction};
+use pyo3::exceptions::{PyException, PyTypeError, PyValueError};
+use pyo3::prelude::*;
+
+use crate::error::SimulationError;
+
+/// The inputs that one function may give: itself, its rate and its second rate.
+const MOST: usize = 3;
+
+/// The name and the place of an input, and the function of Python that gives it.
+pub type Given = (String, usize, Py<PyAny>);
+
+/// Points of the spline through prescribed motion whose function gives no rates.
+const SPLINE_POINTS: usize = 16_385;
+
+/// Why a function gave no inputs.
+struct Failure {
+    input: String,
+    t: f64,
+    error: PyErr,
+}
+
+/// The first failure of all functions of a motion.
+#[derive(Clone, Default)]
+pub struct Failures(Arc<Mutex<Option<Failure>>>);
+
+impl Failures {
+    fn lock(&self) -> MutexGuard<'_, Option<Failure>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn note(&self, failure: Failure) {
+        self.lock().get_or_insert(failure);
+    }
+
+    /// The exception of the first failure, if there is one: it names the input and the time, and
+    /// has what the function raised as its cause. What is no `Exception`, such as
+    /// `KeyboardInterrupt`, is itself raised.
+    pub fn take(&self, py: Python<'_>) -> Option<PyErr> {
+        let Failure { input, t, error } = self.lock().take()?;
+        if !error.is_instance_of::<PyException>(py) {
+            return Some(error);
+        }
+        let message = format!("the input {input} at t = {t}: {}", error.value(py));
+        let raised = match is_refused(py, &error) {
+            Some(true) => PyValueError::new_err(message),
+            Some(false) => PyTypeError::new_err(message),
+            None => {
+                SimulationError::new_err(format!("the input {input} at t = {t} raised {error}"))
+            }
+        };
+        if is_refused(py, &error).is_none() {
+            raised.set_cause(py, Some(error));
+        }
+        Some(raised)
+    }
+}
+
+/// Whether the error is one of a value (true) or of a type (false) that a function returned, and not
+/// one that it raised.
+fn is_refused(py: Python<'_>, error: &PyErr) -> Option<bool> {
+    if error.is_instance_of::<RefusedValue>(py) {
+        return Some(true);
+    }
+    error.is_instance_of::<RefusedType>(py).then_some(false)
+}
+
+pyo3::create_exception!(eomgen, RefusedValue, PyException);
+pyo3::create_exception!(eomgen, RefusedType, PyException);
+
+/// A function of Python that gives inputs.
+struct PythonFunction {
+    input: String,
+    function: Py<PyAny>,
+    /// The last time with its inputs: solvers look at one time more than once.
+    last: Mutex<Option<(f64, [f64; MOST])>>,
+    failures: Failures,
+}
+
+impl fmt::Debug for PythonFunction {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "PythonFunction({})", self.input)
+    }
+}
+
+impl InputFunction for PythonFunction {
+    fn write(&self, t: f64, out: &mut [f64]) {
+        let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((time, values)) = &*last
+            && *time == t
+        {
+            return out.copy_from_slice(&values[..out.len()]);
+        }
+        out.fill(f64::NAN);
+        if self.failures.lock().is_some() {
+            return;
+        }
+        match Python::attach(|py| self.called(py, t, out)) {
+            Ok(()) => {
+                let mut values = [0.0; MOST];
+                values[..out.len()].copy_from_slice(out);
+                *last = Some((t, values));
+            }
+            Err(error) => {
+                out.fill(f64::NAN);
+                let input = self.input.clone();
+                self.failures.note(Failure { input, t, error });
+            }
+        }
+    }
+}
+
+impl PythonFunction {
+    /// Whether it returns more than one number. What it raises it will raise again.
+    fn is_several(&self, py: Python<'_>, t: f64) -> bool {
+        let found = self.function.bind(py).call1((t,));
+        found.is_ok_and(|found| found.extract::<f64>().is_err())
+    }
+
+    fn called(&self, py: Python<'_>, t: f64, out: &mut [f64]) -> PyResult<()> {
+        let found = self.function.bind(py).call1((t,))?;
+        match &mut *out {
+            [only] => *only = number(&found)?,
+            several => {
+                let numbers = found.try_iter().map_err(|_| not_rates(several.len()))?;
+                let numbers = numbers.collect::<PyResult<Vec<_>>>()?;
+                if numbers.len() != several.len() {
+                    return Err(not_rates(several.len()));
+                }
+                for (slot, found) in several.iter_mut().zip(&numbers) {
+                    *slot = number(found)?;
+                }
+            }
+        }
+        match out.iter().find(|value| !value.is_finite()) {
+            Some(value) => Err(RefusedValue::new_err(format!(
+                "{value}: expected a finite number"
+            ))),
+            None => Ok(()),
+        }
+    }
+}
+
+fn number(found: &Bound<'_, PyAny>) -> PyResult<f64> {
+    let wrong = |_| {
+        let kind = found.get_type();
+        RefusedType::new_err(format!("expected a number, not {kind}"))
+    };
+    found.extract::<f64>().map_err(wrong)
+}
+
+fn not_rates(count: usize) -> PyErr {
+    RefusedType::new_err(format!(
+        "expected {count} numbers: the input, its rate and its second rate"
+    ))
+}
+
+/// Inputs of which some are functions that jump at `breaks`, s, and what these may fail with.
+///
+/// Prescribed motion needs its rates: a function returns them with it, as (s, s', s''). If it
+/// does not, the motion follows a cubic spline through many points of the span.
+///
+/// # Errors
+/// What such a function raises or returns at these points.
+pub fn with_functions(
+    py: Python<'_>,
+    (mut inputs, known): (HeldInputs, &[Input]),
+    (functions, breaks): (Vec<Given>, Vec<f64>),
+    (begin, end): (f64, f64),
+) -> PyResult<(HeldInputs, Failures)> {
+    let failures = Failures::default();
+    for (input, place, function) in functions {
+        let is_prescribed = known
+            .get(place)
+            .is_some_and(|input| input.rate.is_some() && input.rate_of.is_none());
+        let given = PythonFunction {
+            input,
+            function,
+            last: Mutex::new(None),
+            failures: failures.clone(),
+        };
+        let has_rates = is_prescribed && given.is_several(py, begin);
+        if is_prescribed && !has_rates {
+            let part = |point: usize| point as f64 / (SPLINE_POINTS - 1) as f64;
+            let times = (0..SPLINE_POINTS).map(|point| begin + part(point) * (end - begin));
+            let times: Vec<f64> = times.collect();
+            let mut values = vec![0.0; times.len()];
+            for (t, value) in times.iter().zip(&mut values) {
+                given.write(*t, std::slice::from_mut(value));
+            }
+            if let Some(raised) = failures.take(py) {
+                return Err(raised);
+            }
+            if let Some(spline) = CubicSpline::through(times, values) {
+                inputs = inputs.with_prescribed(place, spline);
+            }
+            continue;
+        }
+        let count = if has_rates { MOST } else { 1 };
+        inputs = inputs.with_function(place, count, Arc::new(given));
+    }
+    Ok((inputs.with_breaks(breaks), failures))
+}
