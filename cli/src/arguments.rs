@@ -406,7 +406,14 @@ pub struct Simulate {
     /// solver.
     #[arg(long, allow_negative_numbers = true)]
     pub tolerance: Option<f64>,
-    /// Print one JSON document on the work done.
+    /// Longest step of the solver, in s: give it if an input has pulses that are short beside the
+    /// whole, which longer steps may miss; no effect on the exact solver.
+    #[arg(long, allow_negative_numbers = true)]
+    pub max_step: Option<f64>,
+    /// End with exit status 1 if the energy changes without work, or if bodies overlap.
+    #[arg(long)]
+    pub strict: bool,
+    /// Print one JSON document on the work done and the energy balance.
     #[arg(long)]
     pub json: bool,
 }

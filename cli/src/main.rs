@@ -7,6 +7,7 @@
 
 mod archive;
 mod arguments;
+mod audit;
 mod bench_files;
 mod certification;
 mod checked_in;

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use eomgen_compiled_model::{Choice, Error, Motion, Request, Solver};
+use eomgen_compiled_model::{Audit, Choice, Error, Motion, Overlap, Request, Solver};
 use eomgen_sim::cubic_spline::CubicSpline;
 use eomgen_sim::inputs::HeldInputs;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, ToPyArray};
@@ -10,6 +10,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::error;
+use crate::inputs::{Given, with_functions};
 use crate::interruption::{Line, interruptible};
 use crate::model::Model;
 
@@ -18,7 +19,7 @@ const REPORT: Duration = Duration::from_millis(100);
 
 /// What Python gets of a motion: its solver and why it is that one; when and why it stopped, if it
 /// did not come to the end; times, states and observables, a row for each sample; how many
-/// switches it passed.
+/// switches it passed; warnings.
 type Found<'py> = (
     &'static str,
     Option<String>,
@@ -27,12 +28,17 @@ type Found<'py> = (
     Bound<'py, PyArray2<f64>>,
     Bound<'py, PyArray2<f64>>,
     usize,
+    Vec<String>,
 );
 
 /// Simulates from an initial state over ascending times (s), driven by inputs that are held from
-/// each of their times to the next. `progress` is called with the time of the motion, s.
+/// each of their times to the next, but for those that `functions` give, which jump at `breaks`
+/// (s). `progress` is called with the time of the motion, s.
 #[pyfunction]
-#[pyo3(signature = (model, initial, times, input_times, input_values, solver, tolerance, progress))]
+#[pyo3(signature = (
+    model, initial, times, input_times, input_values, functions, breaks, solver, tolerance,
+    max_step, progress
+))]
 #[expect(
     clippy::too_many_arguments,
     reason = "the arguments of a function of Python"
@@ -44,8 +50,11 @@ pub fn simulate<'py>(
     times: PyReadonlyArray1<'py, f64>,
     input_times: PyReadonlyArray1<'py, f64>,
     input_values: PyReadonlyArray2<'py, f64>,
+    functions: Vec<Given>,
+    breaks: Vec<f64>,
     solver: &str,
     tolerance: f64,
+    max_step: f64,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Found<'py>> {
     let count = model.compiled().model().inputs.len();
@@ -61,12 +70,21 @@ pub fn simulate<'py>(
         input_times.as_slice()?,
         input_values.as_slice()?,
     );
+    let sample_times = times.as_slice()?;
+    let span = match sample_times {
+        [first, .., last] => (*first, *last),
+        _ => return Err(PyValueError::new_err("expected two samples or more")),
+    };
+    let known = &model.compiled().model().inputs;
+    let (inputs, failures) = with_functions(py, (inputs, known), (functions, breaks), span)?;
     let request = Request {
         initial: initial.as_slice()?,
-        times: times.as_slice()?,
+        times: sample_times,
         inputs: &inputs,
         solver: named(solver)?,
         tolerance,
+        max_step,
+        audit: true,
     };
     if request.initial.len() != model.compiled().program().states() {
         return Err(PyValueError::new_err("an initial state of another model"));
@@ -76,7 +94,10 @@ pub fn simulate<'py>(
         told.transpose().map(drop)
     };
     let found = interruptible(py, hear, |line| followed(model, &request, line))?;
-    let (motion, observables) = found.map_err(error::model)?;
+    if let Some(raised) = failures.take(py) {
+        return Err(raised);
+    }
+    let (motion, observables, warnings) = found.map_err(error::model)?;
     let trajectory = &motion.trajectory;
     let rows = trajectory.times.len();
     let states: Vec<f64> = trajectory.states.concat();
@@ -93,6 +114,7 @@ pub fn simulate<'py>(
             .reshape([rows, request.initial.len()])?,
         observables.to_pyarray(py).reshape([rows, width])?,
         trajectory.switches.len(),
+        warnings,
     ))
 }
 
@@ -108,12 +130,12 @@ fn named(name: &str) -> PyResult<Solver> {
     })
 }
 
-/// The motion with its observables, row by row.
+/// The motion with its observables, row by row, and warnings.
 fn followed(
     model: &Model,
     request: &Request<'_>,
     line: &Line<'_, f64>,
-) -> Result<(Motion, Vec<f64>), Error> {
+) -> Result<(Motion, Vec<f64>, Vec<String>), Error> {
     let instance = model.instance()?;
     let mut told = Instant::now();
     let motion = instance.follow(request, &mut |t| {
@@ -125,7 +147,12 @@ fn followed(
     })?;
     let mut observables = Vec::new();
     instance.observe(&motion, |_, _, row| observables.extend_from_slice(row))?;
-    Ok((motion, observables))
+    let overlap = instance.first_overlap_of(&motion, request.tolerance)?;
+    let energy = motion.audit.as_ref().and_then(Audit::warning);
+    let warnings = energy.into_iter();
+    let warnings = warnings.chain(overlap.as_ref().map(Overlap::warning));
+    let warnings = warnings.collect();
+    Ok((motion, observables, warnings))
 }
 
 /// Why a solver was taken.

@@ -258,6 +258,8 @@ fn a_linkage_that_folds_flat_stops_there_and_names_the_constraints() {
                 inputs: &run.no_inputs(),
                 solver,
                 tolerance: 1e-9,
+                max_step: f64::INFINITY,
+                audit: false,
             };
             let motion = run.follow(&request, &mut |_| {}).expect("a motion");
             let stopped = motion.stopped.expect("a stop");

@@ -4,6 +4,7 @@ use eomgen_compiled_model::{DEFAULT_TOLERANCE, Motion, Request};
 use serde_json::json;
 
 use crate::arguments::{Simulate, Solver};
+use crate::audit::AuditResult;
 use crate::error::{Error, Result, warn};
 use crate::history;
 use crate::model::{derive, load, orders};
@@ -32,6 +33,10 @@ pub fn run(options: &Simulate) -> Result {
     if options.solver == Solver::Exact && options.tolerance.is_some() {
         warn("warning: --tolerance has no effect on the exact solver: only rounding limits it");
     }
+    if options.solver == Solver::Exact && options.max_step.is_some() {
+        warn("warning: --max-step has no effect on the exact solver, which misses no input");
+    }
+    let tolerance = options.tolerance.unwrap_or(DEFAULT_TOLERANCE);
     let run = compiled.at_declared()?;
     check_size(times.len(), columns(&run).len())?;
     let initial = with_initial(&run, &options.initial)?;
@@ -40,27 +45,37 @@ pub fn run(options: &Simulate) -> Result {
         times: &times,
         inputs: &inputs,
         solver: options.solver.into(),
-        tolerance: options.tolerance.unwrap_or(DEFAULT_TOLERANCE),
+        tolerance,
+        max_step: options.max_step.unwrap_or(f64::INFINITY),
+        audit: true,
     };
     let motion = follow(&run, &request)?;
     warn_of_ranges(compiled.model(), &motion.trajectory, &inputs)?;
+    let audited = AuditResult::of(&run, &motion, tolerance)?;
+    audited.warn();
     let table = table(&run, &motion)?;
     destination.write(&table.encode(&options.out)?)?;
     if let Some(figure) = figure {
         figure.write(history::figure(&compiled, &table)?.as_bytes())?;
     }
-    destination.summarise(&summary(options, &table, &motion))?;
+    destination.summarise(&summary(options, &table, &motion, &audited))?;
     match &motion.stopped {
         Some(stopped) => {
             warn(&format!("error: {}", stopped.reason));
             Err(Error::Failed)
         }
+        None if options.strict && audited.has_failed() => Err(Error::Failed),
         None => Ok(()),
     }
 }
 
 /// What is said at the end.
-fn summary(options: &Simulate, table: &Table, motion: &Motion) -> String {
+fn summary(
+    options: &Simulate,
+    table: &Table,
+    motion: &Motion,
+    audited: &AuditResult<'_>,
+) -> String {
     let file = options.out.display();
     let (rows, switches) = (table.rows(), motion.trajectory.switches.len());
     let work = motion.trajectory.work;
@@ -77,6 +92,7 @@ fn summary(options: &Simulate, table: &Table, motion: &Motion) -> String {
                 "t": stopped.t,
                 "reason": stopped.reason,
             })),
+            "energy_audit": audited.json(),
         });
         return format!("{document:#}\n");
     }

@@ -137,6 +137,8 @@ fn record(truth: &str, turn: f64) -> Result<Table> {
         inputs: &inputs,
         solver: Solver::Rk,
         tolerance: TOLERANCE,
+        max_step: f64::INFINITY,
+        audit: false,
     };
     let motion = table(&run, &simulate(&run, &request)?)?;
     let positions = motion

@@ -7,8 +7,9 @@ use std::cell::{RefCell, RefMut};
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_codegen::program::{Op, ValueId};
 use eomgen_sim::inputs::HeldInputs;
-use eomgen_sim::ode::{Surface, System, jacobian_by_differences};
+use eomgen_sim::ode::{ObservedStep, Surface, System, jacobian_by_differences};
 
+use crate::audit::{Audit, Auditor, EnergyAt};
 use crate::contacts::Contacts;
 use crate::jacobians::{Jacobian, JacobianEvaluator};
 use crate::projection::Projection;
@@ -23,6 +24,7 @@ pub struct Driven<E, I> {
     projection: Option<Projection>,
     contacts: Option<RefCell<Contacts>>,
     sliding: Option<RefCell<Sliding>>,
+    auditor: Option<RefCell<Auditor>>,
 }
 
 impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
@@ -35,7 +37,36 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
             projection: None,
             contacts: None,
             sliding: None,
+            auditor: None,
         }
+    }
+
+    /// The same with an auditor of its energy.
+    pub(crate) fn with_auditor(mut self, auditor: Option<Auditor>) -> Self {
+        self.auditor = auditor.map(RefCell::new);
+        self
+    }
+
+    /// The energy balance of the motion so far, if it was audited.
+    pub(crate) fn audit(&self) -> Option<Audit> {
+        let auditor = self.auditor.as_ref()?;
+        Some(auditor.borrow().audit().clone())
+    }
+
+    /// Energy and power, with the forces that hold the motion where surfaces do.
+    fn energies(&self, t: f64, state: &[f64]) -> EnergyAt {
+        let mut observables = vec![0.0; self.evaluator().program().observables.len()];
+        match self.sliding.as_ref().filter(|_| self.slides()) {
+            Some(sliding) => {
+                let inputs = &self.inputs.borrow().at(t);
+                let mut sliding = sliding.borrow_mut();
+                sliding.observables((t, state), inputs, &mut observables);
+            }
+            None => self.at(t, state, |evaluator, point| {
+                evaluator.observables(point, &mut observables);
+            }),
+        }
+        EnergyAt::of(&observables)
     }
 
     /// The same that keeps states on the constraints, at the same parameters.
@@ -237,11 +268,17 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for Driven<E, 
 
     fn cross(&self, before: (f64, &[f64]), t: f64, y: &mut [f64]) {
         if let Some(contacts) = &self.contacts {
+            let arrived = self.auditor.as_ref().map(|_| y.to_vec());
             let inputs = &self.inputs.borrow().at(t);
-            let mut evaluator = self.evaluator();
             contacts
                 .borrow_mut()
-                .cross(&mut evaluator, inputs, before, t, y);
+                .cross(&mut self.evaluator(), inputs, before, t, y);
+            if let (Some(auditor), Some(arrived)) = (&self.auditor, arrived)
+                && arrived != y
+            {
+                let energies = &mut |t: f64, y: &[f64]| self.energies(t, y);
+                auditor.borrow_mut().impact(t, (&arrived, y), energies);
+            }
         }
         if let Some(sliding) = &self.sliding {
             let inputs = &self.inputs.borrow().at(t);
@@ -263,6 +300,22 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for Driven<E, 
         let (earlier, inputs) = (given.at(t.next_down()), given.at(t));
         let mut sliding = sliding.borrow_mut();
         sliding.arrive((t, y), (earlier.as_ref(), inputs.as_ref()))
+    }
+
+    fn is_observing(&self) -> bool {
+        self.auditor.is_some()
+    }
+
+    fn observe_step(&self, step: &mut ObservedStep<'_>) {
+        let Some(auditor) = &self.auditor else {
+            return;
+        };
+        let mut auditor = auditor.borrow_mut();
+        let energies = &mut |t: f64, y: &[f64]| self.energies(t, y);
+        match auditor.moving_contacts().map(str::to_owned) {
+            Some(reason) if self.rests() => auditor.leave_out(step, energies, &reason),
+            _ => auditor.step(step, energies),
+        }
     }
 
     fn next_breakpoint(&self, t: f64) -> Option<f64> {

@@ -39,9 +39,11 @@
 //! # Ok::<(), eomgen_compiled_model::Error>(())
 //! ```
 
+mod audit;
 mod consistent;
 mod contacts;
 mod differentiated;
+mod distances;
 mod driven;
 mod equilibrium;
 mod error;
@@ -54,6 +56,8 @@ mod projection;
 mod simulate;
 mod sliding;
 
+pub use audit::{Audit, Imbalance};
+pub use distances::Overlap;
 pub use driven::Driven;
 pub use equilibrium::Equilibrium;
 pub use error::Error;

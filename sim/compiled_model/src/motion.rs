@@ -5,6 +5,7 @@ use std::fmt;
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::Trajectory;
 
+use crate::audit::Audit;
 use crate::error::Error;
 use crate::projection::Moved;
 
@@ -64,6 +65,8 @@ pub struct Motion {
     pub stopped: Option<Stopped>,
     /// What of the initial state was moved so that the constraints hold.
     pub moved: Vec<Moved>,
+    /// The energy balance, if it was asked for.
+    pub audit: Option<Audit>,
 }
 
 impl Motion {

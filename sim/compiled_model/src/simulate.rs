@@ -3,10 +3,14 @@
 
 use std::cell::RefCell;
 
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_sim::inputs::HeldInputs;
-use eomgen_sim::ode::{Method, Names, Settings, SolveError, Surface, Trajectory, simulate_into};
-use eomgen_sim::piecewise_linear::{ExactError, Propagator};
+use eomgen_sim::ode::{
+    Method, Names, ObservedStep, Settings, SolveError, Surface, Trajectory, simulate_into,
+};
+use eomgen_sim::piecewise_linear::{ExactError, Propagator, StepObserver};
 
+use crate::audit::{Audit, Auditor, EnergyAt};
 use crate::driven::Driven;
 use crate::error::Error;
 use crate::instance::Instance;
@@ -32,9 +36,20 @@ pub struct Request<'r> {
     pub solver: Solver,
     /// The relative tolerance of solvers that have one.
     pub tolerance: f64,
+    /// The longest step of solvers that have a tolerance, s; see [`Settings::max_step`].
+    pub max_step: f64,
+    /// Whether to compare the change of the energy with the work done; see [`Audit`].
+    pub audit: bool,
 }
 
 impl Request<'_> {
+    fn settings(&self) -> Settings {
+        Settings {
+            max_step: self.max_step,
+            ..Settings::with_tolerance(self.tolerance)
+        }
+    }
+
     /// The first and the last of the times, s.
     pub fn span(&self) -> (f64, f64) {
         let first = self.times.first().copied().unwrap_or(0.0);
@@ -63,6 +78,8 @@ impl Instance<'_> {
             inputs,
             solver,
             tolerance: DEFAULT_TOLERANCE,
+            max_step: f64::INFINITY,
+            audit: false,
         };
         self.follow(&request, &mut |_| {})?.complete()
     }
@@ -79,7 +96,7 @@ impl Instance<'_> {
     ) -> Result<Motion, Error> {
         let asked = |method| Settings {
             method,
-            ..Settings::with_tolerance(request.tolerance)
+            ..request.settings()
         };
         let exact = match request.solver {
             Solver::Rk => {
@@ -91,8 +108,8 @@ impl Instance<'_> {
         };
         let is_free = request.solver == Solver::Auto;
         if request.inputs.moves() {
-            let reason = "prescribed motion goes on between the samples of a record, and the exact \
-                          solver holds inputs there";
+            let reason = "the exact solver holds inputs between their samples, and these are functions of \
+                          the time";
             return match is_free {
                 true => self.chosen(
                     request,
@@ -112,12 +129,20 @@ impl Instance<'_> {
         // Judged as for the other solvers, and it gives the switching functions their names.
         let evaluator = RefCell::new(self.evaluator()?);
         let mut trajectory = Trajectory::default();
+        let mut auditor = request.audit.then(|| self.auditor(None));
         let ended = self.propagator().and_then(|mut propagator| {
-            propagate(&mut propagator, &mut trajectory, request, progress)
+            let auditor = auditor.as_mut().map(|auditor| (auditor, &evaluator));
+            propagate(
+                &mut propagator,
+                &mut trajectory,
+                request,
+                (progress, auditor),
+            )
         });
+        let audit = auditor.map(|auditor| auditor.audit().clone());
         let Err(error) = ended else {
             let choice = is_free.then_some(Choice::PiecewiseLinear);
-            return Ok(motion(trajectory, request, Solver::Exact, choice));
+            return Ok(motion(trajectory, request, Solver::Exact, (choice, audit)));
         };
         let surfaces = Driven::new(&evaluator, request.inputs).surfaces();
         let reason = self.named(&surfaces, |names| error.named(names));
@@ -127,7 +152,7 @@ impl Instance<'_> {
         }
         let choice = is_free.then_some(Choice::PiecewiseLinear);
         let t = error.time();
-        let so_far = motion(trajectory, request, Solver::Exact, choice);
+        let so_far = motion(trajectory, request, Solver::Exact, (choice, audit));
         let cause = self.cause_of_exact(&error);
         stopped(so_far, Stopped { t, reason, cause })
     }
@@ -141,7 +166,7 @@ impl Instance<'_> {
     ) -> Result<Motion, Error> {
         let explicit = Settings {
             max_steps_if_stiff: MOST_STIFF_STEPS,
-            ..Settings::with_tolerance(request.tolerance)
+            ..request.settings()
         };
         let motion = self.general(request, &explicit, choice, progress)?;
         let cause = motion.stopped.as_ref().map(|stopped| &stopped.cause);
@@ -150,7 +175,7 @@ impl Instance<'_> {
         };
         let implicit = Settings {
             method: Method::Radau,
-            ..Settings::with_tolerance(request.tolerance)
+            ..request.settings()
         };
         let choice = Some(Choice::Stiff(what.clone()));
         self.general(request, &implicit, choice, progress)
@@ -196,12 +221,14 @@ impl Instance<'_> {
         if settings.method == Method::Radau {
             system = system.with_jacobian(self.jacobian_evaluator()?);
         }
+        let auditor = request.audit.then(|| self.auditor(Some(request.tolerance)));
+        let system = system.with_auditor(auditor);
         let mut trajectory = Trajectory::default();
         let asked = (initial.as_slice(), request.span(), request.times);
         let ended = simulate_into(&mut trajectory, &system, asked, settings, progress);
         let so_far = Motion {
             moved,
-            ..motion(trajectory, request, solver, choice)
+            ..motion(trajectory, request, solver, (choice, system.audit()))
         };
         match ended {
             Ok(()) => Ok(so_far),
@@ -228,6 +255,14 @@ impl Instance<'_> {
                 stopped(so_far, Stopped { t, reason, cause })
             }
         }
+    }
+
+    /// An auditor of a motion with a relative tolerance; none for an exact one.
+    fn auditor(&self, tolerance: Option<f64>) -> Auditor {
+        let moving = self.moving_contact().map(|name| {
+            format!("the contact of the impact `{name}` moves, and its work is not in the model")
+        });
+        Auditor::new(tolerance, moving)
     }
 
     /// What kind of reason an error is.
@@ -271,17 +306,38 @@ fn propagate(
     propagator: &mut Propagator,
     trajectory: &mut Trajectory,
     request: &Request<'_>,
-    progress: &mut dyn FnMut(f64),
+    (progress, auditor): (
+        &mut dyn FnMut(f64),
+        Option<(&mut Auditor, &RefCell<Evaluator>)>,
+    ),
 ) -> Result<(), ExactError> {
     let asked = (request.initial, request.span(), request.times);
-    propagator.simulate_into(trajectory, asked, request.inputs, progress)
+    let Some((auditor, evaluator)) = auditor else {
+        return propagator.simulate_into(trajectory, asked, request.inputs, progress);
+    };
+    let mut evaluator = evaluator.borrow_mut();
+    let mut observables = vec![0.0; evaluator.program().observables.len()];
+    let mut energies = |t: f64, state: &[f64]| {
+        let inputs = &request.inputs.at(t);
+        evaluator.observables(Point { t, state, inputs }, &mut observables);
+        EnergyAt::of(&observables)
+    };
+    let mut observer = |step: &mut ObservedStep<'_>, is_held: bool| match is_held {
+        true => auditor.leave_out(step, &mut energies, HELD),
+        false => auditor.step(step, &mut energies),
+    };
+    let observer = (progress, Some(&mut observer as &mut StepObserver<'_>));
+    propagator.simulate_observed(trajectory, asked, request.inputs, observer)
 }
+
+/// Why the audit leaves out what the exact solver holds on a surface.
+const HELD: &str = "a surface held the motion, and the power of what holds it is not in the model";
 
 fn motion(
     trajectory: Trajectory,
     request: &Request<'_>,
     solver: Solver,
-    choice: Option<Choice>,
+    (choice, audit): (Option<Choice>, Option<Audit>),
 ) -> Motion {
     Motion {
         trajectory,
@@ -290,6 +346,7 @@ fn motion(
         choice,
         stopped: None,
         moved: Vec::new(),
+        audit,
     }
 }
 

@@ -13,7 +13,7 @@ use super::resolution::{PARTS, Resolution};
 use super::settings::{Method, Settings};
 use super::stepper::{Outcome, Point, Stepper, refusal};
 use super::stiffness::{Pace, Standing};
-use super::system::System;
+use super::system::{Interior, System};
 use super::trajectory::{Switch, Trajectory};
 use super::watch::Watched;
 
@@ -171,6 +171,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         self.watched.see_until(next.unwrap_or(f64::INFINITY));
         let mut shortened = 0;
         loop {
+            self.limit_step();
             self.check_step_size()?;
             let outcome = self.controlled_step(until)?;
             if self.watched.crossed().is_some() {
@@ -189,6 +190,27 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
                 }
             }
         }
+    }
+
+    /// Makes the next step no longer than the settings allow.
+    fn limit_step(&mut self) {
+        if self.stepper.step() > self.settings.max_step {
+            self.stepper.set_step(self.settings.max_step);
+        }
+    }
+
+    /// Shows the last step to a system that observes steps.
+    fn observe_step(&mut self) {
+        if !self.watched.is_observing() {
+            return;
+        }
+        let (start, end) = (self.stepper.last().clone(), self.stepper.here().clone());
+        let (stepper, watched) = (&mut self.stepper, self.watched);
+        let mut inside = |t, interior| match interior {
+            Interior::Interpolated => stepper.interpolated(t),
+            Interior::Resolved => stepper.inside(watched, t).ok(),
+        };
+        watched.observe_step(&start, &end, &mut inside);
     }
 
     /// Tries a step that ends at `until` at the latest.
@@ -364,6 +386,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         check_finite(begin, &self.stepper.here().y)?;
         self.trajectory.work.steps += 1;
         self.watched.arrive();
+        self.observe_step();
         let t = self.stepper.here().t;
         let is_told = self.is_interior_told(t);
         while let Some(sample) = self.next_sample().filter(|sample| *sample < t) {

@@ -55,5 +55,5 @@ pub use driver::{simulate, simulate_into};
 pub use error::{NOT_POSITIVE, SolveError};
 pub use names::{Names, Surface};
 pub use settings::{Method, SMALLEST_MAGNITUDE, Settings};
-pub use system::{System, jacobian_by_differences};
+pub use system::{Interior, ObservedStep, System, jacobian_by_differences};
 pub use trajectory::{Switch, Trajectory, Work};

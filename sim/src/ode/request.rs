@@ -43,6 +43,12 @@ pub fn check<S: System + ?Sized>(
             settings.tolerance
         ));
     }
+    if settings.max_step.is_nan() || settings.max_step <= 0.0 {
+        return refuse(format!(
+            "the longest step, {} s, must be greater than 0",
+            settings.max_step
+        ));
+    }
     check_rates(system, begin, initial)
 }
 

@@ -29,6 +29,9 @@ pub struct Settings {
     pub method: Method,
     /// Relative error of one step, 1e-14 to 0.1; see the module's page.
     pub tolerance: f64,
+    /// The longest step, s. Whatever lasts less long, such as a pulse of an input, may fall
+    /// between the evaluations of longer steps and have no effect.
+    pub max_step: f64,
     /// Give up after this many steps, rejected ones and those towards a switching
     /// surface included.
     pub max_steps: u64,
@@ -55,6 +58,7 @@ impl Default for Settings {
         Self {
             method: Method::default(),
             tolerance: 1e-9,
+            max_step: f64::INFINITY,
             max_steps: 20_000_000,
             max_steps_if_stiff: 20_000_000,
             max_switch_rate: 1e6,

@@ -2,6 +2,25 @@
 
 use super::settings::SMALLEST_MAGNITUDE;
 
+/// A step that a solver has made, for those who observe a motion. Looking at it changes nothing.
+pub struct ObservedStep<'s> {
+    /// Time (s) and state at its start.
+    pub start: (f64, &'s [f64]),
+    /// Time (s) and state at its end. What jumps at a breakpoint has not jumped yet.
+    pub end: (f64, &'s [f64]),
+    /// The state at a time (s) inside; `None` if it cannot be had.
+    pub inside: &'s mut dyn FnMut(f64, Interior) -> Option<Vec<f64>>,
+}
+
+/// How to find a state inside a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Interior {
+    /// By interpolation, without evaluations of the rates.
+    Interpolated,
+    /// By a shorter step from the same start, if that is more accurate.
+    Resolved,
+}
+
 /// A system y' = f(t, y) whose right-hand side is smooth between switching surfaces.
 pub trait System {
     /// The number of state variables.
@@ -63,6 +82,14 @@ pub trait System {
     fn caught_or_let_go(&self, _t: f64, _y: &[f64]) -> Vec<(usize, bool)> {
         Vec::new()
     }
+
+    /// Whether [`System::observe_step`] is to be called.
+    fn is_observing(&self) -> bool {
+        false
+    }
+
+    /// Takes note of a step that the solver has accepted.
+    fn observe_step(&self, _step: &mut ObservedStep<'_>) {}
 }
 
 impl<S: System + ?Sized> System for &S {
@@ -108,6 +135,14 @@ impl<S: System + ?Sized> System for &S {
 
     fn caught_or_let_go(&self, t: f64, y: &[f64]) -> Vec<(usize, bool)> {
         (**self).caught_or_let_go(t, y)
+    }
+
+    fn is_observing(&self) -> bool {
+        (**self).is_observing()
+    }
+
+    fn observe_step(&self, step: &mut ObservedStep<'_>) {
+        (**self).observe_step(step);
     }
 }
 

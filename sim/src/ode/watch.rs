@@ -7,7 +7,8 @@ use std::cell::{Cell, RefCell};
 use differential_equations::ode::ODE;
 
 use super::settings::SMALLEST_MAGNITUDE;
-use super::system::System;
+use super::stepper::Point;
+use super::system::{Interior, ObservedStep, System};
 
 /// The side of every switching surface: -1, 1, or 0 where a step begins on it.
 pub type Regime = Vec<f64>;
@@ -186,6 +187,25 @@ impl<'a, S: System + ?Sized> Watched<'a, S> {
     /// [`System::caught_or_let_go`].
     pub fn caught_or_let_go(&self, t: f64, y: &[f64]) -> Vec<(usize, bool)> {
         self.system.caught_or_let_go(t, y)
+    }
+
+    /// Whether the system observes steps.
+    pub fn is_observing(&self) -> bool {
+        self.system.is_observing()
+    }
+
+    /// Shows the system a step that was accepted; see [`System::observe_step`].
+    pub fn observe_step(
+        &self,
+        start: &Point,
+        end: &Point,
+        inside: &mut dyn FnMut(f64, Interior) -> Option<Vec<f64>>,
+    ) {
+        self.system.observe_step(&mut ObservedStep {
+            start: (start.t, &start.y),
+            end: (self.seen(end.t), &end.y),
+            inside,
+        });
     }
 
     /// The state variable that changes fastest at `t` and `y`, in parts of its size.

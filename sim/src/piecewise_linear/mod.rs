@@ -66,3 +66,4 @@ pub use lyapunov::{Carried, Growth, Lyapunov};
 pub use model::PiecewiseLinear;
 pub use neighbours::Sensitivities;
 pub use propagator::{Motion, Propagator};
+pub use simulate::StepObserver;

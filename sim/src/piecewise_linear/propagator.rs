@@ -120,6 +120,8 @@ pub(super) struct Segment<'a> {
     pub state: &'a [f64],
     /// How long it took, s.
     pub tau: f64,
+    /// Whether a surface held the motion.
+    pub is_held: bool,
 }
 
 /// A change of regime.
@@ -302,6 +304,7 @@ impl Propagator {
             start,
             state: &motion.before,
             tau,
+            is_held: cells.iter().any(|cell| matches!(cell, Cell::On(_))),
         };
         follow.flowed(&segment, flow);
         if found == Found::Nothing && breakpoint.is_some() {

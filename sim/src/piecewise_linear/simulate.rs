@@ -5,7 +5,10 @@ use super::flow::Flow;
 use super::follow::Samples;
 use super::propagator::{Change, Follow, Propagator, Segment};
 use crate::inputs::HeldInputs;
-use crate::ode::{Switch, Trajectory};
+use crate::ode::{ObservedStep, Switch, Trajectory};
+
+/// Takes note of a step of the exact solver, and of whether a surface held the motion.
+pub type StepObserver<'o> = dyn FnMut(&mut ObservedStep<'_>, bool) + 'o;
 
 impl Propagator {
     /// Simulates from `initial` over `span` (begin, end; s) and returns the states at
@@ -40,9 +43,23 @@ impl Propagator {
     pub fn simulate_into(
         &mut self,
         trajectory: &mut Trajectory,
-        (initial, span, samples): (&[f64], (f64, f64), &[f64]),
+        request: (&[f64], (f64, f64), &[f64]),
         inputs: &HeldInputs,
         progress: &mut dyn FnMut(f64),
+    ) -> Result<(), ExactError> {
+        self.simulate_observed(trajectory, request, inputs, (progress, None))
+    }
+
+    /// As [`Propagator::simulate_into`], with an observer of the steps.
+    ///
+    /// # Errors
+    /// As for [`Propagator::simulate`].
+    pub fn simulate_observed(
+        &mut self,
+        trajectory: &mut Trajectory,
+        (initial, span, samples): (&[f64], (f64, f64), &[f64]),
+        inputs: &HeldInputs,
+        (progress, observer): (&mut dyn FnMut(f64), Option<&mut StepObserver<'_>>),
     ) -> Result<(), ExactError> {
         let samples = Samples::new(span, samples)?;
         let mut motion = self.start(span.0, initial, inputs)?;
@@ -50,6 +67,7 @@ impl Propagator {
             samples,
             switches: Vec::new(),
             progress,
+            observer,
         };
         recorder.samples.take_until(span.0, initial);
         let ended = self.follow_until(&mut motion, span.1, inputs, &mut recorder);
@@ -68,14 +86,37 @@ impl Propagator {
 }
 
 /// Takes samples and notes switches.
-struct Recorder<'s> {
+struct Recorder<'s, 'o> {
     samples: Samples<'s>,
     switches: Vec<Switch>,
     progress: &'s mut dyn FnMut(f64),
+    observer: Option<&'s mut StepObserver<'o>>,
 }
 
-impl Follow for Recorder<'_> {
+impl Recorder<'_, '_> {
+    fn observe(&mut self, segment: &Segment<'_>, flow: &mut Flow) {
+        let Some(observer) = &mut self.observer else {
+            return;
+        };
+        let begin = segment.start.time();
+        let mut state_after = |after: f64| {
+            let mut state = vec![0.0; segment.state.len()];
+            flow.state_at(segment.regime, after, &mut state);
+            state
+        };
+        let end = state_after(segment.tau);
+        let mut step = ObservedStep {
+            start: (begin, segment.state),
+            end: (segment.start.plus(segment.tau).time(), &end),
+            inside: &mut |t, _| Some(state_after((t - begin).clamp(0.0, segment.tau))),
+        };
+        observer(&mut step, segment.is_held);
+    }
+}
+
+impl Follow for Recorder<'_, '_> {
     fn flowed(&mut self, segment: &Segment<'_>, flow: &mut Flow) {
+        self.observe(segment, flow);
         while let Some(after) = self.samples.next_in(segment) {
             self.samples.take_in(segment, after, flow);
         }

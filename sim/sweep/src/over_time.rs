@@ -190,6 +190,8 @@ impl Worker for &OverTime<'_> {
             inputs: &inputs,
             solver: Solver::Auto,
             tolerance: TOLERANCE,
+            max_step: f64::INFINITY,
+            audit: false,
         };
         let motion = of_motion(instance.follow(&request, &mut |_| {}))?;
         let course = self.course(&instance, &motion)?;

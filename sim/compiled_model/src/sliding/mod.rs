@@ -131,6 +131,12 @@ impl Sliding {
         self.sided.rates(at, inputs, out);
     }
 
+    /// The observables, where this is active.
+    pub fn observables(&mut self, at: (f64, &[f64]), inputs: &[f64], out: &mut [f64]) {
+        self.hold(at, inputs);
+        self.sided.observables(at, out);
+    }
+
     /// The derivatives of the rates by the state, where this is active, by differences: what holds goes on
     /// holding, and sides stay what they are.
     pub fn jacobian(&mut self, (t, state): (f64, &[f64]), inputs: &[f64], out: &mut [f64]) {

@@ -97,6 +97,8 @@ fn judge(machine: &Machine, random: &mut Random) -> Result<Outcome, String> {
         inputs: &machine.inputs,
         solver,
         tolerance,
+        max_step: f64::INFINITY,
+        audit: false,
     };
     let reference = complete(&instance, &request(Solver::Rk, GROWTH_TOLERANCE))?;
     let states = &reference.trajectory.states;

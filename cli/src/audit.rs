@@ -1,0 +1,67 @@
+//! The energy audit of a motion: what `simulate` prints of it.
+
+use eomgen_compiled_model::{Audit, Instance, Motion, Overlap};
+use serde_json::{Value, json};
+
+use crate::error::{Result, warn};
+
+/// What the audit of a motion found.
+pub struct AuditResult<'m> {
+    audit: Option<&'m Audit>,
+    overlap: Option<Overlap>,
+}
+
+impl<'m> AuditResult<'m> {
+    /// Looks at a motion that was solved with a relative tolerance.
+    pub fn of(run: &Instance<'_>, motion: &'m Motion, tolerance: f64) -> Result<Self> {
+        Ok(Self {
+            audit: motion.audit.as_ref(),
+            overlap: run.first_overlap_of(motion, tolerance)?,
+        })
+    }
+
+    /// Whether anything is wrong.
+    pub fn has_failed(&self) -> bool {
+        self.overlap.is_some() || self.audit.is_some_and(|audit| audit.faults > 0)
+    }
+
+    /// Prints a warning for each finding.
+    pub fn warn(&self) {
+        if let Some(warning) = self.audit.and_then(Audit::warning) {
+            warn(&format!("warning: {warning}"));
+        }
+        if let Some(overlap) = &self.overlap {
+            warn(&format!("warning: {}", overlap.warning()));
+        }
+    }
+
+    /// The energy balance in JSON; null if there is none.
+    pub fn json(&self) -> Value {
+        let Some(audit) = self.audit else {
+            return Value::Null;
+        };
+        let overlap = self.overlap.as_ref().map(|overlap| {
+            json!({
+                "impact": overlap.impact,
+                "t": overlap.t,
+                "distance": overlap.distance,
+                "tolerance": overlap.tolerance,
+            })
+        });
+        let largest = audit
+            .largest_fault
+            .map(|fault| json!({ "t": fault.t, "size": fault.size, "tolerance": fault.tolerance }));
+        json!({
+            "energy_change": audit.energy_change,
+            "work": audit.work,
+            "impacts": audit.impacts,
+            "unaudited": audit.unaudited,
+            "unexplained": audit.unexplained(),
+            "faults": audit.faults,
+            "largest_fault": largest,
+            "overlap": overlap,
+            "not_applicable": audit.not_applicable,
+            "evaluations": audit.evaluations,
+        })
+    }
+}

@@ -1,0 +1,106 @@
+//! The distances of a model's impacts along a motion: at no sample may bodies overlap by more than
+//! errors of the solver explain.
+
+use eomgen_codegen::program::Op;
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
+
+use crate::audit::{ERROR_FACTOR, allowed_change};
+use crate::error::Error;
+use crate::instance::Instance;
+use crate::motion::Motion;
+
+/// A sample at which bodies overlap.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Overlap {
+    /// The name of the impact.
+    pub impact: String,
+    /// When, s.
+    pub t: f64,
+    /// The distance, less than 0, SI.
+    pub distance: f64,
+    /// The distance that errors of the solver explain, SI.
+    pub tolerance: f64,
+}
+
+impl Overlap {
+    /// A sentence on it.
+    pub fn warning(&self) -> String {
+        let Self {
+            impact,
+            t,
+            distance,
+            tolerance,
+        } = self;
+        format!(
+            "the distance of the impact `{impact}` is {distance:.4e} at t = {t} s, below -{tolerance:.1e}, \
+             which errors of the solver explain: bodies pass through each other"
+        )
+    }
+}
+
+impl Instance<'_> {
+    /// The first sample at which bodies overlap by more than errors explain, solved with this
+    /// relative tolerance.
+    ///
+    /// # Errors
+    /// As [`Instance::evaluator`].
+    pub fn first_overlap_of(
+        &self,
+        motion: &Motion,
+        tolerance: f64,
+    ) -> Result<Option<Overlap>, Error> {
+        let impacts = &self.model().model().impacts;
+        if impacts.is_empty() {
+            return Ok(None);
+        }
+        let mut evaluator = self.evaluator()?;
+        let trajectory = &motion.trajectory;
+        let mut sizes = vec![0.0_f64; self.initial().len()];
+        for (&t, state) in trajectory.times.iter().zip(&trajectory.states) {
+            for (size, entry) in sizes.iter_mut().zip(state) {
+                *size = size.max(entry.abs());
+            }
+            let inputs = &motion.inputs.at(t);
+            let distances = distances(&mut evaluator, Point { t, state, inputs });
+            for (place, distance) in distances.iter().enumerate() {
+                if *distance >= 0.0 {
+                    continue;
+                }
+                let of_impact = &mut |state: &[f64]| {
+                    let point = Point { t, state, inputs };
+                    self::distances(&mut evaluator, point)[place]
+                };
+                let change = allowed_change(state, &sizes, tolerance, of_impact);
+                let tolerance = ERROR_FACTOR * change;
+                if distance.is_nan() || *distance < -tolerance {
+                    return Ok(Some(Overlap {
+                        impact: impacts[place].name.clone(),
+                        t,
+                        distance: *distance,
+                        tolerance,
+                    }));
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    /// The first impact whose distance depends on the time or on inputs.
+    pub(crate) fn moving_contact(&self) -> Option<&str> {
+        let program = self.model().program();
+        let moves = |op: &Op| matches!(op, Op::Time | Op::Input(_));
+        let mut impacts = program.impacts.iter();
+        let place = impacts.position(|impact| {
+            let values = program.reachable(&[impact.distance]);
+            values.iter().any(|value| moves(&program.value(*value).op))
+        })?;
+        let impact = self.model().model().impacts.get(place)?;
+        Some(&impact.name)
+    }
+}
+
+fn distances(evaluator: &mut Evaluator, point: Point<'_>) -> Vec<f64> {
+    let mut distances = vec![0.0; evaluator.program().impacts.len()];
+    evaluator.distances(point, &mut distances);
+    distances
+}

@@ -1,0 +1,258 @@
+//! The energy audit of `simulate`: energy from nothing is a warning, and nothing else is.
+
+use eomgen_compiled_model::{Audit, CompiledModel, Orders, Request, Solver};
+use eomgen_tests::models::{load, shipped};
+use eomgen_tests::program::{run, text};
+use serde_json::Value;
+
+/// A bead on a wire with a corner: its inertia jumps where x changes its sign.
+const CORNER: &str = r#"
+[model]
+name = "corner"
+[parameters]
+m = { value = 1, unit = "kg" }
+a = { value = 1, unit = "1" }
+[coordinates]
+x = { unit = "m", initial = -1, initial_rate = 1 }
+[definitions]
+y = "a*max(x, 0)"
+[kinetic]
+t = "1/2*m*(dot(x)^2 + dot(y)^2)"
+"#;
+
+/// A step of the potential that is higher than the kinetic energy.
+const STEP: &str = r#"
+[model]
+name = "step"
+[parameters]
+m = { value = 1, unit = "kg" }
+U = { value = 1, unit = "J" }
+[coordinates]
+x = { unit = "m", initial = -1, initial_rate = 1 }
+[kinetic]
+t = "1/2*m*dot(x)^2"
+[potential]
+v = "U*above(x)"
+"#;
+
+/// A mass on a spring whose base starts to move at a finite speed.
+const BASE: &str = r#"
+[model]
+name = "base"
+[parameters]
+m = { value = 1, unit = "kg" }
+k = { value = 40, unit = "N/m" }
+v = { value = 0.5, unit = "m/s" }
+t_0 = { value = 1, unit = "s" }
+[coordinates]
+x = { unit = "m" }
+[definitions]
+place = "v*max(t - t_0, 0) + x"
+[kinetic]
+mass = "1/2*m*dot(place)^2"
+[potential]
+spring = "1/2*k*x^2"
+"#;
+
+/// A ball on a table that rests, and one on a table that shakes.
+const BALL: &str = r#"
+[model]
+name = "ball"
+[parameters]
+m = { value = 0.2, unit = "kg" }
+g = { value = 9.81, unit = "m/s^2" }
+A = { value = 0, unit = "m" }
+w = { value = 20, unit = "rad/s" }
+[coordinates]
+y = { unit = "m", initial = 0.5 }
+[kinetic]
+ball = "1/2*m*dot(y)^2"
+[potential]
+weight = "m*g*y"
+[impacts]
+table = { when = "y", restitution = 0.7 }
+"#;
+
+/// The audit of a model of this text.
+fn audited(text: &str, until: f64, solver: Solver, tolerance: f64) -> Audit {
+    let model = CompiledModel::of_text("model.toml", text, Orders::Declared).expect("a model");
+    audit(&model, until, solver, tolerance)
+}
+
+fn audit(model: &CompiledModel, until: f64, solver: Solver, tolerance: f64) -> Audit {
+    let run = model.at_declared().expect("values");
+    let times = [0.0, 0.5 * until, until];
+    let request = Request {
+        initial: run.initial(),
+        times: &times,
+        inputs: &run.no_inputs(),
+        solver,
+        tolerance,
+        max_step: f64::INFINITY,
+        audit: true,
+    };
+    let motion = run.follow(&request, &mut |_| {}).expect("a motion");
+    motion.audit.expect("an audit")
+}
+
+#[test]
+fn shipped_models_gain_no_energy_at_any_tolerance() {
+    for path in shipped() {
+        let name = path.file_stem().expect("a name").to_string_lossy();
+        let model = CompiledModel::derive(load(&name), Orders::Declared).expect("a model");
+        let limits = [1e-9, 1e-6, 1e-3, 1e-2].map(|tolerance| (Solver::Rk, tolerance));
+        let all = [
+            (Solver::Auto, 1e-9),
+            (Solver::Radau, 1e-6),
+            (Solver::Radau, 1e-3),
+        ];
+        for (solver, tolerance) in all.into_iter().chain(limits) {
+            let audit = audit(&model, 0.3, solver, tolerance);
+            assert_eq!(audit.faults, 0, "{name}, {solver}, {tolerance}: {audit:?}");
+            assert_eq!(audit.not_applicable, None, "{name}");
+        }
+    }
+}
+
+#[test]
+fn energy_is_kept_or_a_warning_says_that_it_is_not() {
+    for (name, text) in [("corner", CORNER), ("step", STEP), ("base", BASE)] {
+        for solver in [Solver::Auto, Solver::Rk, Solver::Radau] {
+            let audit = audited(text, 3.0, solver, 1e-9);
+            let is_kept = audit.unexplained().abs() < 1e-6;
+            assert_eq!(audit.faults == 0, is_kept, "{name}, {solver}: {audit:?}");
+            let warning = audit.warning();
+            assert_eq!(warning.is_none(), is_kept, "{warning:?}");
+        }
+    }
+}
+
+#[test]
+fn losses_at_impacts_are_booked_and_are_no_fault() {
+    for solver in [Solver::Rk, Solver::Radau] {
+        let audit = audited(BALL, 5.0, solver, 1e-9);
+        assert_eq!(audit.faults, 0, "{audit:?}");
+        // The ball comes to rest: m g y = 0.981 J is lost.
+        assert!((audit.impacts + 0.981).abs() < 1e-6, "{audit:?}");
+        assert!(audit.unexplained().abs() < 1e-6, "{audit:?}");
+    }
+}
+
+#[test]
+fn a_table_that_shakes_does_work_that_is_left_out() {
+    let text = BALL
+        .replace("when = \"y\"", "when = \"y - A*sin(w*t)\"")
+        .replace("A = { value = 0,", "A = { value = 0.01,");
+    let audit = audited(&text, 2.0, Solver::Rk, 1e-9);
+    assert_eq!(audit.faults, 0, "{audit:?}");
+    let reason = audit.not_applicable.expect("a reason");
+    assert!(reason.contains("`table`"), "{reason}");
+}
+
+#[test]
+fn an_audit_changes_no_bit_of_a_motion() {
+    for text in [CORNER, BASE, BALL] {
+        let model = CompiledModel::of_text("model.toml", text, Orders::Declared).expect("a model");
+        let run = model.at_declared().expect("values");
+        let times: Vec<f64> = (0..=50).map(|row| 0.06 * f64::from(row)).collect();
+        for solver in [Solver::Rk, Solver::Radau] {
+            let [with, without] = [true, false].map(|audit| {
+                let request = Request {
+                    initial: run.initial(),
+                    times: &times,
+                    inputs: &run.no_inputs(),
+                    solver,
+                    tolerance: 1e-9,
+                    max_step: f64::INFINITY,
+                    audit,
+                };
+                run.follow(&request, &mut |_| {})
+                    .expect("a motion")
+                    .trajectory
+            });
+            assert_eq!(with.states, without.states);
+            assert_eq!(with.switches, without.switches);
+        }
+    }
+}
+
+#[test]
+fn strict_simulation_ends_with_1_if_energy_comes_from_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let spec = folder.path().join("base.toml");
+    std::fs::write(&spec, BASE).expect("writable");
+    let out = folder.path().join("motion.csv").display().to_string();
+    let spec = spec.display().to_string();
+    let simulate = ["simulate", &spec, "--until", "3", "--out", &out];
+    let output = run(&[&simulate[..], &["--json"]].concat());
+    let document: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let audit = &document["energy_audit"];
+    let has_faults = audit["faults"].as_u64().expect("a count") > 0;
+    assert_eq!(output.status.code(), Some(0));
+    let warned = text(&output.stderr).contains("J without work at t = ");
+    assert_eq!(warned, has_faults);
+    let strict = run(&[&simulate[..], &["--strict"]].concat());
+    assert_eq!(strict.status.code(), Some(i32::from(has_faults)));
+    let unexplained = audit["unexplained"].as_f64().expect("a number");
+    assert_eq!(unexplained.abs() > 1e-6, has_faults, "{audit}");
+}
+
+/// A mass that an input may push for 10 ms in 100 s.
+const PULSE: &str = r#"
+[model]
+name = "pulse"
+[parameters]
+m = { value = 1, unit = "kg" }
+k = { value = 1, unit = "N/m^3" }
+[coordinates]
+x = { unit = "m" }
+[inputs]
+u = { unit = "N" }
+[kinetic]
+mass = "1/2*m*dot(x)^2"
+[potential]
+spring = "1/4*k*x^4"
+[forces]
+push = { on = "x", value = "u" }
+"#;
+
+#[test]
+fn the_longest_step_decides_whether_a_short_pulse_is_seen() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let spec = folder.path().join("pulse.toml");
+    std::fs::write(&spec, PULSE).expect("writable");
+    let out = folder.path().join("motion.csv");
+    let (spec, file) = (spec.display().to_string(), out.display().to_string());
+    let pulse = "u=100*exp(-((t - 63.4)/0.005)^2)";
+    let simulate = [
+        "simulate", &spec, "--until", "100", "--sample", "20", "--out", &file,
+    ];
+    let options = ["--solver", "rk", "--input", pulse, "--max-step", "0.01"];
+    let output = run(&[&simulate[..], &options].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let table = std::fs::read_to_string(&out).expect("a table");
+    let energy = table
+        .lines()
+        .last()
+        .expect("a row")
+        .split(',')
+        .nth(3)
+        .expect("energy");
+    // The pulse of 100 N and 5 ms sqrt(pi) leaves a momentum of 0.886 N s.
+    let energy: f64 = energy.parse().expect("a number");
+    let momentum = 100.0 * 0.005 * std::f64::consts::PI.sqrt();
+    assert!(
+        (energy - 0.5 * momentum * momentum).abs() < 1e-6,
+        "{energy}"
+    );
+    for wrong in ["0", "-1", "nan"] {
+        let options = ["--solver", "rk", "--input", pulse, "--max-step", wrong];
+        let output = run(&[&simulate[..], &options].concat());
+        assert_eq!(output.status.code(), Some(2), "{wrong}");
+        assert!(
+            text(&output.stderr).contains("longest step"),
+            "{}",
+            text(&output.stderr)
+        );
+    }
+}
