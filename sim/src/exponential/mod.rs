@@ -8,7 +8,7 @@
 //! does to rounding this does to a small part of any sensor's noise, several times faster, and
 //! neighbouring motions come with it. The files: `types`, `kernels` (products),
 //! `surfaces`, `regime` (matrices of a step), `crossing` (where a step meets a surface), `parts`
-//! (steps through surfaces), `remainder` and `remainder_at` (what is not linear), `tangents`, `slopes`
+//! (steps through surfaces), `release` (when a surface no longer holds the motion), `remainder` and `remainder_at` (what is not linear), `tangents`, `slopes`
 //! and `differences` (what these feel of that). The method: Hochbruck and Ostermann, Exponential
 //! integrators, Acta Numerica 19 (2010).
 
@@ -17,6 +17,7 @@ mod differences;
 mod kernels;
 mod parts;
 mod regime;
+mod release;
 mod remainder;
 mod remainder_at;
 mod slopes;
@@ -203,7 +204,7 @@ impl ExponentialIntegrator {
             self.find_remainder(&mut motion, t, &mut **force)?;
         }
         if let Some(tangents) = &mut options.tangents {
-            tangents.begin(t, &motion.state, values);
+            tangents.begin(&self.regimes[motion.regime], (t, &motion.state, values));
             if options.force.is_some() {
                 tangents.slopes = Some(Slopes::new(self.states, self.forced(), count));
             }
@@ -246,7 +247,8 @@ impl ExponentialIntegrator {
         }
         self.prepare(motion);
         if let Some(tangents) = &mut options.tangents {
-            tangents.find_drives(motion.t, &motion.state, inputs);
+            let at = (motion.t, &motion.state[..], inputs);
+            tangents.find_drives(&self.regimes[motion.regime], at);
         }
         let begin = motion.t;
         let count = ((until - begin) / self.step).ceil().max(1.0);
@@ -293,38 +295,6 @@ impl ExponentialIntegrator {
         }
     }
 
-    /// Lets go what is no longer held.
-    fn release(
-        &mut self,
-        motion: &mut Motion,
-        t: f64,
-        options: &mut Options<'_, '_>,
-    ) -> Result<(), String> {
-        let regime = &self.regimes[motion.regime];
-        if regime.held.is_empty() {
-            return Ok(());
-        }
-        let mut changed = false;
-        let borne = motion.remainder.borne.iter().copied();
-        let borne = borne.chain(std::iter::repeat(0.0));
-        for ((surface, side), borne) in regime.held.iter().zip(borne) {
-            let side = side.at(&motion.state, &motion.given) + borne;
-            if !(0.0..=1.0).contains(&side) {
-                motion.sides[*surface] = Side::of(side - 1.0);
-                changed = true;
-            }
-        }
-        if changed {
-            self.bring(motion, t, options)?;
-            if let Some(tangents) = &mut options.tangents {
-                tangents.forget_slopes();
-            }
-            motion.regime = self.regime(&motion.sides)?;
-            self.prepare(motion);
-        }
-        Ok(())
-    }
-
     /// Makes a whole step if no surface is crossed within.
     fn whole_step(
         &mut self,
@@ -368,7 +338,9 @@ impl ExponentialIntegrator {
             );
             first_crossing(motion.sides[place], ends, self.step).is_some()
         });
-        if crossed {
+        let begin = (&motion.state[..], &motion.remainder);
+        let ends = (begin, (&motion.next[..n], &motion.later));
+        if crossed || self.first_release(motion, ends, self.step).is_some() {
             return Ok(false);
         }
         motion.state.copy_from_slice(&motion.next[..n]);

@@ -1,8 +1,10 @@
 //! Steps through surfaces: made in parts, from one crossing to the next.
 
 use super::crossing::first_crossing;
+use super::release::Release;
+use super::remainder::Remainder;
 use super::remainder_at::AHEAD;
-use super::surfaces::{Side, dot};
+use super::surfaces::{Row, Side, dot};
 use super::tangents::series;
 use super::types::{ExponentialIntegrator, Motion, Options};
 
@@ -11,6 +13,31 @@ const MOST_CROSSINGS: usize = 12;
 
 /// The motion itself is right to this part of its size.
 const ROUNDING: f64 = 1e-16;
+
+/// A motion is released so much later, in parts of the step, than its share reaches its bound: there
+/// it moves away from the surface by more than rounding.
+const RELEASED: f64 = 1e-6;
+
+/// What happens within a step.
+enum Event {
+    /// The motion reaches a surface at a time, s, from the beginning; the surface itself moves with
+    /// a slope.
+    Crossing {
+        surface: usize,
+        slope: f64,
+        tau: f64,
+    },
+    /// A surface no longer holds the motion.
+    Release(Release),
+}
+
+impl Event {
+    fn tau(&self) -> f64 {
+        match self {
+            Self::Crossing { tau, .. } | Self::Release(Release { tau, .. }) => *tau,
+        }
+    }
+}
 
 /// Where a function's rate leads back by less than this part of its size, it does not.
 const LEADS_BACK: f64 = 1e-9;
@@ -26,7 +53,6 @@ impl ExponentialIntegrator {
         options: &mut Options<'_, '_>,
     ) -> Result<(), String> {
         let mut rest = length;
-        let surfaces = motion.sides.len();
         self.bring(motion, end - length, options)?;
         for _ in 0..MOST_CROSSINGS {
             self.evaluate_events(motion);
@@ -35,41 +61,30 @@ impl ExponentialIntegrator {
             self.part(motion, rest);
             let before = std::mem::take(&mut motion.event_values);
             if let Some(force) = &mut options.force {
-                let at = (end, &motion.state[..], &motion.given[..]);
-                let functions = &self.regimes[motion.regime].functions;
-                let surfaces = (&self.surfaces, &functions[..]);
-                motion.remainder.find(&mut **force, surfaces, at);
+                self.find_remainder(motion, end, &mut **force)?;
             }
             self.evaluate_events(motion);
-            let moved = motion.remainder.moved.iter().zip(&remainder.moved);
-            let slopes: Vec<f64> = moved.map(|(there, here)| (there - here) / rest).collect();
+            let first = self.first_event(motion, (&begin, &remainder), rest);
             motion.remainder = remainder;
-            let first = (0..surfaces)
-                .filter_map(|place| {
-                    let slope = slopes[place];
-                    let rates = surfaces + place;
-                    let ends = (
-                        (begin.0[place], begin.0[rates] + slope),
-                        (
-                            motion.event_values[place],
-                            motion.event_values[rates] + slope,
-                        ),
-                    );
-                    let tau = first_crossing(motion.sides[place], ends, rest)?;
-                    Some((place, tau))
-                })
-                .min_by(|a, b| a.1.total_cmp(&b.1));
-            let Some((surface, tau)) = first else {
+            let Some(event) = first else {
                 return self.ended(motion, rest, end, inputs, options);
             };
             motion.event_values = before;
             motion.state.copy_from_slice(&begin.1);
-            let slope = slopes[surface];
-            let tau = self.polished(motion, (surface, slope), tau, rest, &begin.1);
+            let tau = self.polished(motion, &event, rest, &begin.1);
             rest -= tau;
             let t = end - rest;
             self.accompany(motion, tau, (t, true), inputs, options)?;
-            self.cross(motion, t, (surface, slope), options)?;
+            match event {
+                Event::Crossing { surface, slope, .. } => {
+                    self.cross(motion, t, (surface, slope), options)?;
+                }
+                Event::Release(release) => {
+                    let held = &self.regimes[motion.regime].held[release.place];
+                    let released = (held.surface, release.to);
+                    self.let_go(motion, t, &[released], options)?;
+                }
+            }
             self.crossings += 1;
             if self.crossings > self.most_crossings {
                 return Err("surfaces are crossed too often".to_owned());
@@ -97,6 +112,40 @@ impl ExponentialIntegrator {
         Ok(())
     }
 
+    /// Returns what happens first in a part of a step, s, at whose end the motion stands. `begin`:
+    /// functions of the surfaces with their rates, and the state; and the nonlinear remainder there.
+    fn first_event(
+        &self,
+        motion: &Motion,
+        (begin, remainder): (&(Vec<f64>, Vec<f64>), &Remainder),
+        rest: f64,
+    ) -> Option<Event> {
+        let surfaces = motion.sides.len();
+        let crossings = (0..surfaces).filter_map(|surface| {
+            let slope = (motion.remainder.moved[surface] - remainder.moved[surface]) / rest;
+            let rates = surfaces + surface;
+            let end = &motion.event_values;
+            let ends = (
+                (begin.0[surface], begin.0[rates] + slope),
+                (end[surface], end[rates] + slope),
+            );
+            let tau = first_crossing(motion.sides[surface], ends, rest)?;
+            Some(Event::Crossing {
+                surface,
+                slope,
+                tau,
+            })
+        });
+        let ends = (
+            (&begin.1[..], remainder),
+            (&motion.state[..], &motion.remainder),
+        );
+        let release = self.first_release(motion, ends, rest);
+        crossings
+            .chain(release.map(Event::Release))
+            .min_by(|a, b| a.tau().total_cmp(&b.tau()))
+    }
+
     /// Moves the state on by a part of a step, s.
     fn part(&self, motion: &mut Motion, tau: f64) {
         let regime = &self.regimes[motion.regime];
@@ -116,24 +165,32 @@ impl ExponentialIntegrator {
         sums.for_each(|(o, f)| *o += f);
     }
 
-    /// Goes to where a surface, moved with a slope, is crossed, about `tau` s from `begin`;
-    /// returns when that is.
-    fn polished(
-        &self,
-        motion: &mut Motion,
-        (surface, slope): (usize, f64),
-        tau: f64,
-        most: f64,
-        begin: &[f64],
-    ) -> f64 {
-        self.part(motion, tau);
+    /// Goes from `begin` to an event, by one step of Newton's method from its first estimate; returns
+    /// when that is, s.
+    fn polished(&self, motion: &mut Motion, event: &Event, most: f64, begin: &[f64]) -> f64 {
         let regime = &self.regimes[motion.regime];
-        let moved = motion.remainder.moved[surface] + slope * tau;
-        let value = regime.functions[surface].at(&motion.state, &motion.given) + moved;
+        let (row, offset, slope): (&Row, f64, f64) = match event {
+            Event::Crossing { surface, slope, .. } => {
+                let moved = motion.remainder.moved[*surface];
+                (&regime.functions[*surface], moved, *slope)
+            }
+            Event::Release(release) => {
+                let borne = motion.remainder.borne.get(release.place);
+                let offset = borne.copied().unwrap_or(0.0) - release.bound();
+                (&regime.held[release.place].share, offset, release.slope)
+            }
+        };
+        let tau = event.tau();
+        self.part(motion, tau);
+        let value = row.at(&motion.state, &motion.given) + offset + slope * tau;
         let mut rates = vec![0.0; regime.matrix.rows];
         self.rates(motion, &mut rates);
-        let rate = dot(&regime.functions[surface].state, &rates[..self.states]) + slope;
-        let better = (tau - value / rate).clamp(0.0, most);
+        let rate = dot(&row.state, &rates[..self.states]) + slope;
+        let late = match event {
+            Event::Crossing { .. } => 0.0,
+            Event::Release(_) => RELEASED * self.step,
+        };
+        let better = (tau - value / rate + late).clamp(0.0, most);
         if !better.is_finite() || better == tau {
             return tau;
         }

@@ -7,10 +7,14 @@ use eomgen_codegen::program::affine::{AffineEvaluator, AffineSystem};
 use nalgebra::DMatrix;
 
 use super::kernels::Columns;
-use super::surfaces::{Row, Side, Surfaces};
+use super::surfaces::{Row, Side, Surfaces, dot};
 
 /// Forces on the two sides of a surface that differ by less than this part do not.
 const SAME: f64 = 1e-9;
+
+/// Distance from a surface that holds a motion, at which a model is evaluated on one side of it: this
+/// part of what the jump across the surface makes of its function in one step.
+const ASIDE: f64 = 1e-6;
 
 /// Terms of a series for a part of a step: a step turns no mode by more than about one
 /// radian, and 1/14! is rounding's size.
@@ -40,11 +44,28 @@ pub struct Regime {
     pub functions: Vec<Row>,
     /// And their rates.
     pub rates: Vec<Row>,
-    /// For each surface that is held its place and its side, which must stay within 0 and 1.
-    pub held: Vec<(usize, Row)>,
+    /// The surfaces that hold the motion.
+    pub held: Vec<HeldSurface>,
     /// What accelerations that come from elsewhere add to these sides, a row for each, and what that
     /// adds to the accelerations, a column for each.
     borne: (DMatrix<f64>, DMatrix<f64>),
+}
+
+/// A surface that holds a motion.
+#[derive(Clone, Debug)]
+pub struct HeldSurface {
+    /// Its place among the surfaces.
+    pub surface: usize,
+    /// Share of the upper side in the convex combination that keeps the motion on the surface. The
+    /// surface holds the motion as long as the share is between 0 and 1.
+    pub share: Row,
+    /// Rate of that share, 1/s.
+    pub share_rate: Row,
+    /// Change of the state that raises the surface's function by one.
+    pub across: Vec<f64>,
+    /// Distance from the surface, in the function's unit, at which a model is evaluated on one side
+    /// of it.
+    pub distance: f64,
 }
 
 /// The rates of a regime as matrices.
@@ -92,6 +113,19 @@ impl Regime {
         {
             return None;
         }
+        let held = held.into_iter().enumerate();
+        let held = held
+            .map(|(place, (surface, share))| {
+                let jump = dot(&functions[surface].state, jumps.column(place).as_slice());
+                HeldSurface {
+                    surface,
+                    share_rate: along(&share, &rates),
+                    share,
+                    across: across(&functions[surface].state),
+                    distance: ASIDE * step * jump.abs(),
+                }
+            })
+            .collect();
         let n = system.states;
         let (degrees, forced) = (system.degrees, n - system.degrees);
         let borne = (
@@ -171,6 +205,12 @@ impl Regime {
         }
         self.matrix.add_product(state, out);
     }
+}
+
+/// The shortest change of the state that raises a function by one.
+fn across(function: &[f64]) -> Vec<f64> {
+    let square = dot(function, function);
+    function.iter().map(|entry| entry / square).collect()
 }
 
 /// The rate of a function along a motion.

@@ -47,6 +47,11 @@ impl Row {
     pub fn at(&self, state: &[f64], given: &[f64]) -> f64 {
         dot(&self.state, state) + dot(&self.given, given)
     }
+
+    /// The value of the function at a state and at inputs without the leading unit constant.
+    pub fn at_inputs(&self, state: &[f64], inputs: &[f64]) -> f64 {
+        dot(&self.state, state) + self.given[0] + dot(&self.given[1..], inputs)
+    }
 }
 
 /// A sum of products.

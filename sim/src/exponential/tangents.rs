@@ -2,7 +2,7 @@
 //! own matrix, through switches by the saltation matrix, driven by accelerations that differ.
 
 use super::kernels::{self, Columns};
-use super::regime::{Regime, TERMS};
+use super::regime::{HeldSurface, Regime, TERMS};
 use super::slopes::Slopes;
 use super::surfaces::dot;
 
@@ -82,8 +82,8 @@ impl<'d> Tangents<'d> {
         }
     }
 
-    /// Begins at a state.
-    pub fn begin(&mut self, t: f64, state: &[f64], inputs: &[f64]) {
+    /// Begins at a state in a regime.
+    pub fn begin(&mut self, regime: &Regime, at: (f64, &[f64], &[f64])) {
         let stride = self.stride;
         self.vectors = vec![0.0; stride * (self.free + self.driven)];
         for place in 0..self.free {
@@ -91,13 +91,14 @@ impl<'d> Tangents<'d> {
         }
         self.next = self.vectors.clone();
         self.pending = 0;
-        self.find_drives(t, state, inputs);
+        self.find_drives(regime, at);
     }
 
-    /// Finds the drives anew where the motion stands.
-    pub fn find_drives(&mut self, t: f64, state: &[f64], inputs: &[f64]) {
+    /// Finds the drives anew where the motion stands, in a regime.
+    pub fn find_drives(&mut self, regime: &Regime, at: (f64, &[f64], &[f64])) {
         if self.driven > 0 {
-            self.drives.at(t, state, inputs, &mut self.here);
+            let forced = self.states - self.degrees;
+            drives_in(regime, &mut *self.drives, at, (&mut self.here, forced));
         }
         self.on_surface = false;
     }
@@ -118,6 +119,12 @@ impl<'d> Tangents<'d> {
         self.pending > 0
     }
 
+    /// The motion stands on a surface and goes on to one of its sides.
+    pub fn leave_surface(&mut self) {
+        self.on_surface = true;
+        self.forget_slopes();
+    }
+
     /// What is felt of forces that change with the state is not known where the motion stands.
     pub fn forget_slopes(&mut self) {
         if let Some(slopes) = &mut self.slopes {
@@ -131,7 +138,9 @@ impl<'d> Tangents<'d> {
             return;
         }
         if self.driven > 0 {
-            self.drives.at(t, state, inputs, &mut self.there);
+            let forced = self.states - self.degrees;
+            let there = (&mut self.there[..], forced);
+            drives_in(regime, &mut *self.drives, (t, state, inputs), there);
             for (a, b) in self.here.iter_mut().zip(&self.there) {
                 *a = if self.on_surface { *b } else { 0.5 * (*a + b) };
             }
@@ -178,9 +187,8 @@ impl<'d> Tangents<'d> {
     pub fn part(&mut self, regime: &Regime, tau: f64, end: (f64, &[f64], &[f64])) {
         let (n, degrees) = (self.states, self.degrees);
         let forced = n - degrees;
-        let (t, state, inputs) = end;
         if self.on_surface {
-            self.find_drives(t, state, inputs);
+            self.find_drives(regime, end);
         }
         let mut rates = vec![0.0; regime.matrix.rows];
         for place in 0..self.count() {
@@ -200,7 +208,7 @@ impl<'d> Tangents<'d> {
             }
             series(&regime.matrix, vector, &mut rates, tau, PART_ERROR);
         }
-        self.find_drives(t, state, inputs);
+        self.find_drives(regime, end);
         if let Some(slopes) = &mut self.slopes {
             slopes.arrive();
         }
@@ -209,8 +217,7 @@ impl<'d> Tangents<'d> {
     /// Goes through a switch: the gradient of the function that reached its surface and its
     /// rate, the rates before and after.
     pub fn switch(&mut self, (gradient, rate): (&[f64], f64), before: &[f64], after: &[f64]) {
-        self.on_surface = true;
-        self.forget_slopes();
+        self.leave_surface();
         let n = self.states;
         let terms = gradient.iter().zip(before);
         let size: f64 = terms.map(|(a, b)| (a * b).abs()).sum();
@@ -224,6 +231,47 @@ impl<'d> Tangents<'d> {
             }
         }
     }
+}
+
+/// Finds the drives in a regime. On a surface that holds the motion the accelerations are a convex
+/// combination of those on both sides, and the surface takes away what would lead off it.
+fn drives_in(
+    regime: &Regime,
+    drives: &mut dyn Drives,
+    (t, state, inputs): (f64, &[f64], &[f64]),
+    (out, forced): (&mut [f64], usize),
+) {
+    if regime.held.is_empty() {
+        drives.at(t, state, inputs, out);
+        return;
+    }
+    let mut below = state.to_vec();
+    let held = regime.held.iter();
+    for held in held.clone() {
+        let function = regime.functions[held.surface].at_inputs(&below, inputs);
+        move_across(&mut below, held, -held.distance - function);
+    }
+    drives.at(t, &below, inputs, out);
+    let (all_below, mut above) = (out.to_vec(), out.to_vec());
+    for held in held {
+        let share = held.share.at_inputs(state, inputs);
+        let mut beyond = below.clone();
+        move_across(&mut beyond, held, 2.0 * held.distance);
+        drives.at(t, &beyond, inputs, &mut above);
+        for ((slot, above), below) in out.iter_mut().zip(&above).zip(&all_below) {
+            *slot += share * (above - below);
+        }
+    }
+    let mut shares = Vec::new();
+    for drive in out.chunks_exact_mut(forced.max(1)) {
+        regime.bear(drive, &mut shares);
+    }
+}
+
+/// Moves a state so that the function of a surface changes by `distance`.
+fn move_across(state: &mut [f64], held: &HeldSurface, distance: f64) {
+    let sums = state.iter_mut().zip(&held.across);
+    sums.for_each(|(x, across)| *x += distance * across);
 }
 
 /// Adds to a vector how far it moves in `tau` s from its rates, by the exponential series,

@@ -249,3 +249,89 @@ fn a_driven_tangent_is_the_motion_of_what_drives_it() {
     let stride = last.len() / 2;
     assert!(last[0] == 0.0 && (last[stride] - 0.5).abs() < 1e-12);
 }
+
+/// A motor of 80 kg that drives a table of 18 kg with dry friction of 41 N through a stiff screw.
+fn axis() -> Model {
+    let text = r#"
+[model]
+name = "axis"
+[parameters]
+J = { value = 80, unit = "kg" }
+m = { value = 18, unit = "kg" }
+k = { value = 24, unit = "N/um" }
+c = { value = 9, unit = "N s/mm" }
+F = { value = 41, unit = "N" }
+[coordinates]
+y = { unit = "m" }
+x = { unit = "m" }
+[inputs]
+u = { unit = "N" }
+[kinetic]
+masses = "1/2*J*dot(y)^2 + 1/2*m*dot(x)^2"
+[potential]
+screw = "1/2*k*(y - x)^2"
+[dissipation]
+screw = "1/2*c*(dot(y) - dot(x))^2"
+[forces]
+motor = { on = "y", value = "u" }
+friction = { on = "x", value = "-F*sign(dot(x))" }
+"#;
+    eomgen_model_spec::check(Source::new("axis", text))
+        .expect("valid")
+        .model
+}
+
+#[test]
+fn a_release_within_a_step_is_located() {
+    let model = axis();
+    let exact = PiecewiseLinear::of(&model, &[]).expect("piecewise linear");
+    let values = exact_values(&model);
+    let times: Vec<f64> = (0..500).map(|k| f64::from(k) * 2e-3).collect();
+    let push = times.iter().map(|t| 200.0 * (9.0 * t).sin());
+    let inputs = HeldInputs::new(times.clone(), push.collect(), 1).expect("inputs");
+    let mut propagator = exact.at(&values).expect("a propagator");
+    let span = (0.0, times[499]);
+    let wanted = propagator
+        .simulate(&[0.0; 4], span, &times, &inputs, &mut |_| {})
+        .expect("a motion");
+    assert!(wanted.switches.len() >= 5);
+    let mut integrator =
+        ExponentialIntegrator::new(exact.evaluator(&values), 2e-3, 1.0).expect("can be integrated");
+    let found = run(&mut integrator, &[0.0; 4], &times, &inputs);
+    let differences = found.iter().zip(&wanted.states).map(|(a, b)| a[1] - b[1]);
+    let most = differences.fold(0.0f64, |most, d| most.max(d.abs()));
+    // Released at the end of the step, it is 2 um off.
+    assert!(most < 2e-9, "{most:e} m");
+}
+
+#[test]
+fn a_motion_that_is_held_is_not_driven_off_its_surface() {
+    let model = sliding();
+    let exact = PiecewiseLinear::of(&model, &[]).expect("piecewise linear");
+    let mut integrator = ExponentialIntegrator::new(exact.evaluator(&[2.0, 3.0]), 0.01, 1.0)
+        .expect("can be integrated");
+    // Held for a second, then 1 m/s^2.
+    let inputs = HeldInputs::new(vec![0.0, 1.0], vec![2.0, 5.0], 1).expect("inputs");
+    let times: Vec<f64> = (0..=200).map(|k| f64::from(k) * 0.01).collect();
+    let mut push = Push;
+    let mut tangents = Tangents::new((2, 1), false, 2, &mut push);
+    let mut driven = Vec::new();
+    let options = Options {
+        force: None,
+        tangents: Some(&mut tangents),
+    };
+    integrator
+        .run(
+            &[0.0; 2],
+            &times,
+            &inputs,
+            options,
+            &mut |_, _, tangents| {
+                let tangents = tangents.expect("tangents");
+                driven.push(tangents.vectors[tangents.stride]);
+            },
+        )
+        .expect("a motion");
+    assert!(driven[100].abs() < 1e-12, "{:e}", driven[100]);
+    assert!((driven[200] - 0.5).abs() < 1e-3, "{:e}", driven[200]);
+}

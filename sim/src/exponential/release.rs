@@ -1,0 +1,119 @@
+//! The time at which a surface no longer holds a motion: there the share of one side in the convex
+//! combination that keeps the motion on the surface leaves the interval from 0 to 1.
+
+use super::crossing::first_crossing;
+use super::remainder::Remainder;
+use super::remainder_at::AHEAD;
+use super::surfaces::{Side, dot};
+use super::types::{ExponentialIntegrator, Motion, Options};
+
+/// A state and the nonlinear remainder there.
+type End<'e> = (&'e [f64], &'e Remainder);
+
+/// The release of a motion by a surface.
+#[derive(Clone, Copy)]
+pub(super) struct Release {
+    /// Place among the surfaces that hold the motion.
+    pub place: usize,
+    /// The side to which the motion goes on.
+    pub to: Side,
+    /// Time from the beginning of the step, s.
+    pub tau: f64,
+    /// Rate at which the nonlinear remainder changes the share, 1/s.
+    pub slope: f64,
+}
+
+impl Release {
+    /// The share at which the surface releases the motion.
+    pub fn bound(self) -> f64 {
+        f64::from(u8::from(self.to == Side::Above))
+    }
+}
+
+impl ExponentialIntegrator {
+    /// Returns the first release within a step of this length, s, by the cubics through both of its
+    /// ends.
+    pub(super) fn first_release(
+        &self,
+        motion: &Motion,
+        (begin, end): (End<'_>, End<'_>),
+        length: f64,
+    ) -> Option<Release> {
+        let held = self.regimes[motion.regime].held.iter().enumerate();
+        let releases = held.flat_map(|(place, held)| {
+            let borne = |remainder: &Remainder| remainder.borne.get(place).copied().unwrap_or(0.0);
+            let slope = (borne(end.1) - borne(begin.1)) / length;
+            let at = |(state, remainder): End<'_>| {
+                let share = held.share.at(state, &motion.given) + borne(remainder);
+                let forced = dot(&held.share.state[self.degrees..], &remainder.force);
+                (
+                    share,
+                    held.share_rate.at(state, &motion.given) + forced + slope,
+                )
+            };
+            let (begin, end) = (at(begin), at(end));
+            [Side::Below, Side::Above].map(|to| {
+                let (inside, bound) = match to {
+                    Side::Above => (Side::Below, 1.0),
+                    Side::Below | Side::Held => (Side::Above, 0.0),
+                };
+                let ends = ((begin.0 - bound, begin.1), (end.0 - bound, end.1));
+                let tau = first_crossing(inside, ends, length)?;
+                Some(Release {
+                    place,
+                    to,
+                    tau,
+                    slope,
+                })
+            })
+        });
+        releases.flatten().min_by(|a, b| a.tau.total_cmp(&b.tau))
+    }
+
+    /// Lets the motion go on to one side of a surface that held it. Rates do not jump there: the
+    /// surface bore all of one side and nothing of the other.
+    pub(super) fn let_go(
+        &mut self,
+        motion: &mut Motion,
+        t: f64,
+        released: &[(usize, Side)],
+        options: &mut Options<'_, '_>,
+    ) -> Result<(), String> {
+        if let Some(tangents) = &mut options.tangents {
+            tangents.leave_surface();
+        }
+        for (surface, side) in released {
+            motion.sides[*surface] = *side;
+        }
+        motion.regime = self.regime(&motion.sides)?;
+        let mut rates = vec![0.0; self.regimes[motion.regime].matrix.rows];
+        self.rates(motion, &mut rates);
+        self.find_remainder_beside(motion, (t, AHEAD), &rates, options)
+    }
+
+    /// Lets the motion go from surfaces that no longer hold it, because an input has changed.
+    pub(super) fn release(
+        &mut self,
+        motion: &mut Motion,
+        t: f64,
+        options: &mut Options<'_, '_>,
+    ) -> Result<(), String> {
+        let borne = motion.remainder.borne.iter().copied();
+        let borne = borne.chain(std::iter::repeat(0.0));
+        let held = self.regimes[motion.regime].held.iter().zip(borne);
+        let released: Vec<(usize, Side)> = held
+            .filter_map(|(held, borne)| {
+                let share = held.share.at(&motion.state, &motion.given) + borne;
+                let is_held = (0.0..=1.0).contains(&share);
+                (!is_held).then(|| (held.surface, Side::of(share - 1.0)))
+            })
+            .collect();
+        if released.is_empty() {
+            return Ok(());
+        }
+        self.bring(motion, t, options)?;
+        self.let_go(motion, t, &released, options)?;
+        self.prepare(motion);
+        Ok(())
+    }
+}
