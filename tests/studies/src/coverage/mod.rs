@@ -1,0 +1,135 @@
+//! Study `coverage`: how often the 90 % interval of a fitted parameter holds the true value.
+//!
+//! Records are simulated by the program itself. In every run the true parameters and the true sensors
+//! are drawn from the priors that the dataset declares, so an interval of the posterior holds the truth
+//! in 90 % of all runs; at a fixed truth an informative prior would make that more, or less. The records
+//! go through files and the reader of datasets, and the model is fitted as by `compare`.
+
+mod binomial;
+mod machines;
+mod records;
+
+use std::fmt::Write as _;
+
+use eomgen_compiled_model::{CompiledModel, Orders};
+use eomgen_discover::fit::null_model::null_fit;
+use eomgen_discover::model::problem::EstimationProblem;
+use eomgen_discover::model::unknowns::What;
+use eomgen_records::read_dataset;
+use rayon::prelude::*;
+
+use crate::sample::Sample;
+use binomial::{at_least, at_most};
+use machines::{MACHINES, Machine};
+
+/// Half of the width of a 90 % interval, in standard deviations.
+const HALF_WIDTH: f64 = 1.645;
+
+/// The coverage that is accepted.
+const ACCEPTED: [f64; 2] = [0.85, 0.95];
+
+/// The bias that is accepted, in standard deviations.
+const ACCEPTED_BIAS: f64 = 0.15;
+
+/// A figure fails if it is beyond what is accepted by more than chance: in a machine whose figure is
+/// just accepted, chance leads as far with this probability.
+const CHANCE: f64 = 1e-3;
+
+/// Standard errors beyond which a mean lies with the probability [`CHANCE`].
+const STANDARD_ERRORS: f64 = 3.09;
+
+/// Runs the study and returns its summary.
+///
+/// # Errors
+///
+/// A report of every run that failed, and of figures beyond what is accepted.
+pub fn run(sample: &Sample) -> Result<String, String> {
+    let mut summary = String::new();
+    let mut failures = String::new();
+    for (number, machine) in MACHINES.iter().enumerate() {
+        let deviations = deviations(machine, number, sample)?;
+        let (line, failed) = figures(machine, &deviations);
+        let _ = writeln!(summary, "{line}");
+        for failure in failed {
+            let _ = writeln!(failures, "{failure}");
+        }
+    }
+    match failures.is_empty() {
+        true => Ok(summary),
+        false => Err(summary + &failures),
+    }
+}
+
+/// Returns for each run how far the estimate of each parameter is from the truth, in its own standard
+/// deviations.
+fn deviations(machine: &Machine, number: usize, sample: &Sample) -> Result<Vec<Vec<f64>>, String> {
+    let model = CompiledModel::of_text(machine.name, machine.text, Orders::Declared)
+        .map_err(|error| format!("{}: {error}", machine.name))?;
+    let of_run = |run: usize| {
+        let stream = (run * MACHINES.len() + number) as u64;
+        deviations_of_run(machine, &model, (sample.seed, stream))
+            .map_err(|error| format!("{}, run {run}: {error}", machine.name))
+    };
+    let runs: Vec<Result<Vec<f64>, String>> =
+        (0..sample.count).into_par_iter().map(of_run).collect();
+    runs.into_iter().collect()
+}
+
+/// Draws a truth and its records, fits them, and compares.
+fn deviations_of_run(
+    machine: &Machine,
+    model: &CompiledModel,
+    seed: (u64, u64),
+) -> Result<Vec<f64>, String> {
+    let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
+    let truth = records::write(machine, model, seed, folder.path())?;
+    let dataset = read_dataset(&folder.path().join("dataset.toml"), model.model())
+        .map_err(|error| error.to_string())?;
+    let problem = EstimationProblem::new(&dataset, None, machine.name, machine.text);
+    let fit = null_fit(&problem, machine.text).map_err(|error| error.to_string())?;
+    let of = |((name, _), truth): (&(&str, f64), f64)| {
+        let mut unknowns = fit.unknowns();
+        let id = unknowns.find_map(|(id, unknown)| match &unknown.what {
+            What::Parameter(known) if known == name => Some(id),
+            _ => None,
+        });
+        let id = id.ok_or_else(|| format!("`{name}` is not fitted"))?;
+        Ok((fit.train.estimate.theta[id] - truth) / fit.sd[id])
+    };
+    machine.uncertain.iter().zip(truth).map(of).collect()
+}
+
+/// Returns a machine's line and what of it is beyond what is accepted.
+fn figures(machine: &Machine, deviations: &[Vec<f64>]) -> (String, Vec<String>) {
+    let count = deviations.len();
+    let mut line = format!("{}, {count} runs:", machine.name);
+    let mut failed = Vec::new();
+    for (place, (name, _)) in machine.uncertain.iter().enumerate() {
+        let of_runs = || deviations.iter().map(|run| run[place]);
+        let held = of_runs().filter(|d| d.abs() <= HALF_WIDTH).count();
+        let coverage = held as f64 / count as f64;
+        let error = (coverage * (1.0 - coverage) / count as f64).sqrt();
+        let bias = of_runs().sum::<f64>() / count as f64;
+        let bias_error = 1.0 / (count as f64).sqrt();
+        let _ = write!(
+            line,
+            "\n  {name}: {:.1} +- {:.1} % within the 90 % interval, mean bias {bias:+.2} +- {bias_error:.2} sd",
+            100.0 * coverage,
+            100.0 * error,
+        );
+        let [low, high] = ACCEPTED;
+        if at_most(held, count, low) < CHANCE || at_least(held, count, high) < CHANCE {
+            failed.push(format!(
+                "{}, `{name}`: the 90 % interval holds the truth in {held} of {count} runs",
+                machine.name
+            ));
+        }
+        if bias.abs() > ACCEPTED_BIAS + STANDARD_ERRORS * bias_error {
+            failed.push(format!(
+                "{}, `{name}`: biased by {bias:+.2} sd",
+                machine.name
+            ));
+        }
+    }
+    (line, failed)
+}
