@@ -65,8 +65,11 @@ impl Variant {
         let mut equations = derive(model, orders).map_err(|error| found(error.diagnostic()))?;
         let outputs = derive_outputs(&mut equations, outputs).map_err(|error| {
             let message = Diagnostic::error(error.to_string());
-            found(match model.kinetic.first() {
-                Some(term) => message.at(term.value.span, "in this energy or the next"),
+            let terms = model.kinetic.iter().chain(&model.potential);
+            let spans = terms.chain(&model.dissipation).map(|term| term.value.span);
+            let mut spans = spans.chain(model.forces.iter().map(|force| force.value.span));
+            found(match error.term.and_then(|place| spans.nth(place)) {
+                Some(span) => message.at(span, "in this term"),
                 None => message,
             })
         })?;

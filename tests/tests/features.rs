@@ -56,6 +56,7 @@ features! {
         full_mass_on_springs: [0, 1, 4];
         two_fields: [0, 1, 3];
         cubic_stiffness: [0, 1, 3];
+        quadratic_drag: [0, 2];
         gravity_arm: [0, 1, 4];
         centrifugal_stiffening: [0, 1, 4];
         structural_damping: [0, 1, 3];

@@ -9,9 +9,10 @@ use eomgen_model_spec::model::{Coefficient, CoefficientKind, Expr, ExprKind};
 
 use crate::mechanics::solve::Accelerations;
 use crate::mechanics::translate::{DeriveError, Derived, Translator};
-use crate::symbolic::differentiate::{ModalDerivative, by_scalar};
+use crate::symbolic::differentiate::by_scalar;
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 use crate::symbolic::matrix::StructuredMatrix;
+use crate::symbolic::modal_derivative::ModalDerivative;
 use crate::symbolic::substitute::substitute;
 
 /// A coefficient the specification names.

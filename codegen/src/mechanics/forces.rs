@@ -81,7 +81,7 @@ pub(crate) fn power(
 pub(crate) fn guards(graph: &mut Graph, roots: &[NodeId]) -> Vec<Guard> {
     let mut found: Vec<Guard> = Vec::new();
     for id in graph.reachable(roots) {
-        if graph.dependence(id).is_parameter_only() {
+        if graph.dependence(id).is_parameter_only() || graph.guarded_power(id).is_some() {
             continue;
         }
         let (function, arguments) = match graph.operation(id).clone() {
@@ -199,7 +199,7 @@ pub(crate) fn may_rest(graph: &Graph, id: NodeId) -> bool {
     }
     graph.reachable(&[id]).into_iter().any(|part| {
         let switches = match graph.operation(part) {
-            Operation::Select { .. } => true,
+            Operation::Select { .. } => graph.guarded_power(part).is_none(),
             Operation::Call(function, _) => function.switches(),
             _ => false,
         };

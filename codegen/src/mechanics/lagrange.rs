@@ -8,10 +8,11 @@ use crate::mechanics::mass_matrix::MassMatrix;
 use crate::mechanics::rows::RowNodes;
 use crate::mechanics::translate::along_motion;
 use crate::symbolic::association::shared_operations;
-use crate::symbolic::differentiate::{ModalDerivative, by_scalar};
+use crate::symbolic::differentiate::by_scalar;
 use crate::symbolic::expand::{MOST_EXPANSIONS, expand_once};
 use crate::symbolic::factor::cheaper;
 use crate::symbolic::graph::{Graph, NodeId, Operation, Space};
+use crate::symbolic::modal_derivative::ModalDerivative;
 use crate::symbolic::operation_count::count_operations;
 use crate::symbolic::trigonometry::with_sums_of_angles;
 

@@ -1,28 +1,25 @@
-//! Derivatives of graph nodes: by a scalar variable, along a direction (forward mode),
-//! and by a field's modes, where the result of a scalar is a vector (its gradient) and
-//! that of a vector a structured matrix (diagonal, outer products and tables). Shared
-//! nodes are differentiated once; nothing is multiplied out.
+//! Derivatives of graph nodes by a scalar variable and along a direction (forward mode), and the partial
+//! derivatives of each operation. Shared nodes are differentiated once; nothing is multiplied out.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 use eomgen_model_spec::model::Function;
 
 use crate::symbolic::arguments::Arguments;
-use crate::symbolic::graph::{Graph, NodeId, Operation, Shape, Space};
-use crate::symbolic::matrix::StructuredMatrix;
+use crate::symbolic::graph::{Graph, NodeId, Operation, Shape};
 
 /// Which nodes move at all along a direction. Asked before a derivative is formed: most of
 /// an expression is constant along most directions, and the partial derivatives by what is
 /// constant would be formed for nothing.
 #[derive(Default)]
-struct Moving {
-    known: HashMap<NodeId, bool>,
+pub(super) struct Moving {
+    pub(super) known: HashMap<NodeId, bool>,
 }
 
 impl Moving {
     /// Whether anything that `id` is computed from moves, by what `leaf` says of nodes that
     /// it knows and of all that have no operands.
-    fn has(
+    pub(super) fn has(
         &mut self,
         graph: &Graph,
         id: NodeId,
@@ -133,7 +130,7 @@ impl<'a> Direction<'a> {
                 for (operand, partial) in partials {
                     let inner = self.derivative(graph, operand);
                     if !graph.is_zero(inner) {
-                        terms.push((1.0, graph.multiply(partial, inner)));
+                        terms.push((1.0, graph.derivative_term(partial, inner)));
                     }
                 }
                 graph.combine(&terms)
@@ -152,9 +149,11 @@ pub fn by_scalar(graph: &mut Graph, id: NodeId, variable: NodeId) -> NodeId {
 }
 
 /// For a node that is one of two others: a and b of the condition a > b, the node where it
-/// holds, the node elsewhere.
+/// holds, the node elsewhere. A guarded power counts as the power.
 pub(crate) fn choice(graph: &Graph, id: NodeId) -> Option<[NodeId; 4]> {
     match graph.operation(id) {
+        // Differentiated as the power it guards: what has no limit there has to show it.
+        _ if graph.guarded_power(id).is_some() => None,
         &Operation::Select {
             a,
             b,
@@ -172,7 +171,7 @@ pub(crate) fn choice(graph: &Graph, id: NodeId) -> Option<[NodeId; 4]> {
 
 /// The derivative of such a node. The derivatives are chosen between, not multiplied by 1
 /// and 0: that of the branch not taken may be infinite or no number.
-fn choose(
+pub(super) fn choose(
     graph: &mut Graph,
     id: NodeId,
     mut derivative: impl FnMut(&mut Graph, NodeId) -> NodeId,
@@ -198,6 +197,10 @@ pub(crate) fn partial_derivatives(
         let skipped = graph.select(a, b, zero, one);
         return vec![(then, taken), (otherwise, skipped)];
     }
+    if let Some((base, exponent)) = graph.guarded_power(id) {
+        let plain = graph.integer_power(base, exponent);
+        return partial_derivatives(graph, plain, moves);
+    }
     match graph.operation(id).clone() {
         Operation::Sum(terms) => terms
             .iter()
@@ -208,13 +211,13 @@ pub(crate) fn partial_derivatives(
                 Some((term, graph.constant(factor.value())))
             })
             .collect(),
-        Operation::Product(factors) => factors
+        Operation::Product(factors) => unguarded(graph, &factors)
             .iter()
             .filter_map(|&(factor, exponent)| {
                 if !moves(graph, factor) {
                     return None;
                 }
-                let lowered: Vec<(NodeId, i32)> = factors
+                let lowered: Vec<(NodeId, i32)> = unguarded(graph, &factors)
                     .iter()
                     .map(|&(other, power)| (other, if other == factor { power - 1 } else { power }))
                     .collect();
@@ -234,6 +237,17 @@ pub(crate) fn partial_derivatives(
     }
 }
 
+/// The factors of a product with guarded powers as powers. Each term of the derivative is guarded anew.
+fn unguarded(graph: &Graph, factors: &[(NodeId, i32)]) -> Vec<(NodeId, i32)> {
+    let mut collected = BTreeMap::new();
+    for &(factor, exponent) in factors {
+        let (base, power) = graph.guarded_power(factor).unwrap_or((factor, 1));
+        *collected.entry(base).or_insert(0) += power * exponent;
+    }
+    collected.retain(|_, exponent| *exponent != 0);
+    collected.into_iter().collect()
+}
+
 fn power_derivatives(
     graph: &mut Graph,
     id: NodeId,
@@ -244,9 +258,20 @@ fn power_derivatives(
     let lowered = graph.add(exponent, minus_one);
     let power = graph.power(base, lowered);
     let by_base = graph.multiply(exponent, power);
-    let logarithm = graph.call(Function::Ln, &[base]);
-    let by_exponent = graph.multiply(id, logarithm);
+    let by_exponent = by_exponent(graph, id, base, exponent);
     vec![(base, by_base), (exponent, by_exponent)]
+}
+
+/// b^e ln(b), with its limit 0 at b = 0 for e > 0. The other branch is not a number where there is no limit.
+fn by_exponent(graph: &mut Graph, power: NodeId, base: NodeId, exponent: NodeId) -> NodeId {
+    let logarithm = graph.call(Function::Ln, &[base]);
+    let then = graph.multiply(power, logarithm);
+    if !graph.dependence(exponent).is_parameter_only() {
+        return then;
+    }
+    let root = graph.call(Function::Sqrt, &[base]);
+    let (otherwise, zero) = (graph.multiply(power, root), graph.zero());
+    graph.select(base, zero, then, otherwise)
 }
 
 fn function_derivatives(
@@ -327,133 +352,4 @@ fn derivative_of_function(
         Function::Abs => graph.call(Function::Sign, &[a]),
         _ => return None,
     })
-}
-
-/// Derivatives by the modes of one field.
-pub struct ModalDerivative {
-    variable: NodeId,
-    space: Space,
-    moving: Moving,
-    gradients: HashMap<NodeId, NodeId>,
-    jacobians: HashMap<NodeId, StructuredMatrix>,
-}
-
-impl ModalDerivative {
-    /// Derivatives by the vector leaf `variable` (a field's mode coordinates or rates).
-    pub fn new(graph: &Graph, variable: NodeId) -> Option<Self> {
-        match graph.shape(variable) {
-            Shape::Vector(space) => Some(Self {
-                variable,
-                space,
-                moving: Moving::default(),
-                gradients: HashMap::new(),
-                jacobians: HashMap::new(),
-            }),
-            _ => None,
-        }
-    }
-
-    fn moves(&mut self, graph: &Graph, id: NodeId) -> bool {
-        let variable = self.variable;
-        self.moving.has(graph, id, &|graph, id| {
-            let leaf = graph.operands(graph.operation(id)).is_empty();
-            leaf.then_some(id == variable)
-        })
-    }
-
-    /// The gradient of a scalar node: a vector over the modes, or 0.
-    pub fn gradient(&mut self, graph: &mut Graph, id: NodeId) -> NodeId {
-        if let Some(&known) = self.gradients.get(&id) {
-            return known;
-        }
-        if !self.moves(graph, id) {
-            return graph.zero();
-        }
-        let result = match graph.operation(id).clone() {
-            Operation::Total(a) => {
-                let jacobian = self.jacobian(graph, a);
-                jacobian.column_totals(graph)
-            }
-            _ if choice(graph, id).is_some() => {
-                choose(graph, id, |graph, branch| self.gradient(graph, branch))
-            }
-            _ => {
-                let partials =
-                    partial_derivatives(graph, id, |graph, operand| self.moves(graph, operand));
-                let mut terms = Vec::with_capacity(partials.len());
-                for (operand, partial) in partials {
-                    let inner = self.gradient(graph, operand);
-                    if !graph.is_zero(inner) {
-                        terms.push((1.0, graph.multiply(partial, inner)));
-                    }
-                }
-                graph.combine(&terms)
-            }
-        };
-        self.gradients.insert(id, result);
-        result
-    }
-
-    /// The Jacobian of a vector node: rows its own index, columns the modes.
-    pub fn jacobian(&mut self, graph: &mut Graph, id: NodeId) -> StructuredMatrix {
-        if let Some(known) = self.jacobians.get(&id) {
-            return known.clone();
-        }
-        let result = self.compute_jacobian(graph, id);
-        self.jacobians.insert(id, result.clone());
-        result
-    }
-
-    /// The Jacobian of a vector, or of the scalar that stands for each of its elements.
-    pub fn of_elements(&mut self, graph: &mut Graph, id: NodeId, rows: Space) -> StructuredMatrix {
-        if graph.shape(id) != Shape::Scalar {
-            return self.jacobian(graph, id);
-        }
-        let mut matrix = StructuredMatrix::zero(rows, self.space);
-        let (one, gradient) = (graph.one(), self.gradient(graph, id));
-        matrix.add_outer(graph, one, gradient);
-        matrix
-    }
-
-    fn compute_jacobian(&mut self, graph: &mut Graph, id: NodeId) -> StructuredMatrix {
-        let rows = match graph.shape(id) {
-            Shape::Vector(space) => space,
-            _ => self.space,
-        };
-        let mut result = StructuredMatrix::zero(rows, self.space);
-        if !self.moves(graph, id) {
-            return result;
-        }
-        if id == self.variable {
-            result.add_diagonal(graph, 1.0);
-            return result;
-        }
-        if let Operation::Apply {
-            matrix,
-            transposed,
-            vector,
-        } = *graph.operation(id)
-        {
-            return self
-                .jacobian(graph, vector)
-                .applied(graph, matrix, transposed);
-        }
-        if let Operation::CholeskySolve(factor, right) = *graph.operation(id) {
-            return self.of_elements(graph, right, rows).solved(graph, factor);
-        }
-        let partials = partial_derivatives(graph, id, |graph, operand| self.moves(graph, operand));
-        for (operand, partial) in partials {
-            match graph.shape(operand) {
-                Shape::Scalar => {
-                    let gradient = self.gradient(graph, operand);
-                    result.add_outer(graph, partial, gradient);
-                }
-                _ => {
-                    let inner = self.jacobian(graph, operand);
-                    result.add_scaled(graph, partial, &inner);
-                }
-            }
-        }
-        result
-    }
 }

@@ -15,6 +15,7 @@ use eomgen_model_spec::model::Function;
 pub use crate::symbolic::operation::{
     Argument, Assembly, Bits, Dependence, NodeId, Operation, ScaledMatrix, Shape, Space, Variable,
 };
+use crate::symbolic::orders::Orders;
 use crate::symbolic::tables::{Table, TableKind};
 
 struct Node {
@@ -22,6 +23,7 @@ struct Node {
     shape: Shape,
     dependence: Dependence,
     critical_path: u32,
+    has_reciprocal_root: bool,
 }
 
 /// The graph of one variant: its nodes, constant tables and the sizes of its spaces.
@@ -35,6 +37,7 @@ pub struct Graph {
     node_counts: Vec<usize>,
     names: HashMap<NodeId, String>,
     taken: HashSet<String>,
+    pub(crate) orders_at_zeros: Orders,
 }
 
 impl Graph {
@@ -49,6 +52,7 @@ impl Graph {
             node_counts: node_counts.to_vec(),
             names: HashMap::new(),
             taken: HashSet::new(),
+            orders_at_zeros: Orders::default(),
         }
     }
 
@@ -115,6 +119,11 @@ impl Graph {
         self.nodes[id.0 as usize].critical_path
     }
 
+    /// Whether the reciprocal of a root stands in a node without a guard where the root is 0.
+    pub(crate) fn has_reciprocal_root(&self, id: NodeId) -> bool {
+        self.nodes[id.0 as usize].has_reciprocal_root
+    }
+
     /// A table of constants.
     pub fn table(&self, index: usize) -> &Table {
         &self.tables[index]
@@ -160,6 +169,7 @@ impl Graph {
         let shape = self.shape_of(&operation);
         let dependence = self.dependence_of(&operation);
         let critical_path = self.critical_path_of(&operation, dependence);
+        let has_reciprocal_root = self.holds_reciprocal_root(&operation);
         let id = NodeId(self.nodes.len() as u32);
         self.known.insert(operation.clone(), id);
         self.nodes.push(Node {
@@ -167,6 +177,7 @@ impl Graph {
             shape,
             dependence,
             critical_path,
+            has_reciprocal_root,
         });
         id
     }

@@ -4,6 +4,27 @@
 
 use crate::symbolic::graph::{Assembly, Graph, NodeId, Operation, ScaledMatrix, Shape, Space};
 
+impl Assembly {
+    /// The parts of this matrix times a vector.
+    pub(crate) fn times(&self, graph: &mut Graph, vector: NodeId) -> Vec<NodeId> {
+        let mut parts = Vec::new();
+        if let Some(diagonal) = self.diagonal {
+            parts.push(graph.multiply(diagonal, vector));
+        }
+        for &(u, v) in &self.outer {
+            let product = graph.multiply(v, vector);
+            let total = graph.total_over(self.columns, product);
+            parts.push(graph.multiply(u, total));
+        }
+        for part in &self.matrices {
+            let scaled = graph.multiply(part.column, vector);
+            let product = graph.apply(part.matrix, part.transposed, scaled);
+            parts.push(graph.multiply(part.row, product));
+        }
+        parts
+    }
+}
+
 /// diagonal + sum of u v^T + sum of diag(row) matrix diag(column).
 #[derive(Clone, Debug)]
 pub struct StructuredMatrix {
@@ -67,21 +88,21 @@ impl StructuredMatrix {
         }
     }
 
-    /// Adds diag(scale) other.
+    /// Adds diag(scale) other, a term of a derivative.
     pub fn add_scaled(&mut self, graph: &mut Graph, scale: NodeId, other: &Self) {
         if graph.is_zero(scale) {
             return;
         }
         if let Some(diagonal) = other.diagonal {
-            let scaled = graph.multiply(scale, diagonal);
+            let scaled = graph.derivative_term(scale, diagonal);
             self.add_to_diagonal(graph, scaled);
         }
         for &(u, v) in &other.outer {
-            let scaled = graph.multiply(scale, u);
+            let scaled = graph.derivative_term(scale, u);
             self.add_outer(graph, scaled, v);
         }
         for matrix in &other.matrices {
-            let row = graph.multiply(scale, matrix.row);
+            let row = graph.derivative_term(scale, matrix.row);
             self.matrices.push(ScaledMatrix { row, ..*matrix });
         }
     }

@@ -2,11 +2,11 @@
 //! mechanics.
 //!
 //! `operation` (of `arguments`) and `graph` (the nodes), `simplify` (the algebraic laws, applied
-//! by the constructors), `tables` and `table_text` (constants of a basis), `matrix` and
-//! `differentiate` (derivatives that keep their structure), `substitute`, `expand`, `degree` and
-//! `operation_count` (walks over nodes), `association` (which factors are multiplied first), `factor`
-//! and `trigonometry` (other forms of sums, for whoever compares what they cost), `formula` (for
-//! people).
+//! by the constructors), `tables` and `table_text` (constants of a basis), `matrix`, `differentiate` and
+//! `modal_derivative` (derivatives that keep their structure), `limits` and `orders` (derivatives at zeros
+//! of roots), `substitute`, `expand`, `degree` and `operation_count` (walks over nodes), `association`
+//! (which factors are multiplied first), `factor` and `trigonometry` (other forms of sums, for whoever
+//! compares what they cost), `formula` (for people).
 
 pub(crate) mod arguments;
 pub(crate) mod association;
@@ -16,9 +16,12 @@ pub(crate) mod expand;
 pub(crate) mod factor;
 pub mod formula;
 pub mod graph;
+pub(crate) mod limits;
 pub mod matrix;
+pub mod modal_derivative;
 pub(crate) mod operation;
 pub(crate) mod operation_count;
+pub(crate) mod orders;
 mod simplify;
 pub(crate) mod substitute;
 pub(crate) mod table_text;

@@ -9,6 +9,7 @@ mod expressions;
 mod gradients;
 mod guards;
 mod inertia;
+mod limits;
 mod misplaced;
 mod modes;
 mod names;

@@ -7,8 +7,9 @@ use eomgen_model_spec::ids::{CoordinateId, FieldId, InputId, StateId};
 use eomgen_model_spec::model::Function;
 
 use crate::mechanics::rows::RowNodes;
-use crate::symbolic::differentiate::{ModalDerivative, by_scalar};
+use crate::symbolic::differentiate::by_scalar;
 use crate::symbolic::graph::{Graph, NodeId, Operation, Space};
+use crate::symbolic::modal_derivative::ModalDerivative;
 use crate::symbolic::substitute::substitute;
 
 /// The coefficients of an expression: of a scalar numbers, and vectors for the modes; of a

@@ -36,8 +36,8 @@ pub fn weighted(equations: &mut Equations) -> Vec<(NodeId, NodeId)> {
 }
 
 /// The gradient of the sum of weight times node, a vector's elements summed, by every leaf
-/// that is no parameter. Matrices that move are not followed; the caller sees to it that
-/// there are none.
+/// that is no parameter. Diagonals of Gram matrices that move are not followed; the caller sees to
+/// it that there are none.
 pub fn gradient(graph: &mut Graph, weighted: &[(NodeId, NodeId)]) -> HashMap<NodeId, NodeId> {
     accumulate(graph, weighted, |graph, id| {
         !graph.dependence(id).is_parameter_only()
@@ -183,9 +183,9 @@ impl Condition {
 /// until parts of other branches join it: a partial derivative inside a branch that is not
 /// taken may be infinite or no number, and 0 times it would be no number either.
 #[derive(Clone)]
-struct Part {
+pub(super) struct Part {
     conditions: Vec<Condition>,
-    value: NodeId,
+    pub(super) value: NodeId,
 }
 
 impl Part {
@@ -196,7 +196,7 @@ impl Part {
         }
     }
 
-    fn with(&self, value: NodeId) -> Self {
+    pub(super) fn with(&self, value: NodeId) -> Self {
         Self {
             conditions: self.conditions.clone(),
             value,
@@ -235,10 +235,10 @@ impl Part {
 }
 
 /// What each node has received so far.
-struct Adjoints {
+pub(super) struct Adjoints {
     received: HashMap<NodeId, Vec<Part>>,
     /// Which nodes count.
-    follows: fn(&Graph, NodeId) -> bool,
+    pub(super) follows: fn(&Graph, NodeId) -> bool,
 }
 
 impl Adjoints {
@@ -265,7 +265,13 @@ impl Adjoints {
     }
 
     /// Adds a part that is a vector over `space`, or stands for each of its elements.
-    fn add_over(&mut self, graph: &mut Graph, space: Space, operand: NodeId, part: Part) {
+    pub(super) fn add_over(
+        &mut self,
+        graph: &mut Graph,
+        space: Space,
+        operand: NodeId,
+        part: Part,
+    ) {
         let part = match graph.shape(operand) {
             Shape::Scalar => {
                 let part = part.chosen_by_element(graph);
@@ -297,7 +303,13 @@ impl Adjoints {
                 let adjoint = adjoint.clone().chosen_by_element(graph);
                 let part = adjoint.with(graph.cholesky_solve(factor, adjoint.value));
                 if let Shape::Vector(space) = graph.shape(id) {
-                    self.add_over(graph, space, vector, part);
+                    self.add_over(graph, space, vector, part.clone());
+                }
+                if let Operation::Cholesky(matrix) = *graph.operation(factor)
+                    && (self.follows)(graph, matrix)
+                {
+                    let left = graph.negate(part.value);
+                    self.hand_to_matrix(graph, matrix, part.with(left), id);
                 }
             }
             _ => self.hand_down_element_wise(graph, id, adjoint),
@@ -312,7 +324,7 @@ impl Adjoints {
             partial_derivatives(graph, id, self.follows)
                 .into_iter()
                 .map(|(operand, partial)| {
-                    let product = graph.multiply(partial, adjoint.value);
+                    let product = graph.derivative_term(partial, adjoint.value);
                     (operand, adjoint.with(product))
                 })
                 .collect()

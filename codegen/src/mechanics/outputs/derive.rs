@@ -7,7 +7,7 @@ use super::hessian::gradient_derivative;
 use super::jacobian::{
     JacobianRows, by_parameters, by_time, by_variables, observable_rows, one_row, rate_rows,
 };
-use super::matrix_derivatives::holds_moving_matrix;
+use super::matrix_derivatives::holds_moving_diagonal;
 use super::output::Output;
 use super::regimes::switches;
 use super::types::{Jacobian, Outputs, Products};
@@ -18,18 +18,16 @@ use crate::symbolic::association::shared_operations;
 use crate::symbolic::differentiate::Direction;
 use crate::symbolic::factor::cheaper;
 use crate::symbolic::graph::{Argument, Graph, NodeId, Operation, Shape, Space, Variable};
-use crate::symbolic::matrix::StructuredMatrix;
 use eomgen_model_spec::ids::{CoordinateId, FieldId};
 
 /// Derives these outputs.
 ///
 /// # Errors
-/// If the modal mass matrix is dense and moves with the state: products and Jacobians are not
-/// derived then.
+/// [`MovingDiagonal`]: products and Jacobians are not derived then.
 pub fn derive_outputs(
     equations: &mut Equations,
     outputs: &[Output],
-) -> Result<Outputs<NodeId, RowNodes>, MovingMatrix> {
+) -> Result<Outputs<NodeId, RowNodes>, MovingDiagonal> {
     let mut result = Outputs {
         kinds: outputs.to_vec(),
         ..Outputs::default()
@@ -44,8 +42,8 @@ pub fn derive_outputs(
         let mut roots = equations.rate_nodes();
         roots.extend(&equations.observables);
         roots.push(equations.power);
-        if holds_moving_matrix(&equations.graph, &roots) {
-            return Err(MovingMatrix);
+        if holds_moving_diagonal(&equations.graph, &roots) {
+            return Err(MovingDiagonal::of(equations));
         }
     }
     if has(Output::BiasForces) || has(Output::InverseDynamics) {
@@ -76,17 +74,32 @@ pub fn derive_outputs(
     Ok(result)
 }
 
-/// Why Jacobians could not be derived.
+/// A sum over modes that weighs the square of each mode shape by a function of the state. It has no Jacobian
+/// here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct MovingMatrix;
+pub struct MovingDiagonal {
+    /// The term that holds it, by its place in [`Equations::terms`]; none outside of these.
+    pub term: Option<usize>,
+}
 
-impl std::fmt::Display for MovingMatrix {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("no Jacobian: the modal mass matrix is dense and moves with the state")
+impl MovingDiagonal {
+    fn of(equations: &Equations) -> Self {
+        let holds = |term: &NodeId| holds_moving_diagonal(&equations.graph, &[*term]);
+        Self {
+            term: equations.terms.iter().position(holds),
+        }
     }
 }
 
-impl std::error::Error for MovingMatrix {}
+impl std::fmt::Display for MovingDiagonal {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(
+            "no Jacobian: a sum over modes weighs the square of each mode shape by a function of the state",
+        )
+    }
+}
+
+impl std::error::Error for MovingDiagonal {}
 
 fn bias_forces(equations: &mut Equations) -> RowNodes {
     let graph = &mut equations.graph;
@@ -178,30 +191,12 @@ fn inverse_dynamics_by_mass(equations: &mut Equations, bias: &RowNodes) -> RowNo
             terms.push((1.0, graph.multiply(coupling[field], *a)));
         }
         for (block, a) in mass.modal[field].iter().zip(&modal) {
-            terms.extend(times(graph, block, *a).into_iter().map(|term| (1.0, term)));
+            let parts = block.assembly().times(graph, *a);
+            terms.extend(parts.into_iter().map(|term| (1.0, term)));
         }
         *slot = graph.combine(&terms);
     }
     rows
-}
-
-/// The parts of matrix times vector.
-fn times(graph: &mut Graph, matrix: &StructuredMatrix, vector: NodeId) -> Vec<NodeId> {
-    let mut parts = Vec::new();
-    if let Some(diagonal) = matrix.diagonal {
-        parts.push(graph.multiply(diagonal, vector));
-    }
-    for &(u, v) in &matrix.outer {
-        let product = graph.multiply(v, vector);
-        let total = graph.total_over(matrix.columns, product);
-        parts.push(graph.multiply(u, total));
-    }
-    for part in &matrix.matrices {
-        let scaled = graph.multiply(part.column, vector);
-        let product = graph.apply(part.matrix, part.transposed, scaled);
-        parts.push(graph.multiply(part.row, product));
-    }
-    parts
 }
 
 /// The rates of the guards along the motion, the inputs held.

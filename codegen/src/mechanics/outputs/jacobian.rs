@@ -5,9 +5,10 @@
 
 use super::types::{Jacobian, JacobianBlock};
 use crate::mechanics::equations::Equations;
-use crate::symbolic::differentiate::{Direction, ModalDerivative};
+use crate::symbolic::differentiate::Direction;
 use crate::symbolic::graph::{Graph, NodeId, Operation, Space, Variable};
 use crate::symbolic::matrix::StructuredMatrix;
+use crate::symbolic::modal_derivative::ModalDerivative;
 use eomgen_model_spec::ids::{CoordinateId, FieldId, InputId, ParameterId, StateId};
 
 /// The rows of a Jacobian: nodes, and the diagonal block of ones if there is one.

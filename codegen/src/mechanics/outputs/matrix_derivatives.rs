@@ -123,22 +123,17 @@ impl Direction<'_> {
     }
 }
 
-/// Whether `roots` hold a matrix that moves with the state: those are differentiated by
-/// parameters alone.
-pub(crate) fn holds_moving_matrix(graph: &Graph, roots: &[NodeId]) -> bool {
-    holds_matrix(graph, roots, |graph, id| {
-        !graph.dependence(id).is_parameter_only()
+/// Whether `roots` hold the diagonal of a Gram matrix that moves with the state: those are
+/// differentiated by parameters alone.
+pub(crate) fn holds_moving_diagonal(graph: &Graph, roots: &[NodeId]) -> bool {
+    graph.reachable(roots).into_iter().any(|id| {
+        matches!(graph.operation(id), Operation::GramDiagonal { .. })
+            && !graph.dependence(id).is_parameter_only()
     })
 }
 
 /// Whether something in `roots` is a matrix operation on what depends on parameters.
 pub(crate) fn holds_matrix_of_parameters(graph: &Graph, roots: &[NodeId]) -> bool {
-    holds_matrix(graph, roots, |graph, id| {
-        graph.dependence(id).has(Dependence::PARAMETER)
-    })
-}
-
-fn holds_matrix(graph: &Graph, roots: &[NodeId], counts: fn(&Graph, NodeId) -> bool) -> bool {
     graph.reachable(roots).into_iter().any(|id| {
         matches!(
             graph.operation(id),
@@ -146,6 +141,6 @@ fn holds_matrix(graph: &Graph, roots: &[NodeId], counts: fn(&Graph, NodeId) -> b
                 | Operation::GramDiagonal { .. }
                 | Operation::Assemble(_)
                 | Operation::Cholesky(_)
-        ) && counts(graph, id)
+        ) && graph.dependence(id).has(Dependence::PARAMETER)
     })
 }

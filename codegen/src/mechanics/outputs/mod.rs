@@ -1,11 +1,12 @@
 //! What is derived on request beside rates, observables, energy, power, guards and mass matrix.
 //!
 //! `output` (what can be asked for), `types` (the structure of what was derived), `derive` (its
-//! derivation), `jacobian` (columns by state, inputs and parameters), `adjoint` (products with
-//! weights, backward), `hessian` (second derivatives of the weighted rates), `matrix_derivatives` (what differentiates a modal matrix), `regimes`
-//! (which surfaces decide each branch).
+//! derivation), `jacobian` (columns by state, inputs and parameters), `adjoint` and `adjoint_matrices`
+//! (products with weights, backward), `hessian` (second derivatives of the weighted rates),
+//! `matrix_derivatives` (derivatives of modal matrices), `regimes` (which surfaces decide each branch).
 
 mod adjoint;
+mod adjoint_matrices;
 mod derive;
 mod hessian;
 mod jacobian;

@@ -1,0 +1,90 @@
+//! What a matrix that moves with the state receives in reverse accumulation: y for the bilinear form
+//! y^T M x, which is how the solution x of a system takes part in a gradient.
+
+use super::adjoint::{Adjoints, Part};
+use crate::symbolic::graph::{Graph, NodeId, Operation, Space};
+
+impl Adjoints {
+    /// Hands the gradient of y^T M x to what M is computed from, x held; `y` is a vector under conditions.
+    pub(super) fn hand_to_matrix(&mut self, graph: &mut Graph, matrix: NodeId, y: Part, x: NodeId) {
+        match graph.operation(matrix).clone() {
+            Operation::Assemble(assembly) => {
+                if let Some(diagonal) = assembly.diagonal {
+                    self.hand_product(graph, assembly.rows, diagonal, &y, x);
+                }
+                for &(u, v) in &assembly.outer {
+                    let along_v = total_product(graph, assembly.columns, v, x);
+                    self.hand_product(graph, assembly.rows, u, &y, along_v);
+                    let along_u = total_product(graph, assembly.rows, u, y.value);
+                    let along_u = y.with(along_u);
+                    self.hand_product(graph, assembly.columns, v, &along_u, x);
+                }
+                for part in &assembly.matrices {
+                    let (left, right) = (
+                        y.with(graph.multiply(part.row, y.value)),
+                        graph.multiply(part.column, x),
+                    );
+                    let applied = graph.apply(part.matrix, part.transposed, right);
+                    self.hand_product(graph, assembly.rows, part.row, &y, applied);
+                    let applied = graph.apply(part.matrix, !part.transposed, left.value);
+                    let applied = left.with(applied);
+                    self.hand_product(graph, assembly.columns, part.column, &applied, x);
+                    if (self.follows)(graph, part.matrix) {
+                        self.hand_to_gram(graph, part.matrix, part.transposed, left, right);
+                    }
+                }
+            }
+            _ => self.hand_to_gram(graph, matrix, false, y, x),
+        }
+    }
+
+    fn hand_to_gram(
+        &mut self,
+        graph: &mut Graph,
+        matrix: NodeId,
+        transposed: bool,
+        y: Part,
+        x: NodeId,
+    ) {
+        let Operation::Gram {
+            left,
+            weight,
+            right,
+        } = *graph.operation(matrix)
+        else {
+            return;
+        };
+        let (left, right) = if transposed {
+            (right, left)
+        } else {
+            (left, right)
+        };
+        let Some(nodes) = rows(graph, left) else {
+            return;
+        };
+        let y = y.with(graph.apply(left, false, y.value));
+        let x = graph.apply(right, false, x);
+        self.hand_product(graph, nodes, weight, &y, x);
+    }
+
+    /// Hands y times x, element by element over `space`, to a vector or to the scalar that stands for one.
+    fn hand_product(&mut self, graph: &mut Graph, space: Space, to: NodeId, y: &Part, x: NodeId) {
+        if (self.follows)(graph, to) {
+            let part = y.with(graph.multiply(y.value, x));
+            self.add_over(graph, space, to, part);
+        }
+    }
+}
+
+fn total_product(graph: &mut Graph, space: Space, a: NodeId, b: NodeId) -> NodeId {
+    let product = graph.multiply(a, b);
+    graph.total_over(space, product)
+}
+
+/// The index space of a matrix's rows.
+fn rows(graph: &Graph, matrix: NodeId) -> Option<Space> {
+    match graph.shape(matrix) {
+        crate::symbolic::graph::Shape::Matrix(rows, _) => Some(rows),
+        _ => None,
+    }
+}

@@ -1,0 +1,390 @@
+//! Limits of derivatives where a root vanishes.
+//!
+//! The derivative of `norm(v)*v_x` holds v_x (v . dv)/norm(v), which is 0/0 at v = 0 although its limit is 0.
+//! With s the argument of a root and |f| <= C s^o near s = 0, o is the order of f here. A product of positive
+//! order vanishes with s. Its reciprocals of the root are then guarded: 0 where the root is 0. A product of no
+//! positive order keeps them. It is infinite or not a number at s = 0, where it has no limit.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use eomgen_model_spec::model::Function;
+
+use crate::symbolic::graph::{Graph, NodeId, Operation};
+use crate::symbolic::orders::{Bounds, Monomial};
+use crate::symbolic::substitute::substitute;
+
+impl Graph {
+    /// `partial` times `inner`, a term of a derivative, with its limit where a root in it vanishes.
+    pub(crate) fn derivative_term(&mut self, partial: NodeId, inner: NodeId) -> NodeId {
+        let mut term = self.multiply(partial, inner);
+        if !self.has_reciprocal_root(term) {
+            return term;
+        }
+        let arguments = self.reciprocal_arguments(term);
+        for &argument in arguments.iter() {
+            if self.order(argument, term) > 0.0 {
+                term = guard(self, term, argument);
+            }
+        }
+        term
+    }
+
+    /// The power that a guarded reciprocal stands for away from 0, as its base and exponent.
+    pub(crate) fn guarded_power(&self, id: NodeId) -> Option<(NodeId, i32)> {
+        self.guarded_power_of(self.operation(id))
+    }
+
+    fn guarded_power_of(&self, operation: &Operation) -> Option<(NodeId, i32)> {
+        let &Operation::Select {
+            a,
+            b,
+            then,
+            otherwise,
+        } = operation
+        else {
+            return None;
+        };
+        if !self.is_zero(b) || !self.is_zero(otherwise) {
+            return None;
+        }
+        let is_root = self.root_argument(a).is_some();
+        match self.operation(then) {
+            Operation::Product(factors) if is_root && **factors == [(a, -1)] => Some((a, -1)),
+            Operation::Power(..) => {
+                let (base, _) = self.negative_power(then)?;
+                (base == a).then_some((then, 1))
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether an unguarded reciprocal of a root stands in an operation.
+    pub(crate) fn holds_reciprocal_root(&self, operation: &Operation) -> bool {
+        let held = |ids: &[NodeId]| ids.iter().any(|id| self.has_reciprocal_root(*id));
+        let is_reciprocal = match operation {
+            Operation::Product(factors) => factors
+                .iter()
+                .any(|factor| self.reciprocal_argument(*factor).is_some()),
+            Operation::Power(_, exponent) => {
+                let exponent = self.as_constant(*exponent);
+                exponent.is_some_and(|value| value < 0.0)
+            }
+            _ => false,
+        };
+        match operation {
+            Operation::Select { a, .. } if self.guarded_power_of(operation).is_some() => {
+                held(&[*a])
+            }
+            _ => is_reciprocal || held(&self.operands(operation)),
+        }
+    }
+
+    fn root_argument(&self, id: NodeId) -> Option<NodeId> {
+        match self.operation(id) {
+            Operation::Call(Function::Sqrt, arguments) => arguments.first().copied(),
+            _ => None,
+        }
+    }
+
+    /// Base and exponent of a power with a negative number as its exponent.
+    fn negative_power(&self, id: NodeId) -> Option<(NodeId, f64)> {
+        let Operation::Power(base, exponent) = *self.operation(id) else {
+            return None;
+        };
+        let exponent = self.as_constant(exponent)?;
+        (exponent < 0.0).then_some((base, exponent))
+    }
+
+    /// The argument s of a factor s^(-n/2) or s^-c.
+    fn reciprocal_argument(&self, (factor, exponent): (NodeId, i32)) -> Option<NodeId> {
+        match exponent < 0 {
+            true => self.root_argument(factor),
+            false => self.negative_power(factor).map(|(base, _)| base),
+        }
+    }
+
+    /// The arguments of all roots whose reciprocals stand unguarded in a node.
+    fn reciprocal_arguments(&mut self, id: NodeId) -> Arc<Vec<NodeId>> {
+        if let Some(known) = self.orders_at_zeros.arguments.get(&id) {
+            return known.clone();
+        }
+        let operation = self.operation(id).clone();
+        let mut found = Vec::new();
+        if let Operation::Product(factors) = &operation {
+            let arguments = factors
+                .iter()
+                .filter_map(|factor| self.reciprocal_argument(*factor));
+            found.extend(arguments);
+        }
+        found.extend(self.negative_power(id).map(|(base, _)| base));
+        for operand in self.operands(&operation) {
+            if self.has_reciprocal_root(operand) {
+                found.extend(self.reciprocal_arguments(operand).iter());
+            }
+        }
+        found.sort_unstable();
+        found.dedup();
+        let found = Arc::new(found);
+        self.orders_at_zeros.arguments.insert(id, found.clone());
+        found
+    }
+
+    /// The order of a node in `argument`; negative without a proof that the node stays bounded.
+    fn order(&mut self, argument: NodeId, id: NodeId) -> f64 {
+        if let Some(&known) = self.orders_at_zeros.orders.get(&(argument, id)) {
+            return known;
+        }
+        let order = match self.bounds(argument) {
+            Some(bounds) => self.order_by(argument, &bounds, id),
+            None => f64::NEG_INFINITY,
+        };
+        self.orders_at_zeros.orders.insert((argument, id), order);
+        order
+    }
+
+    fn order_by(&mut self, argument: NodeId, bounds: &Bounds, id: NodeId) -> f64 {
+        if id == argument {
+            return 1.0;
+        }
+        if let Some((factor, exponent)) = self.guarded_power(id) {
+            return f64::from(exponent) * self.factor_order(argument, factor, exponent);
+        }
+        match self.operation(id).clone() {
+            Operation::Product(factors) => self.product_order(argument, bounds, &factors, None),
+            Operation::Sum(terms) => {
+                let orders = terms.iter().map(|(_, term)| self.order(argument, *term));
+                let least = orders.fold(f64::INFINITY, f64::min);
+                least.max(self.product_order(argument, bounds, &[(id, 1)], Some(id)))
+            }
+            Operation::Call(Function::Sqrt, a) => 0.5 * self.order(argument, a[0]),
+            Operation::Call(function, a) if vanishes_with_argument(function) => {
+                self.order(argument, a[0])
+            }
+            Operation::Call(Function::Max | Function::Min, a) => {
+                self.order(argument, a[0]).min(self.order(argument, a[1]))
+            }
+            Operation::Select {
+                then, otherwise, ..
+            } => self
+                .order(argument, then)
+                .min(self.order(argument, otherwise)),
+            Operation::Power(base, exponent) => match self.as_constant(exponent) {
+                Some(exponent) if exponent > 0.0 || base == argument => {
+                    exponent * self.order(argument, base)
+                }
+                Some(_) if self.order(argument, base) != 0.0 => f64::NEG_INFINITY,
+                _ => self.bounded(argument, &[base, exponent]),
+            },
+            Operation::Total(vector)
+            | Operation::Apply { vector, .. }
+            | Operation::CholeskySolve(_, vector) => {
+                let of_node = self.product_order(argument, bounds, &[(id, 1)], Some(id));
+                of_node.max(self.order(argument, vector))
+            }
+            operation => {
+                let operands = self.operands(&operation);
+                let bounded = self.bounded(argument, &operands);
+                bounded.max(self.product_order(argument, bounds, &[(id, 1)], Some(id)))
+            }
+        }
+    }
+
+    /// 0 for operands that stay bounded.
+    fn bounded(&mut self, argument: NodeId, operands: &[NodeId]) -> f64 {
+        let unbounded = operands.iter().any(|operand| {
+            self.has_reciprocal_root(*operand) && self.order(argument, *operand) < 0.0
+        });
+        if unbounded { f64::NEG_INFINITY } else { 0.0 }
+    }
+
+    /// The sum of the orders of monomials that a product holds, and of its other factors.
+    fn product_order(
+        &mut self,
+        argument: NodeId,
+        bounds: &Bounds,
+        factors: &[(NodeId, i32)],
+        own: Option<NodeId>,
+    ) -> f64 {
+        let mut left: HashMap<NodeId, i32> = HashMap::new();
+        for &(factor, exponent) in factors {
+            self.split_absolute(factor, exponent, &mut left);
+        }
+        let mut order = 0.0;
+        for (monomial, each) in bounds.iter() {
+            let held =
+                |(node, exponent): &(NodeId, i32)| left.get(node).map_or(0, |n| n / exponent);
+            let times = monomial.iter().map(held).min().unwrap_or(0).max(0);
+            for (node, exponent) in monomial {
+                left.entry(*node).and_modify(|n| *n -= times * exponent);
+            }
+            order += f64::from(times) * each;
+        }
+        let mut left: Vec<(NodeId, i32)> = left.into_iter().filter(|(_, n)| *n != 0).collect();
+        left.sort_unstable();
+        for (factor, exponent) in left {
+            // Without a monomial in it nothing is known of the node itself.
+            if own == Some(factor) {
+                continue;
+            }
+            order += f64::from(exponent) * self.factor_order(argument, factor, exponent);
+        }
+        order
+    }
+
+    /// The order of a factor of a product. Only the root itself is known to be no smaller than its order
+    /// says, so that its reciprocal has one.
+    fn factor_order(&mut self, argument: NodeId, factor: NodeId, exponent: i32) -> f64 {
+        if self.root_argument(factor) == Some(argument) {
+            return 0.5;
+        }
+        match self.order(argument, factor) {
+            order if exponent > 0 || order == 0.0 => order,
+            _ => f64::INFINITY,
+        }
+    }
+
+    /// Adds the factors of a power; the absolute value of a product has those of the product.
+    fn split_absolute(&self, factor: NodeId, exponent: i32, into: &mut HashMap<NodeId, i32>) {
+        match self.operation(factor) {
+            Operation::Call(Function::Abs, a) => self.split_absolute(a[0], exponent, into),
+            Operation::Call(Function::Sign, _) if exponent > 0 => {}
+            Operation::Product(factors) => {
+                for &(inner, power) in factors {
+                    self.split_absolute(inner, power * exponent, into);
+                }
+            }
+            Operation::Sum(terms) if terms.len() == 1 => {
+                self.split_absolute(terms[0].1, exponent, into);
+            }
+            _ => *into.entry(factor).or_insert(0) += exponent,
+        }
+    }
+
+    /// The monomials that vanish with a sum of terms of one sign; `None` if the sum may have others, or a term
+    /// of parameters alone, with which it does not vanish.
+    fn bounds(&mut self, argument: NodeId) -> Option<Bounds> {
+        if let Some(known) = self.orders_at_zeros.bounds.get(&argument) {
+            return known.clone();
+        }
+        let mut monomials = Vec::new();
+        let bounds = self
+            .add_bounds(argument, true, &mut monomials)
+            .then(|| Arc::new(monomials));
+        self.orders_at_zeros.bounds.insert(argument, bounds.clone());
+        bounds
+    }
+
+    fn add_bounds(&self, id: NodeId, is_sole: bool, into: &mut Vec<(Monomial, f64)>) -> bool {
+        if self.dependence(id).is_parameter_only() {
+            return false;
+        }
+        if let Operation::Sum(terms) = self.operation(id) {
+            let is_sole = is_sole && terms.len() == 1;
+            return terms.iter().all(|(factor, term)| {
+                (is_sole || factor.value() > 0.0) && self.add_bounds(*term, is_sole, into)
+            });
+        }
+        let mut factors = HashMap::new();
+        self.split_absolute(id, 1, &mut factors);
+        factors.retain(|factor, exponent| {
+            *exponent > 0 && !self.dependence(*factor).is_parameter_only()
+        });
+        let mut factors: Monomial = factors.into_iter().collect();
+        factors.sort_unstable();
+        if let [(factor, 1)] = factors[..]
+            && factor != id
+        {
+            return self.add_bounds(factor, is_sole, into);
+        }
+        let is_square = factors.iter().all(|(_, exponent)| exponent % 2 == 0);
+        if factors.is_empty() || !(is_sole || self.is_never_negative(id)) {
+            return false;
+        }
+        if is_square {
+            let halves = factors
+                .iter()
+                .map(|(factor, exponent)| (*factor, exponent / 2));
+            into.push((halves.collect(), 0.5));
+        } else {
+            into.push((factors, 1.0));
+        }
+        true
+    }
+
+    fn is_never_negative(&self, id: NodeId) -> bool {
+        match self.operation(id) {
+            Operation::Product(factors) => factors.iter().all(|(factor, exponent)| {
+                exponent % 2 == 0
+                    || self.dependence(*factor).is_parameter_only()
+                    || self.is_never_negative(*factor)
+            }),
+            Operation::Call(Function::Max, a) => a
+                .iter()
+                .any(|a| self.as_constant(*a).is_some_and(|value| value >= 0.0)),
+            Operation::Call(function, _) => {
+                matches!(
+                    function,
+                    Function::Abs | Function::Sqrt | Function::Exp | Function::Cosh
+                )
+            }
+            _ => false,
+        }
+    }
+}
+
+/// Whether |function(x)| <= C |x| near 0.
+fn vanishes_with_argument(function: Function) -> bool {
+    matches!(
+        function,
+        Function::Abs
+            | Function::Sin
+            | Function::Tan
+            | Function::Asin
+            | Function::Atan
+            | Function::Sinh
+            | Function::Tanh
+            | Function::Deadzone
+    )
+}
+
+/// The node with every reciprocal of the root of `argument` guarded.
+fn guard(graph: &mut Graph, id: NodeId, argument: NodeId) -> NodeId {
+    let replacement = |graph: &mut Graph, node: NodeId| guarded(graph, node, argument);
+    substitute(graph, id, &replacement, &mut HashMap::new())
+}
+
+fn guarded(graph: &mut Graph, id: NodeId, argument: NodeId) -> Option<NodeId> {
+    if !graph.has_reciprocal_root(id) || graph.guarded_power(id).is_some() {
+        return Some(id);
+    }
+    let zero = graph.zero();
+    if graph
+        .negative_power(id)
+        .is_some_and(|(base, _)| base == argument)
+    {
+        return Some(graph.select(argument, zero, id, zero));
+    }
+    let Operation::Product(factors) = graph.operation(id).clone() else {
+        return None;
+    };
+    if !factors
+        .iter()
+        .any(|factor| graph.reciprocal_argument(*factor) == Some(argument))
+    {
+        return None;
+    }
+    let mut rebuilt = Vec::with_capacity(factors.len());
+    for &(factor, exponent) in &factors {
+        rebuilt.push(
+            match exponent < 0 && graph.root_argument(factor) == Some(argument) {
+                true => {
+                    let reciprocal = graph.integer_power(factor, -1);
+                    (graph.select(factor, zero, reciprocal, zero), -exponent)
+                }
+                false => (guard(graph, factor, argument), exponent),
+            },
+        );
+    }
+    Some(graph.product(&rebuilt))
+}

@@ -1,0 +1,173 @@
+//! Derivatives by a field's modes: of a scalar a vector, its gradient, and of a vector a structured matrix
+//! (diagonal, outer products and tables).
+
+use std::collections::HashMap;
+
+use crate::symbolic::differentiate::{Moving, choice, choose, partial_derivatives};
+use crate::symbolic::graph::{Graph, NodeId, Operation, Shape, Space};
+use crate::symbolic::matrix::StructuredMatrix;
+
+/// Derivatives by the modes of one field.
+pub struct ModalDerivative {
+    variable: NodeId,
+    space: Space,
+    moving: Moving,
+    gradients: HashMap<NodeId, NodeId>,
+    jacobians: HashMap<NodeId, StructuredMatrix>,
+}
+
+impl ModalDerivative {
+    /// Derivatives by the vector leaf `variable` (a field's mode coordinates or rates).
+    pub fn new(graph: &Graph, variable: NodeId) -> Option<Self> {
+        match graph.shape(variable) {
+            Shape::Vector(space) => Some(Self {
+                variable,
+                space,
+                moving: Moving::default(),
+                gradients: HashMap::new(),
+                jacobians: HashMap::new(),
+            }),
+            _ => None,
+        }
+    }
+
+    fn moves(&mut self, graph: &Graph, id: NodeId) -> bool {
+        let variable = self.variable;
+        self.moving.has(graph, id, &|graph, id| {
+            let leaf = graph.operands(graph.operation(id)).is_empty();
+            leaf.then_some(id == variable)
+        })
+    }
+
+    /// The gradient of a scalar node: a vector over the modes, or 0.
+    pub fn gradient(&mut self, graph: &mut Graph, id: NodeId) -> NodeId {
+        if let Some(&known) = self.gradients.get(&id) {
+            return known;
+        }
+        if !self.moves(graph, id) {
+            return graph.zero();
+        }
+        let result = match graph.operation(id).clone() {
+            Operation::Total(a) => {
+                let jacobian = self.jacobian(graph, a);
+                jacobian.column_totals(graph)
+            }
+            _ if choice(graph, id).is_some() => {
+                choose(graph, id, |graph, branch| self.gradient(graph, branch))
+            }
+            _ => {
+                let partials =
+                    partial_derivatives(graph, id, |graph, operand| self.moves(graph, operand));
+                let mut terms = Vec::with_capacity(partials.len());
+                for (operand, partial) in partials {
+                    let inner = self.gradient(graph, operand);
+                    if !graph.is_zero(inner) {
+                        terms.push((1.0, graph.derivative_term(partial, inner)));
+                    }
+                }
+                graph.combine(&terms)
+            }
+        };
+        self.gradients.insert(id, result);
+        result
+    }
+
+    /// The Jacobian of a vector node: rows its own index, columns the modes.
+    pub fn jacobian(&mut self, graph: &mut Graph, id: NodeId) -> StructuredMatrix {
+        if let Some(known) = self.jacobians.get(&id) {
+            return known.clone();
+        }
+        let result = self.compute_jacobian(graph, id);
+        self.jacobians.insert(id, result.clone());
+        result
+    }
+
+    /// The Jacobian of a vector, or of the scalar that stands for each of its elements.
+    pub fn of_elements(&mut self, graph: &mut Graph, id: NodeId, rows: Space) -> StructuredMatrix {
+        if graph.shape(id) != Shape::Scalar {
+            return self.jacobian(graph, id);
+        }
+        let mut matrix = StructuredMatrix::zero(rows, self.space);
+        let (one, gradient) = (graph.one(), self.gradient(graph, id));
+        matrix.add_outer(graph, one, gradient);
+        matrix
+    }
+
+    /// The Jacobian of M x with the solution x of M x = right held, where the factor of M moves.
+    fn moved_matrix(
+        &mut self,
+        graph: &mut Graph,
+        factor: NodeId,
+        solution: NodeId,
+        rows: Space,
+    ) -> StructuredMatrix {
+        let zero = StructuredMatrix::zero(rows, self.space);
+        let Operation::Cholesky(matrix) = *graph.operation(factor) else {
+            return zero;
+        };
+        if !self.moves(graph, matrix) {
+            return zero;
+        }
+        let Operation::Assemble(assembly) = graph.operation(matrix).clone() else {
+            return zero;
+        };
+        let parts = assembly.times(graph, solution);
+        let terms: Vec<(f64, NodeId)> = parts.into_iter().map(|part| (1.0, part)).collect();
+        let product = graph.combine(&terms);
+        let mut held = Self {
+            variable: self.variable,
+            space: self.space,
+            moving: Moving::default(),
+            gradients: HashMap::new(),
+            jacobians: HashMap::new(),
+        };
+        held.moving.known.insert(solution, false);
+        held.of_elements(graph, product, rows)
+    }
+
+    fn compute_jacobian(&mut self, graph: &mut Graph, id: NodeId) -> StructuredMatrix {
+        let rows = match graph.shape(id) {
+            Shape::Vector(space) => space,
+            _ => self.space,
+        };
+        let mut result = StructuredMatrix::zero(rows, self.space);
+        if !self.moves(graph, id) {
+            return result;
+        }
+        if id == self.variable {
+            result.add_diagonal(graph, 1.0);
+            return result;
+        }
+        if let Operation::Apply {
+            matrix,
+            transposed,
+            vector,
+        } = *graph.operation(id)
+        {
+            return self
+                .jacobian(graph, vector)
+                .applied(graph, matrix, transposed);
+        }
+        if let Operation::CholeskySolve(factor, right) = *graph.operation(id) {
+            let mut rest = self.of_elements(graph, right, rows);
+            let moved = self.moved_matrix(graph, factor, id, rows);
+            let minus_one = graph.constant(-1.0);
+            rest.add_scaled(graph, minus_one, &moved);
+            return rest.solved(graph, factor);
+        }
+        let partials = partial_derivatives(graph, id, |graph, operand| self.moves(graph, operand));
+        for (operand, partial) in partials {
+            match graph.shape(operand) {
+                Shape::Scalar => {
+                    let gradient = self.gradient(graph, operand);
+                    result.add_outer(graph, partial, gradient);
+                }
+                _ => {
+                    let inner = self.jacobian(graph, operand);
+                    result.add_scaled(graph, partial, &inner);
+                }
+            }
+        }
+        result
+    }
+}

@@ -1,0 +1,268 @@
+//! Derivatives where a root vanishes: their limits, and none where there is no limit.
+
+use eomgen_codegen::mechanics::outputs::Output;
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_codegen::variant::Variant;
+
+/// A mass in the plane that a force pushes along x.
+fn pushed(force: &str) -> String {
+    format!(
+        r#"
+[model]
+name = "pushed"
+[parameters]
+m = {{ value = 1, unit = "kg" }}
+l = {{ value = 1, unit = "m" }}
+s = {{ value = 1, unit = "m/s" }}
+F = {{ value = 2, unit = "N" }}
+n = {{ value = 1.5, unit = "1" }}
+[coordinates]
+x = {{ unit = "m" }}
+y = {{ unit = "m" }}
+z = {{ unit = "m" }}
+[definitions]
+r = "[x, y, z]"
+v = "[dot(x), dot(y), dot(z)]"
+plane = "[dot(x), dot(y)]"
+[kinetic]
+mass = "1/2*m*(dot(x)^2 + dot(y)^2 + dot(z)^2)"
+[forces]
+push = {{ on = "x", value = "F*({force})" }}
+"#
+    )
+}
+
+fn evaluator(text: &str, outputs: &[Output]) -> Evaluator {
+    let model = crate::support::model(text);
+    let orders = vec![2; model.fields.len()];
+    let variant = Variant::derive_with(&model, &orders, outputs)
+        .unwrap_or_else(|found| panic!("{}", found.render(false)));
+    Evaluator::new(variant.program)
+}
+
+/// The structural nonzeros of the Jacobian of the rates by the state.
+fn jacobian(evaluator: &mut Evaluator, state: &[f64]) -> Vec<f64> {
+    let jacobians = &evaluator.program().outputs.jacobians;
+    let place = jacobians
+        .iter()
+        .position(|known| known.name == "rates_by_state")
+        .expect("the Jacobian");
+    let mut nonzeros = vec![f64::NAN; jacobians[place].nonzeros()];
+    let point = Point {
+        t: 0.0,
+        state,
+        inputs: &[],
+    };
+    assert!(evaluator.jacobian(place, point, &mut nonzeros));
+    nonzeros
+}
+
+/// The gradient of the acceleration of x by the state, backward.
+fn gradient(evaluator: &mut Evaluator, state: &[f64]) -> Vec<f64> {
+    let mut weights = vec![0.0; state.len()];
+    weights[state.len() / 2] = 1.0;
+    let mut gradient = vec![f64::NAN; state.len()];
+    let point = Point {
+        t: 0.0,
+        state,
+        inputs: &[],
+    };
+    assert!(evaluator.vector_jacobian_product(point, &weights, (&mut gradient, &mut [])));
+    gradient
+}
+
+fn acceleration(evaluator: &mut Evaluator, state: &[f64]) -> f64 {
+    let mut rates = vec![f64::NAN; state.len()];
+    let point = Point {
+        t: 0.0,
+        state,
+        inputs: &[],
+    };
+    evaluator.rates(point, &mut rates);
+    rates[state.len() / 2]
+}
+
+/// Forces whose derivatives vanish at 0.
+const SMOOTH_ENOUGH: [&str; 16] = [
+    "-norm(v)*dot(x)/s^2",
+    "-norm(plane)*dot(x)/s^2",
+    "norm(v)*dot(v, v)/s^3",
+    "-(norm(r)/l)^3",
+    "-(norm(r)/l)^3*x/l",
+    "norm(v)*dot(v, r)/(l*s^2)",
+    "sqrt(x^2 + y^2)*x/l^2",
+    "sqrt(x^2)*x/l^2",
+    "abs(x)*x/l^2",
+    "((x/l)^2)^1.5",
+    "((x^2 + y^2)/l^2)^0.7*x/l",
+    "max(x/l, 0)^1.5",
+    "max(x/l, 0)^n",
+    "(norm(v)/s + (dot(x)/s)^2)*dot(x)/s",
+    "sin(norm(v)/s)*tanh(dot(x)/s)",
+    "(1 - exp(-norm(v)/s))*dot(x)/s",
+];
+
+#[test]
+fn products_that_vanish_with_a_root_have_the_derivative_0_there() {
+    for force in SMOOTH_ENOUGH {
+        let mut evaluator = evaluator(&pushed(force), &[Output::Jacobians, Output::Products]);
+        let found = jacobian(&mut evaluator, &[0.0; 6]);
+        assert_eq!(found[..3], [1.0; 3], "{force}");
+        assert!(
+            found[3..].iter().all(|entry| *entry == 0.0),
+            "{force}: {found:?}"
+        );
+        let found = gradient(&mut evaluator, &[0.0; 6]);
+        assert!(
+            found.iter().all(|entry| *entry == 0.0),
+            "{force}: {found:?}"
+        );
+        // One speed or place alone at 0 needs no limit.
+        for place in 0..6 {
+            let mut state = [0.3, -0.2, 0.4, 0.5, 0.7, -0.6];
+            state[place] = 0.0;
+            let found = jacobian(&mut evaluator, &state);
+            assert!(
+                found.iter().all(|entry| entry.is_finite()),
+                "{force}: {found:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn guarded_derivatives_are_those_of_differences_elsewhere() {
+    for force in SMOOTH_ENOUGH {
+        let mut evaluator = evaluator(&pushed(force), &[Output::Products]);
+        let state = [0.3, -0.2, 0.4, 0.5, 0.7, -0.6];
+        let found = gradient(&mut evaluator, &state);
+        for (place, found) in found.into_iter().enumerate() {
+            let step = 1e-6;
+            let mut at = |moved: f64| {
+                let mut state = state;
+                state[place] += moved;
+                acceleration(&mut evaluator, &state)
+            };
+            let expected = (at(step) - at(-step)) / (2.0 * step);
+            assert!(
+                (found - expected).abs() < 1e-8,
+                "{force}: {found} {expected}"
+            );
+        }
+    }
+}
+
+#[test]
+fn derivatives_without_a_limit_are_not_finite() {
+    for force in [
+        "dot(x)/norm(v)",
+        "norm(v)/s",
+        "norm(r)/l",
+        "sqrt(x/l)",
+        "abs(x/l)^0.5",
+        "abs(x/l)^0.5*sign(x)",
+        "abs(x/l)^0.3*sign(x)",
+        "norm(v)*x/(norm(r)*s)",
+    ] {
+        let mut evaluator = evaluator(&pushed(force), &[Output::Jacobians]);
+        let found = jacobian(&mut evaluator, &[0.0; 6]);
+        assert!(
+            found.iter().any(|entry| !entry.is_finite()),
+            "{force}: {found:?}"
+        );
+    }
+}
+
+/// The Jacobian at 0 of the forces of a potential: its second derivatives.
+fn second_derivatives(potential: &str) -> Vec<f64> {
+    let forces = "[forces]\npush = { on = \"x\", value = \"F*(0)\" }\n";
+    let potential = format!("[potential]\nv = \"F*l*({potential})\"\n");
+    let text = pushed("0");
+    assert!(text.contains(forces));
+    let text = text.replace(forces, &potential);
+    let mut evaluator = evaluator(&text, &[Output::Jacobians]);
+    assert_eq!(acceleration(&mut evaluator, &[0.0; 6]), 0.0, "{potential}");
+    jacobian(&mut evaluator, &[0.0; 6]).split_off(3)
+}
+
+#[test]
+fn second_derivatives_have_limits_one_order_later() {
+    for flat in [
+        "(norm(r)/l)^3",
+        "(norm(r)/l)^3*x/l",
+        "norm(r)*dot(r, r)*x/l^4",
+    ] {
+        let found = second_derivatives(flat);
+        assert!(found.iter().all(|entry| *entry == 0.0), "{flat}: {found:?}");
+    }
+    // Of |r| x the second derivative by x differs from side to side.
+    let edged = second_derivatives("norm(r)*x/l^2");
+    assert!(edged.iter().any(|entry| !entry.is_finite()), "{edged:?}");
+}
+
+#[test]
+fn the_exponent_of_a_power_has_a_derivative_where_the_base_is_0() {
+    let mut evaluator = evaluator(&pushed("max(x/l, 0)^n"), &[Output::Products]);
+    let mut weights = [0.0; 6];
+    weights[3] = 1.0;
+    let point = Point {
+        t: 0.0,
+        state: &[-0.3, 0.0, 0.0, 0.0, 0.0, 0.0],
+        inputs: &[],
+    };
+    let mut found = [f64::NAN; 5];
+    assert!(evaluator.vector_jacobian_product_by_parameters(point, &weights, &mut found));
+    assert_eq!(found, [0.0; 5]);
+}
+
+/// A string with drag by the speed of each of its points in space.
+const DRAGGED: &str = r#"
+[model]
+name = "dragged_string"
+[parameters]
+mu = { value = 1, unit = "kg/m" }
+H = { value = 3, unit = "N" }
+c = { value = 2, unit = "kg/m^2" }
+M = { value = 1, unit = "kg" }
+l = { value = 1, unit = "m" }
+[coordinates]
+x = { unit = "m" }
+[fields.w]
+along = "s"
+from = 0
+to = "l"
+basis = "string"
+coordinates = "q"
+order = 2
+unit = "m"
+[kinetic]
+ends = "1/2*M*dot(x)^2"
+string = "1/2*integral(mu*(dot(w)^2 + dot(x)^2), w)"
+[potential]
+tension = "1/2*integral(H*diff(w, s)^2, w)"
+[dissipation]
+drag = "1/3*integral(c*sqrt(dot(w)^2 + dot(x)^2)^3, w)"
+"#;
+
+#[test]
+fn drag_along_a_field_has_a_jacobian_at_rest() {
+    let mut evaluator = evaluator(DRAGGED, &[Output::Jacobians, Output::Products]);
+    let found = jacobian(&mut evaluator, &[0.0; 6]);
+    assert!(found.iter().all(|entry| entry.is_finite()), "{found:?}");
+    let found = gradient(&mut evaluator, &[0.0; 6]);
+    assert_eq!(found, [0.0; 6]);
+    let moving = [0.1, 0.02, -0.03, 0.4, 0.2, -0.3];
+    let found = gradient(&mut evaluator, &moving);
+    for (place, found) in found.into_iter().enumerate() {
+        let mut at = |step: f64| {
+            let mut state = moving;
+            state[place] += step;
+            acceleration(&mut evaluator, &state)
+        };
+        let expected = (at(1e-6) - at(-1e-6)) / 2e-6;
+        assert!(
+            (found - expected).abs() < 1e-8,
+            "{place}: {found} {expected}"
+        );
+    }
+}
