@@ -55,13 +55,16 @@
 //! 5. [`rust`] and [`c`] (the emitted source), [`wasm`] (a module for browsers) and [`report`]
 //!    (equations for people).
 //!
-//! [`variant`] goes from a model to its program in one call.
+//! [`variant`] goes from a model to its program in one call, and refuses constraints that are not
+//! independent ([`independence`]). [`singular_terms`] finds terms without a derivative at a point.
 
 pub mod c;
+pub mod independence;
 pub mod mechanics;
 pub mod program;
 pub mod report;
 pub mod rust;
+pub mod singular_terms;
 pub mod statements;
 pub mod symbolic;
 pub mod variant;

@@ -50,6 +50,8 @@ pub struct Equations {
     pub multipliers: Vec<NodeId>,
     /// The expressions of the constraints.
     pub residuals: Vec<NodeId>,
+    /// The derivatives A of the constraints by coordinates, or by rates.
+    pub(crate) constraint_rows: Vec<RowNodes>,
     /// The impacts.
     pub impacts: Vec<Impact<NodeId, RowNodes>>,
     /// The rates of the states of first order.
@@ -170,6 +172,7 @@ pub fn derive(model: &Model, orders: &[usize]) -> Derived<Equations> {
         accelerations,
         multipliers,
         residuals: constraints.residuals,
+        constraint_rows: constraints.rows,
         impacts,
         state_rates,
         power,

@@ -8,6 +8,7 @@ mod emission;
 mod expressions;
 mod gradients;
 mod guards;
+mod independence;
 mod inertia;
 mod limits;
 mod misplaced;

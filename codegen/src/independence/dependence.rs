@@ -1,0 +1,84 @@
+//! Which of several vectors depends on the others: Gram-Schmidt, the longest rest first.
+
+use super::rows::{dot, norm};
+
+/// A vector with its part in the combination of vectors that it is.
+struct Rest {
+    vector: Vec<f64>,
+    parts: Vec<f64>,
+}
+
+impl Rest {
+    fn take_away(&mut self, factor: f64, other: &Self) {
+        let entries = self.vector.iter_mut().chain(&mut self.parts);
+        for (entry, taken) in entries.zip(other.vector.iter().chain(&other.parts)) {
+            *entry -= factor * taken;
+        }
+    }
+}
+
+/// The factors of a combination of `rows` that is no longer than `tolerance`, with the factor 1 of the last row
+/// that depends on others; nothing if all are independent. Rows have lengths of about 1.
+pub fn dependent_combination(rows: &[Vec<f64>], tolerance: f64) -> Option<Vec<f64>> {
+    let unit = |place: usize| {
+        (0..rows.len())
+            .map(|k| f64::from(u8::from(k == place)))
+            .collect()
+    };
+    let mut rests: Vec<(usize, Rest)> = rows
+        .iter()
+        .enumerate()
+        .map(|(place, row)| {
+            let (vector, parts) = (row.clone(), unit(place));
+            (place, Rest { vector, parts })
+        })
+        .collect();
+    while let Some(longest) = (0..rests.len())
+        .max_by(|a, b| norm(&rests[*a].1.vector).total_cmp(&norm(&rests[*b].1.vector)))
+    {
+        let size = norm(&rests[longest].1.vector);
+        if size.is_nan() {
+            return None;
+        }
+        if size <= tolerance {
+            let last = rests.into_iter().max_by_key(|(place, _)| *place);
+            return last.map(|(_, rest)| rest.parts);
+        }
+        let (_, mut chosen) = rests.swap_remove(longest);
+        for entry in chosen.vector.iter_mut().chain(&mut chosen.parts) {
+            *entry /= size;
+        }
+        // Twice, as the first leaves what rounding adds.
+        for _ in 0..2 {
+            for (_, rest) in &mut rests {
+                let along = dot(&rest.vector, &chosen.vector);
+                rest.take_away(along, &chosen);
+            }
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_row_that_depends_on_others_is_found_with_its_combination() {
+        let rows = [
+            vec![1.0, 0.0, 0.0],
+            vec![0.6, 0.8, 0.0],
+            vec![0.0, 1.0, 0.0],
+        ];
+        let factors = dependent_combination(&rows, 1e-9).expect("a combination");
+        assert_eq!(factors[2], 1.0);
+        assert!((factors[1] + 1.25).abs() < 1e-12 && (factors[0] - 0.75).abs() < 1e-12);
+        assert_eq!(dependent_combination(&rows[..2], 1e-9), None);
+    }
+
+    #[test]
+    fn a_row_of_zeros_depends_on_no_other() {
+        let rows = [vec![1.0, 0.0], vec![0.0, 0.0]];
+        assert_eq!(dependent_combination(&rows, 1e-9), Some(vec![0.0, 1.0]));
+    }
+}

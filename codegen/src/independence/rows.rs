@@ -1,0 +1,136 @@
+//! The derivatives A of constraints, with M a + c = f + A^T lambda, and their residuals at a state.
+//!
+//! Each coordinate is measured by its own inertia: column k of A is divided by sqrt(M_kk), so that all
+//! entries of a row have one unit.
+
+use eomgen_model_spec::ids::FieldId;
+use eomgen_model_spec::model::{Constraint, Model, RESIDUAL};
+
+use crate::mechanics::equations::Equations;
+use crate::mechanics::outputs::{Jacobian, JacobianBlock, Outputs};
+use crate::program::Program;
+use crate::program::evaluator::{Evaluator, Point};
+use crate::program::lowering::lower_with_outputs;
+use crate::symbolic::graph::{NodeId, Space};
+
+/// Computes derivatives and residuals of constraints.
+pub struct ConstraintRows {
+    evaluator: Evaluator,
+    /// The places of the residuals among the observables.
+    residuals: Vec<usize>,
+}
+
+/// The program of a model with the derivatives of its constraints as a Jacobian; nothing without constraints.
+/// `parameters` are those of the specification, SI.
+pub fn constraint_program(
+    model: &Model,
+    equations: &Equations,
+    parameters: &[f64],
+) -> Option<Program> {
+    let rows = &equations.constraint_rows;
+    let first = rows.first()?;
+    let mut entries = Vec::new();
+    for (place, row) in rows.iter().enumerate() {
+        let mut add = |column: usize, columns: usize, value: NodeId| {
+            if !equations.graph.is_zero(value) && columns > 0 {
+                entries.push(JacobianBlock {
+                    row: place,
+                    rows: 1,
+                    column,
+                    columns,
+                    diagonal: false,
+                    value,
+                });
+            }
+        };
+        for (column, value) in row.scalars.iter().enumerate() {
+            add(column, 1, *value);
+        }
+        let mut column = row.scalars.len();
+        for (field, value) in FieldId::first(row.modal.len()).zip(&row.modal) {
+            let columns = equations.graph.size(Space::Modes(field));
+            add(column, columns, *value);
+            column += columns;
+        }
+    }
+    let modes: usize = equations.graph.orders().iter().sum();
+    let outputs = Outputs {
+        jacobians: vec![Jacobian {
+            name: "constraints",
+            rows: rows.len(),
+            columns: first.scalars.len() + modes,
+            entries,
+        }],
+        ..Outputs::default()
+    };
+    Some(lower_with_outputs(model, equations, parameters, &outputs))
+}
+
+impl ConstraintRows {
+    /// Takes the program of [`constraint_program`], at its own parameters.
+    pub fn new(model: &Model, program: Program) -> Self {
+        let place = |constraint: &Constraint| {
+            let name = format!("{RESIDUAL}{}", constraint.name);
+            let mut known = program.observables.iter();
+            known.position(|observable| observable.name == name)
+        };
+        let residuals = model.constraints.iter().filter_map(place).collect();
+        Self {
+            evaluator: Evaluator::new(program),
+            residuals,
+        }
+    }
+
+    /// Computes from now on with these independent parameters, SI.
+    pub fn prepare(&mut self, parameters: &[f64]) {
+        self.evaluator.prepare(parameters);
+    }
+
+    /// The rows of A, each entry divided by the square root of its coordinate's inertia.
+    pub fn rows(&mut self, point: Point<'_>) -> Vec<Vec<f64>> {
+        let degrees = self.evaluator.program().degrees_of_freedom();
+        let mut rows = vec![vec![0.0; degrees]; self.residuals.len()];
+        let Some(jacobian) = self.evaluator.program().outputs.jacobians.first().cloned() else {
+            return rows;
+        };
+        let mut nonzeros = vec![0.0; jacobian.nonzeros()];
+        self.evaluator.jacobian(0, point, &mut nonzeros);
+        let inertia = self.inertia(point);
+        for (entry, place) in jacobian.entries.iter().zip(jacobian.places()) {
+            for column in 0..entry.columns {
+                let degree = entry.column + column;
+                rows[entry.row][degree] = nonzeros[place.start + column] / inertia[degree].sqrt();
+            }
+        }
+        rows
+    }
+
+    /// The diagonal of the mass matrix; 1 for a coordinate without inertia.
+    pub(crate) fn inertia(&mut self, point: Point<'_>) -> Vec<f64> {
+        let degrees = self.evaluator.program().degrees_of_freedom();
+        let mut mass = vec![0.0; degrees * degrees];
+        self.evaluator.mass_matrix(point, &mut mass);
+        let diagonal = (0..degrees).map(|place| mass[place * degrees + place]);
+        diagonal
+            .map(|inertia| if inertia > 0.0 { inertia } else { 1.0 })
+            .collect()
+    }
+
+    /// The residuals of the constraints, SI.
+    pub fn residuals(&mut self, point: Point<'_>) -> Vec<f64> {
+        let mut observables = vec![0.0; self.evaluator.program().observables.len()];
+        self.evaluator.observables(point, &mut observables);
+        let places = self.residuals.iter();
+        places.map(|place| observables[*place]).collect()
+    }
+}
+
+/// The length of a vector.
+pub fn norm(vector: &[f64]) -> f64 {
+    dot(vector, vector).sqrt()
+}
+
+/// The product of two vectors.
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

@@ -1,0 +1,156 @@
+//! Constraints that depend on each other, told apart from singular positions, in every unit.
+
+use eomgen_codegen::variant::Variant;
+
+/// A platform on three parallel rods of one length; the third holds nothing that the others do not.
+const THREE_RODS: &str = r#"
+[model]
+name = "three_rods"
+[parameters]
+m = { value = 2, unit = "kg" }
+J = { value = 0.1, unit = "kg m^2" }
+g = { value = 9.81, unit = "m/s^2" }
+l = { value = 1, unit = "m" }
+a = { value = 0.5, unit = "m" }
+[coordinates]
+x = { unit = "m", initial = "l*sin(0.4)" }
+y = { unit = "m", initial = "-l*cos(0.4)" }
+phi = { unit = "rad" }
+[kinetic]
+body = "1/2*m*(dot(x)^2 + dot(y)^2) + 1/2*J*dot(phi)^2"
+[potential]
+g = "m*g*y"
+[constraints]
+left   = { zero = "((x - a*cos(phi) + a)^2 + (y - a*sin(phi))^2 - l^2)/l" }
+middle = { zero = "(x^2 + y^2 - l^2)/l" }
+right  = { zero = "((x + a*cos(phi) - a)^2 + (y + a*sin(phi))^2 - l^2)/l" }
+"#;
+
+/// A bead in space with these constraints.
+fn bead(initial: &str, constraints: &str) -> String {
+    format!(
+        r#"
+[model]
+name = "bead"
+[parameters]
+m = {{ value = 1, unit = "kg" }}
+l = {{ value = 1, unit = "m" }}
+[coordinates]
+{initial}
+[kinetic]
+bead = "1/2*m*(dot(x)^2 + dot(y)^2 + dot(z)^2)"
+[constraints]
+{constraints}
+"#
+    )
+}
+
+const AWAY: &str = "x = { unit = \"m\", initial = 0.6 }\ny = { unit = \"m\", initial = 0.8 }\nz = { unit = \"m\" }";
+
+/// The refusal, if the model is refused.
+fn refusal(text: &str) -> Option<String> {
+    let model = crate::support::model(text);
+    let orders = vec![2; model.fields.len()];
+    let found = Variant::derive_to_read(&model, &orders, &[]).err()?;
+    Some(found.render(false))
+}
+
+#[test]
+fn a_third_parallel_rod_is_redundant_wherever_the_platform_starts() {
+    let starts = [
+        ("l*sin(0.4)", "-l*cos(0.4)"),
+        // Off the constraints, where the rows are independent.
+        ("l*sin(0.4) + 0.03*l", "-l*cos(0.4)"),
+        ("0*l", "-l"),
+    ];
+    for (x, y) in starts {
+        let text = THREE_RODS
+            .replace("\"l*sin(0.4)\"", &format!("\"{x}\""))
+            .replace("\"-l*cos(0.4)\"", &format!("\"{y}\""));
+        for text in [
+            text.clone(),
+            text.replace("value = 1, unit = \"m\"", "value = 1000, unit = \"m\""),
+        ] {
+            let said = refusal(&text).unwrap_or_else(|| panic!("{x} {y}: derived"));
+            assert!(said.contains("`right` is redundant"), "{said}");
+            assert!(
+                said.contains("`left`, `middle`") && said.contains("leave one of them out"),
+                "{said}"
+            );
+            assert!(said.contains("right  = { zero ="), "{said}");
+        }
+    }
+}
+
+#[test]
+fn two_rods_are_accepted_also_where_the_start_is_singular() {
+    let two = THREE_RODS
+        .lines()
+        .filter(|line| !line.starts_with("middle"));
+    let two: Vec<&str> = two.collect();
+    assert_eq!(refusal(&two.join("\n")), None);
+    // The rods and the platform in one line.
+    let flat = two
+        .join("\n")
+        .replace("\"l*sin(0.4)\"", "\"l\"")
+        .replace("\"-l*cos(0.4)\"", "\"0*l\"");
+    assert_eq!(refusal(&flat), None);
+    let at_the_centre = bead(
+        "x = { unit = \"m\" }\ny = { unit = \"m\" }\nz = { unit = \"m\" }",
+        "sphere = { zero = \"x^2 + y^2 + z^2 - l^2\" }",
+    );
+    assert_eq!(refusal(&at_the_centre), None);
+}
+
+#[test]
+fn constraints_that_follow_from_others_are_refused_in_every_unit() {
+    for (constraints, said) in [
+        (
+            "a = { zero = \"x^2 + y^2 - l^2\" }\nb = { zero = \"1e9*(x^2 + y^2 - l^2)\" }",
+            "`b` is redundant",
+        ),
+        (
+            "a = { zero = \"x^2 + y^2 - l^2\" }\nb = { zero = \"x*dot(x) + y*dot(y)\" }",
+            "`b` is redundant",
+        ),
+        (
+            "a = { zero = \"x*dot(y) - y*dot(x)\" }\nb = { zero = \"1e-7*(y*dot(x) - x*dot(y))\" }",
+            "`b` is redundant",
+        ),
+        ("a = { zero = \"0*x\" }", "`a` holds nothing"),
+        ("a = { zero = \"z\" }\nb = { zero = \"z^2\" }", "`b`"),
+        (
+            "a = { zero = \"(x - 0.6*l)^2 + z^2\" }",
+            "`a` holds nothing",
+        ),
+        (
+            "a = { zero = \"x - l\" }\nb = { zero = \"2*x - 3*l\" }",
+            "`b` contradicts `a`",
+        ),
+        (
+            "a = { zero = \"x + y - l\" }\nb = { zero = \"y + z - l\" }\nc = { zero = \"x - z\" }",
+            "`c` is redundant",
+        ),
+    ] {
+        let text = bead(AWAY, constraints);
+        for text in [
+            text.clone(),
+            text.replace("value = 1, unit = \"kg\"", "value = 1e12, unit = \"kg\""),
+        ] {
+            let found = refusal(&text).unwrap_or_else(|| panic!("{constraints}: derived"));
+            assert!(found.contains(said), "{constraints}: {found}");
+        }
+    }
+}
+
+#[test]
+fn independent_constraints_are_accepted_however_their_scales_differ() {
+    for constraints in [
+        "a = { zero = \"x^2 + y^2 - l^2\" }\nb = { zero = \"1e-9*z\" }",
+        "a = { zero = \"x^2 + y^2 - l^2\" }\nb = { zero = \"1e9*(x - y)\" }",
+        "a = { zero = \"x*dot(y) - y*dot(x)\" }\nb = { zero = \"dot(z)\" }",
+        "a = { zero = \"x^2 + y^2 - l^2\" }\nb = { zero = \"x*dot(y) - y*dot(x)\" }",
+    ] {
+        assert_eq!(refusal(&bead(AWAY, constraints)), None, "{constraints}");
+    }
+}
