@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use eomgen_compiled_model::{CompiledModel, Instance, Linearisation, OperatingPoint, Setting};
+use eomgen_compiled_model::{CompiledModel, Instance, OperatingPoint, Setting};
 use eomgen_sim::inputs::HeldInputs;
 use serde_json::{Map, Value, json};
 
@@ -59,27 +59,6 @@ pub fn consistent(run: &Instance<'_>, mut at: OperatingPoint) -> Result<Operatin
     note_moved("state", &moved);
     at.state = state;
     Ok(at)
-}
-
-/// The model linearised about a point, all of it finite numbers.
-pub fn linearised(run: &Instance<'_>, at: &OperatingPoint) -> Result<Linearisation> {
-    let found = run.linearise(at.point())?;
-    let Linearisation {
-        a,
-        b,
-        c,
-        d,
-        rates,
-        observables,
-    } = &found;
-    let all = [a, b, c, d, rates, observables];
-    if all.into_iter().flatten().all(|number| number.is_finite()) {
-        return Ok(found);
-    }
-    Err(Error::input(format!(
-        "the model `{}` has no linearisation there: a derivative is no finite number",
-        run.model().model().name
-    )))
 }
 
 /// The head of a document: schema, model, order; with the names and SI units of what it is about.

@@ -165,6 +165,15 @@ fn initial_states_are_moved_onto_the_constraints_and_it_is_said() {
     assert!((start[1] / start[0] - 0.1 / 0.7).abs() < 1e-3);
 }
 
+/// How the rod with other constraints is refused as it is derived.
+fn not_derived(constraints: &str) -> String {
+    let text = ROD.replace("x^2 + y^2 - l^2", constraints);
+    match CompiledModel::of_text("constrained.toml", &text, Orders::Declared) {
+        Err(error) => error.to_string(),
+        Ok(_) => panic!("{constraints}: derived"),
+    }
+}
+
 #[test]
 fn constraints_that_cannot_hold_are_named() {
     let never = changed("x^2 + y^2 - l^2", "x^2 + y^2 + l^2");
@@ -173,33 +182,6 @@ fn constraints_that_cannot_hold_are_named() {
         "{}",
         refusal(&never)
     );
-    let twice = "x^2 + y^2 - l^2\" }\nagain = { zero = \"2*x^2 + 2*y^2 - 2*l^2";
-    let redundant = refusal(&changed("x^2 + y^2 - l^2", twice));
-    assert!(
-        redundant.contains("`again` is redundant") && redundant.contains("`rod`"),
-        "{redundant}"
-    );
-    for twice in [
-        "x^2 + y^2 - l^2\" }\nagain = { zero = \"x^2 + y^2 - 4*l^2",
-        "x^2 + y^2 - l^2\" }\nagain = { zero = \"2*x^2 + 2*y^2 + l^2",
-    ] {
-        let other = refusal(&changed("x^2 + y^2 - l^2", twice));
-        assert!(other.contains("`again` contradicts `rod`"), "{other}");
-    }
-    // Constraints along straight lines follow from others wherever the machine is.
-    for (again, said) in [
-        ("2*x - 2*l", "`again` is redundant"),
-        ("2*x - 3*l", "`again` contradicts `rod`"),
-    ] {
-        let twice = format!("x - l\" }}\nagain = {{ zero = \"{again}");
-        let other = refusal(&changed("x^2 + y^2 - l^2", &twice));
-        assert!(other.contains(said), "{other}");
-    }
-    // Where the motion begins on all of them there is nothing to correct.
-    let twice = "x^2 + y^2 - l^2\" }\nagain = { zero = \"x^2 + y^2 - l^2";
-    let satisfied = changed("x^2 + y^2 - l^2", twice);
-    let redundant = refusal(&satisfied);
-    assert!(redundant.contains("`again` is redundant"), "{redundant}");
     let steep = refusal(&changed("x^2 + y^2 - l^2", "sqrt((x - l)*l) + y"));
     assert!(
         steep.contains("derivative of the constraint `rod` is not finite"),
@@ -207,6 +189,35 @@ fn constraints_that_cannot_hold_are_named() {
     );
     let flat = refusal(&changed("initial = \"l\"", "initial = 0"));
     assert!(flat.contains("`rod` holds nothing"), "{flat}");
+}
+
+#[test]
+fn constraints_that_depend_on_each_other_are_refused_where_they_stand() {
+    for (first, again, said) in [
+        (
+            "x^2 + y^2 - l^2",
+            "2*x^2 + 2*y^2 - 2*l^2",
+            "`again` is redundant",
+        ),
+        ("x^2 + y^2 - l^2", "x^2 + y^2 - l^2", "`again` is redundant"),
+        (
+            "x^2 + y^2 - l^2",
+            "x^2 + y^2 - 4*l^2",
+            "`again` contradicts `rod`",
+        ),
+        (
+            "x^2 + y^2 - l^2",
+            "2*x^2 + 2*y^2 + l^2",
+            "`again` contradicts `rod`",
+        ),
+        // Constraints along straight lines follow from others wherever the machine is.
+        ("x - l", "2*x - 2*l", "`again` is redundant"),
+        ("x - l", "2*x - 3*l", "`again` contradicts `rod`"),
+    ] {
+        let found = not_derived(&format!("{first}\" }}\nagain = {{ zero = \"{again}"));
+        assert!(found.contains(said) && found.contains("`rod`"), "{found}");
+        assert!(found.contains("constrained.toml"), "{found}");
+    }
 }
 
 /// What runs emitted equations without projecting has to rely on the stabilisation.
@@ -285,6 +296,106 @@ fn a_linkage_that_folds_flat_stops_there_and_names_the_constraints() {
             assert!((t - flat).abs() < 1e-4, "{solver}: {t} {flat}");
             let rows = motion.trajectory.states.len();
             assert_eq!(rows, 1 + (flat / 0.01) as usize, "{solver}");
+        }
+    }
+}
+
+/// Fast enough to leap over the flat position, with two such linkages side by side folding at the same time.
+#[test]
+fn a_fold_stops_the_motion_whatever_samples_and_solver_are() {
+    let one = parallelogram(0.0).replace("initial = 1.2", "initial_rate = -8, initial = 1.2");
+    let mut times = Vec::new();
+    for count in [1, 2] {
+        let text = match count {
+            1 => one.clone(),
+            _ => twice(&one),
+        };
+        let model = compiled(&text);
+        let run = model.at_declared().expect("an instance");
+        for sample in [0.007, 0.05, 0.07, 0.1, 0.3] {
+            for (solver, tolerance) in [
+                (Solver::Rk, 1e-4),
+                (Solver::Rk, 1e-9),
+                (Solver::Radau, 1e-4),
+                (Solver::Radau, 1e-8),
+            ] {
+                let samples = (0..).map(|k| f64::from(k) * sample);
+                let request = Request {
+                    initial: run.initial(),
+                    times: &samples.take_while(|t| *t <= 0.601).collect::<Vec<f64>>(),
+                    inputs: &run.no_inputs(),
+                    solver,
+                    tolerance,
+                };
+                let motion = run.follow(&request, &mut |_| {}).expect("a motion");
+                let place = format!("{count} {sample} {solver} {tolerance}");
+                let stopped = motion.stopped.unwrap_or_else(|| panic!("{place}: passed"));
+                assert!(
+                    stopped.reason.contains("singular position"),
+                    "{place}: {}",
+                    stopped.reason
+                );
+                assert!(
+                    stopped.reason.contains("`across"),
+                    "{place}: {}",
+                    stopped.reason
+                );
+                times.push(stopped.t.expect("a time"));
+            }
+        }
+    }
+    for t in &times {
+        assert!((t - times[0]).abs() < 1e-3, "{times:?}");
+    }
+}
+
+/// The linkage and its copy.
+fn twice(text: &str) -> String {
+    let mut copied = String::new();
+    for line in text.lines() {
+        copied.push_str(line);
+        copied.push('\n');
+        let names = [
+            "phi", "psi", "beta", "cranks", "coupler", "weight", "across", "up",
+        ];
+        let Some((name, _)) = line.split_once(" = ") else {
+            continue;
+        };
+        if names.contains(&name) {
+            let mut copy = line.to_owned();
+            for name in names {
+                copy = copy.replace(name, &format!("{name}_2"));
+            }
+            copied.push_str(&copy);
+            copied.push('\n');
+        }
+    }
+    copied
+}
+
+/// A platform on two rods, and a rod that turns round: no direction of their constraints is lost.
+#[test]
+fn a_rod_that_turns_round_is_not_stopped() {
+    let model = changed(
+        "y = { unit = \"m\" }",
+        "y = { unit = \"m\", initial_rate = 12 }",
+    );
+    let run = model.at_declared().unwrap();
+    for tolerance in [1e-3, 1e-9] {
+        for solver in [Solver::Rk, Solver::Radau] {
+            let request = Request {
+                initial: run.initial(),
+                times: &[0.0, 3.0],
+                inputs: &run.no_inputs(),
+                solver,
+                tolerance,
+            };
+            let motion = run.follow(&request, &mut |_| {}).unwrap();
+            assert!(
+                motion.stopped.is_none(),
+                "{solver} {tolerance}: {:?}",
+                motion.stopped
+            );
         }
     }
 }

@@ -5,7 +5,7 @@ use eomgen_compiled_model::CompiledModel;
 use crate::arguments::Linearise;
 use crate::error::{Result, say_bytes};
 use crate::linearisation::{arrays, document};
-use crate::operating_point::{assignments, consistent, linearised, model};
+use crate::operating_point::{assignments, consistent, model};
 use crate::output::Destination;
 
 /// Runs the command.
@@ -21,7 +21,7 @@ pub fn run(options: &Linearise) -> Result {
         &run,
         run.operating_point(&assignments("--at", &options.at)?)?,
     )?;
-    let found = linearised(&run, &at)?;
+    let found = run.linearise(at.point())?;
     let text = || document(&compiled, &at, &found).map(|document| format!("{document:#}\n"));
     let Some(destination) = destination else {
         return say_bytes(text()?.as_bytes());

@@ -8,9 +8,7 @@ use serde_json::{Value, json};
 use crate::arguments::Modes;
 use crate::error::{Error, Result, say, say_json};
 use crate::mode_figure::figure;
-use crate::operating_point::{
-    assignments, consistent, head, linearised, model, named, shape_names,
-};
+use crate::operating_point::{assignments, consistent, head, model, named, shape_names};
 use crate::output::Destination;
 use crate::regime::{Side, regime};
 
@@ -25,7 +23,7 @@ pub fn run(options: &Modes) -> Result {
         &run,
         run.operating_point(&assignments("--at", &options.at)?)?,
     )?;
-    let found = linearised(&run, &at)?;
+    let found = run.linearise(at.point())?;
     let degrees = compiled.program().degrees_of_freedom();
     let modes = constrained_modes(&found.a, &found.held(&compiled), degrees)
         .map_err(|error| Error::input(error.to_string()))?;

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use crate::arguments::Trim;
 use crate::error::{Error, Result, say_json, warn};
-use crate::operating_point::{assignments, head, inputs, linearised, model, named};
+use crate::operating_point::{assignments, head, inputs, model, named};
 
 /// A real part is 0 if it is this small beside the largest eigenvalue.
 const ZERO: f64 = 1e-9;
@@ -22,7 +22,7 @@ pub fn run(options: &Trim) -> Result {
         }
         other => other?,
     };
-    let linear = linearised(&run, &found.at)?;
+    let linear = run.linearise(found.at.point())?;
     let degrees = compiled.program().degrees_of_freedom();
     let modes = constrained_modes(&linear.a, &linear.held(&compiled), degrees)
         .map_err(|error| Error::input(error.to_string()))?;

@@ -4,17 +4,18 @@
 
 use std::cell::RefCell;
 
+use eomgen_codegen::independence::dependence::dependent_combination;
+use eomgen_codegen::independence::rows::norm;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
-use eomgen_model_spec::model::{Constraint, RESIDUAL, STABILISATION_RATE};
+use eomgen_model_spec::model::{Constraint, STABILISATION_RATE};
 use eomgen_sim::inputs::HeldInputs;
-use nalgebra::DMatrix;
 
 use crate::contacts::first_overlap;
 use crate::driven::Driven;
 use crate::error::Error;
 use crate::instance::Instance;
-use crate::jacobians::Jacobian;
 use crate::projection::{LARGE_RATE, Moved, Projection};
+use crate::singular::SingularityWatch;
 
 /// Corrections of an initial state before the search is given up.
 const MOST_AT_THE_START: usize = 100;
@@ -22,11 +23,8 @@ const MOST_AT_THE_START: usize = 100;
 /// A derivative is a combination of others if this part of it is left beside them.
 const INDEPENDENT: f64 = 1e-9;
 
-/// A combination of constraints' derivatives that is this small beside them is on its way to none.
-const SINGULAR: f64 = 1e-3;
-
 /// A constraint is named with others if its part in their combination is no less beside the largest.
-const TAKES_PART: f64 = 0.1;
+const TAKES_PART: f64 = 1e-6;
 
 /// A constraint that follows from others contradicts them if so much of the residuals is left when
 /// theirs are taken away; less may be their curvature where a motion does not begin on them.
@@ -59,7 +57,15 @@ impl Instance<'_> {
             return Ok(None);
         }
         let at = |rate: f64| self.stabilised(rate).evaluator().map(RefCell::new);
+        let constraints = self.model().model().constraints.iter();
+        let names = constraints
+            .map(|constraint| constraint.name.clone())
+            .collect();
+        let Some(rows) = self.constraint_rows() else {
+            return Ok(None);
+        };
         Ok(Some(Projection {
+            watch: RefCell::new(SingularityWatch::new(rows, names)),
             plus: at(LARGE_RATE)?,
             minus: at(-LARGE_RATE)?,
             own_rate: self.value(STABILISATION_RATE).unwrap_or(0.0),
@@ -100,7 +106,7 @@ impl Instance<'_> {
         {
             let error = match self.dependent(t, state, inputs)? {
                 Some(reason) => Error::Request(reason),
-                None => self.not_kept(t, &found, inputs)?,
+                None => self.not_kept(t, &found, inputs),
             };
             return Err(error);
         }
@@ -148,154 +154,59 @@ impl Instance<'_> {
     /// Which constraint has no derivative of its own, if one has none, and whether it contradicts
     /// those that it follows.
     fn dependent(&self, t: f64, state: &[f64], inputs: &[f64]) -> Result<Option<String>, Error> {
-        let gradients = self.gradients(t, state, inputs)?;
-        let residuals = self.residuals(t, state, inputs)?;
-        let constraints = &self.model().model().constraints;
-        let mut independent: Vec<Independent> = Vec::new();
-        for (place, gradient) in gradients.into_iter().enumerate() {
-            let constraint = &constraints[place];
-            let size = norm(&gradient);
-            if size == 0.0 {
-                return Ok(Some(format!(
-                    "the constraint `{}` holds nothing at the initial state: its derivatives are all 0 \
-                     there; start elsewhere (--initial), or write it so that it changes its sign",
-                    constraint.name
-                )));
-            }
-            let mut rest = Independent {
-                place,
-                direction: gradient,
-                residual: residuals[place],
-            };
-            let mut held = Vec::new();
-            for other in &independent {
-                if rest.take_away(other).abs() > INDEPENDENT * size {
-                    held.push(other.place);
-                }
-            }
-            let left = norm(&rest.direction);
-            if left.is_nan() || left <= INDEPENDENT * size {
-                let follows = Follows {
-                    constraint,
-                    of: held.iter().map(|other| &constraints[*other]).collect(),
-                    apart: rest.residual,
-                    scale: held.iter().fold(residuals[place].abs(), |most, other| {
-                        most.max(residuals[*other].abs())
-                    }),
-                };
-                return Ok(Some(follows.reason()));
-            }
-            rest.direction.iter_mut().for_each(|entry| *entry /= left);
-            rest.residual /= left;
-            independent.push(rest);
-        }
-        Ok(None)
-    }
-
-    /// What is to be said of constraints that are no longer independent of each other at a state to which a motion
-    /// from `initial` has come; nothing where they are.
-    ///
-    /// # Errors
-    /// As [`Instance::evaluator`].
-    pub(crate) fn singular_position(
-        &self,
-        (start, initial): (f64, &[f64]),
-        (t, state): (f64, &[f64]),
-        inputs: &HeldInputs,
-    ) -> Result<Option<String>, Error> {
-        let constraints = &self.model().model().constraints;
-        if constraints.is_empty() || state.iter().any(|entry| !entry.is_finite()) {
-            return Ok(None);
-        }
-        let before = self.gradients(start, initial, &inputs.at(start))?;
-        let here = self.gradients(t, state, &inputs.at(t))?;
-        // In parts of the largest that each derivative was or is, as one may vanish by itself.
-        let sizes = before.iter().zip(&here).map(|(a, b)| norm(a).max(norm(b)));
-        let sizes: Vec<f64> = sizes.collect();
-        let degrees = here.first().map_or(0, Vec::len);
-        let parts = DMatrix::from_fn(here.len(), degrees, |row, column| {
-            here[row][column] / sizes[row]
-        });
-        if parts.iter().any(|part| !part.is_finite()) {
-            return Ok(None);
-        }
-        let held = (&parts * parts.transpose()).symmetric_eigen();
-        let (least, value) = held.eigenvalues.argmin();
-        if value.max(0.0).sqrt() > SINGULAR {
-            return Ok(None);
-        }
-        let combined = held.eigenvectors.column(least);
-        let takes_part =
-            |(_, part): &(&Constraint, &f64)| part.abs() > TAKES_PART * combined.amax();
-        let names = constraints.iter().zip(combined.iter()).filter(takes_part);
-        let names: Vec<String> = names
-            .map(|(constraint, _)| format!("`{}`", constraint.name))
-            .collect();
-        let what = match &names[..] {
-            [one] => {
-                format!("the constraint {one} holds nothing any more, as its derivatives are all 0")
-            }
-            several => format!(
-                "the constraints {} are no longer independent, as the derivative of one is made of those of the others",
-                several.join(", ")
-            ),
-        };
-        Ok(Some(format!(
-            "at t = {t:?} s the motion comes to a singular position: {what} there, and no accelerations follow; \
-             shorten the time, or keep the motion away from there (a stop, another start by --initial)"
-        )))
-    }
-
-    /// What every constraint is away from zero, in SI.
-    fn residuals(&self, t: f64, state: &[f64], inputs: &[f64]) -> Result<Vec<f64>, Error> {
-        let mut own = self.unchecked();
-        let mut observables = vec![0.0; own.program().observables.len()];
-        own.observables(Point { t, state, inputs }, &mut observables);
-        let model = self.model().model();
-        let residual = |constraint: &Constraint| {
-            let name = format!("{RESIDUAL}{}", constraint.name);
-            let mut known = model.observables.iter();
-            let place = known.position(|observable| observable.name == name);
-            place.map_or(f64::NAN, |place| observables[place])
-        };
-        Ok(model.constraints.iter().map(residual).collect())
-    }
-
-    /// The derivative of every constraint by the coordinates, or by the rates of a nonholonomic one,
-    /// each coordinate measured by its own inertia.
-    fn gradients(&self, t: f64, state: &[f64], inputs: &[f64]) -> Result<Vec<Vec<f64>>, Error> {
-        let mut jacobians = self.unchecked_jacobians()?;
-        let (rows, columns) = jacobians.shape(Jacobian::ObservablesByState);
-        let mut matrix = vec![0.0; rows * columns];
         let point = Point { t, state, inputs };
-        jacobians.evaluate(Jacobian::ObservablesByState, point, &mut matrix);
-        let mut own = self.unchecked();
-        let degrees = own.program().degrees_of_freedom();
-        let mut mass = vec![0.0; degrees * degrees];
-        own.mass_matrix(point, &mut mass);
-        let names = self.model().observable_names();
-        let constraints = &self.model().model().constraints;
-        let gradient = |constraint: &Constraint| {
-            let residual = format!("{RESIDUAL}{}", constraint.name);
-            let row = names.iter().position(|name| *name == residual).unwrap_or(0);
-            let first = if constraint.is_nonholonomic {
-                degrees
-            } else {
-                0
-            };
-            let entries = &matrix[row * columns + first..][..degrees];
-            let entries = entries.iter().enumerate();
-            entries
-                .map(|(place, entry)| entry / mass[place * degrees + place].sqrt())
-                .collect()
+        let Some(mut rows) = self.constraint_rows() else {
+            return Ok(None);
         };
-        Ok(constraints.iter().map(gradient).collect())
+        let (mut all, residuals) = (rows.rows(point), rows.residuals(point));
+        let constraints = &self.model().model().constraints;
+        let lengths: Vec<f64> = all.iter().map(|row| norm(row)).collect();
+        if let Some(place) = lengths.iter().position(|length| *length == 0.0) {
+            return Ok(Some(format!(
+                "the constraint `{}` holds nothing at the initial state: its derivative is zero there; start \
+                 elsewhere (--initial), or write it so that it crosses zero, as x instead of x^2",
+                constraints[place].name
+            )));
+        }
+        if let Some(place) = lengths.iter().position(|length| !length.is_finite()) {
+            return Ok(Some(format!(
+                "the derivative of the constraint `{}` is not finite at the initial state, as that of \
+                 sqrt(x) at x = 0; start elsewhere (--initial), or write the constraint without it",
+                constraints[place].name
+            )));
+        }
+        for (row, length) in all.iter_mut().zip(&lengths) {
+            row.iter_mut().for_each(|entry| *entry /= length);
+        }
+        let Some(parts) = dependent_combination(&all, INDEPENDENT) else {
+            return Ok(None);
+        };
+        let last = parts.iter().rposition(|part| *part != 0.0).unwrap_or(0);
+        let most = parts
+            .iter()
+            .fold(0.0_f64, |most, part| most.max(part.abs()));
+        let others: Vec<usize> = (0..last)
+            .filter(|place| parts[*place].abs() > TAKES_PART * most)
+            .collect();
+        let part = |place: usize| {
+            parts[place] / lengths[place] * residuals[place] / (parts[last] / lengths[last])
+        };
+        let combined = others.iter().chain([&last]).map(|place| part(*place));
+        let depends = Depends {
+            constraint: &constraints[last],
+            on: others.iter().map(|place| &constraints[*place]).collect(),
+            apart: combined.clone().sum(),
+            scale: combined.map(f64::abs).fold(0.0, f64::max),
+        };
+        Ok(Some(depends.reason()))
     }
 
     /// Which constraints are not kept.
-    fn not_kept(&self, t: f64, state: &[f64], inputs: &[f64]) -> Result<Error, Error> {
+    fn not_kept(&self, t: f64, state: &[f64], inputs: &[f64]) -> Error {
         let constraints = &self.model().model().constraints;
-        let residuals = self.residuals(t, state, inputs)?;
+        let rows = self.constraint_rows();
+        let residuals = rows.map(|mut rows| rows.residuals(Point { t, state, inputs }));
+        let residuals = residuals.unwrap_or_default();
         let left: Vec<String> = constraints
             .iter()
             .zip(residuals)
@@ -307,61 +218,31 @@ impl Instance<'_> {
                 )
             })
             .collect();
-        Ok(Error::Request(format!(
+        Error::Request(format!(
             "no state near the initial one keeps the constraints: {}; one of them may never be zero, or \
              contradict another; check them, or start nearer (--initial)",
             left.join(", ")
-        )))
+        ))
     }
 }
 
-/// A direction that a constraint holds and none before it.
-struct Independent {
-    /// Which constraint.
-    place: usize,
-    /// Its derivative, without what those before it hold.
-    direction: Vec<f64>,
-    /// The constraint's residual, combined as the direction is.
-    residual: f64,
-}
-
-impl Independent {
-    /// Takes away what of this the other holds, and says how much that was.
-    fn take_away(&mut self, other: &Self) -> f64 {
-        let pairs = self.direction.iter().zip(&other.direction);
-        let along: f64 = pairs.map(|(a, b)| a * b).sum();
-        for (entry, part) in self.direction.iter_mut().zip(&other.direction) {
-            *entry -= along * part;
-        }
-        self.residual -= along * other.residual;
-        along
-    }
-}
-
-/// A constraint whose derivative is a combination of the derivatives of others, or not finite.
-struct Follows<'a> {
+/// A constraint whose derivative is a combination of the derivatives of others.
+struct Depends<'a> {
     constraint: &'a Constraint,
-    of: Vec<&'a Constraint>,
+    on: Vec<&'a Constraint>,
     /// Its residual less the same combination of theirs.
     apart: f64,
-    /// The largest residual of them all.
+    /// The largest residual of them all, as large as it is in the combination.
     scale: f64,
 }
 
-impl Follows<'_> {
-    /// Redundant where its residual is made of theirs as its derivative is, else it asks for
-    /// something else in a direction that is held already.
+impl Depends<'_> {
+    /// A contradiction if the residuals do not combine to nothing as the derivatives do.
     fn reason(&self) -> String {
-        let names: Vec<String> = self.of.iter().map(|of| format!("`{}`", of.name)).collect();
+        let names: Vec<String> = self.on.iter().map(|on| format!("`{}`", on.name)).collect();
         let (name, others) = (&self.constraint.name, names.join(", "));
-        if self.of.is_empty() {
-            return format!(
-                "the derivative of the constraint `{name}` is not finite at the initial state, as that of \
-                 sqrt(x) at x = 0; start elsewhere (--initial), or write the constraint without it"
-            );
-        }
         let kind = self.constraint.is_nonholonomic;
-        let of_one_kind = self.of.iter().all(|of| of.is_nonholonomic == kind);
+        let of_one_kind = self.on.iter().all(|on| on.is_nonholonomic == kind);
         if of_one_kind && self.apart.abs() > CONTRADICTION * self.scale {
             return format!(
                 "the constraint `{name}` contradicts {others} at the initial state: it holds what they \
@@ -371,12 +252,9 @@ impl Follows<'_> {
             );
         }
         format!(
-            "the constraint `{name}` is redundant at the initial state: its derivative is a combination of the \
-             derivatives of {others}; leave one of them out"
+            "the initial state is a singular position: the derivative of the constraint `{name}` is a \
+             combination of the derivatives of {others} there; start elsewhere (--initial), or leave one of them out if they depend on \
+             each other everywhere"
         )
     }
-}
-
-fn norm(vector: &[f64]) -> f64 {
-    vector.iter().map(|entry| entry * entry).sum::<f64>().sqrt()
 }

@@ -95,6 +95,11 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
         Some(sliding.into_inner().into_sided())
     }
 
+    /// What keeps states on the constraints, if there are any.
+    pub(crate) fn projection(&self) -> Option<&Projection> {
+        self.projection.as_ref()
+    }
+
     /// The impact at which bodies overlap, where the motion ended for that.
     pub(crate) fn overlap(&self) -> Option<String> {
         let contacts = self.contacts.as_ref()?.borrow();
@@ -255,7 +260,8 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for Driven<E, 
         let inputs = &self.inputs.borrow().at(t);
         let (at, mut evaluations) = ((t, &inputs[..]), 0);
         if let Some(projection) = &self.projection {
-            evaluations += projection.after_a_step(&mut self.evaluator(), at, y);
+            let given = self.inputs.borrow();
+            evaluations += projection.after_a_step(&mut self.evaluator(), t, given, y);
         }
         if let Some(contacts) = &self.contacts {
             evaluations += contacts.borrow_mut().keep(&mut self.evaluator(), at, y);

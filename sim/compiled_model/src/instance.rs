@@ -1,5 +1,6 @@
 //! A compiled model at one set of parameter values.
 
+use eomgen_codegen::independence::rows::ConstraintRows;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::model::{ParameterValue, STABILISATION_RATE};
@@ -113,6 +114,11 @@ impl<'m> Instance<'m> {
         &self.parameters
     }
 
+    /// All parameters of the specification, SI.
+    pub(crate) fn values(&self) -> &[f64] {
+        &self.values
+    }
+
     /// The value of any parameter of the specification, SI.
     pub fn value(&self, name: &str) -> Option<f64> {
         let parameters = &self.model.model().parameters;
@@ -148,6 +154,14 @@ impl<'m> Instance<'m> {
     /// not rest on accelerations.
     pub(crate) fn unchecked(&self) -> Evaluator {
         self.model.evaluator(&self.parameters)
+    }
+
+    /// Computes derivatives of the constraints at these parameters; nothing without constraints.
+    pub(crate) fn constraint_rows(&self) -> Option<ConstraintRows> {
+        let program = self.model.constraint_program(&self.values)?;
+        let mut rows = ConstraintRows::new(self.model.model(), program.clone());
+        rows.prepare(&self.parameters);
+        Some(rows)
     }
 
     /// The model with sides at these parameters; see [`CompiledModel::sided`].

@@ -3,6 +3,8 @@
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_codegen::program::{Op, Program, Variable};
+use eomgen_codegen::singular_terms::without_derivative;
+use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::ids::FieldId;
 use eomgen_model_spec::model::RESIDUAL;
 
@@ -193,7 +195,8 @@ impl Instance<'_> {
     /// The model linearised at a time (s) about a state and inputs, SI.
     ///
     /// # Errors
-    /// As [`Instance::jacobian_evaluator`].
+    /// As [`Instance::jacobian_evaluator`], and a derivative without a limit at the point, at the place of its
+    /// term.
     pub fn linearise(&self, point: Point<'_>) -> Result<Linearisation, Error> {
         let mut jacobians = self.jacobian_evaluator()?;
         let mut dense = |of| {
@@ -215,6 +218,10 @@ impl Instance<'_> {
         evaluator.rates(point, &mut rates);
         let mut observables = vec![0.0; evaluator.program().observables.len()];
         evaluator.observables(point, &mut observables);
+        let all = [&a, &b, &c, &d, &rates, &observables];
+        if !all.into_iter().flatten().all(|number| number.is_finite()) {
+            return Err(self.not_linear(point));
+        }
         Ok(Linearisation {
             a,
             b,
@@ -223,6 +230,30 @@ impl Instance<'_> {
             rates,
             observables,
         })
+    }
+
+    /// Why there is no linearisation about a point.
+    fn not_linear(&self, point: Point<'_>) -> Error {
+        let model = self.model().model();
+        let message = format!(
+            "the model `{}` has no linearisation there: a derivative has no finite limit",
+            model.name
+        );
+        let places = without_derivative(model, self.model().orders(), self.values(), point);
+        let places = match places {
+            Ok(places) => places,
+            Err(found) => return found.into(),
+        };
+        let Some((first, others)) = places.split_first() else {
+            return Error::Request(message);
+        };
+        let found = Diagnostic::error(message)
+            .at(*first, "has no derivative there")
+            .help("linearise elsewhere, or smooth it: sqrt(v^2 + e^2) in place of abs(v)");
+        let found = others
+            .iter()
+            .fold(found, |found, place| found.also(*place, "nor has this"));
+        Diagnostics::one(model.source.clone(), found).into()
     }
 }
 
@@ -282,6 +313,38 @@ motor = { on = "x", value = "u" }
 [observables]
 pull = { value = "k*x + u", unit = "N" }
 "#;
+
+    #[test]
+    fn a_term_without_a_derivative_is_named_at_its_place() {
+        for force in [
+            "F*dot(x)/abs(dot(x))",
+            "F*sqrt(abs(x)/l)",
+            "F*(abs(x)/l)^0.3",
+        ] {
+            let text = DRIVEN
+                .replace("value = \"u\"", &format!("value = \"u + {force}\""))
+                .replace(
+                    "c = {",
+                    "F = { value = 1, unit = \"N\" }\nl = { value = 1, unit = \"m\" }\nc = {",
+                );
+            let model = CompiledModel::of_text("driven.toml", &text, Orders::Declared);
+            let model = model.unwrap_or_else(|error| panic!("{force}: {error}"));
+            let run = model.at_declared().expect("an instance");
+            let point = Point {
+                t: 0.0,
+                state: &[0.0, 0.0],
+                inputs: &[0.0],
+            };
+            let Err(Error::Specification(found)) = run.linearise(point) else {
+                panic!("{force} was linearised");
+            };
+            let said = found.render(false);
+            assert!(
+                said.contains("no finite limit") && said.contains(force),
+                "{said}"
+            );
+        }
+    }
 
     #[test]
     fn a_linear_model_is_its_own_linearisation() {

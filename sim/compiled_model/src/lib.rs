@@ -54,6 +54,7 @@ mod motion;
 mod operating_point;
 mod projection;
 mod simulate;
+mod singular;
 mod sliding;
 
 pub use audit::{Audit, Imbalance};

@@ -4,6 +4,7 @@
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
+use eomgen_codegen::independence::rows::constraint_program;
 use eomgen_codegen::mechanics::equations::Equations;
 use eomgen_codegen::mechanics::sliding::may_hold;
 use eomgen_codegen::program::Program;
@@ -75,6 +76,7 @@ pub struct CompiledModel {
     piecewise_linear: OnceLock<Result<PiecewiseLinear, ExactError>>,
     differentiated: OnceLock<Result<Differentiated, Diagnostics>>,
     sided: OnceLock<Result<Option<SidedProgram>, Diagnostics>>,
+    constraints: OnceLock<Option<Program>>,
 }
 
 impl CompiledModel {
@@ -129,6 +131,7 @@ impl CompiledModel {
             piecewise_linear: OnceLock::new(),
             differentiated: OnceLock::new(),
             sided: OnceLock::new(),
+            constraints: OnceLock::new(),
         }
     }
 
@@ -207,6 +210,15 @@ impl CompiledModel {
     /// What cannot be differentiated.
     pub fn differentiate(&self) -> Result<(), Error> {
         self.differentiated().map(|_| ())
+    }
+
+    /// The program with the derivatives of the constraints, if there are any; lowered once, at these values of
+    /// all parameters, SI.
+    pub(crate) fn constraint_program(&self, values: &[f64]) -> Option<&Program> {
+        let made = self
+            .constraints
+            .get_or_init(|| constraint_program(&self.model, &self.equations, values));
+        made.as_ref()
     }
 
     /// The program with Jacobians.

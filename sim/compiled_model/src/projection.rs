@@ -11,6 +11,9 @@
 use std::cell::RefCell;
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_sim::inputs::HeldInputs;
+
+use crate::singular::SingularityWatch;
 
 /// The rate w, 1/s: so large that rounding of the accelerations is nothing beside w^2 times a residual
 /// worth correcting.
@@ -31,6 +34,8 @@ pub(crate) struct Projection {
     pub minus: RefCell<Evaluator>,
     /// The stabilisation rate of the model itself, 1/s.
     pub own_rate: f64,
+    /// Finds singular positions that the motion passes.
+    pub watch: RefCell<SingularityWatch>,
 }
 
 /// An initial value that was moved so that the constraints hold.
@@ -100,18 +105,25 @@ impl Projection {
         None
     }
 
-    /// The same after a step; a state that cannot be corrected is made of no numbers then, which
-    /// stops the motion.
+    /// The same after a step. A state that cannot be corrected, or lies behind a singular position, is made
+    /// of no numbers then, which stops the motion.
     pub(crate) fn after_a_step(
         &self,
         own: &mut Evaluator,
-        at: (f64, &[f64]),
+        t: f64,
+        inputs: &HeldInputs,
         state: &mut [f64],
     ) -> u64 {
-        self.correct(own, at, state, MOST_AFTER_A_STEP)
-            .unwrap_or_else(|| {
-                state.fill(f64::NAN);
-                1
-            })
+        let arrived = state.to_vec();
+        let evaluations = self.correct(own, (t, &inputs.at(t)), state, MOST_AFTER_A_STEP);
+        let reached = match evaluations {
+            Some(_) => &*state,
+            None => &arrived,
+        };
+        let passes = self.watch.borrow_mut().passes(t, reached, inputs);
+        if passes || evaluations.is_none() {
+            state.fill(f64::NAN);
+        }
+        evaluations.unwrap_or(1)
     }
 }

@@ -15,6 +15,7 @@ use crate::driven::Driven;
 use crate::error::Error;
 use crate::instance::Instance;
 use crate::motion::{Cause, Choice, Motion, Solver, Stopped};
+use crate::projection::Projection;
 
 /// The relative tolerance where nothing is said about it.
 pub const DEFAULT_TOLERANCE: f64 = 1e-9;
@@ -235,14 +236,13 @@ impl Instance<'_> {
             Err(error) => {
                 let (t, surfaces) = (SolveError::time(&error), system.surfaces());
                 let cause = self.cause(&error);
-                let ended_at = t.unwrap_or(request.span().0);
-                let singular = match cause {
-                    Cause::NotFinite | Cause::Limit => self.singular_position(
-                        (request.span().0, &initial),
-                        (ended_at, &so_far.trajectory.last),
-                        request.inputs,
-                    )?,
-                    Cause::Switching | Cause::Stiff(_) => None,
+                let passed = system.projection().and_then(|projection| {
+                    let ended_at = t.unwrap_or(request.span().0);
+                    singular_position(projection, &cause, ended_at, &so_far, request.inputs)
+                });
+                let (t, singular) = match passed {
+                    Some((passed, reason)) => (Some(passed), Some(reason)),
+                    None => (t, None),
                 };
                 let reason = match (system.overlap(), singular) {
                     (Some(name), _) => format!(
@@ -300,6 +300,23 @@ impl Instance<'_> {
             surfaces,
         })
     }
+}
+
+/// The time of the singular position at which a motion ended, and what is to be said of it.
+fn singular_position(
+    projection: &Projection,
+    cause: &Cause,
+    ended_at: f64,
+    motion: &Motion,
+    inputs: &HeldInputs,
+) -> Option<(f64, String)> {
+    let mut watch = projection.watch.borrow_mut();
+    if let Some((t, reason)) = watch.found() {
+        return Some((t, reason.to_owned()));
+    }
+    let may_be = matches!(cause, Cause::NotFinite | Cause::Limit);
+    let reason = may_be.then(|| watch.reason_at(ended_at, &motion.trajectory.last, inputs));
+    Some((ended_at, reason??))
 }
 
 fn propagate(
