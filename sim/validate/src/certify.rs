@@ -4,6 +4,7 @@ use super::certificate::{Certificate, Certified, Check, Coverage, SkipKind, Wors
 use super::checks::outputs::Judged;
 use super::checks::{
     MASS_TOLERANCE, ROW_TOLERANCE, balance, emitted, exact, nesting, outputs, regimes, states,
+    zeros,
 };
 use super::oracle::{Oracle, OracleError};
 use super::outputs::Outputs;
@@ -103,6 +104,8 @@ fn all_checks(subject: &Subject<'_>) -> Result<(Vec<Check>, Coverage), String> {
         let found = outputs::check(&judged, variant, outputs.as_mut());
         checks.extend(found.map_err(text)?);
     }
+    let jacobians = outputs.as_deref_mut();
+    checks.extend(zeros::check(&oracle, variant, jacobians).map_err(text)?);
     checks.extend(match &subject.emitted {
         Ok(emitted) => {
             let outputs = outputs.as_deref_mut();

@@ -409,6 +409,24 @@ fn an_output_passes_where_it_is_right_and_fails_by_a_thousandth() {
 }
 
 #[test]
+fn what_is_no_number_at_a_zero_of_the_state_alone_is_found() {
+    let rotor = single(ROTOR, || Single {
+        // 0, but at rest 0/0.
+        acceleration: |_, _, rate| rate / rate - 1.0,
+        ..FREE_ROTOR
+    });
+    assert_eq!(failures(&rotor), ["rates_at_zeros"]);
+    let detail = &find(&rotor, "rates_at_zeros").detail;
+    assert!(detail.contains("theta_dot = 0"), "{detail}");
+    let jacobian = outputs_with_fault("not a number at rest");
+    assert_eq!(failures(&jacobian), ["jacobians_at_zeros"]);
+    let right = outputs_with_fault("");
+    for name in ["rates_at_zeros", "jacobians_at_zeros"] {
+        assert!(find(&right, name).passed, "{:?}", find(&right, name));
+    }
+}
+
+#[test]
 fn a_certificate_names_the_texts_and_the_values_that_it_is_about() {
     let certificate = spring(Fault::None, Ok(emitted(EMITTED)));
     assert_eq!(

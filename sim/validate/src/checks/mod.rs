@@ -1,5 +1,5 @@
 //! The checks of a certificate, one file each: [`states`] at random states in every
-//! regime, [`balance`] along a trajectory, [`nesting`] between orders, [`outputs`] for
+//! regime, [`zeros`] where entries of the state are 0, [`balance`] along a trajectory, [`nesting`] between orders, [`outputs`] for
 //! output functions, [`emitted`] for source text, with `kinds` for other kinds of
 //! numbers, [`regimes`] for its kernels of regimes, [`exact`] for what the exact solver
 //! integrates. `certify` runs them all.
@@ -17,6 +17,7 @@ pub mod nesting;
 pub mod outputs;
 pub mod regimes;
 pub mod states;
+pub mod zeros;
 
 use super::oracle::Equations;
 use super::variant::Variant;

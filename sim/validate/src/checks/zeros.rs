@@ -1,0 +1,213 @@
+//! Rates and Jacobians where coordinates and rates are exactly 0, as at the start of most searches: roots and
+//! quotients vanish there, and what is infinite or not a number at no other state shows.
+
+use super::unknowns;
+use crate::certificate::{Check, Worst};
+use crate::oracle::{Oracle, OracleError};
+use crate::outputs::{JACOBIANS, Outputs};
+use crate::random::Random;
+use crate::sampler::{Sample, Sampler};
+use crate::variant::Variant;
+
+/// The seed of the other entries of the states.
+const SEED: u64 = 0x2e20_0f0f;
+
+/// Steps, in sizes of the entries, between which a deviation from a linear function has to fall.
+const STEPS: [f64; 2] = [1e-3, 1e-5];
+
+/// By how much, where there is a derivative.
+const FALL: f64 = 0.2;
+
+/// Deviations of this size beside the largest slope are rounding.
+const ROUNDING: f64 = 1e-6;
+
+const RATES: &str = "rates_at_zeros";
+const JACOBIANS_THERE: &str = "jacobians_at_zeros";
+
+/// The checks of both. A state at which the oracle gives no number either, or no derivative, has a reason.
+///
+/// # Errors
+/// [`OracleError`] as from [`Oracle::equations`].
+pub fn check(
+    oracle: &Oracle,
+    variant: &mut dyn Variant,
+    mut outputs: Option<&mut (dyn Outputs + '_)>,
+) -> Result<Vec<Check>, OracleError> {
+    let mut sampler = Sampler::new(oracle, SEED)?;
+    let Some(drawn) = sampler.draw_inside()? else {
+        let reason = "no state of the model's domain was found";
+        return Ok([RATES, JACOBIANS_THERE]
+            .map(|name| Check::skipped(name, 0.0, reason))
+            .into());
+    };
+    let sizes = sampler.sizes().to_vec();
+    let (mut rates, mut jacobians) = (Findings::default(), Findings::default());
+    for (place, sample) in zeros(oracle, &drawn.sample) {
+        let Some(accelerations) = accelerations(oracle, &sample)? else {
+            rates.explained(format!("no number of the oracle at {place}"));
+            continue;
+        };
+        let found = unknowns(variant, sample.time, &sample.state, &sample.inputs);
+        let is_finite = found.is_ok_and(|found| found.iter().all(|rate| rate.is_finite()));
+        rates.examined(is_finite, &place);
+        let Some(outputs) = outputs.as_deref_mut() else {
+            continue;
+        };
+        for name in JACOBIANS {
+            let Some(jacobian) = outputs.jacobian(name, &sample) else {
+                continue;
+            };
+            let is_finite = jacobian.iter().all(|entry| entry.is_finite());
+            let place = format!("{name}, {place}");
+            // The oracle knows the accelerations alone.
+            let is_judged = name == "rates_by_state";
+            if is_finite || is_judged && has_derivative(oracle, &sample, &accelerations, &sizes)? {
+                jacobians.examined(is_finite, &place);
+            } else {
+                jacobians.explained(format!("no limit of {place}"));
+            }
+        }
+    }
+    let has_jacobians = jacobians.states > 0 || !jacobians.reasons.is_empty();
+    Ok(vec![
+        rates.into_check(RATES),
+        match has_jacobians {
+            true => jacobians.into_check(JACOBIANS_THERE),
+            false => Check::skipped(JACOBIANS_THERE, 0.0, "no Jacobian was asked for"),
+        },
+    ])
+}
+
+/// What states with zeros have shown.
+#[derive(Default)]
+struct Findings {
+    states: usize,
+    worst: Worst,
+    reasons: Vec<String>,
+}
+
+impl Findings {
+    fn examined(&mut self, is_finite: bool, place: &str) {
+        self.states += 1;
+        self.worst.include(match is_finite {
+            true => Worst::of(0.0, "all numbers are finite"),
+            false => Worst::of(f64::INFINITY, format!("infinite or no number at {place}")),
+        });
+    }
+
+    fn explained(&mut self, reason: String) {
+        self.reasons.push(reason);
+    }
+
+    fn into_check(self, name: &str) -> Check {
+        let left = match &self.reasons[..] {
+            [] => String::new(),
+            [one] => format!(" ({one})"),
+            [first, others @ ..] => format!(" ({first}, and {} others)", others.len()),
+        };
+        if self.states == 0 {
+            return Check::skipped(name, 0.0, format!("no state was compared{left}"));
+        }
+        let worst = self
+            .worst
+            .among(self.states, &format!("states with zeros{left}"));
+        Check::made(name, worst, 0.0)
+    }
+}
+
+/// A state with each entry at 0 in turn, with all rates, and with all entries, where they may be 0.
+fn zeros(oracle: &Oracle, sample: &Sample) -> Vec<(String, Sample)> {
+    let size = oracle.size();
+    let names = oracle.names();
+    let name = |entry: usize| match entry {
+        entry if entry < size => format!("{} = 0", names[entry]),
+        entry if entry < 2 * size => format!("{}_dot = 0", names[entry - size]),
+        entry => format!("state {} of first order = 0", entry - 2 * size + 1),
+    };
+    let ranges = &oracle.ranges().coordinates;
+    let may_be_0 = |entry: usize| {
+        let range = ranges.get(entry).copied().flatten();
+        range.is_none_or(|(low, high)| (low..=high).contains(&0.0))
+    };
+    let at_0 = |entries: &[usize]| {
+        let mut sample = sample.clone();
+        for entry in entries {
+            sample.state[*entry] = 0.0;
+        }
+        sample
+    };
+    let entries: Vec<usize> = (0..sample.state.len())
+        .filter(|entry| may_be_0(*entry))
+        .collect();
+    let mut found: Vec<(String, Sample)> = entries
+        .iter()
+        .map(|entry| (name(*entry), at_0(&[*entry])))
+        .collect();
+    let rates: Vec<usize> = (size..2 * size).collect();
+    found.push(("all rates = 0".to_owned(), at_0(&rates)));
+    found.push(("all entries = 0".to_owned(), at_0(&entries)));
+    found
+}
+
+/// The oracle's accelerations, then the rates of states of first order, if all are numbers.
+fn accelerations(oracle: &Oracle, sample: &Sample) -> Result<Option<Vec<f64>>, OracleError> {
+    let Sample {
+        time,
+        state,
+        inputs,
+    } = sample;
+    let equations = oracle.equations_inside(*time, state, inputs)?;
+    let found = equations.and_then(|equations| equations.unknowns());
+    Ok(found.filter(|found| found.iter().all(|number| number.is_finite())))
+}
+
+/// Whether the accelerations change as a linear function of the state does, better and better as steps fall.
+fn has_derivative(
+    oracle: &Oracle,
+    sample: &Sample,
+    here: &[f64],
+    sizes: &[f64],
+) -> Result<bool, OracleError> {
+    let mut random = Random::new(SEED);
+    let directions = [0, 1].map(|_| {
+        let entries = sizes.iter().map(|size| size * random.away_from_zero());
+        entries.collect::<Vec<f64>>()
+    });
+    let mut deviations = [0.0_f64; 2];
+    let mut largest = 0.0_f64;
+    for (deviation, step) in deviations.iter_mut().zip(STEPS) {
+        let at = |first: f64, second: f64| {
+            let mut moved = sample.clone();
+            let pairs = directions[0].iter().zip(&directions[1]);
+            for (entry, (a, b)) in moved.state.iter_mut().zip(pairs) {
+                *entry += first * a + second * b;
+            }
+            accelerations(oracle, &moved)
+        };
+        let all = [
+            at(step, 0.0)?,
+            at(-step, 0.0)?,
+            at(0.0, step)?,
+            at(0.0, -step)?,
+            at(step, step)?,
+        ];
+        let [Some(a), Some(minus_a), Some(b), Some(minus_b), Some(both)] = all else {
+            return Ok(false);
+        };
+        for row in 0..here.len() {
+            let slope = |to: &[f64]| (to[row] - here[row]) / step;
+            let (by_a, by_b) = (slope(&a), slope(&b));
+            let parts = [
+                by_a + slope(&minus_a),
+                by_b + slope(&minus_b),
+                slope(&both) - by_a - by_b,
+            ];
+            *deviation = parts
+                .into_iter()
+                .fold(*deviation, |most, part| most.max(part.abs()));
+            largest = largest.max(by_a.abs()).max(here[row].abs());
+        }
+    }
+    let [long, short] = deviations;
+    Ok(short <= FALL * long || short <= ROUNDING * largest)
+}
