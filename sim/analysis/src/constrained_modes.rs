@@ -33,6 +33,9 @@ pub fn constrained_modes(
         return Err(AnalysisError::NotFinite { sample });
     }
     let allowed = AllowedMotions::new(held, states)?;
+    if allowed.count() == 0 {
+        return Ok(Vec::new());
+    }
     let allowed = allowed.basis();
     let reduced = allowed.transpose() * DMatrix::from_row_slice(states, states, matrix) * allowed;
     let mut eigenvalues = qr_iteration::eigenvalues(&reduced).ok_or(AnalysisError::NotConverged)?;
@@ -88,6 +91,14 @@ fn shape(motion: &DVector<Complex<f64>>, degrees: usize) -> Vec<Complex<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_mass_that_is_held_has_no_modes() {
+        let a = [[0.0, 1.0], [-9.0, 0.0]];
+        let held = [[1.0, 0.0], [0.0, 1.0]];
+        let modes = constrained_modes(a.as_flattened(), held.as_flattened(), 1).unwrap();
+        assert!(modes.is_empty(), "{modes:?}");
+    }
 
     #[test]
     fn two_masses_held_together_swing_as_one() {
