@@ -267,7 +267,7 @@ fn compare_file(
         let orders = vec![with; model.fields.len()];
         Variant::derive_with(&model, &orders, outputs)
     };
-    // A modal mass matrix that is dense and moves has no derivatives.
+    // A sum that weighs squares of mode shapes by the state has no derivatives.
     let forces = [
         Output::BiasForces,
         Output::InverseDynamics,
