@@ -241,8 +241,8 @@ fn words(
         ),
         (false, None) => (
             format!(
-                "the constraint `{name}` is redundant: wherever the constraints hold, its derivative is made \
-                 of that of {others}"
+                "the constraint `{name}` is redundant: wherever the constraints hold, its derivative is a \
+                 combination of the derivatives of {others}"
             ),
             "holds nothing that the others do not hold",
             "leave one of them out; how they share a force does not follow from the equations",
