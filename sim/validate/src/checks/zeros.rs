@@ -37,7 +37,7 @@ pub fn check(
     let Some(drawn) = sampler.draw_inside()? else {
         let reason = "no state of the model's domain was found";
         return Ok([RATES, JACOBIANS_THERE]
-            .map(|name| Check::skipped(name, 0.0, reason))
+            .map(|name| Check::not_run(name, 0.0, reason))
             .into());
     };
     let sizes = sampler.sizes().to_vec();
@@ -73,7 +73,7 @@ pub fn check(
         rates.into_check(RATES),
         match has_jacobians {
             true => jacobians.into_check(JACOBIANS_THERE),
-            false => Check::skipped(JACOBIANS_THERE, 0.0, "no Jacobian was asked for"),
+            false => Check::not_applicable(JACOBIANS_THERE, 0.0, "no Jacobian was asked for"),
         },
     ])
 }
@@ -106,7 +106,7 @@ impl Findings {
             [first, others @ ..] => format!(" ({first}, and {} others)", others.len()),
         };
         if self.states == 0 {
-            return Check::skipped(name, 0.0, format!("no state was compared{left}"));
+            return Check::not_applicable(name, 0.0, format!("no state was compared{left}"));
         }
         let worst = self
             .worst
