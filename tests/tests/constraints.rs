@@ -326,6 +326,8 @@ fn a_fold_stops_the_motion_whatever_samples_and_solver_are() {
                     inputs: &run.no_inputs(),
                     solver,
                     tolerance,
+                    max_step: f64::INFINITY,
+                    audit: false,
                 };
                 let motion = run.follow(&request, &mut |_| {}).expect("a motion");
                 let place = format!("{count} {sample} {solver} {tolerance}");
@@ -389,6 +391,8 @@ fn a_rod_that_turns_round_is_not_stopped() {
                 inputs: &run.no_inputs(),
                 solver,
                 tolerance,
+                max_step: f64::INFINITY,
+                audit: false,
             };
             let motion = run.follow(&request, &mut |_| {}).unwrap();
             assert!(
