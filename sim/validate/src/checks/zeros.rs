@@ -124,7 +124,7 @@ fn zeros(oracle: &Oracle, sample: &Sample) -> Vec<(String, Sample)> {
         entry if entry < 2 * size => format!("{}_dot = 0", names[entry - size]),
         entry => format!("state {} of first order = 0", entry - 2 * size + 1),
     };
-    let ranges = &oracle.ranges().coordinates;
+    let ranges = &oracle.ranges().state;
     let may_be_0 = |entry: usize| {
         let range = ranges.get(entry).copied().flatten();
         range.is_none_or(|(low, high)| (low..=high).contains(&0.0))
