@@ -68,6 +68,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod balancing;
 pub mod cubic_spline;
 pub mod exponential;
 pub mod inputs;

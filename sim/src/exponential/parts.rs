@@ -313,7 +313,10 @@ impl ExponentialIntegrator {
         }
         if let Some(tangents) = &mut options.tangents {
             let gradient = match &mut options.force {
-                Some(force) => self.gradient(motion, (surface, t), &mut **force, &rates),
+                Some(force) => {
+                    let largest = tangents.slopes.as_ref().map(|slopes| &slopes.largest[..]);
+                    self.gradient(motion, (surface, t), &mut **force, (&rates, largest))
+                }
                 None => function,
             };
             tangents.switch((&gradient, here), &rates, &after);

@@ -6,6 +6,8 @@ use eomgen_analysis::qr_iteration;
 use eomgen_codegen::program::affine::{AffineEvaluator, AffineSystem};
 use nalgebra::DMatrix;
 
+use crate::balancing::{LARGEST, balance, scaled};
+
 use super::kernels::Columns;
 use super::surfaces::{Row, Side, Surfaces, dot};
 
@@ -140,7 +142,7 @@ impl Regime {
         for place in 0..forced {
             whole[(degrees + place, n + given + place)] = 1.0;
         }
-        let flow = (whole * step).exp();
+        let flow = exponential(&whole, n, step);
         let mut doubled = Vec::with_capacity(DOUBLINGS);
         let mut longer = flow.clone();
         for _ in 0..DOUBLINGS {
@@ -257,11 +259,13 @@ fn hold(
         });
     }
     let mut jumps = DMatrix::zeros(n, places.len());
+    let scale = state_scale(&rates.state);
     for (column, held) in places.iter().enumerate() {
         let numbers = surfaces.numbers(sides, |place| f64::from(u8::from(place == *held)));
         let other = Rates::of(&evaluator.system(&numbers));
-        let size = other.state.amax().max(rates.state.amax());
-        if (&other.state - &rates.state).amax() > SAME * size {
+        let difference = scaled(&(&other.state - &rates.state), &scale);
+        let sizes = [&other, rates].map(|rates| scaled(&rates.state, &scale).amax());
+        if difference.amax() > SAME * sizes[0].max(sizes[1]) {
             return None;
         }
         jumps.set_column(column, &(other.given.column(0) - rates.given.column(0)));
@@ -285,6 +289,38 @@ fn hold(
     })
 }
 
+/// Powers of two that bring states of different units to like size.
+fn state_scale(rates: &DMatrix<f64>) -> Vec<f64> {
+    let one = vec![1.0; rates.nrows()];
+    match rates.iter().all(|entry| entry.abs() < LARGEST) {
+        true => balance(rates, one),
+        false => one,
+    }
+}
+
+/// exp(W h) of a matrix whose first `states` rows are rates and whose others are 0: balanced, because
+/// the norm decides how often the exponential is squared.
+fn exponential(whole: &DMatrix<f64>, states: usize, step: f64) -> DMatrix<f64> {
+    let rates = whole.view((0, 0), (states, states)).into_owned();
+    let mut scale = state_scale(&rates);
+    let largest = scaled(&rates, &scale).amax().max(1.0 / step);
+    for column in whole.column_iter().skip(states) {
+        let entries = column.iter().zip(&scale);
+        let size = entries
+            .map(|(entry, scale)| (entry / scale).abs())
+            .fold(0.0, f64::max);
+        let is_used = size > 0.0 && size.is_finite();
+        scale.push(if is_used {
+            (largest / size).log2().floor().exp2()
+        } else {
+            1.0
+        });
+    }
+    let flow = (scaled(whole, &scale) * step).exp();
+    let back: Vec<f64> = scale.iter().map(|factor| 1.0 / factor).collect();
+    scaled(&flow, &back)
+}
+
 /// The largest magnitude of the rates' eigenvalues over the regimes, 1/s.
 pub fn fastest(evaluator: &mut AffineEvaluator, surfaces: &Surfaces) -> f64 {
     let count = surfaces.guards.len();
@@ -299,7 +335,8 @@ pub fn fastest(evaluator: &mut AffineEvaluator, surfaces: &Surfaces) -> f64 {
         let rates = Rates::of(&system);
         if rates.state.iter().all(|entry| entry.is_finite()) {
             // A matrix whose iteration does not end has no steps that are short enough.
-            let eigenvalues = qr_iteration::eigenvalues(&rates.state);
+            let balanced = scaled(&rates.state, &state_scale(&rates.state));
+            let eigenvalues = qr_iteration::eigenvalues(&balanced);
             let sizes = eigenvalues.map(|all| all.iter().map(|e| e.norm()).fold(0.0, f64::max));
             fastest = fastest.max(sizes.unwrap_or(f64::INFINITY));
         }

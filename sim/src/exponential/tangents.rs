@@ -275,7 +275,7 @@ fn move_across(state: &mut [f64], held: &HeldSurface, distance: f64) {
 }
 
 /// Adds to a vector how far it moves in `tau` s from its rates, by the exponential series,
-/// until a term is smaller than a part of the vector.
+/// until a term adds less than a part to each number: these have different units.
 pub fn series(matrix: &Columns, vector: &mut [f64], rates: &mut [f64], tau: f64, error: f64) {
     let n = vector.len();
     let mut next = [0.0; 64];
@@ -286,26 +286,29 @@ pub fn series(matrix: &Columns, vector: &mut [f64], rates: &mut [f64], tau: f64,
         large.resize(rates.len(), 0.0);
         &mut large
     };
+    // What each number was, and the sizes of the terms so far.
+    let mut sizes: Vec<f64> = vector.iter().map(|value| value.abs()).collect();
     for (slot, rate) in rates.iter_mut().enumerate() {
         *rate *= tau;
         if let Some(value) = vector.get_mut(slot) {
             *value += *rate;
+            sizes[slot] += rate.abs();
         }
     }
     for term in 2..=TERMS {
         next.fill(0.0);
         matrix.add_product(&rates[..n], next);
         let factor = tau / term as f64;
-        let (mut moved, mut size) = (0.0f64, 0.0f64);
+        let mut is_small = true;
         for (place, (slot, value)) in rates.iter_mut().zip(&*next).enumerate() {
             *slot = value * factor;
             if let Some(sum) = vector.get_mut(place) {
-                moved += slot.abs();
                 *sum += *slot;
-                size += sum.abs();
+                sizes[place] += slot.abs();
+                is_small &= slot.abs() <= error * sizes[place];
             }
         }
-        if moved <= error * size {
+        if is_small {
             break;
         }
     }

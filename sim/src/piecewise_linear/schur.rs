@@ -1,33 +1,9 @@
 //! The complex Schur form of a real matrix, balanced and in an order of one's choice.
 
 use eomgen_analysis::qr_iteration::schur_form;
-use nalgebra::linalg::balancing::balance_parlett_reinsch;
 use nalgebra::{Complex, DMatrix};
 
-/// Squares of larger entries overflow, where balancing never ends, 1/s.
-const LARGEST: f64 = 1e150;
-
-/// Entries below this part of the largest one do not take part in the balance: what matters
-/// that little must not decide on the scale of a state.
-const NEGLIGIBLE: f64 = 1e-6;
-
-/// Powers of two that bring rows and columns to like size.
-fn balance(matrix: &DMatrix<f64>, mut scale: Vec<f64>) -> Vec<f64> {
-    // The second time around the large entries are balanced among themselves.
-    for _ in 0..2 {
-        let scaled = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| {
-            matrix[(i, j)] * scale[j] / scale[i]
-        });
-        let least = NEGLIGIBLE * scaled.amax();
-        let mut kept = scaled.map(|entry| if entry.abs() < least { 0.0 } else { entry });
-        let found = balance_parlett_reinsch(&mut kept);
-        scale
-            .iter_mut()
-            .zip(found.iter())
-            .for_each(|(slot, factor)| *slot *= factor);
-    }
-    scale
-}
+use crate::balancing::{LARGEST, balance};
 
 /// A = D Q T Q^H D^-1 with T upper triangular, Q unitary and D diagonal.
 pub(super) struct SchurForm {
