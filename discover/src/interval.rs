@@ -25,6 +25,11 @@ impl Interval {
         self.low == self.high
     }
 
+    /// Whether it holds a value.
+    pub fn contains(self, value: f64) -> bool {
+        (self.low..=self.high).contains(&value)
+    }
+
     /// The value in it that is nearest to `value`.
     pub fn clamp(self, value: f64) -> f64 {
         value.clamp(self.low, self.high)

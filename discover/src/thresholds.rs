@@ -16,6 +16,14 @@ pub const DELAY_PRIOR: f64 = 0.5;
 /// does not show stays where it may be.
 pub const INITIAL_STATE_PRIOR: f64 = 0.02;
 
+/// A state that nothing moves ranges as far as moves the outputs by this part of the noise: it may
+/// not be known exactly, and nobody sees that.
+pub const UNMOVED_STATE: f64 = 1e-3;
+
+/// Where a motion cannot be followed through a record, its first half, quarter and so on tell how far
+/// states range: so many times.
+pub const MOST_HALVINGS: u32 = 6;
+
 /// So many times less is known of the initial state of a coordinate that a candidate adds: what
 /// it does goes with the candidate's parameter, which is not known yet.
 pub const ADDED_STATE: f64 = 10.0;
@@ -219,10 +227,6 @@ pub const AGREES: f64 = 0.02;
 /// change its size so far.
 pub const NEAR_ONE: f64 = 0.2;
 
-/// Quantities that are sums over states to this part of their size are linear: products of doubles
-/// lose six digits less.
-pub const LINEAR: f64 = 1e-9;
-
 /// Switches per simulated second beyond which a trial motion is given up, 1/s: ten times as many as
 /// the stiffest contact of the shipped machines makes.
 pub const FASTEST_SWITCHING: f64 = 1e5;
@@ -405,8 +409,12 @@ pub const MOST_ORDERS: usize = 4;
 /// in any direction: small beside them, large beside rounding.
 pub const SMALL_CHANGE: f64 = 1e-4;
 
-/// A change is small and above rounding within these factors of that.
-pub const SMALL_NEAR: Interval = Interval::new(1e-3, 10.0);
+/// A change is small and above rounding if these factors bring it there.
+pub const SMALL_NEAR: Interval = Interval::new(0.1, 1e3);
+
+/// A size that was begun with one SI unit is found where the next one would differ by less than
+/// this: what follows from it does not depend on units.
+pub const SAME_SIZE: Interval = Interval::new(1.0 - 1e-9, 1.0 + 1e-9);
 
 /// Every so many samples of a window such a size is looked for.
 pub const SAMPLED: usize = 5;
@@ -423,6 +431,10 @@ pub const INITIAL_PARTS: [f64; 5] = [1.0, 0.3, 0.1, 3.0, 10.0];
 /// How many times its usual size a shape is where a fit is started anew from another: as far from it
 /// to either side.
 pub const OTHER_SHAPES: [f64; 2] = [0.4, 2.5];
+
+/// A size of a motion that was begun with one SI unit, and is near what is wanted, is corrected so
+/// often: a straight line is good enough by then.
+pub const SIZE_CORRECTIONS: usize = 2;
 
 /// Attempts to find the size at which a candidate is linearised or simulated.
 pub const SIZE_ATTEMPTS: usize = 8;
@@ -455,6 +467,9 @@ pub const FIRST_FORCE: f64 = 1e-4;
 
 /// It need not be nearer to what is wanted than by this factor.
 pub const FORCE_NEAR: f64 = 10.0;
+
+/// A force whose motion leaves where the model is defined is divided by this factor.
+pub const FORCE_SHRINKS: f64 = 1e3;
 
 /// Rounds in which the usual size of a force that differs from window to window is found: it
 /// changes by less than a part in a hundred by then.
@@ -594,6 +609,10 @@ pub const REFIT_PARTS: [f64; 4] = [1.0, 0.5, 0.2, 0.05];
 /// Steps of Newton's method to the inputs that a given motion takes: one where second rates are linear in
 /// them, a few more where a drive saturates.
 pub const REQUIRED_STEPS: usize = 12;
+
+/// A difference quotient by such an input is taken over the noise of its sensor, and over no less than
+/// this part of the input.
+pub const REQUIRED_QUOTIENT: f64 = 1e-6;
 
 /// By how much second rates may be off at these inputs, in parts of themselves: far more than rounding
 /// makes of a regular system, far less than any sensor shows.

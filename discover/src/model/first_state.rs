@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::model::estimation_model::EstimationModel;
+use crate::model::simulation::Simulation;
 use crate::thresholds;
 use eomgen_records::dataset::{Channel, Initial, Quantity};
 use eomgen_records::record::Record;
@@ -78,45 +79,86 @@ fn begin(times: &[f64], column: &[f64]) -> (f64, f64) {
 }
 
 /// How far each state ranges in the motion that the records' inputs cause, SI: the root mean
-/// square around its mean. `values`: the model's parameters, on which that may depend much.
+/// square around its mean. `values`: the model's parameters, on which that may depend much; `noise`:
+/// one standard deviation of each channel, SI.
 pub fn ranges(
     model: &EstimationModel,
     values: &[f64],
     records: &[Record],
     initial: &[f64],
+    noise: &[f64],
 ) -> Vec<f64> {
-    let states = model.state_count();
-    let mut sums = vec![(0.0, 0.0); states];
-    let mut count = 0.0;
-    if let Ok(mut simulation) = model.simulation(values) {
-        for record in records {
-            let Ok(motion) = simulation.states(initial, &record.times, &record.inputs) else {
-                continue;
-            };
-            // Every tenth sample shows how far a state goes.
-            for state in motion.iter().step_by(10) {
-                count += 1.0;
-                for (sum, value) in sums.iter_mut().zip(state) {
-                    sum.0 += value;
-                    sum.1 += value * value;
-                }
-            }
+    let Ok(mut simulation) = model.simulation(values) else {
+        return vec![1.0; model.state_count()];
+    };
+    let moved = moved(&mut simulation, records, initial);
+    // A state of which nothing is known is taken to range over one unit.
+    let mut of = |(state, range): (usize, f64)| match range > 0.0 {
+        true => range,
+        false => (records.first())
+            .and_then(|record| unmoved(&mut simulation, record, initial, noise, state))
+            .unwrap_or(1.0),
+    };
+    moved.into_iter().enumerate().map(&mut of).collect()
+}
+
+/// How far each state moves in the records, or in the longest beginnings of them that can be followed;
+/// 0 if it does not.
+fn moved(simulation: &mut Simulation<'_>, records: &[Record], initial: &[f64]) -> Vec<f64> {
+    for halving in 0..=thresholds::MOST_HALVINGS {
+        let motions = records.iter().filter_map(|record| {
+            let count = record.times.len() >> halving;
+            let times = &record.times[..count];
+            simulation.states(initial, times, &record.inputs).ok()
+        });
+        // Every tenth sample shows how far a state goes.
+        let states = motions.flat_map(|states| states.into_iter().step_by(10));
+        let states: Vec<Vec<f64>> = states.collect();
+        let of = |state: usize| root_mean_square(states.iter().map(|values| values[state]));
+        let found: Vec<f64> = (0..initial.len()).map(of).collect();
+        if !states.is_empty() && found.iter().all(|range| range.is_finite()) {
+            return found;
         }
     }
-    let range = |(sum, squares): (f64, f64)| {
-        let mean: f64 = sum / count;
-        (squares / count - mean * mean).max(0.0).sqrt()
+    vec![0.0; initial.len()]
+}
+
+/// The root mean square of values around their mean.
+fn root_mean_square(values: impl Iterator<Item = f64> + Clone) -> f64 {
+    let count = values.clone().count() as f64;
+    let mean = values.clone().sum::<f64>() / count;
+    (values.map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt()
+}
+
+/// The change of a state that moves the outputs by [`thresholds::UNMOVED_STATE`]; none if none does.
+fn unmoved(
+    simulation: &mut Simulation<'_>,
+    record: &Record,
+    initial: &[f64],
+    noise: &[f64],
+    state: usize,
+) -> Option<f64> {
+    let times = &record.times[..record.times.len().min(thresholds::STEP_TEST_SAMPLES)];
+    let own = simulation.outputs(initial, times, &record.inputs).ok()?;
+    let mut moved_by = |size: f64| {
+        let mut moved = initial.to_vec();
+        moved[state] += size;
+        let moved = simulation.outputs(&moved, times, &record.inputs).ok()?;
+        let pairs = moved.values.iter().zip(&own.values).enumerate();
+        let squares = pairs.map(|(place, (a, b))| ((a - b) / noise[place % noise.len()]).powi(2));
+        Some((squares.sum::<f64>() / own.values.len() as f64).sqrt())
     };
-    let found: Vec<f64> = sums.into_iter().map(range).collect();
-    let largest = found
-        .iter()
-        .copied()
-        .filter(|r| r.is_finite())
-        .fold(0.0, f64::max);
-    // A state that nothing moves may still not be known exactly.
-    let least = if largest > 0.0 { 1e-9 * largest } else { 1.0 };
-    found
-        .into_iter()
-        .map(|r| if r.is_finite() { r.max(least) } else { 1.0 })
-        .collect()
+    let mut size = 1.0;
+    for _ in 0..thresholds::SIZE_ATTEMPTS {
+        let factor = match moved_by(size) {
+            Some(moved) if moved.is_finite() && moved > 0.0 => thresholds::UNMOVED_STATE / moved,
+            Some(moved) if moved == 0.0 => thresholds::SIZE_FACTOR,
+            _ => 1e-3,
+        };
+        size *= factor.clamp(1.0 / thresholds::SIZE_FACTOR, thresholds::SIZE_FACTOR);
+        if (0.5..2.0).contains(&factor) {
+            return Some(size);
+        }
+    }
+    None
 }

@@ -4,7 +4,7 @@
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use nalgebra::{DMatrix, DVector};
 
-use crate::model::measured_outputs::MeasuredOutputs;
+use crate::model::measured_outputs::{MeasuredInput, MeasuredOutputs};
 use crate::thresholds;
 
 /// A model along motions that records give. A record's row holds its inputs, then all coordinates, all
@@ -14,7 +14,7 @@ pub(crate) struct GivenMotion {
     inputs: usize,
     degrees: usize,
     /// The inputs that are sought, as many as degrees of freedom.
-    required: Vec<usize>,
+    required: Vec<MeasuredInput>,
     /// The rates of the state.
     rates: Vec<f64>,
 }
@@ -24,7 +24,7 @@ impl GivenMotion {
     pub fn of(evaluator: &Evaluator, measured: &MeasuredOutputs) -> Option<Self> {
         let program = evaluator.program();
         let (states, degrees) = (program.states(), program.degrees_of_freedom());
-        let required = measured.inputs();
+        let required = measured.inputs().to_vec();
         (states == 2 * degrees && required.len() == degrees).then(|| Self {
             inputs: program.inputs.len(),
             degrees,
@@ -46,7 +46,7 @@ impl GivenMotion {
         let state = self.state(row)?;
         let given = &row[self.inputs + 2 * self.degrees..];
         let mut inputs = row[..self.inputs].to_vec();
-        for place in &self.required {
+        for MeasuredInput { place, .. } in &self.required {
             inputs[*place] = 0.0;
         }
         let mut at = |inputs: &[f64]| -> DVector<f64> {
@@ -58,17 +58,17 @@ impl GivenMotion {
         let mut present = at(&inputs);
         for _ in 0..thresholds::REQUIRED_STEPS {
             let mut columns = Vec::with_capacity(self.degrees);
-            for place in &self.required {
-                let size = inputs[*place].abs().max(1.0);
+            for MeasuredInput { place, noise } in &self.required {
                 let here = inputs[*place];
+                let size = noise.max(thresholds::REQUIRED_QUOTIENT * here.abs());
                 inputs[*place] = here + size;
                 columns.push((at(&inputs) - &present) / size);
                 inputs[*place] = here;
             }
             let left = &wanted - &present;
             let change = DMatrix::from_columns(&columns).lu().solve(&left)?;
-            for (place, change) in self.required.iter().zip(change.iter()) {
-                inputs[*place] += change;
+            for (input, change) in self.required.iter().zip(change.iter()) {
+                inputs[input.place] += change;
             }
             present = at(&inputs);
             // Terms that nearly cancel leave what rounding makes of them.

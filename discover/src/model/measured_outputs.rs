@@ -1,7 +1,7 @@
 //! Which of a model's states and observables the channels measure.
 
-use eomgen_codegen::program::Program;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_codegen::program::{Program, ValueId};
 use eomgen_compiled_model::Rest;
 use eomgen_records::dataset::{Channel, Quantity};
 
@@ -18,6 +18,15 @@ pub(crate) enum Output {
     Input(usize),
 }
 
+/// An input that is measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct MeasuredInput {
+    /// Its place among the inputs.
+    pub place: usize,
+    /// One standard deviation of its sensor's noise, SI.
+    pub noise: f64,
+}
+
 /// Room for what a model computes beside its states.
 pub(crate) struct Buffers {
     observables: Vec<f64>,
@@ -30,10 +39,13 @@ pub(crate) struct Buffers {
 #[derive(Clone, Debug)]
 pub(crate) struct MeasuredOutputs {
     outputs: Vec<Output>,
+    /// The inputs among them, each once.
+    inputs: Vec<MeasuredInput>,
     /// How many observables the model has.
     observables: usize,
     /// How many states the model has.
     states: usize,
+    degrees_of_freedom: usize,
 }
 
 impl MeasuredOutputs {
@@ -50,9 +62,20 @@ impl MeasuredOutputs {
         });
         Self {
             outputs: outputs.collect(),
+            inputs: measured_inputs(channels),
             observables: program.observables.len(),
             states: program.states(),
+            degrees_of_freedom,
         }
+    }
+
+    /// The values of a program that are the observables among them.
+    pub fn observable_values(&self, program: &Program) -> Vec<ValueId> {
+        let of = |output: &Output| match output {
+            Output::Observable(observable) => Some(program.observable_values[*observable]),
+            Output::State(_) | Output::Rate(_) | Output::Input(_) => None,
+        };
+        self.outputs.iter().filter_map(of).collect()
     }
 
     /// How many there are.
@@ -72,16 +95,8 @@ impl MeasuredOutputs {
     }
 
     /// The inputs that are measured: what a motion takes that records give.
-    pub fn inputs(&self) -> Vec<usize> {
-        let mut found = Vec::new();
-        for output in &self.outputs {
-            if let Output::Input(input) = output
-                && !found.contains(input)
-            {
-                found.push(*input);
-            }
-        }
-        found
+    pub fn inputs(&self) -> &[MeasuredInput] {
+        &self.inputs
     }
 
     /// Room for what [`MeasuredOutputs::append`] computes.
@@ -90,6 +105,16 @@ impl MeasuredOutputs {
             observables: vec![0.0; self.observables],
             rates: vec![0.0; if self.has_rates() { self.states } else { 0 }],
             rest: None,
+        }
+    }
+
+    /// Adds to a row of quantities what accelerations, and rates of states of first order, that change by
+    /// `size` times `change` show at once.
+    pub fn add_to_accelerations(&self, change: &[f64], size: f64, row: &mut [f64]) {
+        for (value, output) in row.iter_mut().zip(&self.outputs) {
+            if let Output::Rate(state) = *output {
+                *value += size * change[state - self.degrees_of_freedom];
+            }
         }
     }
 
@@ -118,4 +143,20 @@ impl MeasuredOutputs {
             Output::Input(input) => point.inputs[input],
         }));
     }
+}
+
+fn measured_inputs(channels: &[Channel]) -> Vec<MeasuredInput> {
+    let mut found: Vec<MeasuredInput> = Vec::new();
+    for channel in channels {
+        let Quantity::Input(place) = channel.quantity else {
+            continue;
+        };
+        if found.iter().all(|known| known.place != place) {
+            found.push(MeasuredInput {
+                place,
+                noise: channel.noise,
+            });
+        }
+    }
+    found
 }

@@ -4,6 +4,7 @@
 //! [`problem`] that all fits to one dataset share. [`channel_checks`] compares columns with what the
 //! model expects of them; [`output_times`] are where quantities are computed; `given_motion` is what a motion takes that the records give; [`smoothing`] has no delay; [`stop`] ends all of it early.
 
+pub(crate) mod affine_values;
 pub mod channel_checks;
 pub mod estimation_model;
 pub mod first_state;

@@ -123,7 +123,8 @@ impl<'d> EstimationProblem<'d> {
     /// adds, and which nobody has seen move yet, counts several times.
     pub fn ranges(&self, model: &EstimationModel, values: &[f64]) -> Vec<f64> {
         let first = self.first_state(model, &self.dataset.train[0]);
-        let mut ranges = first_state::ranges(model, values, &self.dataset.train, &first);
+        let mut ranges =
+            first_state::ranges(model, values, &self.dataset.train, &first, &self.noise);
         for (range, state) in ranges.iter_mut().zip(&model.states) {
             if !self.states.contains(state) {
                 *range *= thresholds::ADDED_STATE;

@@ -115,7 +115,9 @@ fn response(
         };
         // The size is found on the first, the middle and the last of the windows.
         let few = [0, windows.len() / 2, windows.len() - 1];
-        let size = trial_size(candidate_unknowns[number].unknown.scale, *level, |size| {
+        let is_known = number < sizes.len() || candidate_unknowns[number].base != 0.0;
+        let scale = candidate_unknowns[number].unknown.scale;
+        let size = trial_size((scale, is_known), *level, |size| {
             let changes = changes(
                 &shooting,
                 fit,
@@ -170,15 +172,27 @@ fn changes<'b>(
     Some(changes)
 }
 
-/// The size of a parameter that moves the outputs as wanted; none if none does.
-fn trial_size(start: f64, level: f64, moved: impl Fn(f64) -> Option<f64>) -> Option<f64> {
+/// The size of a parameter that moves the outputs as wanted; none if none does. `start`: a first size, and
+/// whether it is known from something else than units, so that it will do if it is near.
+fn trial_size(
+    (start, is_known): (f64, bool),
+    level: f64,
+    moved: impl Fn(f64) -> Option<f64>,
+) -> Option<f64> {
     let wanted = thresholds::RESPONSE_MOVES * level;
     let near = thresholds::RESPONSE_NEAR.times(wanted);
     let mut size = start;
+    let mut corrections = 0;
     for _ in 0..thresholds::SIZE_ATTEMPTS {
         let factor = match moved(size) {
-            Some(change) if change > near.low && change < near.high => {
-                return Some(size);
+            Some(change) if near.contains(change) => {
+                let factor = wanted / change;
+                let is_same = thresholds::SAME_SIZE.contains(factor);
+                if is_known || is_same || corrections == thresholds::SIZE_CORRECTIONS {
+                    return Some(size);
+                }
+                corrections += 1;
+                factor
             }
             Some(change) if change.is_finite() && change > 0.0 => wanted / change,
             Some(_) => thresholds::SIZE_FACTOR,

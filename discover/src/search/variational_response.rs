@@ -224,8 +224,9 @@ fn ready(
 /// The size of a parameter that changes accelerations, or rates of states of first order, by a small part;
 /// none if none does.
 fn small(model: &EstimationModel, at: &dyn Fn(f64) -> Vec<f64>, points: &Points) -> Option<f64> {
-    let small = thresholds::SMALL_NEAR.times(thresholds::SMALL_CHANGE);
+    // One SI unit is an arbitrary beginning: the end is where a change is as wanted, not merely near.
     let mut size = 1.0;
+    let mut found = None;
     for _ in 0..thresholds::SIZE_ATTEMPTS {
         let mut evaluator = model.evaluator(&at(size));
         let change = change(&mut evaluator, points);
@@ -233,14 +234,18 @@ fn small(model: &EstimationModel, at: &dyn Fn(f64) -> Vec<f64>, points: &Points)
             thresholds::SIZE_FACTOR
         } else if !change.is_finite() {
             1e-3
-        } else if change > small.low && change < small.high {
-            return Some(size);
         } else {
             thresholds::SMALL_CHANGE / change
         };
+        if thresholds::SMALL_NEAR.contains(factor) {
+            found = Some(size);
+        }
+        if thresholds::SAME_SIZE.contains(factor) {
+            break;
+        }
         size *= factor.clamp(1.0 / thresholds::SIZE_FACTOR, thresholds::SIZE_FACTOR);
     }
-    None
+    found
 }
 
 /// The largest part by which any acceleration or rate of a state of first order differs, root mean square.

@@ -1,0 +1,55 @@
+//! Which values of a program are affine in the state, by how they are computed: no probe of their numbers
+//! depends on units less than on what is looked for.
+
+use eomgen_codegen::program::{Op, Program, ValueId};
+
+/// How a value depends on what moves, from the least to the most.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Form {
+    /// Not at all.
+    Constant,
+    /// As a sum over states and a constant.
+    Affine,
+    /// In some other way, or on inputs or time.
+    Other,
+}
+
+/// Whether some values of a program are sums over states and a constant, whose factors depend on
+/// parameters alone.
+pub(crate) fn are_affine(program: &Program, values: &[ValueId]) -> bool {
+    let mut forms = vec![Form::Other; program.values.len()];
+    for id in program.reachable(values) {
+        forms[id.index()] = form(program, id, &forms);
+    }
+    values
+        .iter()
+        .all(|value| forms[value.index()] <= Form::Affine)
+}
+
+/// The form of a value whose operands are known.
+fn form(program: &Program, id: ValueId, forms: &[Form]) -> Form {
+    let value = program.value(id);
+    if value.parameter_only {
+        return Form::Constant;
+    }
+    let of = |id: &ValueId| forms[id.index()];
+    // A product is affine if one factor is and the other is constant.
+    let product = |a: Form, b: Form| match a.min(b) {
+        Form::Constant => a.max(b),
+        Form::Affine | Form::Other => Form::Other,
+    };
+    match &value.op {
+        Op::Coordinate(_)
+        | Op::Rate(_)
+        | Op::ModeCoordinates(_)
+        | Op::ModeRates(_)
+        | Op::State(_) => Form::Affine,
+        Op::Negate(a) | Op::Total(a) => of(a),
+        Op::Add(a, b) | Op::Subtract(a, b) => of(a).max(of(b)),
+        Op::Multiply(a, b) => product(of(a), of(b)),
+        Op::Apply { matrix, vector, .. } => product(of(matrix), of(vector)),
+        Op::Divide(a, b) if of(b) == Form::Constant => of(a),
+        Op::CholeskySolve(factor, right) if of(factor) == Form::Constant => of(right),
+        _ => Form::Other,
+    }
+}
