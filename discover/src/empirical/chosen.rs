@@ -97,8 +97,12 @@ fn in_equation(
 }
 
 /// The best set of one term, or of more where that takes much of what fewer leave.
-fn best(regression: &Regression, of: Linearisation<'_>, blocks: &[DMatrix<f64>]) -> Option<Set> {
-    let count = blocks.iter().map(DMatrix::ncols).max()?;
+fn best(
+    regression: &Regression,
+    of: Linearisation<'_>,
+    blocks: &[Option<DMatrix<f64>>],
+) -> Option<Set> {
+    let count = blocks.iter().flatten().map(DMatrix::ncols).next()?;
     let mut known: Option<Set> = None;
     for size in 1..=thresholds::UNNAMED_TERMS {
         let sets = subsets(count, size).into_iter();

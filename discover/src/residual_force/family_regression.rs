@@ -17,7 +17,7 @@ pub(crate) struct FamilyRegression {
     pub families: Vec<Family>,
     pub firsts: Vec<usize>,
     pub regression: Regression,
-    pub blocks: Vec<DMatrix<f64>>,
+    pub blocks: Vec<Option<DMatrix<f64>>>,
 }
 
 impl FamilyRegression {
@@ -70,7 +70,8 @@ impl FamilyRegression {
 
     /// Over how many samples what a family leaves is correlated.
     pub fn correlation(&self, of: Linearisation<'_>, family: FamilyId, level: f64) -> f64 {
-        let count = self.blocks.iter().map(DMatrix::ncols).max().unwrap_or(0);
+        let blocks = self.blocks.iter().flatten();
+        let count = blocks.map(DMatrix::ncols).next().unwrap_or(0);
         let range = self.range(family);
         let whole = |sizes: Option<&Sizes>| {
             let mut values = DVector::zeros(count);

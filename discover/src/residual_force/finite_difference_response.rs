@@ -32,14 +32,30 @@ struct Step {
     points: [(f64, Vec<f64>); 3],
 }
 
+/// The motion without a force.
+#[derive(Default)]
+struct Visited {
+    steps: Vec<Step>,
+    /// The state at each time at which quantities are computed.
+    states: Vec<Vec<f64>>,
+    /// The quantities there, a row per time.
+    measured: Vec<f64>,
+}
+
+/// A force along the motion without it: what it adds per unit to accelerations and to rates of states
+/// of first order.
+#[derive(Clone, Default)]
+struct Force {
+    /// At the three points of each step.
+    in_steps: Vec<f64>,
+    /// At each time at which quantities are computed, where these show accelerations.
+    at_times: Vec<f64>,
+}
+
 impl<'s> SteppedWindow<'s> {
-    /// A window at these unknowns; none if a solver decides on its steps, or accelerations are measured, to
-    /// which a force adds at once.
+    /// A window at these unknowns; none if a solver decides on its steps.
     pub fn new(shooting: &'s Shooting<'s>, theta: &[f64], window: WindowId) -> Option<Self> {
         let model = shooting.model;
-        if model.measured.has_rates() {
-            return None;
-        }
         Some(Self {
             sensors: Sensors {
                 bias: vec![0.0; shooting.channels()],
@@ -62,60 +78,95 @@ impl<'s> SteppedWindow<'s> {
         driven: NeighbourDrives<'_>,
         level: f64,
     ) -> Option<DMatrix<f64>> {
-        let first = self.evaluator.program().degrees_of_freedom();
-        let (forced, count, drives) = (start.len() - first, driven.count, driven.drives);
-        let mut steps = Vec::new();
-        let own = self.motion(start, None, Some(&mut steps))?;
-        let windows = self.shooting.windows;
-        let inputs = windows.inputs(&windows.list[self.window]);
-        let mut accelerations = vec![Vec::with_capacity(3 * steps.len() * forced); count];
-        let mut all = vec![0.0; count * forced];
-        let (mut rates, mut square) = (vec![0.0; start.len()], 0.0);
-        for step in &steps {
-            for (t, state) in &step.points {
-                let inputs = inputs.held_at(step.middle);
-                drives.at(*t, state, inputs, &mut all);
-                for (force, now) in accelerations.iter_mut().zip(all.chunks_exact(forced)) {
-                    force.extend_from_slice(now);
-                }
-                let t = *t;
-                self.evaluator.rates(Point { t, state, inputs }, &mut rates);
-                square += rates[first..].iter().map(|a| a * a).sum::<f64>();
-            }
-        }
-        let samples = (self.shooting.output_times(&windows.list[self.window])).samples();
+        let count = driven.count;
+        let own = self.own_motion(start)?;
+        let squares = self.squares_of_rates(&own);
+        let forces = self.forces(&own, driven);
+        let window = &self.shooting.windows.list[self.window];
+        let samples = self.shooting.output_times(window).samples();
         let mut matrix = DMatrix::zeros(samples * self.shooting.channels(), count);
+        let wanted = thresholds::FORCE_MOVES * level;
         let mut part = thresholds::FIRST_FORCE;
-        for (column, force) in accelerations.iter().enumerate() {
-            let size: f64 = force.iter().map(|a| a * a).sum();
-            if size == 0.0 {
+        for (column, force) in forces.iter().enumerate() {
+            let Some(usual) = usual_size(force, &squares) else {
                 continue;
-            }
-            let usual = (square / size).sqrt();
-            let seen = self.change(start, (&own, force), part * usual)?;
-            let moved = (seen.iter().map(|c| c * c).sum::<f64>() / seen.len() as f64).sqrt();
-            // What the first moves tells how large the others may be.
-            let wanted = thresholds::FORCE_MOVES * level / (moved * usual);
-            if wanted.is_finite()
-                && (wanted > thresholds::FORCE_NEAR * part
-                    || part > thresholds::FORCE_NEAR * wanted)
-            {
-                part = wanted;
-                let seen = self.change(start, (&own, force), part * usual)?;
+            };
+            for _ in 0..thresholds::SIZE_ATTEMPTS {
+                let Some(seen) = self.change(start, (&own.measured, force), part * usual) else {
+                    part /= thresholds::FORCE_SHRINKS;
+                    continue;
+                };
                 matrix.column_mut(column).copy_from_slice(&seen);
-                continue;
+                let per_unit = (seen.iter().map(|c| c * c).sum::<f64>() / seen.len() as f64).sqrt();
+                // What the first moves tells how large the others may be.
+                let better = wanted / (per_unit * usual);
+                let is_near = (1.0 / thresholds::FORCE_NEAR..thresholds::FORCE_NEAR)
+                    .contains(&(better / part));
+                if !better.is_finite() || is_near {
+                    break;
+                }
+                part = better;
             }
-            matrix.column_mut(column).copy_from_slice(&seen);
         }
         let is_finite = matrix.iter().all(|entry| entry.is_finite());
         is_finite.then_some(matrix)
+    }
+
+    /// The sum of squares of each acceleration and of the rate of each state of first order.
+    fn squares_of_rates(&mut self, own: &Visited) -> Vec<f64> {
+        let first = self.evaluator.program().degrees_of_freedom();
+        let windows = self.shooting.windows;
+        let inputs = windows.inputs(&windows.list[self.window]);
+        let mut rates = vec![0.0; self.evaluator.program().states()];
+        let mut squares = vec![0.0; rates.len() - first];
+        for step in &own.steps {
+            for (t, state) in &step.points {
+                let (t, inputs) = (*t, inputs.held_at(step.middle));
+                self.evaluator.rates(Point { t, state, inputs }, &mut rates);
+                for (square, rate) in squares.iter_mut().zip(&rates[first..]) {
+                    *square += rate * rate;
+                }
+            }
+        }
+        squares
+    }
+
+    /// Each drive along the motion without it.
+    fn forces(&self, own: &Visited, driven: NeighbourDrives<'_>) -> Vec<Force> {
+        let program = self.evaluator.program();
+        let forced = program.states() - program.degrees_of_freedom();
+        let windows = self.shooting.windows;
+        let window = &windows.list[self.window];
+        let inputs = windows.inputs(window);
+        let mut found = vec![Force::default(); driven.count];
+        let mut all = vec![0.0; driven.count * forced];
+        for step in &own.steps {
+            for (t, state) in &step.points {
+                let inputs = inputs.held_at(step.middle);
+                driven.drives.at(*t, state, inputs, &mut all);
+                for (force, now) in found.iter_mut().zip(all.chunks_exact(forced)) {
+                    force.in_steps.extend_from_slice(now);
+                }
+            }
+        }
+        if !self.shooting.model.measured.has_rates() {
+            return found;
+        }
+        let times = self.shooting.output_times(window).times;
+        for (t, state) in times.iter().zip(&own.states) {
+            driven.drives.at(*t, state, inputs.held_at(*t), &mut all);
+            for (force, now) in found.iter_mut().zip(all.chunks_exact(forced)) {
+                force.at_times.extend_from_slice(now);
+            }
+        }
+        found
     }
 
     /// How far a force of this size moves the outputs, in standard deviations per unit.
     fn change(
         &mut self,
         start: &[f64],
-        (own, force): (&[f64], &[f64]),
+        (own, force): (&[f64], &Force),
         size: f64,
     ) -> Option<Vec<f64>> {
         let moved = self.motion(start, Some((size, force)), None)?;
@@ -128,12 +179,20 @@ impl<'s> SteppedWindow<'s> {
         Some(self.shooting.differences(window, &seen, |seen, _| seen))
     }
 
-    /// The quantities along a motion, with a force if there is one, and its steps where they are wanted.
+    /// The motion without a force.
+    fn own_motion(&mut self, start: &[f64]) -> Option<Visited> {
+        let mut visited = Visited::default();
+        visited.measured = self.motion(start, None, Some(&mut visited))?;
+        Some(visited)
+    }
+
+    /// The quantities along a motion, with a force if there is one; its steps and states where they are
+    /// wanted.
     fn motion(
         &mut self,
         start: &[f64],
-        force: Option<(f64, &[f64])>,
-        mut visited: Option<&mut Vec<Step>>,
+        force: Option<(f64, &Force)>,
+        mut visited: Option<&mut Visited>,
     ) -> Option<Vec<f64>> {
         let degrees = self.evaluator.program().degrees_of_freedom();
         let forced = start.len() - degrees;
@@ -144,17 +203,16 @@ impl<'s> SteppedWindow<'s> {
         let mut state = start.to_vec();
         let mut method = RungeKutta::new(start.len());
         let mut measured = Vec::with_capacity(times.len() * self.shooting.channels());
-        self.measure(
-            (*times.first()?, &state),
-            inputs.held_at(times[0]),
-            &mut measured,
-        );
         let mut number = 0;
-        for pair in times.windows(2) {
-            let steps = self.longest_step.steps(pair[1] - pair[0]);
-            let h = (pair[1] - pair[0]) / steps as f64;
+        for (place, t) in times.iter().enumerate() {
+            let before = place.checked_sub(1).map_or(*t, |before| times[before]);
+            let steps = match place {
+                0 => 0,
+                _ => self.longest_step.steps(t - before),
+            };
+            let h = (t - before) / steps as f64;
             for step in 0..steps {
-                let begin = pair[0] + step as f64 * h;
+                let begin = before + step as f64 * h;
                 let middle = begin + 0.5 * h;
                 let held = inputs.held_at(middle);
                 let mut points = [const { (0.0, Vec::new()) }; 3];
@@ -168,8 +226,8 @@ impl<'s> SteppedWindow<'s> {
                     self.evaluator.rates(at, rates);
                     if let Some((size, force)) = force {
                         let first = (3 * number + point) * forced;
-                        let force_responses = rates[degrees..].iter_mut().zip(&force[first..]);
-                        force_responses.for_each(|(k, a)| *k += size * a);
+                        let added = rates[degrees..].iter_mut().zip(&force.in_steps[first..]);
+                        added.for_each(|(rate, change)| *rate += size * change);
                     }
                     if visited.is_some() {
                         points[point] = (t, state.to_vec());
@@ -177,19 +235,58 @@ impl<'s> SteppedWindow<'s> {
                 });
                 number += 1;
                 if let Some(visited) = &mut visited {
-                    visited.push(Step { middle, points });
+                    visited.steps.push(Step { middle, points });
                 }
             }
-            self.measure((pair[1], &state), inputs.held_at(pair[1]), &mut measured);
+            let at = Point {
+                t: *t,
+                state: &state,
+                inputs: inputs.held_at(*t),
+            };
+            let added = force.map(|(size, force)| (size, force.at(place, forced)));
+            self.measure(at, added, &mut measured);
+            if let Some(visited) = &mut visited {
+                visited.states.push(state.clone());
+            }
         }
         let is_finite = measured.iter().all(|value| value.is_finite());
         is_finite.then_some(measured)
     }
 
-    /// Appends the quantities at a state.
-    fn measure(&mut self, (t, state): (f64, &[f64]), inputs: &[f64], values: &mut Vec<f64>) {
-        let point = Point { t, state, inputs };
+    /// Appends the quantities at a point, with what a force of this size adds to accelerations at once.
+    fn measure(&mut self, point: Point<'_>, force: Option<(f64, &[f64])>, values: &mut Vec<f64>) {
         let measured = &self.shooting.model.measured;
+        let first = values.len();
         measured.append(&mut self.evaluator, point, &mut self.buffers, values);
+        if let Some((size, force)) = force {
+            measured.add_to_accelerations(force, size, &mut values[first..]);
+        }
     }
+}
+
+impl Force {
+    /// What it adds at one of the times at which quantities are computed; nothing if these show no
+    /// accelerations.
+    fn at(&self, place: usize, forced: usize) -> &[f64] {
+        let own = place * forced..(place + 1) * forced;
+        self.at_times.get(own).unwrap_or_default()
+    }
+}
+
+/// The size at which a force changes some acceleration, or the rate of some state of first order, by as
+/// much as that usually is, and no other by more; none if it changes none that the motion has. Each is
+/// compared with itself: they have different units.
+fn usual_size(force: &Force, squares: &[f64]) -> Option<f64> {
+    let mut sums = vec![0.0; squares.len()];
+    for now in force.in_steps.chunks_exact(squares.len()) {
+        for (sum, change) in sums.iter_mut().zip(now) {
+            *sum += change * change;
+        }
+    }
+    let moving = sums
+        .iter()
+        .zip(squares)
+        .filter(|(_, square)| **square > 0.0);
+    let part = moving.map(|(sum, square)| sum / square).fold(0.0, f64::max);
+    (part > 0.0).then(|| 1.0 / part.sqrt())
 }

@@ -74,13 +74,13 @@ impl Drives for ForceDrives<'_> {
     }
 }
 
-/// For each window a column per shape, in standard deviations per unit of force;
-/// no columns where the fit has no motion. None if neighbouring motions cannot be followed at all.
+/// For each window a column per shape, in standard deviations per unit of force; none for a window
+/// whose motion cannot be followed. None if neighbouring motions cannot be followed at all.
 pub fn force_responses(
     of: Linearisation<'_>,
     equations: &Equations,
     columns: &ForceColumns<'_>,
-) -> Option<Vec<DMatrix<f64>>> {
+) -> Option<Vec<Option<DMatrix<f64>>>> {
     let Linearisation { at, problem, fit } = of;
     let whole = fit.shooting(problem);
     let shooting = Shooting {
@@ -101,7 +101,7 @@ pub fn force_responses(
         .windows
         .len()
         .div_ceil(rayon::current_num_threads().max(1));
-    let parts: Vec<Vec<DMatrix<f64>>> = (0..at.windows.len())
+    let parts: Vec<Vec<Option<DMatrix<f64>>>> = (0..at.windows.len())
         .collect::<Vec<_>>()
         .par_chunks(size.max(1))
         .map(|part| {
@@ -124,10 +124,7 @@ pub fn force_responses(
                         .columns(start, driven, at.level),
                 }
             };
-            let none = || DMatrix::zeros(0, 0);
-            part.iter()
-                .map(|number| one(*number).unwrap_or_else(none))
-                .collect()
+            part.iter().map(|number| one(*number)).collect()
         })
         .collect();
     Some(parts.into_iter().flatten().collect())

@@ -64,9 +64,9 @@ pub struct WindowSize {
 }
 
 impl Regression {
-    /// Takes columns for each window.
-    pub fn new(at: &LinearisedFit, fit: &Fit, columns: &[DMatrix<f64>]) -> Option<Self> {
-        let count = columns.iter().map(DMatrix::ncols).max()?;
+    /// Takes columns for each window, as many for each; none if no window has any.
+    pub fn new(at: &LinearisedFit, fit: &Fit, columns: &[Option<DMatrix<f64>>]) -> Option<Self> {
+        let count = columns.iter().flatten().map(DMatrix::ncols).next()?;
         let theta = &at.estimate.theta;
         // One that a bound holds is free as well: a force may be what drove it there.
         let n = fit.unknowns.len();
@@ -74,7 +74,7 @@ impl Regression {
         let mut windows = Vec::with_capacity(columns.len());
         let mut numbers = 0.0;
         for (base, block) in at.base.iter().zip(columns) {
-            let (Some(base), true) = (base, block.ncols() == count) else {
+            let (Some(base), Some(block)) = (base, block) else {
                 windows.push(DMatrix::zeros(0, 0));
                 continue;
             };
@@ -213,7 +213,7 @@ impl Regression {
     pub fn remaining(
         &self,
         at: &LinearisedFit,
-        columns: &[DMatrix<f64>],
+        columns: &[Option<DMatrix<f64>>],
         values: &dyn Fn(usize) -> DVector<f64>,
         shared: bool,
     ) -> Vec<Vec<f64>> {
@@ -223,8 +223,8 @@ impl Regression {
             -factor.solve(&(cross.columns(0, count) * values(0) + cross.column(count)))
         });
         let windows = at.base.iter().zip(columns).enumerate();
-        let one = |(window, (base, block)): (usize, (&Option<StateProjection>, &DMatrix<f64>))| {
-            let (Some(base), true) = (base, block.ncols() == count) else {
+        let one = |(window, (base, block)): (usize, (&Option<StateProjection>, &Option<_>))| {
+            let (Some(base), Some(block)) = (base, block) else {
                 return Vec::new();
             };
             let mut residual = &base.residual + block * values(window);

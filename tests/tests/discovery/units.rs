@@ -1,0 +1,210 @@
+//! The same machine and record in other units: what is found does not depend on them.
+
+use std::fs;
+use std::path::Path;
+
+use eomgen_model_spec::unit::Unit;
+use serde_json::Value;
+
+use crate::machines::{
+    BEAM, CYLINDER, Channel, Machine, PENDULUM, Table, answered, description, mass, spread,
+};
+
+/// Answers may differ by this part, which is rounding and what Newton's method makes of it.
+const ROUNDING: f64 = 1e-6;
+
+/// What the units of length, mass and current are multiplied with, as powers of two.
+type Units = [i32; 3];
+
+/// A number of this unit in other units.
+fn factor(unit: &str, [length, mass, current]: Units) -> f64 {
+    let unit = Unit::parse(unit).expect("a unit");
+    let exponents = unit
+        .dimension
+        .exponents()
+        .map(|exponent| exponent.to_integer());
+    let [kg, m, _, a, ..] = exponents;
+    2f64.powi(kg * mass + m * length + a * current)
+}
+
+/// A specification with its parameters in other units.
+fn in_units(specification: &str, units: Units) -> String {
+    let line = |line: &str| {
+        let parts = line.split_once("{ value = ").and_then(|(name, rest)| {
+            let (value, rest) = rest.split_once(", unit = \"")?;
+            let (unit, _) = rest.split_once('"')?;
+            let value: f64 = value.trim().parse().ok()?;
+            Some(format!(
+                "{name}{{ value = {:e}, unit = \"{unit}\" }}\n",
+                value * factor(unit, units)
+            ))
+        });
+        parts.unwrap_or_else(|| format!("{line}\n"))
+    };
+    specification.lines().map(line).collect()
+}
+
+/// What the answer of a command says in numbers without units: gaps in noise floors, effects in their
+/// own uncertainty, the change of parameters.
+fn numbers(answer: &Value, units: Units) -> Vec<(String, f64)> {
+    let number = |value: &Value| value.as_f64().expect("a number");
+    let mut found = Vec::new();
+    for (channel, gap) in answer["gap"].as_object().expect("gaps") {
+        for stage in ["before", "after"] {
+            let of = match gap.get(stage) {
+                Some(stage) => stage,
+                None => gap,
+            };
+            for part in ["train", "test"] {
+                let left = number(&of[part]) / number(&gap["floor"]);
+                found.push((format!("{channel} {stage} {part}"), left));
+            }
+        }
+    }
+    for effect in answer["effects"].as_array().into_iter().flatten() {
+        for (name, parameter) in effect["parameters"].as_object().expect("parameters") {
+            let unit = parameter["unit"].as_str().expect("a unit");
+            for of in ["value", "sd"] {
+                let value = number(&parameter[of]) / factor(unit, units);
+                found.push((format!("{} {name} {of}", effect["effect"]), value));
+            }
+        }
+    }
+    found
+}
+
+/// Both commands answer the same in all units. `truth`: the specification that makes the records.
+fn answers_agree(truth: &str, machine: &Machine, channel: &Channel, others: &[Units]) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    let made = Machine {
+        specification: truth.to_owned(),
+        ..machine.clone()
+    };
+    let noise = 2e-3 * spread(&made.records(folder).column(channel.1));
+    for command in ["compare", "discover"] {
+        let answer = |units: Units| {
+            let folder = tempfile::tempdir_in(folder).expect("a folder");
+            write_in_units(folder.path(), machine, channel, units);
+            let noise = noise * factor(channel.2, units);
+            let description = description(machine, channel, noise);
+            let answer = answered(folder.path(), command, &description);
+            (answer["verdict"].clone(), numbers(&answer, units))
+        };
+        let own = answer([0; 3]);
+        for units in others {
+            let (verdict, numbers) = answer(*units);
+            assert_eq!(verdict, own.0, "{command} {channel:?} {units:?}");
+            assert_eq!(
+                numbers.len(),
+                own.1.len(),
+                "{command} {channel:?} {units:?}"
+            );
+            for ((name, other), (_, own)) in numbers.iter().zip(&own.1) {
+                let difference = (other - own).abs() / own.abs();
+                assert!(
+                    difference < ROUNDING,
+                    "{command} {channel:?} {units:?}: {name}: {other} in place of {own}"
+                );
+            }
+        }
+    }
+}
+
+/// Writes a machine and its records, which lie in the folder above, in other units.
+fn write_in_units(folder: &Path, machine: &Machine, channel: &Channel, units: Units) {
+    let specification = in_units(&machine.specification, units);
+    fs::write(folder.join("model.toml"), specification).expect("a file");
+    let above = folder.parent().expect("a folder above");
+    for name in ["train.csv", "test.csv"] {
+        let table = Table::read(&above.join(name));
+        let columns = [("t", "s"), ("u", machine.input.0), (channel.1, channel.2)];
+        let mut own = Table::default();
+        for (column, unit) in columns {
+            let factor = factor(unit, units);
+            let values = table.column(column).into_iter().map(|value| factor * value);
+            own.add(column, values.collect());
+        }
+        own.write(&folder.join(name));
+    }
+}
+
+/// Very small, very large, and lengths and masses that go opposite ways.
+const OTHERS: [Units; 3] = [[-17, -20, 0], [17, 20, 0], [-20, 20, 10]];
+
+#[test]
+fn nonlinear_model_with_a_pressure() {
+    let channels = [("x", "x", "m"), ("x_ddot", "a", "m/s^2")];
+    let machine = Machine::new(CYLINDER, ("V", 1.0), &channels);
+    let truth = CYLINDER.replace("value = 500", "value = 510");
+    for channel in &channels {
+        answers_agree(&truth, &machine, channel, &OTHERS);
+    }
+}
+
+#[test]
+fn model_with_a_field() {
+    let channels = [("x", "x", "rad"), ("o", "o", "m")];
+    let machine = Machine::new(BEAM, ("N m", 0.5), &channels);
+    for channel in &channels {
+        answers_agree(BEAM, &machine, channel, &OTHERS);
+    }
+}
+
+#[test]
+fn dry_friction_that_a_linear_model_lacks() {
+    let machine = mass("1/2*k*x^2", "k*x", "u", "");
+    let truth = mass("1/2*k*x^2", "k*x", "u - F*sign(dot(x))", "").specification;
+    answers_agree(&truth, &machine, &("x", "x", "m"), &OTHERS);
+}
+
+#[test]
+fn spring_that_a_nonlinear_model_lacks() {
+    let machine = Machine::new(PENDULUM, ("N m", 1.5), &[]);
+    let truth = PENDULUM.replace("u - c*dot(x)", "u - c*dot(x) - m*g*l*x/10");
+    answers_agree(&truth, &machine, &("x", "x", "rad"), &OTHERS);
+}
+
+/// The pressure of a cylinder is a number of pascals, kilopascals, megapascals and gigapascals.
+#[test]
+fn state_as_a_number_of_other_units() {
+    let in_unit = |unit: f64| {
+        (CYLINDER.replace(
+            "[coordinates]",
+            &format!("P = {{ value = {unit:e}, unit = \"Pa\" }}\n[coordinates]"),
+        ))
+        .replace(
+            "p = { unit = \"Pa\", rate = \"E_V",
+            "z = { unit = \"1\", rate = \"1/P*E_V",
+        )
+        .replace("p/p_s", "z*P/p_s")
+        .replace("A*p", "A*P*z")
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    let channel = ("x", "x", "m");
+    let machine = Machine::new(CYLINDER, ("V", 1.0), &[channel]);
+    let truth = Machine {
+        specification: CYLINDER.replace("value = 500", "value = 510"),
+        ..machine.clone()
+    };
+    let noise = 2e-3 * spread(&truth.records(folder).column("x"));
+    let description = description(&machine, &channel, noise);
+    let answer = |unit: f64| {
+        fs::write(folder.join("model.toml"), in_unit(unit)).expect("a file");
+        let answer = answered(folder, "compare", &description);
+        (answer["verdict"].clone(), numbers(&answer, [0; 3]))
+    };
+    let (verdict, own) = answer(1.0);
+    for unit in [1e3, 1e6, 1e9] {
+        let (other, numbers) = answer(unit);
+        assert_eq!(other, verdict, "{unit:e}");
+        for ((name, other), (_, own)) in numbers.iter().zip(&own) {
+            let difference = (other - own).abs() / own.abs();
+            assert!(
+                difference < ROUNDING,
+                "{unit:e}: {name}: {other} in place of {own}"
+            );
+        }
+    }
+}
