@@ -16,12 +16,12 @@ pub const DELAY_PRIOR: f64 = 0.5;
 /// does not show stays where it may be.
 pub const INITIAL_STATE_PRIOR: f64 = 0.02;
 
-/// A state that nothing moves ranges as far as moves the outputs by this part of the noise: it may
-/// not be known exactly, and nobody sees that.
+/// Range of a state that nothing moves: a change that moves the outputs by this part of the noise,
+/// which no record shows.
 pub const UNMOVED_STATE: f64 = 1e-3;
 
-/// Where a motion cannot be followed through a record, its first half, quarter and so on tell how far
-/// states range: so many times.
+/// If a motion cannot be followed through a record, ranges come from its first half, quarter and so on:
+/// the number of halvings.
 pub const MOST_HALVINGS: u32 = 6;
 
 /// So many times less is known of the initial state of a coordinate that a candidate adds: what
@@ -412,8 +412,8 @@ pub const SMALL_CHANGE: f64 = 1e-4;
 /// A change is small and above rounding if these factors bring it there.
 pub const SMALL_NEAR: Interval = Interval::new(0.1, 1e3);
 
-/// A size that was begun with one SI unit is found where the next one would differ by less than
-/// this: what follows from it does not depend on units.
+/// A search for a size that starts at one SI unit ends if the next size would differ by less than this
+/// factor, so that results do not depend on units.
 pub const SAME_SIZE: Interval = Interval::new(1.0 - 1e-9, 1.0 + 1e-9);
 
 /// Every so many samples of a window such a size is looked for.
@@ -432,8 +432,7 @@ pub const INITIAL_PARTS: [f64; 5] = [1.0, 0.3, 0.1, 3.0, 10.0];
 /// to either side.
 pub const OTHER_SHAPES: [f64; 2] = [0.4, 2.5];
 
-/// A size of a motion that was begun with one SI unit, and is near what is wanted, is corrected so
-/// often: a straight line is good enough by then.
+/// Corrections of a size that started at one SI unit once it is near the wanted one. Each costs a motion.
 pub const SIZE_CORRECTIONS: usize = 2;
 
 /// Attempts to find the size at which a candidate is linearised or simulated.
@@ -468,7 +467,7 @@ pub const FIRST_FORCE: f64 = 1e-4;
 /// It need not be nearer to what is wanted than by this factor.
 pub const FORCE_NEAR: f64 = 10.0;
 
-/// A force whose motion leaves where the model is defined is divided by this factor.
+/// Factor by which a force is reduced if its motion leaves the domain of the model.
 pub const FORCE_SHRINKS: f64 = 1e3;
 
 /// Rounds in which the usual size of a force that differs from window to window is found: it

@@ -7,7 +7,7 @@ use crate::evaluate::evaluate;
 use crate::ids::InputId;
 use crate::infer::Words;
 use crate::model::{
-    Basis, CoefficientKind, Expr, ExprKind, Input, Model, Ordinate, ParameterValue,
+    Basis, CoefficientKind, Expr, ExprKind, Input, Model, ObservedRate, Ordinate, ParameterValue,
     STABILISATION_RATE,
 };
 use crate::suggest::did_you_mean;
@@ -21,12 +21,10 @@ pub fn check_sensors(model: &Model, found: &mut Diagnostics) {
     let rates = coordinates().map(|c| format!("{}_dot", c.name));
     let accelerations = coordinates().map(|c| format!("{}_ddot", c.name));
     let mut channels: Vec<String> = vec!["energy".to_owned(), "power".to_owned()];
-    channels.extend(
-        model
-            .observables
-            .iter()
-            .map(|observable| observable.name.clone()),
-    );
+    for (observable, of) in model.observables.iter().enumerate() {
+        channels.push(of.name.clone());
+        channels.extend([1, 2].map(|times| ObservedRate { observable, times }.name(model)));
+    }
     channels.extend(
         model
             .coordinates
@@ -41,7 +39,7 @@ pub fn check_sensors(model: &Model, found: &mut Diagnostics) {
         if !channels.contains(&sensor.observable) {
             let message = format!("no quantity {} to be measured", quoted(&sensor.observable));
             let near = did_you_mean(&sensor.observable, channels.iter().map(String::as_str));
-            let rule = "a channel is an observable, a coordinate, its rate (NAME_dot) or acceleration \
+            let rule = "a channel is an observable or a coordinate, its rate (NAME_dot) or acceleration \
                         (NAME_ddot), a state, or an input";
             found.push(
                 Diagnostic::error(message)

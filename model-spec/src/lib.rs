@@ -52,6 +52,7 @@ pub mod model;
 pub mod models;
 mod motion;
 mod names;
+mod observed_rate;
 mod order;
 pub mod parser;
 mod rate_order;

@@ -434,12 +434,24 @@ pub struct Observable {
     pub name: String,
     /// Its value (no accelerations).
     pub value: Expr,
+    /// The observable whose time derivative it is instead, if it is one; see
+    /// [`Model::observe_rate`].
+    pub rate_of: Option<ObservedRate>,
     /// Its unit (coherent SI), inferred, and checked against the declared one if any.
     pub unit: Unit,
     /// What it is.
     pub doc: String,
     /// Where its name stands.
     pub span: Span,
+}
+
+/// A time derivative of an observable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ObservedRate {
+    /// Place of the observable in [`Model::observables`].
+    pub observable: usize,
+    /// 1 for the rate, 2 for the acceleration.
+    pub times: u8,
 }
 
 /// A name for a coefficient of the derived accelerations, as Eq. (22) names them.

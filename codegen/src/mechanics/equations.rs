@@ -13,6 +13,7 @@ use crate::mechanics::impacts::{Impact, impacts};
 use crate::mechanics::kinetic::KineticRows;
 use crate::mechanics::lagrange::Variables;
 use crate::mechanics::mass_matrix::{MassMatrix, ModalMassBlock};
+use crate::mechanics::observed_rates::observed;
 use crate::mechanics::rigid_tree::bodies::RigidBodies;
 use crate::mechanics::rows::RowNodes;
 use crate::mechanics::solve::{Accelerations, solve};
@@ -135,7 +136,7 @@ pub fn derive(model: &Model, orders: &[usize]) -> Derived<Equations> {
     let observables = model
         .observables
         .iter()
-        .map(|o| translator.node(&o.value))
+        .map(|o| observed(&mut translator, o, &accelerations.rows))
         .collect::<Derived<Vec<NodeId>>>()?;
     for (observable, node) in model.observables.iter().zip(&observables) {
         translator.graph.set_name(*node, &observable.name);

@@ -21,6 +21,7 @@ mod kinetic;
 mod lagrange;
 pub mod linearity;
 pub mod mass_matrix;
+mod observed_rates;
 pub mod outputs;
 mod rigid_tree;
 pub mod rows;

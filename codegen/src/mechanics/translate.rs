@@ -13,6 +13,7 @@ use crate::mechanics::fields::domain::Domain;
 use crate::mechanics::fields::function::FieldFunction;
 use crate::mechanics::fields::modes::node_count;
 use crate::mechanics::fields::term::Atom;
+use crate::mechanics::rows::RowNodes;
 use crate::symbolic::arguments::Arguments;
 use crate::symbolic::differentiate::Direction;
 use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation, Space};
@@ -229,7 +230,23 @@ impl<'m> Translator<'m> {
         }
     }
 
-    fn holds_input_without_rate(&self, node: NodeId) -> bool {
+    /// The time derivative of a node along the motion, where rates change with these accelerations.
+    pub(crate) fn rate_along_motion(
+        &mut self,
+        node: NodeId,
+        accelerations: &RowNodes,
+    ) -> Derived<NodeId> {
+        let rates = self.rates_within(node)?;
+        let tangent = |graph: &mut Graph, leaf: NodeId| match *graph.operation(leaf) {
+            Operation::Rate(index) => accelerations.scalars[index],
+            Operation::ModeRates(field) => accelerations.modal[field],
+            _ => rate_of_leaf(graph, leaf, &rates),
+        };
+        Ok(Direction::new(&tangent).derivative(&mut self.graph, node))
+    }
+
+    /// Whether a node holds an input of which no rate is given.
+    pub(crate) fn holds_input_without_rate(&self, node: NodeId) -> bool {
         self.graph.dependence(node).has(Dependence::INPUT)
             && self.graph.reachable(&[node]).into_iter().any(|leaf| {
                 matches!(*self.graph.operation(leaf), Operation::Input(input)
@@ -366,15 +383,20 @@ fn along_motion_and_states(
     node: NodeId,
     rates: &HashMap<StateId, NodeId>,
 ) -> NodeId {
-    let tangent = |graph: &mut Graph, leaf: NodeId| match *graph.operation(leaf) {
+    let tangent = |graph: &mut Graph, leaf: NodeId| rate_of_leaf(graph, leaf, rates);
+    Direction::new(&tangent).derivative(graph, node)
+}
+
+/// The time derivative of what moves with its rate; 0 of anything else.
+fn rate_of_leaf(graph: &mut Graph, leaf: NodeId, rates: &HashMap<StateId, NodeId>) -> NodeId {
+    match *graph.operation(leaf) {
         Operation::Coordinate(index) => graph.intern(Operation::Rate(index)),
         Operation::ModeCoordinates(field) => graph.intern(Operation::ModeRates(field)),
         Operation::Time => graph.one(),
         Operation::Input(index) => rate_of_input(graph, index),
         Operation::State(index) => rates.get(&index).copied().unwrap_or_else(|| graph.zero()),
         _ => graph.zero(),
-    };
-    Direction::new(&tangent).derivative(graph, node)
+    }
 }
 
 /// How fast a node changes while the state is held: with the time, and with inputs whose rates are

@@ -1,9 +1,9 @@
-//! Which values of a program are affine in the state, by how they are computed: no probe of their numbers
-//! depends on units less than on what is looked for.
+//! Values of a program that are affine in the state, found from its operations. A test with numbers would
+//! depend on units: a root of a pressure is flat at one pascal.
 
 use eomgen_codegen::program::{Op, Program, ValueId};
 
-/// How a value depends on what moves, from the least to the most.
+/// Dependence of a value on the state, from the least to the most.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Form {
     /// Not at all.
@@ -14,8 +14,8 @@ enum Form {
     Other,
 }
 
-/// Whether some values of a program are sums over states and a constant, whose factors depend on
-/// parameters alone.
+/// Returns whether some values are sums over states and a constant. Their factors depend on parameters
+/// alone.
 pub(crate) fn are_affine(program: &Program, values: &[ValueId]) -> bool {
     let mut forms = vec![Form::Other; program.values.len()];
     for id in program.reachable(values) {
@@ -26,7 +26,7 @@ pub(crate) fn are_affine(program: &Program, values: &[ValueId]) -> bool {
         .all(|value| forms[value.index()] <= Form::Affine)
 }
 
-/// The form of a value whose operands are known.
+/// Returns the form of a value from the forms of its operands.
 fn form(program: &Program, id: ValueId, forms: &[Form]) -> Form {
     let value = program.value(id);
     if value.parameter_only {

@@ -5,8 +5,10 @@
 use eomgen_codegen::program::Program;
 use eomgen_codegen::program::evaluator::Evaluator;
 use eomgen_compiled_model::{CompiledModel, Error, Orders};
+use eomgen_model_spec::Checked;
 use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_model_spec::model::{Model, Parameter, ParameterValue};
+use eomgen_model_spec::source::Source;
 
 use crate::error::SimulationError;
 use crate::ids::{ChannelId, ParameterId};
@@ -15,6 +17,7 @@ use crate::model::linear_outputs::LinearOutputs;
 use crate::model::longest_step::LongestStep;
 use crate::model::measured_outputs::MeasuredOutputs;
 use crate::model::nonlinear_remainder::NonlinearRemainder;
+use crate::model::observed_rates::add_observed_rates;
 use crate::model::output_times::OutputRate;
 use crate::model::simulation::Simulation;
 use crate::model::stop::Stop;
@@ -100,7 +103,9 @@ impl EstimationModel {
         order: Option<usize>,
         channels: &[Channel],
     ) -> Result<Self, Error> {
-        let compiled = compiled(text, name, order)?;
+        let Checked { mut model, .. } = eomgen_model_spec::check(Source::new(name, text))?;
+        let rates = add_observed_rates(&mut model, channels);
+        let compiled = CompiledModel::derive(model, order.map_or(Orders::Declared, Orders::All))?;
         let ranges = compiled.model().coordinate_ranges().map_err(|error| {
             Diagnostics::one(compiled.model().source.clone(), error.diagnostic())
         })?;
@@ -109,7 +114,7 @@ impl EstimationModel {
         let independent = compiled.model().parameters.iter().filter(is_number);
         let parameters = independent.map(|p| p.name.clone()).collect();
         Ok(Self {
-            measured: MeasuredOutputs::new(channels, program),
+            measured: MeasuredOutputs::new(channels, &rates, program),
             channels: channels
                 .iter()
                 .map(|channel| channel.name.clone())

@@ -50,7 +50,10 @@ fn measured(
             }
             Quantity::Rate(coordinate) => state[degrees + coordinate] = value,
             Quantity::State(first_order) => state[2 * degrees + first_order] = value,
-            Quantity::Observable(_) | Quantity::Acceleration(_) | Quantity::Input(_) => {}
+            Quantity::Observable(_)
+            | Quantity::ObservedRate(_)
+            | Quantity::Acceleration(_)
+            | Quantity::Input(_) => {}
         }
     }
     // Noise may put what is measured beyond where the model lives.
@@ -92,7 +95,7 @@ pub fn ranges(
         return vec![1.0; model.state_count()];
     };
     let moved = moved(&mut simulation, records, initial);
-    // A state of which nothing is known is taken to range over one unit.
+    // A state that no channel depends on is given a range of one unit.
     let mut of = |(state, range): (usize, f64)| match range > 0.0 {
         true => range,
         false => (records.first())
@@ -102,8 +105,8 @@ pub fn ranges(
     moved.into_iter().enumerate().map(&mut of).collect()
 }
 
-/// How far each state moves in the records, or in the longest beginnings of them that can be followed;
-/// 0 if it does not.
+/// The range of each state in the records, or in the longest beginnings of them that can be followed; 0
+/// if it does not move.
 fn moved(simulation: &mut Simulation<'_>, records: &[Record], initial: &[f64]) -> Vec<f64> {
     for halving in 0..=thresholds::MOST_HALVINGS {
         let motions = records.iter().filter_map(|record| {
@@ -111,7 +114,7 @@ fn moved(simulation: &mut Simulation<'_>, records: &[Record], initial: &[f64]) -
             let times = &record.times[..count];
             simulation.states(initial, times, &record.inputs).ok()
         });
-        // Every tenth sample shows how far a state goes.
+        // Every tenth sample is enough for a range.
         let states = motions.flat_map(|states| states.into_iter().step_by(10));
         let states: Vec<Vec<f64>> = states.collect();
         let of = |state: usize| root_mean_square(states.iter().map(|values| values[state]));

@@ -15,8 +15,8 @@ pub struct LinearOutputs {
 
 impl LinearOutputs {
     /// The quantities at an evaluator's parameters; none if they are not linear in the state, or
-    /// depend on more than it. Inputs that are measured are not, nor accelerations: what changes a force
-    /// changes them at once, and not by the state alone.
+    /// depend on more than it. Measured inputs and accelerations depend on more: a force changes them at
+    /// once.
     pub(crate) fn of(outputs: &MeasuredOutputs, evaluator: &mut Evaluator) -> Option<Self> {
         if outputs.has_rates() || !outputs.inputs().is_empty() {
             return None;
@@ -40,7 +40,7 @@ impl LinearOutputs {
         let mut state = vec![0.0; n];
         let constant = quantities(&state);
         let mut rows = vec![vec![0.0; n]; constant.len()];
-        // So far away that no constant is seen beside the factor, and a power of two.
+        // At so large a state the constant is lost to rounding; a power of two keeps the factor exact.
         let away = 2f64.powi(300);
         for column in 0..n {
             state[column] = away;

@@ -14,8 +14,19 @@ pub(crate) enum Output {
     Observable(usize),
     /// The rate of a state, by the state's place.
     Rate(usize),
+    /// A derivative of an observable that holds accelerations.
+    Acceleration(ObservedAcceleration),
     /// An input, by its place.
     Input(usize),
+}
+
+/// Places of an observed acceleration and of the observable that it is the time derivative of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct ObservedAcceleration {
+    /// The derivative.
+    pub place: usize,
+    /// The observable that is differentiated. It holds rates.
+    pub of: usize,
 }
 
 /// An input that is measured.
@@ -49,16 +60,19 @@ pub(crate) struct MeasuredOutputs {
 }
 
 impl MeasuredOutputs {
-    /// What channels measure of a model.
-    pub fn new(channels: &[Channel], program: &Program) -> Self {
+    /// The measured quantities of a program. `rates`: for each channel the place of the derivative of an
+    /// observable, if the channel measures one.
+    pub fn new(channels: &[Channel], rates: &[Option<Output>], program: &Program) -> Self {
         let degrees_of_freedom = program.degrees_of_freedom();
-        let outputs = channels.iter().map(|channel| match channel.quantity {
+        let channels_with_rates = channels.iter().zip(rates);
+        let outputs = channels_with_rates.map(|(channel, rate)| match channel.quantity {
             Quantity::Observable(observable) => Output::Observable(observable),
             Quantity::Coordinate(coordinate) => Output::State(coordinate),
             Quantity::Rate(coordinate) => Output::State(degrees_of_freedom + coordinate),
             Quantity::Acceleration(coordinate) => Output::Rate(degrees_of_freedom + coordinate),
             Quantity::State(state) => Output::State(2 * degrees_of_freedom + state),
             Quantity::Input(input) => Output::Input(input),
+            Quantity::ObservedRate(of) => rate.unwrap_or(Output::Observable(of.observable)),
         });
         Self {
             outputs: outputs.collect(),
@@ -73,6 +87,7 @@ impl MeasuredOutputs {
     pub fn observable_values(&self, program: &Program) -> Vec<ValueId> {
         let of = |output: &Output| match output {
             Output::Observable(observable) => Some(program.observable_values[*observable]),
+            Output::Acceleration(of) => Some(program.observable_values[of.place]),
             Output::State(_) | Output::Rate(_) | Output::Input(_) => None,
         };
         self.outputs.iter().filter_map(of).collect()
@@ -90,7 +105,7 @@ impl MeasuredOutputs {
 
     /// Whether accelerations are measured: they jump where a force does, and a force adds to them at once.
     pub fn has_rates(&self) -> bool {
-        let is_rate = |output: &Output| matches!(output, Output::Rate(_));
+        let is_rate = |output: &Output| matches!(output, Output::Rate(_) | Output::Acceleration(_));
         self.outputs.iter().any(is_rate)
     }
 
@@ -108,12 +123,36 @@ impl MeasuredOutputs {
         }
     }
 
-    /// Adds to a row of quantities what accelerations, and rates of states of first order, that change by
-    /// `size` times `change` show at once.
-    pub fn add_to_accelerations(&self, change: &[f64], size: f64, row: &mut [f64]) {
+    /// Adds to a row of quantities at a point the effect of changes of the accelerations and of the rates of
+    /// states of first order. `over`: a short time, s, in which such changes move the rates a little.
+    pub fn add_to_accelerations(
+        &self,
+        evaluator: &mut Evaluator,
+        point: Point<'_>,
+        (changes, over): (&[f64], f64),
+        row: &mut [f64],
+    ) {
+        let degrees = self.degrees_of_freedom;
+        let moves = |output: &Output| matches!(output, Output::Acceleration(_));
+        let ends = self.outputs.iter().any(moves).then(|| {
+            // d(df/dt)/d(q'') = df/d(q').
+            [over, -over].map(|time| {
+                let mut state = point.state.to_vec();
+                let rates = state[degrees..2 * degrees].iter_mut().zip(changes);
+                rates.for_each(|(rate, change)| *rate += time * change);
+                let mut observables = vec![0.0; self.observables];
+                let state = &state[..];
+                evaluator.observables(Point { state, ..point }, &mut observables);
+                observables
+            })
+        });
         for (value, output) in row.iter_mut().zip(&self.outputs) {
-            if let Output::Rate(state) = *output {
-                *value += size * change[state - self.degrees_of_freedom];
+            match (output, &ends) {
+                (Output::Rate(state), _) => *value += changes[state - degrees],
+                (Output::Acceleration(ObservedAcceleration { of, .. }), Some([after, before])) => {
+                    *value += (after[*of] - before[*of]) / (2.0 * over);
+                }
+                _ => {}
             }
         }
     }
@@ -126,9 +165,13 @@ impl MeasuredOutputs {
         buffers: &mut Buffers,
         values: &mut Vec<f64>,
     ) {
-        let is_observable = |output: &Output| matches!(output, Output::Observable(_));
+        let is_observable =
+            |output: &Output| matches!(output, Output::Observable(_) | Output::Acceleration(_));
         if self.outputs.iter().any(is_observable) {
-            evaluator.observables(point, &mut buffers.observables);
+            let rest = buffers.rest.as_mut();
+            if !rest.is_some_and(|rest| rest.observables(point, &mut buffers.observables)) {
+                evaluator.observables(point, &mut buffers.observables);
+            }
         }
         if !buffers.rates.is_empty() {
             let rest = buffers.rest.as_mut();
@@ -140,6 +183,7 @@ impl MeasuredOutputs {
             Output::State(state) => point.state[state],
             Output::Observable(observable) => buffers.observables[observable],
             Output::Rate(state) => buffers.rates[state],
+            Output::Acceleration(of) => buffers.observables[of.place],
             Output::Input(input) => point.inputs[input],
         }));
     }

@@ -15,6 +15,7 @@ pub mod linear_outputs;
 pub(crate) mod longest_step;
 pub(crate) mod measured_outputs;
 pub(crate) mod nonlinear_remainder;
+pub(crate) mod observed_rates;
 pub mod output_times;
 pub mod problem;
 pub mod simulation;

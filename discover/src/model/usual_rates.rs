@@ -22,6 +22,8 @@ pub fn usual_rates(dataset: &Dataset, model: &Model) -> BTreeMap<String, f64> {
         let (name, slopes) = match channel.quantity {
             // How fast something moves is not known from how its speed changes, and nothing else moves.
             Quantity::Acceleration(_) | Quantity::State(_) | Quantity::Input(_) => continue,
+            Quantity::ObservedRate(rate) if rate.times > 1 => continue,
+            Quantity::ObservedRate(rate) => (&model.observables[rate.observable].name, smooth),
             Quantity::Rate(coordinate) => (&model.coordinates[coordinate].name, smooth),
             Quantity::Observable(observable) => (
                 &model.observables[observable].name,

@@ -36,19 +36,19 @@ struct Step {
 #[derive(Default)]
 struct Visited {
     steps: Vec<Step>,
-    /// The state at each time at which quantities are computed.
+    /// The state at each output time.
     states: Vec<Vec<f64>>,
     /// The quantities there, a row per time.
     measured: Vec<f64>,
 }
 
-/// A force along the motion without it: what it adds per unit to accelerations and to rates of states
-/// of first order.
+/// A force along the motion without it: the change per unit of the accelerations and of the rates of
+/// states of first order.
 #[derive(Clone, Default)]
 struct Force {
     /// At the three points of each step.
     in_steps: Vec<f64>,
-    /// At each time at which quantities are computed, where these show accelerations.
+    /// At each output time, if accelerations are measured.
     at_times: Vec<f64>,
 }
 
@@ -186,8 +186,7 @@ impl<'s> SteppedWindow<'s> {
         Some(visited)
     }
 
-    /// The quantities along a motion, with a force if there is one; its steps and states where they are
-    /// wanted.
+    /// The quantities along a motion, with a force if there is one. `visited` takes its steps and states.
     fn motion(
         &mut self,
         start: &[f64],
@@ -253,29 +252,31 @@ impl<'s> SteppedWindow<'s> {
         is_finite.then_some(measured)
     }
 
-    /// Appends the quantities at a point, with what a force of this size adds to accelerations at once.
+    /// Appends the quantities at a point, with the direct effect of a force of this size on accelerations.
     fn measure(&mut self, point: Point<'_>, force: Option<(f64, &[f64])>, values: &mut Vec<f64>) {
         let measured = &self.shooting.model.measured;
         let first = values.len();
         measured.append(&mut self.evaluator, point, &mut self.buffers, values);
-        if let Some((size, force)) = force {
-            measured.add_to_accelerations(force, size, &mut values[first..]);
-        }
+        let Some((size, force)) = force.filter(|(_, force)| !force.is_empty()) else {
+            return;
+        };
+        let changes: Vec<f64> = force.iter().map(|change| size * change).collect();
+        let changes = (&changes[..], self.longest_step.0);
+        measured.add_to_accelerations(&mut self.evaluator, point, changes, &mut values[first..]);
     }
 }
 
 impl Force {
-    /// What it adds at one of the times at which quantities are computed; nothing if these show no
-    /// accelerations.
+    /// The changes at an output time; empty if no accelerations are measured.
     fn at(&self, place: usize, forced: usize) -> &[f64] {
         let own = place * forced..(place + 1) * forced;
         self.at_times.get(own).unwrap_or_default()
     }
 }
 
-/// The size at which a force changes some acceleration, or the rate of some state of first order, by as
-/// much as that usually is, and no other by more; none if it changes none that the motion has. Each is
-/// compared with itself: they have different units.
+/// The size at which a force changes one acceleration, or the rate of one state of first order, by its root
+/// mean square, and no other by more. Each is compared with its own, because their units differ. None if
+/// the force changes nothing that moves.
 fn usual_size(force: &Force, squares: &[f64]) -> Option<f64> {
     let mut sums = vec![0.0; squares.len()];
     for now in force.in_steps.chunks_exact(squares.len()) {

@@ -173,7 +173,7 @@ fn changes<'b>(
 }
 
 /// The size of a parameter that moves the outputs as wanted; none if none does. `start`: a first size, and
-/// whether it is known from something else than units, so that it will do if it is near.
+/// whether it depends on the model rather than on units. Only such a size may be the answer at once.
 fn trial_size(
     (start, is_known): (f64, bool),
     level: f64,

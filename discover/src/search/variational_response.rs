@@ -224,7 +224,7 @@ fn ready(
 /// The size of a parameter that changes accelerations, or rates of states of first order, by a small part;
 /// none if none does.
 fn small(model: &EstimationModel, at: &dyn Fn(f64) -> Vec<f64>, points: &Points) -> Option<f64> {
-    // One SI unit is an arbitrary beginning: the end is where a change is as wanted, not merely near.
+    // One SI unit is an arbitrary start, so iterate to the size itself and not only near it.
     let mut size = 1.0;
     let mut found = None;
     for _ in 0..thresholds::SIZE_ATTEMPTS {

@@ -512,6 +512,7 @@ impl Builder {
             None => None,
         };
         let observable = Observable {
+            rate_of: None,
             value: self.expression(&raw.value, Scope::Motion)?,
             name: raw.name.text,
             unit: Unit::coherent(Dimension::NONE),
@@ -541,6 +542,7 @@ fn sensor(raw: RawSensor) -> Sensor {
 fn reported(constraints: &[Constraint]) -> Vec<Observable> {
     let observable =
         |prefix: &str, kind: ExprKind, doc: &str, constraint: &Constraint| Observable {
+            rate_of: None,
             name: format!("{prefix}{}", constraint.name),
             value: Expr {
                 kind,

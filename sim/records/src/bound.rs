@@ -9,7 +9,7 @@ use crate::motion_rates::GivenColumn;
 use crate::units::unit;
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
 use eomgen_model_spec::dimension::Dimension;
-use eomgen_model_spec::model::{Model, ParameterValue};
+use eomgen_model_spec::model::{Model, ObservedRate, ParameterValue};
 use eomgen_model_spec::suggest::did_you_mean;
 use eomgen_model_spec::table::{Name, Number};
 use eomgen_model_spec::unit::Unit;
@@ -236,6 +236,7 @@ fn channel(
             Quantity::Rate(place) => format!("{}_dot", model.coordinates[place].name),
             Quantity::Acceleration(place) => format!("{}_ddot", model.coordinates[place].name),
             Quantity::Input(place) => model.inputs[place].name.clone(),
+            Quantity::ObservedRate(rate) => rate.name(model),
         },
         quantity,
         unit: expected,
@@ -284,8 +285,11 @@ fn quantity(model: &Model, name: &str) -> Option<(Quantity, String)> {
             format!("{}/s^2", unit(place)),
         ));
     }
-    let place = within("", "_dot").or_else(|| within("dot(", ")"))?;
-    Some((Quantity::Rate(place), format!("{}/s", unit(place))))
+    if let Some(place) = within("", "_dot").or_else(|| within("dot(", ")")) {
+        return Some((Quantity::Rate(place), format!("{}/s", unit(place))));
+    }
+    let rate = ObservedRate::named(model, name)?;
+    Some((Quantity::ObservedRate(rate), rate.unit(model).text))
 }
 
 fn initial(written: &InitialState, model: &Model, found: &mut Diagnostics) -> Initial {

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use eomgen_model_spec::model::ObservedRate;
+
 use crate::experiment::{ExperimentBounds, Played};
 use crate::record::Record;
 
@@ -16,6 +18,8 @@ pub enum Quantity {
     Rate(usize),
     /// The acceleration of a coordinate, by the coordinate's place.
     Acceleration(usize),
+    /// The rate or the acceleration of an observable.
+    ObservedRate(ObservedRate),
     /// A state of first order, by its place among these.
     State(usize),
     /// An input, by its place: what the motion takes, where that is given.

@@ -15,13 +15,10 @@ const ANEW: usize = 4;
 const OF_MOVE: f64 = 1e-3;
 const OF_ITSELF: f64 = 1e-8;
 
-/// And by no less than this part of the largest such change so far.
-const OF_LARGEST: f64 = 1e-2;
+/// And by no less, SI: states at rest at 0.
+const LEAST: f64 = 1e-10;
 
-/// A state that has not moved from 0 is changed by so much, SI.
-const UNMOVED: f64 = 1e-10;
-
-/// Rates that change by less than this part of the largest that they have been do so by rounding.
+/// Accelerations that change by less than this part of the largest do so by rounding.
 const ROUNDING: f64 = 1e-10;
 
 impl ExponentialIntegrator {
@@ -65,11 +62,8 @@ impl ExponentialIntegrator {
         let rows = self.regimes[motion.regime].matrix.rows;
         slopes.rates.resize(rows, 0.0);
         self.rates(motion, &mut slopes.rates);
-        let rates = slopes
-            .largest_rates
-            .iter_mut()
-            .zip(&slopes.rates[degrees..n]);
-        rates.for_each(|(largest, rate)| *largest = largest.max(rate.abs()));
+        let accelerations = slopes.rates[degrees..n].iter();
+        let largest = accelerations.fold(0.0f64, |most, a| most.max(a.abs()));
         let (mut base, mut moved) = (
             std::mem::take(&mut slopes.base),
             std::mem::take(&mut slopes.moved),
@@ -79,9 +73,7 @@ impl ExponentialIntegrator {
         self.remainder_at(here, (t, &slopes.state, &motion.given), force, &mut base)?;
         for place in 0..n {
             let x = motion.state[place];
-            let difference = self.difference(x, slopes.rates[place], slopes.largest[place]);
-            slopes.largest[place] = slopes.largest[place].max(difference);
-            slopes.state[place] = x + difference;
+            slopes.state[place] = x + self.difference(x, slopes.rates[place]);
             let size = slopes.state[place] - x;
             self.remainder_at(here, (t, &slopes.state, &motion.given), force, &mut moved)?;
             slopes.state[place] = x;
@@ -90,8 +82,7 @@ impl ExponentialIntegrator {
             }
             let mut matters = false;
             let column = &mut slopes.there[place * forced..(place + 1) * forced];
-            let rows = pairs(&moved, &base).zip(&slopes.largest_rates);
-            for (slot, ((after, before), largest)) in column.iter_mut().zip(rows) {
+            for (slot, (after, before)) in column.iter_mut().zip(pairs(&moved, &base)) {
                 matters |= (after - before).abs() > ROUNDING * largest;
                 *slot = (after - before) / size;
             }
@@ -105,13 +96,13 @@ impl ExponentialIntegrator {
     }
 
     /// How the function of a surface changes with each state, as the whole model says; rates tell
-    /// how far the states may be moved, and `largest` how far they were.
+    /// how far the states may be moved.
     pub(super) fn gradient(
         &self,
         motion: &Motion,
         (surface, t): (usize, f64),
         force: &mut dyn Force,
-        (rates, largest): (&[f64], Option<&[f64]>),
+        rates: &[f64],
     ) -> Vec<f64> {
         let mut gradient = self.regimes[motion.regime].functions[surface].state.clone();
         let inputs = &motion.given[1..];
@@ -123,8 +114,7 @@ impl ExponentialIntegrator {
         let here = values[guard];
         for (place, slot) in gradient.iter_mut().enumerate() {
             let x = state[place];
-            let largest = largest.map_or(0.0, |largest| largest[place]);
-            state[place] = x + self.difference(x, rates[place], largest);
+            state[place] = x + self.difference(x, rates[place]);
             force.at_guards(t, &state, inputs, &mut values);
             *slot = (values[guard] - here) / (state[place] - x);
             state[place] = x;
@@ -132,13 +122,10 @@ impl ExponentialIntegrator {
         gradient
     }
 
-    /// By how much a state with a rate is changed. `largest`: by how much it was so far, at most.
-    fn difference(&self, x: f64, rate: f64, largest: f64) -> f64 {
-        let moved = (OF_MOVE * (rate * self.step).abs()).max(OF_ITSELF * x.abs());
-        match moved.max(OF_LARGEST * largest) {
-            0.0 => UNMOVED,
-            size => size,
-        }
+    /// By how much a state with a rate is changed.
+    fn difference(&self, x: f64, rate: f64) -> f64 {
+        let size = (OF_MOVE * (rate * self.step).abs()).max(OF_ITSELF * x.abs());
+        size.max(LEAST)
     }
 
     /// Whether a surface lies between a motion's state and the same with one state changed.

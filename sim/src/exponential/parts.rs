@@ -313,10 +313,7 @@ impl ExponentialIntegrator {
         }
         if let Some(tangents) = &mut options.tangents {
             let gradient = match &mut options.force {
-                Some(force) => {
-                    let largest = tangents.slopes.as_ref().map(|slopes| &slopes.largest[..]);
-                    self.gradient(motion, (surface, t), &mut **force, (&rates, largest))
-                }
+                Some(force) => self.gradient(motion, (surface, t), &mut **force, &rates),
                 None => function,
             };
             tangents.switch((&gradient, here), &rates, &after);

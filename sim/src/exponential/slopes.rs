@@ -19,10 +19,6 @@ pub struct Slopes {
     pub moved: Remainder,
     pub rates: Vec<f64>,
     pub state: Vec<f64>,
-    /// The largest change of each state over which derivatives were taken.
-    pub largest: Vec<f64>,
-    /// The largest of each acceleration and of the rate of each state of first order.
-    pub largest_rates: Vec<f64>,
 }
 
 impl Slopes {
@@ -31,8 +27,6 @@ impl Slopes {
         Self {
             here: vec![0.0; states * forced],
             there: vec![0.0; states * forced],
-            largest: vec![0.0; states],
-            largest_rates: vec![0.0; forced],
             base: Remainder::none(forced, surfaces),
             moved: Remainder::none(forced, surfaces),
             ..Self::default()

@@ -7,21 +7,21 @@ use std::path::Path;
 use eomgen_tests::program::accepted;
 use serde_json::Value;
 
-/// A model with one input, and what is measured of it.
+/// A model with one input and its channels.
 #[derive(Clone)]
 pub struct Machine {
     /// The text of its specification.
     pub specification: String,
     /// Unit and size of the input `u`.
     pub input: (&'static str, f64),
-    /// What is measured, one after the other.
+    /// Its channels.
     pub channels: Vec<Channel>,
 }
 
-/// What a channel measures, the column of `simulate` that says what it is, and its unit.
+/// The observable of a channel, its column of `simulate`, and its unit.
 pub type Channel = (&'static str, &'static str, &'static str);
 
-/// A mass on a spring; `SPRING` is its energy, `PULL` the same as a force, `DRAG` what else acts.
+/// A mass on a spring; `SPRING` is its energy, `PULL` the same as a force, `DRIVE` the other force.
 const MASS: &str = r#"[model]
 name = "mass"
 [parameters]
@@ -44,7 +44,10 @@ spring = "SPRING"
 drive = { on = "x", value = "DRIVE - c*dot(x)" }
 [observables]
 o = "2*x"
-a = "(DRIVE - c*dot(x) - PULL)/m"
+a = "(DRIVE - c*dot(x) - (PULL))/m"
+a_o = "2*a_x"
+[definitions]
+a_x = "(DRIVE - c*dot(x) - (PULL))/m"
 "#;
 
 /// A mass on this spring, driven by this, with these states.
@@ -57,6 +60,7 @@ pub fn mass(spring: &str, pull: &str, drive: &str, states: &str) -> Machine {
         ("x_dot", "x_dot", "m/s"),
         ("x_ddot", "a", "m/s^2"),
         ("o", "o", "m"),
+        ("o_ddot", "a_o", "m/s^2"),
     ];
     Machine {
         specification,
@@ -85,7 +89,11 @@ weight = "-m*g*l*cos(x)"
 drive = { on = "x", value = "u - c*dot(x)" }
 [observables]
 o = "l*sin(x)"
-a = "(u - c*dot(x) - m*g*l*sin(x))/(m*l^2)"
+v_o = "l*cos(x)*dot(x)"
+a = "a_x"
+a_o = "l*(cos(x)*a_x - sin(x)*dot(x)^2)"
+[definitions]
+a_x = "(u - c*dot(x) - m*g*l*sin(x))/(m*l^2)"
 "#;
 
 /// A cylinder whose pressure, in Pa, is a state of first order.
@@ -111,6 +119,8 @@ pressure = { on = "x", value = "A*p - c*dot(x)" }
 [observables]
 o = "A*p"
 a = "(A*p - c*dot(x))/m"
+place = "2*x"
+a_place = "2*(A*p - c*dot(x))/m"
 "#;
 
 /// A beam on a hub.
@@ -148,10 +158,41 @@ losses = "1/2*c*dot(x)^2 + 1/2*sum(i, w, c_q*dot(q[i])^2)"
 drive = { on = "x", value = "u" }
 [observables]
 o = "at(w, l) + l*x"
+v_o = "at(dot(w), l) + l*dot(x)"
 "#;
 
-const SAMPLES: usize = 160;
-const STEP: f64 = 0.01;
+/// A pendulum whose support is moved along a line.
+pub const SUPPORTED: &str = r#"[model]
+name = "supported"
+[parameters]
+m = { value = 1, unit = "kg" }
+l = { value = 0.5, unit = "m" }
+g = { value = 9.81, unit = "m/s^2" }
+c = { value = 0.1, unit = "N m s" }
+[coordinates]
+x = { unit = "rad" }
+[inputs]
+u = { unit = "m", rates = 2 }
+[definitions]
+along = "u + l*sin(x)"
+a_x = "-c*dot(x)/(m*l^2) - (g*sin(x) + u_ddot*cos(x))/l"
+[kinetic]
+bob = "1/2*m*(dot(along)^2 + (l*sin(x)*dot(x))^2)"
+[potential]
+weight = "-m*g*l*cos(x)"
+[forces]
+drag = { on = "x", value = "-c*dot(x)" }
+[observables]
+o = "along"
+v_o = "dot(along)"
+a = "a_x"
+a_o = "u_ddot + l*(cos(x)*a_x - sin(x)*dot(x)^2)"
+"#;
+
+/// Samples of a record.
+pub const SAMPLES: usize = 160;
+/// Time from sample to sample, s.
+pub const STEP: f64 = 0.01;
 
 impl Machine {
     pub fn new(specification: &str, input: (&'static str, f64), channels: &[Channel]) -> Self {
@@ -171,6 +212,17 @@ impl Machine {
 
     /// Writes a record with the columns of `simulate`, which the model makes from its input.
     fn record(&self, folder: &Path, name: &str, turn: f64) -> Table {
+        let mut table = self.motion(folder, name, turn, STEP);
+        table.add(
+            "u",
+            Table::read(&folder.join(format!("{name}_input.csv"))).column("u"),
+        );
+        table.write(&folder.join(format!("{name}.csv")));
+        table
+    }
+
+    /// The motion that the model makes from its input, at times so far apart, s.
+    pub fn motion(&self, folder: &Path, name: &str, turn: f64, step: f64) -> Table {
         let (unit, size) = self.input;
         let mut input = "t,u\n".to_owned();
         for sample in 0..SAMPLES {
@@ -188,7 +240,7 @@ impl Machine {
         let paths = [file("_input.toml"), file("_motion.csv")];
         let [input_file, motion] = paths.map(|path| path.display().to_string());
         let specification = folder.join("model.toml").display().to_string();
-        let (until, step) = (STEP * (SAMPLES - 1) as f64, STEP);
+        let until = STEP * (SAMPLES - 1) as f64;
         let (until, step) = (format!("{until:.2}"), step.to_string());
         accepted(&[
             "simulate",
@@ -204,10 +256,7 @@ impl Machine {
             "--tolerance",
             "1e-10",
         ]);
-        let mut table = Table::read(&file("_motion.csv"));
-        table.add("u", Table::read(&file("_input.csv")).column("u"));
-        table.write(&file(".csv"));
-        table
+        Table::read(&file("_motion.csv"))
     }
 }
 

@@ -1,4 +1,4 @@
-//! The same machine and record in other units: what is found does not depend on them.
+//! The same machine and record in other units give the same answer.
 
 use std::fs;
 use std::path::Path;
@@ -10,10 +10,10 @@ use crate::machines::{
     BEAM, CYLINDER, Channel, Machine, PENDULUM, Table, answered, description, mass, spread,
 };
 
-/// Answers may differ by this part, which is rounding and what Newton's method makes of it.
+/// Largest relative difference between answers, due to rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// What the units of length, mass and current are multiplied with, as powers of two.
+/// Exponents of the powers of two by which numbers of length, mass and current are multiplied.
 type Units = [i32; 3];
 
 /// A number of this unit in other units.
@@ -44,8 +44,8 @@ fn in_units(specification: &str, units: Units) -> String {
     specification.lines().map(line).collect()
 }
 
-/// What the answer of a command says in numbers without units: gaps in noise floors, effects in their
-/// own uncertainty, the change of parameters.
+/// Numbers of an answer that do not depend on units: gaps in noise floors, and parameters of effects in
+/// the first units.
 fn numbers(answer: &Value, units: Units) -> Vec<(String, f64)> {
     let number = |value: &Value| value.as_f64().expect("a number");
     let mut found = Vec::new();

@@ -69,6 +69,7 @@ fn channels(
             let from = match output {
                 Output::State(place) => json!({ "state": place }),
                 Output::Observable(place) => json!({ "observable": place }),
+                Output::Acceleration(of) => json!({ "observable": of.place }),
                 Output::Rate(place) => json!({ "rate": place }),
                 Output::Input(place) => json!({ "input": place }),
             };

@@ -16,7 +16,6 @@ use maud::{Markup, html};
 
 use crate::fit::fitted::Fit;
 use crate::model::estimation_model::EstimationModel;
-use crate::model::measured_outputs::Output;
 use crate::model::problem::EstimationProblem;
 use crate::report::playback::controls::controls;
 use crate::report::playback::stretch::Stretch;
@@ -56,8 +55,7 @@ impl Playback {
         let (Ok(model), false) = (model, accepted.is_empty()) else {
             return Self::None;
         };
-        let is_rate = |output: &Output| matches!(output, Output::Rate(_));
-        if model.measured.outputs().iter().any(is_rate) {
+        if model.measured.has_rates() {
             return Self::Still("accelerations are measured".to_owned());
         }
         if problem.dataset.gives_motion() {

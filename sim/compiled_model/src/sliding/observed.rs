@@ -37,14 +37,8 @@ impl Observed {
 
     /// The observables at a point of the motion.
     pub fn observables(&mut self, point: Point<'_>, out: &mut [f64]) {
-        let is_shown = self.rest.as_mut().is_some_and(|rest| {
-            let is_held = rest.holds(point);
-            if is_held {
-                rest.sided.observables((point.t, point.state), out);
-            }
-            is_held
-        });
-        if !is_shown {
+        let rest = self.rest.as_mut();
+        if !rest.is_some_and(|rest| rest.observables(point, out)) {
             self.own.observables(point, out);
         }
     }
@@ -89,6 +83,15 @@ impl Rest {
         if is_held {
             let Point { t, state, inputs } = point;
             self.sided.rates((t, state), inputs, out);
+        }
+        is_held
+    }
+
+    /// The observables at a point of the motion, if surfaces hold it there; whether they do.
+    pub fn observables(&mut self, point: Point<'_>, out: &mut [f64]) -> bool {
+        let is_held = self.holds(point);
+        if is_held {
+            self.sided.observables((point.t, point.state), out);
         }
         is_held
     }

@@ -1,0 +1,83 @@
+//! Time derivatives of observables as further observables: rates and accelerations of points, which
+//! sensors measure. A specification does not write accelerations; they are derived where asked for.
+
+use crate::dimension::Dimension;
+use crate::ids::DefinitionId;
+use crate::model::{Expr, ExprKind, Model, Observable, ObservedRate};
+use crate::unit::Unit;
+
+impl ObservedRate {
+    /// Its name: the observable's with `_dot` or `_ddot`.
+    pub fn name(self, model: &Model) -> String {
+        let ending = if self.times == 1 { "_dot" } else { "_ddot" };
+        format!("{}{ending}", model.observables[self.observable].name)
+    }
+
+    /// Its SI unit.
+    pub fn unit(self, model: &Model) -> Unit {
+        let unit = &model.observables[self.observable].unit;
+        let over = if self.times == 1 { "s" } else { "s^2" };
+        let rate = (0..self.times).try_fold(unit.dimension, |dimension, _| {
+            dimension.over(Dimension::TIME)
+        });
+        match Unit::parse(&format!("{}/{over}", unit.text)) {
+            Ok(unit) if Some(unit.dimension) == rate => unit,
+            _ => rate.map_or_else(|| unit.clone(), Unit::coherent),
+        }
+    }
+
+    /// The rate or acceleration of this name, if the rest of the name is an observable's.
+    pub fn named(model: &Model, name: &str) -> Option<Self> {
+        let of = |name: &str| model.observables.iter().position(|o| o.name == name);
+        let within =
+            |before: &str, after: &str| of(name.strip_prefix(before)?.strip_suffix(after)?);
+        let found = |observable: usize, times: u8| Self { observable, times };
+        if let Some(observable) = within("", "_ddot").or_else(|| within("dot(dot(", "))")) {
+            return Some(found(observable, 2));
+        }
+        let observable = within("", "_dot").or_else(|| within("dot(", ")"))?;
+        Some(found(observable, 1))
+    }
+}
+
+impl Model {
+    /// Adds a time derivative of an observable to the observables, unless it is there; its place.
+    pub fn observe_rate(&mut self, rate: ObservedRate) -> usize {
+        let mut known = self.observables.iter();
+        if let Some(place) = known.position(|known| known.rate_of == Some(rate)) {
+            return place;
+        }
+        let of = &self.observables[rate.observable];
+        let (value, span) = (of.value.clone(), of.span);
+        let mut name = rate.name(self);
+        while self.observables.iter().any(|known| known.name == name) {
+            name.push('_');
+        }
+        self.observables.push(Observable {
+            unit: rate.unit(self),
+            doc: format!(
+                "time derivative of {}",
+                self.observables[rate.observable].name
+            ),
+            rate_of: Some(rate),
+            value,
+            span,
+            name,
+        });
+        self.observables.len() - 1
+    }
+
+    /// Whether an expression holds a rate, itself or through definitions.
+    pub fn holds_rate(&self, expr: &Expr) -> bool {
+        let mut holds = false;
+        let mut definitions: Vec<DefinitionId> = Vec::new();
+        expr.visit(&mut |part| match part.kind {
+            ExprKind::Dot(_) => holds = true,
+            ExprKind::Definition(definition) => definitions.push(definition),
+            _ => {}
+        });
+        // Definitions lead to no circle.
+        let mut inner = definitions.iter();
+        holds || inner.any(|definition| self.holds_rate(&self.definitions[*definition].value))
+    }
+}
