@@ -7,8 +7,7 @@ use std::path::Path;
 use eomgen_tests::program::refused;
 
 use crate::machines::{
-    BEAM, CYLINDER, Machine, PENDULUM, SAMPLES, STEP, SUPPORTED, Table, answered, description,
-    mass, spread,
+    BEAM, CYLINDER, Machine, PENDULUM, SAMPLES, STEP, Table, answered, description, mass, spread,
 };
 
 /// Both commands find that a channel shows nothing missing, and leave a small part of its noise.
@@ -143,18 +142,6 @@ fn acceleration_of_the_tip_of_a_beam() {
     }
     let description = description(&machine, &channel, noise);
     finds_nothing(folder, &description, noise, "o_ddot");
-}
-
-#[test]
-fn model_with_a_support_whose_motion_is_given() {
-    let channels = [
-        ("x", "x", "rad"),
-        ("x_ddot", "a", "rad/s^2"),
-        ("o_dot", "v_o", "m/s"),
-        ("v_o_dot", "a_o", "m/s^2"),
-        ("o_ddot", "a_o", "m/s^2"),
-    ];
-    every_channel_shows_nothing(&Machine::new(SUPPORTED, ("m", 0.02), &channels));
 }
 
 /// A spring that the model lacks is found by an accelerometer on a point of the machine.

@@ -161,34 +161,6 @@ o = "at(w, l) + l*x"
 v_o = "at(dot(w), l) + l*dot(x)"
 "#;
 
-/// A pendulum whose support is moved along a line.
-pub const SUPPORTED: &str = r#"[model]
-name = "supported"
-[parameters]
-m = { value = 1, unit = "kg" }
-l = { value = 0.5, unit = "m" }
-g = { value = 9.81, unit = "m/s^2" }
-c = { value = 0.1, unit = "N m s" }
-[coordinates]
-x = { unit = "rad" }
-[inputs]
-u = { unit = "m", rates = 2 }
-[definitions]
-along = "u + l*sin(x)"
-a_x = "-c*dot(x)/(m*l^2) - (g*sin(x) + u_ddot*cos(x))/l"
-[kinetic]
-bob = "1/2*m*(dot(along)^2 + (l*sin(x)*dot(x))^2)"
-[potential]
-weight = "-m*g*l*cos(x)"
-[forces]
-drag = { on = "x", value = "-c*dot(x)" }
-[observables]
-o = "along"
-v_o = "dot(along)"
-a = "a_x"
-a_o = "u_ddot + l*(cos(x)*a_x - sin(x)*dot(x)^2)"
-"#;
-
 /// Samples of a record.
 pub const SAMPLES: usize = 160;
 /// Time from sample to sample, s.
