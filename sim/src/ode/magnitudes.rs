@@ -12,10 +12,11 @@ pub struct Magnitudes {
 }
 
 impl Magnitudes {
-    /// Components that have not moved yet.
-    pub fn new(states: usize, tolerance: f64) -> Self {
+    /// Magnitudes of a state where a motion begins.
+    pub fn of(y: &[f64], tolerance: f64) -> Self {
+        let largest = y.iter().map(|y| y.abs().max(SMALLEST_MAGNITUDE));
         Self {
-            largest: vec![SMALLEST_MAGNITUDE; states],
+            largest: largest.collect(),
             tolerance,
         }
     }
