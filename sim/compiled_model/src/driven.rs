@@ -95,10 +95,9 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
         Some(sliding.into_inner().into_sided())
     }
 
-    /// The impact at which bodies overlap, where the motion ended for that.
+    /// The impact at which bodies overlap, if the motion ended for that: why, and what to do.
     pub(crate) fn overlap(&self) -> Option<String> {
-        let contacts = self.contacts.as_ref()?.borrow();
-        contacts.overlap().map(str::to_owned)
+        self.contacts.as_ref()?.borrow().overlap()
     }
 
     /// Whether a contact is closed.

@@ -181,11 +181,7 @@ impl Stepper for Adams {
         Some(y)
     }
 
-    fn inside<S: System + ?Sized>(
-        &mut self,
-        watched: &Watched<'_, S>,
-        t: f64,
-    ) -> Option<Vec<f64>> {
+    fn inside<S: System + ?Sized>(&mut self, watched: &Watched<'_, S>, t: f64) -> Option<Vec<f64>> {
         if let Some(state) = self.interpolated(t) {
             return Some(state);
         }

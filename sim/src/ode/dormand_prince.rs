@@ -183,11 +183,7 @@ impl Stepper for DormandPrince853 {
         self.magnitudes.norm(errors, &middle.y) <= 1.0
     }
 
-    fn inside<S: System + ?Sized>(
-        &mut self,
-        watched: &Watched<'_, S>,
-        t: f64,
-    ) -> Option<Vec<f64>> {
+    fn inside<S: System + ?Sized>(&mut self, watched: &Watched<'_, S>, t: f64) -> Option<Vec<f64>> {
         // The extension is of order 7; a step from the same start is of 8, and notices what
         // its stages run into.
         Some(steps_within(watched, &self.last, t - self.last.t, &self.magnitudes)?.y)

@@ -106,6 +106,7 @@ fn run<S: System + ?Sized, M: Stepper>(
         recent: VecDeque::new(),
         pace: Pace::new(span.0),
         resolution: Resolution::new(settings.tolerance),
+        projected: None,
         trajectory,
     };
     driver.sample_start();
@@ -135,6 +136,8 @@ pub(super) struct Driver<'a, S: System + ?Sized, M: Stepper> {
     pub(super) recent: VecDeque<(f64, usize)>,
     pub(super) pace: Pace,
     resolution: Resolution,
+    /// The state here brought back onto what the motion keeps, if that moves it.
+    projected: Option<Vec<f64>>,
     pub(super) trajectory: &'a mut Trajectory,
 }
 
@@ -209,14 +212,19 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         let mut outcome = self.stepper.advance(self.watched, until)?;
         if outcome.is_accepted && self.watched.not_finite().is_some() {
             // It ends where the rates have no value: no motion gets there.
-            self.stepper.take_back();
-            self.stepper.set_step(SHORTENED * outcome.length);
+            self.refuse(outcome.length);
             outcome.is_accepted = false;
-        }
-        if !outcome.is_accepted {
+        } else if !outcome.is_accepted {
             self.trajectory.work.rejected += 1;
         }
         Ok(outcome)
+    }
+
+    /// Takes an accepted step of `length` s back for a shorter one.
+    fn refuse(&mut self, length: f64) {
+        self.stepper.take_back();
+        self.stepper.set_step(SHORTENED * length);
+        self.trajectory.work.rejected += 1;
     }
 
     /// The switching functions at [`PARTS`] of the last step; nothing where the method made none to here, or one
@@ -260,23 +268,40 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
 
     /// What became of an accepted step of `length` s; it may be `shortened` first.
     pub(super) fn look_at(&mut self, length: f64, may_shorten: bool) -> Accepted {
-        let Some(values) = self.glimpses() else {
-            return Accepted::Stands;
-        };
-        if may_shorten && self.shortened(&values, length) {
+        let values = self.glimpses();
+        if let Some(values) = &values {
+            if may_shorten && self.shortened(values, length) {
+                return Accepted::Shortened;
+            }
+            let trials = &mut self.trajectory.work.trials;
+            if let Some(length) = passed_over(self.watched, &mut self.stepper, values, trials) {
+                self.stepper.take_back();
+                return Accepted::PassedOver(length);
+            }
+        }
+        if !self.project() && may_shorten {
+            self.refuse(length);
             return Accepted::Shortened;
         }
-        let trials = &mut self.trajectory.work.trials;
-        match passed_over(self.watched, &mut self.stepper, &values, trials) {
-            None => {
-                self.resolution.settle(&values);
-                Accepted::Stands
-            }
-            Some(length) => {
-                self.stepper.take_back();
-                Accepted::PassedOver(length)
-            }
+        if let Some(values) = &values {
+            self.resolution.settle(values);
         }
+        Accepted::Stands
+    }
+
+    /// Finds the state here that the motion keeps. Returns whether it is as near as the tolerance
+    /// promises: a step that strayed farther than its error estimate says did not meet the tolerance.
+    pub(super) fn project(&mut self) -> bool {
+        let here = self.stepper.here();
+        let mut y = here.y.clone();
+        self.projected = None;
+        if !self.watched.project(here.t, &mut y) {
+            return true;
+        }
+        let moved = y.iter().zip(&here.y).map(|(to, from)| to - from);
+        let is_near = self.stepper.magnitudes().allow(moved, &here.y);
+        self.projected = Some(y);
+        is_near
     }
 
     /// The state at `t` (s), which lies inside the last step, interpolated if the interior `is_told`. Where
@@ -295,8 +320,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         })
     }
 
-    /// Samples from `begin` (s) to here, brings the state back onto what the motion keeps, and enters
-    /// the regime found here.
+    /// Samples from `begin` (s) to here, takes the projected state, and enters the regime found here.
     pub(super) fn accept(&mut self, begin: f64) -> Result<(), SolveError> {
         check_finite(begin, &self.stepper.here().y)?;
         self.stepper.settle();
@@ -312,10 +336,9 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             self.trajectory.times.push(sample);
             self.trajectory.states.push(state);
         }
-        let mut point = self.stepper.here().clone();
-        if self.watched.project(t, &mut point.y) {
-            check_finite(begin, &point.y)?;
-            self.stepper.restart(point, self.stepper.step());
+        if let Some(y) = self.projected.take() {
+            check_finite(begin, &y)?;
+            self.stepper.restart(Point { t, y }, self.stepper.step());
             self.stepper.settle();
         }
         while let Some(sample) = self.next_sample().filter(|sample| *sample <= t) {

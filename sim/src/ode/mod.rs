@@ -55,7 +55,7 @@ mod watch;
 
 pub use driver::{simulate, simulate_into};
 pub use error::{NOT_POSITIVE, SolveError};
-pub use names::{Names, Surface};
+pub use names::{Names, Surface, Unfollowed};
 pub use settings::{Method, SMALLEST_MAGNITUDE, Settings};
 pub use system::{Interior, ObservedStep, System, jacobian_by_differences};
 pub use trajectory::{Switch, Trajectory, Work};

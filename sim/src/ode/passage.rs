@@ -1,6 +1,7 @@
 //! The passage over a switching surface, or past one that was touched.
 
 use super::crossing::{approach, over};
+use super::dormand_prince::single_step;
 use super::driver::{Accepted, Driver};
 use super::error::SolveError;
 use super::grazing::leapt_over;
@@ -54,6 +55,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
                     self.watched
                         .cross((start.t, &start.y), point.t, &mut point.y);
                     self.stepper.restart(point, length);
+                    self.project();
                     return self.accept(begin);
                 }
                 self.accept(begin)?;
@@ -76,6 +78,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
                 self.watched
                     .cross((start.t, &start.y), point.t, &mut point.y);
                 self.stepper.restart(point, length);
+                self.project();
                 return self.accept(start.t);
             }
             // In a step that does not move the time there is nothing to leap over.
@@ -98,10 +101,11 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
 
     /// The point that a step of `window` s leads to from `start`, if the step meets the tolerance. The error
     /// estimate of a method means nothing across a surface: the step must be so short that the rates
-    /// at neither end lead to another point, or as short as times can be told apart.
+    /// at neither end lead to another point, or as short as times can be told apart. Such a step is explicit
+    /// for every method: Newton's method may not converge across a jump, and nothing is stiff in it.
     fn resolved_step(&self, start: &Point, window: f64) -> Option<Point> {
         self.watched.reset();
-        let kept = self.stepper.single_step(self.watched, start, window);
+        let kept = single_step(self.watched, start, window);
         let point = kept.or_else(|| self.step_of_own_sides(start, window))?;
         let near = self.rates_at(start);
         self.watched.keep_sides(false);
@@ -121,7 +125,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     fn step_of_own_sides(&self, start: &Point, window: f64) -> Option<Point> {
         self.watched.reset();
         self.watched.keep_sides(false);
-        let point = self.stepper.single_step(self.watched, start, window);
+        let point = single_step(self.watched, start, window);
         self.watched.keep_sides(true);
         point
     }

@@ -192,11 +192,7 @@ impl Stepper for Radau {
         Some(stages.inside(&self.last.y, t - self.last.t))
     }
 
-    fn inside<S: System + ?Sized>(
-        &mut self,
-        watched: &Watched<'_, S>,
-        t: f64,
-    ) -> Option<Vec<f64>> {
+    fn inside<S: System + ?Sized>(&mut self, watched: &Watched<'_, S>, t: f64) -> Option<Vec<f64>> {
         if let Some(state) = self.interpolated(t) {
             return Some(state);
         }
@@ -315,9 +311,12 @@ fn rates_at<S: System + ?Sized>(watched: &Watched<'_, S>, point: &Point) -> Vec<
     rates
 }
 
+/// The Jacobian at a point. A derivative without a value, as that of a root at zero, is replaced by 0:
+/// Newton's method then contracts less, and the step is shortened if it does not.
 fn jacobian<S: System + ?Sized>(watched: &Watched<'_, S>, point: &Point) -> DMatrix<f64> {
     let states = point.y.len();
     let mut entries = vec![0.0; states * states];
     watched.jacobian(point.t, &point.y, &mut entries);
-    DMatrix::from_row_slice(states, states, &entries)
+    let finite = |entry: &f64| if entry.is_finite() { *entry } else { 0.0 };
+    DMatrix::from_row_iterator(states, states, entries.iter().map(finite))
 }

@@ -72,11 +72,8 @@ pub trait Stepper: Sized {
 
     /// The point that a step of exactly `length` s leads to, whatever its error; `None` if the step
     /// overflows or leaves the domain of the rates.
-    fn trial<S: System + ?Sized>(
-        &mut self,
-        watched: &Watched<'_, S>,
-        length: f64,
-    ) -> Option<Point>;
+    fn trial<S: System + ?Sized>(&mut self, watched: &Watched<'_, S>, length: f64)
+    -> Option<Point>;
 
     /// The state at time `t` (s) inside the last step by interpolation, without an evaluation; `None` if this
     /// method made none to here.
@@ -91,11 +88,7 @@ pub trait Stepper: Sized {
 
     /// The state at time `t` (s) inside the last step, with the accuracy of the step; `None` if no
     /// step to there meets the tolerance.
-    fn inside<S: System + ?Sized>(
-        &mut self,
-        watched: &Watched<'_, S>,
-        t: f64,
-    ) -> Option<Vec<f64>>;
+    fn inside<S: System + ?Sized>(&mut self, watched: &Watched<'_, S>, t: f64) -> Option<Vec<f64>>;
 
     /// The point that a step of exactly `length` s leads to from `start`, whatever its error and
     /// without relying on where the steps before led; what has to be solved for is as accurate as in

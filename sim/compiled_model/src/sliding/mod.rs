@@ -342,11 +342,13 @@ impl Sliding {
     ) {
         self.found_at = None;
         let sides = self.sides(at, inputs);
-        let asked = (touching, arrivals);
+        let jumps = self.sided.jumps_on(at, inputs, touching, &sides);
+        let (touching, arrivals) = self.free_without_jump((touching, arrivals), &jumps);
+        let asked = (&touching[..], &arrivals[..]);
         let Some(verdicts) = self.sided.decide(at, inputs, asked, &sides) else {
             // Its function's sign decides, and the solver says that it comes to no end.
             for surface in touching {
-                self.places[*surface] = Place::Free;
+                self.places[surface] = Place::Free;
             }
             return;
         };
@@ -393,6 +395,31 @@ impl Sliding {
                 self.changes.push((guard, from < 0.0));
             }
         }
+    }
+
+    /// Frees the surfaces on which nothing jumps: their functions' signs decide. Returns the others.
+    fn free_without_jump(
+        &mut self,
+        (touching, arrivals): (&[usize], &[Arrival]),
+        jumps: &[bool],
+    ) -> (Vec<usize>, Vec<Arrival>) {
+        let mut left = (Vec::new(), Vec::new());
+        for ((surface, arrival), jumps) in touching.iter().zip(arrivals).zip(jumps) {
+            if *jumps {
+                left.0.push(*surface);
+                left.1.push(*arrival);
+                continue;
+            }
+            if self.places[*surface].is_on() {
+                let guard = self.sided.guard(*surface);
+                self.changes.push((guard, arrival.side > 0.0));
+            }
+            self.places[*surface] = Place::Free;
+            if let Some(kept) = &mut self.kept {
+                kept[*surface] = arrival.side;
+            }
+        }
+        left
     }
 
     /// The sides of all surfaces at a point, those that hold in the middle. Functions are asked only where
