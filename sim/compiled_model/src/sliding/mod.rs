@@ -17,6 +17,7 @@ pub use sided::Sided;
 
 use eomgen_sim::ode::SMALLEST_MAGNITUDE;
 use eomgen_sim::sliding_modes::{Arrival, Verdict};
+use sided::CORRECTIONS;
 
 /// How far a function may move from a surface that holds it before the state is put back, beside the
 /// largest it has been.
@@ -24,9 +25,6 @@ const DRIFT: f64 = 1e-12;
 
 /// The same beside what the surface's own force does to it in the time since it holds.
 const DRIFT_OF_A_FORCE: f64 = 1e-13;
-
-/// Corrections of a state that a surface catches; each squares what is left.
-const CORRECTIONS: usize = 2;
 
 /// A state counts as this part of the largest for differences.
 const SMALL: f64 = 1e-3;

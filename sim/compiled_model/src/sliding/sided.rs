@@ -5,10 +5,11 @@ use eomgen_codegen::program::evaluator::{Evaluator, Point, SlidingAt};
 use eomgen_sim::sliding_modes::{Arrival, Rates, Verdict, decide, least};
 use nalgebra::{DMatrix, DVector};
 
-use super::CORRECTIONS;
-
 /// Newton's iterations where the rates are not of first degree in the sides.
 const ITERATIONS: usize = 20;
+
+/// Corrections of a state that a surface catches; each squares what is left.
+pub(super) const CORRECTIONS: usize = 2;
 
 /// A change of a side that is no more than rounding.
 const SETTLED: f64 = 1e-14;
