@@ -57,7 +57,7 @@ pub(crate) struct Contacts {
 /// Why bodies overlap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Overlap {
-    /// A step ended with a distance below zero and no hit.
+    /// A step ended with a distance below zero.
     Penetrated,
     /// No impulses keep all bodies apart that touch.
     NoImpulse,
@@ -140,9 +140,9 @@ impl Contacts {
         let name = &self.names[place];
         Some(match cause {
             Overlap::Penetrated => format!(
-                "the distance of the impact `{name}` fell below zero although nothing hit there: \
-                 the bodies are forced into each other. Check constraints and prescribed motion \
-                 that act there, or take a stiff spring in place of the impact"
+                "the distance of the impact `{name}` fell below zero: the bodies are forced into \
+                 each other, or hit each other without end. Check constraints and motions \
+                 prescribed there, or take a stiff spring in place of the impact"
             ),
             Overlap::NoImpulse => format!(
                 "no impulses keep the bodies apart that touch at the impact `{name}`: other impacts \
