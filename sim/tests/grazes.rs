@@ -70,6 +70,33 @@ fn a_contact_much_shorter_than_a_step_is_seen() {
     }
 }
 
+/// Half a joule, wherever the turning point lies beside the wall: each step may err by the tolerance, and
+/// the energy of a contact feels an error of the deflection by the root of the stiffness more.
+#[test]
+fn a_swing_that_grazes_the_wall_keeps_its_energy() {
+    let tolerance = 1e-9;
+    let depths = [1e-2, 5.5e-5, 4e-5, 1e-5, 3e-8, 1e-10, 1e-12];
+    let walls = depths
+        .into_iter()
+        .flat_map(|depth| [1.0 - depth, 1.0 + depth]);
+    for method in [Method::DormandPrince853, Method::Adams, Method::Radau] {
+        for stiffness in [1e4_f64, 1e5, 1e6] {
+            for wall in walls.clone() {
+                let motion = swing(method, tolerance, wall, stiffness, 40.0);
+                let (x, v) = (motion.last[0], motion.last[1]);
+                let depth = (x - wall).max(0.0);
+                let energy = 0.5 * (v * v + x * x + stiffness * depth * depth);
+                let errors = motion.work.steps as f64
+                    + 2.0 * motion.switches.len() as f64 * stiffness.sqrt();
+                assert!(
+                    (energy - 0.5).abs() < errors * tolerance,
+                    "{method:?}, wall at {wall:?}, stiffness {stiffness:e}: {energy:e} J"
+                );
+            }
+        }
+    }
+}
+
 #[test]
 fn a_swing_that_stays_before_the_wall_has_no_contact() {
     for method in [Method::DormandPrince853, Method::Adams, Method::Radau] {

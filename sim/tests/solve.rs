@@ -148,11 +148,13 @@ fn a_body_caught_by_dry_friction_is_an_error_and_no_hang() {
     };
     let said = |surface: Surface| {
         error.named(&Names {
-            states: &[],
             surfaces: &[surface],
+            ..Names::default()
         })
     };
     assert!(said(surface(true)).contains("where `v` is zero: there it sticks, as dry friction"));
+    // Adams is named to those who chose it only.
+    assert!(!said(surface(true)).contains("adams"));
     // At a place it is no friction.
     assert!(said(surface(false)).contains("chatters") && !said(surface(false)).contains("tanh"));
     assert!(!error.to_string().contains("friction"));

@@ -19,12 +19,38 @@ pub(crate) struct Sides {
 }
 
 impl Sides {
-    /// Replaces what switches in these nodes, at surfaces that have a side: `side` says by which leaf
-    /// that of a guard, by its place among them, enters.
+    /// Replaces what switches in these nodes by polynomials in the sides of its surfaces. `side` returns
+    /// the leaf of a guard's side, by the guard's place among them, if the surface has one.
     pub fn of(
         equations: &mut Equations,
         roots: &[NodeId],
         side: &dyn Fn(usize) -> Option<Operation>,
+    ) -> Self {
+        Self::replace(equations, roots, side, &|_| true)
+    }
+
+    /// The same for functions that jump. One that is continuous has the same value on both sides of its
+    /// surface, and off it an argument of another function may not be what the wrong side makes of it:
+    /// `sqrt(abs(p))` has no value if the sign of p is not its own.
+    pub fn of_jumps(
+        equations: &mut Equations,
+        roots: &[NodeId],
+        side: &dyn Fn(usize) -> Option<Operation>,
+    ) -> Self {
+        let jumps = |function| {
+            !matches!(
+                function,
+                Function::Abs | Function::Max | Function::Min | Function::Deadzone
+            )
+        };
+        Self::replace(equations, roots, side, &jumps)
+    }
+
+    fn replace(
+        equations: &mut Equations,
+        roots: &[NodeId],
+        side: &dyn Fn(usize) -> Option<Operation>,
+        has_side: &dyn Fn(Function) -> bool,
     ) -> Self {
         let values: Vec<NodeId> = equations.guards.iter().map(|guard| guard.value).collect();
         let graph = &mut equations.graph;
@@ -34,7 +60,9 @@ impl Sides {
         };
         // Operands come first: what stands inside of a switching function is replaced by then.
         for id in graph.reachable(roots) {
-            if graph.dependence(id).is_parameter_only() {
+            let is_call_without =
+                matches!(graph.operation(id), Operation::Call(called, _) if !has_side(*called));
+            if is_call_without || graph.dependence(id).is_parameter_only() {
                 continue;
             }
             let parameter = |graph: &mut Graph, surface: NodeId| {

@@ -34,7 +34,7 @@ pub(crate) fn with_sides(equations: &mut Equations) -> Vec<SlidingSurface<NodeId
     let first = equations.inputs;
     let leaf = |side: usize| Operation::Input(InputId::new(first + side));
     let roots = roots(equations);
-    let mut known = Sides::of(equations, &roots, &|guard| {
+    let mut known = Sides::of_jumps(equations, &roots, &|guard| {
         let mut places = sliding.iter();
         places.position(|(own, _)| *own == guard).map(leaf)
     })

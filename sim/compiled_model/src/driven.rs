@@ -100,10 +100,9 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
         self.projection.as_ref()
     }
 
-    /// The impact at which bodies overlap, where the motion ended for that.
+    /// The impact at which bodies overlap, if the motion ended for that: why, and what to do.
     pub(crate) fn overlap(&self) -> Option<String> {
-        let contacts = self.contacts.as_ref()?.borrow();
-        contacts.overlap().map(str::to_owned)
+        self.contacts.as_ref()?.borrow().overlap()
     }
 
     /// Whether a contact is closed.

@@ -6,7 +6,8 @@ use std::cell::RefCell;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::{
-    Method, Names, ObservedStep, Settings, SolveError, Surface, Trajectory, simulate_into,
+    Method, Names, ObservedStep, Settings, SolveError, Surface, Trajectory, Unfollowed,
+    simulate_into,
 };
 use eomgen_sim::piecewise_linear::{ExactError, Propagator, StepObserver};
 
@@ -146,7 +147,7 @@ impl Instance<'_> {
             return Ok(motion(trajectory, request, Solver::Exact, (choice, audit)));
         };
         let surfaces = Driven::new(&evaluator, request.inputs).surfaces();
-        let reason = self.named(&surfaces, |names| error.named(names));
+        let reason = self.named((&surfaces, Solver::Exact), |names| error.named(names));
         if is_free && is_for_the_general(&error) {
             let choice = Some(Choice::NotFollowed(reason));
             return self.chosen(request, choice, progress);
@@ -245,12 +246,9 @@ impl Instance<'_> {
                     None => (t, None),
                 };
                 let reason = match (system.overlap(), singular) {
-                    (Some(name), _) => format!(
-                        "nothing keeps the distance of the impact `{name}` above zero: bodies are \
-                         pressed into each other, or hit each other without end"
-                    ),
+                    (Some(overlap), _) => format!("at t = {ended_at:?} s {overlap}"),
                     (None, Some(reason)) => reason,
-                    (None, None) => self.named(&surfaces, |names| error.named(names)),
+                    (None, None) => self.named((&surfaces, solver), |names| error.named(names)),
                 };
                 stopped(so_far, Stopped { t, reason, cause })
             }
@@ -292,12 +290,23 @@ impl Instance<'_> {
         }
     }
 
-    /// What an error says where its numbers stand for these states and switching functions.
-    fn named(&self, surfaces: &[Surface], say: impl FnOnce(&Names<'_>) -> String) -> String {
+    /// The message of an error whose numbers stand for the states and for these switching functions, by
+    /// a solver.
+    fn named(
+        &self,
+        (surfaces, solver): (&[Surface], Solver),
+        message: impl FnOnce(&Names<'_>) -> String,
+    ) -> String {
         let states = self.model.state_names();
-        say(&Names {
+        let unfollowed = match solver {
+            Solver::Adams => Unfollowed::Adams,
+            _ if !self.model.model().impacts.is_empty() => Unfollowed::Impacts,
+            _ => Unfollowed::Formula,
+        };
+        message(&Names {
             states: &states,
             surfaces,
+            unfollowed,
         })
     }
 }

@@ -12,7 +12,7 @@
 use differential_equations::ode::ODE;
 
 use super::attempt::{Attempt, Errors};
-use super::dormand_prince::single_step;
+use super::dormand_prince::{single_step, steps_within};
 use super::error::SolveError;
 use super::history::{History, MAX_ORDER};
 use super::magnitudes::Magnitudes;
@@ -73,8 +73,7 @@ impl Stepper for Adams {
     const IS_EXPLICIT: bool = true;
 
     fn new(start: Point, step: f64, tolerance: f64) -> Self {
-        let mut magnitudes = Magnitudes::new(start.y.len(), tolerance);
-        magnitudes.raise(&start.y);
+        let magnitudes = Magnitudes::of(&start.y, tolerance);
         Self {
             before: Stand::new(start.clone()),
             now: Stand::new(start),
@@ -104,9 +103,16 @@ impl Stepper for Adams {
 
     fn restart(&mut self, point: Point, step: f64) {
         self.last = None;
-        self.magnitudes.raise(&point.y);
         self.before = std::mem::replace(&mut self.now, Stand::new(point));
         self.set_step(step);
+    }
+
+    fn magnitudes(&self) -> &Magnitudes {
+        &self.magnitudes
+    }
+
+    fn settle(&mut self) {
+        self.magnitudes.raise(&self.now.point.y);
     }
 
     fn advance<S: System + ?Sized>(
@@ -155,15 +161,11 @@ impl Stepper for Adams {
         &mut self,
         watched: &Watched<'_, S>,
         length: f64,
-    ) -> Result<Point, SolveError> {
-        self.begin(watched)?;
+    ) -> Option<Point> {
+        self.begin(watched).ok()?;
         let end = self.now.attempt(watched, length).end;
         watched.look(end.t, &end.y);
-        if end.y.iter().all(|y| y.is_finite()) {
-            Ok(end)
-        } else {
-            Err(refusal(watched, &self.now.point, length))
-        }
+        end.y.iter().all(|y| y.is_finite()).then_some(end)
     }
 
     fn interpolated(&mut self, t: f64) -> Option<Vec<f64>> {
@@ -179,17 +181,13 @@ impl Stepper for Adams {
         Some(y)
     }
 
-    fn inside<S: System + ?Sized>(
-        &mut self,
-        watched: &Watched<'_, S>,
-        t: f64,
-    ) -> Result<Vec<f64>, SolveError> {
+    fn inside<S: System + ?Sized>(&mut self, watched: &Watched<'_, S>, t: f64) -> Option<Vec<f64>> {
         if let Some(state) = self.interpolated(t) {
-            return Ok(state);
+            return Some(state);
         }
         // The driver stepped over a surface; what is remembered says nothing of that.
         let start = &self.before.point;
-        Ok(single_step(watched, start, t - start.t)?.y)
+        Some(steps_within(watched, start, t - start.t, &self.magnitudes)?.y)
     }
 
     fn single_step<S: System + ?Sized>(
@@ -197,7 +195,7 @@ impl Stepper for Adams {
         watched: &Watched<'_, S>,
         start: &Point,
         length: f64,
-    ) -> Result<Point, SolveError> {
+    ) -> Option<Point> {
         single_step(watched, start, length)
     }
 }
@@ -253,7 +251,6 @@ impl Adams {
         let end = &attempt.end;
         let mut rates = vec![0.0; end.y.len()];
         watched.diff(end.t, &end.y, &mut rates);
-        self.magnitudes.raise(&end.y);
         std::mem::swap(&mut self.now, &mut self.before);
         let Attempt { weights, order, .. } = &attempt;
         let (now, before) = (&mut self.now, &self.before);

@@ -5,7 +5,6 @@
 //! part of the distance, so that after a few of them the rest is crossed by a step too
 //! short to carry an error, whatever side its trial states are on.
 
-use super::error::SolveError;
 use super::stepper::Stepper;
 use super::system::System;
 use super::watch::Watched;
@@ -38,13 +37,14 @@ pub fn over(length: f64) -> f64 {
 }
 
 /// Searches the longest step from where `stepper` stands that stays on the near side of
-/// all surfaces, given that one of `length` s does not.
+/// all surfaces, given that one of `length` s does not. A trial that overflows or leaves the domain
+/// of the rates counts as one beyond.
 pub fn approach<S: System + ?Sized, M: Stepper>(
     watched: &Watched<'_, S>,
     stepper: &mut M,
     length: f64,
     beyond: Vec<f64>,
-) -> Result<Approach, SolveError> {
+) -> Approach {
     let start = stepper.here();
     let mut near = End {
         at: 0.0,
@@ -58,22 +58,19 @@ pub fn approach<S: System + ?Sized, M: Stepper>(
     while far.at - near.at > REMAINDER * length && trials < MAX_TRIALS {
         let at = next_trial(watched, &near, &far, trials, length);
         watched.reset();
-        let point = stepper.trial(watched, at)?;
+        let point = stepper.trial(watched, at);
         trials += 1;
-        let guards = watched.guards_at(point.t, &point.y);
-        let end = if watched.crossed().is_some() {
-            &mut far
-        } else {
-            &mut near
-        };
+        let is_beyond = point.is_none() || watched.crossed().is_some();
+        let guards = point.map_or(Vec::new(), |point| watched.guards_at(point.t, &point.y));
+        let end = if is_beyond { &mut far } else { &mut near };
         *end = End { at, guards };
     }
-    Ok(Approach {
+    Approach {
         length: near.at,
         rest: far.at - near.at,
         beyond: far.guards,
         trials,
-    })
+    }
 }
 
 /// One end of the interval that holds the surface.

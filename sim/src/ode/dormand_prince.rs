@@ -11,7 +11,7 @@ use differential_equations::tolerance::Tolerance;
 use super::continuous_extension::{ContinuousExtension, Interior};
 use super::error::SolveError;
 use super::magnitudes::Magnitudes;
-use super::stepper::{Outcome, Point, Stepper, refusal};
+use super::stepper::{Outcome, Point, Stepper, in_parts, refusal};
 use super::system::System;
 use super::watch::Watched;
 
@@ -43,9 +43,9 @@ impl Stepper for DormandPrince853 {
     const IS_EXPLICIT: bool = true;
 
     fn new(start: Point, step: f64, tolerance: f64) -> Self {
-        let mut stepper = Self {
+        Self {
             method: Method::dop853(),
-            magnitudes: Magnitudes::new(start.y.len(), tolerance),
+            magnitudes: Magnitudes::of(&start.y, tolerance),
             last: start.clone(),
             here: start,
             step,
@@ -54,9 +54,7 @@ impl Stepper for DormandPrince853 {
             made_last: false,
             extension: ContinuousExtension::new(),
             interior: None,
-        };
-        stepper.raise_floors();
-        stepper
+        }
     }
 
     fn here(&self) -> &Point {
@@ -80,9 +78,17 @@ impl Stepper for DormandPrince853 {
 
     fn restart(&mut self, point: Point, step: f64) {
         self.last = std::mem::replace(&mut self.here, point);
-        self.raise_floors();
         self.set_step(step);
         self.made_last = false;
+    }
+
+    fn magnitudes(&self) -> &Magnitudes {
+        &self.magnitudes
+    }
+
+    fn settle(&mut self) {
+        self.magnitudes.raise(&self.here.y);
+        self.method.atol = Tolerance::Vector(self.magnitudes.floors());
     }
 
     fn advance<S: System + ?Sized>(
@@ -128,7 +134,6 @@ impl Stepper for DormandPrince853 {
         self.here.t = if is_cut { until } else { self.method.t() };
         self.ready = !is_cut;
         self.made_last = true;
-        self.raise_floors();
         Ok(Outcome {
             is_accepted: true,
             length,
@@ -145,7 +150,7 @@ impl Stepper for DormandPrince853 {
         &mut self,
         watched: &Watched<'_, S>,
         length: f64,
-    ) -> Result<Point, SolveError> {
+    ) -> Option<Point> {
         single_step(watched, &self.here, length)
     }
 
@@ -168,7 +173,7 @@ impl Stepper for DormandPrince853 {
 
     fn tells_interior<S: System + ?Sized>(&mut self, watched: &Watched<'_, S>) -> bool {
         let (begin, half) = (self.last.t, 0.5 * (self.here.t - self.last.t));
-        let Ok(middle) = single_step(watched, &self.last, half) else {
+        let Some(middle) = single_step(watched, &self.last, half) else {
             return false;
         };
         let Some(told) = self.interpolated(begin + half) else {
@@ -178,14 +183,10 @@ impl Stepper for DormandPrince853 {
         self.magnitudes.norm(errors, &middle.y) <= 1.0
     }
 
-    fn inside<S: System + ?Sized>(
-        &mut self,
-        watched: &Watched<'_, S>,
-        t: f64,
-    ) -> Result<Vec<f64>, SolveError> {
+    fn inside<S: System + ?Sized>(&mut self, watched: &Watched<'_, S>, t: f64) -> Option<Vec<f64>> {
         // The extension is of order 7; a step from the same start is of 8, and notices what
         // its stages run into.
-        Ok(single_step(watched, &self.last, t - self.last.t)?.y)
+        Some(steps_within(watched, &self.last, t - self.last.t, &self.magnitudes)?.y)
     }
 
     fn single_step<S: System + ?Sized>(
@@ -193,18 +194,12 @@ impl Stepper for DormandPrince853 {
         watched: &Watched<'_, S>,
         start: &Point,
         length: f64,
-    ) -> Result<Point, SolveError> {
+    ) -> Option<Point> {
         single_step(watched, start, length)
     }
 }
 
 impl DormandPrince853 {
-    /// Lets the absolute tolerances follow the largest magnitudes.
-    fn raise_floors(&mut self) {
-        self.magnitudes.raise(&self.here.y);
-        self.method.atol = Tolerance::Vector(self.magnitudes.floors());
-    }
-
     /// Initialises the method at the start.
     fn begin<S: System + ?Sized>(
         &mut self,
@@ -232,28 +227,52 @@ impl DormandPrince853 {
     }
 }
 
-/// The state one step of exactly `length` s after `start`, whatever its error.
+/// The state one step of exactly `length` s after `start`, whatever its error; `None` if the step
+/// overflows or leaves the domain of the rates.
 pub fn single_step<S: System + ?Sized>(
     watched: &Watched<'_, S>,
     start: &Point,
     length: f64,
-) -> Result<Point, SolveError> {
+) -> Option<Point> {
     /// Refuses nothing finite. A large number in its place does not: relative to it the
     /// square of an error can be subnormal, and the method divides by that.
     const ANY: f64 = f64::INFINITY;
-    let refused = || refusal(watched, start, length);
-    let mut method = Method::dop853().rtol(0.0).atol(ANY).h0(length);
+    step_with(watched, start, length, Method::dop853().rtol(0.0).atol(ANY))
+}
+
+/// The state `length` s after `start` by steps that meet the tolerance, one if that does; `None` if
+/// none are short enough.
+pub fn steps_within<S: System + ?Sized>(
+    watched: &Watched<'_, S>,
+    start: &Point,
+    length: f64,
+    magnitudes: &Magnitudes,
+) -> Option<Point> {
+    let step = |start: &Point, length: f64, end: f64| {
+        let method = Method::dop853().rtol(magnitudes.tolerance());
+        let method = method.atol(Tolerance::Vector(magnitudes.floors()));
+        let y = step_with(watched, start, length, method)?.y;
+        Some(Point { t: end, y })
+    };
+    in_parts(start, length, step, || false)
+}
+
+/// One step of `length` s by a new `method`; `None` if it refuses.
+fn step_with<S: System + ?Sized>(
+    watched: &Watched<'_, S>,
+    start: &Point,
+    length: f64,
+    method: Method,
+) -> Option<Point> {
+    let mut method = method.h0(length);
     let end = horizon(start, length);
-    method
-        .init(watched, start.t, end, &start.y)
-        .map_err(|_| refused())?;
-    method.step(watched).map_err(|_| refused())?;
-    if matches!(method.status(), Status::RejectedStep) {
-        return Err(refused());
-    }
-    Ok(Point {
+    method.init(watched, start.t, end, &start.y).ok()?;
+    method.step(watched).ok()?;
+    let is_made = !matches!(method.status(), Status::RejectedStep);
+    let y = method.y();
+    (is_made && y.iter().all(|y| y.is_finite())).then(|| Point {
         t: method.t(),
-        y: method.y().clone(),
+        y: y.clone(),
     })
 }
 
@@ -330,7 +349,7 @@ mod tests {
             };
             let watched = Watched::new(&Growth, start.t, &start.y);
             let point = single_step(&watched, &start, 3.0);
-            assert!(point.is_ok(), "from {:e}: {point:?}", start.y[0]);
+            assert!(point.is_some(), "from {:e}: {point:?}", start.y[0]);
         }
     }
 

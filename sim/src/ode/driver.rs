@@ -3,16 +3,15 @@
 use std::collections::VecDeque;
 
 use super::adams::Adams;
-use super::crossing::{approach, over};
 use super::dormand_prince::DormandPrince853;
 use super::error::SolveError;
-use super::grazing::{leapt_over, passed_over};
+use super::grazing::passed_over;
 use super::radau::Radau;
 use super::request;
 use super::resolution::{PARTS, Resolution};
 use super::settings::{Method, Settings};
 use super::stepper::{Outcome, Point, Stepper, refusal};
-use super::stiffness::{Pace, Standing};
+use super::stiffness::Pace;
 use super::system::{Interior, System};
 use super::trajectory::{Switch, Trajectory};
 use super::watch::Watched;
@@ -20,22 +19,11 @@ use super::watch::Watched;
 /// The first step, relative to the span; the error estimate corrects it at once.
 const FIRST_STEP: f64 = 1e-6;
 
-/// How short a stay beyond a surface is searched for in the step over it, relative to the step
-/// that ran into it: well above where rounding makes a switching function change its sign.
-const SHORTEST_CONTACT: f64 = 1e-9;
-
-/// Over this many switches their rate is averaged.
-const SWITCHES_AVERAGED: usize = 256;
-
-/// Times closer to 0 than this part of the span count as so far from it when a step is
-/// judged too short.
-const SMALLEST_TIME: f64 = 1e-6;
-
 /// A step that does not see what switching functions do is shortened so often at most: what is finer is
 /// taken for rounding.
 const MOST_SHORTENED: u32 = 12;
 
-/// And by this at most each time.
+/// And by this at most each time. A step that leaves the domain of the rates is shortened by as much.
 const SHORTENED: f64 = 0.2;
 
 /// More samples than this in a step are many.
@@ -115,9 +103,10 @@ fn run<S: System + ?Sized, M: Stepper>(
         settings,
         samples,
         end: span.1,
-        recent: VecDeque::with_capacity(SWITCHES_AVERAGED),
+        recent: VecDeque::new(),
         pace: Pace::new(span.0),
         resolution: Resolution::new(settings.tolerance),
+        projected: None,
         trajectory,
     };
     driver.sample_start();
@@ -127,7 +116,7 @@ fn run<S: System + ?Sized, M: Stepper>(
 }
 
 /// What becomes of a step whose error is small enough.
-enum Accepted {
+pub(super) enum Accepted {
     /// The motion goes on from its end.
     Stands,
     /// It was taken back and is to be made shorter.
@@ -137,16 +126,19 @@ enum Accepted {
 }
 
 /// A simulation under way.
-struct Driver<'a, S: System + ?Sized, M: Stepper> {
-    watched: &'a Watched<'a, S>,
-    stepper: M,
-    settings: &'a Settings,
+pub(super) struct Driver<'a, S: System + ?Sized, M: Stepper> {
+    pub(super) watched: &'a Watched<'a, S>,
+    pub(super) stepper: M,
+    pub(super) settings: &'a Settings,
     samples: &'a [f64],
-    end: f64,
-    recent: VecDeque<(f64, usize)>,
-    pace: Pace,
+    pub(super) end: f64,
+    /// The last switches: when, s, and of which function.
+    pub(super) recent: VecDeque<(f64, usize)>,
+    pub(super) pace: Pace,
     resolution: Resolution,
-    trajectory: &'a mut Trajectory,
+    /// The state here brought back onto what the motion keeps, if that moves it.
+    projected: Option<Vec<f64>>,
+    pub(super) trajectory: &'a mut Trajectory,
 }
 
 impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
@@ -183,7 +175,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
                 return self.cross(outcome.length);
             }
             if outcome.is_accepted {
-                match self.looked_at(outcome.length, shortened < MOST_SHORTENED)? {
+                match self.look_at(outcome.length, shortened < MOST_SHORTENED) {
                     Accepted::Shortened => shortened += 1,
                     Accepted::PassedOver(length) => return self.cross(length),
                     Accepted::Stands => return self.accept(begin),
@@ -208,20 +200,31 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         let (stepper, watched) = (&mut self.stepper, self.watched);
         let mut inside = |t, interior| match interior {
             Interior::Interpolated => stepper.interpolated(t),
-            Interior::Resolved => stepper.inside(watched, t).ok(),
+            Interior::Resolved => stepper.inside(watched, t),
         };
         watched.observe_step(&start, &end, &mut inside);
     }
 
     /// Tries a step that ends at `until` at the latest.
-    fn controlled_step(&mut self, until: f64) -> Result<Outcome, SolveError> {
+    pub(super) fn controlled_step(&mut self, until: f64) -> Result<Outcome, SolveError> {
         self.check_steps()?;
         self.watched.reset();
-        let outcome = self.stepper.advance(self.watched, until)?;
-        if !outcome.is_accepted {
+        let mut outcome = self.stepper.advance(self.watched, until)?;
+        if outcome.is_accepted && self.watched.not_finite().is_some() {
+            // It ends where the rates have no value: no motion gets there.
+            self.refuse(outcome.length);
+            outcome.is_accepted = false;
+        } else if !outcome.is_accepted {
             self.trajectory.work.rejected += 1;
         }
         Ok(outcome)
+    }
+
+    /// Takes an accepted step of `length` s back for a shorter one.
+    fn refuse(&mut self, length: f64) {
+        self.stepper.take_back();
+        self.stepper.set_step(SHORTENED * length);
+        self.trajectory.work.rejected += 1;
     }
 
     /// The switching functions at [`PARTS`] of the last step; nothing where the method made none to here, or one
@@ -264,108 +267,41 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     }
 
     /// What became of an accepted step of `length` s; it may be `shortened` first.
-    fn looked_at(&mut self, length: f64, may_shorten: bool) -> Result<Accepted, SolveError> {
-        let Some(values) = self.glimpses() else {
-            return Ok(Accepted::Stands);
-        };
-        if may_shorten && self.shortened(&values, length) {
-            return Ok(Accepted::Shortened);
-        }
-        let trials = &mut self.trajectory.work.trials;
-        let beyond = passed_over(self.watched, &mut self.stepper, &values, trials)?;
-        Ok(match beyond {
-            None => Accepted::Stands,
-            Some(length) => {
+    pub(super) fn look_at(&mut self, length: f64, may_shorten: bool) -> Accepted {
+        let values = self.glimpses();
+        if let Some(values) = &values {
+            if may_shorten && self.shortened(values, length) {
+                return Accepted::Shortened;
+            }
+            let trials = &mut self.trajectory.work.trials;
+            if let Some(length) = passed_over(self.watched, &mut self.stepper, values, trials) {
                 self.stepper.take_back();
-                Accepted::PassedOver(length)
-            }
-        })
-    }
-
-    /// Goes to the surface that may lie within `length` of here, and over it.
-    fn cross(&mut self, length: f64) -> Result<(), SolveError> {
-        let mut window = length;
-        let mut beyond = Vec::new();
-        while window > over(length) {
-            let begin = self.stepper.here().t;
-            let found = approach(self.watched, &mut self.stepper, window, beyond)?;
-            self.trajectory.work.trials += found.trials;
-            window = found.rest;
-            beyond = found.beyond;
-            if found.length > 0.0 {
-                self.stepper.set_step(found.length);
-                let outcome = self.controlled_step(f64::INFINITY)?;
-                if !outcome.is_accepted {
-                    // Not the surface alone: shorter steps, and then again.
-                    return Ok(());
-                }
-                if outcome.length < found.length {
-                    // A method that starts may begin with a shorter step.
-                    window += found.length - outcome.length;
-                    beyond = Vec::new();
-                }
-                match self.looked_at(outcome.length, true)? {
-                    Accepted::Shortened => return Ok(()),
-                    Accepted::PassedOver(length) => {
-                        window = length.min(0.5 * found.length);
-                        beyond = Vec::new();
-                        continue;
-                    }
-                    Accepted::Stands => {}
-                }
-                if self.watched.crossed().is_some() && self.is_beyond(self.stepper.here()) {
-                    // Its error led it over.
-                    let mut point = self.stepper.here().clone();
-                    self.stepper.take_back();
-                    let start = self.stepper.here().clone();
-                    self.watched
-                        .cross((start.t, &start.y), point.t, &mut point.y);
-                    self.stepper.restart(point, length);
-                    return self.accept(begin);
-                }
-                self.accept(begin)?;
+                return Accepted::PassedOver(length);
             }
         }
-        self.step_over(window.max(over(length)), length)
-    }
-
-    /// Steps over the surface `window` ahead, wider where rounding hides it, and goes on
-    /// with steps of `length`.
-    fn step_over(&mut self, mut window: f64, length: f64) -> Result<(), SolveError> {
-        let start = self.stepper.here().clone();
-        while window < length {
-            self.check_steps()?;
-            self.trajectory.work.trials += 1;
-            self.watched.reset();
-            // Relying on nothing: what a multistep method remembers holds on the near side only.
-            let mut point = self.stepper.single_step(self.watched, &start, window)?;
-            if self.is_beyond(&point) {
-                self.watched
-                    .cross((start.t, &start.y), point.t, &mut point.y);
-                self.stepper.restart(point, length);
-                return self.accept(start.t);
-            }
-            // In a step that does not move the time there is nothing to leap over.
-            if window > SHORTEST_CONTACT * length && point.t > start.t {
-                let trials = &mut self.trajectory.work.trials;
-                let step = (&start, &point);
-                if let Some(ahead) = leapt_over(self.watched, &self.stepper, step, trials)? {
-                    // Too short for this step: let shorter ones find it.
-                    self.stepper.restart(start, 0.25 * ahead);
-                    return Ok(());
-                }
-            }
-            window *= 4.0;
+        if !self.project() && may_shorten {
+            self.refuse(length);
+            return Accepted::Shortened;
         }
-        // The surface was touched, by a trial state or by the motion, and not crossed.
-        self.stepper.restart(start, 0.5 * length);
-        Ok(())
+        if let Some(values) = &values {
+            self.resolution.settle(values);
+        }
+        Accepted::Stands
     }
 
-    /// Whether a point lies beyond a surface of the present regime.
-    fn is_beyond(&self, point: &Point) -> bool {
-        let guards = self.watched.guards_at(point.t, &point.y);
-        (guards.iter().enumerate()).any(|(guard, value)| self.watched.is_beyond(guard, *value))
+    /// Finds the state here that the motion keeps. Returns whether it is as near as the tolerance
+    /// promises: a step that strayed farther than its error estimate says did not meet the tolerance.
+    pub(super) fn project(&mut self) -> bool {
+        let here = self.stepper.here();
+        let mut y = here.y.clone();
+        self.projected = None;
+        if !self.watched.project(here.t, &mut y) {
+            return true;
+        }
+        let moved = y.iter().zip(&here.y).map(|(to, from)| to - from);
+        let is_near = self.stepper.magnitudes().allow(moved, &here.y);
+        self.projected = Some(y);
+        is_near
     }
 
     /// The state at `t` (s), which lies inside the last step, interpolated if the interior `is_told`. Where
@@ -377,13 +313,17 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         self.check_steps()?;
         self.trajectory.work.trials += 1;
         self.watched.reset();
-        self.stepper.inside(self.watched, t)
+        let state = self.stepper.inside(self.watched, t);
+        state.ok_or_else(|| {
+            let start = self.stepper.last();
+            refusal(self.watched, start, t - start.t)
+        })
     }
 
-    /// Samples from `begin` (s) to here, brings the state back onto what the motion keeps, and enters
-    /// the regime found here.
-    fn accept(&mut self, begin: f64) -> Result<(), SolveError> {
+    /// Samples from `begin` (s) to here, takes the projected state, and enters the regime found here.
+    pub(super) fn accept(&mut self, begin: f64) -> Result<(), SolveError> {
         check_finite(begin, &self.stepper.here().y)?;
+        self.stepper.settle();
         self.trajectory.work.steps += 1;
         self.watched.arrive();
         self.observe_step();
@@ -396,10 +336,10 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             self.trajectory.times.push(sample);
             self.trajectory.states.push(state);
         }
-        let mut point = self.stepper.here().clone();
-        if self.watched.project(t, &mut point.y) {
-            check_finite(begin, &point.y)?;
-            self.stepper.restart(point, self.stepper.step());
+        if let Some(y) = self.projected.take() {
+            check_finite(begin, &y)?;
+            self.stepper.restart(Point { t, y }, self.stepper.step());
+            self.stepper.settle();
         }
         while let Some(sample) = self.next_sample().filter(|sample| *sample <= t) {
             self.trajectory.times.push(sample);
@@ -460,97 +400,8 @@ fn check_finite(begin: f64, state: &[f64]) -> Result<(), SolveError> {
     }
 }
 
-/// Limits, samples at the start and the end.
+/// Samples at the start, and the end.
 impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
-    /// Whether the next step would still move the time; if not, what the last trial ran
-    /// into says why.
-    fn check_step_size(&self) -> Result<(), SolveError> {
-        let (t, step) = (self.stepper.here().t, self.stepper.step());
-        if step > f64::EPSILON * t.abs().max(SMALLEST_TIME * self.end.abs()) {
-            return Ok(());
-        }
-        Err(match (self.watched.indefinite(), self.watched.crossed()) {
-            (None, Some(guard)) if self.watched.not_finite().is_none() => {
-                SolveError::Caught { t, guard }
-            }
-            _ => refusal(self.watched, self.stepper.here(), step),
-        })
-    }
-
-    fn check_switch_rate(&mut self, t: f64, guard: usize) -> Result<(), SolveError> {
-        let rate = self.settings.max_switch_rate;
-        self.recent.push_back((t, guard));
-        if self.recent.len() < SWITCHES_AVERAGED {
-            return Ok(());
-        }
-        let first = self.recent.pop_front().map_or(t, |(first, _)| first);
-        if (t - first) * rate < SWITCHES_AVERAGED as f64 {
-            let guard = self.rarest();
-            return Err(SolveError::TooManySwitches { t, guard, rate });
-        }
-        Ok(())
-    }
-
-    /// Of the switching functions that take turns in the last switches, the one that switched least: a
-    /// surface that catches the motion and lets it go between those of another is not what chatters.
-    fn rarest(&self) -> usize {
-        let mut counts = vec![
-            0;
-            self.trajectory
-                .switches
-                .iter()
-                .map(|switch| switch.guard + 1)
-                .max()
-                .unwrap_or(1)
-        ];
-        for (_, guard) in &self.recent {
-            counts[*guard] += 1;
-        }
-        let turns = counts
-            .iter()
-            .enumerate()
-            .filter(|(_, count)| 4 * **count >= self.recent.len());
-        turns
-            .min_by_key(|(_, count)| **count)
-            .map_or(0, |(guard, _)| guard)
-    }
-
-    fn check_steps(&self) -> Result<(), SolveError> {
-        let steps = self.settings.max_steps;
-        if self.steps() < steps {
-            return Ok(());
-        }
-        let Point { t, y } = self.stepper.here();
-        Err(SolveError::TooManySteps {
-            t: *t,
-            steps,
-            state: self.watched.fastest(*t, y),
-        })
-    }
-
-    /// All steps that were tried so far.
-    fn steps(&self) -> u64 {
-        let work = &self.trajectory.work;
-        work.steps + work.rejected + work.trials
-    }
-
-    /// Whether there will be an end.
-    fn look_at_the_pace(&mut self, system: &S) -> Result<(), SolveError> {
-        if !M::IS_EXPLICIT {
-            return Ok(());
-        }
-        let Point { t, y } = self.stepper.here();
-        let standing = Standing {
-            t: *t,
-            y,
-            step: self.stepper.step(),
-            steps: (self.steps(), self.settings.max_steps),
-            most_if_stiff: self.settings.max_steps_if_stiff,
-            end: self.end,
-        };
-        self.pace.look(system, &standing)
-    }
-
     fn sample_start(&mut self) {
         let start = self.stepper.here();
         for sample in self.samples.iter().take_while(|sample| **sample <= start.t) {

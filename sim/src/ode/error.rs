@@ -16,7 +16,7 @@ pub enum SolveError {
         /// What is wrong with it and what would be right.
         problem: String,
     },
-    /// A rate is infinite or not a number.
+    /// A rate is infinite or not a number there, or after the shortest step from there.
     NotFinite {
         /// When.
         t: f64,
@@ -98,9 +98,10 @@ impl SolveError {
         match self {
             Self::Request { problem } => problem.clone(),
             Self::NotFinite { t, state } => format!(
-                "at t = {t:?} s the rate of {} is infinite or not a number: the motion grows \
-                 beyond all bounds, or leaves where a function of the model is defined; check \
-                 the parameters and the initial state, or shorten the time",
+                "the state diverged at t = {t:?} s, or a function left its domain (for example sqrt \
+                 of a negative number) in the rate of {}; check the parameters and the initial \
+                 state, keep the function in its domain (as sqrt(max(x, 0)) does), or shorten the \
+                 time",
                 names.state(*state)
             ),
             Self::NotPositiveDefinite { t, coordinate } => format!(
@@ -111,7 +112,7 @@ impl SolveError {
             ),
             Self::StepTooSmall { t, step, state } => format!(
                 "at t = {t:?} s no step meets the tolerance (last tried: {step:e} s): {} changes \
-                 too fast there, beyond all bounds or as in a stiff system; check the \
+                 too fast there. The state diverges, or its rate is singular; check the \
                  parameters, loosen the tolerance, or shorten the time",
                 names.state(*state)
             ),

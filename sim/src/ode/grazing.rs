@@ -9,7 +9,6 @@
 //! with a parabola in place of the interpolant's polynomial. What it cannot see is a function that turns more
 //! than once within a step.
 
-use super::error::SolveError;
 use super::resolution::PARTS;
 use super::stepper::{Point, Stepper};
 use super::system::System;
@@ -38,23 +37,20 @@ struct Sample {
 
 /// How far from its start (s) the last step of `stepper`, which was accepted, was beyond a surface
 /// that it neither began nor ended beyond; `None` if it was not. The switching functions have these values at
-/// [`PARTS`] of the step. `trials` counts the states that the stepper computes for it.
-///
-/// # Errors
-///
-/// If a state inside the step cannot be computed.
+/// [`PARTS`] of the step. `trials` counts the states that the stepper computes for it. A state
+/// inside that overflows or leaves the domain of the rates counts as one beyond.
 pub fn passed_over<S: System + ?Sized, M: Stepper>(
     watched: &Watched<'_, S>,
     stepper: &mut M,
     values: &[Vec<f64>; 5],
     trials: &mut u64,
-) -> Result<Option<f64>, SolveError> {
+) -> Option<f64> {
     let (begin, end) = (stepper.last().t, stepper.here().t);
     let mut after = |length: f64| {
         *trials += 1;
         let t = begin + length;
         let y = stepper.inside(watched, t)?;
-        Ok(Point { t, y })
+        Some(Point { t, y })
     };
     let samples = |guard: usize, side: f64| {
         let value = |place: usize| side * values[place][guard];
@@ -76,22 +72,20 @@ pub fn passed_over<S: System + ?Sized, M: Stepper>(
 }
 
 /// The same for one step of a method from `start` to `end`, whatever its error.
-///
-/// # Errors
-///
-/// As for [`passed_over`].
 pub fn leapt_over<S: System + ?Sized, M: Stepper>(
     watched: &Watched<'_, S>,
     stepper: &M,
     (start, end): (&Point, &Point),
     trials: &mut u64,
-) -> Result<Option<f64>, SolveError> {
+) -> Option<f64> {
     let mut after = |length: f64| {
         *trials += 1;
         stepper.single_step(watched, start, length)
     };
     let length = end.t - start.t;
-    let middle = after(0.5 * length)?;
+    let Some(middle) = after(0.5 * length) else {
+        return Some(0.5 * length);
+    };
     let points = [start, &middle, end];
     let values = points.map(|point| watched.guards_at(point.t, &point.y));
     let samples = |guard: usize, side: f64| {
@@ -112,8 +106,8 @@ fn search<S: System + ?Sized>(
     length: f64,
     guards: usize,
     samples: impl Fn(usize, f64) -> ([Sample; 3], f64),
-    after: &mut impl FnMut(f64) -> Result<Point, SolveError>,
-) -> Result<Option<f64>, SolveError> {
+    after: &mut impl FnMut(f64) -> Option<Point>,
+) -> Option<f64> {
     for guard in 0..guards {
         let side = watched.side(guard);
         let (samples, doubt) = samples(guard, side);
@@ -129,13 +123,13 @@ fn search<S: System + ?Sized>(
             // A trial state beyond a surface counts too: rates from there may have thrown the
             // motion back already.
             let is_beyond = value < -negligible || watched.crossed().is_some();
-            Ok((!is_beyond).then_some(value))
+            (!is_beyond).then_some(value)
         };
-        if let Some(at) = beyond(samples, doubt, &mut look)? {
-            return Ok(Some(at * length));
+        if let Some(at) = beyond(samples, doubt, &mut look) {
+            return Some(at * length);
         }
     }
-    Ok(None)
+    None
 }
 
 /// Where the function of `samples` is beyond the surface, if anywhere; `look` gives its value, or
@@ -143,18 +137,16 @@ fn search<S: System + ?Sized>(
 fn beyond(
     mut samples: [Sample; 3],
     doubt: f64,
-    look: &mut impl FnMut(f64) -> Result<Option<f64>, SolveError>,
-) -> Result<Option<f64>, SolveError> {
+    look: &mut impl FnMut(f64) -> Option<f64>,
+) -> Option<f64> {
     for _ in 0..MOST_LOOKS {
-        let Some(at) = next_look(&samples, doubt) else {
-            return Ok(None);
-        };
-        let Some(value) = look(at)? else {
-            return Ok(Some(at));
+        let at = next_look(&samples, doubt)?;
+        let Some(value) = look(at) else {
+            return Some(at);
         };
         samples = around(samples, Sample { at, value });
     }
-    Ok(None)
+    None
 }
 
 /// Where within three samples, whose parabola may be off by `doubt`, to look for something negative, if anywhere.
@@ -204,9 +196,9 @@ mod tests {
         });
         let found = beyond(samples, 0.0, &mut |at| {
             looks += 1;
-            Ok(Some(function(at)).filter(|value| *value >= 0.0))
+            Some(function(at)).filter(|value| *value >= 0.0)
         });
-        (found.expect("a search"), looks)
+        (found, looks)
     }
 
     #[test]

@@ -5,6 +5,12 @@ use super::settings::SMALLEST_MAGNITUDE;
 /// What rounding is, in units of the last place.
 const ROUNDING: f64 = 10.0;
 
+/// A step strays from what the motion keeps by so many times its allowed error at most.
+const MOST_STRAYED: f64 = 100.0;
+
+/// The same in units of the last place of the largest state.
+const ROUNDING_OF_OTHERS: f64 = 1000.0;
+
 /// The largest magnitude of each component so far, and the tolerance relative to it.
 pub struct Magnitudes {
     largest: Vec<f64>,
@@ -12,10 +18,11 @@ pub struct Magnitudes {
 }
 
 impl Magnitudes {
-    /// Components that have not moved yet.
-    pub fn new(states: usize, tolerance: f64) -> Self {
+    /// Magnitudes of a state where a motion begins.
+    pub fn of(y: &[f64], tolerance: f64) -> Self {
+        let largest = y.iter().map(|y| y.abs().max(SMALLEST_MAGNITUDE));
         Self {
-            largest: vec![SMALLEST_MAGNITUDE; states],
+            largest: largest.collect(),
             tolerance,
         }
     }
@@ -48,6 +55,17 @@ impl Magnitudes {
     pub fn floors(&self) -> Vec<f64> {
         let floors = self.largest.iter().map(|largest| largest * self.tolerance);
         floors.collect()
+    }
+
+    /// Whether changes of a state `y` are errors that a step may make, none larger than some times what
+    /// is allowed. Where a state has not moved, rounding of the others is no error.
+    pub fn allow(&self, changes: impl Iterator<Item = f64>, y: &[f64]) -> bool {
+        let most = self.largest.iter().copied().fold(0.0, f64::max);
+        let sizes = self.largest.iter().zip(y);
+        let allowed = sizes.map(|(largest, y)| self.tolerance * (largest + y.abs()));
+        changes.zip(allowed).all(|(change, allowed)| {
+            change.abs() <= MOST_STRAYED * allowed + ROUNDING_OF_OTHERS * f64::EPSILON * most
+        })
     }
 
     /// The root-mean-square of `errors` relative to what is allowed at `y`: at most 1 is

@@ -7,7 +7,7 @@
 //! for stiff systems (`radau`, each a `collocation`); `crossing` approaches a switching
 //! surface by steps that stay on one side and then steps over it, `grazing` finds what a step
 //! passed over, and `resolution` keeps steps so short that they see what switching functions do; `driver` strings these
-//! together into a [`Trajectory`], `stiffness` being asked whether there will be an end; an
+//! together into a [`Trajectory`], with the `passage` over surfaces and the `limits`, `stiffness` being asked whether there will be an end; an
 //! `error` says why there is none, with `names`. A step therefore never averages over a kink or a jump
 //! of the right-hand side, which is what ruins the order of a method applied blindly.
 //!
@@ -38,8 +38,10 @@ mod driver;
 mod error;
 mod grazing;
 mod history;
+mod limits;
 mod magnitudes;
 mod names;
+mod passage;
 mod radau;
 mod request;
 mod resolution;
@@ -53,7 +55,7 @@ mod watch;
 
 pub use driver::{simulate, simulate_into};
 pub use error::{NOT_POSITIVE, SolveError};
-pub use names::{Names, Surface};
+pub use names::{Names, Surface, Unfollowed};
 pub use settings::{Method, SMALLEST_MAGNITUDE, Settings};
 pub use system::{Interior, ObservedStep, System, jacobian_by_differences};
 pub use trajectory::{Switch, Trajectory, Work};

@@ -9,6 +9,18 @@ pub struct Surface {
     pub is_speed: bool,
 }
 
+/// Why a solver does not follow a motion that dry friction holds at rest.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Unfollowed {
+    /// The model does not tell which force holds.
+    #[default]
+    Formula,
+    /// The method of Adams goes on from the steps before.
+    Adams,
+    /// The model has impacts.
+    Impacts,
+}
+
 /// The names of a system's state variables, coordinates first, and its switching functions.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Names<'a> {
@@ -16,6 +28,8 @@ pub struct Names<'a> {
     pub states: &'a [String],
     /// In the order of the switching functions.
     pub surfaces: &'a [Surface],
+    /// Why a motion at rest is not followed.
+    pub unfollowed: Unfollowed,
 }
 
 impl Names<'_> {
@@ -36,19 +50,30 @@ impl Names<'_> {
     }
 
     /// What to do where a motion does not leave a surface, as far as it is known what that is.
-    pub(crate) fn held(&self, index: usize) -> &'static str {
+    pub(crate) fn held(&self, index: usize) -> String {
         match self.surfaces.get(index).map(|surface| surface.is_speed) {
-            Some(true) => STICKS,
-            Some(false) => CHATTERS,
-            None => "replace the jump there by a steep smooth function",
+            Some(true) => {
+                let (reason, cure) = match self.unfollowed {
+                    Unfollowed::Adams => ("the solver adams", "take the solver rk, or "),
+                    Unfollowed::Impacts => ("a model with impacts", ""),
+                    Unfollowed::Formula => {
+                        ("a speed that holds piecewise functions or an exponent", "")
+                    }
+                };
+                format!("{STICKS} {reason}; {cure}{SMOOTH}")
+            }
+            Some(false) => CHATTERS.to_owned(),
+            None => "replace the jump there by a steep smooth function".to_owned(),
         }
     }
 }
 
 /// Dry friction and its like.
-const STICKS: &str = "there it sticks, as dry friction holds a body at rest, which is not followed \
-    here (by adams, with impacts, where the speed holds piecewise functions, and for exponents). \
-    Take the solver rk in place of adams, else write a smooth law, tanh(v/v_0) with a small speed v_0 for sign(v)";
+const STICKS: &str =
+    "there it sticks, as dry friction holds a body at rest, which is not supported for";
+
+/// The law to write instead.
+const SMOOTH: &str = "write a smooth law, tanh(v/v_0) with a small speed v_0 in place of sign(v)";
 
 /// A force that jumps at a place.
 const CHATTERS: &str = "there it chatters, as the forces on both sides lead back to it. Let what \

@@ -10,7 +10,7 @@ use nalgebra::DMatrix;
 use super::collocation::{Factors, MOST_ITERATIONS, Stages};
 use super::error::SolveError;
 use super::magnitudes::Magnitudes;
-use super::stepper::{Outcome, Point, Stepper, refusal};
+use super::stepper::{Outcome, Point, Stepper, in_parts};
 use super::system::System;
 use super::watch::Watched;
 
@@ -25,10 +25,6 @@ const WORTH_NEW_FACTORS: f64 = 1.2;
 
 /// A Jacobian that lets Newton's method contract as fast serves the next step as well.
 const GOOD_JACOBIAN: f64 = 1e-3;
-
-/// A step of given length is made in parts where Newton's method does not converge; so many of them
-/// may be refused.
-const MOST_REFUSED: u32 = 50;
 
 /// The step and its error before the last one, for the prediction of the next.
 #[derive(Clone, Copy)]
@@ -63,8 +59,7 @@ impl Stepper for Radau {
     const IS_EXPLICIT: bool = false;
 
     fn new(start: Point, step: f64, tolerance: f64) -> Self {
-        let mut magnitudes = Magnitudes::new(start.y.len(), tolerance);
-        magnitudes.raise(&start.y);
+        let magnitudes = Magnitudes::of(&start.y, tolerance);
         Self {
             last: start.clone(),
             here: start,
@@ -98,9 +93,16 @@ impl Stepper for Radau {
 
     fn restart(&mut self, point: Point, step: f64) {
         self.last = std::mem::replace(&mut self.here, point);
-        self.magnitudes.raise(&self.here.y);
         self.forget();
         self.step = step;
+    }
+
+    fn magnitudes(&self) -> &Magnitudes {
+        &self.magnitudes
+    }
+
+    fn settle(&mut self) {
+        self.magnitudes.raise(&self.here.y);
     }
 
     fn advance<S: System + ?Sized>(
@@ -169,7 +171,6 @@ impl Stepper for Radau {
         self.accepted = Some(Accepted { length, error });
         self.is_refused = false;
         self.is_starting = is_cut;
-        self.magnitudes.raise(&self.here.y);
         Ok(outcome(true))
     }
 
@@ -182,7 +183,7 @@ impl Stepper for Radau {
         &mut self,
         watched: &Watched<'_, S>,
         length: f64,
-    ) -> Result<Point, SolveError> {
+    ) -> Option<Point> {
         self.single_step(watched, &self.here, length)
     }
 
@@ -191,16 +192,12 @@ impl Stepper for Radau {
         Some(stages.inside(&self.last.y, t - self.last.t))
     }
 
-    fn inside<S: System + ?Sized>(
-        &mut self,
-        watched: &Watched<'_, S>,
-        t: f64,
-    ) -> Result<Vec<f64>, SolveError> {
+    fn inside<S: System + ?Sized>(&mut self, watched: &Watched<'_, S>, t: f64) -> Option<Vec<f64>> {
         if let Some(state) = self.interpolated(t) {
-            return Ok(state);
+            return Some(state);
         }
         let after = t - self.last.t;
-        Ok(self.single_step(watched, &self.last, after)?.y)
+        Some(self.single_step(watched, &self.last, after)?.y)
     }
 
     fn single_step<S: System + ?Sized>(
@@ -208,41 +205,19 @@ impl Stepper for Radau {
         watched: &Watched<'_, S>,
         start: &Point,
         length: f64,
-    ) -> Result<Point, SolveError> {
-        let end = start.t + length;
+    ) -> Option<Point> {
         let mut magnitudes = self.magnitudes.afresh();
-        let mut point = start.clone();
-        // In parts that are halves of halves, so that they add up to one exactly.
-        let (mut part, mut done, mut refused) = (1.0, 0.0, 0);
-        while done < 1.0 {
+        // In parts where Newton's method does not converge.
+        let step = |point: &Point, length: f64, t: f64| {
             magnitudes.raise(&point.y);
-            let factors = Factors::new(&jacobian(watched, &point), part * length);
-            if let Ok(stages) = Stages::solve(watched, &point, &factors, None, &magnitudes) {
-                stages.look(watched, &point);
-                done += part;
-                let t = if done < 1.0 {
-                    start.t + done * length
-                } else {
-                    end
-                };
-                let y = stages.end(&point.y);
-                point = Point { t, y };
-                if refused > 0 && watched.crossed().is_some() {
-                    // Beyond a surface: what comes behind it is of no use to a trial.
-                    break;
-                }
-                if done % (2.0 * part) == 0.0 {
-                    part *= 2.0;
-                }
-                continue;
-            }
-            part *= 0.5;
-            refused += 1;
-            if refused > MOST_REFUSED {
-                return Err(refusal(watched, start, part * length));
-            }
-        }
-        Ok(point)
+            let factors = Factors::new(&jacobian(watched, point), length);
+            let stages = Stages::solve(watched, point, &factors, None, &magnitudes).ok()?;
+            stages.look(watched, point);
+            let y = stages.end(&point.y);
+            Some(Point { t, y })
+        };
+        // What comes behind a surface is of no use to a trial.
+        in_parts(start, length, step, || watched.crossed().is_some())
     }
 }
 
@@ -336,9 +311,12 @@ fn rates_at<S: System + ?Sized>(watched: &Watched<'_, S>, point: &Point) -> Vec<
     rates
 }
 
+/// The Jacobian at a point. A derivative without a value, as that of a root at zero, is replaced by 0:
+/// Newton's method then contracts less, and the step is shortened if it does not.
 fn jacobian<S: System + ?Sized>(watched: &Watched<'_, S>, point: &Point) -> DMatrix<f64> {
     let states = point.y.len();
     let mut entries = vec![0.0; states * states];
     watched.jacobian(point.t, &point.y, &mut entries);
-    DMatrix::from_row_slice(states, states, &entries)
+    let finite = |entry: &f64| if entry.is_finite() { *entry } else { 0.0 };
+    DMatrix::from_row_iterator(states, states, entries.iter().map(finite))
 }

@@ -41,23 +41,33 @@ impl Resolution {
 
     /// The values of the functions at [`PARTS`] of a step, and the sides on which it began: by which factor
     /// a step is longer at most that still sees all, or shorter than 1 where this one did not.
-    pub fn longest(&mut self, values: &[Vec<f64>; 5], sides: impl Fn(usize) -> f64) -> f64 {
-        let count = values[0].len();
-        self.sizes.resize(count, 0.0);
+    pub fn longest(&self, values: &[Vec<f64>; 5], sides: impl Fn(usize) -> f64) -> f64 {
         let mut longest = f64::INFINITY;
-        for guard in 0..count {
+        for guard in 0..values[0].len() {
             let side = sides(guard);
             let samples = values.each_ref().map(|values| side * values[guard]);
-            let size = &mut self.sizes[guard];
-            *size = samples
-                .iter()
-                .fold(*size, |most, value| most.max(value.abs()));
+            let before = self.sizes.get(guard).copied().unwrap_or(0.0);
+            let size = largest(samples, before);
             if side != 0.0 {
-                longest = longest.min(factor(samples, self.error * *size));
+                longest = longest.min(factor(samples, self.error * size));
             }
         }
         longest
     }
+
+    /// Adds the values of a step that stands to the sizes of the functions.
+    pub fn settle(&mut self, values: &[Vec<f64>; 5]) {
+        self.sizes.resize(values[0].len(), 0.0);
+        for (guard, size) in self.sizes.iter_mut().enumerate() {
+            *size = largest(values.each_ref().map(|values| values[guard]), *size);
+        }
+    }
+}
+
+/// The largest magnitude of samples and of what was before.
+fn largest(samples: [f64; 5], before: f64) -> f64 {
+    let magnitudes = samples.iter().map(|value| value.abs());
+    magnitudes.fold(before, f64::max)
 }
 
 /// The factor for one function, which is positive where the step began.
@@ -111,6 +121,7 @@ mod tests {
                 let values = PARTS.map(|part| vec![offset + (t + part * length).sin()]);
                 let longest = resolution.longest(&values, |_| 1.0);
                 if longest >= 1.0 {
+                    resolution.settle(&values);
                     t += length;
                 }
                 length *= longest.clamp(0.2, 8.0);

@@ -2,8 +2,12 @@
 //! a given length, and states inside a step. Where steps lead is not decided here.
 
 use super::error::SolveError;
+use super::magnitudes::Magnitudes;
 use super::system::System;
 use super::watch::Watched;
+
+/// Parts of a step that may be refused; see [`in_parts`].
+const MOST_REFUSED: u32 = 50;
 
 /// A state and its time.
 #[derive(Clone, Debug)]
@@ -17,7 +21,7 @@ pub struct Point {
 /// How a controlled step ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outcome {
-    /// The error is small enough. If not, the next step will be shorter.
+    /// The error meets the tolerance. If not, the next step will be shorter.
     pub is_accepted: bool,
     /// The length of the step tried, s.
     pub length: f64,
@@ -47,6 +51,14 @@ pub trait Stepper: Sized {
     /// `step` (s) at most and without relying on what came before.
     fn restart(&mut self, point: Point, step: f64);
 
+    /// Scales of the errors. They follow the states of the trajectory alone; see
+    /// [`Stepper::settle`].
+    fn magnitudes(&self) -> &Magnitudes;
+
+    /// Adds the state here, which enters the trajectory, to the scales of the errors. A step that is
+    /// taken back leaves no trace in them.
+    fn settle(&mut self);
+
     /// Tries a step that ends at `until` (s) at the latest, where the right-hand side may
     /// jump. If it is accepted the method stands at the new point.
     fn advance<S: System + ?Sized>(
@@ -58,12 +70,10 @@ pub trait Stepper: Sized {
     /// Undoes the last step, which was accepted; the length of the next one is open.
     fn take_back(&mut self);
 
-    /// The point that a step of exactly `length` s leads to, whatever its error.
-    fn trial<S: System + ?Sized>(
-        &mut self,
-        watched: &Watched<'_, S>,
-        length: f64,
-    ) -> Result<Point, SolveError>;
+    /// The point that a step of exactly `length` s leads to, whatever its error; `None` if the step
+    /// overflows or leaves the domain of the rates.
+    fn trial<S: System + ?Sized>(&mut self, watched: &Watched<'_, S>, length: f64)
+    -> Option<Point>;
 
     /// The state at time `t` (s) inside the last step by interpolation, without an evaluation; `None` if this
     /// method made none to here.
@@ -76,22 +86,57 @@ pub trait Stepper: Sized {
         true
     }
 
-    /// The state at time `t` (s) inside the last step, with the accuracy of the step.
-    fn inside<S: System + ?Sized>(
-        &mut self,
-        watched: &Watched<'_, S>,
-        t: f64,
-    ) -> Result<Vec<f64>, SolveError>;
+    /// The state at time `t` (s) inside the last step, with the accuracy of the step; `None` if no
+    /// step to there meets the tolerance.
+    fn inside<S: System + ?Sized>(&mut self, watched: &Watched<'_, S>, t: f64) -> Option<Vec<f64>>;
 
     /// The point that a step of exactly `length` s leads to from `start`, whatever its error and
     /// without relying on where the steps before led; what has to be solved for is as accurate as in
-    /// those. Where that is hard, it may end earlier, beyond a switching surface.
+    /// those. Where that is hard, it may end earlier, beyond a switching surface. `None` as for
+    /// [`Stepper::trial`].
     fn single_step<S: System + ?Sized>(
         &self,
         watched: &Watched<'_, S>,
         start: &Point,
         length: f64,
-    ) -> Result<Point, SolveError>;
+    ) -> Option<Point>;
+}
+
+/// A step of `length` s from `start` in parts: `step` makes the part of a length from a point that ends
+/// at a time, and returns nothing where it must be shorter. Parts are halves of halves, so that they
+/// add up exactly. The step ends early after a part of which `is_enough` is true; `None` if
+/// parts get too short.
+pub fn in_parts(
+    start: &Point,
+    length: f64,
+    mut step: impl FnMut(&Point, f64, f64) -> Option<Point>,
+    is_enough: impl Fn() -> bool,
+) -> Option<Point> {
+    let mut point = start.clone();
+    let (mut part, mut done, mut refused) = (1.0, 0.0, 0);
+    while done < 1.0 {
+        let t = match done + part < 1.0 {
+            true => start.t + (done + part) * length,
+            false => start.t + length,
+        };
+        if let Some(next) = step(&point, part * length, t) {
+            point = next;
+            done += part;
+            if refused > 0 && is_enough() {
+                break;
+            }
+            if done % (2.0 * part) == 0.0 {
+                part *= 2.0;
+            }
+            continue;
+        }
+        part *= 0.5;
+        refused += 1;
+        if refused > MOST_REFUSED {
+            return None;
+        }
+    }
+    Some(point)
 }
 
 /// Why a method refused to go on from a point with this step (s).

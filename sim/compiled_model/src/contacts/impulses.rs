@@ -3,7 +3,7 @@
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 
 use super::complementarity::complementary;
-use super::{Contacts, MOST_IN_A_ROW, OF_A_DISTANCE, largest, rounding_of};
+use super::{Contacts, MOST_IN_A_ROW, OF_A_DISTANCE, Overlap, largest, rounding_of};
 
 /// A flight that is this short beside the time since the start is rest.
 const SHORTEST_FLIGHT: f64 = 1e-8;
@@ -88,12 +88,15 @@ impl Contacts {
         }
         let jumped = match self.without_end(t, shortest) {
             false => self.jump(own, (t, inputs), state, touching, ago),
-            true => None,
+            true => Err(Overlap::Endless),
         };
-        let Some((touching, still)) = jumped else {
-            self.overlap = Some(first);
-            state.fill(f64::NAN);
-            return;
+        let (touching, still) = match jumped {
+            Ok(jumped) => jumped,
+            Err(cause) => {
+                self.overlap = Some((first, cause));
+                state.fill(f64::NAN);
+                return;
+            }
         };
         let flight = Flight {
             shortest,
@@ -172,8 +175,7 @@ impl Contacts {
     }
 
     /// Has the rates of a state jump by the impulses of what touches and hit so long `ago` (s), and of what
-    /// this brings to touch in turn. Returns all that touched and how far rounding takes a rate from zero;
-    /// nothing where no impulses keep the bodies apart.
+    /// this brings to touch in turn. Returns all that touched and how far rounding takes a rate from zero.
     fn jump(
         &mut self,
         own: &mut Evaluator,
@@ -181,11 +183,11 @@ impl Contacts {
         state: &mut [f64],
         mut touching: Vec<usize>,
         mut ago: f64,
-    ) -> Option<(Vec<usize>, f64)> {
+    ) -> Result<(Vec<usize>, f64), Overlap> {
         let degrees = own.program().degrees_of_freedom();
         let mut still = 0.0_f64;
         loop {
-            let impulses = self.impulses(&touching, ago)?;
+            let impulses = self.impulses(&touching, ago).ok_or(Overlap::NoImpulse)?;
             let (coordinates, rates) = state[..2 * degrees].split_at_mut(degrees);
             let most = largest(rates) + self.largest_push(&touching, &impulses);
             still = still.max(OF_A_DISTANCE * most);
@@ -205,7 +207,7 @@ impl Contacts {
             };
             let more: Vec<usize> = (0..self.names.len()).filter(touched).collect();
             if more.is_empty() {
-                return Some((touching, still));
+                return Ok((touching, still));
             }
             touching.extend(more);
             ago = 0.0;

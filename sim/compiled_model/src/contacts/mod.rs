@@ -50,8 +50,19 @@ pub(crate) struct Contacts {
     size: f64,
     /// When the last impacts were, s.
     recent: VecDeque<f64>,
-    /// The distance that nothing keeps above zero.
-    overlap: Option<usize>,
+    /// The impact at which the motion ended, and why.
+    overlap: Option<(usize, Overlap)>,
+}
+
+/// Why bodies overlap.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Overlap {
+    /// A step ended with a distance below zero.
+    Penetrated,
+    /// No impulses keep all bodies apart that touch.
+    NoImpulse,
+    /// Hits follow each other faster than the shortest flights.
+    Endless,
 }
 
 /// The first distance that is below zero, and not by rounding, if one is: its place and value.
@@ -123,9 +134,25 @@ impl Contacts {
         self.push(&self.closed, &forces, &mut rates[degrees..]);
     }
 
-    /// The impact whose distance nothing keeps above zero, where the motion ended for that.
-    pub fn overlap(&self) -> Option<&str> {
-        self.overlap.map(|place| self.names[place].as_str())
+    /// The impact at which the motion ended, why, and what to do; none if it ended for no impact.
+    pub fn overlap(&self) -> Option<String> {
+        let (place, cause) = self.overlap?;
+        let name = &self.names[place];
+        Some(match cause {
+            Overlap::Penetrated => format!(
+                "the distance of the impact `{name}` fell below zero: the bodies are forced into \
+                 each other, or hit each other without end. Check constraints and motions \
+                 prescribed there, or take a stiff spring in place of the impact"
+            ),
+            Overlap::NoImpulse => format!(
+                "no impulses keep the bodies apart that touch at the impact `{name}`: other impacts \
+                 or constraints leave no way out. Take a stiff spring in place of one of them"
+            ),
+            Overlap::Endless => format!(
+                "the impact `{name}` hits without end, {MOST_IN_A_ROW} times within the shortest \
+                 flights. Lower its restitution, or take a stiff spring in place of the impact"
+            ),
+        })
     }
 
     /// Brings a state onto the closed contacts, and opens those that would have to pull; how many
@@ -141,10 +168,12 @@ impl Contacts {
         self.size = self.size.max(largest(&state[..degrees]));
         let deepest = OVERLAP * self.size;
         if let Some((place, _)) = first_below(own, Point { t, state, inputs }, deepest) {
-            self.overlap = Some(place);
+            self.overlap = Some((place, Overlap::Penetrated));
             state.fill(f64::NAN);
             return 1;
         }
+        // A step that was taken back may have ended below.
+        self.overlap = None;
         if self.closed.is_empty() {
             return 0;
         }

@@ -17,6 +17,7 @@ pub use sided::Sided;
 
 use eomgen_sim::ode::SMALLEST_MAGNITUDE;
 use eomgen_sim::sliding_modes::{Arrival, Verdict};
+use sided::CORRECTIONS;
 
 /// How far a function may move from a surface that holds it before the state is put back, beside the
 /// largest it has been.
@@ -24,9 +25,6 @@ const DRIFT: f64 = 1e-12;
 
 /// The same beside what the surface's own force does to it in the time since it holds.
 const DRIFT_OF_A_FORCE: f64 = 1e-13;
-
-/// Corrections of a state that a surface catches; each squares what is left.
-const CORRECTIONS: usize = 2;
 
 /// A state counts as this part of the largest for differences.
 const SMALL: f64 = 1e-3;
@@ -342,11 +340,13 @@ impl Sliding {
     ) {
         self.found_at = None;
         let sides = self.sides(at, inputs);
-        let asked = (touching, arrivals);
+        let jumps = self.sided.jumps_on(at, inputs, touching, &sides);
+        let (touching, arrivals) = self.free_without_jump((touching, arrivals), &jumps);
+        let asked = (&touching[..], &arrivals[..]);
         let Some(verdicts) = self.sided.decide(at, inputs, asked, &sides) else {
             // Its function's sign decides, and the solver says that it comes to no end.
             for surface in touching {
-                self.places[*surface] = Place::Free;
+                self.places[surface] = Place::Free;
             }
             return;
         };
@@ -393,6 +393,31 @@ impl Sliding {
                 self.changes.push((guard, from < 0.0));
             }
         }
+    }
+
+    /// Frees the surfaces on which nothing jumps: their functions' signs decide. Returns the others.
+    fn free_without_jump(
+        &mut self,
+        (touching, arrivals): (&[usize], &[Arrival]),
+        jumps: &[bool],
+    ) -> (Vec<usize>, Vec<Arrival>) {
+        let mut left = (Vec::new(), Vec::new());
+        for ((surface, arrival), jumps) in touching.iter().zip(arrivals).zip(jumps) {
+            if *jumps {
+                left.0.push(*surface);
+                left.1.push(*arrival);
+                continue;
+            }
+            if self.places[*surface].is_on() {
+                let guard = self.sided.guard(*surface);
+                self.changes.push((guard, arrival.side > 0.0));
+            }
+            self.places[*surface] = Place::Free;
+            if let Some(kept) = &mut self.kept {
+                kept[*surface] = arrival.side;
+            }
+        }
+        left
     }
 
     /// The sides of all surfaces at a point, those that hold in the middle. Functions are asked only where

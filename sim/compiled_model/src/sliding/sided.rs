@@ -8,6 +8,9 @@ use nalgebra::{DMatrix, DVector};
 /// Newton's iterations where the rates are not of first degree in the sides.
 const ITERATIONS: usize = 20;
 
+/// Corrections of a state that a surface catches; each squares what is left.
+pub(super) const CORRECTIONS: usize = 2;
+
 /// A change of a side that is no more than rounding.
 const SETTLED: f64 = 1e-14;
 
@@ -16,6 +19,9 @@ const PART: f64 = 1e-6;
 
 /// Rounding of a function, beside the sum of its terms.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// What jumps on a surface jumps by more than this part of what it does beside it.
+const JUMP: f64 = 0.5;
 
 /// A time and a state.
 pub(super) type At<'p> = (f64, &'p [f64]);
@@ -176,6 +182,30 @@ impl Sided {
             s = next;
         }
         None
+    }
+
+    /// Whether the rates jump on each of the surfaces `touching`, near which a state is, with these sides
+    /// of all others. A jump that vanishes on its surface, as that of `sign(p)*sqrt(abs(p))` does, holds
+    /// nothing there, though it may seem to beside the surface.
+    pub(super) fn jumps_on(
+        &mut self,
+        (t, state): At<'_>,
+        inputs: &[f64],
+        touching: &[usize],
+        sides: &[f64],
+    ) -> Vec<bool> {
+        self.look((t, state), inputs, sides);
+        let beside: Vec<f64> = touching.iter().map(|i| self.own_rate(*i)).collect();
+        let mut on = state.to_vec();
+        for _ in 0..CORRECTIONS {
+            let values = self.functions((t, &on), inputs);
+            self.put_on(t, &mut on, (touching, &values));
+        }
+        self.evaluate((t, &on));
+        let jumps = touching.iter().zip(beside);
+        jumps
+            .map(|(surface, beside)| self.own_rate(*surface) > JUMP * beside)
+            .collect()
     }
 
     /// Brings a state, of functions with these values, onto surfaces. Its rates move as the forces

@@ -3,6 +3,7 @@
 //! their bounds that bring the speeds to zero, or as near as they can), against closed forms, and against the
 //! exact solver where that follows.
 
+mod domain;
 mod rows;
 mod seldom;
 mod time_stepping;

@@ -1,0 +1,219 @@
+//! Trial steps that leave the domain of a function or overflow, where the motion does neither: against
+//! closed forms and the right values of an orifice by SciPy (LSODA and Radau at 1e-11, which agree
+//! to nine digits).
+
+use eomgen_compiled_model::{CompiledModel, Solver};
+
+use super::{GENERAL, of_text, simulated};
+
+const STEPPING: [Solver; 3] = [Solver::Rk, Solver::Radau, Solver::Adams];
+
+/// A mass on a spring that an orifice of this law damps.
+fn orifice(law: &str) -> CompiledModel {
+    of_text(&format!(
+        r#"
+[model]
+name = "orifice"
+[parameters]
+m = {{ value = 1, unit = "kg" }}
+k = {{ value = 40, unit = "N/m" }}
+A = {{ value = 1e-3, unit = "m^2" }}
+C = {{ value = 2e-12, unit = "m^3/Pa" }}
+k_v = {{ value = 1e-6, unit = "m^3/(s Pa^(1/2))" }}
+[coordinates]
+x = {{ unit = "m", initial = 0.1 }}
+[states]
+p = {{ unit = "Pa", rate = "(A*dot(x) - k_v*{law})/C" }}
+[kinetic]
+m = "1/2*m*dot(x)^2"
+[potential]
+k = "1/2*k*x^2"
+[forces]
+piston = {{ on = "x", value = "-A*p" }}
+"#
+    ))
+}
+
+/// The deflection, rate and pressure of the orifice from 0.1 m at rest and from this pressure, at these
+/// times.
+const TIMES: [f64; 5] = [0.0, 0.01, 0.1, 0.5, 1.0];
+const ORIFICE: [(f64, [[f64; 3]; 4]); 3] = [
+    (
+        1000.0,
+        [
+            [0.09981145981, -0.03550681779, -1233.398709],
+            [0.09442999214, -0.06161612933, -3797.153518],
+            [0.07138315169, -0.05361774773, -2875.322868],
+            [0.04707387787, -0.04361934754, -1902.951915],
+        ],
+    ),
+    (
+        0.0,
+        [
+            [0.0998118292, -0.03547797298, -1231.376387],
+            [0.09443063459, -0.06161633738, -3797.179159],
+            [0.07138371074, -0.05361795623, -2875.34523],
+            [0.04707433268, -0.04361955604, -1902.970107],
+        ],
+    ),
+    (
+        -1e5,
+        [
+            [0.1001530959, -0.004507058787, -19.69038609],
+            [0.09512931217, -0.06184197034, -3825.037049],
+            [0.0719918611, -0.05384428802, -2899.671244],
+            [0.04756931713, -0.04384588783, -1922.769486],
+        ],
+    ),
+];
+
+fn agrees_with_scipy(law: &str, solvers: &[Solver], starts: usize) {
+    let model = orifice(law);
+    let run = model.at_declared().unwrap();
+    for (pressure, right) in ORIFICE.into_iter().take(starts) {
+        for solver in solvers {
+            let initial = [0.1, 0.0, pressure];
+            let motion = run.simulate(&initial, &TIMES, &run.no_inputs(), *solver);
+            let motion =
+                motion.unwrap_or_else(|error| panic!("{law}, {solver}, {pressure}: {error}"));
+            // Errors are relative to the largest that a state has been.
+            let sizes = [0.1, 0.1, pressure.abs().max(4000.0)];
+            for (state, right) in motion.trajectory.states[1..].iter().zip(right) {
+                for ((value, right), size) in state.iter().zip(right).zip(sizes) {
+                    let off = (value - right).abs() / size;
+                    assert!(off < 2e-8, "{law}, {solver}, {pressure}: {value} {right}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn flow_through_an_orifice_turns_round_as_in_scipy() {
+    agrees_with_scipy("sign(p)*sqrt(abs(p))", &STEPPING, 2);
+    agrees_with_scipy("sign(p)*sqrt(abs(p))", &GENERAL, 3);
+    agrees_with_scipy("sign(p)*abs(p)^0.5", &GENERAL, 3);
+}
+
+#[test]
+fn laws_without_a_value_on_the_wrong_side_of_their_sign_turn_round_as_well() {
+    agrees_with_scipy("sign(p)*sqrt(p*sign(p))", &GENERAL, 2);
+    agrees_with_scipy("(sqrt(max(p, 0)) - sqrt(max(-p, 0)))", &GENERAL, 3);
+}
+
+/// A mass at rest with cubic damping that is pushed from 3 s on, v = sqrt(F/c) tanh(sqrt(F c)(t - a)):
+/// steps have grown long by then. In any unit of its deflection.
+#[test]
+fn steps_that_overflow_behind_a_push_are_shortened() {
+    let model = of_text(
+        r#"
+[model]
+name = "step"
+[parameters]
+m = { value = 1, unit = "kg" }
+F = { value = 30, unit = "N" }
+a = { value = 3, unit = "s" }
+c = { value = 1, unit = "N s^2/m^2" }
+[coordinates]
+x = { unit = "m" }
+[kinetic]
+mass = "1/2*m*dot(x)^2"
+[forces]
+push = { on = "x", value = "F*above(t - a)" }
+damper = { on = "x", value = "-c*dot(x)*abs(dot(x))" }
+"#,
+    );
+    let times = [0.0, 2.0, 4.0, 10.0];
+    for scale in [1e-6, 1.0, 1e6] {
+        for solver in STEPPING {
+            let settings = [("F", 30.0 * scale), ("c", 1.0 / scale)];
+            let motion = simulated(&model, &settings, &times, solver);
+            for (t, state) in times.iter().zip(&motion.trajectory.states) {
+                let since = 30.0_f64.sqrt() * (t - 3.0).max(0.0);
+                let right = [
+                    scale * since.cosh().ln(),
+                    scale * 30.0_f64.sqrt() * since.tanh(),
+                ];
+                for (value, right) in state.iter().zip(right) {
+                    let off = (value - right).abs();
+                    assert!(off <= 2e-8 * right, "{solver} at {t}: {value:e} {right:e}");
+                }
+            }
+        }
+    }
+}
+
+/// States that begin at or near the edge of the domain of their own rates: z' = -z ln z, so that ln z
+/// decays, and z' = -arcsin z from 1, whose slope is infinite there.
+#[test]
+fn states_that_begin_at_the_edge_of_a_domain_leave_it() {
+    let model = of_text(
+        r#"
+[model]
+name = "edges"
+[coordinates]
+x = { unit = "m" }
+[states]
+l = { unit = "1", rate = "-l*ln(l)/T", initial = 1e-6 }
+s = { unit = "1", rate = "-asin(s)/T", initial = 1 }
+[parameters]
+m = { value = 1, unit = "kg" }
+T = { value = 1, unit = "s" }
+[kinetic]
+m = "1/2*m*dot(x)^2"
+"#,
+    );
+    let times = [0.0, 0.5, 1.0, 2.0];
+    // With s = sin u by quadrature of cos u/u.
+    let right = [
+        1.0,
+        0.561_217_178_396_959_3,
+        0.334_289_066_948_184_83,
+        0.121_970_917_335_998_02,
+    ];
+    for solver in STEPPING {
+        let motion = simulated(&model, &[], &times, solver);
+        for ((t, state), right) in times.iter().zip(&motion.trajectory.states).zip(right) {
+            let decayed = (1e-6_f64.ln() * (-t).exp()).exp();
+            assert!(
+                (state[2] / decayed - 1.0).abs() < 1e-7,
+                "{solver} at {t}: {state:?}"
+            );
+            assert!(
+                (state[3] - right).abs() < 1e-8,
+                "{solver} at {t}: {state:?}"
+            );
+        }
+    }
+}
+
+/// sqrt(0.5 - t) has no value behind 0.5 s: the message names the state and says why.
+#[test]
+fn a_motion_out_of_a_domain_stops_with_the_cause() {
+    let model = of_text(
+        r#"
+[model]
+name = "out"
+[coordinates]
+x = { unit = "m" }
+[states]
+z = { unit = "1", rate = "sqrt(1 - t/T)/T" }
+[parameters]
+m = { value = 1, unit = "kg" }
+T = { value = 0.5, unit = "s" }
+[kinetic]
+m = "1/2*m*dot(x)^2"
+"#,
+    );
+    let run = model.at_declared().unwrap();
+    for solver in STEPPING {
+        let error = run.simulate(run.initial(), &[0.0, 1.0], &run.no_inputs(), solver);
+        let said = error
+            .err()
+            .map(|error| error.to_string())
+            .unwrap_or_default();
+        for part in ["at t = 0.", "left its domain", "`z`"] {
+            assert!(said.contains(part), "{solver}: {said}");
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! The passage over a switching surface, or past one that was touched.
+
+use super::crossing::{approach, over};
+use super::dormand_prince::single_step;
+use super::driver::{Accepted, Driver};
+use super::error::SolveError;
+use super::grazing::leapt_over;
+use super::stepper::{Point, Stepper};
+use super::system::System;
+
+/// How short a stay beyond a surface is searched for in the step over it, relative to the step
+/// that ran into it: well above where rounding makes a switching function change its sign.
+const SHORTEST_CONTACT: f64 = 1e-9;
+
+/// A step over a surface is as short as can be if it is so many times the shortest step.
+const SHORTEST_WINDOW: f64 = 16.0;
+
+impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
+    /// Goes to the surface that may lie within `length` of here, and over it.
+    pub(super) fn cross(&mut self, length: f64) -> Result<(), SolveError> {
+        let mut window = length;
+        let mut beyond = Vec::new();
+        while window > over(length) {
+            let begin = self.stepper.here().t;
+            let found = approach(self.watched, &mut self.stepper, window, beyond);
+            self.trajectory.work.trials += found.trials;
+            window = found.rest;
+            beyond = found.beyond;
+            if found.length > 0.0 {
+                self.stepper.set_step(found.length);
+                let outcome = self.controlled_step(f64::INFINITY)?;
+                if !outcome.is_accepted {
+                    // Not the surface alone: shorter steps, and then again.
+                    return Ok(());
+                }
+                if outcome.length < found.length {
+                    // A method that starts may begin with a shorter step.
+                    window += found.length - outcome.length;
+                    beyond = Vec::new();
+                }
+                match self.look_at(outcome.length, true) {
+                    Accepted::Shortened => return Ok(()),
+                    Accepted::PassedOver(length) => {
+                        window = length.min(0.5 * found.length);
+                        beyond = Vec::new();
+                        continue;
+                    }
+                    Accepted::Stands => {}
+                }
+                if self.watched.crossed().is_some() && self.is_beyond(self.stepper.here()) {
+                    // Its error led it over.
+                    let mut point = self.stepper.here().clone();
+                    self.stepper.take_back();
+                    let start = self.stepper.here().clone();
+                    self.watched
+                        .cross((start.t, &start.y), point.t, &mut point.y);
+                    self.stepper.restart(point, length);
+                    self.project();
+                    return self.accept(begin);
+                }
+                self.accept(begin)?;
+            }
+        }
+        self.step_over(window.max(over(length)), length)
+    }
+
+    /// Steps over the surface `window` ahead, wider where rounding hides it and as long as the step is
+    /// resolved, and goes on with steps of `length`.
+    fn step_over(&mut self, mut window: f64, length: f64) -> Result<(), SolveError> {
+        let start = self.stepper.here().clone();
+        while window < length {
+            self.check_steps()?;
+            self.trajectory.work.trials += 1;
+            let Some(mut point) = self.resolved_step(&start, window) else {
+                break;
+            };
+            if self.is_beyond(&point) {
+                self.watched
+                    .cross((start.t, &start.y), point.t, &mut point.y);
+                self.stepper.restart(point, length);
+                self.project();
+                return self.accept(start.t);
+            }
+            // In a step that does not move the time there is nothing to leap over.
+            if window > SHORTEST_CONTACT * length && point.t > start.t {
+                let trials = &mut self.trajectory.work.trials;
+                let step = (&start, &point);
+                if let Some(ahead) = leapt_over(self.watched, &self.stepper, step, trials) {
+                    // Too short for this step: let shorter ones find it.
+                    self.stepper.restart(start, 0.25 * ahead);
+                    return Ok(());
+                }
+            }
+            window *= 4.0;
+        }
+        // The surface was touched, by a trial state or by the motion, and not crossed by a step that
+        // meets the tolerance.
+        self.stepper.restart(start, 0.25 * length);
+        Ok(())
+    }
+
+    /// The point that a step of `window` s leads to from `start`, if the step meets the tolerance. The error
+    /// estimate of a method means nothing across a surface: the step must be so short that the rates
+    /// at neither end lead to another point, or as short as times can be told apart. Such a step is explicit
+    /// for every method: Newton's method may not converge across a jump, and nothing is stiff in it.
+    fn resolved_step(&self, start: &Point, window: f64) -> Option<Point> {
+        self.watched.reset();
+        let kept = single_step(self.watched, start, window);
+        let point = kept.or_else(|| self.step_of_own_sides(start, window))?;
+        let near = self.rates_at(start);
+        self.watched.keep_sides(false);
+        let beyond = self.rates_at(&point);
+        self.watched.keep_sides(true);
+        let is_resolved = |rates: &Vec<f64>| {
+            let ends = point.y.iter().zip(&start.y);
+            let errors = ends.zip(rates).map(|((b, a), rate)| b - a - window * rate);
+            self.stepper.magnitudes().norm(errors, &point.y) <= 1.0
+        };
+        let is_shortest = window <= SHORTEST_WINDOW * self.shortest_step();
+        (is_shortest || [near, beyond].iter().all(is_resolved)).then_some(point)
+    }
+
+    /// The same whatever its error, where the rates of the near side have no value beyond the surface, and
+    /// those of the side where a trial is have one.
+    fn step_of_own_sides(&self, start: &Point, window: f64) -> Option<Point> {
+        self.watched.reset();
+        self.watched.keep_sides(false);
+        let point = single_step(self.watched, start, window);
+        self.watched.keep_sides(true);
+        point
+    }
+
+    fn rates_at(&self, point: &Point) -> Vec<f64> {
+        let mut rates = vec![0.0; point.y.len()];
+        self.watched.rates(point.t, &point.y, &mut rates);
+        rates
+    }
+
+    /// Whether a point lies beyond a surface of the present regime.
+    fn is_beyond(&self, point: &Point) -> bool {
+        let guards = self.watched.guards_at(point.t, &point.y);
+        (guards.iter().enumerate()).any(|(guard, value)| self.watched.is_beyond(guard, *value))
+    }
+}

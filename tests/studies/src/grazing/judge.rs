@@ -1,0 +1,239 @@
+//! What is asked of the motions of one machine: that they gain no energy, and that they agree.
+
+use eomgen_compiled_model::{CompiledModel, Instance, Orders, Request, Solver};
+
+use super::machine::Machine;
+use super::turning_point::place_of_stop;
+
+/// Samples of a motion.
+const SAMPLES: usize = 200;
+
+/// The default tolerance and a tighter one.
+const TOLERANCES: [f64; 2] = [1e-9, 1e-11];
+
+/// Tolerance of the reference and of the motions beside it.
+const REFERENCE: f64 = 1e-12;
+
+/// Motions beside the reference start so many tolerances away, relative to the sizes of the states.
+const APART: f64 = 100.0;
+
+/// Pairs of motions that start to either side of the reference.
+const PAIRS: usize = 2;
+
+/// A motion may differ from the reference by so many tolerances more than motions beside it do.
+const MOST_DIFFERENCE: f64 = 100.0;
+
+/// Motions that part by as much of their size cannot be compared any more.
+const PARTED: f64 = 0.05;
+
+/// The energy may rise by so many tolerances, times the root of the stop's stiffness ratio: an error
+/// of the deflection by a tolerance weighs as much in the energy of the stop.
+const MOST_RISE: f64 = 10.0;
+
+/// The result for one machine.
+pub struct Verdict {
+    /// A line for each failure.
+    pub failures: Vec<String>,
+    /// Number of runs.
+    pub runs: usize,
+    /// Whether the exact solver took the machine.
+    pub is_exact: bool,
+    /// Switches of the reference.
+    pub switches: usize,
+    /// Largest rise of the energy, as a part of what is allowed.
+    pub rise: f64,
+    /// Largest difference from the reference, as a part of what is allowed.
+    pub difference: f64,
+}
+
+impl Verdict {
+    /// A machine that could not be judged.
+    pub fn failed(problem: String) -> Self {
+        Self {
+            failures: vec![problem],
+            runs: 0,
+            is_exact: false,
+            switches: 0,
+            rise: 0.0,
+            difference: 0.0,
+        }
+    }
+}
+
+/// States and energies of a motion at the samples.
+struct Sampled {
+    states: Vec<Vec<f64>>,
+    energies: Vec<f64>,
+    switches: usize,
+}
+
+/// Judges the motions of a machine.
+///
+/// # Errors
+///
+/// A machine without a reference.
+pub fn judge(machine: &Machine) -> Result<Verdict, String> {
+    let text = machine.specification(place_of_stop(machine)?);
+    let model = CompiledModel::of_text("grazing.toml", &text, Orders::Declared)
+        .map_err(|error| error.to_string())?;
+    let run = model.with(&[]).map_err(|error| error.to_string())?;
+    let times: Vec<f64> = (0..=SAMPLES)
+        .map(|place| machine.duration * place as f64 / SAMPLES as f64)
+        .collect();
+    let sampled =
+        |initial: &[f64], solver, tolerance| sample(&run, (initial, &times), solver, tolerance);
+    let reference = sampled(&machine.initial, Solver::Rk, REFERENCE)
+        .map_err(|error| format!("reference: {error}"))?;
+    let sizes = sizes_of(&reference.states);
+    let mut verdict = Verdict::failed(String::new());
+    verdict.failures.clear();
+    verdict.switches = reference.switches;
+    verdict.is_exact = model.piecewise_linear().is_ok();
+    for tolerance in TOLERANCES {
+        let parting = parting(machine, &reference, &sizes, tolerance, &sampled)?;
+        let mut solvers = vec![Solver::Rk, Solver::Radau];
+        if verdict.is_exact && tolerance == TOLERANCES[0] {
+            solvers.push(Solver::Exact);
+        }
+        for solver in solvers {
+            verdict.runs += 1;
+            let failure = match sampled(&machine.initial, solver, tolerance) {
+                Err(error) => Some(error),
+                Ok(motion) => {
+                    let rise = rise_of(machine, &motion.energies, tolerance);
+                    let difference =
+                        difference_of(&motion, (&reference, &sizes), &parting, tolerance);
+                    verdict.rise = verdict.rise.max(rise);
+                    verdict.difference = verdict.difference.max(difference);
+                    (rise > 1.0 || difference > 1.0).then(|| {
+                        format!(
+                            "energy {rise:.1e} and difference {difference:.1e} of what is allowed"
+                        )
+                    })
+                }
+            };
+            if let Some(failure) = failure {
+                let line = format!("{machine}: {solver} at {tolerance:.0e}: {failure}");
+                verdict.failures.push(line);
+            }
+        }
+    }
+    Ok(verdict)
+}
+
+/// The motion from an initial state with its energies.
+fn sample(
+    run: &Instance<'_>,
+    (initial, times): (&[f64], &[f64]),
+    solver: Solver,
+    tolerance: f64,
+) -> Result<Sampled, String> {
+    let inputs = run.no_inputs();
+    let request = Request {
+        initial,
+        times,
+        inputs: &inputs,
+        solver,
+        tolerance,
+    };
+    let motion = run
+        .follow(&request, &mut |_| {})
+        .and_then(|motion| motion.complete());
+    let motion = motion.map_err(|error| error.to_string())?;
+    let names = run.model().observable_names();
+    let place = names.iter().position(|name| name == "energy").unwrap_or(0);
+    let rows = run
+        .observables(&motion)
+        .map_err(|error| error.to_string())?;
+    Ok(Sampled {
+        switches: motion.trajectory.switches.len(),
+        energies: rows.iter().map(|row| row[place]).collect(),
+        states: motion.trajectory.states,
+    })
+}
+
+/// The largest that each state has been.
+fn sizes_of(states: &[Vec<f64>]) -> Vec<f64> {
+    (0..states[0].len())
+        .map(|index| {
+            states
+                .iter()
+                .map(|state| state[index].abs())
+                .fold(0.0, f64::max)
+        })
+        .collect()
+}
+
+/// The largest rise of the energy above its lowest value before, or above and below its first one if
+/// nothing may take any, as a part of what is allowed.
+fn rise_of(machine: &Machine, energies: &[f64], tolerance: f64) -> f64 {
+    let first = energies[0];
+    let mut lowest = first;
+    let mut rise = 0.0_f64;
+    for energy in energies {
+        lowest = lowest.min(*energy);
+        rise = rise.max(match machine.is_conservative() {
+            true => (energy - first).abs(),
+            false => energy - lowest,
+        });
+        if energy.is_nan() {
+            return f64::INFINITY;
+        }
+    }
+    rise / (MOST_RISE * tolerance * machine.stiffness_ratio.sqrt() * first)
+}
+
+/// By how much motions part from the reference up to each sample that start some tolerances beside it.
+fn parting(
+    machine: &Machine,
+    reference: &Sampled,
+    sizes: &[f64],
+    tolerance: f64,
+    sampled: &impl Fn(&[f64], Solver, f64) -> Result<Sampled, String>,
+) -> Result<Vec<f64>, String> {
+    let mut parted = vec![0.0_f64; reference.states.len()];
+    for pair in 0..PAIRS {
+        for sign in [1.0, -1.0] {
+            let beside = machine.initial.iter().zip(sizes).enumerate();
+            // Directions along no axis, and no multiple of each other.
+            let beside: Vec<f64> = beside
+                .map(|(index, (y, size))| {
+                    let direction = (1.0 + 2.0 * index as f64 + 1.7 * pair as f64).sin();
+                    y + sign * direction * APART * tolerance * size
+                })
+                .collect();
+            let motion = sampled(&beside, Solver::Rk, REFERENCE)
+                .map_err(|error| format!("beside the reference: {error}"))?;
+            let mut so_far = 0.0_f64;
+            for (place, parted) in parted.iter_mut().enumerate() {
+                let states = (&motion.states[place], &reference.states[place]);
+                so_far = so_far.max(distance(states, sizes));
+                *parted = parted.max(so_far);
+            }
+        }
+    }
+    Ok(parted)
+}
+
+/// The largest difference from the reference, as a part of what is allowed, as long as motions beside
+/// it have not parted.
+fn difference_of(
+    motion: &Sampled,
+    (reference, sizes): (&Sampled, &[f64]),
+    parting: &[f64],
+    tolerance: f64,
+) -> f64 {
+    let pairs = motion.states.iter().zip(&reference.states).zip(parting);
+    pairs
+        .take_while(|(_, parted)| **parted < PARTED)
+        .map(|(states, parted)| distance(states, sizes) / (MOST_DIFFERENCE * tolerance + parted))
+        .fold(0.0, f64::max)
+}
+
+/// The largest difference of a state, relative to its size.
+fn distance((a, b): (&Vec<f64>, &Vec<f64>), sizes: &[f64]) -> f64 {
+    let differences = a.iter().zip(b).zip(sizes);
+    differences
+        .map(|((a, b), size)| (a - b).abs() / size)
+        .fold(0.0, f64::max)
+}

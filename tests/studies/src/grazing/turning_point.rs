@@ -1,0 +1,96 @@
+//! The place of the stop: at a turning point of the motion without it.
+
+use eomgen_compiled_model::{CompiledModel, Instance, Orders, Request, Solver};
+
+use super::machine::Machine;
+
+/// Tolerance of the motion without a stop.
+const TOLERANCE: f64 = 1e-13;
+
+/// Samples of that motion, and of each finer look at a turning point.
+const SAMPLES: usize = 2000;
+
+/// Places the stop so that a turning point lies beyond it by the machine's depth, m.
+///
+/// # Errors
+///
+/// A motion without the stop that stops early.
+pub fn place_of_stop(machine: &Machine) -> Result<f64, String> {
+    let far = 1e6
+        * machine
+            .initial
+            .iter()
+            .fold(0.0_f64, |most, y| most.max(y.abs()));
+    let model = CompiledModel::of_text("free.toml", &machine.specification(far), Orders::Declared)
+        .map_err(|error| error.to_string())?;
+    let run = model.with(&[]).map_err(|error| error.to_string())?;
+    let step = machine.duration / SAMPLES as f64;
+    let free = deflections(machine, &run, (0.0, machine.duration))?;
+    let peaks = records(&free);
+    let chosen = ((machine.choice * peaks.len() as f64) as usize).min(peaks.len() - 1);
+    let mut peak = free[peaks[chosen]];
+    let mut near = (
+        peaks[chosen].saturating_sub(1) as f64 * step,
+        (peaks[chosen] + 1) as f64 * step,
+    );
+    for _ in 0..2 {
+        let finer = deflections(machine, &run, (near.0, near.1.min(machine.duration)))?;
+        let highest = (0..finer.len()).fold(0, |a, b| if finer[b] > finer[a] { b } else { a });
+        peak = peak.max(finer[highest]);
+        let width = (near.1.min(machine.duration) - near.0) / SAMPLES as f64;
+        let middle = near.0 + highest as f64 * width;
+        near = ((middle - width).max(near.0), middle + width);
+    }
+    Ok(peak * (1.0 - machine.depth))
+}
+
+/// How far out the mass is that meets the stop, at evenly spaced times of a span (s).
+fn deflections(
+    machine: &Machine,
+    run: &Instance<'_>,
+    (from, to): (f64, f64),
+) -> Result<Vec<f64>, String> {
+    let step = (to - from) / SAMPLES as f64;
+    let inside = (0..=SAMPLES).map(|place| from + place as f64 * step);
+    let begins_later = from > 0.0;
+    let times: Vec<f64> = begins_later
+        .then_some(0.0)
+        .into_iter()
+        .chain(inside)
+        .collect();
+    let request = Request {
+        initial: &machine.initial,
+        times: &times,
+        inputs: &run.no_inputs(),
+        solver: Solver::Rk,
+        tolerance: TOLERANCE,
+    };
+    let motion = run
+        .follow(&request, &mut |_| {})
+        .and_then(|motion| motion.complete());
+    let motion = motion.map_err(|error| format!("without the stop: {error}"))?;
+    let states = motion
+        .trajectory
+        .states
+        .iter()
+        .skip(usize::from(begins_later));
+    let outward = |x: f64| if machine.is_two_sided() { x.abs() } else { x };
+    Ok(states.map(|state| outward(state[machine.at])).collect())
+}
+
+/// The places of local maxima above zero that are higher than all before; at least one place.
+fn records(values: &[f64]) -> Vec<usize> {
+    let mut highest = values[0].max(0.0);
+    let mut found = Vec::new();
+    for place in 1..values.len() - 1 {
+        if values[place] > highest && values[place] >= values[place + 1] {
+            found.push(place);
+        }
+        highest = highest.max(values[place]);
+    }
+    if found.is_empty() {
+        let place = (0..values.len()).fold(0, |a, b| if values[b] > values[a] { b } else { a });
+        found.push(place);
+    }
+    found
+}
