@@ -34,6 +34,7 @@
 
 pub mod ast;
 mod checks;
+mod constants;
 pub mod diagnostic;
 pub mod dimension;
 mod document;
@@ -42,6 +43,7 @@ mod entries;
 pub mod evaluate;
 mod expression;
 mod file_beside;
+mod foreign;
 mod functions;
 pub mod ids;
 mod infer;

@@ -4,6 +4,7 @@
 
 use crate::ast::{BinaryOperator, Syntax, SyntaxKind};
 use crate::diagnostic::Diagnostic;
+use crate::foreign::written_here;
 use crate::lexer::{Token, TokenKind};
 use crate::span::Span;
 
@@ -30,7 +31,7 @@ pub fn parse(tokens: &[Token], end: Span) -> Result<Syntax, Diagnostic> {
     let tree = parser.expression(ADDITIVE)?;
     match parser.peek() {
         None => Ok(tree.syntax),
-        Some(token) => Err(left_over(token, tree.syntax.span)),
+        Some(token) => Err(left_over(token, &tree.syntax)),
     }
 }
 
@@ -283,7 +284,7 @@ fn too_deep(place: Span) -> Diagnostic {
     .help("name parts of it in [definitions]")
 }
 
-fn left_over(token: &Token, before: Span) -> Diagnostic {
+fn left_over(token: &Token, before: &Syntax) -> Diagnostic {
     let diagnostic = match token.kind {
         TokenKind::Close | TokenKind::CloseIndex => {
             Diagnostic::error(format!("{} closes nothing", token.kind.shown()))
@@ -297,12 +298,22 @@ fn left_over(token: &Token, before: Span) -> Diagnostic {
             token.kind.shown()
         ))
         .at(token.span, "expected + - * / or ^")
-        .also(before, "the expression so far"),
+        .also(before.span, "the expression so far"),
     };
-    diagnostic.help_if(missing_operator(&token.kind))
+    let word = match &before.kind {
+        SyntaxKind::Name(name) => written_here(name).map(str::to_owned),
+        _ => None,
+    };
+    diagnostic.help_if(word.or_else(|| missing_operator(&token.kind)))
 }
 
+/// What an operand that follows another may have been meant for.
 fn missing_operator(found: &TokenKind) -> Option<String> {
+    if let TokenKind::Name(word) = found
+        && let Some(help) = written_here(word)
+    {
+        return Some(help.to_owned());
+    }
     let starts = matches!(
         found,
         TokenKind::Number(_) | TokenKind::Name(_) | TokenKind::Open
