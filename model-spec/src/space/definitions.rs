@@ -1,7 +1,7 @@
 //! Definitions that short forms write: what is used more than once gets a name, so that nothing is
 //! written out twice and texts grow with what is written in the file.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use super::moving::Moving;
 use super::scalar::{call, expansion, name, negate, number};
@@ -38,6 +38,8 @@ impl Owner {
 pub struct Definitions {
     written: Vec<RawTerm>,
     taken: HashSet<String>,
+    /// The number of the last part of each entry.
+    parts: HashMap<String, usize>,
     /// What has a rate.
     pub moving: Moving,
 }
@@ -48,6 +50,7 @@ impl Definitions {
         Self {
             written: Vec::new(),
             taken: declared(document),
+            parts: HashMap::new(),
             moving: Moving::of(document),
         }
     }
@@ -98,13 +101,13 @@ impl Definitions {
 
     /// A name for a part of an entry that no other part has.
     pub fn part(&mut self, owner: &Owner) -> String {
-        let mut number = 1;
+        let last = self.parts.entry(owner.name.text.clone()).or_default();
         loop {
-            let part = format!("part_{number}");
+            *last += 1;
+            let part = format!("part_{last}");
             if self.taken.insert(owner.named(&part)) {
                 return part;
             }
-            number += 1;
         }
     }
 

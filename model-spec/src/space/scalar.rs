@@ -119,6 +119,11 @@ pub fn multiply(a: Syntax, b: Syntax) -> Syntax {
     }
 }
 
+/// `0*a`, which has the unit of `a`
+pub fn zero_times(a: &Syntax, span: Span) -> Syntax {
+    binary(BinaryOperator::Multiply, number(0.0, span), a.clone(), span)
+}
+
 /// `a^2`
 pub fn square(a: Syntax) -> Syntax {
     let span = a.span;
