@@ -40,8 +40,8 @@ pub(crate) fn binary(operator: BinaryOperator, left: f64, right: f64) -> f64 {
     }
 }
 
-/// The value of a function of one argument, or of two.
-pub(crate) fn call(function: Function, x: f64, second: f64) -> f64 {
+/// The value of a function of `x`, or of `x` and a `second` argument.
+pub fn call(function: Function, x: f64, second: f64) -> f64 {
     match function {
         Function::Sin => x.sin(),
         Function::Cos => x.cos(),

@@ -45,6 +45,7 @@ mod expression;
 mod file_beside;
 mod foreign;
 mod functions;
+mod id_set;
 pub mod ids;
 mod infer;
 mod keys;

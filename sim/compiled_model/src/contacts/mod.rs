@@ -10,12 +10,14 @@
 
 mod complementarity;
 mod impulses;
+mod start;
 
 use std::collections::VecDeque;
 
 use eomgen_codegen::program::evaluator::{Evaluator, ImpactAt, Point};
 
 use complementarity::{balance, complementary};
+pub(crate) use start::Start;
 
 /// A distance this small beside the largest coordinate is rounding.
 const ROUNDING: f64 = 1e-11;
@@ -52,11 +54,6 @@ pub(crate) struct Contacts {
     recent: VecDeque<f64>,
     /// The distance that nothing keeps above zero.
     overlap: Option<usize>,
-}
-
-/// The first distance that is below zero, and not by rounding, if one is: its place and value.
-pub(crate) fn first_overlap(own: &mut Evaluator, point: Point<'_>) -> Option<(usize, f64)> {
-    first_below(own, point, ROUNDING * largest(point.state))
 }
 
 /// The first distance that is below zero by more than is allowed.
