@@ -5,16 +5,26 @@ use crate::ast::BinaryOperator;
 use crate::checks::for_each_expression;
 use crate::evaluate::{binary, call};
 use crate::model::{CoefficientKind, Expr, ExprKind, Function, Model};
-use crate::variant::ModelError;
+use crate::span::Span;
+
+/// A constant that is infinite or not a number.
+pub struct NotFinite {
+    /// What is wrong.
+    pub message: String,
+    /// What would be right.
+    pub help: &'static str,
+    /// Where it stands.
+    pub span: Span,
+}
 
 /// The finite value of an expression, or None if it moves.
-type Constant = Result<Option<f64>, ModelError>;
+type Constant = Result<Option<f64>, NotFinite>;
 
 /// Checks the constant parts of all expressions at these values of the parameters, in SI.
 ///
 /// # Errors
 /// The first that is infinite or not a number, with its place.
-pub fn check(model: &Model, parameters: &[f64]) -> Result<(), ModelError> {
+pub fn check(model: &Model, parameters: &[f64]) -> Result<(), NotFinite> {
     let mut known = Constants {
         parameters,
         definitions: vec![None; model.definitions.len()],
@@ -91,8 +101,11 @@ impl Constants<'_> {
     fn operation(&self, operator: BinaryOperator, left: &Expr, right: &Expr) -> Constant {
         let (one, other) = (self.value(left)?, self.value(right)?);
         if operator == BinaryOperator::Divide && other == Some(0.0) {
-            let error = ModelError::new("division by 0: this is 0").at(right.span);
-            return Err(error.help("divide by a quantity that is not 0, or leave the term out"));
+            return Err(NotFinite {
+                message: "division by 0: this is 0".to_owned(),
+                help: "divide by a quantity that is not 0, or leave the term out",
+                span: right.span,
+            });
         }
         Ok(one.zip(other).map(|(x, y)| binary(operator, x, y)))
     }
@@ -107,18 +120,25 @@ impl Constants<'_> {
         if value.is_finite() {
             return Ok(Some(value));
         }
-        let message = format!("`{}` of {x} comes out as {value}", function.name());
-        let error = ModelError::new(message).at(whole.span);
-        Err(error.help(domain(function)))
+        Err(NotFinite {
+            message: format!("`{}` of {x} comes out as {value}", function.name()),
+            help: domain(function),
+            span: whole.span,
+        })
     }
 }
 
-fn not_finite(value: f64, expr: &Expr) -> ModelError {
-    let error = ModelError::new(format!("this expression comes out as {value}")).at(expr.span);
-    error.help(match value.is_nan() {
-        true => "a negative number has only powers with a whole exponent",
-        false => "the value exceeds 1.8e308: look for a power of 0 or a number that is too large",
-    })
+fn not_finite(value: f64, expr: &Expr) -> NotFinite {
+    NotFinite {
+        message: format!("this expression comes out as {value}"),
+        help: match value.is_nan() {
+            true => "a negative number has only powers with a whole exponent",
+            false => {
+                "the value exceeds 1.8e308: look for a power of 0 or a number that is too large"
+            }
+        },
+        span: expr.span,
+    }
 }
 
 /// Where a function has a finite value.

@@ -1,81 +1,97 @@
 //! Operators, words and functions of other languages, and how each is written here.
 
-/// What other languages write, and the way to write it here.
-const TABLE: [(&[&str], &str); 16] = [
+/// Spellings of other languages, and the way to write the same here.
+type Foreign = (&'static [&'static str], &'static str);
+
+/// Operators.
+const OPERATORS: [Foreign; 12] = [
     (
-        &[">", ">=", "=>", "≥"],
+        &[">"],
         "write `above(x - a)` for 1 if x > a, else 0; `contact(x, a)` is 1 if abs(x) > a",
     ),
     (
-        &["<", "<=", "≤"],
+        &["<"],
         "write `above(a - x)` for 1 if x < a, else 0; `1 - contact(x, a)` is 1 if abs(x) <= a",
     ),
     (
+        &[">=", "=>", "≥"],
+        "write `1 - above(a - x)` for 1 if x >= a, else 0",
+    ),
+    (
+        &["<=", "≤"],
+        "write `1 - above(x - a)` for 1 if x <= a, else 0",
+    ),
+    (
         &["=", "==", "==="],
-        "two quantities that move are equal for an instant only: write `1 - contact(x - a, b)` for 1 \
-         if x is within b of a",
+        "quantities that move are equal for an instant only: write `1 - contact(x - a, b)` for 1 if x \
+         is within b of a",
     ),
     (
         &["!=", "/=", "<>", "~=", "≠"],
         "write `contact(x - a, b)` for 1 if x is more than b away from a",
     ),
-    (
-        &["&", "&&", "and"],
-        "both conditions hold where their product is 1: `above(x - a)*above(b - x)`",
-    ),
-    (
-        &["||", "or"],
-        "one of two conditions holds where the larger is 1: `max(above(x - a), above(b - x))`",
-    ),
+    (&["&", "&&"], AND),
+    (&["||"], OR),
     (
         &["|"],
         "write `abs(x)` for a magnitude, and `max(above(x - a), above(b - x))` for x > a or x < b",
     ),
-    (
-        &["!", "not"],
-        "write `1 - above(x - a)` for 1 if x <= a, else 0",
-    ),
+    (&["!"], NOT),
+    (&["?", ":"], IF),
+    (&["**", "^^"], POWER),
+];
+
+/// Words between operands or before them.
+const WORDS: [Foreign; 4] = [
+    (&["and"], AND),
+    (&["or"], OR),
+    (&["not"], NOT),
     (
         &[
-            "?",
-            ":",
-            "if",
-            "then",
-            "else",
-            "elif",
-            "elseif",
-            "ifelse",
-            "where",
-            "select",
-            "piecewise",
-            "Piecewise",
-            "case",
-            "when",
+            "if", "then", "else", "elif", "elseif", "where", "when", "case",
         ],
-        "write `above(x - a)*A + (1 - above(x - a))*B` for A if x > a, else B; `min` and `max` choose \
-         the smaller and the larger of two",
+        IF,
     ),
+];
+
+/// Functions.
+const FUNCTIONS: [Foreign; 9] = [
+    (&["ifelse", "select", "piecewise", "Piecewise"], IF),
     (
         &["heaviside", "Heaviside", "step"],
         "write `above(x)` for 1 if x > 0, else 0",
     ),
-    (&["**", "^^", "pow", "power"], "a power is written `x^2`"),
-    (
-        &["%", "mod", "fmod", "rem"],
-        "there is no remainder: `atan2(sin(x), cos(x))` is the angle x between -pi and pi",
-    ),
-    (
-        &["log", "log10", "log2"],
-        "the natural logarithm is ln(x); the one to base 10 is ln(x)/ln(10)",
-    ),
+    (&["pow", "power"], POWER),
+    (&["%", "mod", "fmod", "rem"], REMAINDER),
+    (&["log"], "the natural logarithm is ln"),
+    (&["log10"], "the logarithm to base 10 is ln(x)/ln(10)"),
     (&["sgn", "signum"], "write `sign(x)` for -1, 0 or 1"),
     (&["fabs"], "write `abs(x)`"),
     (&["ddt", "der", "derivative"], "a rate is written dot(x)"),
 ];
 
-/// How an operator, a word or a function of another language is written here.
+const AND: &str = "both conditions hold where their product is 1: `above(x - a)*above(b - x)`";
+const OR: &str =
+    "one of two conditions holds where the larger is 1: `max(above(x - a), above(b - x))`";
+const NOT: &str = "write `1 - above(x - a)` for 1 if x <= a, else 0";
+const IF: &str = "write `above(x - a)*A + (1 - above(x - a))*B` for A if x > a, else B; `min` and `max` \
+                  choose the smaller and the larger of two";
+const POWER: &str = "a power is written x^2";
+const REMAINDER: &str =
+    "there is no remainder: `atan2(sin(x), cos(x))` is the angle x between -pi and pi";
+
+/// How an operator or a function of another language is written here.
 pub fn written_here(foreign: &str) -> Option<&'static str> {
-    let entry = TABLE.iter().find(|(known, _)| known.contains(&foreign));
+    help(OPERATORS.iter().chain(&WORDS).chain(&FUNCTIONS), foreign)
+}
+
+/// How a word that stands between operands or before them is written here.
+pub fn word_here(word: &str) -> Option<&'static str> {
+    help(WORDS.iter(), word)
+}
+
+fn help<'t>(mut table: impl Iterator<Item = &'t Foreign>, foreign: &str) -> Option<&'static str> {
+    let entry = table.find(|(known, _)| known.contains(&foreign));
     entry.map(|(_, help)| *help)
 }
 

@@ -4,7 +4,7 @@
 
 use crate::ast::{BinaryOperator, Syntax, SyntaxKind};
 use crate::diagnostic::Diagnostic;
-use crate::foreign::written_here;
+use crate::foreign::word_here;
 use crate::lexer::{Token, TokenKind};
 use crate::span::Span;
 
@@ -301,7 +301,7 @@ fn left_over(token: &Token, before: &Syntax) -> Diagnostic {
         .also(before.span, "the expression so far"),
     };
     let word = match &before.kind {
-        SyntaxKind::Name(name) => written_here(name).map(str::to_owned),
+        SyntaxKind::Name(name) => word_here(name).map(str::to_owned),
         _ => None,
     };
     diagnostic.help_if(word.or_else(|| missing_operator(&token.kind)))
@@ -310,7 +310,7 @@ fn left_over(token: &Token, before: &Syntax) -> Diagnostic {
 /// What an operand that follows another may have been meant for.
 fn missing_operator(found: &TokenKind) -> Option<String> {
     if let TokenKind::Name(word) = found
-        && let Some(help) = written_here(word)
+        && let Some(help) = word_here(word)
     {
         return Some(help.to_owned());
     }
@@ -390,6 +390,21 @@ mod tests {
             ("m*[x, -y, 0]", "(m*[x,(-y),0])"),
         ] {
             assert_eq!(bracketed(&parsed(text).unwrap()), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn words_of_other_languages_are_refused_with_advice() {
+        for (text, help) in [
+            ("above(x) and above(y)", "product"),
+            ("(a or b)", "max("),
+            ("not a", "1 - above"),
+            ("if a then b else c", "above(x - a)*A"),
+            ("a if b else c", "above(x - a)*A"),
+            ("2 step", "2*x, not 2 x"),
+        ] {
+            let given = parsed(text).expect_err(text).help.unwrap_or_default();
+            assert!(given.contains(help), "{text}: {given}");
         }
     }
 

@@ -322,7 +322,11 @@ impl Model {
                     .help("`to` is greater than `from`"));
             }
         }
-        constants::check(self, &values)
+        constants::check(self, &values).map_err(|fault| {
+            ModelError::new(fault.message)
+                .at(fault.span)
+                .help(fault.help)
+        })
     }
 }
 

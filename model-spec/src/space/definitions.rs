@@ -4,7 +4,7 @@
 use std::collections::{HashMap, HashSet};
 
 use super::moving::Moving;
-use super::scalar::{call, expansion, name, negate, number};
+use super::scalar::{call, expansion, is_plain, name, negate, number};
 use super::vector::{AXES, Vector};
 use crate::ast::{Syntax, SyntaxKind};
 use crate::raw::{Document, RawTerm};
@@ -131,19 +131,6 @@ impl Definitions {
                 }
             }
         }
-    }
-}
-
-/// Whether an expression is a number, a name, a rate or minus one of them.
-pub fn is_plain(value: &Syntax) -> bool {
-    let plain = |syntax: &Syntax| match &syntax.kind {
-        SyntaxKind::Number(_) | SyntaxKind::Name(_) => true,
-        SyntaxKind::Call { function, .. } => function == "dot",
-        _ => false,
-    };
-    match &value.kind {
-        SyntaxKind::Negate(operand) => plain(operand),
-        _ => plain(value),
     }
 }
 

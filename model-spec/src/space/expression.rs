@@ -2,11 +2,11 @@
 //! go together. What is used more than once gets a name, so that products of products do not
 //! double with every level.
 
-use super::definitions::{Owner, is_plain};
+use super::definitions::Owner;
 use super::demands::UnitDemand;
 use super::known::Space;
 use super::rotation::Factor;
-use super::scalar::{expansion, negate, placed};
+use super::scalar::{expansion, is_plain, negate, placed};
 use super::value::{Dimensions, Value};
 use super::vector::{AXES, Vector, component, zero};
 use crate::ast::{Syntax, SyntaxKind};

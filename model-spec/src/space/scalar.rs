@@ -56,6 +56,19 @@ pub fn call(function: &str, argument: Syntax) -> Syntax {
     Syntax { kind, span }
 }
 
+/// Whether an expression is a number, a name, a rate or minus one of them.
+pub fn is_plain(value: &Syntax) -> bool {
+    let plain = |syntax: &Syntax| match &syntax.kind {
+        SyntaxKind::Number(_) | SyntaxKind::Name(_) => true,
+        SyntaxKind::Call { function, .. } => function == "dot",
+        _ => false,
+    };
+    match &value.kind {
+        SyntaxKind::Negate(operand) => plain(operand),
+        _ => plain(value),
+    }
+}
+
 /// Whether this is the literal.
 pub fn is(syntax: &Syntax, value: f64) -> bool {
     syntax.kind == SyntaxKind::Number(value)

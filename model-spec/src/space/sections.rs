@@ -3,7 +3,7 @@
 
 use std::collections::HashSet;
 
-use super::definitions::{Definitions, Owner, is_plain};
+use super::definitions::{Definitions, Owner};
 use super::demands::{Demands, UnitDemand};
 use super::expression::Reader;
 use super::frames::Frames;
@@ -11,7 +11,7 @@ use super::known::{Space, is_spatial};
 use super::placement::Placements;
 use super::references::{Entry, Expressions, FrameExpressions, in_order};
 use super::rotation::{Turn, turns};
-use super::scalar::{expansion, is, name, number};
+use super::scalar::{expansion, is, is_plain, name, number};
 use super::tree::tree;
 use super::value::{Dimensions, Value};
 use super::vector::{self, AXES, Vector};

@@ -1,7 +1,6 @@
 //! Vectors of three expressions along the axes of one frame.
 
-use super::definitions::is_plain;
-use super::scalar::{add, is, multiply, negate, number, zero_times};
+use super::scalar::{add, is, is_plain, multiply, negate, number, zero_times};
 use crate::ast::Syntax;
 use crate::span::Span;
 
