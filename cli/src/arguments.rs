@@ -297,10 +297,10 @@ pub struct Generate {
     pub certify: bool,
     /// Regenerate the checked-in variants in `generated/src` and their certificates (from the
     /// project's folder).
-    #[arg(long, conflicts_with_all = ["spec", "out", "order", "with", "certify"])]
+    #[arg(long, conflicts_with_all = ["spec", "out", "order", "with", "target", "certify"])]
     pub all: bool,
     /// With --all: compare instead of writing; exit status 1 on a difference.
-    #[arg(long, requires = "all")]
+    #[arg(long)]
     pub check: bool,
     /// Print one JSON document on what was written.
     #[arg(long)]

@@ -8,6 +8,7 @@ use eomgen_model_spec::model::Model;
 use crate::independence;
 use crate::independence::rows::{ConstraintRows, constraint_program};
 use crate::mechanics::equations::{Equations, derive};
+use crate::mechanics::examination;
 use crate::mechanics::inertia;
 use crate::mechanics::outputs::derive_outputs;
 use crate::mechanics::outputs::{Output, Outputs};
@@ -44,9 +45,8 @@ impl Variant {
         outputs: &[Output],
     ) -> Result<Self, Diagnostics> {
         let variant = Self::derive_to_read(model, orders, outputs)?;
-        let found = |diagnostic| Diagnostics::one(model.source.clone(), diagnostic);
-        let mass = initial_mass_matrix(model, orders, &variant.program).map_err(found)?;
-        inertia::check(model, orders, &variant.equations, &mass).map_err(found)?;
+        let checked = check_inertia(model, orders, &variant);
+        checked.map_err(|diagnostic| Diagnostics::one(model.source.clone(), diagnostic))?;
         Ok(variant)
     }
 
@@ -82,6 +82,30 @@ impl Variant {
         let program = lower_with_outputs(model, &equations, &values, &outputs);
         Ok(Self { equations, program })
     }
+}
+
+/// Refuses what [`Variant::derive`] refuses. Where equations of motion are not needed for that, the work
+/// grows as the specification does.
+///
+/// # Errors
+/// As [`Variant::derive`].
+pub fn examine(model: &Model, orders: &[usize]) -> Result<(), Diagnostics> {
+    match examination::examine(model) {
+        Ok(Some(_)) => Ok(()),
+        Ok(None) => Variant::derive(model, orders).map(|_| ()),
+        Err(diagnostic) => Err(Diagnostics::one(model.source.clone(), diagnostic)),
+    }
+}
+
+fn check_inertia(model: &Model, orders: &[usize], variant: &Variant) -> Result<(), Diagnostic> {
+    let equations = &variant.equations;
+    if model.fields.is_empty()
+        && inertia::check_energy(model, &equations.graph, equations.kinetic)?.is_some()
+    {
+        return Ok(());
+    }
+    let mass = initial_mass_matrix(model, orders, &variant.program)?;
+    inertia::check(model, orders, equations, &mass)
 }
 
 /// The program of a model in which the sides of surfaces that may hold the motion are inputs, behind

@@ -158,7 +158,8 @@ impl Used {
     }
 }
 
-fn for_each_expression(model: &Model, see: &mut impl FnMut(&Expr)) {
+/// Shows every expression of a model to `see`.
+pub fn for_each_expression(model: &Model, see: &mut impl FnMut(&Expr)) {
     for parameter in &model.parameters {
         if let ParameterValue::Expression(expr) = &parameter.value {
             see(expr);

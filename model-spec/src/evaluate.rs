@@ -28,7 +28,8 @@ pub fn evaluate(expr: &Expr, parameters: &[f64]) -> f64 {
     }
 }
 
-fn binary(operator: BinaryOperator, left: f64, right: f64) -> f64 {
+/// The value of an operation.
+pub(crate) fn binary(operator: BinaryOperator, left: f64, right: f64) -> f64 {
     match operator {
         BinaryOperator::Add => left + right,
         BinaryOperator::Subtract => left - right,
@@ -39,7 +40,8 @@ fn binary(operator: BinaryOperator, left: f64, right: f64) -> f64 {
     }
 }
 
-fn call(function: Function, x: f64, second: f64) -> f64 {
+/// The value of a function of `x`, or of `x` and a `second` argument.
+pub fn call(function: Function, x: f64, second: f64) -> f64 {
     match function {
         Function::Sin => x.sin(),
         Function::Cos => x.cos(),

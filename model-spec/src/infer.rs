@@ -1,6 +1,6 @@
-//! The unit of an expression. Literals carry none, and 0 fits any unit; what is added or
-//! compared has one unit, functions such as sin take pure numbers. This catches what
-//! reading over misses.
+//! The unit of an expression. Literals carry none, and 0 fits any unit; a product with a factor 0 keeps
+//! the unit of its other factors. Summands and compared quantities have one unit, functions such as sin
+//! take pure numbers. This finds mistakes that proofreading misses.
 
 use num_rational::Ratio;
 
@@ -18,9 +18,9 @@ pub struct Inference<'m> {
     /// Declares the units of parameters, coordinates, inputs, states and fields.
     pub model: &'m Model,
     /// The units of definitions; those that are referred to are filled in first.
-    pub definitions: Vec<Dimension>,
+    pub definitions: Vec<Inferred>,
     /// The units of the coefficients so far.
-    pub coefficients: Vec<Dimension>,
+    pub coefficients: Vec<Inferred>,
 }
 
 impl Inference<'_> {
@@ -48,10 +48,6 @@ impl Inference<'_> {
     pub fn infer(&self, expr: &Expr) -> Result<Inferred, Diagnostic> {
         let model = self.model;
         let out_of_range = || out_of_range(expr.span);
-        let rate = |inferred: Inferred| match inferred {
-            Some(dimension) => dimension.over(Dimension::TIME).map(Some),
-            None => Some(None),
-        };
         match &expr.kind {
             ExprKind::Number(0.0) => Ok(None),
             ExprKind::Number(_) | ExprKind::Pi | ExprKind::ModeShape(_) => {
@@ -63,7 +59,7 @@ impl Inference<'_> {
             ExprKind::Coordinate(index) => Ok(Some(model.coordinates[*index].unit.dimension)),
             ExprKind::Input(index) => Ok(Some(model.inputs[*index].unit.dimension)),
             ExprKind::State(index) => Ok(Some(model.states[*index].unit.dimension)),
-            ExprKind::Definition(index) => Ok(Some(self.definitions[*index])),
+            ExprKind::Definition(index) => Ok(self.definitions[*index]),
             ExprKind::Residual(index) => self.infer(&model.constraints[*index].zero),
             ExprKind::Multiplier(index) => {
                 let constraint = &model.constraints[*index];
@@ -74,21 +70,26 @@ impl Inference<'_> {
                 };
                 combined(Some(whole), own, Dimension::over).ok_or_else(out_of_range)
             }
-            ExprKind::Coefficient(index) => Ok(self.coefficients.get(index.index()).copied()),
+            ExprKind::Coefficient(index) => {
+                Ok(self.coefficients.get(index.index()).copied().flatten())
+            }
             ExprKind::Field(field) | ExprKind::ModeCoordinate(field) => {
                 Ok(Some(model.fields[*field].unit.dimension))
             }
-            ExprKind::Dot(operand) => rate(self.infer(operand)?).ok_or_else(out_of_range),
+            ExprKind::Dot(operand) => {
+                let per = Some(Dimension::TIME);
+                scaled(self.infer(operand)?, per, Dimension::over).ok_or_else(out_of_range)
+            }
             ExprKind::Diff(operand, times) => {
                 let per = Dimension::LENGTH.power(Ratio::from_integer(i32::from(*times)));
-                combined(self.infer(operand)?, per, Dimension::over).ok_or_else(out_of_range)
+                scaled(self.infer(operand)?, per, Dimension::over).ok_or_else(out_of_range)
             }
             ExprKind::At {
                 value, position, ..
             } => self.at(value, position),
             ExprKind::Integral { integrand, .. } => {
                 let along = Some(Dimension::LENGTH);
-                combined(self.infer(integrand)?, along, Dimension::times).ok_or_else(out_of_range)
+                scaled(self.infer(integrand)?, along, Dimension::times).ok_or_else(out_of_range)
             }
             ExprKind::Sum { summand, .. } => self.infer(summand),
             ExprKind::Negate(operand) => self.infer(operand),
@@ -123,8 +124,13 @@ impl Inference<'_> {
             BinaryOperator::Subtract => self.same(inferred, left, right, "subtracted from"),
             BinaryOperator::Multiply => combined(inferred, self.infer(right)?, Dimension::times)
                 .ok_or_else(|| out_of_range(whole.span)),
-            BinaryOperator::Divide => combined(inferred, self.infer(right)?, Dimension::over)
-                .ok_or_else(|| out_of_range(whole.span)),
+            BinaryOperator::Divide => match self.infer(right)? {
+                // What is divided by 0 has no value, which is reported where values are known.
+                None => Ok(None),
+                by => {
+                    combined(inferred, by, Dimension::over).ok_or_else(|| out_of_range(whole.span))
+                }
+            },
             BinaryOperator::Power => self.power(inferred, left, right),
         }
     }
@@ -243,15 +249,29 @@ fn quantity(dimension: Dimension) -> String {
     }
 }
 
-/// The unit of a product or quotient; None where an exponent is out of range.
+/// The unit of a product or quotient, in which a literal 0 is a pure number; None where an exponent is
+/// out of range.
 fn combined(
     left: Inferred,
     right: Inferred,
     combine: impl Fn(Dimension, Dimension) -> Option<Dimension>,
 ) -> Option<Inferred> {
-    match (left, right) {
-        (Some(left), Some(right)) => combine(left, right).map(Some),
-        _ => Some(None),
+    if left.or(right).is_none() {
+        return Some(None);
+    }
+    let [left, right] = [left, right].map(|side| side.unwrap_or(Dimension::NONE));
+    combine(left, right).map(Some)
+}
+
+/// The unit of an expression per or times another unit: of 0 any, as of 0 itself.
+fn scaled(
+    inferred: Inferred,
+    by: Option<Dimension>,
+    combine: impl Fn(Dimension, Dimension) -> Option<Dimension>,
+) -> Option<Inferred> {
+    match inferred {
+        Some(own) => combine(own, by?).map(Some),
+        None => Some(None),
     }
 }
 

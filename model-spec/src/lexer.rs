@@ -2,6 +2,7 @@
 //! module.
 
 use crate::diagnostic::{Diagnostic, quoted};
+use crate::foreign::{operator_at, written_here};
 use crate::span::Span;
 
 /// A smallest part of an expression.
@@ -75,6 +76,9 @@ pub fn tokens(text: &str, place: impl Fn(usize, usize) -> Span) -> Result<Vec<To
     let mut start = 0;
     while let Some(first) = text[start..].chars().next() {
         let rest = &text[start..];
+        if let Some(operator) = operator_at(rest) {
+            return Err(foreign(operator, place(start, start + operator.len())));
+        }
         let length = match first {
             '.' if !starts_with_digit(&rest[1..]) => 1,
             ' ' | '\t' | '\n' | '\r' => {
@@ -86,25 +90,20 @@ pub fn tokens(text: &str, place: impl Fn(usize, usize) -> Span) -> Result<Vec<To
             _ => first.len_utf8(),
         };
         let span = place(start, start + length);
-        let kind = token(&rest[..length], first, span, &rest[length..])?;
+        let kind = token(&rest[..length], first, span)?;
         found.push(Token { kind, span });
         start += length;
     }
     Ok(found)
 }
 
-fn token(text: &str, first: char, span: Span, rest: &str) -> Result<TokenKind, Diagnostic> {
+fn token(text: &str, first: char, span: Span) -> Result<TokenKind, Diagnostic> {
     Ok(match first {
         '.' if text == "." => TokenKind::Point,
         '0'..='9' | '.' => TokenKind::Number(number(text, span)?),
         'a'..='z' | 'A'..='Z' | '_' => TokenKind::Name(text.to_owned()),
         '+' => TokenKind::Plus,
         '-' => TokenKind::Minus,
-        '*' if rest.starts_with('*') => {
-            return Err(Diagnostic::error("`**` is not an operator")
-                .at(span, "here")
-                .help("a power is written `^`: x^2"));
-        }
         '*' => TokenKind::Star,
         '/' => TokenKind::Slash,
         '^' => TokenKind::Caret,
@@ -117,13 +116,18 @@ fn token(text: &str, first: char, span: Span, rest: &str) -> Result<TokenKind, D
     })
 }
 
+/// The finding that an operator belongs to another language.
+fn foreign(operator: &str, span: Span) -> Diagnostic {
+    let help = written_here(operator).map(str::to_owned);
+    Diagnostic::error(format!("{} is not an operator", quoted(operator)))
+        .at(span, "not part of an expression")
+        .help_if(help)
+}
+
 fn stray(letter: char, span: Span) -> Diagnostic {
     let help = match letter {
         '\'' => "a rate is written dot(x); an expression holds no strings".to_owned(),
         '"' => "an expression holds no strings".to_owned(),
-        '=' | '<' | '>' | '!' => {
-            "switching is written with deadzone, contact, abs, sign, min or max".to_owned()
-        }
         '{' | '}' => "group with ( and )".to_owned(),
         '·' | '×' => "a product is written with `*`".to_owned(),
         '−' | '–' => "this is not the minus sign `-` of the keyboard".to_owned(),
@@ -252,6 +256,18 @@ mod tests {
         for (text, help) in [
             ("x'", "dot(x)"),
             ("x**2", "x^2"),
+            ("x > a", "above(x - a)"),
+            ("x <= a", "1 - above(x - a)"),
+            ("x < a", "above(a - x)"),
+            ("abs(x)>a", "contact(x, a)"),
+            ("x == 0", "1 - contact"),
+            ("x != 0", "contact("),
+            ("above(x) && above(y)", "product"),
+            ("a || b", "max("),
+            ("|x|", "abs(x)"),
+            ("x ? 1 : 0", "above(x - a)*A"),
+            ("!a", "1 - above"),
+            ("a % b", "atan2"),
             ("θ", "a-z"),
             ("a·b", "`*`"),
         ] {

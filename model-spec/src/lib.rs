@@ -34,6 +34,7 @@
 
 pub mod ast;
 mod checks;
+mod constants;
 pub mod diagnostic;
 pub mod dimension;
 mod document;
@@ -42,7 +43,9 @@ mod entries;
 pub mod evaluate;
 mod expression;
 mod file_beside;
+mod foreign;
 mod functions;
+mod id_set;
 pub mod ids;
 mod infer;
 mod keys;

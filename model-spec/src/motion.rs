@@ -3,10 +3,9 @@
 //! given, potentials no rates, a force
 //! works on something that moves, and every coordinate has inertia.
 
-use std::collections::BTreeSet;
-
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::ids::{CoordinateId, FieldId, InputId, StateId};
+use crate::id_set::IdSet;
+use crate::ids::{CoordinateId, FieldId, InputId};
 use crate::model::{
     Constraint, Expr, ExprKind, MAX_CONSTRAINTS, MAX_IMPACTS, Model, Term, written_name,
 };
@@ -16,24 +15,27 @@ use crate::span::Span;
 /// The deepest expression accepted once definitions are written out.
 pub const MAX_EXPANDED_DEPTH: usize = 600;
 
-/// Something with a rate.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Moving {
-    Coordinate(CoordinateId),
-    Field(FieldId),
+/// The number of a coordinate among what has a rate.
+fn coordinate_number(coordinate: CoordinateId) -> usize {
+    2 * coordinate.index()
+}
+
+/// The number of a field among what has a rate.
+fn field_number(field: FieldId) -> usize {
+    2 * field.index() + 1
 }
 
 /// What an expression depends on.
 #[derive(Clone, Debug, Default)]
 struct Motion {
-    /// By their values.
-    values: BTreeSet<Moving>,
-    /// By their rates.
-    rates: BTreeSet<Moving>,
+    /// Coordinates and fields, by their values.
+    values: IdSet,
+    /// Coordinates and fields, by their rates.
+    rates: IdSet,
     /// Where a rate enters, if one does.
     rate: Option<Span>,
     /// The states that enter by their values.
-    states: BTreeSet<StateId>,
+    states: IdSet,
     /// Where a state, or the rate of one, enters, if one does.
     state: Option<Span>,
     /// Where the input enters of which the fewest rates are given, if one does, with how many.
@@ -71,7 +73,8 @@ fn check_expressions(model: &Model, found: &mut Diagnostics) -> Vec<bool> {
                 checker.definitions[index] = checker.motion(&model.definitions[index].value);
             }
             WrittenOut::Rate(index) => {
-                checker.state_rates[index] = checker.motion(&model.states[index].rate).depth;
+                checker.state_rates[index.index()] =
+                    checker.motion(&model.states[index].rate).depth;
             }
             WrittenOut::RatesWithin(_) => {}
         }
@@ -97,11 +100,11 @@ struct Checker<'m, 'f> {
 impl Checker<'_, '_> {
     fn energies(&mut self) {
         let model = self.model;
-        let mut inertial = BTreeSet::new();
+        let mut inertial = IdSet::default();
         for term in &model.kinetic {
             let motion = self.motion(&term.value);
             self.refuse_driven(term, &motion, "the kinetic energy");
-            inertial.extend(motion.rates);
+            inertial.extend(&motion.rates);
         }
         for term in &model.potential {
             let motion = self.motion(&term.value);
@@ -145,7 +148,7 @@ impl Checker<'_, '_> {
     }
 
     /// Without inertia there is no acceleration to solve for.
-    fn refuse_massless(&mut self, inertial: &BTreeSet<Moving>) {
+    fn refuse_massless(&mut self, inertial: &IdSet) {
         let mut refuse = |name: &str, kind: &str, span: Span| {
             self.found.push(
                 Diagnostic::error(format!("the {kind} `{name}` has no inertia"))
@@ -154,12 +157,12 @@ impl Checker<'_, '_> {
             );
         };
         for (index, coordinate) in self.model.coordinates.iter().enumerate() {
-            if !inertial.contains(&Moving::Coordinate(CoordinateId::new(index))) {
+            if !inertial.contains(coordinate_number(CoordinateId::new(index))) {
                 refuse(&coordinate.name, "coordinate", coordinate.span);
             }
         }
         for (index, field) in self.model.fields.iter().enumerate() {
-            if !inertial.contains(&Moving::Field(FieldId::new(index))) {
+            if !inertial.contains(field_number(FieldId::new(index))) {
                 refuse(&field.name, "field", field.span);
             }
         }
@@ -342,14 +345,14 @@ impl Checker<'_, '_> {
             ExprKind::Time => motion.time = true,
             ExprKind::Input(index) => motion.hold_input(self.given_rates(*index), expr.span),
             ExprKind::State(index) => {
-                motion.states.insert(*index);
+                motion.states.insert(index.index());
                 motion.state = motion.state.or(Some(expr.span));
             }
             ExprKind::Coordinate(index) => {
-                motion.values.insert(Moving::Coordinate(*index));
+                motion.values.insert(coordinate_number(*index));
             }
             ExprKind::Field(field) | ExprKind::ModeCoordinate(field) => {
-                motion.values.insert(Moving::Field(*field));
+                motion.values.insert(field_number(*field));
             }
             ExprKind::Definition(index) => {
                 if let Some(known) = self.definitions.get(index.index()) {
@@ -394,14 +397,14 @@ impl Checker<'_, '_> {
         motion.state = motion.state.or(inner.state.map(|_| operand.span));
         motion.reaction = motion.reaction.or(inner.reaction);
         motion.switch = motion.switch.or(inner.switch);
-        let deepest = inner.states.iter().map(|state| self.state_rates[*state]);
+        let deepest = inner.states.iter().map(|state| self.state_rates[state]);
         motion.depth = motion.depth.max(depth + 1 + deepest.max().unwrap_or(0));
         motion.rate = motion.rate.or(Some(operand.span));
-        motion.rates.extend(inner.values.iter().copied());
+        motion.rates.extend(&inner.values);
         // The rate of a definition, or of a field's function, depends on the coordinates too.
         if matches!(operand.kind, ExprKind::Definition(_) | ExprKind::At { .. }) {
-            motion.values.extend(inner.values);
-            motion.states.extend(inner.states);
+            motion.values.extend(&inner.values);
+            motion.states.extend(&inner.states);
         }
         if let Some((rates, _)) = inner.input {
             motion.hold_input(rates.saturating_sub(1), operand.span);
@@ -421,9 +424,9 @@ impl Motion {
 
     /// Adds what a definition depends on that is named at `span`.
     fn include(&mut self, known: &Self, span: Span, depth: usize) {
-        self.values.extend(known.values.iter().copied());
-        self.rates.extend(known.rates.iter().copied());
-        self.states.extend(known.states.iter().copied());
+        self.values.extend(&known.values);
+        self.rates.extend(&known.rates);
+        self.states.extend(&known.states);
         self.state = self.state.or(known.state.map(|_| span));
         self.rate = self.rate.or(known.rate.map(|_| span));
         if let Some((rates, _)) = known.input {

@@ -4,6 +4,7 @@
 
 use crate::ast::{BinaryOperator, Syntax, SyntaxKind};
 use crate::diagnostic::Diagnostic;
+use crate::foreign::word_here;
 use crate::lexer::{Token, TokenKind};
 use crate::span::Span;
 
@@ -30,7 +31,7 @@ pub fn parse(tokens: &[Token], end: Span) -> Result<Syntax, Diagnostic> {
     let tree = parser.expression(ADDITIVE)?;
     match parser.peek() {
         None => Ok(tree.syntax),
-        Some(token) => Err(left_over(token, tree.syntax.span)),
+        Some(token) => Err(left_over(token, &tree.syntax)),
     }
 }
 
@@ -283,7 +284,7 @@ fn too_deep(place: Span) -> Diagnostic {
     .help("name parts of it in [definitions]")
 }
 
-fn left_over(token: &Token, before: Span) -> Diagnostic {
+fn left_over(token: &Token, before: &Syntax) -> Diagnostic {
     let diagnostic = match token.kind {
         TokenKind::Close | TokenKind::CloseIndex => {
             Diagnostic::error(format!("{} closes nothing", token.kind.shown()))
@@ -297,12 +298,22 @@ fn left_over(token: &Token, before: Span) -> Diagnostic {
             token.kind.shown()
         ))
         .at(token.span, "expected + - * / or ^")
-        .also(before, "the expression so far"),
+        .also(before.span, "the expression so far"),
     };
-    diagnostic.help_if(missing_operator(&token.kind))
+    let word = match &before.kind {
+        SyntaxKind::Name(name) => word_here(name).map(str::to_owned),
+        _ => None,
+    };
+    diagnostic.help_if(word.or_else(|| missing_operator(&token.kind)))
 }
 
+/// What an operand that follows another may have been meant for.
 fn missing_operator(found: &TokenKind) -> Option<String> {
+    if let TokenKind::Name(word) = found
+        && let Some(help) = word_here(word)
+    {
+        return Some(help.to_owned());
+    }
     let starts = matches!(
         found,
         TokenKind::Number(_) | TokenKind::Name(_) | TokenKind::Open
@@ -379,6 +390,21 @@ mod tests {
             ("m*[x, -y, 0]", "(m*[x,(-y),0])"),
         ] {
             assert_eq!(bracketed(&parsed(text).unwrap()), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn words_of_other_languages_are_refused_with_advice() {
+        for (text, help) in [
+            ("above(x) and above(y)", "product"),
+            ("(a or b)", "max("),
+            ("not a", "1 - above"),
+            ("if a then b else c", "above(x - a)*A"),
+            ("a if b else c", "above(x - a)*A"),
+            ("2 step", "2*x, not 2 x"),
+        ] {
+            let given = parsed(text).expect_err(text).help.unwrap_or_default();
+            assert!(given.contains(help), "{text}: {given}");
         }
     }
 

@@ -16,7 +16,7 @@ use crate::unit::Unit;
 pub fn check(resolved: &mut Resolved, found: &mut Diagnostics) {
     let mut units = Units {
         known: Inference {
-            definitions: vec![Dimension::NONE; resolved.model.definitions.len()],
+            definitions: vec![None; resolved.model.definitions.len()],
             coefficients: Vec::new(),
             model: &resolved.model,
         },
@@ -45,7 +45,7 @@ pub fn check(resolved: &mut Resolved, found: &mut Diagnostics) {
         constraint.unit = unit;
     }
     for (definition, dimension) in resolved.model.definitions.iter_mut().zip(definitions) {
-        definition.unit = Unit::coherent(dimension);
+        definition.unit = Unit::coherent(dimension.unwrap_or(Dimension::NONE));
     }
     for (observable, unit) in resolved.model.observables.iter_mut().zip(observables) {
         observable.unit = unit;
@@ -128,9 +128,7 @@ impl Units<'_, '_> {
         for &index in &self.model.definition_order {
             let inferred = self.known.infer(&self.model.definitions[index].value);
             match self.found.keep(inferred) {
-                Some(inferred) => {
-                    self.known.definitions[index] = inferred.unwrap_or(Dimension::NONE)
-                }
+                Some(inferred) => self.known.definitions[index] = inferred,
                 None => all = false,
             }
         }
@@ -264,9 +262,7 @@ impl Units<'_, '_> {
                 }
             };
             let dimension = self.found.keep(inferred).flatten();
-            self.known
-                .coefficients
-                .push(dimension.unwrap_or(Dimension::NONE));
+            self.known.coefficients.push(dimension);
         }
     }
 

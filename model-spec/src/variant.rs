@@ -1,6 +1,7 @@
 //! Questions to a model and changes of its numbers: the values of its parameters, one
 //! parameter set to another value, the orders of its fields, the names of its states.
 
+use crate::constants;
 use crate::diagnostic::Diagnostic;
 use crate::evaluate::evaluate;
 use crate::model::{Expr, MAX_ORDER, Model, Parameter, ParameterValue, Range};
@@ -321,7 +322,11 @@ impl Model {
                     .help("`to` is greater than `from`"));
             }
         }
-        Ok(())
+        constants::check(self, &values).map_err(|fault| {
+            ModelError::new(fault.message)
+                .at(fault.span)
+                .help(fault.help)
+        })
     }
 }
 

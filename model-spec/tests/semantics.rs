@@ -542,3 +542,104 @@ fn states_have_ranges_in_which_they_begin() {
     let wrong = text.replace("[\"-b\", 0.004]", "[\"-b\", \"m\"]");
     assert!(refused(&wrong).contains("the upper end of `z` is in kg"));
 }
+
+/// A mass with a definition `d` that its potential holds, and more sections.
+fn with_definition(value: &str, more: &str) -> String {
+    format!(
+        "[model]\nname = \"m\"\n[parameters]\nm = {{ value = 1, unit = \"kg\" }}\nb = {{ value = 0, unit = \"m\" }}\n\
+         k = {{ value = 2, unit = \"N/m\" }}\nn = {{ value = 0 }}\n[coordinates]\nx = {{ unit = \"m\" }}\n\
+         [definitions]\nd = \"{value}\"\n[kinetic]\nT = \"1/2*m*dot(x)^2\"\n[potential]\nV = \"1/2*k*x^2\"\n\
+         [observables]\nd_seen = \"d\"\n{more}"
+    )
+}
+
+#[test]
+fn constants_without_a_finite_value_are_refused_where_they_stand() {
+    for (value, message, place) in [
+        ("1/0", "division by 0", "0\""),
+        ("0/0", "division by 0", "0\""),
+        ("x/n", "division by 0", "n\""),
+        ("k*x/b", "division by 0", "b\""),
+        ("x/(n*n)", "division by 0", "(n*n)"),
+        ("min(x/b, 1/b*x)", "division by 0", "b, "),
+        ("1e308*10", "comes out as inf", "1e308*10"),
+        ("x*exp(1000)", "`exp` of 1000 comes out as inf", "exp(1000)"),
+        ("sqrt(n - 1)", "`sqrt` of -1 comes out as NaN", "sqrt"),
+        ("ln(n)", "`ln` of 0 comes out as -inf", "ln(n)"),
+        ("asin(2)*x", "`asin` of 2 comes out as NaN", "asin(2)"),
+        ("(n - 2)^0.5", "comes out as NaN", "(n - 2)^0.5"),
+        ("n^(0 - 1)", "comes out as inf", "n^"),
+        ("atan(1/n)", "division by 0", "n)"),
+    ] {
+        let text = with_definition(value, "");
+        let found = eomgen_model_spec::check(Source::new("test.toml", text.as_str()));
+        let found = found.expect_err(value);
+        let shown = found.render(false);
+        assert!(shown.contains(message), "{value}: {shown}");
+        let label = found.list()[0].primary.as_ref().expect("a place");
+        let rest = &text[label.span.start..];
+        assert!(rest.starts_with(place), "{value}: {shown}");
+    }
+    let coefficient = with_definition("x", "[coefficients]\nc = \"1/n\"\n");
+    assert!(refused(&coefficient).contains("division by 0"));
+    let force = with_definition("x", "[forces]\nf = { on = \"x\", value = \"k*x/n\" }\n");
+    assert!(refused(&force).contains("division by 0"));
+    let set = checked(&with_definition("k*x/m", "")).model;
+    assert!(set.with_parameter("m", 0.0).is_err());
+    for value in ["x/(k/k)", "deadzone(x, b)", "0*x", "n/m", "n*x", "1/x"] {
+        checked(&with_definition(value, ""));
+    }
+}
+
+#[test]
+fn what_is_0_by_a_factor_keeps_its_unit() {
+    let unit = |value: &str| {
+        let model = checked(&with_definition(value, "")).model;
+        model.definitions[0].unit.to_string()
+    };
+    assert_eq!(unit("0*b"), "m");
+    assert_eq!(unit("0*b + x"), "m");
+    assert_eq!(unit("0*dot(x)*m"), unit("dot(x)*m"));
+    assert_eq!(unit("0/m"), "1/kg");
+    assert_eq!(unit("0 + b"), "m");
+    let message = refused(&with_definition("0*b + k", ""));
+    assert!(message.contains("added to a quantity in m"), "{message}");
+    // 0 by itself fits any unit, also by name.
+    let by_name = with_definition("0", "total = \"d + x\"\nlength = \"max(d, b)\"\n");
+    checked(&by_name);
+}
+
+#[test]
+fn components_that_are_0_keep_the_unit_of_their_vector() {
+    for value in ["[b, 0*x, b]", "[x, 0, 0]", "2*[0, 0, x]"] {
+        let more = "second = \"m*d.y + m*x\"\ntotal = \"d + [x, b, x]\"\n";
+        let model = checked(&with_definition(value, more)).model;
+        let units = model.observables.iter().map(|o| o.unit.to_string());
+        let units: Vec<String> = units.collect();
+        assert_eq!(units[..3], ["m", "m", "m"], "{value}");
+    }
+    let mixed = refused(&with_definition("[b, 0*k, b]", ""));
+    assert!(mixed.contains("different units"), "{mixed}");
+    refused(&GRAVITY.replace("0*a", "0*l"));
+    checked(GRAVITY);
+}
+
+/// Gravity with a component that is 0 by a factor, along frames that turn.
+const GRAVITY: &str = r#"[model]
+name = "two_frames"
+gravity = ["a", "0*a", "-g"]
+[parameters]
+g = { value = 9.81, unit = "m/s^2" }
+a = { value = 1, unit = "m/s^2" }
+m = { value = 1, unit = "kg" }
+l = { value = 1, unit = "m" }
+[coordinates]
+p = { unit = "rad" }
+q = { unit = "rad" }
+[frames]
+A = { rotation = "rotation_y(p)" }
+B = { in = "A", origin = ["l", 0, 0], rotation = "rotation_x(q)" }
+[bodies]
+A = { frame = "A", mass = "m", centre = ["l", 0, 0] }
+B = { frame = "B", mass = "m", centre = [0, "l", 0] }
+"#;

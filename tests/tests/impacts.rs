@@ -518,6 +518,30 @@ fn a_stiff_spring_in_the_place_of_a_stop_comes_to_the_same() {
 }
 
 #[test]
+fn a_start_that_rounding_puts_into_a_contact_begins_on_it() {
+    let model = example("bouncing_ball", Orders::Declared);
+    let run = model.at_declared().unwrap();
+    let times = [0.0, 0.3, 1.0];
+    let from = |initial: &[f64]| run.simulate(initial, &times, &run.no_inputs(), Solver::Rk);
+    let on = from(&[0.0, 2.0]).unwrap().trajectory.states;
+    for height in [-1e-17, -1e-13, -1e-300] {
+        let thrown = from(&[height, 2.0]).unwrap().trajectory.states;
+        for (a, b) in thrown.iter().flatten().zip(on.iter().flatten()) {
+            assert!((a - b).abs() < 1e-9, "{height}: {a} {b}");
+        }
+        let resting = from(&[height, 0.0]).unwrap().trajectory.states;
+        assert!(
+            resting.iter().flatten().all(|entry| entry.abs() < 1e-12),
+            "{height}"
+        );
+    }
+    for height in [-1e-7, -0.1] {
+        let refusal = from(&[height, 0.0]).expect_err("it overlaps").to_string();
+        assert!(refusal.contains("below zero"), "{refusal}");
+    }
+}
+
+#[test]
 fn what_cannot_hold_is_said() {
     let model = example("bouncing_ball", Orders::Declared);
     let run = model.at_declared().unwrap();

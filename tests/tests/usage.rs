@@ -109,6 +109,20 @@ fn help_has_an_example_and_succeeds() {
 }
 
 #[test]
+fn generate_check_without_all_is_refused_and_writes_nothing() {
+    for more in [
+        &["--check"][..],
+        &["--check", "--certify"],
+        &["--check", "--target", "c99", "--json"],
+    ] {
+        let refusal = message(&arguments("generate", "pendulum", more));
+        assert!(refusal.contains("generate --all --check"), "{refusal}");
+    }
+    refused(&["generate", "--check"]);
+    refused(&["generate", "--all", "--check", "--target", "c99"]);
+}
+
+#[test]
 fn a_proposed_dataset_file_is_written_whole_beside_its_record_or_not_at_all() {
     let measured = Measured::stage(0.0);
     let record = measured.file("train.csv").display().to_string();

@@ -1,17 +1,24 @@
 //! `eomgen check`: reads a specification, checks it, and says what it holds.
 
-use eomgen_compiled_model::CompiledModel;
+use eomgen_codegen::variant::examine;
 use eomgen_model_spec::diagnostic::Diagnostics;
+use eomgen_model_spec::model::Model;
 use serde_json::{Value, json};
 
 use crate::arguments::Check;
 use crate::error::{Error, Result, say, say_json, warn_of};
-use crate::model::{derive, orders};
+use crate::model::orders;
 
-/// Runs the command. A derivation is part of the check: what cannot be derived is an
-/// error of the specification too.
+/// A model that passed, the orders of its fields, and warnings.
+struct Examined {
+    model: Model,
+    orders: Vec<usize>,
+    warnings: Diagnostics,
+}
+
+/// Runs the command. What cannot be derived is an error of the specification too.
 pub fn run(options: &Check) -> Result {
-    let (compiled, warnings) = match examine(options) {
+    let examined = match examined(options) {
         Ok(found) => found,
         Err(error) => {
             if let (true, Error::Specification(found)) = (options.json, &error) {
@@ -22,33 +29,38 @@ pub fn run(options: &Check) -> Result {
         }
     };
     if options.json {
-        return say_json(&record(&compiled, &warnings));
+        return say_json(&record(&examined));
     }
-    if !warnings.is_empty() {
-        warn_of(&warnings);
+    if !examined.warnings.is_empty() {
+        warn_of(&examined.warnings);
     }
-    say(&summary(&compiled))
+    say(&summary(&examined))
 }
 
-fn examine(options: &Check) -> Result<(CompiledModel, Diagnostics)> {
+fn examined(options: &Check) -> Result<Examined> {
     let checked = eomgen_model_spec::load(&options.spec).map_err(Error::Specification)?;
     let orders = orders(&checked.model, options.order.as_deref())?;
-    Ok((derive(checked.model, &orders)?, checked.warnings))
-}
-
-fn record(compiled: &CompiledModel, warnings: &Diagnostics) -> Value {
-    json!({
-        "passed": true,
-        "model": compiled.model().name,
-        "orders": compiled.equations().graph.orders(),
-        "state": compiled.program().state_names(),
-        "diagnostics": warnings.records(),
+    examine(&checked.model, &orders).map_err(Error::Specification)?;
+    Ok(Examined {
+        model: checked.model,
+        orders,
+        warnings: checked.warnings,
     })
 }
 
-fn summary(compiled: &CompiledModel) -> String {
-    let model = compiled.model();
-    let fields = match compiled.equations().graph.orders() {
+fn record(examined: &Examined) -> Value {
+    json!({
+        "passed": true,
+        "model": examined.model.name,
+        "orders": examined.orders,
+        "state": examined.model.state_names(&examined.orders),
+        "diagnostics": examined.warnings.records(),
+    })
+}
+
+fn summary(examined: &Examined) -> String {
+    let model = &examined.model;
+    let fields = match examined.orders.as_slice() {
         [] => "no field".to_owned(),
         orders => {
             let list: Vec<String> = orders.iter().map(usize::to_string).collect();

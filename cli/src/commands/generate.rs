@@ -18,8 +18,17 @@ use crate::error::{Error, Result, say, say_json, warn};
 use crate::model::{load, orders};
 use crate::output::write_file;
 
+/// The answer to `--check` for a single model.
+const CHECK_WITHOUT_ALL: &str = "`--check` compares the checked-in variants only, as `generate --all \
+     --check`; nothing was written\n\nTo compare the files of one model, generate them into another \
+     folder and run `diff -r` on both";
+
 /// Runs the command.
 pub fn run(options: &Generate) -> Result {
+    // clap drops `requires` where the required option conflicts with one that is given.
+    if options.check && !options.all {
+        return Err(Error::input(CHECK_WITHOUT_ALL));
+    }
     match (&options.spec, &options.out) {
         (Some(spec), Some(out)) => one(options, spec, out),
         _ => checked_in::run(options.check, options.json),

@@ -217,7 +217,7 @@ fn name_accelerations(graph: &mut Graph, model: &Model, accelerations: &Accelera
     }
 }
 
-fn derived_parameters(translator: &mut Translator) -> Derived<Vec<Option<NodeId>>> {
+pub(crate) fn derived_parameters(translator: &mut Translator) -> Derived<Vec<Option<NodeId>>> {
     let model = translator.model;
     model
         .parameters
@@ -230,7 +230,7 @@ fn derived_parameters(translator: &mut Translator) -> Derived<Vec<Option<NodeId>
 }
 
 /// The sum of named terms; each is named after `symbol` and itself.
-fn total_of(
+pub(crate) fn total_of(
     translator: &mut Translator,
     terms: &[Term],
     symbol: &str,

@@ -1,7 +1,7 @@
 //! Forces by virtual work and from the dissipation, their power, and the surfaces at which
 //! they switch.
 
-use eomgen_model_spec::model::Function;
+use eomgen_model_spec::model::{Force, Function};
 
 use crate::mechanics::guard::Guard;
 use crate::mechanics::lagrange::{GradientBy, Variables};
@@ -21,22 +21,8 @@ pub(crate) fn applied_forces(
     let drag = variables.gradient(&mut translator.graph, dissipation, GradientBy::Rates);
     let mut rows: Vec<(f64, RowNodes)> = vec![(-1.0, drag)];
     for force in &translator.model.forces {
-        let value = translator.node(&force.value)?;
-        // A force may be called what means something else in a formula.
-        if eomgen_model_spec::reserved(&force.name).is_none() {
-            translator.graph.suggest_name(value, &force.name);
-        }
+        let (value, on) = translated(translator, force)?;
         named.push(value);
-        let on = translator.node(&force.on)?;
-        if translator.graph.dependence(on).has(Dependence::RATE) {
-            return Err(DeriveError {
-                span: force.on.span,
-                message: "a force acts on something that holds a rate".into(),
-                help: Some(
-                    "virtual work needs a coordinate or an expression of coordinates".into(),
-                ),
-            });
-        }
         let mut gradient = variables.gradient(&mut translator.graph, on, GradientBy::Coordinates);
         for node in gradient.scalars.iter_mut().chain(&mut gradient.modal) {
             *node = translator.graph.multiply(*node, value);
@@ -44,6 +30,27 @@ pub(crate) fn applied_forces(
         rows.push((1.0, gradient));
     }
     Ok(variables.combine(&mut translator.graph, &rows))
+}
+
+/// The value of a force and the expression that it works on.
+///
+/// # Errors
+/// What cannot be derived, and a force on something that holds a rate.
+pub(crate) fn translated(translator: &mut Translator, force: &Force) -> Derived<(NodeId, NodeId)> {
+    let value = translator.node(&force.value)?;
+    // A force may be called what means something else in a formula.
+    if eomgen_model_spec::reserved(&force.name).is_none() {
+        translator.graph.suggest_name(value, &force.name);
+    }
+    let on = translator.node(&force.on)?;
+    if translator.graph.dependence(on).has(Dependence::RATE) {
+        return Err(DeriveError {
+            span: force.on.span,
+            message: "a force acts on something that holds a rate".into(),
+            help: Some("virtual work needs a coordinate or an expression of coordinates".into()),
+        });
+    }
+    Ok((value, on))
 }
 
 /// d(T + V)/dt for the forces and explicit times: Q q' + dV/dt - dT/dt (partial derivatives by

@@ -15,7 +15,7 @@ use crate::mechanics::fields::modes::node_count;
 use crate::mechanics::fields::term::Atom;
 use crate::mechanics::rows::RowNodes;
 use crate::symbolic::arguments::Arguments;
-use crate::symbolic::differentiate::Direction;
+use crate::symbolic::differentiate::{Direction, KnownDerivatives};
 use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation, Space};
 
 /// Why a model could not be derived, and where in its source.
@@ -60,6 +60,8 @@ pub struct Translator<'m> {
     coefficients: Vec<NodeId>,
     residuals: HashMap<ConstraintId, NodeId>,
     multipliers: Vec<NodeId>,
+    /// Rates along the motion while states of first order are held.
+    rates: KnownDerivatives,
 }
 
 impl<'m> Translator<'m> {
@@ -87,6 +89,7 @@ impl<'m> Translator<'m> {
             coefficients: Vec::new(),
             residuals: HashMap::new(),
             multipliers: Vec::new(),
+            rates: KnownDerivatives::default(),
         }
     }
 
@@ -220,7 +223,7 @@ impl<'m> Translator<'m> {
                     return Err(error(operand, "the rate of an input is not known"));
                 }
                 let rates = self.rates_within(node)?;
-                let rate = along_motion_and_states(&mut self.graph, node, &rates);
+                let rate = self.rate_along(node, &rates);
                 if let ExprKind::Definition(index) = operand.kind {
                     let name = format!("{}_dot", self.model.definitions[index].name);
                     self.graph.set_name(rate, &name);
@@ -228,6 +231,19 @@ impl<'m> Translator<'m> {
                 Ok(rate)
             }
         }
+    }
+
+    /// The rate of a node. Without states of first order, whose rates differ from node to node, it
+    /// is made of the rates that are known.
+    fn rate_along(&mut self, node: NodeId, rates: &HashMap<StateId, NodeId>) -> NodeId {
+        let tangent = |graph: &mut Graph, leaf: NodeId| rate_of_leaf(graph, leaf, rates);
+        if !rates.is_empty() {
+            return Direction::new(&tangent).derivative(&mut self.graph, node);
+        }
+        let mut direction = Direction::resume(&tangent, std::mem::take(&mut self.rates));
+        let rate = direction.derivative(&mut self.graph, node);
+        self.rates = direction.into_known();
+        rate
     }
 
     /// The time derivative of a node along the motion, where rates change with these accelerations.
@@ -374,20 +390,12 @@ fn field_atom(expr: &Expr) -> Option<Atom> {
 /// The time derivative of a node along the motion, without accelerations: coordinates and
 /// inputs whose rates are given move with their rates, time with 1, and other inputs are held.
 pub fn along_motion(graph: &mut Graph, node: NodeId) -> NodeId {
-    along_motion_and_states(graph, node, &HashMap::new())
-}
-
-/// The same where states of first order move with these rates.
-fn along_motion_and_states(
-    graph: &mut Graph,
-    node: NodeId,
-    rates: &HashMap<StateId, NodeId>,
-) -> NodeId {
-    let tangent = |graph: &mut Graph, leaf: NodeId| rate_of_leaf(graph, leaf, rates);
+    let still = HashMap::new();
+    let tangent = |graph: &mut Graph, leaf: NodeId| rate_of_leaf(graph, leaf, &still);
     Direction::new(&tangent).derivative(graph, node)
 }
 
-/// The time derivative of what moves with its rate; 0 of anything else.
+/// The rate of a leaf that moves with its rate, states of first order with these; 0 of other leaves.
 fn rate_of_leaf(graph: &mut Graph, leaf: NodeId, rates: &HashMap<StateId, NodeId>) -> NodeId {
     match *graph.operation(leaf) {
         Operation::Coordinate(index) => graph.intern(Operation::Rate(index)),

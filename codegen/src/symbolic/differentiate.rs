@@ -51,6 +51,13 @@ pub struct Direction<'a> {
     moving: Moving,
 }
 
+/// The derivatives along a direction that are known so far.
+#[derive(Default)]
+pub(crate) struct KnownDerivatives {
+    known: HashMap<NodeId, NodeId>,
+    moving: Moving,
+}
+
 impl<'a> Direction<'a> {
     /// A direction given by the derivative of every leaf that is no parameter (0 for those
     /// that are constant).
@@ -59,6 +66,22 @@ impl<'a> Direction<'a> {
             tangent: Some(tangent),
             ..Self::default()
         }
+    }
+
+    /// The same direction with the derivatives that it has given before.
+    pub(crate) fn resume(tangent: &'a Tangent<'a>, known: KnownDerivatives) -> Self {
+        let KnownDerivatives { known, moving } = known;
+        Self {
+            tangent: Some(tangent),
+            known,
+            moving,
+        }
+    }
+
+    /// The derivatives that are known.
+    pub(crate) fn into_known(self) -> KnownDerivatives {
+        let Self { known, moving, .. } = self;
+        KnownDerivatives { known, moving }
     }
 
     /// Treats `id` as a variable whose derivative is `tangent`.

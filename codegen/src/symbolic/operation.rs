@@ -209,7 +209,7 @@ impl Dependence {
     pub(crate) const ARGUMENT: Self = Self(32);
     pub(crate) const STATE: Self = Self(64);
 
-    pub(crate) fn join(self, other: Self) -> Self {
+    pub(crate) const fn join(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 

@@ -6,6 +6,7 @@ mod forms;
 
 use crate::ast::{Syntax, SyntaxKind};
 use crate::diagnostic::{Diagnostic, quoted};
+use crate::foreign::written_here;
 use crate::functions::{FORMS, VECTOR_FUNCTIONS, callable};
 use crate::ids::{CoefficientId, FieldId};
 use crate::model::{Expr, ExprKind, Function};
@@ -321,11 +322,9 @@ impl<'n> Resolver<'n> {
         if VECTOR_FUNCTIONS.contains(&name) {
             return vectors_elsewhere(span);
         }
-        let help = match name {
-            "log" => Some("the natural logarithm is ln".to_owned()),
-            "pow" => Some("a power is written x^2".to_owned()),
-            "ddt" | "der" | "derivative" => Some("a rate is written dot(x)".to_owned()),
-            _ => did_you_mean(name, callable().chain(VECTOR_FUNCTIONS)),
+        let help = match written_here(name) {
+            Some(help) => Some(help.to_owned()),
+            None => did_you_mean(name, callable().chain(VECTOR_FUNCTIONS)),
         };
         Diagnostic::error(format!("unknown function {}", quoted(name)))
             .at(span, "not known")

@@ -1,10 +1,10 @@
 //! Definitions that short forms write: what is used more than once gets a name, so that nothing is
 //! written out twice and texts grow with what is written in the file.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use super::moving::Moving;
-use super::scalar::{call, expansion, name, negate, number};
+use super::scalar::{call, expansion, is_plain, name, negate, number};
 use super::vector::{AXES, Vector};
 use crate::ast::{Syntax, SyntaxKind};
 use crate::raw::{Document, RawTerm};
@@ -38,6 +38,8 @@ impl Owner {
 pub struct Definitions {
     written: Vec<RawTerm>,
     taken: HashSet<String>,
+    /// The number of the last part of each entry.
+    parts: HashMap<String, usize>,
     /// What has a rate.
     pub moving: Moving,
 }
@@ -48,6 +50,7 @@ impl Definitions {
         Self {
             written: Vec::new(),
             taken: declared(document),
+            parts: HashMap::new(),
             moving: Moving::of(document),
         }
     }
@@ -98,13 +101,13 @@ impl Definitions {
 
     /// A name for a part of an entry that no other part has.
     pub fn part(&mut self, owner: &Owner) -> String {
-        let mut number = 1;
+        let last = self.parts.entry(owner.name.text.clone()).or_default();
         loop {
-            let part = format!("part_{number}");
+            *last += 1;
+            let part = format!("part_{last}");
             if self.taken.insert(owner.named(&part)) {
                 return part;
             }
-            number += 1;
         }
     }
 
@@ -128,19 +131,6 @@ impl Definitions {
                 }
             }
         }
-    }
-}
-
-/// Whether an expression is a number, a name, a rate or minus one of them.
-pub fn is_plain(value: &Syntax) -> bool {
-    let plain = |syntax: &Syntax| match &syntax.kind {
-        SyntaxKind::Number(_) | SyntaxKind::Name(_) => true,
-        SyntaxKind::Call { function, .. } => function == "dot",
-        _ => false,
-    };
-    match &value.kind {
-        SyntaxKind::Negate(operand) => plain(operand),
-        _ => plain(value),
     }
 }
 

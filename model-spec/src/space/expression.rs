@@ -2,13 +2,13 @@
 //! go together. What is used more than once gets a name, so that products of products do not
 //! double with every level.
 
-use super::definitions::{Owner, is_plain};
+use super::definitions::Owner;
 use super::demands::UnitDemand;
 use super::known::Space;
 use super::rotation::Factor;
-use super::scalar::{expansion, negate, placed};
+use super::scalar::{expansion, is_plain, negate, placed};
 use super::value::{Dimensions, Value};
-use super::vector::{AXES, Vector, zero};
+use super::vector::{AXES, Vector, component, zero};
 use crate::ast::{Syntax, SyntaxKind};
 use crate::diagnostic::{Diagnostic, quoted};
 use crate::dimension::Dimension;
@@ -264,7 +264,7 @@ impl<'s> Reader<'s> {
             Value::Vector(vector, dimensions) => {
                 let axes = &AXES[..dimensions.count()];
                 match axes.iter().position(|axis| *axis == member) {
-                    Some(axis) => Ok(Value::Scalar(placed(vector[axis].clone(), span))),
+                    Some(axis) => Ok(Value::Scalar(placed(component(&vector, axis), span))),
                     None => Err(Diagnostic::error(format!(
                         "a vector has no component {}",
                         quoted(member)

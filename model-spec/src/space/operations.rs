@@ -1,12 +1,17 @@
 //! Sums, products and quotients of scalars, vectors and rotations.
 
 use super::expression::{Read, Reader};
-use super::scalar::{add, multiply, negate};
+use super::rotation::Factor;
+use super::scalar::{add, multiply, negate, number};
 use super::value::Value;
-use super::vector::{Vector, scaled, sum};
+use super::vector::{Rows, Vector, scaled, sum, zero};
 use crate::ast::{BinaryOperator, Syntax, SyntaxKind};
 use crate::diagnostic::Diagnostic;
 use crate::span::Span;
+
+/// Most factors of a rotation that a definition keeps: three turns make any rotation, and with more a
+/// matrix takes fewer products.
+const MAX_FACTORS: usize = 3;
 
 /// An operand and where it stands.
 type Operand = (Value, Span);
@@ -101,10 +106,35 @@ impl Reader<'_> {
         }
     }
 
+    /// The rotation that a definition names. A long product is kept as its matrix, whose elements are
+    /// named: what refers to it then holds one factor, however many rotations went into it.
+    ///
+    /// # Errors
+    /// Those of naming.
+    pub(super) fn shared_rotation(
+        &mut self,
+        factors: Vec<Factor>,
+        span: Span,
+    ) -> Result<Vec<Factor>, Diagnostic> {
+        if factors.len() <= MAX_FACTORS {
+            return Ok(factors);
+        }
+        let mut rows: Rows = [0, 1, 2].map(|_| zero(span));
+        for axis in 0..3 {
+            let mut column = zero(span);
+            column[axis] = number(1.0, span);
+            let column = self.rotated(&factors, column)?;
+            for (row, element) in rows.iter_mut().zip(self.name_each(column)?) {
+                row[axis] = element;
+            }
+        }
+        Ok(vec![Factor::Frame(Box::new(rows))])
+    }
+
     /// The vector turned by all factors, the last first.
     pub(super) fn rotated(
         &mut self,
-        factors: &[super::rotation::Factor],
+        factors: &[Factor],
         vector: Vector,
     ) -> Result<Vector, Diagnostic> {
         let mut turned = vector;

@@ -56,6 +56,19 @@ pub fn call(function: &str, argument: Syntax) -> Syntax {
     Syntax { kind, span }
 }
 
+/// Whether an expression is a number, a name, a rate or minus one of them.
+pub fn is_plain(value: &Syntax) -> bool {
+    let plain = |syntax: &Syntax| match &syntax.kind {
+        SyntaxKind::Number(_) | SyntaxKind::Name(_) => true,
+        SyntaxKind::Call { function, .. } => function == "dot",
+        _ => false,
+    };
+    match &value.kind {
+        SyntaxKind::Negate(operand) => plain(operand),
+        _ => plain(value),
+    }
+}
+
 /// Whether this is the literal.
 pub fn is(syntax: &Syntax, value: f64) -> bool {
     syntax.kind == SyntaxKind::Number(value)
@@ -117,6 +130,11 @@ pub fn multiply(a: Syntax, b: Syntax) -> Syntax {
             binary(BinaryOperator::Multiply, left, right, span)
         }
     }
+}
+
+/// `0*a`, which has the unit of `a`
+pub fn zero_times(a: &Syntax, span: Span) -> Syntax {
+    binary(BinaryOperator::Multiply, number(0.0, span), a.clone(), span)
 }
 
 /// `a^2`

@@ -3,7 +3,7 @@
 
 use std::collections::HashSet;
 
-use super::definitions::{Definitions, Owner, is_plain};
+use super::definitions::{Definitions, Owner};
 use super::demands::{Demands, UnitDemand};
 use super::expression::Reader;
 use super::frames::Frames;
@@ -11,10 +11,10 @@ use super::known::{Space, is_spatial};
 use super::placement::Placements;
 use super::references::{Entry, Expressions, FrameExpressions, in_order};
 use super::rotation::{Turn, turns};
-use super::scalar::{expansion, name, number};
+use super::scalar::{expansion, is, is_plain, name, number};
 use super::tree::tree;
 use super::value::{Dimensions, Value};
-use super::vector::{AXES, Vector};
+use super::vector::{self, AXES, Vector};
 use super::{bodies, terms};
 use crate::ast::{Syntax, SyntaxKind};
 use crate::diagnostic::{Diagnostic, Diagnostics};
@@ -157,9 +157,18 @@ fn definition(
             return vec![RawTerm { value, ..term }];
         }
         Value::Vector(vector, dimensions) => (vector, dimensions),
-        rotation => {
+        Value::Rotation(factors, dimensions) => {
             document.vectors.push(term.name.clone());
-            space.vectors.insert(name.clone(), rotation);
+            let mut reader = Reader::new(space, &owner);
+            match found.keep(reader.shared_rotation(factors, syntax.span)) {
+                Some(shared) => {
+                    let rotation = Value::Rotation(shared, dimensions);
+                    space.vectors.insert(name.clone(), rotation);
+                }
+                None => {
+                    space.broken.insert(name.clone());
+                }
+            }
             return vec![];
         }
     };
@@ -210,6 +219,11 @@ fn by_components(
         });
         by_name
     });
+    for (axis, term) in written.iter_mut().enumerate() {
+        if is(&vector[axis], 0.0) {
+            term.value = expansion(vector::component(&vector, axis));
+        }
+    }
     (written, vector)
 }
 

@@ -5,7 +5,7 @@ use super::expression::Reader;
 use super::known::Space;
 use super::scalar::{expansion, half, is, name, number, placed};
 use super::value::{Dimensions, Value};
-use super::vector::{AXES, Vector, cross};
+use super::vector::{self, AXES, Vector, cross};
 use crate::ast::Syntax;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{MULTIPLIER, RESIDUAL};
@@ -130,7 +130,10 @@ fn observables(space: &mut Space, term: RawTerm, found: &mut Diagnostics) -> Vec
             let value = expansion(value);
             vec![RawTerm { value, ..term }]
         }
-        Some(Value::Vector(vector, dimensions)) => of_components(&term, vector, dimensions),
+        Some(Value::Vector(vector, dimensions)) => {
+            let columns = [0, 1, 2].map(|axis| vector::component(&vector, axis));
+            of_components(&term, columns, dimensions)
+        }
         Some(Value::Rotation(..)) => {
             found.push(
                 Diagnostic::error("an observable is a scalar or a vector")

@@ -1,6 +1,6 @@
 //! Vectors of three expressions along the axes of one frame.
 
-use super::scalar::{add, multiply, negate, number};
+use super::scalar::{add, is, is_plain, multiply, negate, number, zero_times};
 use crate::ast::Syntax;
 use crate::span::Span;
 
@@ -17,6 +17,18 @@ pub const AXES: [&str; 3] = ["x", "y", "z"];
 /// Zero.
 pub fn zero(span: Span) -> Vector {
     [0, 1, 2].map(|_| number(0.0, span))
+}
+
+/// A component as a scalar by itself: one that is 0 keeps the unit of another, as 0 times that.
+pub fn component(vector: &Vector, axis: usize) -> Syntax {
+    let own = &vector[axis];
+    let other = vector
+        .iter()
+        .find(|other| is_plain(other) && !is(other, 0.0));
+    match other {
+        Some(other) if is(own, 0.0) => zero_times(other, own.span),
+        _ => own.clone(),
+    }
 }
 
 /// `a + b`

@@ -325,3 +325,47 @@ fn products_of_products_do_not_double_with_every_level() {
         assert!(definitions <= most, "{definitions}");
     }
 }
+
+/// Rotations each the square of the one before, and what the last makes of a vector.
+fn squared_rotations(first: &str, vector: &str, count: usize) -> String {
+    let mut text =
+        "[model]\nname = \"squared\"\n[parameters]\nJ = { value = 1, unit = \"kg m^2\" }\n\
+                    [coordinates]\nq = { unit = \"rad\" }\n[kinetic]\nown = \"1/2*J*dot(q)^2\"\n\
+                    [definitions]\n"
+            .to_owned();
+    let _ = writeln!(text, "R_0 = \"{first}\"");
+    for next in 1..=count {
+        let _ = writeln!(text, "R_{next} = \"R_{0}*R_{0}\"", next - 1);
+    }
+    let _ = writeln!(text, "[observables]\nend = \"R_{count}*{vector}\"");
+    text
+}
+
+#[test]
+fn rotations_of_rotations_share_their_parts() {
+    for (first, vector) in [
+        ("rotation_z(q)", "[1, 0, 0]"),
+        ("rotation(q)", "[1, 0]"),
+        ("rotation_x(q)*rotation_z(2*q)", "[1, q, 0]"),
+        ("transpose(rotation([1, 2, q], q))", "[1, q, 0]"),
+    ] {
+        let sizes = [30, 60].map(|count| {
+            let model = checked(&squared_rotations(first, vector, count));
+            model.definitions.len()
+        });
+        assert!(
+            sizes[1] <= 2 * sizes[0] + 20 && sizes[1] <= 60 * 60,
+            "{sizes:?}"
+        );
+    }
+}
+
+#[test]
+fn a_rotation_squared_again_and_again_turns_by_its_angle_times_a_power_of_two() {
+    let model = checked(&squared_rotations("rotation_z(q)", "[1, 0, 0]", 4));
+    for (values, rates) in &STATES {
+        let end = vector(&model, "end", (values, rates));
+        let angle = 16.0 * values[0];
+        close(&end, &[angle.cos(), angle.sin(), 0.0], 1e-12);
+    }
+}

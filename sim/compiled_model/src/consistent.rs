@@ -7,10 +7,11 @@ use std::cell::RefCell;
 use eomgen_codegen::independence::dependence::dependent_combination;
 use eomgen_codegen::independence::rows::norm;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_model_spec::dimension::Dimension;
 use eomgen_model_spec::model::{Constraint, STABILISATION_RATE};
 use eomgen_sim::inputs::HeldInputs;
 
-use crate::contacts::first_overlap;
+use crate::contacts::Start;
 use crate::driven::Driven;
 use crate::error::Error;
 use crate::instance::Instance;
@@ -84,12 +85,27 @@ impl Instance<'_> {
         t: f64,
         inputs: &HeldInputs,
     ) -> Result<(Vec<f64>, Vec<Moved>), Error> {
+        self.consistent_start(state, (t, t), inputs)
+    }
+
+    /// The same for a motion over a time span, s: a distance of an impact that is below zero by the
+    /// rounding of what it covers then is brought to zero.
+    ///
+    /// # Errors
+    /// As [`Instance::consistent`].
+    pub(crate) fn consistent_start(
+        &self,
+        state: &[f64],
+        (t, until): (f64, f64),
+        inputs: &HeldInputs,
+    ) -> Result<(Vec<f64>, Vec<Moved>), Error> {
         let inputs = &inputs.at(t);
         let projection = match self.projection() {
             Ok(Some(projection)) => projection,
             Ok(None) => {
-                self.above_zero(t, state, inputs)?;
-                return Ok((state.to_vec(), Vec::new()));
+                let mut found = state.to_vec();
+                self.bring_above_zero((t, until), &mut found, inputs)?;
+                return Ok((found, Vec::new()));
             }
             // Of constraints that follow from others wherever the machine is no pivot is positive.
             Err(error) => {
@@ -114,7 +130,7 @@ impl Instance<'_> {
         if let Some(reason) = self.dependent(t, &found, inputs)? {
             return Err(Error::Request(reason));
         }
-        self.above_zero(t, &found, inputs)?;
+        self.bring_above_zero((t, until), &mut found, inputs)?;
         let names = self.model().state_names();
         let units = self.model().state_units();
         let largest = state
@@ -133,22 +149,51 @@ impl Instance<'_> {
         Ok((found.clone(), moved.collect()))
     }
 
-    /// Whether no distance of an impact is below zero.
-    fn above_zero(&self, t: f64, state: &[f64], inputs: &[f64]) -> Result<(), Error> {
+    /// Moves a state so that no distance of an impact is below zero by rounding.
+    ///
+    /// # Errors
+    /// [`Error::Request`] that names an impact whose distance is below zero by more.
+    fn bring_above_zero(
+        &self,
+        (t, until): (f64, f64),
+        state: &mut [f64],
+        inputs: &[f64],
+    ) -> Result<(), Error> {
         let impacts = &self.model().model().impacts;
         if impacts.is_empty() {
             return Ok(());
         }
-        let below = first_overlap(&mut self.evaluator()?, Point { t, state, inputs });
-        let Some((place, distance)) = below else {
-            return Ok(());
+        let lengths: Vec<f64> = impacts
+            .iter()
+            .map(|impact| self.largest_in(impact.unit.dimension, state))
+            .collect();
+        let start = Start {
+            t,
+            until,
+            inputs,
+            lengths: &lengths,
         };
-        let impact = &impacts[place];
-        Err(Error::Request(format!(
-            "the impact `{}` begins at {distance:.6e} {}, below zero: give an initial state in which \
-             nothing overlaps",
-            impact.name, impact.unit
-        )))
+        let below = start.onto_contacts(&mut self.evaluator()?, state);
+        below.map_err(|(place, distance)| {
+            let impact = &impacts[place];
+            Error::Request(format!(
+                "the impact `{}` begins at {distance:.6e} {}, below zero: give an initial state in which \
+                 nothing overlaps",
+                impact.name, impact.unit
+            ))
+        })
+    }
+
+    /// The largest magnitude of the coordinates and parameters of a dimension, SI.
+    fn largest_in(&self, dimension: Dimension, state: &[f64]) -> f64 {
+        let model = self.model().model();
+        let coordinates = model.coordinates.iter().zip(state);
+        let coordinates = coordinates.filter(|(known, _)| known.unit.dimension == dimension);
+        let parameters = model.parameters.iter();
+        let parameters = parameters.filter(|known| known.unit.dimension == dimension);
+        let parameters = parameters.filter_map(|known| self.value(&known.name));
+        let all = coordinates.map(|(_, value)| *value).chain(parameters);
+        all.fold(0.0, |most, value| value.abs().max(most))
     }
 
     /// Which constraint has no derivative of its own, if one has none, and whether it contradicts

@@ -208,7 +208,7 @@ impl Instance<'_> {
         }
         // First of all: it says more of constraints that follow from others than their pivots do.
         let (initial, moved) =
-            self.consistent(request.initial, request.span().0, request.inputs)?;
+            self.consistent_start(request.initial, request.span(), request.inputs)?;
         let evaluator = RefCell::new(self.evaluator()?);
         let mut system = self.driven(&evaluator, request.inputs)?;
         if settings.method == Method::Adams {

@@ -1,9 +1,11 @@
 //! What keeps a symmetric matrix from being positive definite, as a direction: by Cholesky
-//! factorisation of the matrix scaled to a unit diagonal, the largest pivot first.
+//! factorisation of each connected block scaled to a unit diagonal, the largest pivot first.
+
+use std::collections::BTreeMap;
 
 /// What is lost at most, relative to entries of 1, when a matrix of n rows is factorised: n
 /// times this.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
+pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// Parts of a direction smaller than this, relative to its largest, are rounding.
 const NEGLIGIBLE: f64 = 1e-6;
@@ -17,46 +19,91 @@ pub(super) enum Lack {
     Along { rates: Vec<f64>, negative: bool },
 }
 
-/// What keeps a symmetric matrix, row by row, from being positive definite.
-pub(super) fn lack(matrix: &[f64], size: usize) -> Option<Lack> {
-    let rows: Vec<&[f64]> = matrix.chunks(size.max(1)).collect();
+/// A symmetric matrix by rows: the entries that are not 0 by structure, by their columns.
+pub(super) type SparseRows = Vec<BTreeMap<usize, f64>>;
+
+/// The rows of a matrix of this size that is given row by row, without its zeros.
+pub(super) fn sparse(matrix: &[f64], size: usize) -> SparseRows {
+    let rows = matrix.chunks(size.max(1));
+    let entries = rows.map(|row| row.iter().copied().enumerate().filter(|(_, v)| *v != 0.0));
+    entries.map(Iterator::collect).collect()
+}
+
+/// What keeps a symmetric matrix from being positive definite: in the first of its connected blocks
+/// that is not.
+pub(super) fn lack(rows: &SparseRows) -> Option<Lack> {
     for (place, row) in rows.iter().enumerate() {
-        if let Some(bad) = row.iter().find(|entry| !entry.is_finite()) {
+        if let Some(bad) = row.values().find(|entry| !entry.is_finite()) {
             return Some(Lack::Of(place, *bad));
         }
-        if row[place] <= 0.0 {
-            return Some(Lack::Of(place, row[place]));
+        let own = row.get(&place).copied().unwrap_or(0.0);
+        if own <= 0.0 {
+            return Some(Lack::Of(place, own));
         }
     }
-    let scales: Vec<f64> = (0..size).map(|place| rows[place][place].sqrt()).collect();
-    let mut factor = Factor::new(size);
+    blocks(rows)
+        .iter()
+        .find_map(|block| lack_within(rows, block))
+}
+
+/// The places that entries connect with each other, block by block.
+fn blocks(rows: &SparseRows) -> Vec<Vec<usize>> {
+    let mut is_seen = vec![false; rows.len()];
+    let mut blocks = Vec::new();
+    for start in 0..rows.len() {
+        if std::mem::replace(&mut is_seen[start], true) {
+            continue;
+        }
+        let mut block = vec![start];
+        let mut next = 0;
+        while let Some(&place) = block.get(next) {
+            next += 1;
+            for &other in rows[place].keys() {
+                if !std::mem::replace(&mut is_seen[other], true) {
+                    block.push(other);
+                }
+            }
+        }
+        block.sort_unstable();
+        blocks.push(block);
+    }
+    blocks
+}
+
+fn lack_within(rows: &SparseRows, block: &[usize]) -> Option<Lack> {
+    let entry = |a: usize, b: usize| rows[block[a]].get(&block[b]).copied().unwrap_or(0.0);
+    let scales: Vec<f64> = (0..block.len())
+        .map(|place| entry(place, place).sqrt())
+        .collect();
+    let mut factor = Factor::new(block.len());
     while let Some(place) = factor.largest_rest() {
-        if factor.rest[place] <= ROUNDING * size as f64 {
+        if factor.rest[place] <= ROUNDING * block.len() as f64 {
             let (place, negative) = factor.smallest_rest();
             let direction = factor.null_direction(place);
-            let rates = direction
-                .iter()
-                .zip(&scales)
-                .map(|(part, scale)| part / scale);
-            return Some(Lack::Along {
-                rates: normalised(rates.collect()),
-                negative,
-            });
+            let mut rates = vec![0.0; rows.len()];
+            for ((own, part), scale) in block.iter().zip(direction).zip(&scales) {
+                rates[*own] = part / scale;
+            }
+            let rates = normalised(rates);
+            return Some(Lack::Along { rates, negative });
         }
-        let entry = |row: usize| rows[place][row] / (scales[place] * scales[row]);
-        factor.eliminate(place, entry);
+        factor.eliminate(place, |row| {
+            entry(place, row) / (scales[place] * scales[row])
+        });
     }
     None
 }
 
 /// The Cholesky factor of a matrix with a unit diagonal, the largest rest eliminated first.
 struct Factor {
-    /// RowNodes of the factor, as long as elements are eliminated.
+    /// Rows of the factor, as long as elements are eliminated.
     rows: Vec<Vec<f64>>,
-    /// What is left of the diagonal.
+    /// The diagonal that is left.
     rest: Vec<f64>,
     /// Elements in the order of their elimination.
     order: Vec<usize>,
+    /// Elements that are not eliminated.
+    remaining: Vec<usize>,
 }
 
 impl Factor {
@@ -65,22 +112,19 @@ impl Factor {
             rows: vec![Vec::new(); size],
             rest: vec![1.0; size],
             order: Vec::new(),
+            remaining: (0..size).collect(),
         }
     }
 
-    fn remaining(&self) -> impl Iterator<Item = usize> {
-        (0..self.rest.len()).filter(|place| !self.order.contains(place))
-    }
-
     fn largest_rest(&self) -> Option<usize> {
-        self.remaining()
-            .max_by(|a, b| self.rest[*a].total_cmp(&self.rest[*b]))
+        let remaining = self.remaining.iter().copied();
+        remaining.max_by(|a, b| self.rest[*a].total_cmp(&self.rest[*b]))
     }
 
     /// The element with the smallest rest, and whether that is negative beyond rounding.
     fn smallest_rest(&self) -> (usize, bool) {
-        let smallest = self
-            .remaining()
+        let remaining = self.remaining.iter().copied();
+        let smallest = remaining
             .min_by(|a, b| self.rest[*a].total_cmp(&self.rest[*b]))
             .unwrap_or(0);
         let limit = ROUNDING * self.rest.len() as f64;
@@ -92,10 +136,8 @@ impl Factor {
         let own = self.rows[place].clone();
         self.order.push(place);
         self.rows[place].push(pivot);
-        for row in 0..self.rest.len() {
-            if self.order.contains(&row) {
-                continue;
-            }
+        self.remaining.retain(|other| *other != place);
+        for &row in &self.remaining {
             let known: f64 = own.iter().zip(&self.rows[row]).map(|(a, b)| a * b).sum();
             let element = (entry(row) - known) / pivot;
             self.rows[row].push(element);
@@ -138,7 +180,7 @@ mod tests {
     use super::*;
 
     fn along(matrix: &[f64], size: usize) -> (Vec<f64>, bool) {
-        match lack(matrix, size) {
+        match lack(&sparse(matrix, size)) {
             Some(Lack::Along { rates, negative }) => (rates, negative),
             other => panic!("{other:?}"),
         }
@@ -146,17 +188,22 @@ mod tests {
 
     #[test]
     fn a_definite_matrix_lacks_nothing_however_its_units_differ() {
-        assert_eq!(lack(&[2.0, 1.0, 1.0, 2.0], 2), None);
-        assert_eq!(lack(&[1e18, 1.0, 1.0, 1e-16], 2), None);
-        assert_eq!(lack(&[1.0, 1.0, 1.0, 1.0 + 1e-10], 2), None);
-        assert_eq!(lack(&[], 0), None);
+        assert_eq!(lack(&sparse(&[2.0, 1.0, 1.0, 2.0], 2)), None);
+        assert_eq!(lack(&sparse(&[1e18, 1.0, 1.0, 1e-16], 2)), None);
+        assert_eq!(lack(&sparse(&[1.0, 1.0, 1.0, 1.0 + 1e-10], 2)), None);
+        assert_eq!(lack(&sparse(&[], 0)), None);
     }
 
     #[test]
     fn entries_of_the_diagonal_have_to_be_positive_numbers() {
-        assert_eq!(lack(&[1.0, 0.0, 0.0, 0.0], 2), Some(Lack::Of(1, 0.0)));
-        assert_eq!(lack(&[-3.0], 1), Some(Lack::Of(0, -3.0)));
-        assert!(matches!(lack(&[f64::NAN], 1), Some(Lack::Of(0, value)) if value.is_nan()));
+        assert_eq!(
+            lack(&sparse(&[1.0, 0.0, 0.0, 0.0], 2)),
+            Some(Lack::Of(1, 0.0))
+        );
+        assert_eq!(lack(&sparse(&[-3.0], 1)), Some(Lack::Of(0, -3.0)));
+        assert!(
+            matches!(lack(&sparse(&[f64::NAN], 1)), Some(Lack::Of(0, value)) if value.is_nan())
+        );
     }
 
     #[test]

@@ -3,14 +3,20 @@
 //! coordinates are named that can move without inertia, or with a negative one.
 
 mod lack;
+mod point;
+mod sweep;
 
 use eomgen_model_spec::diagnostic::Diagnostic;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::span::Span;
+use eomgen_model_spec::variant::ModelError;
 
 use crate::mechanics::equations::Equations;
-use crate::symbolic::graph::Dependence;
-use lack::{Lack, lack};
+use crate::symbolic::graph::{Dependence, Graph, NodeId};
+use lack::{Lack, SparseRows, lack, sparse};
+use point::Point;
+pub use sweep::Sweep;
+use sweep::Velocities;
 
 /// Refuses a model with a motion from its initial state that no inertia opposes; `mass` is the
 /// mass matrix there, row by row, in kg, kg m^2 or whatever the coordinates make of it.
@@ -30,23 +36,64 @@ pub fn check(
         orders,
         moves: equations.inertia_moves(),
     };
-    match lack(mass, model.coordinates.len() + orders.iter().sum::<usize>()) {
-        None => Ok(()),
-        Some(lack) => Err(machine.diagnostic(&lack)),
-    }
+    let size = model.coordinates.len() + orders.iter().sum::<usize>();
+    machine.judge(&sparse(mass, size))
 }
+
+/// The same from the kinetic energy of a model without fields, with work that grows as the energy is
+/// written; None if it takes functions of velocities other than sums and products.
+///
+/// # Errors
+/// As [`check`], and initial values that are not finite.
+pub fn check_energy(
+    model: &Model,
+    graph: &Graph,
+    kinetic: NodeId,
+) -> Result<Option<Sweep>, Diagnostic> {
+    let refused = |error: ModelError| error.diagnostic();
+    let point = Point {
+        parameters: &model.parameter_values().map_err(refused)?,
+        state: &model.initial_state(&[]).map_err(refused)?,
+        inputs: &model.typical_inputs(1.0).map_err(refused)?,
+        coordinates: model.coordinates.len(),
+    };
+    let reachable = graph.reachable(&[kinetic]);
+    let Some(values) = point.values(graph, &reachable) else {
+        return Ok(None);
+    };
+    let velocities = Velocities::new(graph, &reachable, &values);
+    let Some(sweep) = velocities.eliminate(point.coordinates) else {
+        return Ok(None);
+    };
+    if sweep.is_definite {
+        return Ok(Some(sweep));
+    }
+    let machine = Machine {
+        model,
+        names: model.state_names(&[]),
+        orders: &[],
+        moves: graph.dependence(kinetic).has(MOVING_ENERGY),
+    };
+    let mass = velocities.mass_matrix(point.coordinates);
+    mass.map_or(Ok(()), |rows| machine.judge(&rows))?;
+    Ok(Some(sweep))
+}
+
+/// What a kinetic energy with an inertia that changes depends on.
+const MOVING_ENERGY: Dependence = Dependence::COORDINATE
+    .join(Dependence::INPUT)
+    .join(Dependence::TIME);
+
+/// What an inertia that changes depends on.
+const MOVING: Dependence = MOVING_ENERGY.join(Dependence::RATE);
 
 impl Equations {
     /// Whether the mass matrix depends on more than parameters.
     fn inertia_moves(&self) -> bool {
-        let moving = Dependence::COORDINATE
-            .join(Dependence::RATE)
-            .join(Dependence::INPUT)
-            .join(Dependence::TIME);
         let entries = self.mass.scalars.iter().chain(&self.mass.coupling);
         let mut nodes = entries.flatten().copied();
         let mut blocks = self.modal_blocks.iter().map(|block| block.matrix);
-        let moves = |node| self.graph.dependence(node).has(moving);
+        let moves = |node| self.graph.dependence(node).has(MOVING);
         nodes.any(moves) || blocks.any(moves)
     }
 }
@@ -61,6 +108,13 @@ struct Machine<'m> {
 }
 
 impl Machine<'_> {
+    fn judge(&self, mass: &SparseRows) -> Result<(), Diagnostic> {
+        match lack(mass) {
+            None => Ok(()),
+            Some(lack) => Err(self.diagnostic(&lack)),
+        }
+    }
+
     fn diagnostic(&self, lack: &Lack) -> Diagnostic {
         match lack {
             Lack::Of(place, value) => self.of_one(*place, *value),

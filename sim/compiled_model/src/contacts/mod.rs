@@ -10,12 +10,14 @@
 
 mod complementarity;
 mod impulses;
+mod start;
 
 use std::collections::VecDeque;
 
 use eomgen_codegen::program::evaluator::{Evaluator, ImpactAt, Point};
 
 use complementarity::{balance, complementary};
+pub(crate) use start::Start;
 
 /// A distance this small beside the largest coordinate is rounding.
 const ROUNDING: f64 = 1e-11;
@@ -63,11 +65,6 @@ enum Overlap {
     NoImpulse,
     /// Hits follow each other faster than the shortest flights.
     Endless,
-}
-
-/// The first distance that is below zero, and not by rounding, if one is: its place and value.
-pub(crate) fn first_overlap(own: &mut Evaluator, point: Point<'_>) -> Option<(usize, f64)> {
-    first_below(own, point, ROUNDING * largest(point.state))
 }
 
 /// The first distance that is below zero by more than is allowed.

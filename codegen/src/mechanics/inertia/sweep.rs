@@ -1,0 +1,256 @@
+//! The mass matrix at one point as the Hessian of the kinetic energy by the rates, in numbers, by one
+//! sweep back over the velocities that the energy is made of (Gower and Mello, 2012: Optim. Methods
+//! Softw. 27, 251-269).
+//!
+//! A rate is eliminated as soon as no velocity that is left holds it, and stays between the velocities
+//! before it only. Along a chain of bodies that is the recursion of articulated-body inertias
+//! (Featherstone, 1983: Int. J. Robotics Research 2, 13-30), along a chain of masses the elimination of a
+//! band, and independent masses do not meet: the work grows with what is written.
+
+use std::collections::BTreeMap;
+
+use super::lack::{ROUNDING, SparseRows};
+use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation};
+
+/// What a sweep over the velocities found.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Sweep {
+    /// Whether every rate has inertia in every combination: the mass matrix is positive definite.
+    pub is_definite: bool,
+    /// Number of entries of Hessians that were updated.
+    pub updates: usize,
+}
+
+/// The velocities of a kinetic energy, operands first, with the number of each node.
+pub(super) struct Velocities<'g> {
+    graph: &'g Graph,
+    nodes: Vec<NodeId>,
+    values: &'g [f64],
+}
+
+/// The derivatives of a velocity by what it is made of.
+struct Local {
+    slopes: Vec<(NodeId, f64)>,
+    curvatures: Vec<(NodeId, NodeId, f64)>,
+}
+
+impl<'g> Velocities<'g> {
+    /// Those of the energy among `reachable`, what it is computed from; `values` has the number of each.
+    pub(super) fn new(graph: &'g Graph, reachable: &[NodeId], values: &'g [f64]) -> Self {
+        let moves = |node: &NodeId| graph.dependence(*node).has(Dependence::RATE);
+        Self {
+            graph,
+            nodes: reachable.iter().copied().filter(moves).collect(),
+            values,
+        }
+    }
+
+    /// Eliminates the rates of so many coordinates; None if a function other than sums and products is
+    /// taken of a velocity.
+    pub(super) fn eliminate(&self, coordinates: usize) -> Option<Sweep> {
+        let mut composite = Hessian::default();
+        let mut articulated = Hessian::default();
+        let mut found = Sweep::default();
+        let threshold = ROUNDING * coordinates as f64;
+        let mut eliminated = 0;
+        let mut is_definite = true;
+        self.sweep(&mut |step| match step {
+            Step::Velocity(node, local, adjoint) => {
+                composite.push(node, local, adjoint);
+                articulated.push(node, local, adjoint);
+            }
+            Step::Complete(rate) => {
+                let own = composite.take(rate).remove(&rate).unwrap_or(0.0);
+                let pivot = articulated.eliminate(rate);
+                is_definite &= own > 0.0 && pivot > threshold * own && own.is_finite();
+                eliminated += 1;
+            }
+        })?;
+        found.is_definite = is_definite && eliminated == coordinates;
+        found.updates = composite.updates + articulated.updates;
+        Some(found)
+    }
+
+    /// The mass matrix of so many coordinates, its entries that are not 0 by structure; None as for
+    /// `eliminate`.
+    pub(super) fn mass_matrix(&self, coordinates: usize) -> Option<SparseRows> {
+        let mut hessian = Hessian::default();
+        self.sweep(&mut |step| {
+            if let Step::Velocity(node, local, adjoint) = step {
+                hessian.push(node, local, adjoint);
+            }
+        })?;
+        let place = |node: &NodeId| match self.graph.operation(*node) {
+            Operation::Rate(index) => Some(index.index()),
+            _ => None,
+        };
+        let mut rows: SparseRows = vec![BTreeMap::new(); coordinates];
+        for (node, row) in &hessian.rows {
+            let Some(own) = place(node) else { continue };
+            let entries = row
+                .iter()
+                .filter_map(|(other, value)| Some((place(other)?, *value)));
+            rows[own] = entries.collect();
+        }
+        Some(rows)
+    }
+
+    /// Shows the velocities from the energy to the rates, and each rate when nothing is left that
+    /// holds it.
+    fn sweep(&self, see: &mut dyn FnMut(Step<'_>)) -> Option<()> {
+        let mut uses = vec![0_usize; self.values.len()];
+        let mut adjoints = vec![0.0; self.values.len()];
+        for node in &self.nodes {
+            for operand in self.operands(*node) {
+                uses[operand.0 as usize] += 1;
+            }
+        }
+        if let Some(energy) = self.nodes.last() {
+            adjoints[energy.0 as usize] = 1.0;
+        }
+        for &node in self.nodes.iter().rev() {
+            if let Operation::Rate(_) = self.graph.operation(node) {
+                continue;
+            }
+            let local = self.local(node)?;
+            let adjoint = adjoints[node.0 as usize];
+            see(Step::Velocity(node, &local, adjoint));
+            for (operand, slope) in local.slopes {
+                let place = operand.0 as usize;
+                adjoints[place] += slope * adjoint;
+                uses[place] -= 1;
+                if uses[place] == 0 && matches!(self.graph.operation(operand), Operation::Rate(_)) {
+                    see(Step::Complete(operand));
+                }
+            }
+        }
+        Some(())
+    }
+
+    fn moves(&self, node: NodeId) -> bool {
+        self.graph.dependence(node).has(Dependence::RATE)
+    }
+
+    fn operands(&self, node: NodeId) -> Vec<NodeId> {
+        let mut operands = self.graph.operands(self.graph.operation(node));
+        operands.retain(|operand| self.moves(*operand));
+        operands
+    }
+
+    fn local(&self, node: NodeId) -> Option<Local> {
+        match self.graph.operation(node) {
+            Operation::Sum(terms) => {
+                let moving = terms.iter().filter(|(_, term)| self.moves(*term));
+                Some(Local {
+                    slopes: moving.map(|(c, term)| (*term, c.value())).collect(),
+                    curvatures: Vec::new(),
+                })
+            }
+            Operation::Product(factors) => Some(self.of_product(factors)),
+            _ => None,
+        }
+    }
+
+    /// The derivatives of a product of powers by the factors that move.
+    fn of_product(&self, factors: &[(NodeId, i32)]) -> Local {
+        let product = |lowered: &[usize]| -> f64 {
+            let mut value = 1.0;
+            for (place, &(factor, power)) in factors.iter().enumerate() {
+                let times = lowered.iter().filter(|other| **other == place).count() as i32;
+                let known = self.values[factor.0 as usize];
+                let falling: i32 = (0..times).map(|step| power - step).product();
+                value *= f64::from(falling) * known.powi(power - times);
+            }
+            value
+        };
+        let mut local = Local {
+            slopes: Vec::new(),
+            curvatures: Vec::new(),
+        };
+        for (i, &(a, power)) in factors.iter().enumerate() {
+            if !self.moves(a) {
+                continue;
+            }
+            local.slopes.push((a, product(&[i])));
+            if power != 1 {
+                local.curvatures.push((a, a, product(&[i, i])));
+            }
+            for (j, &(b, _)) in factors.iter().enumerate().take(i) {
+                if self.moves(b) {
+                    local.curvatures.push((a, b, product(&[i, j])));
+                }
+            }
+        }
+        local
+    }
+}
+
+/// A step of the sweep.
+enum Step<'s> {
+    /// A velocity with its derivatives by what it is made of and the energy's derivative by it.
+    Velocity(NodeId, &'s Local, f64),
+    /// A rate that no velocity before it holds.
+    Complete(NodeId),
+}
+
+/// Second derivatives of the energy between nodes that are not taken apart yet: each both ways.
+#[derive(Default)]
+struct Hessian {
+    rows: BTreeMap<NodeId, BTreeMap<NodeId, f64>>,
+    updates: usize,
+}
+
+impl Hessian {
+    fn add(&mut self, a: NodeId, b: NodeId, value: f64) {
+        self.updates += 1;
+        *self.rows.entry(a).or_default().entry(b).or_default() += value;
+        if a != b {
+            *self.rows.entry(b).or_default().entry(a).or_default() += value;
+        }
+    }
+
+    /// Removes a node and gives its row.
+    fn take(&mut self, node: NodeId) -> BTreeMap<NodeId, f64> {
+        let row = self.rows.remove(&node).unwrap_or_default();
+        for other in row.keys() {
+            if let Some(others) = self.rows.get_mut(other) {
+                others.remove(&node);
+            }
+        }
+        row
+    }
+
+    /// Takes a velocity apart: what is between it and others passes to what it is made of.
+    fn push(&mut self, node: NodeId, local: &Local, adjoint: f64) {
+        for (other, value) in self.take(node) {
+            if other == node {
+                for (place, &(a, by_a)) in local.slopes.iter().enumerate() {
+                    for &(b, by_b) in &local.slopes[..=place] {
+                        self.add(a, b, by_a * by_b * value);
+                    }
+                }
+                continue;
+            }
+            for &(a, by_a) in &local.slopes {
+                let factor = if a == other { 2.0 } else { 1.0 };
+                self.add(a, other, factor * by_a * value);
+            }
+        }
+        for &(a, b, curvature) in &local.curvatures {
+            self.add(a, b, curvature * adjoint);
+        }
+    }
+
+    /// Eliminates a rate, whose pivot it gives: the others follow it freely.
+    fn eliminate(&mut self, rate: NodeId) -> f64 {
+        let mut row = self.take(rate);
+        let pivot = row.remove(&rate).unwrap_or(0.0);
+        let entries: Vec<(NodeId, f64)> = row.into_iter().collect();
+        for (place, &(a, with_a)) in entries.iter().enumerate() {
+            for &(b, with_b) in &entries[..=place] {
+                self.add(a, b, -with_a * with_b / pivot);
+            }
+        }
+        pivot
+    }
+}

@@ -1,0 +1,131 @@
+//! Operators, words and functions of other languages, and how each is written here.
+
+/// Spellings of other languages, and the way to write the same here.
+type Foreign = (&'static [&'static str], &'static str);
+
+/// Operators.
+const OPERATORS: [Foreign; 12] = [
+    (
+        &[">"],
+        "write `above(x - a)` for 1 if x > a, else 0; `contact(x, a)` is 1 if abs(x) > a",
+    ),
+    (
+        &["<"],
+        "write `above(a - x)` for 1 if x < a, else 0; `1 - contact(x, a)` is 1 if abs(x) <= a",
+    ),
+    (
+        &[">=", "=>", "≥"],
+        "write `1 - above(a - x)` for 1 if x >= a, else 0",
+    ),
+    (
+        &["<=", "≤"],
+        "write `1 - above(x - a)` for 1 if x <= a, else 0",
+    ),
+    (
+        &["=", "==", "==="],
+        "quantities that move are equal for an instant only: write `1 - contact(x - a, b)` for 1 if x \
+         is within b of a",
+    ),
+    (
+        &["!=", "/=", "<>", "~=", "≠"],
+        "write `contact(x - a, b)` for 1 if x is more than b away from a",
+    ),
+    (&["&", "&&"], AND),
+    (&["||"], OR),
+    (
+        &["|"],
+        "write `abs(x)` for a magnitude, and `max(above(x - a), above(b - x))` for x > a or x < b",
+    ),
+    (&["!"], NOT),
+    (&["?", ":"], IF),
+    (&["**", "^^"], POWER),
+];
+
+/// Words between operands or before them.
+const WORDS: [Foreign; 4] = [
+    (&["and"], AND),
+    (&["or"], OR),
+    (&["not"], NOT),
+    (
+        &[
+            "if", "then", "else", "elif", "elseif", "where", "when", "case",
+        ],
+        IF,
+    ),
+];
+
+/// Functions.
+const FUNCTIONS: [Foreign; 9] = [
+    (&["ifelse", "select", "piecewise", "Piecewise"], IF),
+    (
+        &["heaviside", "Heaviside", "step"],
+        "write `above(x)` for 1 if x > 0, else 0",
+    ),
+    (&["pow", "power"], POWER),
+    (&["%", "mod", "fmod", "rem"], REMAINDER),
+    (&["log"], "the natural logarithm is ln"),
+    (&["log10"], "the logarithm to base 10 is ln(x)/ln(10)"),
+    (&["sgn", "signum"], "write `sign(x)` for -1, 0 or 1"),
+    (&["fabs"], "write `abs(x)`"),
+    (&["ddt", "der", "derivative"], "a rate is written dot(x)"),
+];
+
+const AND: &str = "both conditions hold where their product is 1: `above(x - a)*above(b - x)`";
+const OR: &str =
+    "one of two conditions holds where the larger is 1: `max(above(x - a), above(b - x))`";
+const NOT: &str = "write `1 - above(x - a)` for 1 if x <= a, else 0";
+const IF: &str = "write `above(x - a)*A + (1 - above(x - a))*B` for A if x > a, else B; `min` and `max` \
+                  choose the smaller and the larger of two";
+const POWER: &str = "a power is written x^2";
+const REMAINDER: &str =
+    "there is no remainder: `atan2(sin(x), cos(x))` is the angle x between -pi and pi";
+
+/// How an operator or a function of another language is written here.
+pub fn written_here(foreign: &str) -> Option<&'static str> {
+    help(OPERATORS.iter().chain(&WORDS).chain(&FUNCTIONS), foreign)
+}
+
+/// How a word that stands between operands or before them is written here.
+pub fn word_here(word: &str) -> Option<&'static str> {
+    help(WORDS.iter(), word)
+}
+
+fn help<'t>(mut table: impl Iterator<Item = &'t Foreign>, foreign: &str) -> Option<&'static str> {
+    let entry = table.find(|(known, _)| known.contains(&foreign));
+    entry.map(|(_, help)| *help)
+}
+
+/// The operator of another language that a text begins with.
+pub fn operator_at(text: &str) -> Option<&str> {
+    let run = text.chars().take(3).take_while(|letter| is_symbol(*letter));
+    let length = run.map(char::len_utf8).sum();
+    let starts = (1..=length).rev().filter_map(|end| text.get(..end));
+    let mut foreign = starts.filter(|start| !["*", "/", "^"].contains(start));
+    foreign.find(|start| written_here(start).is_some())
+}
+
+/// Whether a character can belong to an operator that the language does not have.
+fn is_symbol(letter: char) -> bool {
+    !letter.is_alphanumeric() && !letter.is_whitespace() && !"_.,()[]+-".contains(letter)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_longest_operator_is_found() {
+        for (text, operator) in [
+            (">= a", ">="),
+            ("> a", ">"),
+            ("&& b", "&&"),
+            ("≥ 0", "≥"),
+            ("** 2", "**"),
+        ] {
+            assert_eq!(operator_at(text), Some(operator), "{text}");
+        }
+        for text in ["if", "a", "+ a", "*a", "/ a"] {
+            assert_eq!(operator_at(text), None, "{text}");
+        }
+    }
+}

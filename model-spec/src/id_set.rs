@@ -1,0 +1,60 @@
+//! Sets of small numbers as bits: the union of two takes a word for 64 of them.
+
+/// A set of small numbers.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct IdSet {
+    words: Vec<u64>,
+}
+
+impl IdSet {
+    /// Adds a number.
+    pub fn insert(&mut self, number: usize) {
+        let word = number / 64;
+        if self.words.len() <= word {
+            self.words.resize(word + 1, 0);
+        }
+        self.words[word] |= 1 << (number % 64);
+    }
+
+    /// Adds all numbers of another set.
+    pub fn extend(&mut self, other: &Self) {
+        if self.words.len() < other.words.len() {
+            self.words.resize(other.words.len(), 0);
+        }
+        for (own, word) in self.words.iter_mut().zip(&other.words) {
+            *own |= word;
+        }
+    }
+
+    /// Whether a number is in it.
+    pub fn contains(&self, number: usize) -> bool {
+        let word = self.words.get(number / 64);
+        word.is_some_and(|word| word & (1 << (number % 64)) != 0)
+    }
+
+    /// Whether it holds no number.
+    pub fn is_empty(&self) -> bool {
+        self.words.is_empty()
+    }
+
+    /// Its numbers, the smallest first.
+    pub fn iter(&self) -> impl Iterator<Item = usize> {
+        (0..64 * self.words.len()).filter(|number| self.contains(*number))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_union_holds_the_numbers_of_both() {
+        let (mut one, mut other) = (IdSet::default(), IdSet::default());
+        assert!(one.is_empty());
+        [3, 200].map(|number| one.insert(number));
+        [0, 64].map(|number| other.insert(number));
+        other.extend(&one);
+        assert_eq!(other.iter().collect::<Vec<_>>(), [0, 3, 64, 200]);
+        assert!(!one.contains(64) && other.contains(64) && !one.is_empty());
+    }
+}

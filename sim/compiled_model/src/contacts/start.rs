@@ -1,0 +1,55 @@
+//! A start on contacts: distances that only rounding has left below zero are brought to zero.
+
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
+
+use super::{CORRECTIONS, Contacts, ROUNDING};
+
+/// A start in the course of a motion.
+pub(crate) struct Start<'s> {
+    /// When the motion begins, s.
+    pub t: f64,
+    /// When it ends, s; the same for a single state.
+    pub until: f64,
+    /// The inputs.
+    pub inputs: &'s [f64],
+    /// The largest known length of each impact, in the unit of its distance.
+    pub lengths: &'s [f64],
+}
+
+impl Start<'_> {
+    /// Moves coordinates so that no distance of an impact is below zero by rounding: by a part of its
+    /// length, or of what it covers in the motion with its rate and acceleration at the start.
+    ///
+    /// # Errors
+    /// The first distance that is below zero by more, or is no number: its place and value.
+    pub(crate) fn onto_contacts(
+        &self,
+        own: &mut Evaluator,
+        state: &mut [f64],
+    ) -> Result<(), (usize, f64)> {
+        let degrees = own.program().degrees_of_freedom();
+        let mut contacts = Contacts::new(vec![String::new(); self.lengths.len()]);
+        let span = self.until - self.t;
+        for correction in 0..CORRECTIONS {
+            let (t, inputs) = (self.t, self.inputs);
+            own.impacts(Point { t, state, inputs }, &mut contacts.at);
+            let mut below = Vec::new();
+            for (place, (impact, length)) in contacts.at.iter().zip(self.lengths).enumerate() {
+                let covered = impact.rate.abs() * span + impact.acceleration.abs() * span * span;
+                let allowed = ROUNDING * length.max(covered);
+                let is_outside = impact.distance >= 0.0;
+                if !is_outside && (correction > 0 || impact.distance >= -allowed) {
+                    below.push(place);
+                } else if !is_outside {
+                    return Err((place, impact.distance));
+                }
+            }
+            if below.is_empty() {
+                break;
+            }
+            let corrections = contacts.balanced(&below, |impact| impact.distance);
+            contacts.push(&below, &corrections, &mut state[..degrees]);
+        }
+        Ok(())
+    }
+}
