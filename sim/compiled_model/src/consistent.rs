@@ -4,6 +4,7 @@
 
 use std::cell::RefCell;
 
+use eomgen_analysis::qr_iteration;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_model_spec::model::{Constraint, RESIDUAL, STABILISATION_RATE};
 use eomgen_sim::inputs::HeldInputs;
@@ -216,10 +217,9 @@ impl Instance<'_> {
         let parts = DMatrix::from_fn(here.len(), degrees, |row, column| {
             here[row][column] / sizes[row]
         });
-        if parts.iter().any(|part| !part.is_finite()) {
+        let Some(held) = qr_iteration::symmetric_eigen(&(&parts * parts.transpose())) else {
             return Ok(None);
-        }
-        let held = (&parts * parts.transpose()).symmetric_eigen();
+        };
         let (least, value) = held.eigenvalues.argmin();
         if value.max(0.0).sqrt() > SINGULAR {
             return Ok(None);
@@ -264,7 +264,7 @@ impl Instance<'_> {
     /// The derivative of every constraint by the coordinates, or by the rates of a nonholonomic one,
     /// each coordinate measured by its own inertia.
     fn gradients(&self, t: f64, state: &[f64], inputs: &[f64]) -> Result<Vec<Vec<f64>>, Error> {
-        let mut jacobians = self.unchecked_jacobians()?;
+        let mut jacobians = self.interpreted_jacobians()?;
         let (rows, columns) = jacobians.shape(Jacobian::ObservablesByState);
         let mut matrix = vec![0.0; rows * columns];
         let point = Point { t, state, inputs };
