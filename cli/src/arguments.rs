@@ -45,7 +45,7 @@ pub enum Command {
     Simulate(Simulate),
     /// Print the matrices A, B, C, D of a model about a state.
     #[command(
-        after_help = "Example:\n  eomgen linearise model-spec/models/furuta_pendulum.toml --at theta=3.141592653589793 --out upright.json"
+        after_help = "Example:\n  eomgen linearise model-spec/models/furuta_pendulum.toml --at theta=pi --out upright.json"
     )]
     Linearise(Linearise),
     /// Print natural frequencies, damping and shapes of a model about a state.
@@ -53,9 +53,9 @@ pub enum Command {
         after_help = "Example:\n  eomgen modes model-spec/models/hub_beam_tip_mass.toml --order 4"
     )]
     Modes(Modes),
-    /// Find an equilibrium.
+    /// Find the equilibrium nearest to a state: at rest or running steadily.
     #[command(
-        after_help = "Examples:\n  eomgen trim model-spec/models/pendulum.toml\n  eomgen trim model-spec/models/furuta_pendulum.toml --fix u=0 --fix phi=0.5\nCoordinates are free, inputs 0. Where coordinates are fixed, inputs that are not are free."
+        after_help = "Examples:\n  eomgen trim model-spec/models/pendulum.toml\n  eomgen trim model-spec/models/furuta_pendulum.toml --fix u=0 --fix phi=0.5\n  eomgen trim model-spec/models/pendulum.toml --state theta=\"20 deg\"\nCoordinates are free, inputs 0. Where coordinates are fixed, inputs that are not are free. A coordinate on\nwhich nothing depends may move at a constant speed: the one that it starts with, or the one that is found."
     )]
     Trim(Trim),
     /// Propose a dataset file for a record: how its numbers stand, which columns are what, how
@@ -375,7 +375,8 @@ pub struct Simulate {
     /// The file to write: CSV, or Parquet if its name ends in `.parquet`; `-` for stdout.
     #[arg(long)]
     pub out: PathBuf,
-    /// Another value for a parameter, in the unit the specification declares (repeatable).
+    /// Another value for a parameter: a number in the unit the specification declares, an expression of
+    /// parameters as `2*l`, or one with a unit as `"30 mm"` (repeatable).
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub set: Vec<String>,
     /// A dataset file whose record feeds the inputs.
@@ -395,8 +396,8 @@ pub struct Simulate {
     /// unit, with t in s; `5*above(t - 1)` is a step (repeatable).
     #[arg(long, value_name = "NAME=EXPRESSION")]
     pub input: Vec<String>,
-    /// Where a coordinate, a mode or a rate (NAME_dot) begins, in SI, instead of where the specification
-    /// says (repeatable).
+    /// Where a coordinate, a mode or a rate (NAME_dot) begins, instead of where the specification says: a
+    /// number in SI, an expression of parameters, or one with a unit (repeatable).
     #[arg(long, value_name = "NAME=VALUE")]
     pub initial: Vec<String>,
     /// An SVG file to draw coordinates and observables in.
@@ -426,12 +427,14 @@ pub struct Linearise {
     /// Modal truncation order of every field, instead of the specification's.
     #[arg(long, allow_negative_numbers = true)]
     pub order: Option<String>,
-    /// Another value for a parameter, in the unit the specification declares (repeatable).
+    /// Another value for a parameter: a number in the unit the specification declares, an expression of
+    /// parameters as `2*l`, or one with a unit as `"30 mm"` (repeatable).
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub set: Vec<String>,
-    /// A coordinate, a rate (NAME_dot), an input or `t` of the point, in SI; the initial state, inputs
-    /// of 0 and t = 0 where nothing is said (repeatable).
-    #[arg(long, value_name = "NAME=VALUE")]
+    /// A coordinate, a rate (NAME_dot), an input or `t` of the point: a number in SI, an expression of
+    /// parameters as `pi/3`, or one with a unit as `"30 deg"`; the initial state, inputs of 0 and t = 0 by
+    /// default. The word `trim` for the equilibrium nearest to that (repeatable).
+    #[arg(long, value_name = "NAME=VALUE|trim")]
     pub at: Vec<String>,
     /// The file to write, in place of stdout: JSON, or arrays of NumPy if its name ends in `.npz`.
     #[arg(long)]
@@ -449,12 +452,14 @@ pub struct Modes {
     /// Modal truncation order of every field, instead of the specification's.
     #[arg(long, allow_negative_numbers = true)]
     pub order: Option<String>,
-    /// Another value for a parameter, in the unit the specification declares (repeatable).
+    /// Another value for a parameter: a number in the unit the specification declares, an expression of
+    /// parameters as `2*l`, or one with a unit as `"30 mm"` (repeatable).
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub set: Vec<String>,
-    /// A coordinate, a rate (NAME_dot), an input or `t` of the point, in SI; the initial state, inputs
-    /// of 0 and t = 0 where nothing is said (repeatable).
-    #[arg(long, value_name = "NAME=VALUE")]
+    /// A coordinate, a rate (NAME_dot), an input or `t` of the point: a number in SI, an expression of
+    /// parameters as `pi/3`, or one with a unit as `"30 deg"`; the initial state, inputs of 0 and t = 0 by
+    /// default. The word `trim` for the equilibrium nearest to that (repeatable).
+    #[arg(long, value_name = "NAME=VALUE|trim")]
     pub at: Vec<String>,
     /// An SVG file to draw the lowest modes in: shapes of fields over their lengths, coordinates as
     /// bars.
@@ -473,12 +478,17 @@ pub struct Trim {
     /// Modal truncation order of every field, instead of the specification's.
     #[arg(long, allow_negative_numbers = true)]
     pub order: Option<String>,
-    /// Another value for a parameter, in the unit the specification declares (repeatable).
+    /// Another value for a parameter: a number in the unit the specification declares, an expression of
+    /// parameters as `2*l`, or one with a unit as `"30 mm"` (repeatable).
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub set: Vec<String>,
-    /// A coordinate or an input that keeps this value, in SI (repeatable).
+    /// A coordinate, an input or the speed (NAME_dot) of a coordinate on which nothing depends that keeps this
+    /// value: a number in SI, an expression of parameters, or one with a unit (repeatable).
     #[arg(long, value_name = "NAME=VALUE")]
     pub fix: Vec<String>,
+    /// Where the search begins, in place of the initial state; given as with --fix (repeatable).
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub state: Vec<String>,
     /// Print one JSON document, which is what is printed in any case.
     #[arg(long)]
     pub json: bool,
@@ -538,7 +548,8 @@ pub struct Sweep {
     /// Modal truncation order of every field, instead of the specification's.
     #[arg(long, allow_negative_numbers = true)]
     pub order: Option<String>,
-    /// Another value for a parameter, in the unit the specification declares (repeatable).
+    /// Another value for a parameter: a number in the unit the specification declares, an expression of
+    /// parameters as `2*l`, or one with a unit as `"30 mm"` (repeatable).
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub set: Vec<String>,
     /// The parameter that is the angular frequency of the forcing.

@@ -11,7 +11,7 @@ use crate::operating_point::{head, inputs, named};
 /// One document with the point, names, units and matrices.
 pub fn document(
     compiled: &CompiledModel,
-    at: &OperatingPoint,
+    (at, is_equilibrium): (&OperatingPoint, bool),
     found: &Linearisation,
 ) -> Result<Value> {
     let (inputs, input_units) = inputs(compiled);
@@ -26,6 +26,7 @@ pub fn document(
     let mut document = head(compiled);
     document.extend([
         ("at".to_owned(), named(compiled, at)),
+        ("equilibrium".to_owned(), json!(is_equilibrium)),
         ("states".to_owned(), json!(states)),
         ("inputs".to_owned(), json!(inputs)),
         ("outputs".to_owned(), json!(outputs)),

@@ -1,16 +1,22 @@
 //! Operating points on the command line: a model of given orders and parameters, where it is
-//! linearised or where a motion begins, and how JSON says it.
+//! linearised or where a motion begins, and its JSON.
 
 use std::path::Path;
 
-use eomgen_compiled_model::{CompiledModel, Instance, OperatingPoint, Setting};
+use eomgen_compiled_model::{
+    CompiledModel, Equilibrium, EquilibriumRequest, Error as Failure, Instance, OperatingPoint,
+    Setting,
+};
+use eomgen_model_spec::assignment::{Assignment, QuantityReader};
+use eomgen_model_spec::dimension::Dimension;
+use eomgen_model_spec::unit::Unit;
 use eomgen_sim::inputs::HeldInputs;
 use serde_json::{Map, Value, json};
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, warn};
 use crate::model::{derive, load, orders};
 use crate::motion::note_moved;
-use crate::settings::with_settings;
+use crate::settings::{borrowed, split, with_settings};
 
 /// The model of a specification with parameters set.
 pub fn model(spec: &Path, order: Option<&str>, set: &[String]) -> Result<CompiledModel> {
@@ -19,29 +25,90 @@ pub fn model(spec: &Path, order: Option<&str>, set: &[String]) -> Result<Compile
     derive(model, &orders)
 }
 
-/// Names and numbers of every `NAME=VALUE` of an option, in SI.
-pub fn assignments<'a>(option: &str, assigned: &'a [String]) -> Result<Vec<(&'a str, f64)>> {
-    assigned
-        .iter()
-        .map(|text| assignment(option, text))
-        .collect()
+/// The word in place of an assignment for the nearest equilibrium.
+const TRIM: &str = "trim";
+
+/// Names and values of every `NAME=VALUE` of an option: states, inputs and `t`, in SI.
+pub fn values(run: &Instance<'_>, option: &str, assigned: &[String]) -> Result<Vec<(String, f64)>> {
+    let (compiled, model) = (run.model(), run.model().model());
+    let states = model.state_units(compiled.orders());
+    let reader = QuantityReader::new(model).map_err(Error::Specification)?;
+    let value = |given: &Assignment| -> Result<(String, f64)> {
+        let unit = match compiled.setting(given.name()) {
+            Ok(Setting::State(place)) => states[place].clone(),
+            Ok(Setting::Input(place)) => model.inputs[place].unit.clone(),
+            Ok(Setting::Time) => Unit::coherent(Dimension::TIME),
+            Err(error) => {
+                let unknown = given.refuse_name(error.to_string(), None);
+                return Err(Error::Specification(unknown));
+            }
+        };
+        let value = reader.read(given, &unit).map_err(Error::Specification)?;
+        Ok((given.name().to_owned(), value))
+    };
+    split(option, assigned)?.iter().map(value).collect()
 }
 
-fn assignment<'a>(option: &str, text: &'a str) -> Result<(&'a str, f64)> {
-    let wrong = |what: &str| Error::input(format!("{option} {text}: {what}"));
-    let (name, value) = text.split_once('=').ok_or_else(|| {
-        wrong("expected NAME=VALUE, the name of a coordinate, a rate (NAME_dot) or an input, the value in SI")
-    })?;
-    let number: f64 = value
-        .trim()
-        .parse()
-        .map_err(|_| wrong(&format!("\"{value}\" is no number")))?;
-    Ok((name.trim(), number))
+/// The point of `--at`: the initial state with every `NAME=VALUE`, on the constraints; with the word `trim`
+/// the equilibrium nearest to it.
+pub fn point(run: &Instance<'_>, at: &[String]) -> Result<OperatingPoint> {
+    let (words, assigned): (Vec<String>, Vec<String>) =
+        at.iter().cloned().partition(|text| text.trim() == TRIM);
+    let given = values(run, "--at", &assigned)?;
+    let given = borrowed(&given);
+    match words.is_empty() {
+        true => consistent(run, run.operating_point(&given)?),
+        false => {
+            let request = EquilibriumRequest {
+                start: &given,
+                fixed: &[],
+            };
+            Ok(equilibrium(run, request)?.at)
+        }
+    }
+}
+
+/// An equilibrium; the command fails if there is none.
+pub fn equilibrium(run: &Instance<'_>, request: EquilibriumRequest<'_>) -> Result<Equilibrium> {
+    match run.equilibrium(request) {
+        Err(Failure::Stopped { reason, .. }) => {
+            warn(&format!("error: {reason}"));
+            Err(Error::Failed)
+        }
+        Err(other) => Err(other.into()),
+        Ok(found) => {
+            if !found.running.is_empty() {
+                let rates = found.running.join(", ");
+                warn(&format!(
+                    "note: this is not rest but steady running: {rates} are constant"
+                ));
+            }
+            if found.depends_on_time {
+                warn(&format!(
+                    "warning: the forces depend on the time: this is an equilibrium at t = {} s alone",
+                    found.at.t
+                ));
+            }
+            Ok(found)
+        }
+    }
+}
+
+/// Whether a point is an equilibrium, with a warning if it is not.
+pub fn is_equilibrium(run: &Instance<'_>, at: &OperatingPoint) -> Result<bool> {
+    let found = run.is_equilibrium(at)?;
+    if !found {
+        warn(
+            "warning: this state is no equilibrium: the machine accelerates there, and what is linearised \
+             holds for a short time only; give another state with --at NAME=VALUE, or --at trim",
+        );
+    }
+    Ok(found)
 }
 
 /// The initial state with every `NAME=VALUE`.
 pub fn with_initial(run: &Instance<'_>, assigned: &[String]) -> Result<Vec<f64>> {
-    let settings = assignments("--initial", assigned)?;
+    let settings = values(run, "--initial", assigned)?;
     for (name, _) in &settings {
         if !matches!(run.model().setting(name)?, Setting::State(_)) {
             return Err(Error::input(format!(
@@ -49,11 +116,11 @@ pub fn with_initial(run: &Instance<'_>, assigned: &[String]) -> Result<Vec<f64>>
             )));
         }
     }
-    Ok(run.operating_point(&settings)?.state)
+    Ok(run.operating_point(&borrowed(&settings))?.state)
 }
 
 /// The point moved onto the constraints of the model, with a note of what that moved.
-pub fn consistent(run: &Instance<'_>, mut at: OperatingPoint) -> Result<OperatingPoint> {
+fn consistent(run: &Instance<'_>, mut at: OperatingPoint) -> Result<OperatingPoint> {
     let inputs = HeldInputs::constant(at.inputs.clone());
     let (state, moved) = run.consistent(&at.state, at.t, &inputs)?;
     note_moved("state", &moved);

@@ -37,7 +37,7 @@ impl Side {
 
 /// The sides of all switching surfaces at a point, surfaces over modes one by one.
 pub fn regime(run: &Instance<'_>, at: &OperatingPoint) -> Result<Vec<Side>> {
-    let mut evaluator = run.evaluator()?;
+    let mut evaluator = run.interpreter()?;
     let mut values = vec![0.0; evaluator.guard_count()];
     evaluator.guards(at.point(), &mut values);
     let program = run.model().program();

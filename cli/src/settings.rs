@@ -1,19 +1,41 @@
 //! Parameter values given as `NAME=VALUE`, and inputs that nothing drives.
 
+use eomgen_model_spec::assignment::Assignment;
 use eomgen_model_spec::edit::{self, Edit, EditError, PrescribeInput};
 use eomgen_model_spec::model::{Model, ParameterValue, STABILISATION_RATE};
 
 use crate::error::{Error, Result, warn};
 
-/// The model with every `NAME=VALUE`, values in the units that the specification declares.
+/// The model with every `NAME=VALUE` of `--set`.
 pub fn with_settings(model: Model, assignments: &[String]) -> Result<Model> {
-    let settings = assignments
-        .iter()
-        .map(|assignment| setting(assignment))
-        .collect::<Result<Vec<_>>>()?;
+    let settings = settings(&model, assignments)?;
+    let settings: Vec<(&str, f64)> = borrowed(&settings);
     model
         .with_parameters(&settings)
         .map_err(|error| Error::model(&model.source, error))
+}
+
+/// Names and values of every `NAME=VALUE` of `--set`, in the units that the specification declares.
+pub fn settings(model: &Model, assignments: &[String]) -> Result<Vec<(String, f64)>> {
+    let given = split("--set", assignments)?;
+    model.read_settings(&given).map_err(Error::Specification)
+}
+
+/// Every `NAME=VALUE` of an option in its parts.
+pub fn split(option: &str, assignments: &[String]) -> Result<Vec<Assignment>> {
+    let split = assignments
+        .iter()
+        .map(|text| Assignment::split(option, text));
+    let split: std::result::Result<Vec<_>, _> = split.collect();
+    split.map_err(Error::Specification)
+}
+
+/// Named values with borrowed names.
+pub fn borrowed(values: &[(String, f64)]) -> Vec<(&str, f64)> {
+    values
+        .iter()
+        .map(|(name, value)| (name.as_str(), *value))
+        .collect()
 }
 
 /// How fast residuals of constraints decay where nothing else brings them back and the specification
@@ -33,20 +55,6 @@ pub fn stabilised(model: Model) -> Result<Model> {
     model
         .with_parameters(&[(STABILISATION_RATE, STABILISATION)])
         .map_err(|error| Error::model(&model.source, error))
-}
-
-/// The parts of `NAME=VALUE`.
-pub fn setting(assignment: &str) -> Result<(&str, f64)> {
-    let (name, value) = assignment.split_once('=').ok_or_else(|| {
-        Error::input(format!(
-            "--set {assignment}: expected NAME=VALUE, such as b_sp=25e-6"
-        ))
-    })?;
-    let number: f64 = value
-        .trim()
-        .parse()
-        .map_err(|_| Error::input(format!("--set {assignment}: \"{value}\" is no number")))?;
-    Ok((name.trim(), number))
 }
 
 /// The model with every `NAME=EXPRESSION` in the place of an input.

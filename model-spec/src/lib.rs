@@ -27,11 +27,12 @@
 //! to [`ast`]), `document` (TOML tables to raw entries), `names`, `expression` and `resolve` (names),
 //! `rate_order` (rates of states that lead to no circle), `motion` (what may stand where), `units_check` and `infer` (units of every expression), `checks`, `uncertainty` (how values are spread),
 //! [`model`] (the result; [`mod@ids`] say which entry of its lists is meant, [`rigid_tree`] has its frames and bodies). [`load()`] and [`check`] go all the way. What is wrong is said by
-//! [`diagnostic`]; [`shape_table`] reads mode shapes from a file beside it; [`edit`] changes a specification and keeps its comments; [`variant`] sets numbers.
+//! [`diagnostic`]; [`shape_table`] reads mode shapes from a file beside it; [`edit`] changes a specification and keeps its comments; [`variant`] sets numbers, which [`assignment`] reads from options.
 //! [`toml_file`] and [`mod@table`] read other files of TOML with their places as well. [`models`] are
 //! the specifications shipped. Nothing here knows how
 //! equations are derived.
 
+pub mod assignment;
 pub mod ast;
 mod checks;
 mod constants;

@@ -104,6 +104,13 @@ impl Unit {
         self.scale == Scale::ONE
     }
 
+    /// The coherent unit of a rate of what is in this one; none if its dimension is out of range.
+    pub fn per_second(&self) -> Option<Self> {
+        let mut unit = Self::coherent(self.dimension.over(Dimension::TIME)?);
+        unit.text = format!("{self}/s");
+        Some(unit)
+    }
+
     /// A number in this unit, in SI; 3 mm is 3/1000, correctly rounded.
     pub fn to_si(&self, value: f64) -> f64 {
         self.scale.apply(value)

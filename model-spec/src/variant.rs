@@ -87,17 +87,23 @@ impl Model {
     /// # Errors
     /// A value that is not finite or outside its parameter's bounds, by name.
     pub fn parameter_values(&self) -> Result<Vec<f64>, ModelError> {
+        let values = self.evaluated_parameters();
+        for &index in &self.parameter_order {
+            check_value(&self.parameters[index], values[index])?;
+        }
+        Ok(values)
+    }
+
+    /// The values of all parameters in SI, admissible or not.
+    pub(crate) fn evaluated_parameters(&self) -> Vec<f64> {
         let mut values = vec![f64::NAN; self.parameters.len()];
         for &index in &self.parameter_order {
-            let parameter = &self.parameters[index];
-            let value = match &parameter.value {
+            values[index] = match &self.parameters[index].value {
                 ParameterValue::Number(value) => *value,
                 ParameterValue::Expression(expr) => evaluate(expr, &values),
             };
-            check_value(parameter, value)?;
-            values[index] = value;
         }
-        Ok(values)
+        values
     }
 
     /// The initial state in SI at these orders: values of coordinates, modes (0), then
@@ -215,7 +221,7 @@ impl Model {
 
     /// Which parameters may have been meant by a name: the nearest, those that share a part of
     /// it, or the first of all.
-    fn parameters_like(&self, name: &str) -> String {
+    pub(crate) fn parameters_like(&self, name: &str) -> String {
         let known = || self.parameters.iter().map(|known| known.name.as_str());
         if let Some(help) = did_you_mean(name, known()) {
             return help;

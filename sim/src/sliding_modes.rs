@@ -5,6 +5,7 @@
 //! there. That is a linear complementarity problem with bounds; of friction W is -J M^-1 J^T times the
 //! friction's levels, and the rates that solve it are unique.
 
+use eomgen_analysis::qr_iteration;
 use nalgebra::{DMatrix, DVector};
 
 /// Parts of a rate that are this small beside its terms are rounding.
@@ -189,10 +190,10 @@ pub fn least(w: DMatrix<f64>, b: DVector<f64>) -> DVector<f64> {
         return divided.map(|x| if x.is_finite() { x } else { 0.0 });
     }
     let zero = || DVector::zeros(b.len());
-    if !w.iter().chain(b.iter()).all(|entry| entry.is_finite()) {
+    let Some(svd) = qr_iteration::svd(&w).filter(|_| b.iter().all(|entry| entry.is_finite()))
+    else {
         return zero();
-    }
-    let svd = w.svd(true, true);
+    };
     let most = svd.singular_values.max();
     svd.solve(&b, DEPENDENT * most).unwrap_or_else(|_| zero())
 }

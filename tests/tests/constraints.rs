@@ -6,7 +6,9 @@ use std::path::Path;
 
 use eomgen_analysis::constrained_modes::constrained_modes;
 use eomgen_codegen::program::evaluator::Point;
-use eomgen_compiled_model::{CompiledModel, Driven, Error, Orders, Request, Solver};
+use eomgen_compiled_model::{
+    CompiledModel, Driven, EquilibriumRequest, Error, Orders, Request, Solver,
+};
 use eomgen_sim::ode::{Settings, simulate};
 
 const ROD: &str = r#"
@@ -433,7 +435,7 @@ fn residuals_decay_at_the_rate_that_is_set() {
 fn a_machine_at_rest_is_found_on_its_constraints() {
     let model = changed("initial = \"l\"", "initial = 0.3");
     let run = model.at_declared().unwrap();
-    let found = run.equilibrium(&[]).unwrap();
+    let found = run.equilibrium(EquilibriumRequest::default()).unwrap();
     let [x, y, ..] = found.at.state[..] else {
         panic!("{found:?}")
     };

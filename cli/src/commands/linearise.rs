@@ -5,7 +5,7 @@ use eomgen_compiled_model::CompiledModel;
 use crate::arguments::Linearise;
 use crate::error::{Result, say_bytes};
 use crate::linearisation::{arrays, document};
-use crate::operating_point::{assignments, consistent, model};
+use crate::operating_point::{is_equilibrium, model, point};
 use crate::output::Destination;
 
 /// Runs the command.
@@ -17,12 +17,12 @@ pub fn run(options: &Linearise) -> Result {
     let destination = destination.transpose()?;
     let compiled = model(&options.spec, options.order.as_deref(), &options.set)?;
     let run = compiled.at_declared()?;
-    let at = consistent(
-        &run,
-        run.operating_point(&assignments("--at", &options.at)?)?,
-    )?;
+    let at = point(&run, &options.at)?;
+    let is_equilibrium = is_equilibrium(&run, &at)?;
     let found = run.linearise(at.point())?;
-    let text = || document(&compiled, &at, &found).map(|document| format!("{document:#}\n"));
+    let text = || {
+        document(&compiled, (&at, is_equilibrium), &found).map(|document| format!("{document:#}\n"))
+    };
     let Some(destination) = destination else {
         return say_bytes(text()?.as_bytes());
     };

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use crate::arguments::Modes;
 use crate::error::{Error, Result, say, say_json};
 use crate::mode_figure::figure;
-use crate::operating_point::{assignments, consistent, head, model, named, shape_names};
+use crate::operating_point::{head, is_equilibrium, model, named, point, shape_names};
 use crate::output::Destination;
 use crate::regime::{Side, regime};
 
@@ -19,10 +19,8 @@ pub fn run(options: &Modes) -> Result {
     let drawing = drawing.transpose()?;
     let compiled = model(&options.spec, options.order.as_deref(), &options.set)?;
     let run = compiled.at_declared()?;
-    let at = consistent(
-        &run,
-        run.operating_point(&assignments("--at", &options.at)?)?,
-    )?;
+    let at = point(&run, &options.at)?;
+    let is_equilibrium = is_equilibrium(&run, &at)?;
     let found = run.linearise(at.point())?;
     let degrees = compiled.program().degrees_of_freedom();
     let modes = constrained_modes(&found.a, &found.held(&compiled), degrees)
@@ -37,6 +35,7 @@ pub fn run(options: &Modes) -> Result {
     }
     let mut document = head(&compiled);
     document.insert("at".to_owned(), named(&compiled, &at));
+    document.insert("equilibrium".to_owned(), json!(is_equilibrium));
     document.insert("coordinates".to_owned(), json!(shape_names(&compiled)));
     let regime = regime.iter().map(Side::json);
     document.insert("regime".to_owned(), regime.collect());
@@ -88,13 +87,18 @@ fn table(compiled: &CompiledModel, modes: &[NaturalMode]) -> String {
             .collect();
         // As it is printed, and then not as -0.
         let damping = (mode.damping() * 1e6).round() / 1e6 + 0.0;
-        let frequency = mode.frequency();
-        text += &format!(
-            "{frequency:<13.6}   {damping:<13.6}   {}\n",
-            parts.join(", ")
-        );
+        let frequency = frequency_in_words(mode.frequency());
+        text += &format!("{frequency:<13}   {damping:<13.6}   {}\n", parts.join(", "));
     }
     text
+}
+
+/// A frequency with as many digits as a column holds.
+fn frequency_in_words(frequency: f64) -> String {
+    match frequency == 0.0 || (1e-3..1e6).contains(&frequency) {
+        true => format!("{frequency:.6}"),
+        false => format!("{frequency:.6e}"),
+    }
 }
 
 /// A coordinate's amplitude, with its phase where it is not in step with the largest.

@@ -8,7 +8,7 @@ use crate::engines::{self, Submitted};
 use crate::error::{Result, say, say_json};
 use crate::model::load;
 use crate::progress::Bar;
-use crate::settings::setting;
+use crate::settings::{borrowed, settings};
 use crate::sweep_files::finish;
 use crate::sweep_job::{job, measures, model, points, refused};
 
@@ -20,12 +20,9 @@ pub fn run(options: &Sweep) -> Result {
         .as_deref()
         .map_or(Ok(Shard::WHOLE), Shard::parse);
     let shard = shard.map_err(refused)?;
-    let set = options
-        .set
-        .iter()
-        .map(|assignment| setting(assignment))
-        .collect::<Result<Vec<_>>>()?;
     let declared = load(&options.spec)?.model;
+    let set = settings(&declared, &options.set)?;
+    let set = borrowed(&set);
     let points = points(options, &declared, &set)?;
     let model = model(options, &declared, &points, &set)?;
     let measures = measures(options, &model, &points)?;

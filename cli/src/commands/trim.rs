@@ -1,12 +1,13 @@
 //! `eomgen trim`: an equilibrium of a model, and whether it is stable.
 
 use eomgen_analysis::constrained_modes::constrained_modes;
-use eomgen_compiled_model::{CompiledModel, Equilibrium, Error as Failure};
+use eomgen_compiled_model::{CompiledModel, Equilibrium, EquilibriumRequest};
 use serde_json::{Value, json};
 
 use crate::arguments::Trim;
-use crate::error::{Error, Result, say_json, warn};
-use crate::operating_point::{assignments, head, inputs, model, named};
+use crate::error::{Error, Result, say_json};
+use crate::operating_point::{equilibrium, head, inputs, model, named, values};
+use crate::settings::borrowed;
 
 /// A real part is 0 if it is this small beside the largest eigenvalue.
 const ZERO: f64 = 1e-9;
@@ -15,13 +16,13 @@ const ZERO: f64 = 1e-9;
 pub fn run(options: &Trim) -> Result {
     let compiled = model(&options.spec, options.order.as_deref(), &options.set)?;
     let run = compiled.at_declared()?;
-    let found = match run.equilibrium(&assignments("--fix", &options.fix)?) {
-        Err(Failure::Stopped { reason, .. }) => {
-            warn(&format!("error: {reason}"));
-            return Err(Error::Failed);
-        }
-        other => other?,
+    let start = values(&run, "--state", &options.state)?;
+    let fixed = values(&run, "--fix", &options.fix)?;
+    let request = EquilibriumRequest {
+        start: &borrowed(&start),
+        fixed: &borrowed(&fixed),
     };
+    let found = equilibrium(&run, request)?;
     let linear = run.linearise(found.at.point())?;
     let degrees = compiled.program().degrees_of_freedom();
     let modes = constrained_modes(&linear.a, &linear.held(&compiled), degrees)
@@ -35,9 +36,6 @@ pub fn run(options: &Trim) -> Result {
         growth if growth < -least => "asymptotically stable",
         _ => "marginal",
     };
-    if found.depends_on_time {
-        warn("warning: the forces depend on the time: this is an equilibrium at t = 0 s alone");
-    }
     say_json(&document(&compiled, &found, stability))
 }
 
@@ -57,6 +55,7 @@ fn document(compiled: &CompiledModel, found: &Equilibrium, stability: &str) -> V
             json!({ "coordinates": units, "inputs": input_units }),
         ),
         ("free".to_owned(), json!(found.free)),
+        ("running".to_owned(), json!(found.running)),
         ("residual".to_owned(), json!(found.residual)),
         ("stability".to_owned(), json!(stability)),
     ]);

@@ -39,8 +39,8 @@
 //! # }
 //! ```
 //!
-//! The pipeline, file by file: `compile` takes a `Program`; `stage` walks the values of
-//! one stage and decides which live in registers and which in memory; `loops` writes loops
+//! The pipeline, file by file: `compile` takes a `Program`; `plan` divides a stage into functions of
+//! bounded length; `stage` walks the values of one of them and decides which live in registers and which in memory; `loops` writes loops
 //! over modes; `elements` writes an element of a vector, or two neighbouring ones in one
 //! register; `functions` the elementary functions from their kernels,
 //! those of one number with `branching` where `branches` finds it worth it; `matrices` the
@@ -73,6 +73,8 @@ mod loops;
 mod machine;
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 mod matrices;
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+mod plan;
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 mod stage;
 

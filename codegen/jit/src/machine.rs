@@ -1,8 +1,9 @@
-//! The compiler at work: one function per stage through Cranelift, and the code that comes
+//! The compiler at work: the functions of every stage through Cranelift, and the code that comes
 //! back, called through the evaluator. The only place with `unsafe`.
 
 use std::collections::HashMap;
 use std::fmt;
+use std::ops::Range;
 use std::sync::Mutex;
 
 use cranelift_codegen::Context;
@@ -15,7 +16,8 @@ use eomgen_codegen::program::Program;
 use eomgen_codegen::program::evaluator::{MachineCode, Places, Point, Stage};
 
 use crate::constants::Constants;
-use crate::stage::{Call, Shared, Task, Writer};
+use crate::plan::{Plan, Task};
+use crate::stage::{Call, Shared, Writer};
 
 /// Why a program has no machine code here.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -44,9 +46,10 @@ type Function = unsafe extern "C" fn(*mut f64, f64, *const f64, *mut f64);
 
 /// Machine code of every stage of one program.
 pub struct Machine {
-    prepare: Function,
-    /// In the order of [`Stage::ALL`].
-    stages: [Function; Stage::ALL.len()],
+    /// The pieces of the preparation.
+    prepare: Vec<Function>,
+    /// The pieces of each stage, in the order of [`Stage::ALL`].
+    stages: [Vec<Function>; Stage::ALL.len()],
     /// Room for the inputs, then literals.
     room: Vec<f64>,
     /// Numbers that the functions reach from `memory` on.
@@ -77,11 +80,16 @@ pub fn compile(program: &Program) -> Result<Machine, CompileError> {
     }
     let mut module = new_module()?;
     let mut contexts = (module.make_context(), FunctionBuilderContext::new());
-    let mut define =
-        |module: &mut JITModule, task| define(module, &mut contexts, &mut shared, task);
+    let mut define = |module: &mut JITModule, task| {
+        let plan = Plan::new(program, task);
+        let pieces = plan.pieces().into_iter();
+        pieces
+            .map(|piece| define(module, &mut contexts, &mut shared, (&plan, piece)))
+            .collect::<Result<Vec<FuncId>, CompileError>>()
+    };
     let prepare = define(&mut module, Task::Prepare)?;
     // Most programs lack the stages on request: what has no roots costs no function.
-    let mut stages = [prepare; Stage::ALL.len()];
+    let mut stages = [const { Vec::new() }; Stage::ALL.len()];
     for (slot, stage) in stages.iter_mut().zip(Stage::ALL) {
         if stage == Stage::Rates || !stage.roots(program).is_empty() {
             *slot = define(&mut module, Task::PerCall(stage))?;
@@ -89,11 +97,12 @@ pub fn compile(program: &Program) -> Result<Machine, CompileError> {
     }
     module.finalize_definitions().map_err(CompileError::new)?;
     let inputs = shared.inputs()..shared.inputs() + program.inputs.len();
+    let functions = |ids: Vec<FuncId>| ids.into_iter().map(|id| function(&module, id)).collect();
     let mut room = vec![0.0; shared.first_constant() - inputs.start];
     room.extend(shared.constants.numbers());
     Ok(Machine {
-        prepare: function(&module, prepare),
-        stages: stages.map(|id| function(&module, id)),
+        prepare: functions(prepare),
+        stages: stages.map(functions),
         reach: places.size() + room.len(),
         room,
         inputs,
@@ -136,12 +145,12 @@ fn signature(module: &JITModule) -> Signature {
     signature
 }
 
-/// Writes and compiles the function of one stage.
+/// Writes and compiles the function of one piece of a stage.
 fn define(
     module: &mut JITModule,
     (context, builders): &mut (Context, FunctionBuilderContext),
     shared: &mut Shared<'_>,
-    task: Task,
+    piece: (&Plan, Range<usize>),
 ) -> Result<FuncId, CompileError> {
     context.func.signature = signature(module);
     let mut builder = FunctionBuilder::new(&mut context.func, builders);
@@ -157,7 +166,7 @@ fn define(
         state,
         out,
     };
-    let mut writer = Writer::new(builder, shared, call, task);
+    let mut writer = Writer::new(builder, shared, call, piece);
     writer.write();
     if let Some(defect) = writer.defect {
         return Err(CompileError::new(defect));
@@ -186,20 +195,22 @@ fn function(module: &JITModule, id: FuncId) -> Function {
 }
 
 impl Machine {
-    /// Calls `function`. `out` may be empty for all functions but the rates.
+    /// Calls the functions in their order. `out` may be empty for all functions but the rates.
     #[allow(unsafe_code)]
-    fn run(&self, function: Function, memory: &mut [f64], point: &Point<'_>, out: &mut [f64]) {
+    fn run(&self, functions: &[Function], memory: &mut [f64], point: &Point<'_>, out: &mut [f64]) {
         let memory = &mut memory[..self.reach];
         let inputs = &mut memory[self.inputs.clone()];
         for (place, input) in inputs.iter_mut().enumerate() {
             *input = point.inputs.get(place).copied().unwrap_or(0.0);
         }
         let (memory, state) = (memory.as_mut_ptr(), point.state.as_ptr());
-        // SAFETY: the code reads and writes `reach` numbers from `memory` on, reads
-        // `states` numbers from `state` on and, for the rates alone, writes as many from
-        // `out` on; loops have bounds known when it was compiled. The callers check these
-        // lengths. It calls nothing and keeps no pointer.
-        unsafe { function(memory, point.t, state, out.as_mut_ptr()) }
+        for function in functions {
+            // SAFETY: the code reads and writes `reach` numbers from `memory` on, reads
+            // `states` numbers from `state` on and, for the rates alone, writes as many from
+            // `out` on; loops have bounds known when it was compiled. The callers check these
+            // lengths. It calls nothing and keeps no pointer.
+            unsafe { function(memory, point.t, state, out.as_mut_ptr()) }
+        }
     }
 }
 
@@ -214,7 +225,7 @@ impl MachineCode for Machine {
             state: &[],
             inputs: &[],
         };
-        self.run(self.prepare, memory, &nowhere, &mut []);
+        self.run(&self.prepare, memory, &nowhere, &mut []);
     }
 
     fn compute(&self, stage: Stage, memory: &mut [f64], point: &Point<'_>) {
@@ -224,7 +235,7 @@ impl MachineCode for Machine {
             state: &point.state[..self.states],
             ..*point
         };
-        self.run(self.stages[stage as usize], memory, &point, &mut []);
+        self.run(&self.stages[stage as usize], memory, &point, &mut []);
     }
 
     fn rates(&self, memory: &mut [f64], point: &Point<'_>, out: &mut [f64]) {
@@ -233,7 +244,7 @@ impl MachineCode for Machine {
             ..*point
         };
         let out = &mut out[..self.states];
-        self.run(self.stages[Stage::Rates as usize], memory, &point, out);
+        self.run(&self.stages[Stage::Rates as usize], memory, &point, out);
     }
 }
 

@@ -1,12 +1,12 @@
-//! One stage as one function: which values it computes, in what order, and where each of
-//! them lives.
+//! One piece of a stage as one function: where each of its values lives.
 //!
 //! Numbers live in registers. A vector that is used once is computed where it is used; a
 //! short one that is used more often lives in registers, a long one in its place in
 //! memory. Operands and results of matrix operations are in memory, and so is whatever the
-//! evaluator reads afterwards.
+//! evaluator or a later piece reads afterwards.
 
 use std::collections::{HashMap, HashSet};
+use std::ops::Range;
 use std::rc::Rc;
 
 use cranelift_codegen::ir::Value;
@@ -19,15 +19,7 @@ use eomgen_model_spec::ids::FieldId;
 use crate::branches::Branches;
 use crate::constants::Constants;
 use crate::lanes::{Array, At, Lanes, SHORT};
-
-/// What a function computes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Task {
-    /// The prepared values.
-    Prepare,
-    /// What is computed per call.
-    PerCall(Stage),
-}
+use crate::plan::{Plan, Task, is_elementwise};
 
 /// What the functions of a program share.
 pub struct Shared<'a> {
@@ -78,12 +70,13 @@ pub struct Writer<'a, 'p, 'f> {
     pub(crate) broadcast: HashMap<ValueId, Value>,
     /// Short vectors by now: their elements in pairs, a single one last.
     pub(crate) registers: HashMap<ValueId, Vec<Value>>,
-    task: Task,
+    plan: &'a Plan,
+    /// Which of the plan's steps this function computes.
+    piece: Range<usize>,
     /// Values of this stage that are in memory by now.
     stored: HashSet<ValueId>,
-    /// Values that something reads from memory.
-    wanted: HashSet<ValueId>,
-    uses: HashMap<ValueId, usize>,
+    /// Values of earlier pieces that this one reads.
+    earlier: HashSet<ValueId>,
     /// What of the program makes no sense, if anything does not.
     pub(crate) defect: Option<String>,
 }
@@ -94,7 +87,7 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
         builder: FunctionBuilder<'f>,
         shared: &'a mut Shared<'p>,
         call: Call,
-        task: Task,
+        (plan, piece): (&'a Plan, Range<usize>),
     ) -> Self {
         Self {
             builder,
@@ -104,10 +97,10 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
             numbers: HashMap::new(),
             broadcast: HashMap::new(),
             registers: HashMap::new(),
-            task,
+            plan,
+            piece,
             stored: HashSet::new(),
-            wanted: HashSet::new(),
-            uses: HashMap::new(),
+            earlier: HashSet::new(),
             defect: None,
         }
     }
@@ -119,74 +112,48 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
 
     /// Writes the function's body, up to its return.
     pub fn write(&mut self) {
-        let steps = self.steps();
-        self.plan(&steps);
-        self.bind_leaves(&steps);
-        for id in steps {
-            self.step(id);
+        let steps = &self.plan.steps[self.piece.clone()];
+        let writes_rates = self.plan.task == Task::PerCall(Stage::Rates)
+            && self.piece.end == self.plan.steps.len();
+        let mut read = self.reads(steps);
+        if writes_rates {
+            read.extend(&self.plan.roots);
         }
-        if self.task == Task::PerCall(Stage::Rates) {
+        read.sort_unstable();
+        read.dedup();
+        self.find_earlier(&read);
+        self.bind_leaves(&read);
+        for id in steps {
+            self.step(*id);
+        }
+        if writes_rates {
             self.write_rates();
         }
     }
 
-    fn roots(&self) -> Vec<ValueId> {
-        match self.task {
-            Task::Prepare => Vec::new(),
-            Task::PerCall(stage) => stage.roots(self.program),
-        }
+    /// The values that these steps read or compute.
+    fn reads(&self, steps: &[ValueId]) -> Vec<ValueId> {
+        let operands = |id: &ValueId| self.program.value(*id).op.operands();
+        let operands = steps.iter().flat_map(operands);
+        operands.chain(steps.iter().copied()).collect()
     }
 
-    /// The values this function computes, operands first.
-    fn steps(&self) -> Vec<ValueId> {
-        match self.task {
-            Task::Prepare => self
-                .program
-                .ids()
-                .filter(|id| self.program.value(*id).parameter_only)
-                .collect(),
-            Task::PerCall(_) => self.program.per_call(&self.roots()),
-        }
-    }
-
-    /// Counts uses and finds what has to be in memory.
-    fn plan(&mut self, steps: &[ValueId]) {
-        let roots = self.roots();
-        for id in steps {
-            let op = &self.program.value(*id).op;
-            let operands = op.operands();
-            if !is_elementwise(op) && !matches!(op, Op::Total(_)) {
-                self.wanted.extend(&operands);
-            }
-            for operand in operands {
-                *self.uses.entry(operand).or_insert(0) += 1;
-            }
-        }
-        for root in &roots {
-            *self.uses.entry(*root).or_insert(0) += 1;
-        }
-        match self.task {
-            Task::Prepare => self.wanted.extend(steps),
-            Task::PerCall(Stage::Rates) => {}
-            Task::PerCall(_) => self.wanted.extend(&roots),
-        }
+    /// Finds which of these values an earlier piece has computed and stored.
+    fn find_earlier(&mut self, read: &[ValueId]) {
+        let before = &self.plan.steps[..self.piece.start];
+        // Steps are in ascending order, as operands come first.
+        let is_earlier = |id: &&ValueId| before.binary_search(id).is_ok();
+        self.earlier = read.iter().filter(is_earlier).copied().collect();
+        self.stored.extend(&self.earlier);
     }
 
     /// Binds the numbers that are not computed here, before any loop begins.
-    fn bind_leaves(&mut self, steps: &[ValueId]) {
-        let mut leaves: Vec<ValueId> = steps
-            .iter()
-            .flat_map(|id| self.program.value(*id).op.operands())
-            .chain(steps.iter().copied())
-            .chain(self.roots())
-            .collect();
-        leaves.sort_unstable();
-        leaves.dedup();
-        for id in leaves {
-            if self.program.value(id).extent == Extent::Scalar
-                && let Some(value) = self.leaf(id)
+    fn bind_leaves(&mut self, read: &[ValueId]) {
+        for id in read {
+            if self.program.value(*id).extent == Extent::Scalar
+                && let Some(value) = self.leaf(*id)
             {
-                self.bind(id, value);
+                self.bind(*id, value);
             }
         }
     }
@@ -211,7 +178,9 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
             Op::Parameter(_) | Op::Argument(..) => {
                 (self.call.memory, self.shared.places.offset(id))
             }
-            _ if value.parameter_only && self.task != Task::Prepare => {
+            _ if value.parameter_only && self.plan.task != Task::Prepare
+                || self.earlier.contains(&id) =>
+            {
                 (self.call.memory, self.shared.places.offset(id))
             }
             _ => return None,
@@ -242,7 +211,7 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
                 let constant = matches!(
                     value.op,
                     Op::Table(_) | Op::Constant(_) | Op::Parameter(_) | Op::Argument(..)
-                ) || value.parameter_only && self.task != Task::Prepare;
+                ) || value.parameter_only && self.plan.task != Task::Prepare;
                 (constant || self.stored.contains(&id)).then(|| Array {
                     constant,
                     ..self.place(id)
@@ -297,7 +266,7 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
 
     /// A leaf of the state that the evaluator reads from its place in memory.
     fn store_leaf(&mut self, id: ValueId) {
-        if self.task != Task::Prepare && self.wanted.contains(&id) {
+        if self.plan.task != Task::Prepare && self.plan.wanted.contains(&id) {
             let number = self.number(id, Lanes::One);
             let place = self.place(id);
             self.store(number, place, At::one(0));
@@ -305,7 +274,7 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
     }
 
     fn copy_vector(&mut self, id: ValueId, length: usize) {
-        if self.roots().contains(&id) && self.wanted.contains(&id) {
+        if self.plan.roots.contains(&id) && self.plan.wanted.contains(&id) {
             let place = self.place(id);
             self.each(length, |writer, at| {
                 let value = writer.element(id, at);
@@ -316,7 +285,7 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
 
     fn bind_and_store(&mut self, id: ValueId, number: Value) {
         self.bind(id, number);
-        if self.wanted.contains(&id) {
+        if self.plan.wanted.contains(&id) {
             let place = self.place(id);
             self.store(number, place, At::one(0));
             self.stored.insert(id);
@@ -325,12 +294,15 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
 
     /// A vector computed element by element.
     fn vector(&mut self, id: ValueId, length: usize) {
-        let (wanted, used_once) = (self.wanted.contains(&id), self.uses.get(&id) <= Some(&1));
+        let (wanted, used_once) = (
+            self.plan.wanted.contains(&id),
+            self.plan.uses.get(&id) <= Some(&1),
+        );
         if used_once && !wanted {
             return;
         }
         let place = self.place(id);
-        if length <= SHORT && self.task != Task::Prepare {
+        if length <= SHORT && self.plan.task != Task::Prepare {
             self.keep(id, length);
             if wanted {
                 self.each(length, |writer, at| {
@@ -381,18 +353,4 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
             });
         }
     }
-}
-
-/// Whether each element depends on the operands' elements of the same index alone.
-fn is_elementwise(op: &Op) -> bool {
-    !matches!(
-        op,
-        Op::Total(_)
-            | Op::Apply { .. }
-            | Op::Gram { .. }
-            | Op::GramDiagonal { .. }
-            | Op::Assemble { .. }
-            | Op::Cholesky(_)
-            | Op::CholeskySolve(..)
-    )
 }

@@ -48,6 +48,8 @@ pub type Tangent<'a> = dyn Fn(&mut Graph, NodeId) -> NodeId + 'a;
 pub struct Direction<'a> {
     tangent: Option<&'a Tangent<'a>>,
     known: HashMap<NodeId, NodeId>,
+    /// What was seeded with a derivative.
+    seeds: Vec<NodeId>,
     moving: Moving,
 }
 
@@ -87,6 +89,7 @@ impl<'a> Direction<'a> {
     /// Treats `id` as a variable whose derivative is `tangent`.
     pub fn seed(&mut self, id: NodeId, tangent: NodeId) {
         self.known.insert(id, tangent);
+        self.seeds.push(id);
     }
 
     /// The derivative of `id` along the direction.
@@ -103,9 +106,19 @@ impl<'a> Direction<'a> {
     /// put its nodes into the graph out of turn.
     fn moves(&mut self, graph: &Graph, id: NodeId) -> bool {
         let (known, tangents) = (&self.known, self.tangent.is_some());
+        let seeds = &mut self.seeds;
+        if !tangents {
+            seeds.retain(|seed| {
+                known
+                    .get(seed)
+                    .is_some_and(|tangent| !graph.is_zero(*tangent))
+            });
+        }
+        let reached = |id| seeds.iter().any(|seed| graph.may_depend_on(id, *seed));
         self.moving
             .has(graph, id, &|graph, id| match known.get(&id) {
                 Some(derivative) => Some(!graph.is_zero(*derivative)),
+                None if !tangents && !reached(id) => Some(false),
                 None => graph
                     .operands(graph.operation(id))
                     .is_empty()

@@ -22,6 +22,8 @@ struct Node {
     operation: Operation,
     shape: Shape,
     dependence: Dependence,
+    /// One of 64 bits for each variable that the node depends on; variables may share a bit.
+    variables: u64,
     critical_path: u32,
     has_reciprocal_root: bool,
 }
@@ -170,12 +172,14 @@ impl Graph {
         let dependence = self.dependence_of(&operation);
         let critical_path = self.critical_path_of(&operation, dependence);
         let has_reciprocal_root = self.holds_reciprocal_root(&operation);
+        let variables = self.variables_of(&operation, dependence);
         let id = NodeId(self.nodes.len() as u32);
         self.known.insert(operation.clone(), id);
         self.nodes.push(Node {
             operation,
             shape,
             dependence,
+            variables,
             critical_path,
             has_reciprocal_root,
         });
@@ -280,6 +284,21 @@ impl Graph {
                 .map(|id| self.dependence(id))
                 .fold(Dependence::NONE, Dependence::join),
         }
+    }
+
+    /// Whether `id` can depend on all that `of` depends on; false only if it cannot.
+    pub(crate) fn may_depend_on(&self, id: NodeId, of: NodeId) -> bool {
+        let [own, needed] = [id, of].map(|id| self.nodes[id.0 as usize].variables);
+        own & needed == needed
+    }
+
+    fn variables_of(&self, operation: &Operation, dependence: Dependence) -> u64 {
+        let operands = self.operands(operation);
+        if operands.is_empty() && dependence != Dependence::NONE {
+            return 1 << (self.nodes.len() % 64);
+        }
+        let of = |id: &NodeId| self.nodes[id.0 as usize].variables;
+        operands.iter().fold(0, |bits, id| bits | of(id))
     }
 
     fn critical_path_of(&self, operation: &Operation, dependence: Dependence) -> u32 {

@@ -1,6 +1,7 @@
 //! Linear least squares with bounds, by active sets: small, dense and deterministic.
 
 use crate::interval::Interval;
+use eomgen_analysis::qr_iteration;
 use nalgebra::{DMatrix, DVector};
 
 /// Changes of the active set before the present one is taken; each lowers the sum of
@@ -92,13 +93,12 @@ fn free_solution(
     let matrix = DMatrix::from_fn(a.nrows(), in_use.len(), |r, c| {
         a[(r, in_use[c])] / scale[in_use[c]]
     });
-    // A motion beyond all bounds says nothing of where to go; a decomposition would
-    // panic.
-    if !matrix.iter().chain(&held).all(|value| value.is_finite()) {
+    // A motion that diverged does not say where to go.
+    if !held.iter().all(|value| value.is_finite()) {
         return target;
     }
-    let decomposition = matrix.svd(true, true);
-    if let Ok(solution) = decomposition.solve(&held, 1e-12) {
+    let solution = qr_iteration::svd(&matrix).and_then(|svd| svd.solve(&held, 1e-12).ok());
+    if let Some(solution) = solution {
         for (value, column) in solution.iter().zip(&in_use) {
             target[*column] = value / scale[*column];
         }

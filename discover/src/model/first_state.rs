@@ -1,5 +1,6 @@
 //! Where a record begins and how far its states go, as far as records and model tell without a fit.
 
+use eomgen_analysis::qr_iteration;
 use nalgebra::{DMatrix, DVector};
 
 use crate::model::estimation_model::EstimationModel;
@@ -75,10 +76,8 @@ fn begin(times: &[f64], column: &[f64]) -> (f64, f64) {
         (points[row].0 / span).powi(power as i32)
     });
     let values = DVector::from_fn(points.len(), |row, _| points[row].1);
-    match powers.svd(true, true).solve(&values, 1e-12) {
-        Ok(fitted) => (fitted[0], fitted[1] / span),
-        Err(_) => (0.0, 0.0),
-    }
+    let fitted = qr_iteration::svd(&powers).and_then(|svd| svd.solve(&values, 1e-12).ok());
+    fitted.map_or((0.0, 0.0), |fitted| (fitted[0], fitted[1] / span))
 }
 
 /// How far each state ranges in the motion that the records' inputs cause, SI: the root mean

@@ -7,7 +7,7 @@
 use nalgebra::DMatrix;
 
 use crate::error::AnalysisError;
-use crate::natural_modes::null_space;
+use crate::null_space::{null_space, with_rows_of_one_size};
 
 /// The small motions that constraints allow.
 pub struct AllowedMotions {
@@ -27,14 +27,10 @@ impl AllowedMotions {
         if let Some(sample) = held.iter().position(|entry| !entry.is_finite()) {
             return Err(AnalysisError::NotFinite { sample });
         }
-        let mut held = DMatrix::from_row_slice(held.len() / states, states, held);
-        for mut row in held.row_iter_mut() {
-            let size = row.amax();
-            if size > 0.0 {
-                row /= size;
-            }
-        }
-        let basis = null_space(&(held.transpose() * held));
+        let held = DMatrix::from_row_slice(held.len() / states, states, held);
+        let rows = with_rows_of_one_size(held);
+        let basis = null_space(&(rows.transpose() * &rows));
+        let basis = basis.ok_or_else(|| AnalysisError::not_converged(&rows))?;
         Ok(Self { basis })
     }
 

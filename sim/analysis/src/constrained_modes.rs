@@ -6,9 +6,12 @@
 use nalgebra::{Complex, DMatrix, DVector};
 
 use crate::allowed_motions::AllowedMotions;
+use crate::balancing::Balanced;
+use crate::block_eigenvalues;
 use crate::error::AnalysisError;
-use crate::natural_modes::{NaturalMode, natural_modes, null_space, zero_eigenvalues};
-use crate::qr_iteration;
+use crate::inverse_iteration::null_vector_at;
+use crate::natural_modes::{NaturalMode, equal, natural_modes};
+use crate::null_space::{null_space, zero_eigenvalues};
 
 /// The natural modes of d(q, q', z)/dt = A (q, q', z) with so many degrees of freedom within the
 /// motions for which C (q, q', z) = 0, lowest frequency first; `matrix` and `held` are A and C row by
@@ -32,43 +35,51 @@ pub fn constrained_modes(
     if let Some(sample) = matrix.iter().position(|entry| !entry.is_finite()) {
         return Err(AnalysisError::NotFinite { sample });
     }
-    let allowed = AllowedMotions::new(held, states)?;
-    if allowed.count() == 0 {
+    let matrix = DMatrix::from_row_slice(states, states, matrix);
+    let balanced = Balanced::new(&matrix);
+    let not_converged = || AnalysisError::not_converged(&matrix);
+    let sizes = balanced.sizes.iter().cycle();
+    let held: Vec<f64> = held
+        .iter()
+        .zip(sizes)
+        .map(|(entry, size)| entry * size)
+        .collect();
+    let allowed = AllowedMotions::new(&held, states)?;
+    let allowed = allowed.basis();
+    let reduced = allowed.transpose() * &balanced.matrix * allowed;
+    if reduced.is_empty() {
         return Ok(Vec::new());
     }
-    let allowed = allowed.basis();
-    let reduced = allowed.transpose() * DMatrix::from_row_slice(states, states, matrix) * allowed;
-    let mut eigenvalues = qr_iteration::eigenvalues(&reduced).ok_or(AnalysisError::NotConverged)?;
+    let mut eigenvalues = block_eigenvalues::eigenvalues(&reduced).ok_or_else(not_converged)?;
     eigenvalues.sort_by(|a, b| a.norm().total_cmp(&b.norm()));
-    let shape = |motion: DVector<Complex<f64>>| shape(&motion, degrees);
-    let complex = allowed.map(Complex::from);
-    let rigid = null_space(&reduced);
-    let mut modes: Vec<NaturalMode> = rigid
-        .column_iter()
-        .map(|motion| NaturalMode {
-            eigenvalue: 0.0.into(),
-            shape: shape(&complex * motion.map(Complex::from)),
-        })
+    let rigid = null_space(&reduced).ok_or_else(not_converged)?;
+    let rigid = rigid.column_iter();
+    let mut modes: Vec<(Complex<f64>, DVector<Complex<f64>>)> = rigid
+        .map(|motion| (0.0.into(), motion.map(Complex::from)))
         .collect();
-    for eigenvalue in eigenvalues
-        .into_iter()
-        .skip(zero_eigenvalues(reduced.clone()))
-        .filter(|eigenvalue| eigenvalue.im >= 0.0)
-    {
-        let mut shifted = reduced.map(Complex::from);
+    let count = zero_eigenvalues(reduced.clone()).ok_or_else(not_converged)?;
+    let reduced = reduced.map(Complex::from);
+    let shifted = |eigenvalue: Complex<f64>| {
+        let mut shifted = reduced.clone();
         for entry in 0..shifted.nrows() {
             shifted[(entry, entry)] -= eigenvalue;
         }
-        let Some(rows) = shifted.svd(false, true).v_t else {
-            return Err(AnalysisError::NotConverged);
-        };
-        let motion = rows.row(rows.nrows() - 1).adjoint();
-        modes.push(NaturalMode {
-            eigenvalue,
-            shape: shape(&complex * motion),
-        });
+        shifted
+    };
+    let moving = eigenvalues.into_iter().skip(count);
+    for eigenvalue in moving.filter(|eigenvalue| eigenvalue.im >= 0.0) {
+        let motion = null_vector_at(shifted, eigenvalue, &equal(&modes, eigenvalue));
+        modes.push((eigenvalue, motion));
     }
-    Ok(modes)
+    let mut in_si = allowed.map(Complex::from);
+    for (mut row, size) in in_si.row_iter_mut().zip(&balanced.sizes) {
+        row *= Complex::from(*size);
+    }
+    let modes = modes.into_iter().map(|(eigenvalue, motion)| NaturalMode {
+        eigenvalue: balanced.eigenvalue(eigenvalue),
+        shape: shape(&(&in_si * motion), degrees),
+    });
+    Ok(modes.collect())
 }
 
 /// Coordinates and states of first order of a motion, the largest of the coordinates 1.

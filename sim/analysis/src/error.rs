@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use nalgebra::DMatrix;
+
 /// Why a series could not be analysed. Samples are counted from 0.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum AnalysisError {
@@ -30,12 +32,30 @@ pub enum AnalysisError {
         what: &'static str,
     },
     /// Eigenvalues were not found within the steps allowed.
-    NotConverged,
+    NotConverged {
+        /// How many powers of ten lie between the smallest and the largest entry of the matrix.
+        decades: u32,
+    },
     /// Natural frequencies do not ascend.
     NotAscending {
         /// Which frequency is not above the one before.
         index: usize,
     },
+}
+
+impl AnalysisError {
+    /// The failure of an eigenvalue iteration on this matrix.
+    pub(crate) fn not_converged(matrix: &DMatrix<f64>) -> Self {
+        let sizes = matrix.iter().filter(|entry| **entry != 0.0);
+        let (least, most) = sizes
+            .map(|entry| entry.abs().log10())
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), size| {
+                (least.min(size), most.max(size))
+            });
+        Self::NotConverged {
+            decades: (most - least).max(0.0) as u32,
+        }
+    }
 }
 
 impl fmt::Display for AnalysisError {
@@ -52,9 +72,11 @@ impl fmt::Display for AnalysisError {
                 write!(f, "a series has {given} values where {expected} belong")
             }
             Self::NotPositive { what } => write!(f, "{what} must be positive and finite"),
-            Self::NotConverged => {
-                f.write_str("the eigenvalues were not found: the matrix is too ill-conditioned")
-            }
+            Self::NotConverged { decades } => write!(
+                f,
+                "the eigenvalues were not found: the entries of the state matrix span {decades} powers of ten; \
+                 look for a stiffness or a mass in a wrong unit"
+            ),
             Self::NotAscending { index } => write!(
                 f,
                 "natural frequency {index} is not above the one before it"

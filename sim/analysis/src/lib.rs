@@ -15,16 +15,22 @@
 //! and [`classify`] weighs these against each other by a stated rule. [`modes`] says which
 //! mode of a flexible body carries the motion, [`course`] has single numbers of a course over time, [`statistics`] numbers of many values, [`natural_modes`] which modes a
 //! linearised machine has, [`constrained_modes`] which one with constraints has, whose [`allowed_motions`]
-//! have matrices of their own; [`qr_iteration`] finds their eigenvalues.
+//! have matrices of their own. [`qr_iteration`] finds their eigenvalues after `balancing`, `block_eigenvalues` group by group, `inverse_iteration`
+//! their shapes in a `pencil`, and `null_space` the rigid ones.
 
 pub mod allowed_motions;
+mod balancing;
+mod block_eigenvalues;
 pub mod classify;
 pub mod constrained_modes;
 pub mod course;
 mod error;
 pub mod exponent;
+mod inverse_iteration;
 pub mod modes;
 pub mod natural_modes;
+mod null_space;
+mod pencil;
 pub mod poincare;
 pub mod qr_iteration;
 pub mod spectrum;

@@ -1,29 +1,24 @@
 //! Natural modes of a linearised machine: the eigenvalues of q'' = K q + D q' + F z with states of
 //! first order z' = G q + H z + E q', where there are such, and the shapes that belong to them.
 //!
-//! The eigenvalues are those of the state matrix, balanced first (Parlett and Reinsch 1969), by its
-//! real Schur form; shapes by inverse iteration on lambda^2 - lambda D - K (Golub and Van Loan,
-//! *Matrix Computations*, 7.5 and 7.6). A rigid motion has the eigenvalue 0, mostly twice and
+//! The eigenvalues are those of the state matrix, balanced first, by its real Schur form; shapes by
+//! inverse iteration on lambda^2 - lambda D - K (Golub and Van Loan, *Matrix Computations*, 7.5 and 7.6). A rigid motion has the eigenvalue 0, mostly twice and
 //! defective, which rounding turns into numbers as large as the root of the unit roundoff; how
 //! often it is one is therefore counted by the ranks of K and of D on its null space, and, beside
 //! states of first order, whose integrals make longer chains, by taking null spaces away one after
 //! the other (Golub and Van Loan, 7.6.5).
 
-use nalgebra::linalg::balancing::balance_parlett_reinsch;
 use nalgebra::{Complex, DMatrix, DVector};
 
+use crate::balancing::Balanced;
+use crate::block_eigenvalues;
 use crate::error::AnalysisError;
-use crate::qr_iteration;
-
-/// Below this, relative to the largest, a singular value is rounding.
-const RANK: f64 = 1e-12;
+use crate::inverse_iteration::null_vector_at;
+use crate::null_space::zero_eigenvalues;
+use crate::pencil::Pencil;
 
 /// Eigenvalues that differ by less, relative to their size, share a space of shapes.
 const EQUAL: f64 = 1e-7;
-
-/// How far beside its eigenvalue the matrix of the inverse iteration is taken, relative to its size:
-/// there it is not singular, and one step gains as many digits.
-const BESIDE: f64 = 1e-11;
 
 /// A natural mode: the motion exp(lambda t) v, or its real part.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,240 +68,40 @@ pub fn natural_modes(matrix: &[f64], degrees: usize) -> Result<Vec<NaturalMode>,
     if states == 0 {
         return Ok(Vec::new());
     }
-    let mut balanced = DMatrix::from_row_slice(states, states, matrix);
-    let sizes = balance_parlett_reinsch(&mut balanced);
+    let matrix = DMatrix::from_row_slice(states, states, matrix);
+    let balanced = Balanced::new(&matrix);
+    let not_converged = || AnalysisError::not_converged(&matrix);
     let mut eigenvalues =
-        qr_iteration::eigenvalues(&balanced).ok_or(AnalysisError::NotConverged)?;
+        block_eigenvalues::eigenvalues(&balanced.matrix).ok_or_else(not_converged)?;
     eigenvalues.sort_by(|a, b| a.norm().total_cmp(&b.norm()));
-    let pencil = Pencil::of(&balanced, &sizes, degrees);
-    let mut rigid = pencil.rigid();
+    let pencil = Pencil::new(&balanced, degrees);
+    let mut rigid = pencil.rigid().ok_or_else(not_converged)?;
     if states > 2 * degrees {
-        rigid.multiplicity = zero_eigenvalues(balanced);
+        let count = zero_eigenvalues(balanced.matrix.clone());
+        rigid.multiplicity = count.ok_or_else(not_converged)?;
     }
     let mut modes: Vec<(Complex<f64>, DVector<Complex<f64>>)> = Vec::new();
     modes.extend(rigid.shapes.into_iter().map(|shape| (0.0.into(), shape)));
-    for eigenvalue in eigenvalues.into_iter().skip(rigid.multiplicity) {
-        if eigenvalue.im < 0.0 {
-            continue;
-        }
-        let close = |other: &Complex<f64>| (eigenvalue - other).norm() < EQUAL * eigenvalue.norm();
-        let earlier = modes.iter().filter(|(other, _)| close(other));
-        let earlier: Vec<_> = earlier.map(|(_, shape)| shape.clone()).collect();
-        modes.push((eigenvalue, pencil.shape(eigenvalue, &earlier)));
+    let moving = eigenvalues.into_iter().skip(rigid.multiplicity);
+    for eigenvalue in moving.filter(|eigenvalue| eigenvalue.im >= 0.0) {
+        let shape = null_vector_at(|at| pencil.at(at), eigenvalue, &equal(&modes, eigenvalue));
+        modes.push((eigenvalue, shape));
     }
     let scaled = modes.into_iter().map(|(eigenvalue, shape)| NaturalMode {
-        eigenvalue,
+        eigenvalue: balanced.eigenvalue(eigenvalue),
         shape: pencil.in_si(&shape),
     });
     Ok(scaled.collect())
 }
 
-/// lambda^2 - lambda D - K in balanced coordinates, states of first order after them with
-/// lambda in place of lambda^2.
-struct Pencil {
-    /// (K F; G H)
-    stiffness: DMatrix<f64>,
-    /// (D 0; E 0)
-    damping: DMatrix<f64>,
-    /// From the upper rows: q' in balanced numbers for each q; 1 for states of first order.
-    ratio: DVector<f64>,
-    /// What a balanced number is in SI.
-    sizes: DVector<f64>,
-    degrees: usize,
-}
-
-/// The motions with the eigenvalue 0.
-struct Rigid {
-    shapes: Vec<DVector<Complex<f64>>>,
-    /// How often 0 is an eigenvalue.
-    multiplicity: usize,
-}
-
-impl Pencil {
-    fn of(balanced: &DMatrix<f64>, sizes: &DVector<f64>, degrees: usize) -> Self {
-        let count = balanced.nrows() - degrees;
-        // Positions and states of first order, by their places in the state.
-        let held = |place: usize| {
-            if place < degrees {
-                place
-            } else {
-                place + degrees
-            }
-        };
-        Self {
-            stiffness: DMatrix::from_fn(count, count, |row, column| {
-                balanced[(degrees + row, held(column))]
-            }),
-            damping: DMatrix::from_fn(count, count, |row, column| match column < degrees {
-                true => balanced[(degrees + row, degrees + column)],
-                false => 0.0,
-            }),
-            ratio: DVector::from_fn(count, |place, _| match place < degrees {
-                true => balanced[(place, degrees + place)],
-                false => 1.0,
-            }),
-            sizes: DVector::from_fn(count, |place, _| sizes[held(place)]),
-            degrees,
-        }
-    }
-
-    /// lambda (lambda/ratio) - (lambda/ratio) D - K: the rates are lambda/ratio of the coordinates.
-    fn at(&self, eigenvalue: Complex<f64>) -> DMatrix<Complex<f64>> {
-        let count = self.ratio.len();
-        DMatrix::from_fn(count, count, |row, column| {
-            let rate = eigenvalue / self.ratio[column];
-            let inertia = match row == column {
-                true if row < self.degrees => eigenvalue * rate,
-                true => eigenvalue,
-                false => 0.0.into(),
-            };
-            inertia - rate * self.damping[(row, column)] - self.stiffness[(row, column)]
-        })
-    }
-
-    fn rigid(&self) -> Rigid {
-        // Rows of one size: whether a soft spring is there does not depend on a stiff one.
-        let mut equilibrated = self.stiffness.clone();
-        for mut row in equilibrated.row_iter_mut() {
-            let size = row.amax();
-            if size > 0.0 {
-                row /= size;
-            }
-        }
-        let (right, left) = (
-            null_space(&equilibrated),
-            null_space(&equilibrated.transpose()),
-        );
-        let rows = self.stiffness.row_iter().map(|row| row.amax());
-        let weights: Vec<f64> = rows
-            .map(|size| if size > 0.0 { size } else { 1.0 })
-            .collect();
-        if right.ncols() == 0 {
-            return Rigid {
-                shapes: Vec::new(),
-                multiplicity: 0,
-            };
-        }
-        // Back from the equilibrated rows to those of the equations.
-        let left = DMatrix::from_fn(left.nrows(), left.ncols(), |row, column| {
-            left[(row, column)] / weights[row]
-        });
-        let rates = DMatrix::from_fn(right.nrows(), right.ncols(), |row, column| {
-            right[(row, column)] / self.ratio[row]
-        });
-        let damped = left.transpose() * &self.damping * &rates;
-        let most = left.abs().transpose() * self.damping.abs() * rates.abs();
-        let singular = damped.clone().svd(false, false).singular_values;
-        let most = most.amax();
-        let again = singular
-            .iter()
-            .filter(|value| **value <= RANK * most)
-            .count();
-        let complex = |column: nalgebra::DVectorView<'_, f64>| column.map(Complex::from);
-        Rigid {
-            shapes: right.column_iter().map(complex).collect(),
-            multiplicity: right.ncols() + again,
-        }
-    }
-
-    /// The shape of an eigenvalue, orthogonal to those that it has already.
-    fn shape(
-        &self,
-        eigenvalue: Complex<f64>,
-        earlier: &[DVector<Complex<f64>>],
-    ) -> DVector<Complex<f64>> {
-        let count = self.ratio.len();
-        let singular = self.at(eigenvalue * (1.0 + BESIDE)).lu();
-        // Of no symmetry that a machine might have too.
-        let mut shape = DVector::from_fn(count, |row, _| {
-            Complex::new(1.0 + (1.7 * (row + earlier.len()) as f64).sin() / 2.0, 0.1)
-        });
-        for _ in 0..4 {
-            for other in earlier {
-                let part = other.dotc(&shape);
-                shape.axpy(-part, other, Complex::from(1.0));
-            }
-            let Some(next) = singular.solve(&shape) else {
-                break;
-            };
-            let size = next.norm();
-            if !(size > 0.0 && size.is_finite()) {
-                break;
-            }
-            shape = next.unscale(size);
-        }
-        shape
-    }
-
-    /// Coordinates in SI, the largest number 1, and states of first order.
-    fn in_si(&self, shape: &DVector<Complex<f64>>) -> Vec<Complex<f64>> {
-        let amplitudes: Vec<Complex<f64>> = shape
-            .iter()
-            .zip(&self.sizes)
-            .map(|(value, size)| value * *size)
-            .collect();
-        let largest = |of: &[Complex<f64>]| {
-            let most = of
-                .iter()
-                .copied()
-                .max_by(|a, b| a.norm().total_cmp(&b.norm()));
-            most.filter(|value| value.norm() > 0.0)
-        };
-        // What rounding moves does not count.
-        let moves = shape.rows(0, self.degrees).norm() > RANK * shape.norm();
-        let largest = largest(&amplitudes[..self.degrees])
-            .filter(|_| moves)
-            .or_else(|| largest(&amplitudes))
-            .unwrap_or(1.0.into());
-        amplitudes.iter().map(|value| value / largest).collect()
-    }
-}
-
-/// How often 0 is an eigenvalue, chains of any length counted: null spaces are taken away until
-/// there is none.
-pub(crate) fn zero_eigenvalues(mut matrix: DMatrix<f64>) -> usize {
-    let mut count = 0;
-    loop {
-        // Rows of one size, as in [`Pencil::rigid`]: the null space is the same.
-        let mut equilibrated = matrix.clone();
-        for mut row in equilibrated.row_iter_mut() {
-            let size = row.amax();
-            if size > 0.0 {
-                row /= size;
-            }
-        }
-        let null = null_space(&equilibrated);
-        if null.ncols() == 0 {
-            return count;
-        }
-        count += null.ncols();
-        if null.ncols() == matrix.ncols() {
-            return count;
-        }
-        // An orthonormal basis of what is left: the null space of the null space.
-        let rest = null_space(&(&null * null.transpose()));
-        matrix = rest.transpose() * matrix * rest;
-    }
-}
-
-/// An orthonormal basis of what a matrix maps to 0, as columns.
-pub(crate) fn null_space(matrix: &DMatrix<f64>) -> DMatrix<f64> {
-    let decomposed = matrix.clone().svd(false, true);
-    let Some(rows) = decomposed.v_t else {
-        return DMatrix::zeros(matrix.ncols(), 0);
-    };
-    let most = decomposed.singular_values.amax();
-    let small: Vec<_> = decomposed
-        .singular_values
-        .iter()
-        .zip(rows.row_iter())
-        .filter(|(value, _)| **value <= RANK * most)
-        .map(|(_, row)| row.transpose())
-        .collect();
-    if small.is_empty() {
-        return DMatrix::zeros(matrix.ncols(), 0);
-    }
-    DMatrix::from_columns(&small)
+/// The vectors of the modes whose eigenvalue equals this one.
+pub(crate) fn equal(
+    modes: &[(Complex<f64>, DVector<Complex<f64>>)],
+    eigenvalue: Complex<f64>,
+) -> Vec<DVector<Complex<f64>>> {
+    let is_equal = |other: &Complex<f64>| (eigenvalue - other).norm() < EQUAL * eigenvalue.norm();
+    let equal = modes.iter().filter(|(other, _)| is_equal(other));
+    equal.map(|(_, vector)| vector.clone()).collect()
 }
 
 #[cfg(test)]
@@ -436,5 +231,45 @@ mod tests {
         assert!(natural_modes(&[1.0; 4], 2).is_err());
         assert!(natural_modes(&[f64::NAN; 4], 1).is_err());
         assert_eq!(natural_modes(&[], 0), Ok(Vec::new()));
+    }
+
+    #[test]
+    fn frequencies_do_not_depend_on_units() -> Result<(), AnalysisError> {
+        // Two equal masses on two equal springs: omega^2 = k/m (3 -+ sqrt 5)/2.
+        for k in [1e-300, 1e-200, 1e-9, 1.0, 1e150, 1e300] {
+            let none: &[f64] = &[0.0, 0.0];
+            let modes = natural_modes(&matrix(&[&[-2.0 * k, k], &[k, -k]], &[none, none]), 2)?;
+            assert_eq!(modes.len(), 2, "{k:e}");
+            for (mode, square) in modes.iter().zip([3.0 - 5_f64.sqrt(), 3.0 + 5_f64.sqrt()]) {
+                let right = (square / 2.0).sqrt() * k.sqrt();
+                assert!(
+                    (mode.eigenvalue.im / right - 1.0).abs() < 1e-12,
+                    "{k:e} {mode:?}"
+                );
+                assert_eq!(mode.shape.len(), 2);
+            }
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn a_stiff_spring_leaves_a_soft_one_its_frequency() -> Result<(), AnalysisError> {
+        for k in [1e100, 1e160, 1e300] {
+            let none: &[f64] = &[0.0, 0.0];
+            let modes = natural_modes(&matrix(&[&[-k, 0.0], &[0.0, -4.0]], &[none, none]), 2)?;
+            let found: Vec<f64> = modes.iter().map(|mode| mode.eigenvalue.im).collect();
+            assert!(close(found[0], 2.0), "{k:e} {found:?}");
+            assert!((found[1] / k.sqrt() - 1.0).abs() < 1e-12, "{k:e} {found:?}");
+        }
+        // One mass on a stiff spring, a second one on a soft spring on it.
+        for k in [1e8, 1e20, 1e30, 1e50, 1e70, 1e150, 1e300] {
+            let none: &[f64] = &[0.0, 0.0];
+            let stiffness: [&[f64]; 2] = [&[-25.0 - k, 25.0], &[25.0, -25.0]];
+            let modes = natural_modes(&matrix(&stiffness, &[none, none]), 2)?;
+            assert_eq!(modes.len(), 2, "{k:e} {modes:?}");
+            let found = modes[0].eigenvalue.im;
+            assert!((found / 5.0 - 1.0).abs() < 1e-6, "{k:e} {found}");
+        }
+        Ok(())
     }
 }

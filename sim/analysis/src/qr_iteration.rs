@@ -1,9 +1,9 @@
-//! Schur forms and eigenvalues of small dense matrices by the QR iteration, which always ends.
+//! Schur forms, eigenvalues and singular values of small dense matrices by QR iterations of bounded length.
 //!
 //! Nalgebra's iteration has no exceptional shifts: where eigenvalues lie symmetrically, as those of
 //! undamped machines do, it may go round in circles. In another basis it does not.
 
-use nalgebra::{Complex, ComplexField, DMatrix, DVector, Dyn, Schur};
+use nalgebra::{Complex, ComplexField, DMatrix, DVector, Dyn, SVD, Schur, SymmetricEigen};
 
 /// Iterations per eigenvalue before one gives up; two or three are usual.
 const ITERATIONS: usize = 400;
@@ -28,6 +28,26 @@ pub fn schur_form<T: ComplexField<RealField = f64>>(
 pub fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
     let schur = iterated(matrix)?.schur;
     Some(schur.complex_eigenvalues().iter().copied().collect())
+}
+
+/// The singular values of a matrix, largest first, with both kinds of vectors; nothing if an entry is not
+/// finite, there are none, or the iteration does not converge.
+pub fn svd(matrix: &DMatrix<f64>) -> Option<SVD<f64, Dyn, Dyn>> {
+    if matrix.is_empty() || !matrix.iter().all(|entry| entry.is_finite()) {
+        return None;
+    }
+    let most = ITERATIONS * matrix.nrows().max(matrix.ncols());
+    SVD::try_new(matrix.clone(), true, true, 5.0 * f64::EPSILON, most)
+}
+
+/// The eigenvalues and eigenvectors of a symmetric matrix; nothing if an entry is not finite, there are
+/// none, or the iteration does not converge.
+pub fn symmetric_eigen(matrix: &DMatrix<f64>) -> Option<SymmetricEigen<f64, Dyn>> {
+    if matrix.is_empty() || !matrix.iter().all(|entry| entry.is_finite()) {
+        return None;
+    }
+    let most = ITERATIONS * matrix.nrows();
+    SymmetricEigen::try_new(matrix.clone(), f64::EPSILON, most)
 }
 
 /// An iteration that ended, of the matrix between two reflections if there is one.
@@ -60,7 +80,7 @@ fn iterated<T: ComplexField<RealField = f64>>(matrix: &DMatrix<T>) -> Option<Ite
 
 #[cfg(test)]
 mod tests {
-    use super::{eigenvalues, schur_form};
+    use super::{eigenvalues, schur_form, svd, symmetric_eigen};
     use nalgebra::{Complex, DMatrix, Schur};
 
     /// Two masses on a spring beside one that is free: x' = v, v' = K x.
@@ -97,5 +117,14 @@ mod tests {
         let (unitary, triangle) = schur_form(&complex).expect("another basis");
         let back = &unitary * triangle * unitary.adjoint();
         assert!((back - &complex).norm() < 1e-14 * complex.norm());
+    }
+
+    #[test]
+    fn matrices_that_are_not_finite_are_refused() {
+        for entry in [f64::NAN, f64::INFINITY] {
+            let matrix = DMatrix::from_element(3, 3, entry);
+            assert!(svd(&matrix).is_none() && symmetric_eigen(&matrix).is_none());
+        }
+        assert!(svd(&DMatrix::zeros(0, 3)).is_none());
     }
 }

@@ -142,12 +142,15 @@ impl<'m> Instance<'m> {
     /// # Errors
     /// [`Error::Request`] where the mass matrix is not positive definite.
     pub fn evaluator(&self) -> Result<Evaluator, Error> {
-        let evaluator = self.unchecked();
-        if evaluator.pivots_are_positive() {
-            Ok(evaluator)
-        } else {
-            Err(Error::Request(NOT_POSITIVE.to_owned()))
-        }
+        positive(self.unchecked())
+    }
+
+    /// An evaluator for a few evaluations: no machine code is made for it.
+    ///
+    /// # Errors
+    /// As [`Instance::evaluator`].
+    pub fn interpreter(&self) -> Result<Evaluator, Error> {
+        positive(self.model.interpreter(&self.parameters))
     }
 
     /// An evaluator at these parameters, whether its pivots are positive or not: what is asked of it must
@@ -213,5 +216,13 @@ impl<'m> Instance<'m> {
             show(t, state, &observables);
         }
         Ok(())
+    }
+}
+
+/// The evaluator, if the mass matrix is positive definite.
+fn positive(evaluator: Evaluator) -> Result<Evaluator, Error> {
+    match evaluator.pivots_are_positive() {
+        true => Ok(evaluator),
+        false => Err(Error::Request(NOT_POSITIVE.to_owned())),
     }
 }

@@ -1,14 +1,15 @@
 //! Jacobians of a compiled model, computed as dense matrices. How they are derived is the business
 //! of `codegen`.
 
-use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use std::sync::Arc;
+
+use eomgen_codegen::program::evaluator::{Evaluator, MachineCode, Point};
 use eomgen_codegen::program::{Op, Program, Variable};
 use eomgen_codegen::singular_terms::without_derivative;
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::ids::FieldId;
 use eomgen_model_spec::model::RESIDUAL;
 
-use crate::differentiated::Differentiated;
 use crate::error::Error;
 use crate::instance::Instance;
 use crate::model::{CompiledModel, evaluator};
@@ -83,6 +84,14 @@ impl JacobianEvaluator {
         (layout.rows, layout.columns)
     }
 
+    /// The dense matrix at a point, row by row.
+    pub(crate) fn dense(&mut self, of: Jacobian, point: Point<'_>) -> Vec<f64> {
+        let (rows, columns) = self.shape(of);
+        let mut matrix = vec![0.0; rows * columns];
+        self.evaluate(of, point, &mut matrix);
+        matrix
+    }
+
     /// The dense matrix at a point, row by row; `out` has rows times columns numbers. Of the regime
     /// that the point is in; on a switching surface one-sided.
     pub fn evaluate(&mut self, of: Jacobian, point: Point<'_>, out: &mut [f64]) {
@@ -143,23 +152,33 @@ impl Linearisation {
 }
 
 impl Instance<'_> {
-    /// Computes Jacobians at these parameters.
+    /// Computes Jacobians at these parameters, by machine code.
     ///
     /// # Errors
     /// What cannot be differentiated, and a mass matrix that is not positive definite.
     pub fn jacobian_evaluator(&self) -> Result<JacobianEvaluator, Error> {
-        self.evaluator()?;
-        self.unchecked_jacobians()
+        self.interpreter()?;
+        let differentiated = self.model().differentiated()?;
+        Ok(self.jacobians(&differentiated.program, differentiated.code()))
     }
 
-    /// The same whether pivots are positive or not: what is asked of it must not rest on accelerations.
-    pub(crate) fn unchecked_jacobians(&self) -> Result<JacobianEvaluator, Error> {
-        let Differentiated { program, code } = self.model().differentiated()?;
+    /// The same for a few evaluations: no machine code is made for it. Pivots need not be positive; then
+    /// what is asked of it must not rest on accelerations.
+    pub(crate) fn interpreted_jacobians(&self) -> Result<JacobianEvaluator, Error> {
+        let program = &self.model().differentiated()?.program;
+        Ok(self.jacobians(program, None))
+    }
+
+    fn jacobians(
+        &self,
+        program: &Program,
+        code: Option<&Arc<dyn MachineCode>>,
+    ) -> JacobianEvaluator {
         let layouts = Jacobian::ALL.iter().filter_map(|of| layout(program, *of));
-        Ok(JacobianEvaluator {
+        JacobianEvaluator {
             layouts: layouts.collect(),
-            evaluator: evaluator(program, code.as_ref(), self.parameters()),
-        })
+            evaluator: evaluator(program, code, self.parameters()),
+        }
     }
 
     /// Whether any rate, or any switching function, depends on each state. The angle of a rotation
@@ -168,7 +187,7 @@ impl Instance<'_> {
     /// # Errors
     /// As [`Instance::jacobian_evaluator`].
     pub fn felt_states(&self) -> Result<Vec<bool>, Error> {
-        let Differentiated { program, .. } = self.model().differentiated()?;
+        let program = &self.model().differentiated()?.program;
         let mut felt = vec![false; program.states()];
         if let Some(layout) = layout(program, Jacobian::RatesByState) {
             for place in &layout.dense {
@@ -198,13 +217,9 @@ impl Instance<'_> {
     /// As [`Instance::jacobian_evaluator`], and a derivative without a limit at the point, at the place of its
     /// term.
     pub fn linearise(&self, point: Point<'_>) -> Result<Linearisation, Error> {
-        let mut jacobians = self.jacobian_evaluator()?;
-        let mut dense = |of| {
-            let (rows, columns) = jacobians.shape(of);
-            let mut matrix = vec![0.0; rows * columns];
-            jacobians.evaluate(of, point, &mut matrix);
-            matrix
-        };
+        let mut evaluator = self.interpreter()?;
+        let mut jacobians = self.interpreted_jacobians()?;
+        let mut dense = |of| jacobians.dense(of, point);
         let (a, b) = (
             dense(Jacobian::RatesByState),
             dense(Jacobian::RatesByInputs),
@@ -213,7 +228,6 @@ impl Instance<'_> {
             dense(Jacobian::ObservablesByState),
             dense(Jacobian::ObservablesByInputs),
         );
-        let mut evaluator = self.evaluator()?;
         let mut rates = vec![0.0; evaluator.program().states()];
         evaluator.rates(point, &mut rates);
         let mut observables = vec![0.0; evaluator.program().observables.len()];

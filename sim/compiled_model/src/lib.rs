@@ -42,6 +42,7 @@
 mod audit;
 mod consistent;
 mod contacts;
+mod cyclic;
 mod differentiated;
 mod distances;
 mod driven;
@@ -60,7 +61,7 @@ mod sliding;
 pub use audit::{Audit, Imbalance};
 pub use distances::Overlap;
 pub use driven::Driven;
-pub use equilibrium::Equilibrium;
+pub use equilibrium::{Equilibrium, EquilibriumRequest};
 pub use error::Error;
 pub use instance::Instance;
 pub use jacobians::{Jacobian, JacobianEvaluator, Linearisation};

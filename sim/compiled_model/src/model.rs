@@ -204,6 +204,12 @@ impl CompiledModel {
         evaluator(&self.program, code.as_ref(), parameters)
     }
 
+    /// An evaluator that interprets the program: the same numbers as machine code, which takes longer to
+    /// make than a few evaluations.
+    pub(crate) fn interpreter(&self, parameters: &[f64]) -> Evaluator {
+        evaluator(&self.program, None, parameters)
+    }
+
     /// Derives the Jacobians, once, which are derived when they are first asked for.
     ///
     /// # Errors

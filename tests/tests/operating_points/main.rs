@@ -2,6 +2,7 @@
 
 mod bases;
 mod drawn_modes;
+mod given;
 mod tables;
 
 use std::f64::consts::{PI, TAU};
@@ -304,7 +305,11 @@ fn what_makes_no_sense_is_refused_with_what_would() {
         ),
         (&["linearise", &model, "--at", "x"], "NAME=VALUE"),
         (&["linearise", &model, "--at", "x=nan"], "finite"),
-        (&["modes", &model, "--at", "x=1 m"], "no number"),
+        (&["modes", &model, "--at", "x=1 kg"], "--at:1:5"),
+        (
+            &["modes", &model, "--at", "y=trim"],
+            "no state and no input",
+        ),
         (&["trim", &model, "--fix", "x_dot=1"], "all rates are 0"),
         (
             &["linearise", &shipped("pendulum"), "--set", "g=1e308"],

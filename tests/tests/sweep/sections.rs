@@ -163,3 +163,99 @@ fn sections_that_make_no_sense_are_refused() {
         assert!(!place.at("two").exists());
     }
 }
+
+/// A shaft that a motor turns with a torque that swings; PHI is its coordinate.
+const SHAFT: &str = r#"
+[model]
+name = "shaft"
+[parameters]
+J = { value = 1, unit = "kg m^2" }
+c = { value = 0.5, unit = "N m s" }
+T_0 = { value = 1, unit = "N m" }
+T_1 = { value = 0.5, unit = "N m" }
+omega = { value = 3, unit = "rad/s" }
+[coordinates]
+phi = { unit = "rad" }
+[kinetic]
+k = "1/2*J*dot(phi)^2"
+[dissipation]
+c = "1/2*c*dot(phi)^2"
+[forces]
+motor = { on = "phi", value = "T_0 + T_1*cos(omega*t)" }
+"#;
+
+/// Period and greatest value of what is seen once per forcing period.
+fn repetition(place: &Place, text: &str, vary: &str, quantity: &str) -> (f64, f64) {
+    std::fs::write(place.at("model.toml"), text).expect("a specification");
+    let _ = std::fs::remove_dir_all(place.at("out"));
+    let (spec, out) = (place.at("model.toml"), place.at("out"));
+    let (spec, out) = (spec.display().to_string(), out.display().to_string());
+    let measure = format!("poincare:{quantity}");
+    let given = [
+        "sweep",
+        &spec,
+        "--out",
+        &out,
+        "--vary",
+        vary,
+        "--measure",
+        &measure,
+        "--transient",
+        "300",
+    ];
+    let given: Vec<String> = given.iter().map(|part| (*part).to_owned()).collect();
+    accept(&given);
+    let found = table(&place.at("out"));
+    let one = |part: &str| column(&found, &format!("{measure}_{part}"))[0];
+    (one("period"), one("max"))
+}
+
+#[test]
+fn machines_that_turn_or_travel_repeat_with_their_forcing() {
+    use std::f64::consts::PI;
+    let place = Place::new();
+    // By its rate; in a range of angles by the angle itself.
+    assert_eq!(repetition(&place, SHAFT, "c=0.5:0.6:2", "phi_dot").0, 1.0);
+    let (period, greatest) = repetition(&place, SHAFT, "c=0.5:0.6:2", "phi");
+    assert!(period == 1.0 && greatest <= PI, "{period} {greatest}");
+    // Without a swing of the torque the speed does not change at all.
+    assert_eq!(repetition(&place, SHAFT, "T_1=0:0:1", "phi_dot").0, 1.0);
+    let rack = SHAFT
+        .replace("phi = { unit = \"rad\" }", "phi = { unit = \"m\" }")
+        .replace("kg m^2", "kg")
+        .replace("N m s", "N s/m")
+        .replace("N m\"", "N\"");
+    assert_eq!(repetition(&place, &rack, "c=0.5:0.6:2", "phi_dot").0, 1.0);
+    assert_eq!(repetition(&place, &rack, "c=0.5:0.6:2", "phi").0, 1.0);
+    // Two wheels on a soft contact turn together.
+    let gear = SHAFT
+        .replace("[coordinates]", "k = { value = 40, unit = \"N m\" }\n[coordinates]\npsi = { unit = \"rad\" }")
+        .replace("[dissipation]", "w = \"1/2*J*dot(psi)^2\"\n[potential]\nk = \"1/2*k*(phi - 2*psi)^2\"\n[dissipation]\nd = \"1/2*c*dot(psi)^2\"");
+    assert_eq!(repetition(&place, &gear, "c=0.5:0.6:2", "phi_dot").0, 1.0);
+    assert_eq!(repetition(&place, &gear, "c=0.5:0.6:2", "psi").0, 1.0);
+    // A pendulum that a steady torque turns over: its equations repeat with a turn. The torque is
+    // modulated so that the motion locks to it.
+    let pendulum = SHAFT
+        .replace(
+            "value = 0.5, unit = \"N m\" }",
+            "value = 1.5, unit = \"N m\" }",
+        )
+        .replace(
+            "[dissipation]",
+            "[potential]\nw = \"-w*cos(phi)\"\n[dissipation]",
+        )
+        .replace(
+            "[coordinates]",
+            "w = { value = 0.8, unit = \"N m\" }\n[coordinates]",
+        )
+        .replace(
+            "phi = { unit = \"rad\" }",
+            "phi = { unit = \"rad\", initial_rate = \"omega\" }",
+        )
+        .replace(
+            "value = 1, unit = \"N m\" }\nT_1",
+            "value = 1.5, unit = \"N m\" }\nT_1",
+        );
+    let (period, greatest) = repetition(&place, &pendulum, "c=0.5:0.5:1", "phi");
+    assert!(period == 1.0 && greatest <= PI, "{period} {greatest}");
+}

@@ -4,6 +4,8 @@
 use std::cell::RefCell;
 
 use eomgen_compiled_model::{CompiledModel, Instance};
+use eomgen_model_spec::assignment::{Assignment, QuantityReader};
+use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_sim::ode::{Settings, SolveError, System, simulate};
 
 use super::quantity::place;
@@ -46,18 +48,16 @@ impl Crossing {
             Some((value, "down")) => (value, false),
             Some((_, other)) => return Err(refused(format!("\"{other}\" is no direction"))),
         };
-        let number: f64 = value
-            .trim()
-            .parse()
-            .map_err(|_| refused(format!("\"{value}\" is no number")))?;
-        if !number.is_finite() {
-            return Err(refused("the value must be finite".to_owned()));
-        }
         let name = name.trim();
+        let state = place(model, name).map_err(refused)?;
+        let units = model.model().state_units(model.orders());
+        let wrong = |found: Diagnostics| SweepError::Request(found.to_string());
+        let given = Assignment::split("--section", &format!("{name}={value}")).map_err(wrong)?;
+        let reader = QuantityReader::new(model.model()).map_err(wrong)?;
         Ok(Self {
-            state: place(model, name).map_err(refused)?,
+            state,
             name: name.to_owned(),
-            value: number,
+            value: reader.read(&given, &units[state]).map_err(wrong)?,
             is_upwards,
         })
     }

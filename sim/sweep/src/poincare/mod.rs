@@ -1,18 +1,20 @@
 //! The measure `poincare`: a coordinate or a rate seen on a section, once per forcing period or
-//! wherever a `crossing` says so; `quantity` is what is seen, `numbers` sum it up. Where the model is
-//! linear between its switches the motion over a forcing is exact, elsewhere it is the general
-//! solver's.
+//! wherever a `crossing` says so; `quantity` is what is seen, `rotation` takes the drift of turning machines
+//! away, `numbers` sum it up. Where the model is linear between its switches the motion over a forcing is
+//! exact, elsewhere it is the general solver's.
 
 mod crossing;
 mod numbers;
 mod quantity;
+mod rotation;
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
 use self::crossing::{Crossing, crossings};
-use self::numbers::{EQUAL, extents, numbers};
+use self::numbers::{EQUAL, linear_parts, repetition, statistics};
 use self::quantity::Quantity;
+use self::rotation::{Looks, without_drift};
 use crate::error::SweepError;
 use crate::forcing::{Frequency, frequency};
 use crate::measure::{Column, Description, Failure, Measure, Worker};
@@ -28,6 +30,9 @@ const LOOKS: usize = 8;
 
 /// The most points of the section that become columns.
 pub const MOST_POINTS_KEPT: usize = 1000;
+
+/// The exact solver's numbers are right to this part of a state, the general solver's to ten tolerances.
+const EXACT_RESOLUTION: f64 = 1e-12;
 
 /// What the measure is called, alone or with `:NAME` behind it.
 const NAME: &str = "poincare";
@@ -255,13 +260,21 @@ impl Measure for Poincare<'_> {
 impl Worker for &Poincare<'_> {
     fn measure(&mut self, settings: &[(&str, f64)], out: &mut [f64]) -> Result<(), Failure> {
         let instance = self.model.with(settings)?;
-        let (points, extents, time) = match &self.places {
+        let OnSection {
+            points,
+            repetition,
+            time,
+        } = match &self.places {
             Places::Forcing(frequency) => self.once_per_period(&instance, frequency)?,
             Places::Crossing(crossing, until) => self.where_crossed(&instance, crossing, *until)?,
         };
-        let numbers = numbers(&points, extents).ok_or(Failure::Undefined)?;
+        let statistics = statistics(&points).ok_or(Failure::Undefined)?;
         let points = points.iter().map(|[x, _]| *x);
-        let numbers = numbers.into_iter().chain(time).chain(points);
+        let numbers = repetition
+            .into_iter()
+            .chain(statistics)
+            .chain(time)
+            .chain(points);
         for (place, number) in out.iter_mut().zip(numbers) {
             *place = number;
         }
@@ -269,8 +282,15 @@ impl Worker for &Poincare<'_> {
     }
 }
 
-/// Points of a section, the extents of the motion and the mean time between crossings, s.
-type OnSection = (Vec<[f64; 2]>, [f64; 2], Option<f64>);
+/// What is found on a section.
+struct OnSection {
+    /// The points, without whole turns of an angle that turns.
+    points: Vec<[f64; 2]>,
+    /// Period and clusters of the points; 0: none.
+    repetition: [f64; 2],
+    /// The mean time between crossings, s.
+    time: Option<f64>,
+}
 
 impl Poincare<'_> {
     fn once_per_period(
@@ -282,7 +302,38 @@ impl Poincare<'_> {
         let motion = self.motion(instance, &times)?;
         let seen: Vec<[f64; 2]> = self.seen(&motion.states);
         let points = seen.iter().step_by(LOOKS).copied().collect();
-        Ok((points, extents(seen.iter()), None))
+        let looks = Looks {
+            times: &motion.times,
+            states: &motion.states,
+        };
+        self.on_section(instance, &looks, (&seen, points), None)
+    }
+
+    fn on_section(
+        &self,
+        instance: &Instance<'_>,
+        looks: &Looks<'_>,
+        (seen, mut points): (&[[f64; 2]], Vec<[f64; 2]>),
+        time: Option<f64>,
+    ) -> Result<OnSection, Failure> {
+        let is_exact =
+            matches!(self.places, Places::Forcing(_)) && self.model.piecewise_linear().is_ok();
+        let resolution = match is_exact {
+            true => EXACT_RESOLUTION,
+            false => 10.0 * self.settings.tolerance,
+        };
+        let mut parts = linear_parts(seen, resolution);
+        let mut found = repetition(&points, parts).ok_or(Failure::Undefined)?;
+        if found[0] == 0.0 {
+            let seen = (seen, &mut points[..]);
+            without_drift(instance, &self.quantity, looks, seen, &mut parts)?;
+            found = repetition(&points, parts).ok_or(Failure::Undefined)?;
+        }
+        Ok(OnSection {
+            points,
+            repetition: found,
+            time,
+        })
     }
 
     fn where_crossed(
@@ -294,10 +345,14 @@ impl Poincare<'_> {
         let wanted = (self.span.transient, self.span.periods);
         let found = crossings(instance, crossing, wanted, until, &self.settings)?;
         let (points, between) = (self.seen(&found.points), self.seen(&found.between));
-        let whole = extents(points.iter().chain(&between));
+        let seen = [&points[..], &between].concat();
         let time = found.times.last().zip(found.times.first());
         let time = time.map(|(last, first)| (last - first) / (found.times.len() - 1) as f64);
-        Ok((points, whole, time))
+        let looks = Looks {
+            times: &found.times,
+            states: &found.points,
+        };
+        self.on_section(instance, &looks, (&seen, points), time)
     }
 
     fn seen(&self, states: &[Vec<f64>]) -> Vec<[f64; 2]> {

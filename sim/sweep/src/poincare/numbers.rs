@@ -1,42 +1,102 @@
 //! What the points of a section are summed up in.
 
-use eomgen_analysis::poincare::Section;
+use std::f64::consts::{PI, TAU};
+
+use eomgen_analysis::poincare::{Section, Shape};
 
 /// Points of the section are equal within this share of the extent of the motion.
 pub const EQUAL: f64 = 1e-3;
 
-/// Period, clusters, mean, least, greatest and root mean square of the first of both numbers; none
-/// where they are not finite. `extents` are those of the whole motion.
-pub fn numbers(points: &[[f64; 2]], extents: [f64; 2]) -> Option<[f64; 6]> {
+/// How one of both numbers tells points apart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Part {
+    /// As it is, in parts of the extent of the motion.
+    Linear {
+        /// Greatest less least over the whole motion.
+        extent: f64,
+    },
+    /// As an angle: a turn more or less is the same.
+    Angle,
+    /// Not at all: nothing depends on it, or it does not change.
+    Ignored,
+}
+
+/// Period and clusters of the points, 0 for none; nothing if they are not finite.
+pub fn repetition(points: &[[f64; 2]], parts: [Part; 2]) -> Option<[f64; 2]> {
+    let mut scale = Vec::with_capacity(4);
+    for part in parts {
+        match part {
+            Part::Linear { extent } => scale.push(extent),
+            Part::Angle => scale.extend([TAU, TAU]),
+            Part::Ignored => {}
+        }
+    }
+    if !points.as_flattened().iter().all(|value| value.is_finite()) {
+        return None;
+    }
     // At rest there is no extent to compare with, and nothing to compare.
-    let (period, clusters) = if extents.contains(&0.0) {
-        (Some(1), Some(1))
-    } else {
-        let section = Section {
-            points: points.as_flattened(),
-            scale: &extents,
-        };
-        let shape = section.shape(EQUAL).ok()?;
-        (shape.period, shape.clusters)
+    if scale.is_empty() {
+        return Some([1.0, 1.0]);
+    }
+    let mut flat = Vec::with_capacity(points.len() * scale.len());
+    for (value, part) in points.iter().flat_map(|point| point.iter().zip(parts)) {
+        match part {
+            Part::Linear { .. } => flat.push(*value),
+            Part::Angle => flat.extend([value.cos(), value.sin()]),
+            Part::Ignored => {}
+        }
+    }
+    let section = Section {
+        points: &flat,
+        scale: &scale,
     };
+    let Shape {
+        period, clusters, ..
+    } = section.shape(EQUAL).ok()?;
+    Some([period, clusters].map(|count| count.unwrap_or(0) as f64))
+}
+
+/// Mean, least, greatest and root mean square of the first of both numbers; nothing if they are not finite.
+pub fn statistics(points: &[[f64; 2]]) -> Option<[f64; 4]> {
     let values = || points.iter().map(|[x, _]| *x);
     let count = values().count() as f64;
-    Some([
-        period.unwrap_or(0) as f64,
-        clusters.unwrap_or(0) as f64,
+    let found = [
         values().sum::<f64>() / count,
         values().fold(f64::INFINITY, f64::min),
         values().fold(f64::NEG_INFINITY, f64::max),
         (values().map(|x| x * x).sum::<f64>() / count).sqrt(),
-    ])
+    ];
+    found
+        .iter()
+        .all(|number| number.is_finite())
+        .then_some(found)
 }
 
-/// Greatest less least of both numbers.
-pub fn extents<'s>(seen: impl Iterator<Item = &'s [f64; 2]> + Clone) -> [f64; 2] {
+/// Both numbers as parts of the motion `seen`; what changes by no more than `resolution` of its size does
+/// not change.
+pub fn linear_parts(seen: &[[f64; 2]], resolution: f64) -> [Part; 2] {
+    extents(seen.iter()).map(|(least, greatest)| {
+        let extent = greatest - least;
+        match extent <= resolution * least.abs().max(greatest.abs()) {
+            true => Part::Ignored,
+            false => Part::Linear { extent },
+        }
+    })
+}
+
+/// Least and greatest of both numbers.
+pub fn extents<'s>(seen: impl Iterator<Item = &'s [f64; 2]> + Clone) -> [(f64, f64); 2] {
     [0, 1].map(|place| {
         let values = || seen.clone().map(|pair| pair[place]);
-        values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
+        let least = values().fold(f64::INFINITY, f64::min);
+        (least, values().fold(f64::NEG_INFINITY, f64::max))
     })
+}
+
+/// An angle without the whole turns that part it from another one.
+pub fn within_a_turn(angle: f64, from: f64) -> f64 {
+    let turned = (angle - from + PI).rem_euclid(TAU) - PI;
+    from + turned
 }
 
 #[cfg(test)]
@@ -45,10 +105,13 @@ mod tests {
 
     const LOOKS: usize = 8;
 
+    /// Below it, a part is taken not to change.
+    const RESOLUTION: f64 = 1e-12;
+
     /// The looks at x = a + b cos(t) + c cos(t/2) at the phases of cos(t), over `periods`.
     fn seen(periods: usize, [a, b, c]: [f64; 3]) -> Vec<[f64; 2]> {
         let look = |look: usize| {
-            let t = std::f64::consts::TAU * look as f64 / LOOKS as f64;
+            let t = TAU * look as f64 / LOOKS as f64;
             [
                 a + b * t.cos() + c * (t / 2.0).cos(),
                 -b * t.sin() - c / 2.0 * (t / 2.0).sin(),
@@ -59,7 +122,10 @@ mod tests {
 
     fn of(seen: &[[f64; 2]]) -> [f64; 6] {
         let points: Vec<[f64; 2]> = seen.iter().step_by(LOOKS).copied().collect();
-        numbers(&points, extents(seen.iter())).expect("numbers")
+        let [period, clusters] =
+            repetition(&points, linear_parts(seen, RESOLUTION)).expect("numbers");
+        let [mean, min, max, rms] = statistics(&points).expect("numbers");
+        [period, clusters, mean, min, max, rms]
     }
 
     fn close(found: f64, expected: f64) {
@@ -85,5 +151,20 @@ mod tests {
         close(found[2], 7.0);
         let rest = of(&[[2.0, 0.0]; 5 * LOOKS]);
         assert_eq!(rest, [1.0, 1.0, 2.0, 2.0, 2.0, 2.0]);
+    }
+
+    #[test]
+    fn angles_repeat_across_the_end_of_a_turn() {
+        // Half a turn and two turns more each time, with noise on both sides of half a turn.
+        let points: Vec<[f64; 2]> = (0..20)
+            .map(|k| [PI + 2.0 * TAU * f64::from(k) + 1e-9 * f64::from(k % 2), 1.0])
+            .collect();
+        let parts = [Part::Angle, Part::Ignored];
+        assert_eq!(repetition(&points, parts), Some([1.0, 1.0]));
+        let extent = 40.0 * TAU;
+        let parts = [Part::Linear { extent }, Part::Ignored];
+        assert_eq!(repetition(&points, parts).map(|found| found[0]), Some(0.0));
+        assert!((within_a_turn(7.0, 0.0) - (7.0 - TAU)).abs() < 1e-15);
+        assert!((within_a_turn(PI + 0.1, PI) - (PI + 0.1)).abs() < 1e-15);
     }
 }

@@ -27,6 +27,8 @@ pub struct Quantity {
     /// The SI unit of that.
     pub unit: String,
     places: [usize; 2],
+    /// Which of the two is the coordinate: the other is its rate.
+    coordinate: usize,
 }
 
 impl Quantity {
@@ -36,15 +38,21 @@ impl Quantity {
     /// As [`place`].
     pub fn of(model: &CompiledModel, name: &str) -> Result<Self, String> {
         let shown = place(model, name)?;
-        let partner = match name.strip_suffix("_dot") {
-            Some(coordinate) => coordinate.to_owned(),
-            None => format!("{name}_dot"),
+        let (partner, coordinate) = match name.strip_suffix("_dot") {
+            Some(coordinate) => (coordinate.to_owned(), 1),
+            None => (format!("{name}_dot"), 0),
         };
         Ok(Self {
+            coordinate,
             name: name.to_owned(),
             unit: model.state_units()[shown].clone(),
             places: [shown, place(model, &partner)?],
         })
+    }
+
+    /// Which of both is the coordinate, and its place in the state.
+    pub fn coordinate(&self) -> (usize, usize) {
+        (self.coordinate, self.places[self.coordinate])
     }
 
     /// Both, in a state.

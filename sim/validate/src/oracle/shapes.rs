@@ -14,8 +14,11 @@
 
 use super::double_double::DoubleDouble;
 use eomgen_model_spec::model::{Basis, End};
-use nalgebra::{Matrix4, Vector4};
+use nalgebra::{Matrix4, SVD, Vector4};
 use std::f64::consts::PI;
+
+/// Iterations of a singular value decomposition before it is given up; ten are usual.
+const ITERATIONS: usize = 1000;
 
 /// Mode r of a beam of unit length.
 #[derive(Clone, Copy, Debug)]
@@ -155,7 +158,10 @@ fn solutions(derivative: u8, (sine, cosine): (f64, f64), exponentials: [f64; 2])
 /// The vector that a singular matrix maps to nothing, to rounding: the right singular vector of
 /// the least singular value.
 fn null_vector(matrix: Matrix4<f64>) -> Vector4<f64> {
-    let decomposition = matrix.svd(false, true);
+    let decomposed = SVD::try_new(matrix, false, true, 5.0 * f64::EPSILON, ITERATIONS);
+    let Some(decomposition) = decomposed else {
+        return Vector4::zeros();
+    };
     let least = decomposition.singular_values.imin();
     decomposition
         .v_t

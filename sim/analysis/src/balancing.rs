@@ -1,0 +1,123 @@
+//! Scaling of a linearised machine's state matrix, so that no result depends on units.
+//!
+//! States are scaled so that rows and columns have entries of like size (B. N. Parlett, C. Reinsch, Numer.
+//! Math. 13 (1969) 293-304), and the time so that the largest entry is about 1. All factors are powers of
+//! two, which round nothing. Sizes are compared by their exponents, so that no square overflows.
+
+use nalgebra::{Complex, DMatrix, DVector};
+
+/// Sweeps over the states; three or four are usual.
+const MAX_SWEEPS: usize = 100;
+
+/// A state matrix in scaled states and scaled time.
+#[derive(Clone, Debug)]
+pub struct Balanced {
+    /// The matrix: T D^-1 A D.
+    pub matrix: DMatrix<f64>,
+    /// The diagonal of D: what 1 of a scaled state is in its own unit, in parts of the largest.
+    pub sizes: DVector<f64>,
+    /// The exponent of 2 in T, the unit of the scaled time in s.
+    time: i32,
+}
+
+impl Balanced {
+    /// Balances a square matrix of finite numbers.
+    pub fn new(matrix: &DMatrix<f64>) -> Self {
+        let exponents = matrix.map(|entry| match entry.abs().log2() {
+            exponent if exponent.is_finite() => Some(exponent),
+            _ => None,
+        });
+        let sizes = balancing_exponents(&exponents);
+        let shift = |row: usize, column: usize| sizes[column] - sizes[row];
+        let scaled = exponents.map_with_location(|row, column, exponent| {
+            exponent.map_or(f64::NEG_INFINITY, |exponent| {
+                exponent + f64::from(shift(row, column))
+            })
+        });
+        let largest = scaled.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let time = if largest.is_finite() {
+            -largest.floor() as i32
+        } else {
+            0
+        };
+        let most = sizes.iter().copied().max().unwrap_or(0);
+        Self {
+            matrix: matrix.map_with_location(|row, column, entry| {
+                times_power_of_two(entry, shift(row, column) + time)
+            }),
+            sizes: DVector::from_iterator(
+                sizes.len(),
+                sizes
+                    .iter()
+                    .map(|size| times_power_of_two(1.0, size - most)),
+            ),
+            time,
+        }
+    }
+
+    /// A rate of the scaled time, in 1/s.
+    fn per_second(&self, rate: f64) -> f64 {
+        times_power_of_two(rate, -self.time)
+    }
+
+    /// An eigenvalue of the scaled matrix, in 1/s.
+    pub fn eigenvalue(&self, scaled: Complex<f64>) -> Complex<f64> {
+        Complex::new(self.per_second(scaled.re), self.per_second(scaled.im))
+    }
+}
+
+/// The exponents of 2 in the diagonal of D.
+fn balancing_exponents(entries: &DMatrix<Option<f64>>) -> Vec<i32> {
+    let count = entries.nrows();
+    let mut sizes = vec![0_i32; count];
+    for _ in 0..MAX_SWEEPS {
+        let mut is_balanced = true;
+        for state in 0..count {
+            let others = || (0..count).filter(|other| *other != state);
+            let largest = |exponents: &mut dyn Iterator<Item = f64>| {
+                exponents.fold(f64::NEG_INFINITY, f64::max)
+            };
+            let row = largest(&mut others().filter_map(|other| {
+                Some(entries[(state, other)]? + f64::from(sizes[other] - sizes[state]))
+            }));
+            let column = largest(&mut others().filter_map(|other| {
+                Some(entries[(other, state)]? + f64::from(sizes[state] - sizes[other]))
+            }));
+            let change = ((row - column) / 2.0).round();
+            if change.is_finite() && change != 0.0 {
+                sizes[state] += change as i32;
+                is_balanced = false;
+            }
+        }
+        if is_balanced {
+            break;
+        }
+    }
+    sizes
+}
+
+/// A number times a power of 2, in two steps as the power alone may overflow.
+fn times_power_of_two(number: f64, exponent: i32) -> f64 {
+    let half = exponent / 2;
+    number * 2_f64.powi(half) * 2_f64.powi(exponent - half)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn entries_of_any_size_become_like() {
+        for stiffness in [1e-300, 1e-200, 1.0, 1e150, 1e300] {
+            let matrix = DMatrix::from_row_slice(2, 2, &[0.0, 1.0, -stiffness, 0.0]);
+            let balanced = Balanced::new(&matrix);
+            let [up, down] = [balanced.matrix[(0, 1)], -balanced.matrix[(1, 0)]];
+            assert!(up / down >= 0.25 && up / down <= 4.0 && up.max(down) >= 1.0);
+            let frequency = balanced.per_second((up * down).sqrt());
+            assert!(
+                (frequency / stiffness.sqrt() - 1.0).abs() < 1e-15,
+                "{stiffness:e}"
+            );
+        }
+    }
+}

@@ -1,0 +1,135 @@
+//! The quadratic eigenvalue problem of a balanced state matrix, in its coordinates.
+
+use nalgebra::{Complex, DMatrix, DVector};
+
+use crate::balancing::Balanced;
+use crate::null_space::{RANK, null_space, with_rows_of_one_size};
+use crate::qr_iteration;
+
+/// lambda^2 - lambda D - K in balanced coordinates, states of first order after them with
+/// lambda in place of lambda^2.
+pub(crate) struct Pencil {
+    /// (K F; G H)
+    stiffness: DMatrix<f64>,
+    /// (D 0; E 0)
+    damping: DMatrix<f64>,
+    /// From the upper rows: q' in balanced numbers for each q; 1 for states of first order.
+    ratio: DVector<f64>,
+    /// What a balanced number is in SI.
+    sizes: DVector<f64>,
+    degrees: usize,
+}
+
+/// The motions with the eigenvalue 0.
+pub(crate) struct Rigid {
+    pub shapes: Vec<DVector<Complex<f64>>>,
+    /// How often 0 is an eigenvalue.
+    pub multiplicity: usize,
+}
+
+impl Pencil {
+    /// The pencil of a balanced state matrix with so many degrees of freedom.
+    pub fn new(balanced: &Balanced, degrees: usize) -> Self {
+        let (balanced, sizes) = (&balanced.matrix, &balanced.sizes);
+        let count = balanced.nrows() - degrees;
+        // Positions and states of first order, by their places in the state.
+        let held = |place: usize| {
+            if place < degrees {
+                place
+            } else {
+                place + degrees
+            }
+        };
+        Self {
+            stiffness: DMatrix::from_fn(count, count, |row, column| {
+                balanced[(degrees + row, held(column))]
+            }),
+            damping: DMatrix::from_fn(count, count, |row, column| match column < degrees {
+                true => balanced[(degrees + row, degrees + column)],
+                false => 0.0,
+            }),
+            ratio: DVector::from_fn(count, |place, _| match place < degrees {
+                true => balanced[(place, degrees + place)],
+                false => 1.0,
+            }),
+            sizes: DVector::from_fn(count, |place, _| sizes[held(place)]),
+            degrees,
+        }
+    }
+
+    /// lambda (lambda/ratio) - (lambda/ratio) D - K: the rates are lambda/ratio of the coordinates.
+    pub fn at(&self, eigenvalue: Complex<f64>) -> DMatrix<Complex<f64>> {
+        let count = self.ratio.len();
+        DMatrix::from_fn(count, count, |row, column| {
+            let rate = eigenvalue / self.ratio[column];
+            let inertia = match row == column {
+                true if row < self.degrees => eigenvalue * rate,
+                true => eigenvalue,
+                false => 0.0.into(),
+            };
+            inertia - rate * self.damping[(row, column)] - self.stiffness[(row, column)]
+        })
+    }
+
+    /// The motions with the eigenvalue 0; nothing if they cannot be computed.
+    pub fn rigid(&self) -> Option<Rigid> {
+        let equilibrated = with_rows_of_one_size(self.stiffness.clone());
+        let (right, left) = (
+            null_space(&equilibrated)?,
+            null_space(&equilibrated.transpose())?,
+        );
+        let rows = self.stiffness.row_iter().map(|row| row.amax());
+        let weights: Vec<f64> = rows
+            .map(|size| if size > 0.0 { size } else { 1.0 })
+            .collect();
+        if right.ncols() == 0 {
+            return Some(Rigid {
+                shapes: Vec::new(),
+                multiplicity: 0,
+            });
+        }
+        // Back from the equilibrated rows to those of the equations.
+        let left = DMatrix::from_fn(left.nrows(), left.ncols(), |row, column| {
+            left[(row, column)] / weights[row]
+        });
+        let rates = DMatrix::from_fn(right.nrows(), right.ncols(), |row, column| {
+            right[(row, column)] / self.ratio[row]
+        });
+        let damped = left.transpose() * &self.damping * &rates;
+        let most = left.abs().transpose() * self.damping.abs() * rates.abs();
+        let singular = qr_iteration::svd(&damped)?.singular_values;
+        let most = most.amax();
+        let again = singular
+            .iter()
+            .filter(|value| **value <= RANK * most)
+            .count();
+        let complex = |column: nalgebra::DVectorView<'_, f64>| column.map(Complex::from);
+        Some(Rigid {
+            shapes: right.column_iter().map(complex).collect(),
+            multiplicity: right.ncols() + again,
+        })
+    }
+
+    /// Coordinates in SI, the largest number 1, and states of first order.
+    pub fn in_si(&self, shape: &DVector<Complex<f64>>) -> Vec<Complex<f64>> {
+        let amplitudes: Vec<Complex<f64>> = shape
+            .iter()
+            .zip(&self.sizes)
+            .map(|(value, size)| value * *size)
+            .collect();
+        let largest = |of: &[Complex<f64>]| {
+            let most = of
+                .iter()
+                .copied()
+                .max_by(|a, b| a.norm().total_cmp(&b.norm()));
+            most.filter(|value| value.norm() > 0.0)
+        };
+        // What rounding moves does not count.
+        let moves = shape.rows(0, self.degrees).norm() > RANK * shape.norm();
+        let largest = largest(&amplitudes[..self.degrees])
+            .filter(|_| moves)
+            .or_else(|| largest(&amplitudes))
+            .unwrap_or(1.0.into());
+        amplitudes.iter().map(|value| value / largest).collect()
+    }
+}

@@ -1,0 +1,288 @@
+//! Motions that no rate of the machine depends on: where it turns or travels steadily.
+//!
+//! Along a cyclic direction n of the coordinates, q + s n, all accelerations stay as they are, whatever s
+//! is. A coordinate that the equations do not hold is one; two wheels that roll on each other have one
+//! together. Candidates are the null space of the accelerations' Jacobian by the coordinates; each is
+//! confirmed by finite displacements.
+
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_model_spec::dimension::Dimension;
+
+use crate::error::Error;
+use crate::instance::Instance;
+use crate::jacobians::Jacobian;
+use crate::operating_point::OperatingPoint;
+
+/// A pivot of the elimination is 0 if it is this small beside the first.
+const RANK: f64 = 1e-10;
+
+/// A rate is unchanged if it differs by no more than this part of the terms it is the sum of.
+const UNCHANGED: f64 = 1e-9;
+
+/// Displacements along a candidate, in parts of the scale of its coordinate.
+const DISPLACEMENTS: [f64; 3] = [0.37, 1.0, -2.6];
+
+impl Instance<'_> {
+    /// The independent cyclic directions at a state: for each coordinate and mode how fast it moves beside
+    /// the one that moves with 1, SI.
+    ///
+    /// # Errors
+    /// As [`Instance::jacobian_evaluator`].
+    pub fn cyclic_directions(&self, at: &OperatingPoint) -> Result<Vec<Vec<f64>>, Error> {
+        let degrees = self.model().program().degrees_of_freedom();
+        let scales = self.natural_scales()?;
+        let mut rates = self.accelerations(&mut self.interpreter()?, at);
+        let matrix = self
+            .interpreted_jacobians()?
+            .dense(Jacobian::RatesByState, at.point());
+        let states = at.state.len();
+        let row = |row: usize| &matrix[(degrees + row) * states..][..states];
+        let rows: Vec<Vec<f64>> = (0..rates.len())
+            .map(|r| row(r)[..degrees].to_vec())
+            .collect();
+        if !rows
+            .iter()
+            .flatten()
+            .chain(&rates)
+            .all(|entry| entry.is_finite())
+        {
+            return Ok(Vec::new());
+        }
+        // Each rate's own size, without what a displacement adds.
+        let sizes: Vec<f64> = (0..rates.len())
+            .map(|r| {
+                let terms = row(r)
+                    .iter()
+                    .zip(&at.state)
+                    .map(|(entry, value)| (entry * value).abs());
+                terms.fold(rates[r].abs(), f64::max)
+            })
+            .collect();
+        let mut evaluator = self.interpreter()?;
+        let mut is_cyclic = |direction: &Vec<f64>| {
+            let first = direction
+                .iter()
+                .position(|speed| *speed == 1.0)
+                .unwrap_or(0);
+            DISPLACEMENTS.iter().all(|part| {
+                let way = part * scales[first].unwrap_or(1.0);
+                let mut moved = at.clone();
+                for (value, speed) in moved.state.iter_mut().zip(direction) {
+                    *value += way * speed;
+                }
+                let there = self.accelerations(&mut evaluator, &moved);
+                let pairs = rates.iter_mut().zip(&there).enumerate();
+                pairs.into_iter().all(|(r, (here, there))| {
+                    let added = rows[r]
+                        .iter()
+                        .zip(direction)
+                        .map(|(entry, speed)| (entry * way * speed).abs());
+                    let size = added.fold(sizes[r], f64::max);
+                    (*here - there).abs() <= UNCHANGED * size
+                })
+            })
+        };
+        let mut found = null_directions(&rows, degrees);
+        found.retain(|direction| is_cyclic(direction));
+        Ok(found)
+    }
+
+    /// Whether a full turn of a coordinate changes no rate at these states.
+    ///
+    /// # Errors
+    /// As [`Instance::evaluator`].
+    pub fn repeats_with_a_turn(
+        &self,
+        coordinate: usize,
+        states: &[(f64, &[f64])],
+    ) -> Result<bool, Error> {
+        let mut evaluator = self.interpreter()?;
+        let mut pairs = Vec::with_capacity(states.len());
+        for (t, state) in states {
+            let at = OperatingPoint {
+                t: *t,
+                state: state.to_vec(),
+                inputs: self.model().usual_inputs(),
+            };
+            let mut turned = at.clone();
+            turned.state[coordinate] += std::f64::consts::TAU;
+            pairs.push([&at, &turned].map(|at| self.accelerations(&mut evaluator, at)));
+        }
+        let count = pairs.first().map_or(0, |[rates, _]| rates.len());
+        Ok((0..count).all(|row| {
+            let size = pairs
+                .iter()
+                .map(|[rates, _]| rates[row].abs())
+                .fold(0.0, f64::max);
+            let mut differences = pairs.iter().map(|[a, b]| (a[row] - b[row]).abs());
+            differences.all(|difference| difference <= UNCHANGED * size)
+        }))
+    }
+
+    /// Whether a coordinate is a pure number, as angles are.
+    pub fn is_angle(&self, coordinate: usize) -> bool {
+        let mut units = self.model().model().coordinates.iter();
+        units
+            .nth(coordinate)
+            .is_some_and(|known| known.unit.dimension.is_none())
+    }
+
+    /// Accelerations, then the rates of states of first order.
+    fn accelerations(&self, evaluator: &mut Evaluator, at: &OperatingPoint) -> Vec<f64> {
+        let mut rates = vec![0.0; at.state.len()];
+        let OperatingPoint { t, state, inputs } = at;
+        evaluator.rates(
+            Point {
+                t: *t,
+                state,
+                inputs,
+            },
+            &mut rates,
+        );
+        rates.split_off(self.model().program().degrees_of_freedom())
+    }
+
+    /// How far coordinates and modes are worth moving, whatever their origin: the width of the declared
+    /// range, 1 of an angle or another pure number, SI. None where the specification does not say.
+    ///
+    /// # Errors
+    /// Parameters that are not admissible.
+    pub(crate) fn natural_scales(&self) -> Result<Vec<Option<f64>>, Error> {
+        let model = self.model().model();
+        let ranges = model
+            .coordinate_ranges()
+            .map_err(|error| Error::model(model, error))?;
+        let of_kind = |dimension: Dimension| dimension.is_none().then_some(1.0);
+        let coordinates = model
+            .coordinates
+            .iter()
+            .zip(ranges)
+            .map(|(coordinate, range)| {
+                let width = range.map(|(low, high)| high - low);
+                width.or(of_kind(coordinate.unit.dimension))
+            });
+        let fields = model.fields.iter().zip(self.model().orders());
+        let modes = fields
+            .flat_map(|(field, order)| std::iter::repeat_n(of_kind(field.unit.dimension), *order));
+        Ok(coordinates.chain(modes).collect())
+    }
+}
+
+/// A basis of the null space of a matrix given by rows, each vector with 1 in a place of its own. Units of
+/// rows and columns do not matter.
+fn null_directions(rows: &[Vec<f64>], columns: usize) -> Vec<Vec<f64>> {
+    let row_sizes = rows.iter().map(|row| largest(row.iter().copied()));
+    let mut matrix: Vec<Vec<f64>> = rows
+        .iter()
+        .zip(row_sizes)
+        .filter(|(_, size)| *size > 0.0)
+        .map(|(row, size)| row.iter().map(|entry| entry / size).collect())
+        .collect();
+    let units: Vec<f64> = (0..columns)
+        .map(
+            |column| match largest(matrix.iter().map(|row| row[column])) {
+                0.0 => 1.0,
+                size => 1.0 / size,
+            },
+        )
+        .collect();
+    for row in &mut matrix {
+        row.iter_mut()
+            .zip(&units)
+            .for_each(|(entry, unit)| *entry *= unit);
+    }
+    let mut pivots: Vec<(usize, usize)> = Vec::new();
+    let is_taken = |pivots: &[(usize, usize)], row| pivots.iter().any(|(taken, _)| *taken == row);
+    loop {
+        let free = (0..matrix.len()).filter(|row| !is_taken(&pivots, *row));
+        let entries = free.flat_map(|row| (0..columns).map(move |column| (row, column)));
+        let best = entries.max_by(|a, b| matrix[a.0][a.1].abs().total_cmp(&matrix[b.0][b.1].abs()));
+        let Some((row, column)) = best.filter(|(r, c)| matrix[*r][*c].abs() > RANK) else {
+            break;
+        };
+        let pivot = matrix[row][column];
+        let reduced: Vec<f64> = matrix[row].iter().map(|entry| entry / pivot).collect();
+        for (other, entries) in matrix.iter_mut().enumerate() {
+            let factor = entries[column];
+            if other == row || factor == 0.0 {
+                continue;
+            }
+            for (entry, from) in entries.iter_mut().zip(&reduced) {
+                *entry -= factor * from;
+            }
+            entries[column] = 0.0;
+        }
+        matrix[row] = reduced;
+        pivots.push((row, column));
+    }
+    let free = (0..columns).filter(|column| pivots.iter().all(|(_, taken)| taken != column));
+    free.map(|column| {
+        let mut direction = vec![0.0; columns];
+        direction[column] = 1.0;
+        for (row, pivot) in &pivots {
+            direction[*pivot] = -matrix[*row][column] * units[*pivot] / units[column];
+        }
+        direction
+    })
+    .collect()
+}
+
+fn largest(entries: impl Iterator<Item = f64>) -> f64 {
+    entries.fold(0.0, |most, entry| most.max(entry.abs()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{CompiledModel, Orders};
+
+    /// Two wheels on a soft contact, which turn together, a rack that nothing holds, and a pendulum.
+    const MACHINE: &str = r#"
+[model]
+name = "machine"
+[parameters]
+J = { value = 2, unit = "kg m^2" }
+m = { value = 3, unit = "kg" }
+r_1 = { value = 50, unit = "mm" }
+r_2 = { value = 150, unit = "mm" }
+k = { value = 1e6, unit = "N/m" }
+w = { value = 4, unit = "N m" }
+[coordinates]
+phi_1 = { unit = "rad", initial = 0.3 }
+phi_2 = { unit = "rad", initial = 0.2 }
+x = { unit = "m" }
+theta = { unit = "rad", initial = "pi/2" }
+[kinetic]
+wheels = "1/2*J*(dot(phi_1)^2 + dot(phi_2)^2)"
+rack = "1/2*m*dot(x)^2"
+pendulum = "1/2*J*dot(theta)^2"
+[potential]
+contact = "1/2*k*(r_1*phi_1 - r_2*phi_2)^2"
+weight = "-w*cos(theta)"
+"#;
+
+    #[test]
+    fn wheels_turn_together_and_a_rack_travels() {
+        let model = CompiledModel::of_text("machine.toml", MACHINE, Orders::Declared);
+        let model = model.expect("a model");
+        let run = model.at_declared().expect("an instance");
+        let at = run.operating_point(&[]).expect("a point");
+        let found = run.cyclic_directions(&at).expect("directions");
+        assert_eq!(found.len(), 2, "{found:?}");
+        let wheels = found
+            .iter()
+            .find(|direction| direction[2] == 0.0)
+            .expect("the wheels");
+        assert!(
+            (wheels[0] / wheels[1] - 3.0).abs() < 1e-9 && wheels[3] == 0.0,
+            "{wheels:?}"
+        );
+        assert!(found.contains(&vec![0.0, 0.0, 1.0, 0.0]), "{found:?}");
+        let states = [(0.0, &at.state[..])];
+        let repeats = |coordinate| {
+            run.repeats_with_a_turn(coordinate, &states)
+                .expect("an answer")
+        };
+        assert_eq!([0, 1, 3].map(repeats), [false, false, true]);
+    }
+}

@@ -1,0 +1,97 @@
+//! The linearised equations at one point of a search, in numbers that do not depend on units.
+
+use eomgen_analysis::qr_iteration;
+use nalgebra::{DMatrix, DVector};
+
+/// A singular value is zero if it is this small beside the largest.
+const RANK: f64 = 1e-12;
+
+/// Equations are about linear along a way if the change of the accelerations' slope is at most this part
+/// of it.
+const STRAIGHT: f64 = 0.5;
+
+/// The accelerations and the rates of states of first order at a point, and their derivatives by
+/// the unknowns.
+pub(super) struct Linear {
+    pub accelerations: DVector<f64>,
+    pub matrix: DMatrix<f64>,
+    /// How large each acceleration or a term of it has been so far.
+    pub sizes: DVector<f64>,
+}
+
+impl Linear {
+    /// The smallest change of the unknowns that makes the linearised accelerations least. An unknown is
+    /// measured by its natural scale, or, without one, by what it does to the accelerations.
+    pub fn step(&self, scales: &[Option<f64>]) -> DVector<f64> {
+        let rows = self.sizes.map(positive);
+        let relative = |row: usize, column: usize| self.matrix[(row, column)] / rows[row];
+        let units = DVector::from_fn(self.matrix.ncols(), |column, _| {
+            let effects = (0..self.matrix.nrows()).map(|row| relative(row, column).abs());
+            scales[column].unwrap_or_else(|| 1.0 / positive(effects.fold(0.0, f64::max)))
+        });
+        let scaled = DMatrix::from_fn(self.matrix.nrows(), self.matrix.ncols(), |row, column| {
+            relative(row, column) * units[column]
+        });
+        let wanted = -self.accelerations.component_div(&rows);
+        let step = qr_iteration::svd(&scaled).and_then(|decomposed| {
+            let least = RANK * decomposed.singular_values.amax();
+            decomposed.solve(&wanted, least).ok()
+        });
+        let step = step.unwrap_or_else(|| DVector::zeros(self.matrix.ncols()));
+        step.component_mul(&units)
+    }
+
+    /// Whether the accelerations' slope along a way to another point is about the same there.
+    pub fn is_straight_to(&self, there: &Self, way: &DVector<f64>) -> bool {
+        let rows = self.sizes.map(positive);
+        let slope = |linear: &Self| (&linear.matrix * way).component_div(&rows);
+        let (here, there) = (slope(self), slope(there));
+        (&there - &here).norm() <= STRAIGHT * here.norm().max(there.norm())
+    }
+
+    /// The sum of the squares of the accelerations, each in parts of its size.
+    pub fn measured_by(&self, sizes: &DVector<f64>) -> f64 {
+        let parts = self.accelerations.iter().zip(sizes);
+        parts
+            .map(|(value, size)| (value / positive(*size)).powi(2))
+            .sum()
+    }
+
+    /// Whether all accelerations are below this part of their sizes.
+    pub fn is_below(&self, part: f64) -> bool {
+        self.relative().all(|own| own <= part)
+    }
+
+    /// Which acceleration is the largest beside its size, and what it is, SI.
+    pub fn worst(&self) -> (usize, f64) {
+        let worst = self
+            .relative()
+            .enumerate()
+            .max_by(|a, b| a.1.total_cmp(&b.1));
+        worst.map_or((0, 0.0), |(row, _)| (row, self.accelerations[row]))
+    }
+
+    /// The sign of the acceleration of a coordinate: 0 if it is rounding.
+    pub fn direction_of(&self, coordinate: usize) -> f64 {
+        let value = self.accelerations.get(coordinate).copied().unwrap_or(0.0);
+        match self.sizes.get(coordinate) {
+            Some(size) if value.abs() > RANK * size => value.signum(),
+            _ => 0.0,
+        }
+    }
+
+    fn relative(&self) -> impl Iterator<Item = f64> {
+        let parts = self.accelerations.iter().zip(&self.sizes);
+        parts.map(|(value, size)| {
+            if *value == 0.0 {
+                0.0
+            } else {
+                value.abs() / size
+            }
+        })
+    }
+}
+
+fn positive(size: f64) -> f64 {
+    if size > 0.0 { size } else { 1.0 }
+}

@@ -1,0 +1,324 @@
+//! The search for an equilibrium: the method of Gauss and Newton with the emitted Jacobians.
+//!
+//! A step goes as far as the linearised equations are right along it (P. Deuflhard, *Newton Methods for
+//! Nonlinear Problems*, 3.2), so that the search follows the path from its start and does not jump to
+//! another equilibrium; no coordinate moves by more than a part of its natural scale, or out of its
+//! declared range.
+
+use eomgen_codegen::program::evaluator::Evaluator;
+use nalgebra::{DMatrix, DVector};
+
+use crate::error::Error;
+use crate::instance::Instance;
+use crate::jacobians::{Jacobian, JacobianEvaluator};
+use crate::operating_point::{OperatingPoint, Setting};
+
+use super::linear::Linear;
+
+/// Steps before the search is given up; near an equilibrium ten are enough.
+const MAX_STEPS: usize = 300;
+
+/// Halvings of a step before it is given up.
+const MAX_HALVINGS: i32 = 40;
+
+/// Halvings of a step before one is taken along which the equations bend, as across a kink.
+const MAX_STRAIGHT_HALVINGS: i32 = 12;
+
+/// Halvings of a step from where all is zero already: what it gains is rounding.
+const HALVINGS_AT_THE_END: i32 = 2;
+
+/// The longest step, in parts of a coordinate's natural scale.
+const LONGEST_STEP: f64 = 0.25;
+
+/// A displacement off a place where no step helps, in parts of a coordinate's natural scale.
+const NUDGE: f64 = 1.0 / 1024.0;
+
+/// Displacements before the search is given up.
+const MAX_NUDGES: usize = 3;
+
+/// An acceleration is zero if it is this small beside the largest that the search has met in its
+/// equation, or the terms that it is the sum of.
+const ZERO: f64 = 1e-10;
+
+/// What is looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Unknown {
+    /// A coordinate, a state of first order or an input.
+    Setting(Setting),
+    /// The speed along a cyclic direction, by its place.
+    Speed(usize),
+}
+
+pub(super) struct Search<'i, 'm> {
+    instance: &'i Instance<'m>,
+    evaluator: Evaluator,
+    jacobians: JacobianEvaluator,
+    directions: Vec<Vec<f64>>,
+    unknowns: Vec<Unknown>,
+    /// Natural scales of the unknowns, where there are.
+    scales: Vec<Option<f64>>,
+    /// Ranges of the unknowns, where they are declared.
+    ranges: Vec<Option<(f64, f64)>>,
+}
+
+impl<'i, 'm> Search<'i, 'm> {
+    pub fn new(
+        instance: &'i Instance<'m>,
+        directions: &[Vec<f64>],
+        unknowns: Vec<Unknown>,
+    ) -> Result<Self, Error> {
+        let model = instance.model().model();
+        let refused = |error| Error::model(model, error);
+        let scales = instance.natural_scales()?;
+        let coordinates = model.coordinate_ranges().map_err(refused)?;
+        let inputs = model.input_ranges().map_err(refused)?;
+        let range = |unknown: &Unknown| match unknown {
+            Unknown::Setting(Setting::State(place)) => coordinates.get(*place).copied().flatten(),
+            Unknown::Setting(Setting::Input(place)) => inputs.get(*place).copied().flatten(),
+            _ => None,
+        };
+        let scale = |unknown: &Unknown| match unknown {
+            Unknown::Setting(Setting::State(place)) => scales.get(*place).copied().flatten(),
+            other => range(other).map(|(low, high)| high - low),
+        };
+        Ok(Self {
+            evaluator: instance.interpreter()?,
+            jacobians: instance.interpreted_jacobians()?,
+            instance,
+            directions: directions.to_vec(),
+            scales: unknowns.iter().map(scale).collect(),
+            ranges: unknowns.iter().map(range).collect(),
+            unknowns,
+        })
+    }
+
+    /// Moves to an equilibrium, and gives the accelerations that are left there.
+    pub fn run(&mut self, at: &mut OperatingPoint) -> Result<Vec<f64>, Error> {
+        let mut here = self.linearised(at)?;
+        let mut nudges = 0;
+        for _ in 0..MAX_STEPS {
+            if here.is_below(f64::EPSILON) {
+                break;
+            }
+            let step = here.step(&self.scales);
+            let moved = match self.advanced(at, &here, &step) {
+                // Where nothing gets smaller any more, rounding is all that is left.
+                None if here.is_below(ZERO) || nudges == MAX_NUDGES => break,
+                None => {
+                    nudges += 1;
+                    self.nudged(at, &here)
+                }
+                moved => moved,
+            };
+            let Some((trial, mut there)) = moved else {
+                break;
+            };
+            there.sizes = there.sizes.sup(&here.sizes);
+            (*at, here) = (trial, there);
+        }
+        if here.is_below(ZERO) {
+            return Ok(here.accelerations.iter().copied().collect());
+        }
+        Err(self.not_found(at, &here))
+    }
+
+    /// The longest part of a step along which accelerations get less and the equations are about linear;
+    /// if that is none, the longest along which accelerations get less.
+    fn advanced(
+        &mut self,
+        at: &OperatingPoint,
+        here: &Linear,
+        step: &DVector<f64>,
+    ) -> Option<(OperatingPoint, Linear)> {
+        let halvings = match here.is_below(ZERO) {
+            true => HALVINGS_AT_THE_END,
+            false => MAX_HALVINGS,
+        };
+        let longest = self.longest_part(step);
+        let before = here.measured_by(&here.sizes);
+        let mut bent = None;
+        for halving in 0..halvings {
+            if halving >= MAX_STRAIGHT_HALVINGS && bent.is_some() {
+                break;
+            }
+            let (trial, way) = self.moved(at, &(step * (longest * 0.5_f64.powi(halving))));
+            let Ok(there) = self.linearised(&trial) else {
+                continue;
+            };
+            if there.measured_by(&here.sizes) >= before {
+                continue;
+            }
+            if here.is_straight_to(&there, &way) {
+                return Some((trial, there));
+            }
+            bent.get_or_insert((trial, there));
+        }
+        bent
+    }
+
+    /// The part of a step that moves no unknown further than its scale admits.
+    fn longest_part(&self, step: &DVector<f64>) -> f64 {
+        let parts = step.iter().zip(&self.scales);
+        let part = |(change, scale): (&f64, &Option<f64>)| match scale {
+            Some(scale) if *change != 0.0 => LONGEST_STEP * scale / change.abs(),
+            _ => f64::INFINITY,
+        };
+        parts.map(part).fold(1.0, f64::min)
+    }
+
+    /// A little off, as the accelerations point: where no step helps, forces may be at their largest.
+    fn nudged(&mut self, at: &OperatingPoint, here: &Linear) -> Option<(OperatingPoint, Linear)> {
+        let change = DVector::from_fn(self.unknowns.len(), |place, _| {
+            match (self.unknowns[place], self.scales[place]) {
+                (Unknown::Setting(Setting::State(state)), Some(scale)) => {
+                    NUDGE * scale * here.direction_of(state)
+                }
+                _ => 0.0,
+            }
+        });
+        let (trial, way) = self.moved(at, &change);
+        let there = self.linearised(&trial).ok()?;
+        (way.amax() > 0.0).then_some((trial, there))
+    }
+
+    /// The accelerations at a point, and their derivatives by the unknowns.
+    pub fn linearised(&mut self, at: &OperatingPoint) -> Result<Linear, Error> {
+        let degrees = self.instance.model().program().degrees_of_freedom();
+        let states = at.state.len();
+        let mut rates = vec![0.0; states];
+        self.evaluator.rates(at.point(), &mut rates);
+        let mut dense = |of: Jacobian| {
+            let (rows, columns) = self.jacobians.shape(of);
+            DMatrix::from_row_slice(rows, columns, &self.jacobians.dense(of, at.point()))
+        };
+        let by_state = dense(Jacobian::RatesByState);
+        let by_inputs = dense(Jacobian::RatesByInputs);
+        let rows = states - degrees;
+        let matrix = DMatrix::from_fn(rows, self.unknowns.len(), |row, column| {
+            let row = degrees + row;
+            match self.unknowns[column] {
+                Unknown::Setting(Setting::State(place)) => by_state[(row, place)],
+                Unknown::Setting(Setting::Input(place)) => by_inputs[(row, place)],
+                Unknown::Setting(Setting::Time) => 0.0,
+                Unknown::Speed(direction) => {
+                    let speeds = self.directions[direction].iter().enumerate();
+                    speeds
+                        .map(|(place, speed)| by_state[(row, degrees + place)] * speed)
+                        .sum()
+                }
+            }
+        });
+        let accelerations = DVector::from_column_slice(&rates[degrees..]);
+        if !accelerations
+            .iter()
+            .chain(matrix.iter())
+            .all(|number| number.is_finite())
+        {
+            let reason = "an acceleration or its derivative is no finite number there: look for a stiffness \
+                          or a mass that is too large or too small"
+                .to_owned();
+            return Err(Error::Request(reason));
+        }
+        let sizes = DVector::from_fn(rows, |row, _| {
+            let term = |(entry, value): (f64, &f64)| (entry * value).abs();
+            let by_state = by_state.row(degrees + row);
+            let by_inputs = by_inputs.row(degrees + row);
+            let of_states = by_state.iter().copied().zip(&at.state).map(term);
+            let of_inputs = by_inputs.iter().copied().zip(&at.inputs).map(term);
+            let scaled = matrix.row(row);
+            let of_scales = scaled.iter().zip(&self.scales);
+            let of_scales = of_scales.map(|(entry, scale)| (entry * scale.unwrap_or(0.0)).abs());
+            let terms = of_states.chain(of_inputs).chain(of_scales);
+            terms.fold(accelerations[row].abs(), f64::max)
+        });
+        Ok(Linear {
+            accelerations,
+            matrix,
+            sizes,
+        })
+    }
+
+    /// The point with its unknowns changed, within their ranges, and by how much they are.
+    fn moved(&self, at: &OperatingPoint, change: &DVector<f64>) -> (OperatingPoint, DVector<f64>) {
+        let degrees = self.instance.model().program().degrees_of_freedom();
+        let (mut moved, mut way) = (at.clone(), DVector::zeros(change.len()));
+        for (place, unknown) in self.unknowns.iter().enumerate() {
+            let within = |value: f64| match self.ranges[place] {
+                Some((low, high)) => value.clamp(low, high),
+                None => value,
+            };
+            let value = match *unknown {
+                Unknown::Setting(Setting::State(state)) => &mut moved.state[state],
+                Unknown::Setting(Setting::Input(input)) => &mut moved.inputs[input],
+                Unknown::Setting(Setting::Time) => continue,
+                Unknown::Speed(direction) => {
+                    way[place] = change[place];
+                    let rates = moved.state[degrees..].iter_mut();
+                    for (rate, speed) in rates.zip(&self.directions[direction]) {
+                        *rate += change[place] * speed;
+                    }
+                    continue;
+                }
+            };
+            let there = within(*value + change[place]);
+            way[place] = there - *value;
+            *value = there;
+        }
+        (moved, way)
+    }
+
+    /// Whether any rate depends on the time at a point.
+    pub fn depends_on_time(&mut self, at: &OperatingPoint) -> bool {
+        let by_time = self.jacobians.dense(Jacobian::RatesByTime, at.point());
+        by_time.iter().any(|rate| *rate != 0.0)
+    }
+
+    /// The names of the unknowns.
+    pub fn names(&self) -> Vec<String> {
+        let model = self.instance.model();
+        let (states, degrees) = (model.state_names(), model.program().degrees_of_freedom());
+        let name = |unknown: &Unknown| match *unknown {
+            Unknown::Setting(Setting::Time) => "t".to_owned(),
+            Unknown::Setting(Setting::State(place)) => states[place].clone(),
+            Unknown::Setting(Setting::Input(place)) => model.model().inputs[place].name.clone(),
+            Unknown::Speed(direction) => {
+                let mut speeds = self.directions[direction].iter();
+                let moving = speeds.position(|speed| *speed != 0.0).unwrap_or(0);
+                states[degrees + moving].clone()
+            }
+        };
+        self.unknowns.iter().map(name).collect()
+    }
+
+    fn not_found(&self, at: &OperatingPoint, here: &Linear) -> Error {
+        let degrees = self.instance.model().program().degrees_of_freedom();
+        let states = self.instance.model().state_names();
+        let (row, left) = here.worst();
+        // Rows are the accelerations, then the rates of states of first order.
+        let place = if row < degrees { row } else { row + degrees };
+        let at_the_end = self
+            .unknowns
+            .iter()
+            .zip(&self.ranges)
+            .find(|(unknown, range)| {
+                let Unknown::Setting(Setting::State(place)) = unknown else {
+                    return false;
+                };
+                range.is_some_and(|(low, high)| [low, high].contains(&at.state[*place]))
+            });
+        let range = match at_the_end {
+            Some((Unknown::Setting(Setting::State(place)), _)) => {
+                format!(", and {} at the end of its range", states[*place])
+            }
+            _ => String::new(),
+        };
+        let name = states.get(place).map_or("", String::as_str);
+        let reason = format!(
+            "no equilibrium was found near the initial state: where the search ended, at {name} = {:e}{range}, \
+             {name} still has the acceleration or rate {left:e} (SI); begin nearer to one with --state, or fix \
+             a coordinate (--fix) so that inputs hold it",
+            at.state.get(place).copied().unwrap_or(0.0)
+        );
+        Error::Stopped { t: None, reason }
+    }
+}

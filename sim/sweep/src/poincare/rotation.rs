@@ -1,0 +1,79 @@
+//! Coordinates of a section that grow for ever, as machines turn or travel.
+//!
+//! A coordinate along which nothing changes does not tell points apart; an angle with which the equations
+//! repeat tells them apart within a turn.
+
+use std::f64::consts::TAU;
+
+use eomgen_compiled_model::{Instance, OperatingPoint};
+
+use super::numbers::{Part, extents, within_a_turn};
+use super::quantity::Quantity;
+use crate::measure::Failure;
+
+/// States of the motion at which the equations are compared after a turn.
+const COMPARED: usize = 8;
+
+/// A motion at the times when it was looked at.
+pub struct Looks<'m> {
+    /// The times, s.
+    pub times: &'m [f64],
+    /// The states.
+    pub states: &'m [Vec<f64>],
+}
+
+/// Replaces the part of a coordinate that only its drift tells apart, and takes whole turns off the points.
+pub fn without_drift(
+    instance: &Instance<'_>,
+    quantity: &Quantity,
+    looks: &Looks<'_>,
+    (seen, points): (&[[f64; 2]], &mut [[f64; 2]]),
+    parts: &mut [Part; 2],
+) -> Result<(), Failure> {
+    let (shown, place) = quantity.coordinate();
+    let is_angle = instance.is_angle(place);
+    let extent = extents(seen.iter())[shown];
+    let turns = is_angle && extent.1 - extent.0 >= TAU;
+    if is_cyclic(instance, looks, place)? {
+        parts[shown] = Part::Ignored;
+    } else if turns && repeats(instance, looks, place)? {
+        parts[shown] = Part::Angle;
+    } else {
+        return Ok(());
+    }
+    if is_angle {
+        let start = instance.initial()[place];
+        for point in points {
+            point[shown] = within_a_turn(point[shown], start);
+        }
+    }
+    Ok(())
+}
+
+/// Whether a cyclic direction moves a coordinate.
+fn is_cyclic(instance: &Instance<'_>, looks: &Looks<'_>, place: usize) -> Result<bool, Failure> {
+    let Some((t, state)) = looks.times.iter().zip(looks.states).next_back() else {
+        return Ok(false);
+    };
+    let at = OperatingPoint {
+        t: *t,
+        state: state.clone(),
+        inputs: instance.model().usual_inputs(),
+    };
+    // A model that has no Jacobians is compared as it is.
+    let directions = instance.cyclic_directions(&at).unwrap_or_default();
+    Ok(directions.iter().any(|direction| direction[place] != 0.0))
+}
+
+/// Whether the equations are the same after a turn of a coordinate.
+fn repeats(instance: &Instance<'_>, looks: &Looks<'_>, place: usize) -> Result<bool, Failure> {
+    let step = (looks.states.len() / COMPARED).max(1);
+    let compared: Vec<(f64, &[f64])> = looks
+        .times
+        .iter()
+        .zip(looks.states)
+        .step_by(step)
+        .map(|(t, state)| (*t, &state[..]))
+        .collect();
+    Ok(instance.repeats_with_a_turn(place, &compared)?)
+}

@@ -1,0 +1,159 @@
+//! Values given on the command line, and the equilibria that begin there.
+
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+use eomgen_tests::program::{accepted, run};
+use serde_json::Value;
+
+use super::{OSCILLATOR, columns, json, shipped, written};
+
+/// A pendulum whose pivot has a motor.
+const DRIVEN: &str = r#"
+[model]
+name = "driven_pendulum"
+[parameters]
+m = { value = 0.15, unit = "kg", min = 0 }
+l = { value = 300, unit = "mm", min = 0 }
+c = { value = 2e-4, unit = "N m s" }
+g = { value = 9.81, unit = "m/s^2" }
+[coordinates]
+theta = { unit = "rad", initial = "pi/2" }
+[inputs]
+u = { unit = "N m" }
+[definitions]
+x = "l*sin(theta)"
+y = "-l*cos(theta)"
+[kinetic]
+bob = "1/2*m*(dot(x)^2 + dot(y)^2)"
+[potential]
+gravity = "m*g*y"
+[dissipation]
+pivot = "1/2*c*dot(theta)^2"
+[forces]
+motor = { on = "theta", value = "u" }
+"#;
+
+fn number(document: &Value, name: &str) -> f64 {
+    document["at"][name].as_f64().expect("a number")
+}
+
+#[test]
+fn a_driven_pendulum_is_trimmed_to_the_nearer_rest() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let model = written(folder.path(), DRIVEN);
+    let level = number(&json(&["trim", &model]), "theta");
+    assert!(level.abs() < 1e-9 || (level - PI).abs() < 1e-9, "{level}");
+    for (state, right) in [
+        ("theta=80 deg", 0.0),
+        ("theta=100 deg", PI),
+        ("theta=-pi/3", 0.0),
+        ("theta=2*pi + 1", TAU),
+    ] {
+        let found = number(&json(&["trim", &model, "--state", state]), "theta");
+        assert!((found - right).abs() < 1e-9, "{state}: {found}");
+    }
+    let held = json(&["trim", &model, "--fix", "theta=30 deg"]);
+    assert!(
+        (number(&held, "u") - 0.15 * 9.81 * 0.3 * 0.5).abs() < 1e-12,
+        "{held}"
+    );
+}
+
+#[test]
+fn modes_and_linearise_tell_whether_the_state_is_an_equilibrium() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let model = written(folder.path(), DRIVEN);
+    for command in ["modes", "linearise"] {
+        for (at, is_equilibrium) in [
+            (&["--at", "theta=pi"][..], true),
+            (&["--at", "theta=0"], true),
+            (&["--at", "theta=pi/2", "--at", "u=m*g*l"], true),
+            (&["--at", "trim", "--at", "theta=1.2"], true),
+            (&["--at", "theta=3.14"], false),
+            (&["--at", "theta_dot=0.1", "--at", "theta=0"], false),
+            (&[], false),
+        ] {
+            let given = [&[command, &model, "--json"], at].concat();
+            let found = run(&given);
+            assert!(found.status.success(), "{given:?}");
+            let document: Value = serde_json::from_slice(&found.stdout).expect("JSON");
+            assert_eq!(document["equilibrium"], is_equilibrium, "{given:?}");
+            let said = String::from_utf8_lossy(&found.stderr).into_owned();
+            assert_eq!(
+                said.contains("no equilibrium"),
+                !is_equilibrium,
+                "{given:?}: {said}"
+            );
+        }
+    }
+    let trimmed = json(&[
+        "modes",
+        &model,
+        "--at",
+        "trim",
+        "--at",
+        "theta=100 deg",
+        "--json",
+    ]);
+    assert!((number(&trimmed, "theta") - PI).abs() < 1e-9);
+}
+
+#[test]
+fn commands_read_expressions_and_units_alike() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let model = written(folder.path(), OSCILLATOR);
+    // omega^2 = k/m.
+    for (set, omega) in [
+        (&["--set", "k=0.072 N/mm"][..], 6.0),
+        (&["--set", "m=4*m"], 2.5),
+        (&["--set", "k=200", "--set", "m=8000 g"], 5.0),
+    ] {
+        let found = json(&[&["modes", &model, "--json"], set].concat());
+        let frequency = found["modes"][0]["frequency"].as_f64().expect("Hz");
+        assert!(
+            (TAU * frequency / omega - 1.0).abs() < 1e-12,
+            "{set:?} {frequency}"
+        );
+    }
+    let out = folder.path().join("motion.csv");
+    let file = out.display().to_string();
+    let given = [
+        "simulate", &model, "--until", "1", "--sample", "0.5", "--out", &file,
+    ];
+    let initial = ["--initial", "x=25 mm", "--initial", "x_dot=F_0/(m*w_0)"];
+    accepted(&[&given[..], &initial].concat());
+    let rows = columns(&out, &["x", "x_dot"]);
+    assert_eq!(rows[0], [0.025, 0.75]);
+    let held = json(&["trim", &model, "--fix", "u=F_0*2"]);
+    assert!((number(&held, "x") - 0.12).abs() < 1e-13);
+    let at = json(&[
+        "linearise",
+        &shipped("pendulum"),
+        "--at",
+        "theta=90 deg",
+        "--at",
+        "t=20 ms",
+    ]);
+    assert_eq!((number(&at, "theta"), number(&at, "t")), (FRAC_PI_2, 0.02));
+}
+
+#[test]
+fn frequencies_of_stiffnesses_of_any_size_are_found() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let model = written(folder.path(), OSCILLATOR);
+    for stiffness in ["1e-200", "1e-9", "1e150", "1e300"] {
+        let set = format!("k={stiffness}");
+        let found = json(&["modes", &model, "--set", &set, "--json"]);
+        let frequency = found["modes"][0]["frequency"].as_f64().expect("Hz");
+        let right = (stiffness.parse::<f64>().expect("a number") / 2.0).sqrt() / TAU;
+        assert!(
+            (frequency / right - 1.0).abs() < 1e-12,
+            "{stiffness}: {frequency:e}"
+        );
+        assert_eq!(number(&json(&["trim", &model, "--set", &set]), "x"), 0.0);
+    }
+    let endless = run(&["modes", &model, "--set", "k=1e308", "--set", "m=1e-10"]);
+    let said = String::from_utf8_lossy(&endless.stderr).into_owned();
+    assert_eq!(endless.status.code(), Some(2));
+    assert!(said.contains("no finite number"), "{said}");
+}
