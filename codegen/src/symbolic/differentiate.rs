@@ -77,6 +77,7 @@ impl<'a> Direction<'a> {
             tangent: Some(tangent),
             known,
             moving,
+            ..Self::default()
         }
     }
 

@@ -237,8 +237,8 @@ impl Instance<'_> {
             Err(error) => {
                 let (t, surfaces) = (SolveError::time(&error), system.surfaces());
                 let cause = self.cause(&error);
+                let ended_at = t.unwrap_or(request.span().0);
                 let passed = system.projection().and_then(|projection| {
-                    let ended_at = t.unwrap_or(request.span().0);
                     singular_position(projection, &cause, ended_at, &so_far, request.inputs)
                 });
                 let (t, singular) = match passed {

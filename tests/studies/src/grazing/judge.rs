@@ -135,6 +135,8 @@ fn sample(
         inputs: &inputs,
         solver,
         tolerance,
+        audit: false,
+        max_step: f64::INFINITY,
     };
     let motion = run
         .follow(&request, &mut |_| {})

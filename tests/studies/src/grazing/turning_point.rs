@@ -64,6 +64,8 @@ fn deflections(
         inputs: &run.no_inputs(),
         solver: Solver::Rk,
         tolerance: TOLERANCE,
+        audit: false,
+        max_step: f64::INFINITY,
     };
     let motion = run
         .follow(&request, &mut |_| {})
