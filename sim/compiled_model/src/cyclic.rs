@@ -55,7 +55,10 @@ impl Instance<'_> {
                     .iter()
                     .zip(&at.state)
                     .map(|(entry, value)| (entry * value).abs());
-                terms.fold(rates[r].abs(), f64::max)
+                // Where the machine is symmetrical these may all vanish; what a displacement changes does not.
+                let scaled = rows[r].iter().zip(&scales);
+                let scaled = scaled.map(|(entry, scale)| (entry * scale.unwrap_or(0.0)).abs());
+                terms.chain(scaled).fold(rates[r].abs(), f64::max)
             })
             .collect();
         let mut evaluator = self.interpreter()?;

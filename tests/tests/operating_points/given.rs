@@ -157,3 +157,19 @@ fn frequencies_of_stiffnesses_of_any_size_are_found() {
     assert_eq!(endless.status.code(), Some(2));
     assert!(said.contains("no finite number"), "{said}");
 }
+
+#[test]
+fn a_bicycle_that_rolls_upright_is_in_equilibrium_at_its_own_speed() {
+    let spec = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../examples/constrained/bicycle.toml"
+    );
+    let modes = json(&["modes", spec, "--json"]);
+    assert_eq!(modes["equilibrium"], true);
+    let found = json(&["trim", spec]);
+    assert!(
+        (number(&found, "x_dot") - 5.0).abs() < 1e-9,
+        "{}",
+        found["at"]
+    );
+}

@@ -17,7 +17,7 @@ use self::search::{Search, Unknown};
 /// A state is no equilibrium if a rate is this large beside the terms it is the sum of.
 const NOT_ZERO: f64 = 1e-6;
 
-/// Speeds agree with a cyclic direction if they differ by no more than this part.
+/// Speeds agree with a cyclic direction if they differ by no more than this part of the largest of their kind.
 const SAME_SPEED: f64 = 1e-9;
 
 /// A state that stays as it is.
@@ -197,10 +197,16 @@ impl Instance<'_> {
         }
     }
 
+    /// Whether the rates of two states are the same, beside the largest of their kind.
     fn has_speeds_of(&self, one: &OperatingPoint, other: &OperatingPoint) -> bool {
-        let rates = self.degrees()..2 * self.degrees();
-        let mut pairs = one.state[rates.clone()].iter().zip(&other.state[rates]);
-        pairs.all(|(a, b)| (a - b).abs() <= SAME_SPEED * a.abs().max(b.abs()))
+        let model = self.model();
+        let units = model.model().state_units(model.orders());
+        let rates = || self.degrees()..2 * self.degrees();
+        rates().all(|place| {
+            let alike = rates().filter(|other| units[*other].dimension == units[place].dimension);
+            let largest = alike.fold(0.0, |most: f64, other| most.max(one.state[other].abs()));
+            (one.state[place] - other.state[place]).abs() <= SAME_SPEED * largest
+        })
     }
 
     /// Refuses a given rate other than 0 of a coordinate that may not move steadily.
