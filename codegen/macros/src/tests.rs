@@ -149,7 +149,7 @@ fn findings_point_at_their_tokens() {
             "the expression is not finished",
             "+",
         ),
-        ("potential { p: x**2 }", "`**` is not an operator", "*"),
+        ("potential { p: x**2 }", "`**` is not an operator", "**"),
         (
             "potential { p: \"sin(y)\" }",
             "unknown name `y`",

@@ -17,8 +17,8 @@ impl Rest {
     }
 }
 
-/// The factors of a combination of `rows` that is no longer than `tolerance`, with the factor 1 of the last row
-/// that depends on others; nothing if all are independent. Rows have lengths of about 1.
+/// Returns the factors of a combination of `rows` that is no longer than `tolerance`; `None` if all rows are
+/// independent. Rows have lengths of about 1, and so has the factor of one row.
 pub fn dependent_combination(rows: &[Vec<f64>], tolerance: f64) -> Option<Vec<f64>> {
     let unit = |place: usize| {
         (0..rows.len())
@@ -64,15 +64,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_last_row_that_depends_on_others_is_found_with_its_combination() {
+    fn a_combination_of_dependent_rows_is_found_up_to_a_factor() {
         let rows = [
             vec![1.0, 0.0, 0.0],
             vec![0.6, 0.8, 0.0],
             vec![0.0, 1.0, 0.0],
         ];
         let factors = dependent_combination(&rows, 1e-9).expect("a combination");
-        assert_eq!(factors[2], 1.0);
-        assert!((factors[1] + 1.25).abs() < 1e-12 && (factors[0] - 0.75).abs() < 1e-12);
+        let last = factors[2];
+        assert!((factors[1] / last + 1.25).abs() < 1e-12);
+        assert!((factors[0] / last - 0.75).abs() < 1e-12);
         assert_eq!(dependent_combination(&rows[..2], 1e-9), None);
     }
 

@@ -223,9 +223,12 @@ fn turned_points(count: usize) -> String {
         + &lines(count, &energy(0), &energy)
 }
 
+/// A specification of a given size.
+type TextOfSize<'a> = &'a dyn Fn(usize) -> String;
+
 #[test]
 fn an_examination_grows_as_its_specification_does() {
-    let cases: [(&str, usize, &dyn Fn(usize) -> String); 7] = [
+    let cases: [(&str, usize, TextOfSize<'_>); 7] = [
         ("masses", 1000, &independent_masses),
         ("springs", 1000, &masses_between_springs),
         ("carried", 1000, &masses_that_carry_each_other),

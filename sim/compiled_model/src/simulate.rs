@@ -328,14 +328,14 @@ fn singular_position(
     Some((ended_at, reason??))
 }
 
+/// Auditor of a motion by the exact solver, and the evaluator of its energies.
+type ExactAudit<'a> = Option<(&'a mut Auditor, &'a RefCell<Evaluator>)>;
+
 fn propagate(
     propagator: &mut Propagator,
     trajectory: &mut Trajectory,
     request: &Request<'_>,
-    (progress, auditor): (
-        &mut dyn FnMut(f64),
-        Option<(&mut Auditor, &RefCell<Evaluator>)>,
-    ),
+    (progress, auditor): (&mut dyn FnMut(f64), ExactAudit<'_>),
 ) -> Result<(), ExactError> {
     let asked = (request.initial, request.span(), request.times);
     let Some((auditor, evaluator)) = auditor else {
