@@ -73,6 +73,8 @@ impl Place {
 pub(crate) struct Sliding {
     sided: Sided,
     places: Vec<Place>,
+    /// Whether nothing jumped on a surface where the motion last came to it: its function decides.
+    is_jumpless: Vec<bool>,
     /// The largest that each function has been.
     sizes: Vec<f64>,
     /// When the motion began, s.
@@ -90,6 +92,7 @@ impl Sliding {
         let count = sided.count();
         Self {
             places: vec![Place::Free; count],
+            is_jumpless: vec![false; count],
             sizes: vec![0.0; count],
             begin: None,
             kept: None,
@@ -114,12 +117,16 @@ impl Sliding {
         self.places.iter().all(|place| *place == Place::Free)
     }
 
-    /// Keeps these sides of the guards, -1, 1, or 0 where it is not known, or no longer.
+    /// Keeps these sides of the guards, -1, 1, or 0 where it is not known, or no longer. Without a jump
+    /// the rates of a side are not kept: beyond the surface they may lead away from it.
     pub fn keep_sides(&mut self, sides: Option<&[f64]>) {
         self.found_at = None;
         self.kept = sides.map(|sides| {
-            let guards = (0..self.places.len()).map(|surface| self.sided.guard(surface));
-            guards.map(|guard| sides[guard]).collect()
+            let kept = |surface: usize| match self.is_jumpless[surface] {
+                true => 0.0,
+                false => sides[self.sided.guard(surface)],
+            };
+            (0..self.places.len()).map(kept).collect()
         });
     }
 
@@ -403,6 +410,7 @@ impl Sliding {
     ) -> (Vec<usize>, Vec<Arrival>) {
         let mut left = (Vec::new(), Vec::new());
         for ((surface, arrival), jumps) in touching.iter().zip(arrivals).zip(jumps) {
+            self.is_jumpless[*surface] = !jumps;
             if *jumps {
                 left.0.push(*surface);
                 left.1.push(*arrival);
@@ -414,7 +422,7 @@ impl Sliding {
             }
             self.places[*surface] = Place::Free;
             if let Some(kept) = &mut self.kept {
-                kept[*surface] = arrival.side;
+                kept[*surface] = 0.0;
             }
         }
         left

@@ -95,6 +95,30 @@ fn flow_through_an_orifice_turns_round_as_in_scipy() {
     agrees_with_scipy("sign(p)*abs(p)^0.5", &GENERAL, 3);
 }
 
+/// A pulse of pressure sets the mass in motion: its flow turns round at each end of its swing, where pressure
+/// and speed vanish together.
+#[test]
+fn flow_that_turns_round_many_times_follows_scipy() {
+    let model = orifice("sign(p)*sqrt(abs(p))");
+    let run = model.at_declared().unwrap();
+    let right = [
+        [-0.002955238307, -0.04177712003, -1772.652808],
+        [-0.004200321087, -0.001746957389, -3.056043997],
+        [-0.0007646415664, 0.007098148746, 50.3917004],
+        [0.0003171976985, -0.002219041077, -4.923837063],
+    ];
+    for solver in [Solver::Radau, Solver::Auto] {
+        let motion = run.simulate(&[0.0, 0.0, 1e6], &TIMES, &run.no_inputs(), solver);
+        let motion = motion.unwrap_or_else(|error| panic!("{solver}: {error}"));
+        for (state, right) in motion.trajectory.states[1..].iter().zip(right) {
+            for ((value, right), size) in state.iter().zip(right).zip([0.01, 1.0, 1e6]) {
+                let off = (value - right).abs() / size;
+                assert!(off < 2e-8, "{solver}: {value} {right}");
+            }
+        }
+    }
+}
+
 #[test]
 fn laws_without_a_value_on_the_wrong_side_of_their_sign_turn_round_as_well() {
     agrees_with_scipy("sign(p)*sqrt(p*sign(p))", &GENERAL, 2);
