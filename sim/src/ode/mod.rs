@@ -42,6 +42,7 @@ mod limits;
 mod magnitudes;
 mod names;
 mod passage;
+mod point;
 mod radau;
 mod request;
 mod resolution;

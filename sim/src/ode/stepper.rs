@@ -3,20 +3,12 @@
 
 use super::error::SolveError;
 use super::magnitudes::Magnitudes;
+pub use super::point::Point;
 use super::system::System;
 use super::watch::Watched;
 
 /// Parts of a step that may be refused; see [`in_parts`].
 const MOST_REFUSED: u32 = 50;
-
-/// A state and its time.
-#[derive(Clone, Debug)]
-pub struct Point {
-    /// Time, s.
-    pub t: f64,
-    /// State.
-    pub y: Vec<f64>,
-}
 
 /// How a controlled step ended.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,8 +6,8 @@ use std::cell::{Cell, RefCell};
 
 use differential_equations::ode::ODE;
 
+use super::point::Point;
 use super::settings::SMALLEST_MAGNITUDE;
-use super::stepper::Point;
 use super::system::{Interior, ObservedStep, System};
 
 /// The side of every switching surface: -1, 1, or 0 where a step begins on it.
