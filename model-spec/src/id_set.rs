@@ -51,8 +51,10 @@ mod tests {
     fn a_union_holds_the_numbers_of_both() {
         let (mut one, mut other) = (IdSet::default(), IdSet::default());
         assert!(one.is_empty());
-        [3, 200].map(|number| one.insert(number));
-        [0, 64].map(|number| other.insert(number));
+        one.insert(3);
+        one.insert(200);
+        other.insert(0);
+        other.insert(64);
         other.extend(&one);
         assert_eq!(other.iter().collect::<Vec<_>>(), [0, 3, 64, 200]);
         assert!(!one.contains(64) && other.contains(64) && !one.is_empty());

@@ -154,7 +154,7 @@ fn unmoved(
     for _ in 0..thresholds::SIZE_ATTEMPTS {
         let factor = match moved_by(size) {
             Some(moved) if moved.is_finite() && moved > 0.0 => thresholds::UNMOVED_STATE / moved,
-            Some(moved) if moved == 0.0 => thresholds::SIZE_FACTOR,
+            Some(0.0) => thresholds::SIZE_FACTOR,
             _ => 1e-3,
         };
         size *= factor.clamp(1.0 / thresholds::SIZE_FACTOR, thresholds::SIZE_FACTOR);

@@ -236,7 +236,6 @@ fn largest(entries: impl Iterator<Item = f64>) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::{CompiledModel, Orders};
 
     /// Two wheels on a soft contact, which turn together, a rack that nothing holds, and a pendulum.
