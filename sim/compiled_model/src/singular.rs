@@ -17,8 +17,10 @@ const TURNED_LITTLE: f64 = 0.5;
 /// Halvings of a step in the search for a singular position.
 const MOST_HALVINGS: u32 = 40;
 
-/// A combination of constraints' derivatives that is this small beside them is on its way to none.
-const SINGULAR: f64 = 1e-3;
+/// Least singular value of the scaled constraint derivatives below which a stop of the solver is put down to them.
+/// The rounding of accelerations grows with its reciprocal squared: at 1e-2 it reaches 1e-12, and steps at usual
+/// tolerances fail before the position itself is reached.
+const SINGULAR: f64 = 1e-2;
 
 /// A constraint is named with others if its part in their combination is no less beside the largest.
 const TAKES_PART: f64 = 0.1;

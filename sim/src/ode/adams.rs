@@ -111,8 +111,11 @@ impl Stepper for Adams {
         &self.magnitudes
     }
 
-    fn settle(&mut self) {
+    fn settle(&mut self, is_projected: bool) {
         self.magnitudes.raise(&self.now.point.y);
+        if is_projected {
+            self.magnitudes.include_rounding_of_others();
+        }
     }
 
     fn advance<S: System + ?Sized>(

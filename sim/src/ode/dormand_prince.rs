@@ -86,8 +86,11 @@ impl Stepper for DormandPrince853 {
         &self.magnitudes
     }
 
-    fn settle(&mut self) {
+    fn settle(&mut self, is_projected: bool) {
         self.magnitudes.raise(&self.here.y);
+        if is_projected {
+            self.magnitudes.include_rounding_of_others();
+        }
         self.method.atol = Tolerance::Vector(self.magnitudes.floors());
     }
 

@@ -323,7 +323,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     /// Samples from `begin` (s) to here, takes the projected state, and enters the regime found here.
     pub(super) fn accept(&mut self, begin: f64) -> Result<(), SolveError> {
         check_finite(begin, &self.stepper.here().y)?;
-        self.stepper.settle();
+        self.stepper.settle(self.projected.is_some());
         self.trajectory.work.steps += 1;
         self.watched.arrive();
         self.observe_step();
@@ -339,7 +339,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         if let Some(y) = self.projected.take() {
             check_finite(begin, &y)?;
             self.stepper.restart(Point { t, y }, self.stepper.step());
-            self.stepper.settle();
+            self.stepper.settle(self.projected.is_some());
         }
         while let Some(sample) = self.next_sample().filter(|sample| *sample <= t) {
             self.trajectory.times.push(sample);

@@ -51,6 +51,16 @@ impl Magnitudes {
         }
     }
 
+    /// Takes note that states are corrected onto constraints: each then has the rounding of the others, which is no
+    /// error of a step.
+    pub fn include_rounding_of_others(&mut self) {
+        let most = self.largest.iter().copied().fold(0.0, f64::max);
+        let rounding = ROUNDING_OF_OTHERS * f64::EPSILON / self.tolerance * most;
+        for largest in &mut self.largest {
+            *largest = largest.max(rounding);
+        }
+    }
+
     /// The error allowed to each component at y = 0, in its own unit.
     pub fn floors(&self) -> Vec<f64> {
         let floors = self.largest.iter().map(|largest| largest * self.tolerance);

@@ -101,8 +101,11 @@ impl Stepper for Radau {
         &self.magnitudes
     }
 
-    fn settle(&mut self) {
+    fn settle(&mut self, is_projected: bool) {
         self.magnitudes.raise(&self.here.y);
+        if is_projected {
+            self.magnitudes.include_rounding_of_others();
+        }
     }
 
     fn advance<S: System + ?Sized>(

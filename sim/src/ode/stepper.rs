@@ -48,8 +48,9 @@ pub trait Stepper: Sized {
     fn magnitudes(&self) -> &Magnitudes;
 
     /// Adds the state here, which enters the trajectory, to the scales of the errors. A step that is
-    /// taken back leaves no trace in them.
-    fn settle(&mut self);
+    /// taken back leaves no trace in them. A state that `is_projected` onto constraints has the rounding of
+    /// all its components.
+    fn settle(&mut self, is_projected: bool);
 
     /// Tries a step that ends at `until` (s) at the latest, where the right-hand side may
     /// jump. If it is accepted the method stands at the new point.
