@@ -176,11 +176,7 @@ fn findings_point_at_their_tokens() {
             "w",
         ),
         ("observables { o: atan2(x, .5, ) }", "unexpected `)`", ")"),
-        (
-            "observables { o: x > 1 }",
-            "`>` is not part of an expression",
-            ">",
-        ),
+        ("observables { o: x > 1 }", "`>` is not an operator", ">"),
         ("observables { θ: x }", "`θ` cannot be a name", "\"θ\""),
         (
             "inputs { r#type: { unit: m } }",
