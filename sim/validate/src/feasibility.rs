@@ -146,11 +146,8 @@ mod tests {
     fn opposite_half_spaces_leave_nothing() {
         // x > b and -x > b.
         for b in [0.0, 1e-6, 1.0, 1e5] {
-            assert!(cone_is_empty(&[
-                vec![1.0, -b],
-                vec![-1.0, -b],
-                vec![0.0, 1.0]
-            ]));
+            let cone = [vec![1.0, -b], vec![-1.0, -b], vec![0.0, 1.0]];
+            assert!(cone_is_empty(&cone), "{b}");
         }
         // x > b and -x > -2 b.
         for b in [1e-6, 1.0, 1e5] {

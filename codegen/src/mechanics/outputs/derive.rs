@@ -23,7 +23,7 @@ use eomgen_model_spec::ids::{CoordinateId, FieldId};
 /// Derives these outputs.
 ///
 /// # Errors
-/// [`MovingDiagonal`]: products and Jacobians are not derived then.
+/// `MovingDiagonal`: products and Jacobians are not derived then.
 pub fn derive_outputs(
     equations: &mut Equations,
     outputs: &[Output],

@@ -181,7 +181,7 @@ fn derivatives_kept_for_all_rows_are_those_of_the_plain_sum_over_places() {
     // A further sum inside keeps the integral from being kept; it adds nothing.
     let nested = BEAM.replace(
         "x*dot(theta) + dot(w))^2",
-        "x*dot(theta) + dot(w))^2 + 0*tip^2*rho",
+        "x*dot(theta) + dot(w))^2 + 0*dot(tip)^2*rho*A",
     );
     let plain = oracle(&nested, 5);
     let mut sampler = Sampler::new(&kept, 3).unwrap();
