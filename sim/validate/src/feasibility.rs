@@ -12,9 +12,11 @@ const ROUNDS: usize = 10;
 /// Whether no point z has a positive product with every row (Gordan: a combination of rows with
 /// weights that are not negative is then 0). Rows of zeros are left out.
 pub(crate) fn cone_is_empty(rows: &[Vec<f64>]) -> bool {
+    let scales = column_scales(rows);
+    let scaled = |row: &Vec<f64>| row.iter().zip(&scales).map(|(entry, scale)| entry / scale);
     let rows: Vec<DVector<f64>> = rows
         .iter()
-        .map(|row| DVector::from_column_slice(row))
+        .map(|row| DVector::from_vec(scaled(row).collect()))
         .filter_map(|row| {
             let length = row.norm();
             (length > 0.0 && length.is_finite()).then(|| row / length)
@@ -24,6 +26,23 @@ pub(crate) fn cone_is_empty(rows: &[Vec<f64>]) -> bool {
         return false;
     };
     residual.norm() <= CONTRADICTION
+}
+
+/// Largest magnitude in each column, 1 for a column of zeros. Units of the unknowns, by which columns may be
+/// multiplied, do not change whether a cone is empty.
+fn column_scales(rows: &[Vec<f64>]) -> Vec<f64> {
+    let count = rows.first().map_or(0, Vec::len);
+    let largest = |column: usize| {
+        rows.iter()
+            .fold(0.0_f64, |most, row| most.max(row[column].abs()))
+    };
+    (0..count)
+        .map(largest)
+        .map(|largest| match largest > 0.0 && largest.is_finite() {
+            true => largest,
+            false => 1.0,
+        })
+        .collect()
 }
 
 /// The shortest x with `row * x >= bound` for every row and bound; `None` if there is none.
