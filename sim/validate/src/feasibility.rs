@@ -13,10 +13,13 @@ const ROUNDS: usize = 10;
 /// weights that are not negative is then 0). Rows of zeros are left out.
 pub(crate) fn cone_is_empty(rows: &[Vec<f64>]) -> bool {
     let scales = column_scales(rows);
-    let scaled = |row: &Vec<f64>| row.iter().zip(&scales).map(|(entry, scale)| entry / scale);
+    let scaled = |row: &Vec<f64>| {
+        let entries = row.iter().zip(&scales).map(|(entry, scale)| entry / scale);
+        DVector::from_iterator(row.len(), entries)
+    };
     let rows: Vec<DVector<f64>> = rows
         .iter()
-        .map(|row| DVector::from_vec(scaled(row).collect()))
+        .map(scaled)
         .filter_map(|row| {
             let length = row.norm();
             (length > 0.0 && length.is_finite()).then(|| row / length)
