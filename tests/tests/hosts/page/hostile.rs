@@ -57,7 +57,7 @@ fn texts_stay_texts() {
 #[test]
 fn numbers_may_be_large_or_small() {
     let folder = tempfile::tempdir().expect("a folder");
-    for mass in ["1e300", "1e-300", "1.7e308"] {
+    for mass in ["1e300", "1e-300", "1e305"] {
         opens(&page(
             &pendulum("a", "b", mass, folder.path()),
             &[],
