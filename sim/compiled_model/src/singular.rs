@@ -6,6 +6,7 @@
 //! -1 there, however long the step between them is. Between two states the coordinates are interpolated by
 //! their rates.
 
+use eomgen_analysis::qr_iteration::symmetric_eigen;
 use eomgen_codegen::independence::rows::{ConstraintRows, norm};
 use eomgen_codegen::program::evaluator::Point;
 use eomgen_sim::inputs::HeldInputs;
@@ -75,8 +76,8 @@ impl SingularityWatch {
         });
         if let Some(passed) = &passed {
             let rows = self.scaled_rows(passed.t, &passed.state, inputs);
-            let (_, combined) = least(&rows);
-            self.found = Some((passed.t, self.reason(passed.t, &combined)));
+            let least = least(&rows);
+            self.found = least.map(|(_, combined)| (passed.t, self.reason(passed.t, &combined)));
         }
         self.last = Some(here);
         passed.is_some()
@@ -93,7 +94,7 @@ impl SingularityWatch {
         if rows.iter().any(|entry| !entry.is_finite()) {
             return None;
         }
-        let (value, combined) = least(&rows);
+        let (value, combined) = least(&rows)?;
         (value <= SINGULAR).then(|| self.reason(t, &combined))
     }
 
@@ -114,7 +115,7 @@ impl SingularityWatch {
         if rows.iter().any(|entry| !entry.is_finite()) {
             return None;
         }
-        let mut squares = (&rows * rows.transpose()).symmetric_eigen();
+        let mut squares = symmetric_eigen(&(&rows * rows.transpose()))?;
         for value in squares.eigenvalues.iter_mut() {
             *value = value.max(f64::MIN_POSITIVE).sqrt().recip();
         }
@@ -145,7 +146,7 @@ impl SingularityWatch {
     ) -> Option<Passed> {
         let turned = &a.frame * b.frame.transpose();
         let symmetric = 0.5 * (&turned + turned.transpose());
-        if symmetric.symmetric_eigenvalues().min() > TURNED_LITTLE {
+        if symmetric_eigen(&symmetric)?.eigenvalues.min() > TURNED_LITTLE {
             return None;
         }
         let middle = self.between(a, b, inputs)?;
@@ -178,10 +179,11 @@ impl SingularityWatch {
     }
 }
 
-/// The smallest singular value of a matrix with its combination of rows.
-fn least(rows: &DMatrix<f64>) -> (f64, DVector<f64>) {
-    let squares = (rows * rows.transpose()).symmetric_eigen();
+/// Returns the smallest singular value of a matrix with its combination of rows; `None` if the iteration does not
+/// converge.
+fn least(rows: &DMatrix<f64>) -> Option<(f64, DVector<f64>)> {
+    let squares = symmetric_eigen(&(rows * rows.transpose()))?;
     let (least, value) = squares.eigenvalues.argmin();
     let combined = squares.eigenvectors.column(least).into_owned();
-    (value.max(0.0).sqrt(), combined)
+    Some((value.max(0.0).sqrt(), combined))
 }
