@@ -8,6 +8,8 @@ use nalgebra::{DMatrix, DVector};
 const CONTRADICTION: f64 = 1e-12;
 /// Corrections per unknown before the solution counts as found.
 const ROUNDS: usize = 10;
+/// Iterations of a singular value decomposition before it is given up.
+const SVD_ITERATIONS: usize = 10_000;
 
 /// Whether no point z has a positive product with every row (Gordan: a combination of rows with
 /// weights that are not negative is then 0). Rows of zeros are left out.
@@ -157,7 +159,8 @@ fn least_squares(
     active: &[usize],
 ) -> Option<DVector<f64>> {
     let part = matrix.select_columns(active);
-    part.svd(true, true).solve(target, 1e-14).ok()
+    let svd = part.try_svd(true, true, 5.0 * f64::EPSILON, SVD_ITERATIONS)?;
+    svd.solve(target, 1e-14).ok()
 }
 
 #[cfg(test)]
