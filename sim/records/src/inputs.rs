@@ -65,6 +65,7 @@ pub fn notes_of_inputs(description: &Description, model: &Model) -> Vec<String> 
     // Rates of prescribed motion are those of the curve through its samples.
     let own = || model.inputs.iter().filter(|input| input.rate_of.is_none());
     let inputs = || own().map(|input| input.name.as_str());
+    let undriven = model.typical_inputs(0.0).unwrap_or_default();
     let mut notes = Vec::new();
     for column in &description.inputs {
         let name = column.name.text.as_str();
@@ -75,14 +76,19 @@ pub fn notes_of_inputs(description: &Description, model: &Model) -> Vec<String> 
             ));
         }
     }
-    for input in inputs() {
-        let is_fed = (description.inputs.iter()).any(|column| column.name.text == input);
-        let is_measured = (description.channels.iter()).any(|channel| channel.measures() == input);
-        if !is_fed && !is_measured {
-            notes.push(format!(
-                "input `{input}` is not driven and is taken as 0; give its column in [inputs.{input}]"
-            ));
+    for (input, value) in model.inputs.iter().zip(undriven) {
+        let name = &input.name;
+        let is_fed = (description.inputs.iter()).any(|column| column.name.text == *name);
+        let is_measured = (description.channels.iter()).any(|channel| channel.measures() == name);
+        if input.rate_of.is_some() || is_fed || is_measured {
+            continue;
         }
+        notes.push(match input.rate {
+            Some(_) => format!("input `{name}`, a prescribed motion, is not driven and rests at {value}"),
+            None => format!(
+                "input `{name}` is not driven and is taken as {value}; give its column in [inputs.{name}]"
+            ),
+        });
     }
     notes
 }

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::model::Model;
 
 use crate::bound::bound;
@@ -26,13 +27,8 @@ use crate::samples::FEWEST_SAMPLES;
 /// its place.
 pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
     let description = Description::read(path)?;
-    if let Some(input) = model.inputs.iter().find(|input| input.rate.is_some()) {
-        return Err(Refusal::Record(format!(
-            "{}: the motion of `{}` is prescribed (rates = 2), which only `simulate --record` takes from \
-             a record: between its samples nothing may be held",
-            path.display(),
-            input.name
-        )));
+    if let Some(refused) = prescribed_column(&description, model) {
+        return Err(Diagnostics::one(description.source.clone(), refused).into());
     }
     if let Some(constraint) = model.constraints.first() {
         return Err(Refusal::Record(format!(
@@ -114,6 +110,25 @@ pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
         coverage::check(&dataset, &description)?;
     }
     Ok(dataset)
+}
+
+/// Refuses the column of a prescribed motion: `compare` and `discover` hold inputs between samples.
+fn prescribed_column(description: &Description, model: &Model) -> Option<Diagnostic> {
+    let is_prescribed = |name: &str| {
+        let mut inputs = model.inputs.iter();
+        inputs.any(|input| input.rate.is_some() && input.name == name)
+    };
+    let mut columns = description.inputs.iter();
+    let column = columns.find(|column| is_prescribed(&column.name.text))?;
+    let name = &column.name;
+    Some(
+        Diagnostic::error(format!(
+            "input `{}` is a prescribed motion (rates = 2), whose record `compare` and `discover` do not take",
+            name.text
+        ))
+        .at(name.span, "inputs are held between samples here")
+        .help("leave this section out: the input then rests; `simulate --record` takes the motion from its record"),
+    )
 }
 
 /// The values of channels at a record's beginning, SI: those of coordinates, if the initial state is known.

@@ -100,9 +100,11 @@ impl Columns<'_> {
         let motion = table.columns.split_off(first_motion);
         let mut columns = table.columns.into_iter();
         let times = columns.next().unwrap_or_default();
-        let input_columns: Vec<Vec<f64>> = (self.inputs.iter())
-            .map(|fed| fed.as_ref().and_then(|_| columns.next()))
-            .map(|column| column.unwrap_or_else(|| vec![0.0; times.len()]))
+        let undriven = self.model.typical_inputs(0.0);
+        let undriven = undriven.unwrap_or_else(|_| vec![0.0; self.inputs.len()]);
+        let input_columns: Vec<Vec<f64>> = (self.inputs.iter().zip(undriven))
+            .map(|(fed, value)| (fed.as_ref().and_then(|_| columns.next()), value))
+            .map(|(column, value)| column.unwrap_or_else(|| vec![value; times.len()]))
             .collect();
         check_times(&place, &times, &table.lines, self.fewest)?;
         for (input, column) in self.model.inputs.iter().zip(&input_columns) {
