@@ -86,7 +86,7 @@ impl<'t> TextFile<'t> {
             is_pending: false,
         };
         let empty = "is empty; expected a line of column names and a line per sample";
-        if !file.advance()? || file.record.iter().all(|cell| cell.trim_ascii().is_empty()) {
+        if !file.advance()? || file.is_blank() {
             return Err(Refusal::file(path, empty));
         }
         file.first_line = file.line();
@@ -130,6 +130,12 @@ impl<'t> TextFile<'t> {
         self.record.position().map_or(0, Position::line) + self.skipped
     }
 
+    /// Whether all cells of the present line are blank.
+    fn is_blank(&self) -> bool {
+        let mut cells = self.record.iter();
+        cells.all(|cell| cell.trim_ascii().is_empty())
+    }
+
     fn advance(&mut self) -> Result<bool, Refusal> {
         let read = self.reader.read_byte_record(&mut self.record);
         read.map_err(|error| Refusal::file(self.path, error.to_string()))
@@ -137,8 +143,13 @@ impl<'t> TextFile<'t> {
 
     /// The next line of samples with its number.
     pub fn next(&mut self) -> Result<Option<(u64, &ByteRecord)>, Refusal> {
-        if !std::mem::take(&mut self.is_pending) && !self.advance()? {
-            return Ok(None);
+        let mut is_pending = std::mem::take(&mut self.is_pending);
+        // Spreadsheets leave lines of spaces or separators behind the last sample.
+        while !is_pending || self.is_blank() {
+            is_pending = self.advance()?;
+            if !is_pending {
+                return Ok(None);
+            }
         }
         let line = self.line();
         let (cells, expected) = (self.record.len(), self.header.len());

@@ -811,3 +811,77 @@ fn what_a_newcomer_forgets_is_told_with_what_to_write() {
         "{said}"
     );
 }
+
+#[test]
+fn blank_lines_behind_the_samples_are_no_samples() {
+    for blank in ["", "\n", "   \n\t\n", ",\n , \n", "\r\n \r\n"] {
+        let folder = folder(DESCRIPTION, "t,angle\n", |t, a| format!("{t:.2},{a:.6}\n"));
+        let path = folder.path().join("train.csv");
+        let text = std::fs::read_to_string(&path).expect("a record");
+        write(folder.path(), "train.csv", &(text + blank));
+        let dataset = read(&folder).unwrap_or_else(|refusal| panic!("{blank:?}: {refusal}"));
+        assert_eq!(dataset.train[0].times.len(), SAMPLES, "{blank:?}");
+    }
+}
+
+#[test]
+fn a_missing_last_cell_does_not_hide_the_names_of_columns() {
+    let folder = folder("", "t,theta\n", |t, a| match (t / STEP).round() {
+        50.0 => format!("{t:.2},\n"),
+        _ => format!("{t:.2},{:.6}\n", 1e-3 * a),
+    });
+    let text = proposed(&folder.path().join("train.csv"), "train.csv", &pendulum());
+    let text = text.unwrap_or_else(|refusal| panic!("{refusal}"));
+    assert!(text.contains("column = \"theta\""), "{text}");
+}
+
+/// A trolley whose position is prescribed, and a rope whose length is.
+const CRANE: &str = r#"[model]
+name = "crane"
+[parameters]
+m = { value = 800, unit = "kg" }
+g = { value = 9.81, unit = "m/s^2" }
+[inputs]
+s = { unit = "m", rates = 2 }
+l = { unit = "m", rates = 2, range = [2, 12] }
+[coordinates]
+theta = { unit = "rad" }
+[kinetic]
+load = "1/2*m*((dot(s) + dot(l)*sin(theta) + l*cos(theta)*dot(theta))^2 + (l*sin(theta)*dot(theta) - dot(l)*cos(theta))^2)"
+[potential]
+load = "-m*g*l*cos(theta)"
+"#;
+
+#[test]
+fn prescribed_motion_without_a_record_rests() {
+    let source = eomgen_model_spec::source::Source::new("crane.toml", CRANE);
+    let model = eomgen_model_spec::check(source).expect("a model").model;
+    let folder = folder(DESCRIPTION, "t,angle\n", |t, a| format!("{t:.2},{a:.6}\n"));
+    let path = folder.path().join("dataset.toml");
+    let dataset = read_dataset(&path, &model).unwrap_or_else(|refusal| panic!("{refusal}"));
+    let names: Vec<&str> = model
+        .inputs
+        .iter()
+        .map(|input| input.name.as_str())
+        .collect();
+    let held = dataset.train[0].inputs.held_at(1.0);
+    for (name, value) in names.iter().zip(held) {
+        let rest = if *name == "l" { 7.0 } else { 0.0 };
+        assert_eq!(*value, rest, "{name}");
+    }
+    let notes = dataset.notes.join("\n");
+    assert!(
+        notes.contains("`l`, a prescribed motion, is not driven and rests at 7"),
+        "{notes}"
+    );
+    let column = "[inputs.l]\ncolumn = \"angle\"\nunit = \"m\"\n[channels.theta]";
+    let given = DESCRIPTION.replace("[channels.theta]", column);
+    write(folder.path(), "dataset.toml", &given);
+    let refusal = read_dataset(&path, &model)
+        .expect_err("a prescribed motion")
+        .to_string();
+    assert!(
+        refusal.contains("input `l` is a prescribed motion"),
+        "{refusal}"
+    );
+}

@@ -74,14 +74,23 @@ impl<'t> Block<'t> {
         };
         let end = lines.len().saturating_sub(usize::from(lines.len() > 2));
         for place in (0..end).rev() {
-            let line = lines[place].trim();
-            if line.is_empty() || comment.is_some_and(|sign| line.starts_with(sign)) {
+            let line = lines[place];
+            let is_comment = comment.is_some_and(|sign| line.trim_start().starts_with(sign));
+            let cells = row(
+                line,
+                separator,
+                Some(block.cells).filter(|count| *count > 0),
+            );
+            if is_comment || cells.iter().all(String::is_empty) {
                 continue;
             }
-            let cells = cells(line, separator);
             let numbers = cells.iter().filter(|cell| parsed(cell, decimal).is_some());
             let numbers = numbers.count();
-            let is_row = numbers > 1 && (block.cells == 0 || cells.len() == block.cells);
+            let blank = cells.iter().filter(|cell| cell.is_empty()).count();
+            let is_row = match block.cells {
+                0 => numbers > 1,
+                count => cells.len() == count && (numbers > 1 || numbers + blank == count),
+            };
             if !is_row {
                 break;
             }
@@ -99,10 +108,11 @@ impl<'t> Block<'t> {
         let end = self.lines.len().saturating_sub(1).max(self.first);
         for line in &self.lines[self.first..end] {
             let is_comment = comment.is_some_and(|sign| line.trim_start().starts_with(sign));
-            if is_comment || line.trim().is_empty() {
+            if is_comment {
                 continue;
             }
-            for (place, cell) in cells(line, self.separator).iter().enumerate() {
+            let cells = row(line, self.separator, Some(self.cells));
+            for (place, cell) in cells.iter().enumerate().take(self.cells) {
                 match parsed(cell, self.decimal) {
                     Some(_) => numbers[place] += 1,
                     None if cell.is_empty() => {}
@@ -119,7 +129,7 @@ impl<'t> Block<'t> {
     /// What stands above the block.
     fn layout(&self, comment: Option<char>) -> Layout {
         let unknown = vec![String::new(); self.cells];
-        let row = |place: usize| {
+        let row_above = |place: usize| {
             let line = self.lines[place].trim();
             let cells = cells(line, self.separator);
             let is_text = |cell: &String| parsed(cell, self.decimal).is_none();
@@ -170,8 +180,8 @@ impl<'t> Block<'t> {
                 are_numbers: Vec::new(),
             };
         }
-        let (nearest_row, next) = (row(nearest), above.next());
-        let next_row = next.filter(|place| !is_comment(*place)).and_then(row);
+        let (nearest_row, next) = (row_above(nearest), above.next());
+        let next_row = next.filter(|place| !is_comment(*place)).and_then(row_above);
         match (nearest_row, next_row) {
             (Some(units), Some(names)) if units.iter().all(|cell| is_unit(cell)) => {
                 format.names = true;
@@ -213,14 +223,20 @@ impl<'t> Block<'t> {
     }
 }
 
-/// The cells of a line, without quotes.
+/// The cells of a line, without quotes and without what a separator at its end leaves.
 fn cells(line: &str, separator: Separator) -> Vec<String> {
+    row(line, separator, None)
+}
+
+/// The same of a line with so many cells, of which the last may be blank.
+fn row(line: &str, separator: Separator, count: Option<usize>) -> Vec<String> {
     let bare = |cell: &str| cell.trim().trim_matches('"').trim().to_owned();
     let mut cells: Vec<String> = match separator {
         Separator::Spaces => line.split_whitespace().map(bare).collect(),
         Separator::Character(sign) => line.split(sign as char).map(bare).collect(),
     };
-    if cells.len() > 1 && cells.last().is_some_and(String::is_empty) {
+    let is_open = cells.len() > 1 && cells.last().is_some_and(String::is_empty);
+    if is_open && count != Some(cells.len()) {
         cells.pop();
     }
     cells

@@ -1,6 +1,6 @@
 //! Which column of a record is which quantity of a model, by their names and units.
 
-use eomgen_model_spec::model::Model;
+use eomgen_model_spec::model::{Model, ObservedRate};
 use eomgen_model_spec::suggest::nearest;
 use eomgen_model_spec::unit::Unit;
 
@@ -70,14 +70,17 @@ pub(crate) struct Quantity {
     pub unit: Unit,
     /// Whether it is an input.
     pub is_input: bool,
+    /// Whether a unit alone may identify it: derivatives of observables need their name.
+    is_found_by_unit: bool,
 }
 
-/// Inputs, observables, coordinates with their rates and accelerations, and states of first order.
+/// Inputs, observables and coordinates with their rates and accelerations, and states of first order.
 pub(crate) fn quantities(model: &Model) -> Vec<Quantity> {
     let quantity = |name: &str, unit: &Unit, is_input: bool| Quantity {
         name: name.to_owned(),
         unit: unit.clone(),
         is_input,
+        is_found_by_unit: true,
     };
     let own = model.inputs.iter().filter(|input| input.rate_of.is_none());
     let inputs = own.map(|input| quantity(&input.name, &input.unit, true));
@@ -94,9 +97,13 @@ pub(crate) fn quantities(model: &Model) -> Vec<Quantity> {
             Some(quantity(&format!("{}_{name}", c.name), &unit, false))
         })
     });
+    let observed = derivatives_of_observables(model).map(|rate| Quantity {
+        is_found_by_unit: false,
+        ..quantity(&rate.name(model), &rate.unit(model), false)
+    });
     let states = model.states.iter();
     let states = states.map(|state| quantity(&state.name, &state.unit, false));
-    let moving = coordinates.chain(derivatives).chain(states);
+    let moving = coordinates.chain(derivatives).chain(states).chain(observed);
     let mut all: Vec<Quantity> = Vec::new();
     for quantity in inputs.chain(observables).chain(moving) {
         // An observable may have the name of a coordinate.
@@ -105,6 +112,18 @@ pub(crate) fn quantities(model: &Model) -> Vec<Quantity> {
         }
     }
     all
+}
+
+/// Rates and accelerations of observables. The acceleration of an observable that holds a rate does not exist.
+fn derivatives_of_observables(model: &Model) -> impl Iterator<Item = ObservedRate> {
+    (1..=2).flat_map(move |times| {
+        let observables = model.observables.iter().enumerate();
+        let differentiated = observables.filter(move |(_, observable)| {
+            !["energy", "power"].contains(&observable.name.as_str())
+                && (times == 1 || !model.holds_rate(&observable.value))
+        });
+        differentiated.map(move |(observable, _)| ObservedRate { observable, times })
+    })
 }
 
 /// A column that was matched, and why.
@@ -134,7 +153,7 @@ const RULES: [(Rule, &str); 5] = [
         "a name that is nearly the same: please check",
     ),
     (
-        |c, q| c.unit.is_some() && !q.unit.dimension.is_none(),
+        |c, q| c.unit.is_some() && !q.unit.dimension.is_none() && q.is_found_by_unit,
         "the only one left with this unit: please check",
     ),
 ];
@@ -318,6 +337,15 @@ mod tests {
         }
         assert_eq!(names(&[("x_c [furlong]", ""), ("x_c_dot", "knots")]), []);
         assert_eq!(names(&[("x_c_ddot", "")]), [pair("x_c_ddot", "x_c_ddot")]);
+        // Derivatives of observables are found by their names alone.
+        assert_eq!(
+            names(&[("tip_ddot", "m/s2"), ("Theta_s_dot", "deg/s")]),
+            [
+                pair("Theta_s_dot", "theta_s_dot"),
+                pair("tip_ddot", "tip_ddot")
+            ]
+        );
+        assert_eq!(names(&[("a", "m/s2")]), []);
         // Two columns that would do are none.
         assert!(names(&[("thetas", "m"), ("note", "")]).is_empty());
         assert!(names(&[("THETA_S", ""), ("theta s", "")]).is_empty());

@@ -61,13 +61,45 @@ impl Found<'_> {
         &self.values[self.time]
     }
 
+    /// The unit of a matched column and its origin: the file, or a guess.
+    fn unit(&self, matched: &Match) -> (Unit, &'static str) {
+        let own = &self.quantities[matched.quantity].unit;
+        let degree = || {
+            Unit::parse("deg")
+                .ok()
+                .filter(|unit| self.turns_in(matched, unit))
+        };
+        match &self.columns[matched.column].unit {
+            Some(unit) => (unit.clone(), "as the file says"),
+            None => match Some(own)
+                .filter(|own| own.text == "rad")
+                .and_then(|_| degree())
+            {
+                Some(degree) => (
+                    degree,
+                    "guessed: it jumps by 360, as an angle in degrees does",
+                ),
+                None => (
+                    own.clone(),
+                    "guessed: the model's, because the file says none",
+                ),
+            },
+        }
+    }
+
+    /// Whether a matched column jumps by full turns of this unit.
+    fn turns_in(&self, matched: &Match, unit: &Unit) -> bool {
+        let values = &self.values[matched.column];
+        let pattern = wrap_pattern(self.times(), values, full_turn(unit));
+        pattern.is_some_and(|pattern| pattern.is_turn)
+    }
+
     /// The pattern of a matched column that looks wrapped, in the column's unit.
     fn wrap_pattern(&self, matched: &Match) -> Option<WrapPattern> {
-        let own = &self.quantities[matched.quantity].unit;
-        let unit = self.columns[matched.column].unit.as_ref().unwrap_or(own);
+        let (unit, _) = self.unit(matched);
         let values = &self.values[matched.column];
-        let pattern = || wrap_pattern(self.times(), values, full_turn(unit));
-        can_wrap(unit).then(pattern).flatten()
+        let pattern = || wrap_pattern(self.times(), values, full_turn(&unit));
+        can_wrap(&unit).then(pattern).flatten()
     }
 
     /// The usual time from sample to sample, s.

@@ -164,12 +164,7 @@ fn time(found: &Found<'_>) -> String {
 
 /// A column's unit, and where it comes from.
 fn unit(found: &Found<'_>, matched: &Match) -> String {
-    let column = &found.columns[matched.column];
-    let own = &found.quantities[matched.quantity].unit;
-    let (unit, why) = match &column.unit {
-        Some(unit) => (unit, "as the file says"),
-        None => (own, "guessed: the model's, because the file says none"),
-    };
+    let (unit, why) = found.unit(matched);
     format!("unit = {}\u{1}{why}", quoted(&unit.to_string()))
 }
 

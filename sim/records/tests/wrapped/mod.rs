@@ -256,3 +256,16 @@ fn the_proposed_file_declares_the_wrap() {
     assert!(error(&dataset.train[0].channels[0], 0.0, 1) < 0.05);
     assert!(dataset.channels[0].noise < 1e-3, "{text}");
 }
+
+#[test]
+fn angle_without_a_unit_that_jumps_by_360_is_in_degrees() {
+    let folder = folder("", wrapped, |k| (0.1 * k as f64).sin());
+    let text = proposed(&folder.path().join("train.csv"), "train.csv", &rotor());
+    let text = text.unwrap_or_else(|refusal| panic!("{refusal}"));
+    for line in ["unit = \"deg\"", "wrap = 360"] {
+        assert!(text.contains(line), "{line}: {text}");
+    }
+    write(folder.path(), "dataset.toml", &text);
+    let dataset = read(&folder).unwrap_or_else(|refusal| panic!("{refusal}: {text}"));
+    assert!(error(&dataset.train[0].channels[0], 0.0, 1) < 0.05);
+}
