@@ -6,6 +6,7 @@ use eomgen_compiled_model::{Error, Orders};
 use eomgen_discover::report::result::{Discovery, Validation};
 use eomgen_discover::{Specification, catalogue, discover_until};
 use eomgen_model_spec::source::Source;
+use eomgen_model_spec::visible::visible;
 use eomgen_paper::certification::certify;
 use eomgen_records::read_dataset;
 use eomgen_validate::certificate::{Check, Verdict};
@@ -55,8 +56,9 @@ fn found(
 ) -> PyResult<Discovery> {
     let declared = model.compiled().model();
     let dataset = read_dataset(dataset, declared).map_err(error::records)?;
+    let say = |text: &str| line.say(visible(text).into_owned());
     for note in &dataset.notes {
-        line.say(format!("note: {note}"));
+        say(&format!("note: {note}"));
     }
     let effects = catalogue::effects(None).map_err(|found| error::specification(&found))?;
     let specification = Specification {
@@ -64,8 +66,7 @@ fn found(
         text,
         order: model.order(),
     };
-    let progress = |said: &str| line.say(said.to_owned());
-    let found = discover_until(specification, dataset, &effects, seed, &progress, line.stop);
+    let found = discover_until(specification, dataset, &effects, seed, &say, line.stop);
     let mut found = found.map_err(error::discovery)?;
     line.check();
     let extended = Source::new(declared.source.path.clone(), found.extended.as_str());

@@ -1,6 +1,7 @@
 //! Text in a figure: how wide it is about, what fits, and its SVG with subscripts. The fonts
 //! of the reader are not known here, so widths are estimates on the wide side.
 
+use eomgen_model_spec::visible::visible;
 use maud::html;
 
 use super::symbol::Symbol;
@@ -53,14 +54,14 @@ pub(super) fn spans(text: &str, size: f64) -> String {
     svg
 }
 
-/// Text that XML takes for nothing but text.
+/// Text as XML character data on one line, with hidden characters made visible.
 pub(super) fn escaped(text: &str) -> String {
-    let shown: String = text
+    let shown: String = visible(text)
         .chars()
         .map(|c| match c {
-            '\n' | '\r' | '\t' => ' ',
+            '\n' | '\t' => ' ',
             // Not allowed in XML, not even escaped.
-            '\0'..='\u{1f}' | '\u{7f}'..='\u{9f}' | '\u{fffe}' | '\u{ffff}' => '\u{fffd}',
+            '\u{fffe}' | '\u{ffff}' => '\u{fffd}',
             c => c,
         })
         .collect();
@@ -124,7 +125,11 @@ mod tests {
     }
 
     #[test]
-    fn what_xml_forbids_is_replaced() {
-        assert_eq!(escaped("a\0b\u{1b}c\nd"), "a\u{fffd}b\u{fffd}c d");
+    fn hidden_characters_are_escaped_and_what_xml_forbids_is_replaced() {
+        assert_eq!(
+            escaped("a\0b\u{1b}c\nd\u{ffff}"),
+            "a\\u{0}b\\u{1b}c d\u{fffd}"
+        );
+        assert_eq!(spans("x\u{202e}y", 10.0), "x\\u{202e}y");
     }
 }
