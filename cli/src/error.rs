@@ -63,6 +63,7 @@ impl Error {
     pub fn discovery(error: DiscoverError) -> Self {
         match error {
             DiscoverError::Records(refusal) => Self::records(*refusal),
+            DiscoverError::Model(error) => Self::from(*error),
             other => Self::Input(other.to_string()),
         }
     }
