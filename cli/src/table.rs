@@ -48,6 +48,16 @@ impl Table {
         Some(&self.columns[place])
     }
 
+    /// Columns with numbers that are not finite: the name, the first such row and the count of such rows.
+    pub fn not_finite(&self) -> impl Iterator<Item = (&str, usize, usize)> {
+        let columns = self.names.iter().zip(&self.columns);
+        columns.filter_map(|(name, column)| {
+            let first = column.iter().position(|value| !value.is_finite())?;
+            let count = column.iter().filter(|value| !value.is_finite()).count();
+            Some((name.as_str(), first, count))
+        })
+    }
+
     /// The bytes of the file: Parquet if its name ends so, else CSV.
     pub fn encode(&self, path: &Path) -> Result<Vec<u8>> {
         if is_parquet(path) {

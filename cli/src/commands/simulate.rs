@@ -59,14 +59,33 @@ pub fn run(options: &Simulate) -> Result {
         figure.write(history::figure(&compiled, &table)?.as_bytes())?;
     }
     destination.summarise(&summary(options, &table, &motion, &audited))?;
+    let is_finite = report_not_finite(&table, &compiled.state_names());
     match &motion.stopped {
         Some(stopped) => {
             warn(&format!("error: {}", stopped.reason));
             Err(Error::Failed)
         }
-        None if options.strict && audited.has_failed() => Err(Error::Failed),
+        None if !is_finite || (options.strict && audited.has_failed()) => Err(Error::Failed),
         None => Ok(()),
     }
+}
+
+/// Reports columns with numbers that are not finite. Returns whether the states and the energy are finite:
+/// observables may have places where they are undefined.
+fn report_not_finite(table: &Table, states: &[String]) -> bool {
+    let times = table.column("t").unwrap_or_default();
+    let mut is_motion_finite = true;
+    for (name, first, count) in table.not_finite() {
+        let is_of_motion = name == "energy" || states.iter().any(|state| state == name);
+        is_motion_finite &= !is_of_motion;
+        let kind = if is_of_motion { "error" } else { "warning" };
+        let (rows, t) = (table.rows(), times.get(first).copied().unwrap_or_default());
+        warn(&format!(
+            "{kind}: `{name}` is not finite in {count} of {rows} rows, first at t = {t} s: a function left its \
+             domain or a number overflows there; check inputs, parameters and initial states"
+        ));
+    }
+    is_motion_finite
 }
 
 /// What is said at the end.
