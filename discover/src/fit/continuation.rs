@@ -158,7 +158,8 @@ impl<'a> Continuation<'a> {
         estimate: &Estimate,
         linear: &mut [Option<WindowDerivatives>],
     ) -> bool {
-        let wanted = thresholds::SECANT_MOVES * self.residual_rms(estimate);
+        // If an exact fit leaves less than the noise, rounding would decide on the size.
+        let wanted = thresholds::SECANT_MOVES * self.residual_rms(estimate).max(1.0);
         let mut taken = false;
         let all = self.shooting.unknowns;
         for (id, unknown) in UnknownId::first(all.len()).zip(all) {

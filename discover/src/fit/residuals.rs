@@ -42,10 +42,12 @@ impl Residuals {
 }
 
 impl Residuals {
-    /// How many times larger the variance of what is estimated is than were the residuals white noise
-    /// of one standard deviation: no less than once for their size, and for the samples that they are correlated over.
+    /// Variance of estimates, as a multiple of that under white noise of one standard deviation: at least 1, plus
+    /// what the residuals' own variance adds because they are correlated. Residuals far below the noise add
+    /// nothing: their correlation is that of rounding.
     pub(crate) fn inflation(&self) -> f64 {
-        (self.rms * self.rms).max(1.0) * self.correlation
+        let variance = self.rms * self.rms;
+        variance.max(1.0) + (self.correlation - 1.0) * variance
     }
 
     /// What an estimate leaves.
@@ -150,4 +152,26 @@ pub(crate) fn correlation(residuals: &[Vec<f64>], channels: usize) -> f64 {
         time
     };
     (0..channels).map(of_channel).fold(1.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Residuals;
+
+    fn inflation(rms: f64, correlation: f64) -> f64 {
+        let residuals = Residuals {
+            rms,
+            correlation,
+            ..Residuals::default()
+        };
+        residuals.inflation()
+    }
+
+    #[test]
+    fn correlation_of_rounding_does_not_widen_intervals() {
+        assert_eq!(inflation(1e-13, 2.0), 1.0);
+        assert_eq!(inflation(0.0, 9.0), 1.0);
+        assert_eq!(inflation(1.0, 3.0), 3.0);
+        assert_eq!(inflation(2.0, 3.0), 12.0);
+    }
 }

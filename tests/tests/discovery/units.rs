@@ -7,7 +7,7 @@ use eomgen_model_spec::unit::Unit;
 use serde_json::Value;
 
 use crate::machines::{
-    BEAM, CYLINDER, Channel, Machine, PENDULUM, Table, answered, description, spread,
+    BEAM, CYLINDER, Channel, Machine, PENDULUM, Table, answered, description, mass, spread,
 };
 
 /// Largest relative difference between answers, due to rounding.
@@ -145,10 +145,12 @@ const OTHERS: [Units; 3] = [[-17, -20, 0], [17, 20, 0], [-20, 20, 10]];
 
 #[test]
 fn nonlinear_model_with_a_pressure() {
-    let channel = ("x", "x", "m");
-    let machine = Machine::new(CYLINDER, ("V", 1.0), &[channel]);
+    let channels = [("x", "x", "m"), ("x_ddot", "a", "m/s^2")];
+    let machine = Machine::new(CYLINDER, ("V", 1.0), &channels);
     let truth = CYLINDER.replace("value = 500", "value = 510");
-    answers_agree(&truth, &machine, &channel, &OTHERS);
+    for channel in &channels {
+        answers_agree(&truth, &machine, channel, &OTHERS);
+    }
 }
 
 #[test]
@@ -158,6 +160,13 @@ fn model_with_a_field() {
     for channel in &channels {
         answers_agree(BEAM, &machine, channel, &OTHERS);
     }
+}
+
+#[test]
+fn dry_friction_that_a_linear_model_lacks() {
+    let machine = mass("1/2*k*x^2", "k*x", "u", "");
+    let truth = mass("1/2*k*x^2", "k*x", "u - F*sign(dot(x))", "").specification;
+    answers_agree(&truth, &machine, &("x", "x", "m"), &OTHERS);
 }
 
 #[test]
