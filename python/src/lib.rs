@@ -3,13 +3,14 @@
 //! and nothing is known of how Python shows it: that is the package's own.
 //!
 //! `error` (the package's exceptions), `evaluators` (evaluators that wait for calls), `model` (a
-//! model at its parameter values), `evaluation` (rows of an array), `linearisation`,
+//! model at its parameter values), `evaluation` (rows of an array), `linearisation`, `equilibrium`,
 //! `interruption` (work that Python can stop), `simulation`, `discovery`, `equations`.
 
 use pyo3::prelude::*;
 
 mod discovery;
 mod equations;
+mod equilibrium;
 mod error;
 mod evaluation;
 mod evaluators;
@@ -26,6 +27,8 @@ mod _native {
     use crate::discovery::discover;
     #[pymodule_export]
     use crate::equations::equations;
+    #[pymodule_export]
+    use crate::equilibrium::trim;
     #[pymodule_export]
     use crate::error::{DiscoveryError, SimulationError, SpecificationError};
     #[pymodule_export]

@@ -1,5 +1,6 @@
 """Loading, parameters, linearisation, and what is said of what is wrong."""
 
+import json
 import pickle
 import subprocess
 import warnings
@@ -186,6 +187,38 @@ def test_the_point_of_a_linearisation_has_names(cart):
     assert at.x[1] == 0.3 and np.array_equal(np.delete(at.x, 1), np.delete(cart.initial, 1))
     with pytest.raises(ValueError, match=f"did you mean `{name}`"):
         cart.linearise(x={name + "x": 0.3})
+
+
+def test_an_equilibrium_is_that_of_the_command(program, pendulum, tmp_path):
+    spec = tmp_path / "pendulum.toml"
+    spec.write_text(pendulum.text, encoding="utf-8")
+    (angle,) = pendulum.states[:1]
+    start = ["--state", f"{angle}=3"]
+    written = subprocess.run([program, "trim", spec, *start], check=True, capture_output=True)
+    written, found = json.loads(written.stdout), pendulum.trim({angle: 3.0})
+    assert [written["at"][name] for name in found.states] == found.x.tolist()
+    assert written["stability"] == found.stability and written["free"] == list(found.free)
+    assert np.allclose(pendulum.rates(0.0, found.x, found.u), 0.0, atol=1e-9)
+
+
+def test_fixed_coordinates_are_held_by_inputs(cart):
+    held = cart.states[1]
+    found = cart.trim(fixed={held: 0.0}, u=[0.3])
+    assert found[held] == 0.0 and held not in found.free and "at rest" in repr(found)
+    assert np.allclose(cart.rates(0.0, found.x, found.u), 0.0, atol=1e-9)
+
+
+def test_a_wrong_start_of_an_equilibrium_is_refused(cart):
+    name = cart.states[1]
+    for start, error in [
+        ({name + "x": 0.3}, f"did you mean `{name}`"),
+        ({name: np.nan}, "finite"),
+        ([0.0], "shape"),
+    ]:
+        with pytest.raises(ValueError, match=error):
+            cart.trim(start)
+        with pytest.raises(ValueError, match=error):
+            cart.trim(fixed=start)
 
 
 def test_a_model_goes_to_other_processes():

@@ -1,16 +1,12 @@
 //! `eomgen trim`: an equilibrium of a model, and whether it is stable.
 
-use eomgen_analysis::constrained_modes::constrained_modes;
-use eomgen_compiled_model::{CompiledModel, Equilibrium, EquilibriumRequest};
+use eomgen_compiled_model::{CompiledModel, Equilibrium, EquilibriumRequest, Stability};
 use serde_json::{Value, json};
 
 use crate::arguments::Trim;
-use crate::error::{Error, Result, say_json};
+use crate::error::{Result, say_json};
 use crate::operating_point::{equilibrium, head, inputs, model, named, values};
 use crate::settings::borrowed;
-
-/// A real part is 0 if it is this small beside the largest eigenvalue.
-const ZERO: f64 = 1e-9;
 
 /// Runs the command.
 pub fn run(options: &Trim) -> Result {
@@ -23,23 +19,11 @@ pub fn run(options: &Trim) -> Result {
         fixed: &borrowed(&fixed),
     };
     let found = equilibrium(&run, request)?;
-    let linear = run.linearise(found.at.point())?;
-    let degrees = compiled.program().degrees_of_freedom();
-    let modes = constrained_modes(&linear.a, &linear.held(&compiled), degrees)
-        .map_err(|error| Error::input(error.to_string()))?;
-    let largest = modes.iter().map(|mode| mode.eigenvalue.norm());
-    let least = ZERO * largest.fold(0.0, f64::max);
-    let growth = modes.iter().map(|mode| mode.eigenvalue.re);
-    let growth = growth.fold(f64::NEG_INFINITY, f64::max);
-    let stability = match growth {
-        growth if growth > least => "unstable",
-        growth if growth < -least => "asymptotically stable",
-        _ => "marginal",
-    };
+    let stability = run.stability(&found.at)?;
     say_json(&document(&compiled, &found, stability))
 }
 
-fn document(compiled: &CompiledModel, found: &Equilibrium, stability: &str) -> Value {
+fn document(compiled: &CompiledModel, found: &Equilibrium, stability: Stability) -> Value {
     let states = compiled.state_names();
     let degrees = compiled.program().degrees_of_freedom();
     let coordinates = &states[..degrees];
@@ -57,7 +41,7 @@ fn document(compiled: &CompiledModel, found: &Equilibrium, stability: &str) -> V
         ("free".to_owned(), json!(found.free)),
         ("running".to_owned(), json!(found.running)),
         ("residual".to_owned(), json!(found.residual)),
-        ("stability".to_owned(), json!(stability)),
+        ("stability".to_owned(), json!(stability.to_string())),
     ]);
     Value::Object(document)
 }

@@ -11,6 +11,7 @@ All numbers are in SI units, but parameters, which are in the units that the spe
 
 from ._native import DiscoveryError, SimulationError, SpecificationError
 from .discovery import Discovery, discover
+from .equilibrium import Equilibrium
 from .linearisation import Linearisation
 from .model import Model, SpecificationWarning, load
 from .records import record_to_csv
@@ -19,6 +20,7 @@ from .trajectory import Trajectory
 __all__ = [
     "Discovery",
     "DiscoveryError",
+    "Equilibrium",
     "Linearisation",
     "Model",
     "SimulationError",

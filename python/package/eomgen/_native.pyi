@@ -55,6 +55,11 @@ def jacobian(model: Model, name: str, t: _Array, x: _Array, u: _Array, out: _Arr
 def linearise(
     model: Model, t: float, x: _Array, u: _Array
 ) -> Tuple[List[float], List[float], List[float], List[float], List[float], List[float]]: ...
+def trim(
+    model: Model, start: List[Tuple[str, float]], fixed: List[Tuple[str, float]]
+) -> Tuple[
+    float, List[float], List[float], List[float], List[str], List[str], str, bool
+]: ...
 def simulate(
     model: Model,
     initial: _Array,

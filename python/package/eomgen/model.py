@@ -1,17 +1,18 @@
-"""A compiled model: calls on one state or on arrays of them, simulation, linearisation."""
+"""A compiled model: calls on one state or on arrays of them, simulation, linearisation, equilibria."""
 
 from __future__ import annotations
 
 import os
 import warnings
 from types import MappingProxyType
-from typing import Any, Mapping, Optional, Tuple, Union
+from typing import Any, List, Mapping, Optional, Tuple, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _arguments, _native
 from ._arguments import Call
+from .equilibrium import Equilibrium
 from .linearisation import Linearisation
 from .trajectory import Trajectory, simulated
 
@@ -185,6 +186,46 @@ class Model:
         state, inputs = call.x[0], call.u[0]
         found = _native.linearise(self._native, time, state, inputs)
         return Linearisation(self._states, self._inputs, self._observables, state, inputs, *found)
+
+    def trim(
+        self,
+        x: Any = None,
+        u: Any = None,
+        *,
+        fixed: Optional[Mapping[str, float]] = None,
+        t: float = 0.0,
+    ) -> Equilibrium:
+        """The equilibrium nearest to a start, at rest or running steadily.
+
+        x: (states,), or names to numbers, the others as the specification's initial state, which is the
+        default. u: (inputs,), or names to numbers; 0 where not given, and prescribed motion in the middle of
+        its range. fixed: names of states and inputs to the numbers that they keep; if it holds a state, the
+        inputs that are not fixed are solved for: they hold the machine there. t: s.
+
+        Raises ValueError for an unknown name, a number that is not finite or outside its range, and a rate
+        that cannot be constant; SimulationError if no equilibrium is found.
+        """
+        start = self._named("state", self._states, x) + self._named("input", self._inputs, u)
+        start.append(("t", _arguments.real("t", t)))
+        kept = self._named("state or input", self._states + self._inputs, fixed or {})
+        found = _native.trim(self._native, start, kept)
+        return Equilibrium(self._states, self._inputs, *found)
+
+    @staticmethod
+    def _named(kind: str, names: Tuple[str, ...], given: Any) -> List[Tuple[str, float]]:
+        # What is not given is left to the model.
+        if given is None:
+            return []
+        if not isinstance(given, Mapping):
+            values = _arguments.numbers(f"the {kind}", given)
+            if values.shape != (len(names),):
+                raise ValueError(
+                    f"the {kind} has the shape {values.shape}: expected ({len(names)},), "
+                    f"for {', '.join(names) or '(none)'}"
+                )
+            given = dict(zip(names, values))
+        _arguments.check_names(kind, given, names)
+        return [(name, _arguments.real(name, value)) for name, value in given.items()]
 
     def simulate(
         self,

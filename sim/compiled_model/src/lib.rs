@@ -61,7 +61,7 @@ mod sliding;
 pub use audit::{Audit, Imbalance};
 pub use distances::Overlap;
 pub use driven::Driven;
-pub use equilibrium::{Equilibrium, EquilibriumRequest};
+pub use equilibrium::{Equilibrium, EquilibriumRequest, Stability};
 pub use error::Error;
 pub use instance::Instance;
 pub use jacobians::{Jacobian, JacobianEvaluator, Linearisation};

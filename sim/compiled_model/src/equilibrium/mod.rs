@@ -7,12 +7,15 @@
 
 mod linear;
 mod search;
+mod stability;
 
 use crate::error::Error;
 use crate::instance::Instance;
 use crate::operating_point::{OperatingPoint, Setting};
 
 use self::search::{Search, Unknown};
+
+pub use self::stability::Stability;
 
 /// A state is no equilibrium if a rate is this large beside the terms it is the sum of.
 const NOT_ZERO: f64 = 1e-6;

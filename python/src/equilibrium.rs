@@ -1,0 +1,55 @@
+//! Equilibria of a model.
+
+use eomgen_compiled_model::{EquilibriumRequest, Error, Instance};
+use pyo3::prelude::*;
+
+use crate::error;
+use crate::model::Model;
+
+/// Names and values in SI units.
+type Values = Vec<(String, f64)>;
+
+/// The time, state and inputs of an equilibrium, its residual, the names of the rates that are not 0, the names
+/// of the unknowns, its stability, and whether forces depend on the time there.
+type Found = (
+    f64,
+    Vec<f64>,
+    Vec<f64>,
+    Vec<f64>,
+    Vec<String>,
+    Vec<String>,
+    String,
+    bool,
+);
+
+/// Searches for the equilibrium nearest to a start, with some values fixed.
+#[pyfunction]
+pub fn trim(py: Python<'_>, model: &Model, start: Values, fixed: Values) -> PyResult<Found> {
+    let (start, fixed) = (borrowed(&start), borrowed(&fixed));
+    let request = EquilibriumRequest {
+        start: &start,
+        fixed: &fixed,
+    };
+    py.detach(|| found(&model.instance()?, request))
+        .map_err(error::model)
+}
+
+fn found(run: &Instance<'_>, request: EquilibriumRequest<'_>) -> Result<Found, Error> {
+    let found = run.equilibrium(request)?;
+    let stability = run.stability(&found.at)?.to_string();
+    Ok((
+        found.at.t,
+        found.at.state,
+        found.at.inputs,
+        found.residual,
+        found.running,
+        found.free,
+        stability,
+        found.depends_on_time,
+    ))
+}
+
+fn borrowed(values: &[(String, f64)]) -> Vec<(&str, f64)> {
+    let pairs = values.iter();
+    pairs.map(|(name, value)| (name.as_str(), *value)).collect()
+}

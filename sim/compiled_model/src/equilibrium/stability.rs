@@ -1,0 +1,54 @@
+//! Stability of an equilibrium, by the eigenvalues of the model linearised there.
+
+use std::fmt;
+
+use eomgen_analysis::constrained_modes::constrained_modes;
+
+use crate::error::Error;
+use crate::instance::Instance;
+use crate::operating_point::OperatingPoint;
+
+/// A real part is 0 if it is this small beside the largest eigenvalue.
+const ZERO: f64 = 1e-9;
+
+/// Stability of an equilibrium of the linearised model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stability {
+    /// Every small motion decays.
+    Asymptotic,
+    /// The slowest small motion neither decays nor grows, and linearisation does not decide.
+    Marginal,
+    /// Some small motion grows.
+    Unstable,
+}
+
+impl fmt::Display for Stability {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Asymptotic => "asymptotically stable",
+            Self::Marginal => "marginal",
+            Self::Unstable => "unstable",
+        })
+    }
+}
+
+impl Instance<'_> {
+    /// The stability of an equilibrium within the motions that constraints allow.
+    ///
+    /// # Errors
+    /// As [`Instance::linearise`], and eigenvalues that cannot be computed.
+    pub fn stability(&self, at: &OperatingPoint) -> Result<Stability, Error> {
+        let linear = self.linearise(at.point())?;
+        let degrees = self.model().program().degrees_of_freedom();
+        let modes = constrained_modes(&linear.a, &linear.held(self.model()), degrees)
+            .map_err(|error| Error::Request(error.to_string()))?;
+        let eigenvalues = || modes.iter().map(|mode| mode.eigenvalue);
+        let largest = eigenvalues().fold(0.0, |most: f64, value| most.max(value.norm()));
+        let growth = eigenvalues().fold(f64::NEG_INFINITY, |most, value| most.max(value.re));
+        Ok(match growth {
+            growth if growth > ZERO * largest => Stability::Unstable,
+            growth if growth < -ZERO * largest => Stability::Asymptotic,
+            _ => Stability::Marginal,
+        })
+    }
+}
