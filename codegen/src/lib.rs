@@ -56,9 +56,10 @@
 //!    (equations for people).
 //!
 //! [`variant`] goes from a model to its program in one call, and refuses constraints that are not
-//! independent ([`independence`]). [`singular_terms`] finds terms without a derivative at a point.
+//! independent ([`independence`]). [`examination`] finds most of what is refused without equations. [`singular_terms`] finds terms without a derivative at a point.
 
 pub mod c;
+pub mod examination;
 pub mod independence;
 pub mod mechanics;
 pub mod program;

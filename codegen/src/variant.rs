@@ -5,10 +5,11 @@
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::model::Model;
 
-use crate::independence;
+use crate::examination;
+use crate::independence::bounds::check_signs;
+use crate::independence::check_independence;
 use crate::independence::rows::{ConstraintRows, constraint_program};
 use crate::mechanics::equations::{Equations, derive};
-use crate::mechanics::examination;
 use crate::mechanics::inertia;
 use crate::mechanics::outputs::derive_outputs;
 use crate::mechanics::outputs::{Output, Outputs};
@@ -29,8 +30,8 @@ impl Variant {
     /// Derives `model` with its fields at `orders`, one for each field.
     ///
     /// # Errors
-    /// Parameter values that are not admissible, what cannot be derived, constraints that depend on each
-    /// other, and coordinates without inertia at the initial state, each at its place in the specification.
+    /// Parameter values that are not admissible, what cannot be derived, constraints that never hold or depend
+    /// on each other, and coordinates without inertia at the initial state, each at its place in the specification.
     pub fn derive(model: &Model, orders: &[usize]) -> Result<Self, Diagnostics> {
         Self::derive_with(model, orders, &[])
     }
@@ -75,6 +76,7 @@ impl Variant {
                 None => message,
             })
         })?;
+        check_signs(model, &equations.graph, &equations.residuals, &values).map_err(found)?;
         if let Some(program) = constraint_program(model, &equations, &values) {
             let mut rows = ConstraintRows::new(model, program);
             check_independence(model, orders, &mut rows).map_err(found)?;
@@ -135,21 +137,6 @@ pub fn derive_sliding(model: &Model, orders: &[usize]) -> Result<Option<Program>
     let mut program = lower_with_outputs(model, &equations, &values, &outputs);
     program.inputs.extend(sides);
     Ok(Some(program))
-}
-
-/// Refuses constraints that depend on each other at the declared parameters.
-fn check_independence(
-    model: &Model,
-    orders: &[usize],
-    rows: &mut ConstraintRows,
-) -> Result<(), Diagnostic> {
-    let state = model
-        .initial_state(orders)
-        .map_err(|error| error.diagnostic())?;
-    let inputs = model
-        .typical_inputs(1.0)
-        .map_err(|error| error.diagnostic())?;
-    independence::check(model, rows, &state, &inputs)
 }
 
 /// The mass matrix at the initial state and the declared parameters, row by row.

@@ -27,7 +27,7 @@
 //! to [`ast`]), `document` (TOML tables to raw entries), `names`, `expression` and `resolve` (names),
 //! `rate_order` (rates of states that lead to no circle), `motion` (what may stand where), `units_check` and `infer` (units of every expression), `checks`, `uncertainty` (how values are spread),
 //! [`model`] (the result; [`mod@ids`] say which entry of its lists is meant, [`rigid_tree`] has its frames and bodies). [`load()`] and [`check`] go all the way. What is wrong is said by
-//! [`diagnostic`]; [`shape_table`] reads mode shapes from a file beside it; [`edit`] changes a specification and keeps its comments; [`variant`] sets numbers, which [`assignment`] reads from options.
+//! [`diagnostic`]; [`shape_table`] reads mode shapes from a file beside it; [`edit`] changes a specification and keeps its comments; [`variant`] sets numbers, which [`assignment`] reads from options; [`interval`] bounds them.
 //! [`toml_file`] and [`mod@table`] read other files of TOML with their places as well. [`models`] are
 //! the specifications shipped. Nothing here knows how
 //! equations are derived.
@@ -49,6 +49,7 @@ mod functions;
 mod id_set;
 pub mod ids;
 mod infer;
+pub mod interval;
 mod keys;
 pub mod lexer;
 mod load;

@@ -131,14 +131,16 @@ impl Writer {
     /// added in order, then neighbours are added in pairs.
     fn sum(&self, name: &str, length: usize, element: &Expression) -> String {
         let real = &self.real;
-        let element = self.expression(element);
         if length == 0 {
             return format!("const {real} {name} = 0;\n");
         }
         let parts = format!("{name}_parts");
         let count = length.min(PARTIAL_SUMS);
         let mut text = format!("{real} {parts}[{count}];\n");
-        text += &looped("i", count, &assignment(&format!("{parts}[i]"), &element));
+        let first = assignment(&format!("{parts}[i]"), &self.expression(element));
+        text += &looped("i", count, &first);
+        // An element that is a sum itself is added as a whole.
+        let element = self.at(element, Level::Product);
         let blocks = length / PARTIAL_SUMS;
         let added = |first: &str, part: &str| {
             let at = format!("const int i = {first};\n");

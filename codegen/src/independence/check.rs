@@ -4,10 +4,11 @@
 
 use eomgen_model_spec::diagnostic::Diagnostic;
 use eomgen_model_spec::model::{Constraint, Model};
+use eomgen_model_spec::variant::ModelError;
 
 use super::dependence::dependent_combination;
 use super::projection::{Place, project};
-use super::rows::{ConstraintRows, norm};
+use super::rows::{ConstraintGeometry, norm, positive};
 
 /// Rows in parts of their largest lengths depend on each other if no more than this is left of one beside the
 /// others. Searches for a state end where about 1e-6 is left.
@@ -35,16 +36,19 @@ const CONTRADICTION: f64 = 0.1;
 /// Residuals of this size beside those that the searches began with are rounding.
 const KEPT: f64 = 1e-6;
 
-/// Refuses constraints that depend on each other wherever they hold, or that never hold, near the state.
+/// Refuses constraints that depend on each other wherever they hold, or that never hold, near the initial
+/// state of a model with fields of these orders.
 ///
 /// # Errors
-/// A constraint that depends on others, at its place with those.
-pub(crate) fn check(
+/// A constraint that depends on others, at its place with those, and initial values that are not finite.
+pub(crate) fn check_independence(
     model: &Model,
-    rows: &mut ConstraintRows,
-    state: &[f64],
-    inputs: &[f64],
+    orders: &[usize],
+    rows: &mut dyn ConstraintGeometry,
 ) -> Result<(), Diagnostic> {
+    let refused = |error: ModelError| error.diagnostic();
+    let state = &model.initial_state(orders).map_err(refused)?;
+    let inputs = &model.typical_inputs(1.0).map_err(refused)?;
     let mut search = Search {
         holonomic: (0..model.constraints.len())
             .filter(|k| !model.constraints[*k].is_nonholonomic)
@@ -68,7 +72,7 @@ pub(crate) fn check(
 }
 
 struct Search<'s> {
-    rows: &'s mut ConstraintRows,
+    rows: &'s mut dyn ConstraintGeometry,
     inputs: &'s [f64],
     holonomic: Vec<usize>,
     /// The longest that each row was so far.
@@ -147,11 +151,6 @@ impl Search<'_> {
         }
         state.to_vec()
     }
-}
-
-/// 1 for the length of a row that was never anything but 0.
-fn positive(scale: f64) -> f64 {
-    if scale > 0.0 { scale } else { 1.0 }
 }
 
 /// A number between -1 and 1 that differs for every pair (splitmix64).

@@ -6,6 +6,8 @@ use super::rows::{dot, norm};
 struct Rest {
     vector: Vec<f64>,
     parts: Vec<f64>,
+    /// The length of the vector.
+    size: f64,
 }
 
 impl Rest {
@@ -14,6 +16,7 @@ impl Rest {
         for (entry, taken) in entries.zip(other.vector.iter().chain(&other.parts)) {
             *entry -= factor * taken;
         }
+        self.size = norm(&self.vector);
     }
 }
 
@@ -29,14 +32,18 @@ pub fn dependent_combination(rows: &[Vec<f64>], tolerance: f64) -> Option<Vec<f6
         .iter()
         .enumerate()
         .map(|(place, row)| {
-            let (vector, parts) = (row.clone(), unit(place));
-            (place, Rest { vector, parts })
+            let rest = Rest {
+                vector: row.clone(),
+                parts: unit(place),
+                size: norm(row),
+            };
+            (place, rest)
         })
         .collect();
-    while let Some(longest) = (0..rests.len())
-        .max_by(|a, b| norm(&rests[*a].1.vector).total_cmp(&norm(&rests[*b].1.vector)))
+    while let Some(longest) =
+        (0..rests.len()).max_by(|a, b| rests[*a].1.size.total_cmp(&rests[*b].1.size))
     {
-        let size = norm(&rests[longest].1.vector);
+        let size = rests[longest].1.size;
         if size.is_nan() {
             return None;
         }
@@ -52,7 +59,10 @@ pub fn dependent_combination(rows: &[Vec<f64>], tolerance: f64) -> Option<Vec<f6
         for _ in 0..2 {
             for (_, rest) in &mut rests {
                 let along = dot(&rest.vector, &chosen.vector);
-                rest.take_away(along, &chosen);
+                // Constraints of different bodies have nothing in common.
+                if along != 0.0 {
+                    rest.take_away(along, &chosen);
+                }
             }
         }
     }

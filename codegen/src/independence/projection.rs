@@ -1,7 +1,7 @@
 //! States near a given one that keep the holonomic constraints, by Newton's method with the inertias of the
 //! coordinates as its metric. Where constraints depend on each other their directions are damped out.
 
-use super::rows::{ConstraintRows, dot};
+use super::rows::{ConstraintGeometry, dot};
 use crate::program::evaluator::Point;
 
 /// Steps before the search is given up: where rows depend on each other a step halves the residuals.
@@ -30,7 +30,7 @@ impl<'p> Place<'p> {
 /// The state in which the residuals of the constraints at `holonomic` are as small as they get; `scales` are the
 /// lengths of their rows.
 pub(super) fn project(
-    rows: &mut ConstraintRows,
+    rows: &mut dyn ConstraintGeometry,
     place: Place<'_>,
     holonomic: &[usize],
     scales: &[f64],

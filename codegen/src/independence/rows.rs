@@ -1,4 +1,5 @@
-//! The derivatives A of constraints, with M a + c = f + A^T lambda, and their residuals at a state.
+//! The derivatives A of constraints, with M a + c = f + A^T lambda, and their residuals at a state, by the
+//! program of a model.
 //!
 //! Each coordinate is measured by its own inertia: column k of A is divided by sqrt(M_kk), so that all
 //! entries of a row have one unit.
@@ -12,6 +13,16 @@ use crate::program::Program;
 use crate::program::evaluator::{Evaluator, Point};
 use crate::program::lowering::lower_with_outputs;
 use crate::symbolic::graph::{NodeId, Space};
+
+/// Derivatives and residuals of constraints at any state.
+pub(crate) trait ConstraintGeometry {
+    /// The rows of A, each entry divided by the square root of its coordinate's inertia.
+    fn rows(&mut self, point: Point<'_>) -> Vec<Vec<f64>>;
+    /// The diagonal of the mass matrix; 1 for a coordinate without inertia.
+    fn inertia(&mut self, point: Point<'_>) -> Vec<f64>;
+    /// The residuals of the constraints, SI.
+    fn residuals(&mut self, point: Point<'_>) -> Vec<f64>;
+}
 
 /// Computes derivatives and residuals of constraints.
 pub struct ConstraintRows {
@@ -95,7 +106,7 @@ impl ConstraintRows {
         };
         let mut nonzeros = vec![0.0; jacobian.nonzeros()];
         self.evaluator.jacobian(0, point, &mut nonzeros);
-        let inertia = self.inertia(point);
+        let inertia = self.diagonal(point);
         for (entry, place) in jacobian.entries.iter().zip(jacobian.places()) {
             for column in 0..entry.columns {
                 let degree = entry.column + column;
@@ -105,15 +116,12 @@ impl ConstraintRows {
         rows
     }
 
-    /// The diagonal of the mass matrix; 1 for a coordinate without inertia.
-    pub(crate) fn inertia(&mut self, point: Point<'_>) -> Vec<f64> {
+    fn diagonal(&mut self, point: Point<'_>) -> Vec<f64> {
         let degrees = self.evaluator.program().degrees_of_freedom();
         let mut mass = vec![0.0; degrees * degrees];
         self.evaluator.mass_matrix(point, &mut mass);
         let diagonal = (0..degrees).map(|place| mass[place * degrees + place]);
-        diagonal
-            .map(|inertia| if inertia > 0.0 { inertia } else { 1.0 })
-            .collect()
+        diagonal.map(positive).collect()
     }
 
     /// The residuals of the constraints, SI.
@@ -123,6 +131,25 @@ impl ConstraintRows {
         let places = self.residuals.iter();
         places.map(|place| observables[*place]).collect()
     }
+}
+
+impl ConstraintGeometry for ConstraintRows {
+    fn rows(&mut self, point: Point<'_>) -> Vec<Vec<f64>> {
+        self.rows(point)
+    }
+
+    fn inertia(&mut self, point: Point<'_>) -> Vec<f64> {
+        self.diagonal(point)
+    }
+
+    fn residuals(&mut self, point: Point<'_>) -> Vec<f64> {
+        self.residuals(point)
+    }
+}
+
+/// 1 for a length or an inertia that is not positive.
+pub(super) fn positive(size: f64) -> f64 {
+    if size > 0.0 { size } else { 1.0 }
 }
 
 /// The length of a vector.

@@ -103,7 +103,8 @@ fn one(
     })
 }
 
-fn row_of(of: &Expr) -> Derived<EquationRow> {
+/// The row that `of` names.
+pub(crate) fn row_of(of: &Expr) -> Derived<EquationRow> {
     match of.kind {
         ExprKind::Coordinate(index) => Ok(EquationRow::Coordinate(index)),
         ExprKind::ModeCoordinate(field) => Ok(EquationRow::Modes(field)),

@@ -90,7 +90,7 @@ fn nonholonomic(
     (row, right)
 }
 
-fn not_linear(constraint: &Constraint) -> DeriveError {
+pub(crate) fn not_linear(constraint: &Constraint) -> DeriveError {
     DeriveError {
         span: constraint.zero.span,
         message: format!(

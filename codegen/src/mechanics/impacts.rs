@@ -85,7 +85,7 @@ pub(crate) fn impacts(
 }
 
 /// An impulse along nothing: the distance would never change by it.
-fn moves_nothing(impact: &model::Impact) -> DeriveError {
+pub(crate) fn moves_nothing(impact: &model::Impact) -> DeriveError {
     DeriveError {
         span: impact.when.span,
         message: format!(

@@ -22,6 +22,29 @@ pub(crate) enum GradientBy {
     Rates,
 }
 
+/// The derivatives of a scalar by coordinates or by rates that are not 0, with their places. The work grows
+/// with what the scalar is computed from.
+pub(crate) fn nonzero_gradient(
+    graph: &mut Graph,
+    scalar: NodeId,
+    by: &GradientBy,
+) -> Vec<(usize, NodeId)> {
+    let leaves = graph.reachable(&[scalar]).into_iter();
+    let variables = leaves.filter_map(|leaf| match (graph.operation(leaf), by) {
+        (Operation::Coordinate(index), GradientBy::Coordinates)
+        | (Operation::Rate(index), GradientBy::Rates) => Some((index.index(), leaf)),
+        _ => None,
+    });
+    let mut found = Vec::new();
+    for (place, variable) in variables.collect::<Vec<_>>() {
+        let derivative = by_scalar(graph, scalar, variable);
+        if !graph.is_zero(derivative) {
+            found.push((place, derivative));
+        }
+    }
+    found
+}
+
 /// Which variables there are.
 pub(crate) struct Variables {
     pub(crate) coordinates: usize,

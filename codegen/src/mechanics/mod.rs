@@ -6,13 +6,12 @@
 //! `solve` (the accelerations), `impacts` (what impulses do),
 //! `coefficients` (names as in Eq. (22)), `equations` (all of it), `outputs` (what is derived on
 //! request), `linearity` (whether a model is linear between its switches), `sides` (switching functions
-//! as polynomials), `affine` (the coefficients of a model that is linear between its switches), `sliding` (motion held on surfaces), `inertia` (whether all that moves has some), `examination` (what can be refused without equations).
+//! as polynomials), `affine` (the coefficients of a model that is linear between its switches), `sliding` (motion held on surfaces), `inertia` (whether all that moves has some), `unsolved` (a model without equations).
 
 pub mod affine;
 pub mod coefficients;
 pub(crate) mod constraints;
 pub mod equations;
-pub mod examination;
 pub mod fields;
 mod forces;
 pub mod guard;
@@ -31,3 +30,4 @@ pub mod sliding;
 pub mod solve;
 mod sweeps;
 pub mod translate;
+pub(crate) mod unsolved;

@@ -13,7 +13,7 @@
 //! velocities of a frame on the way is the inertia of all that it carries: composite rigid bodies
 //! (Walker and Orin, 1982: J. Dyn. Sys. Meas. Control 104, 205-211).
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 use eomgen_model_spec::ids::CoordinateId;
 
@@ -169,19 +169,7 @@ impl Velocities {
 impl Unit {
     /// The derivatives by coordinates, with what it is made of held.
     fn slopes(&self, graph: &mut Graph, coordinates: usize) -> Vec<(usize, NodeId)> {
-        let held: BTreeSet<NodeId> = self.operands.iter().copied().collect();
-        let mut moving = BTreeSet::new();
-        let mut waiting = vec![self.node];
-        let mut seen = BTreeSet::new();
-        while let Some(node) = waiting.pop() {
-            if held.contains(&node) || !seen.insert(node) {
-                continue;
-            }
-            if let Operation::Coordinate(_) = graph.operation(node) {
-                moving.insert(node);
-            }
-            waiting.extend(graph.operands(graph.operation(node)));
-        }
+        let moving = self.leaves(graph, self.node);
         let mut found = Vec::new();
         for (place, index) in CoordinateId::first(coordinates).enumerate() {
             let variable = graph.intern(Operation::Coordinate(index));
@@ -192,15 +180,45 @@ impl Unit {
         found
     }
 
+    /// What a node is computed from where the operands are held: they, and leaves.
+    fn leaves(&self, graph: &Graph, node: NodeId) -> BTreeSet<NodeId> {
+        let mut found = BTreeSet::new();
+        let mut seen = HashSet::new();
+        let mut waiting = vec![node];
+        while let Some(node) = waiting.pop() {
+            if !seen.insert(node) {
+                continue;
+            }
+            let operands = match self.operands.binary_search(&node) {
+                Ok(_) => Vec::new(),
+                Err(_) => graph.operands(graph.operation(node)),
+            };
+            if operands.is_empty() {
+                found.insert(node);
+            }
+            waiting.extend(operands);
+        }
+        found
+    }
+
     /// Adds the second derivatives of the node itself times its adjoint; `None` if they depend on
     /// the rates.
     fn add_curvature(&self, graph: &mut Graph, inertia: &mut Inertia) -> Option<()> {
         for (place, &first) in self.operands.iter().enumerate() {
-            if !is_velocity(graph, self.partials[place]) {
+            let slope = self.partials[place];
+            if !is_velocity(graph, slope) {
                 continue;
             }
-            for &second in &self.operands[..=place] {
-                let curvature = partial(graph, self.partials[place], &self.operands, second);
+            // Others have no derivative.
+            let within = self.leaves(graph, slope);
+            let (earlier, held) = (&self.operands[..=place], &self.operands);
+            let held: Vec<NodeId> = held
+                .iter()
+                .copied()
+                .filter(|o| within.contains(o))
+                .collect();
+            for &second in earlier.iter().filter(|second| within.contains(second)) {
+                let curvature = partial(graph, slope, &held, second);
                 let value = graph.multiply(curvature, self.adjoint);
                 if is_velocity(graph, value) {
                     return None;

@@ -29,7 +29,9 @@ impl Moving {
             return known;
         }
         let moves = match leaf(graph, id) {
-            Some(moves) => moves,
+            // Found again as fast as it would be remembered: most of a long sum holds one variable.
+            Some(false) => return false,
+            Some(true) => true,
             None => {
                 let operands = graph.operands(graph.operation(id));
                 operands.into_iter().any(|a| self.has(graph, a, leaf))

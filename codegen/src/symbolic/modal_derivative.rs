@@ -34,6 +34,9 @@ impl ModalDerivative {
     fn moves(&mut self, graph: &Graph, id: NodeId) -> bool {
         let variable = self.variable;
         self.moving.has(graph, id, &|graph, id| {
+            if !graph.may_depend_on(id, variable) {
+                return Some(false);
+            }
             let leaf = graph.operands(graph.operation(id)).is_empty();
             leaf.then_some(id == variable)
         })

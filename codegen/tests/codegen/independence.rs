@@ -1,6 +1,6 @@
 //! Constraints that depend on each other, told apart from singular positions, in every unit.
 
-use eomgen_codegen::variant::Variant;
+use eomgen_codegen::variant::{Variant, examine};
 
 /// A platform on three parallel rods of one length; the third holds nothing that the others do not.
 const THREE_RODS: &str = r#"
@@ -52,7 +52,10 @@ fn refusal(text: &str) -> Option<String> {
     let model = crate::support::model(text);
     let orders = vec![2; model.fields.len()];
     let found = Variant::derive_to_read(&model, &orders, &[]).err()?;
-    Some(found.render(false))
+    let said = found.render(false);
+    let examined = examine(&model, &orders).expect_err("an examination finds the same");
+    assert_eq!(examined.render(false), said);
+    Some(said)
 }
 
 #[test]

@@ -5,6 +5,7 @@
 mod arrays;
 mod definiteness;
 mod emission;
+mod examination;
 mod expressions;
 mod gradients;
 mod guards;

@@ -23,18 +23,15 @@ pub struct Balanced {
 impl Balanced {
     /// Balances a square matrix of finite numbers.
     pub fn new(matrix: &DMatrix<f64>) -> Self {
-        let exponents = matrix.map(|entry| match entry.abs().log2() {
-            exponent if exponent.is_finite() => Some(exponent),
-            _ => None,
-        });
+        let exponents = Exponents::new(matrix);
         let sizes = balancing_exponents(&exponents);
         let shift = |row: usize, column: usize| sizes[column] - sizes[row];
-        let scaled = exponents.map_with_location(|row, column, exponent| {
-            exponent.map_or(f64::NEG_INFINITY, |exponent| {
-                exponent + f64::from(shift(row, column))
-            })
+        let rows = exponents.rows.iter().enumerate();
+        let scaled = rows.flat_map(|(row, entries)| {
+            let entries = entries.iter();
+            entries.map(move |(column, exponent)| exponent + f64::from(shift(row, *column)))
         });
-        let largest = scaled.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let largest = scaled.fold(f64::NEG_INFINITY, f64::max);
         let time = if largest.is_finite() {
             -largest.floor() as i32
         } else {
@@ -66,23 +63,45 @@ impl Balanced {
     }
 }
 
+/// The exponents of 2 of the entries of a matrix that are not 0, with their columns or rows.
+struct Exponents {
+    rows: Vec<Vec<(usize, f64)>>,
+    columns: Vec<Vec<(usize, f64)>>,
+}
+
+impl Exponents {
+    fn new(matrix: &DMatrix<f64>) -> Self {
+        let count = matrix.nrows();
+        let (mut rows, mut columns) = (vec![Vec::new(); count], vec![Vec::new(); count]);
+        for row in 0..count {
+            for column in 0..count {
+                let entry = matrix[(row, column)].abs();
+                if entry > 0.0 {
+                    rows[row].push((column, entry.log2()));
+                    columns[column].push((row, entry.log2()));
+                }
+            }
+        }
+        Self { rows, columns }
+    }
+}
+
 /// The exponents of 2 in the diagonal of D.
-fn balancing_exponents(entries: &DMatrix<Option<f64>>) -> Vec<i32> {
-    let count = entries.nrows();
+fn balancing_exponents(entries: &Exponents) -> Vec<i32> {
+    let count = entries.rows.len();
     let mut sizes = vec![0_i32; count];
     for _ in 0..MAX_SWEEPS {
         let mut is_balanced = true;
         for state in 0..count {
-            let others = || (0..count).filter(|other| *other != state);
-            let largest = |exponents: &mut dyn Iterator<Item = f64>| {
-                exponents.fold(f64::NEG_INFINITY, f64::max)
+            let size = sizes[state];
+            let largest = |entries: &[(usize, f64)], sign: i32| {
+                let others = entries.iter().filter(|(other, _)| *other != state);
+                let scaled = others
+                    .map(|(other, exponent)| exponent + f64::from(sign * (sizes[*other] - size)));
+                scaled.fold(f64::NEG_INFINITY, f64::max)
             };
-            let row = largest(&mut others().filter_map(|other| {
-                Some(entries[(state, other)]? + f64::from(sizes[other] - sizes[state]))
-            }));
-            let column = largest(&mut others().filter_map(|other| {
-                Some(entries[(other, state)]? + f64::from(sizes[state] - sizes[other]))
-            }));
+            let row = largest(&entries.rows[state], 1);
+            let column = largest(&entries.columns[state], -1);
             let change = ((row - column) / 2.0).round();
             if change.is_finite() && change != 0.0 {
                 sizes[state] += change as i32;

@@ -5,12 +5,13 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use crate::allowed_motions::AllowedMotions;
+use crate::allowed_motions::{AllowedMotions, row_by_row};
 use crate::balancing::Balanced;
 use crate::block_eigenvalues;
 use crate::error::AnalysisError;
-use crate::inverse_iteration::null_vector_at;
-use crate::natural_modes::{NaturalMode, equal, natural_modes};
+use crate::independent_parts::independent_parts;
+use crate::inverse_iteration::{SparseRows, null_vector_at};
+use crate::natural_modes::{NaturalMode, connected_modes, equal, gather, natural_modes};
 use crate::null_space::{null_space, zero_eigenvalues};
 
 /// The natural modes of d(q, q', z)/dt = A (q, q', z) with so many degrees of freedom within the
@@ -36,10 +37,25 @@ pub fn constrained_modes(
         return Err(AnalysisError::NotFinite { sample });
     }
     let matrix = DMatrix::from_row_slice(states, states, matrix);
-    let balanced = Balanced::new(&matrix);
-    let not_converged = || AnalysisError::not_converged(&matrix);
+    let held = DMatrix::from_row_slice(held.len() / states, states, held);
+    let parts = independent_parts(&matrix, &held, degrees);
+    gather(states - degrees, parts, |part| match part.held.nrows() {
+        0 => connected_modes(&part.matrix, part.degrees),
+        _ => modes_within(&part.matrix, &part.held, part.degrees),
+    })
+}
+
+/// The modes of a machine whose states all feel each other or are held together.
+fn modes_within(
+    matrix: &DMatrix<f64>,
+    held: &DMatrix<f64>,
+    degrees: usize,
+) -> Result<Vec<NaturalMode>, AnalysisError> {
+    let states = matrix.nrows();
+    let balanced = Balanced::new(matrix);
+    let not_converged = || AnalysisError::not_converged(matrix);
     let sizes = balanced.sizes.iter().cycle();
-    let held: Vec<f64> = held
+    let held: Vec<f64> = row_by_row(held)
         .iter()
         .zip(sizes)
         .map(|(entry, size)| entry * size)
@@ -58,13 +74,17 @@ pub fn constrained_modes(
         .map(|motion| (0.0.into(), motion.map(Complex::from)))
         .collect();
     let count = zero_eigenvalues(reduced.clone()).ok_or_else(not_converged)?;
-    let reduced = reduced.map(Complex::from);
-    let shifted = |eigenvalue: Complex<f64>| {
-        let mut shifted = reduced.clone();
-        for entry in 0..shifted.nrows() {
-            shifted[(entry, entry)] -= eigenvalue;
-        }
-        shifted
+    let shifted = |eigenvalue: Complex<f64>| -> SparseRows {
+        let rows = reduced.row_iter().enumerate();
+        rows.map(|(place, row)| {
+            let entries = row.iter().copied().map(Complex::from).enumerate();
+            let shifted = entries.map(|(column, entry)| match column == place {
+                true => (column, entry - eigenvalue),
+                false => (column, entry),
+            });
+            shifted.collect()
+        })
+        .collect()
     };
     let moving = eigenvalues.into_iter().skip(count);
     for eigenvalue in moving.filter(|eigenvalue| eigenvalue.im >= 0.0) {

@@ -1,8 +1,8 @@
 //! Eigenvectors to known eigenvalues by inverse iteration (G. H. Golub, C. F. Van Loan, *Matrix
-//! Computations*, 7.6), with factors that skip zeros: those of a chain cost as many multiplications as it
-//! has members.
+//! Computations*, 7.6), with factors within the band of the matrix: those of a chain cost as many
+//! multiplications as it has members.
 
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{Complex, DVector};
 
 /// How far beside its eigenvalue the matrix of the inverse iteration is taken, relative to its size:
 /// there it is not singular, and one step gains as many digits.
@@ -11,16 +11,19 @@ const BESIDE: f64 = 1e-11;
 /// Steps of the iteration; the second mostly changes nothing.
 const STEPS: usize = 4;
 
+/// The entries of a square matrix that are not 0, row by row, with their columns.
+pub(crate) type SparseRows = Vec<Vec<(usize, Complex<f64>)>>;
+
 /// The vector that a matrix function maps to 0 at its eigenvalue, of norm 1, without the parts along
 /// `earlier` vectors of the same eigenvalue.
 pub(crate) fn null_vector_at(
-    matrix: impl Fn(Complex<f64>) -> DMatrix<Complex<f64>>,
+    matrix: impl Fn(Complex<f64>) -> SparseRows,
     eigenvalue: Complex<f64>,
     earlier: &[DVector<Complex<f64>>],
 ) -> DVector<Complex<f64>> {
-    let factors = Factors::new(matrix(eigenvalue * (1.0 + BESIDE)));
+    let factors = Factors::new(&matrix(eigenvalue * (1.0 + BESIDE)));
     // Of no symmetry that a machine might have too.
-    let mut vector = DVector::from_fn(factors.order.len(), |row, _| {
+    let mut vector = DVector::from_fn(factors.steps.len(), |row, _| {
         Complex::new(1.0 + (1.7 * (row + earlier.len()) as f64).sin() / 2.0, 0.1)
     });
     for _ in 0..STEPS {
@@ -41,70 +44,130 @@ pub(crate) fn null_vector_at(
     vector
 }
 
-/// Triangular factors of a square matrix with its rows in another order.
+/// Triangular factors of a square matrix, with what is not 0 by its band left out.
 struct Factors {
-    /// Row by row: below the diagonal the multipliers, above it the upper factor.
-    rows: Vec<Vec<Complex<f64>>>,
-    /// Which row of the matrix each of them was.
-    order: Vec<usize>,
+    steps: Vec<Step>,
+}
+
+/// A step of the elimination.
+struct Step {
+    /// The row that changes places with this one.
+    pivot: usize,
+    /// The multipliers of rows below.
+    below: Vec<(usize, Complex<f64>)>,
+    /// The pivot.
+    own: Complex<f64>,
+    /// The entries of the upper factor right of the pivot.
+    right: Vec<(usize, Complex<f64>)>,
 }
 
 impl Factors {
-    fn new(matrix: DMatrix<Complex<f64>>) -> Self {
-        let count = matrix.nrows();
-        let mut rows: Vec<Vec<_>> = matrix
-            .row_iter()
-            .map(|row| row.iter().copied().collect())
-            .collect();
-        let mut order: Vec<usize> = (0..count).collect();
-        let zero = Complex::from(0.0);
-        for place in 0..count {
-            let sizes = (place..count).map(|row| rows[row][place].norm());
-            let largest = sizes.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
-            let pivot = largest.map_or(place, |(row, _)| place + row);
-            rows.swap(place, pivot);
-            order.swap(place, pivot);
-            let (above, below) = rows.split_at_mut(place + 1);
-            let pivot = &above[place];
-            if pivot[place] == zero {
-                continue;
-            }
-            let later = place + 1..count;
-            let columns: Vec<usize> = later.filter(|column| pivot[*column] != zero).collect();
-            for row in below.iter_mut().filter(|row| row[place] != zero) {
-                let factor = row[place] / pivot[place];
-                row[place] = factor;
-                for column in &columns {
-                    row[*column] -= factor * pivot[*column];
-                }
+    fn new(matrix: &SparseRows) -> Self {
+        let count = matrix.len();
+        let mut rows = vec![vec![Complex::from(0.0); count]; count];
+        let (mut below, mut right) = (0, 0);
+        for (place, row) in matrix.iter().enumerate() {
+            for &(column, entry) in row {
+                rows[place][column] = entry;
+                below = below.max(place.saturating_sub(column));
+                right = right.max(column.saturating_sub(place));
             }
         }
-        Self { rows, order }
+        // A pivot from further down brings its row's band along.
+        let right = right + below;
+        let steps = (0..count).map(|place| {
+            let last_row = count.min(place + below + 1);
+            let last_column = count.min(place + right + 1);
+            eliminate(&mut rows[..last_row], place, last_column)
+        });
+        Self {
+            steps: steps.collect(),
+        }
     }
 
     /// The x with matrix x = right; not finite where the matrix is singular.
     fn solve(&self, right: &DVector<Complex<f64>>) -> DVector<Complex<f64>> {
-        let count = self.order.len();
-        let mut solution = DVector::from_fn(count, |row, _| right[self.order[row]]);
-        for row in 0..count {
-            let known: Complex<f64> = (0..row)
-                .map(|column| self.rows[row][column] * solution[column])
-                .sum();
-            solution[row] -= known;
+        let mut solution = right.clone();
+        for (place, step) in self.steps.iter().enumerate() {
+            solution.swap_rows(place, step.pivot);
+            let own = solution[place];
+            for (row, factor) in &step.below {
+                solution[*row] -= factor * own;
+            }
         }
-        for row in (0..count).rev() {
-            let known: Complex<f64> = (row + 1..count)
-                .map(|column| self.rows[row][column] * solution[column])
-                .sum();
-            solution[row] = (solution[row] - known) / self.rows[row][row];
+        for (place, step) in self.steps.iter().enumerate().rev() {
+            let later = step.right.iter();
+            let known: Complex<f64> = later.map(|(column, entry)| entry * solution[*column]).sum();
+            solution[place] = (solution[place] - known) / step.own;
         }
         solution
+    }
+}
+
+/// Eliminates a column from the rows below; none of them reaches beyond the last column.
+fn eliminate(rows: &mut [Vec<Complex<f64>>], place: usize, last_column: usize) -> Step {
+    let zero = Complex::from(0.0);
+    let sizes = rows[place..].iter().map(|row| row[place].norm());
+    let largest = sizes.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+    let pivot = largest.map_or(place, |(row, _)| place + row);
+    rows.swap(place, pivot);
+    let (above, rest) = rows.split_at_mut(place + 1);
+    let pivot_row = &above[place];
+    let own = pivot_row[place];
+    let later = (place + 1..last_column).map(|column| (column, pivot_row[column]));
+    let right: Vec<(usize, Complex<f64>)> = later.filter(|entry| entry.1 != zero).collect();
+    let mut below = Vec::new();
+    for (row, entries) in (place + 1..).zip(rest) {
+        if own == zero || entries[place] == zero {
+            continue;
+        }
+        let factor = entries[place] / own;
+        below.push((row, factor));
+        for (column, entry) in &right {
+            entries[*column] -= factor * entry;
+        }
+    }
+    Step {
+        pivot,
+        below,
+        own,
+        right,
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::DMatrix;
+
+    #[test]
+    fn factors_of_a_band_solve_its_system_whatever_rows_are_exchanged() {
+        // Small pivots on the diagonal, so that rows change places.
+        let entry = |row: usize, column: usize| {
+            let size = if row == column { 1e-3 } else { 1.0 };
+            Complex::new(
+                size + (row * 7 % 5) as f64 * 0.1,
+                (column * 3 % 4) as f64 * 0.2,
+            )
+        };
+        let near = |row: usize| row.saturating_sub(2)..(row + 2).min(12);
+        let rows: SparseRows = (0..12)
+            .map(|row| {
+                near(row)
+                    .map(|column| (column, entry(row, column)))
+                    .collect()
+            })
+            .collect();
+        let right = DVector::from_fn(12, |row, _| Complex::new(1.0, row as f64));
+        let solution = Factors::new(&rows).solve(&right);
+        for (row, entries) in rows.iter().enumerate() {
+            let sum: Complex<f64> = entries
+                .iter()
+                .map(|(column, e)| e * solution[*column])
+                .sum();
+            assert!((sum - right[row]).norm() < 1e-11, "{row}: {sum}");
+        }
+    }
 
     #[test]
     fn vectors_of_a_double_eigenvalue_are_two() {
@@ -112,8 +175,14 @@ mod tests {
         let at = |value: Complex<f64>| {
             matrix.map(Complex::from) - DMatrix::from_diagonal_element(3, 3, value)
         };
-        let first = null_vector_at(at, 2.0.into(), &[]);
-        let second = null_vector_at(at, 2.0.into(), std::slice::from_ref(&first));
+        let rows = |value: Complex<f64>| -> SparseRows {
+            let matrix = at(value);
+            let rows = matrix.row_iter();
+            rows.map(|row| row.iter().copied().enumerate().collect())
+                .collect()
+        };
+        let first = null_vector_at(rows, 2.0.into(), &[]);
+        let second = null_vector_at(rows, 2.0.into(), std::slice::from_ref(&first));
         for vector in [&first, &second] {
             assert!((at(2.0.into()) * vector).norm() < 1e-10, "{vector}");
         }

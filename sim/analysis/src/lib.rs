@@ -15,7 +15,8 @@
 //! and [`classify`] weighs these against each other by a stated rule. [`modes`] says which
 //! mode of a flexible body carries the motion, [`course`] has single numbers of a course over time, [`statistics`] numbers of many values, [`natural_modes`] which modes a
 //! linearised machine has, [`constrained_modes`] which one with constraints has, whose [`allowed_motions`]
-//! have matrices of their own. [`qr_iteration`] finds their eigenvalues after `balancing`, `block_eigenvalues` group by group, `inverse_iteration`
+//! have matrices of their own. [`qr_iteration`] finds their eigenvalues after `balancing`, `block_eigenvalues` group by group within
+//! `independent_parts`, `inverse_iteration`
 //! their shapes in a `pencil`, and `null_space` the rigid ones.
 
 pub mod allowed_motions;
@@ -26,6 +27,7 @@ pub mod constrained_modes;
 pub mod course;
 mod error;
 pub mod exponent;
+mod independent_parts;
 mod inverse_iteration;
 pub mod modes;
 pub mod natural_modes;

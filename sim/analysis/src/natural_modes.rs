@@ -13,6 +13,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 use crate::balancing::Balanced;
 use crate::block_eigenvalues;
 use crate::error::AnalysisError;
+use crate::independent_parts::{Part, independent_parts};
 use crate::inverse_iteration::null_vector_at;
 use crate::null_space::zero_eigenvalues;
 use crate::pencil::Pencil;
@@ -69,8 +70,45 @@ pub fn natural_modes(matrix: &[f64], degrees: usize) -> Result<Vec<NaturalMode>,
         return Ok(Vec::new());
     }
     let matrix = DMatrix::from_row_slice(states, states, matrix);
-    let balanced = Balanced::new(&matrix);
-    let not_converged = || AnalysisError::not_converged(&matrix);
+    let parts = independent_parts(&matrix, &DMatrix::zeros(0, states), degrees);
+    gather(states - degrees, parts, |part| {
+        connected_modes(&part.matrix, part.degrees)
+    })
+}
+
+/// The modes of parts, lowest frequency first, with so many coordinates and states of first order in all.
+///
+/// # Errors
+/// As the modes of a part.
+pub(crate) fn gather(
+    count: usize,
+    parts: Vec<Part>,
+    modes: impl Fn(&Part) -> Result<Vec<NaturalMode>, AnalysisError>,
+) -> Result<Vec<NaturalMode>, AnalysisError> {
+    let mut all = Vec::with_capacity(count);
+    for part in &parts {
+        for mode in modes(part)? {
+            let mut shape = vec![Complex::from(0.0); count];
+            for (place, amplitude) in part.places.iter().zip(mode.shape) {
+                shape[*place] = amplitude;
+            }
+            all.push(NaturalMode { shape, ..mode });
+        }
+    }
+    if parts.len() > 1 {
+        all.sort_by(|a, b| a.frequency().total_cmp(&b.frequency()));
+    }
+    Ok(all)
+}
+
+/// The natural modes of a machine whose states all feel each other.
+pub(crate) fn connected_modes(
+    matrix: &DMatrix<f64>,
+    degrees: usize,
+) -> Result<Vec<NaturalMode>, AnalysisError> {
+    let states = matrix.nrows();
+    let balanced = Balanced::new(matrix);
+    let not_converged = || AnalysisError::not_converged(matrix);
     let mut eigenvalues =
         block_eigenvalues::eigenvalues(&balanced.matrix).ok_or_else(not_converged)?;
     eigenvalues.sort_by(|a, b| a.norm().total_cmp(&b.norm()));

@@ -3,12 +3,15 @@
 use nalgebra::{Complex, DMatrix, DVector};
 
 use crate::balancing::Balanced;
+use crate::inverse_iteration::SparseRows;
 use crate::null_space::{RANK, null_space, with_rows_of_one_size};
 use crate::qr_iteration;
 
 /// lambda^2 - lambda D - K in balanced coordinates, states of first order after them with
 /// lambda in place of lambda^2.
 pub(crate) struct Pencil {
+    /// The columns in which each row may hold more than 0: its own, and those of K and D.
+    columns: Vec<Vec<usize>>,
     /// (K F; G H)
     stiffness: DMatrix<f64>,
     /// (D 0; E 0)
@@ -40,14 +43,27 @@ impl Pencil {
                 place + degrees
             }
         };
+        let stiffness = DMatrix::from_fn(count, count, |row, column| {
+            balanced[(degrees + row, held(column))]
+        });
+        let damping = DMatrix::from_fn(count, count, |row, column| match column < degrees {
+            true => balanced[(degrees + row, degrees + column)],
+            false => 0.0,
+        });
+        let is_filled = |row: usize, column: usize| {
+            row == column || stiffness[(row, column)] != 0.0 || damping[(row, column)] != 0.0
+        };
+        let columns = (0..count)
+            .map(|row| {
+                (0..count)
+                    .filter(|column| is_filled(row, *column))
+                    .collect()
+            })
+            .collect();
         Self {
-            stiffness: DMatrix::from_fn(count, count, |row, column| {
-                balanced[(degrees + row, held(column))]
-            }),
-            damping: DMatrix::from_fn(count, count, |row, column| match column < degrees {
-                true => balanced[(degrees + row, degrees + column)],
-                false => 0.0,
-            }),
+            columns,
+            stiffness,
+            damping,
             ratio: DVector::from_fn(count, |place, _| match place < degrees {
                 true => balanced[(place, degrees + place)],
                 false => 1.0,
@@ -58,9 +74,8 @@ impl Pencil {
     }
 
     /// lambda (lambda/ratio) - (lambda/ratio) D - K: the rates are lambda/ratio of the coordinates.
-    pub fn at(&self, eigenvalue: Complex<f64>) -> DMatrix<Complex<f64>> {
-        let count = self.ratio.len();
-        DMatrix::from_fn(count, count, |row, column| {
+    pub fn at(&self, eigenvalue: Complex<f64>) -> SparseRows {
+        let entry = |row: usize, column: usize| {
             let rate = eigenvalue / self.ratio[column];
             let inertia = match row == column {
                 true if row < self.degrees => eigenvalue * rate,
@@ -68,7 +83,10 @@ impl Pencil {
                 false => 0.0.into(),
             };
             inertia - rate * self.damping[(row, column)] - self.stiffness[(row, column)]
-        })
+        };
+        let rows = self.columns.iter().enumerate();
+        rows.map(|(row, columns)| columns.iter().map(|at| (*at, entry(row, *at))).collect())
+            .collect()
     }
 
     /// The motions with the eigenvalue 0; nothing if they cannot be computed.

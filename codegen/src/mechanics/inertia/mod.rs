@@ -3,8 +3,8 @@
 //! coordinates are named that can move without inertia, or with a negative one.
 
 mod lack;
-mod point;
-mod sweep;
+pub(crate) mod point;
+pub(crate) mod sweep;
 
 use eomgen_model_spec::diagnostic::Diagnostic;
 use eomgen_model_spec::model::Model;

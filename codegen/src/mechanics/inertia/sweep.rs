@@ -22,7 +22,7 @@ pub struct Sweep {
 }
 
 /// The velocities of a kinetic energy, operands first, with the number of each node.
-pub(super) struct Velocities<'g> {
+pub(crate) struct Velocities<'g> {
     graph: &'g Graph,
     nodes: Vec<NodeId>,
     values: &'g [f64],
@@ -36,7 +36,7 @@ struct Local {
 
 impl<'g> Velocities<'g> {
     /// Those of the energy among `reachable`, what it is computed from; `values` has the number of each.
-    pub(super) fn new(graph: &'g Graph, reachable: &[NodeId], values: &'g [f64]) -> Self {
+    pub(crate) fn new(graph: &'g Graph, reachable: &[NodeId], values: &'g [f64]) -> Self {
         let moves = |node: &NodeId| graph.dependence(*node).has(Dependence::RATE);
         Self {
             graph,
@@ -69,6 +69,23 @@ impl<'g> Velocities<'g> {
         found.is_definite = is_definite && eliminated == coordinates;
         found.updates = composite.updates + articulated.updates;
         Some(found)
+    }
+
+    /// The diagonal of the mass matrix of so many coordinates, as far as only sums and products are taken of
+    /// velocities.
+    pub(crate) fn diagonal(&self, coordinates: usize) -> Vec<f64> {
+        let mut hessian = Hessian::default();
+        let mut diagonal = vec![0.0; coordinates];
+        self.sweep(&mut |step| match step {
+            Step::Velocity(node, local, adjoint) => hessian.push(node, local, adjoint),
+            Step::Complete(rate) => {
+                let own = hessian.take(rate).remove(&rate);
+                if let (Operation::Rate(index), Some(own)) = (self.graph.operation(rate), own) {
+                    diagonal[index.index()] = own;
+                }
+            }
+        });
+        diagonal
     }
 
     /// The mass matrix of so many coordinates, its entries that are not 0 by structure; None as for

@@ -3,10 +3,10 @@
 
 use super::Oracle;
 use super::functions;
-use super::interval::Interval;
 use super::switches::Imposed;
 use super::tree::Tree;
 use eomgen_model_spec::ast::BinaryOperator;
+use eomgen_model_spec::interval::Interval;
 
 /// A variable of an affine form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,11 +2,11 @@
 //! bounds of what is not affine contradict each other.
 
 use super::affine::{Affine, Forms, Variable};
-use super::interval::Interval;
 use super::switches::{Imposed, Side, is_piecewise_function};
 use super::tree::Tree;
 use super::{Oracle, Switch};
 use crate::feasibility::cone_is_empty;
+use eomgen_model_spec::interval::Interval;
 use eomgen_model_spec::model::Function;
 
 /// Relative widening of bounds, so that a range of rounding width is no contradiction.

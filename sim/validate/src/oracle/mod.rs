@@ -21,6 +21,7 @@
 //! the motion with the rates held).
 
 mod affine;
+mod bounds;
 mod conditioned;
 mod constraints;
 mod double_double;
@@ -32,7 +33,6 @@ mod evaluate;
 mod fold;
 mod functions;
 mod integrals;
-mod interval;
 mod legendre;
 mod lower;
 mod observables;

@@ -1,0 +1,128 @@
+//! A model without fields as nodes, without its equations of motion: every expression is translated, and
+//! constraints and distances are differentiated by what they depend on. The work grows as the specification
+//! does, where equations may grow with its square and more.
+
+use eomgen_model_spec::ids::{ConstraintId, StateId};
+use eomgen_model_spec::model::{CoefficientKind, Impact, Model};
+
+use crate::mechanics::coefficients::row_of;
+use crate::mechanics::constraints::not_linear;
+use crate::mechanics::equations::{derived_parameters, total_of};
+use crate::mechanics::forces::translated;
+use crate::mechanics::impacts::moves_nothing;
+use crate::mechanics::lagrange::{GradientBy, nonzero_gradient};
+use crate::mechanics::translate::{Derived, Translator, along_motion};
+use crate::symbolic::graph::{Argument, Dependence, Graph, NodeId, Operation, Variable};
+
+/// A model whose accelerations are not solved for.
+pub(crate) struct Unsolved {
+    pub(crate) graph: Graph,
+    /// T, in J.
+    pub(crate) kinetic: NodeId,
+    /// The constraints in the order of the model.
+    pub(crate) constraints: Vec<ConstraintNodes>,
+}
+
+/// A constraint as nodes.
+pub(crate) struct ConstraintNodes {
+    /// What stays zero.
+    pub(crate) residual: NodeId,
+    /// Its derivatives by coordinates, or by rates, that are not 0, with their places.
+    pub(crate) derivatives: Vec<(usize, NodeId)>,
+}
+
+impl Unsolved {
+    /// Translates a model without fields.
+    ///
+    /// # Errors
+    /// What cannot be derived.
+    pub(crate) fn translate(model: &Model) -> Derived<Self> {
+        let mut translator = Translator::new(model, &[]);
+        let mut terms = Vec::new();
+        derived_parameters(&mut translator)?;
+        let kinetic = total_of(&mut translator, &model.kinetic, "T", &mut terms)?;
+        total_of(&mut translator, &model.potential, "V", &mut terms)?;
+        total_of(&mut translator, &model.dissipation, "R", &mut terms)?;
+        for force in &model.forces {
+            translated(&mut translator, force)?;
+        }
+        let constraints = translate_constraints(&mut translator)?;
+        for state in StateId::first(model.states.len()) {
+            translator.state_rate(state)?;
+        }
+        for observable in &model.observables {
+            translator.node(&observable.value)?;
+        }
+        translate_coefficients(&mut translator)?;
+        for impact in &model.impacts {
+            translate_impact(&mut translator, impact)?;
+        }
+        Ok(Self {
+            graph: translator.graph,
+            kinetic,
+            constraints,
+        })
+    }
+
+    /// The expressions of the constraints.
+    pub(crate) fn residuals(&self) -> impl Iterator<Item = NodeId> {
+        self.constraints.iter().map(|one| one.residual)
+    }
+}
+
+fn translate_constraints(translator: &mut Translator) -> Derived<Vec<ConstraintNodes>> {
+    let model = translator.model;
+    let mut found = Vec::with_capacity(model.constraints.len());
+    let mut multipliers = Vec::with_capacity(model.constraints.len());
+    for (id, constraint) in ConstraintId::first(model.constraints.len()).zip(&model.constraints) {
+        let residual = translator.residual(id)?;
+        let graph = &mut translator.graph;
+        let (by, multiplier) = match constraint.is_nonholonomic {
+            true => (GradientBy::Rates, residual),
+            false => (GradientBy::Coordinates, along_motion(graph, residual)),
+        };
+        let derivatives = nonzero_gradient(graph, residual, &by);
+        let moves = |entry: &(usize, NodeId)| graph.dependence(entry.1).has(Dependence::RATE);
+        if derivatives.iter().any(moves) {
+            return Err(not_linear(constraint));
+        }
+        found.push(ConstraintNodes {
+            residual,
+            derivatives,
+        });
+        multipliers.push(multiplier);
+    }
+    // What depends on rates, as multipliers do, stands for them.
+    translator.known_multipliers(&multipliers);
+    Ok(found)
+}
+
+fn translate_coefficients(translator: &mut Translator) -> Derived<()> {
+    for coefficient in &translator.model.coefficients {
+        let node = match &coefficient.kind {
+            CoefficientKind::Value(expression) => translator.node(expression)?,
+            CoefficientKind::Factor { of, by, times } => {
+                row_of(of)?;
+                translator.node(by)?;
+                if let Some(times) = times {
+                    translator.node(times)?;
+                }
+                // A number of which nothing is known stands for the factor.
+                let unknown = Operation::Argument(Argument::Weights, Variable::Time);
+                translator.graph.intern(unknown)
+            }
+        };
+        translator.push_coefficient(node);
+    }
+    Ok(())
+}
+
+fn translate_impact(translator: &mut Translator, impact: &Impact) -> Derived<()> {
+    let distance = translator.node(&impact.when)?;
+    translator.node(&impact.restitution)?;
+    let graph = &mut translator.graph;
+    if nonzero_gradient(graph, distance, &GradientBy::Coordinates).is_empty() {
+        return Err(moves_nothing(impact));
+    }
+    Ok(())
+}

@@ -1,0 +1,165 @@
+//! Parts of a linearised machine that do not feel each other: their modes are found one part after the other,
+//! so that the work is that of each and not of all together.
+
+use nalgebra::DMatrix;
+
+/// A part of a linearised machine.
+pub(crate) struct Part {
+    /// A of its coordinates, their rates and its states of first order.
+    pub matrix: DMatrix<f64>,
+    /// The rows of what is held of these.
+    pub held: DMatrix<f64>,
+    /// Number of its coordinates.
+    pub degrees: usize,
+    /// The places of its coordinates and states of first order among those of the machine.
+    pub places: Vec<usize>,
+}
+
+/// The parts of d(q, q', z)/dt = A (q, q', z) with so many degrees of freedom and C (q, q', z) = 0 that share
+/// no entry of A and no row of C, by their first coordinates.
+pub(crate) fn independent_parts(
+    matrix: &DMatrix<f64>,
+    held: &DMatrix<f64>,
+    degrees: usize,
+) -> Vec<Part> {
+    let count = matrix.nrows() - degrees;
+    // A coordinate is in one part with its rate.
+    let place = |state: usize| match state < degrees {
+        true => state,
+        false => state - degrees,
+    };
+    let mut groups = Groups::new(count);
+    for row in 0..matrix.nrows() {
+        for column in 0..matrix.nrows() {
+            if matrix[(row, column)] != 0.0 {
+                groups.join(place(row), place(column));
+            }
+        }
+    }
+    let columns_of = |row: usize| (0..held.ncols()).filter(move |at| held[(row, *at)] != 0.0);
+    for row in 0..held.nrows() {
+        if let Some(first) = columns_of(row).next() {
+            columns_of(row).for_each(|column| groups.join(place(first), place(column)));
+        }
+    }
+    let mut rows_of = vec![Vec::new(); count];
+    for row in 0..held.nrows() {
+        if let Some(first) = columns_of(row).next() {
+            rows_of[groups.root(place(first))].push(row);
+        }
+    }
+    let mut parts = Vec::new();
+    for (root, places) in groups.members().into_iter().enumerate() {
+        if !places.is_empty() {
+            parts.push(part(matrix, held, degrees, places, &rows_of[root]));
+        }
+    }
+    parts.sort_by_key(|part| part.places[0]);
+    parts
+}
+
+fn part(
+    matrix: &DMatrix<f64>,
+    held: &DMatrix<f64>,
+    degrees: usize,
+    places: Vec<usize>,
+    rows: &[usize],
+) -> Part {
+    let of_coordinates = places.partition_point(|place| *place < degrees);
+    let (coordinates, first_order) = places.split_at(of_coordinates);
+    let rates = coordinates.iter().chain(first_order);
+    let states: Vec<usize> = coordinates
+        .iter()
+        .copied()
+        .chain(rates.map(|place| place + degrees))
+        .collect();
+    Part {
+        matrix: DMatrix::from_fn(states.len(), states.len(), |row, column| {
+            matrix[(states[row], states[column])]
+        }),
+        held: DMatrix::from_fn(rows.len(), states.len(), |row, column| {
+            held[(rows[row], states[column])]
+        }),
+        degrees: of_coordinates,
+        places,
+    }
+}
+
+/// Disjoint groups of places.
+struct Groups {
+    /// For each place one that is nearer to the first of its group.
+    nearer: Vec<usize>,
+}
+
+impl Groups {
+    fn new(count: usize) -> Self {
+        Self {
+            nearer: (0..count).collect(),
+        }
+    }
+
+    fn root(&mut self, place: usize) -> usize {
+        let mut root = place;
+        while self.nearer[root] != root {
+            self.nearer[root] = self.nearer[self.nearer[root]];
+            root = self.nearer[root];
+        }
+        root
+    }
+
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.nearer[a.max(b)] = a.min(b);
+    }
+
+    /// The places of each group, at the place of its first.
+    fn members(&mut self) -> Vec<Vec<usize>> {
+        let mut members = vec![Vec::new(); self.nearer.len()];
+        for place in 0..self.nearer.len() {
+            members[self.root(place)].push(place);
+        }
+        members
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A of undamped masses with these springs between them, an end each.
+    fn masses(count: usize, springs: &[(usize, usize)]) -> DMatrix<f64> {
+        let mut matrix = DMatrix::zeros(2 * count, 2 * count);
+        for place in 0..count {
+            matrix[(place, count + place)] = 1.0;
+        }
+        for &(a, b) in springs {
+            for (row, column) in [(a, b), (b, a)] {
+                matrix[(count + row, row)] -= 1.0;
+                matrix[(count + row, column)] += 1.0;
+            }
+        }
+        matrix
+    }
+
+    #[test]
+    fn masses_without_a_spring_between_them_are_parts() {
+        let matrix = masses(4, &[(0, 2)]);
+        let parts = independent_parts(&matrix, &DMatrix::zeros(0, 8), 4);
+        let places: Vec<&[usize]> = parts.iter().map(|part| &part.places[..]).collect();
+        assert_eq!(places, [&[0, 2][..], &[1], &[3]]);
+        assert_eq!(parts[0].matrix, masses(2, &[(0, 1)]));
+    }
+
+    #[test]
+    fn what_is_held_together_is_one_part() {
+        let mut held = DMatrix::zeros(1, 8);
+        (held[(0, 1)], held[(0, 7)]) = (1.0, -1.0);
+        let parts = independent_parts(&masses(4, &[(0, 2)]), &held, 4);
+        assert_eq!(parts[1].places, [1, 3]);
+        assert_eq!(
+            parts[1].held,
+            DMatrix::from_row_slice(1, 4, &[1.0, 0.0, 0.0, -1.0])
+        );
+        assert_eq!(parts[0].held.nrows(), 0);
+    }
+}

@@ -1,0 +1,77 @@
+//! Bounds of trees: of a quantity over all states within their ranges, in a regime of the piecewise
+//! functions.
+
+use super::switches::{Imposed, Side};
+use super::tree::Tree;
+use super::{Oracle, functions};
+use eomgen_model_spec::ast::BinaryOperator;
+use eomgen_model_spec::interval::Interval;
+use eomgen_model_spec::model::Function;
+
+impl Oracle {
+    /// Bounds of `tree` in a regime; all numbers if nothing is known.
+    pub(super) fn bounds(&self, tree: &Tree, imposed: Imposed<'_>) -> Interval {
+        let of = |tree: &Tree| self.bounds(tree, imposed);
+        let within = |range: Option<(f64, f64)>| {
+            range.map_or(Interval::ALL, |(low, high)| Interval::between(low, high))
+        };
+        let entry = |place: usize| within(self.ranges.state.get(place).copied().flatten());
+        match tree {
+            Tree::Constant(value) => Interval::between(*value, *value),
+            Tree::Coordinate(index) => entry(*index),
+            Tree::State(index) => entry(2 * self.size() + index),
+            Tree::Input(index) | Tree::PrescribedInput { input: index, .. } => {
+                within(self.ranges.inputs.get(*index).copied().flatten())
+            }
+            Tree::Definition(index) => {
+                let definition = self.system.definitions.get(*index);
+                definition.map_or(Interval::ALL, of)
+            }
+            Tree::Negate(operand) => of(operand).negated(),
+            Tree::Binary(BinaryOperator::Multiply, left, right) if left == right => {
+                of(left).power(2.0)
+            }
+            Tree::Binary(operator, left, right) => combined(*operator, of(left), of(right)),
+            Tree::Power(base, exponent) => of(base).power(*exponent),
+            Tree::Call(function, arguments) => {
+                let bounds: Vec<Interval> = arguments.iter().map(of).collect();
+                let side = imposed.side(*function, arguments);
+                called(*function, &bounds, side)
+            }
+            _ => Interval::ALL,
+        }
+    }
+}
+
+fn combined(operator: BinaryOperator, left: Interval, right: Interval) -> Interval {
+    match operator {
+        BinaryOperator::Add => left.plus(right),
+        BinaryOperator::Subtract => left.plus(right.negated()),
+        BinaryOperator::Multiply => left.times(right),
+        BinaryOperator::Divide => left.times(right.reciprocal()),
+        BinaryOperator::Power => Interval::ALL,
+    }
+}
+
+fn called(function: Function, bounds: &[Interval], side: Option<Side>) -> Interval {
+    match (bounds, side) {
+        ([x, y], Some(side)) if matches!(function, Function::Min | Function::Max) => {
+            let first = (function == Function::Min) == (side == Side::Minus);
+            *(if first { x } else { y })
+        }
+        (_, Some(side)) if has_levels(function, side) => {
+            let value = functions::on_side(function, side, &vec![0.0; bounds.len()]);
+            value.map_or(Interval::ALL, |value| Interval::between(value, value))
+        }
+        _ => Interval::of_function(function, bounds),
+    }
+}
+
+/// Whether the value on this side does not change with the arguments.
+fn has_levels(function: Function, side: Side) -> bool {
+    match function {
+        Function::Sign | Function::Above | Function::Contact => true,
+        Function::Deadzone | Function::Abs => side == Side::Free,
+        _ => false,
+    }
+}
