@@ -320,8 +320,10 @@ fn rate_dependent_parts(graph: &Graph, node: NodeId) -> Vec<NodeId> {
 fn partial(graph: &mut Graph, node: NodeId, held: &[NodeId], by: NodeId) -> NodeId {
     let (zero, one) = (graph.zero(), graph.one());
     let mut direction = Direction::default();
-    for &part in held {
-        direction.seed(part, zero);
+    // The derivative of others is 0 in any case.
+    let moving = held.iter().filter(|part| graph.may_depend_on(**part, by));
+    for part in moving {
+        direction.seed(*part, zero);
     }
     direction.seed(by, one);
     direction.derivative(graph, node)

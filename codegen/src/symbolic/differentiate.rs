@@ -1,19 +1,20 @@
 //! Derivatives of graph nodes by a scalar variable and along a direction (forward mode), and the partial
 //! derivatives of each operation. Shared nodes are differentiated once; nothing is multiplied out.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 use eomgen_model_spec::model::Function;
 
 use crate::symbolic::arguments::Arguments;
 use crate::symbolic::graph::{Graph, NodeId, Operation, Shape};
+use crate::symbolic::node_map::NodeMap;
 
 /// Which nodes move at all along a direction. Asked before a derivative is formed: most of
 /// an expression is constant along most directions, and the partial derivatives by what is
 /// constant would be formed for nothing.
 #[derive(Default)]
 pub(super) struct Moving {
-    pub(super) known: HashMap<NodeId, bool>,
+    pub(super) known: NodeMap<NodeId, bool>,
 }
 
 impl Moving {
@@ -49,16 +50,18 @@ pub type Tangent<'a> = dyn Fn(&mut Graph, NodeId) -> NodeId + 'a;
 #[derive(Default)]
 pub struct Direction<'a> {
     tangent: Option<&'a Tangent<'a>>,
-    known: HashMap<NodeId, NodeId>,
+    known: NodeMap<NodeId, NodeId>,
     /// What was seeded with a derivative.
     seeds: Vec<NodeId>,
+    /// Whether those with the derivative 0 are taken out.
+    has_moving_seeds_alone: bool,
     moving: Moving,
 }
 
 /// The derivatives along a direction that are known so far.
 #[derive(Default)]
 pub(crate) struct KnownDerivatives {
-    known: HashMap<NodeId, NodeId>,
+    known: NodeMap<NodeId, NodeId>,
     moving: Moving,
 }
 
@@ -93,6 +96,7 @@ impl<'a> Direction<'a> {
     pub fn seed(&mut self, id: NodeId, tangent: NodeId) {
         self.known.insert(id, tangent);
         self.seeds.push(id);
+        self.has_moving_seeds_alone = false;
     }
 
     /// The derivative of `id` along the direction.
@@ -109,19 +113,22 @@ impl<'a> Direction<'a> {
     /// put its nodes into the graph out of turn.
     fn moves(&mut self, graph: &Graph, id: NodeId) -> bool {
         let (known, tangents) = (&self.known, self.tangent.is_some());
-        let seeds = &mut self.seeds;
-        if !tangents {
-            seeds.retain(|seed| {
-                known
-                    .get(seed)
-                    .is_some_and(|tangent| !graph.is_zero(*tangent))
-            });
+        if !self.has_moving_seeds_alone {
+            let moves = |seed: &NodeId| known.get(seed).is_some_and(|by| !graph.is_zero(*by));
+            self.seeds.retain(moves);
+            self.has_moving_seeds_alone = true;
         }
-        let reached = |id| seeds.iter().any(|seed| graph.may_depend_on(id, *seed));
+        let seeds = &self.seeds;
+        let is_out_of_reach =
+            |id| !tangents && !seeds.iter().any(|seed| graph.may_depend_on(id, *seed));
+        // Most terms of a long sum: nothing is looked up for them.
+        if is_out_of_reach(id) {
+            return false;
+        }
         self.moving
             .has(graph, id, &|graph, id| match known.get(&id) {
                 Some(derivative) => Some(!graph.is_zero(*derivative)),
-                None if !tangents && !reached(id) => Some(false),
+                None if is_out_of_reach(id) => Some(false),
                 None => graph
                     .operands(graph.operation(id))
                     .is_empty()

@@ -12,6 +12,7 @@ use std::collections::{HashMap, HashSet};
 use eomgen_model_spec::ids::{FieldId, InputId};
 use eomgen_model_spec::model::Function;
 
+use crate::symbolic::node_map::NodeMap;
 pub use crate::symbolic::operation::{
     Argument, Assembly, Bits, Dependence, NodeId, Operation, ScaledMatrix, Shape, Space, Variable,
 };
@@ -31,7 +32,7 @@ struct Node {
 /// The graph of one variant: its nodes, constant tables and the sizes of its spaces.
 pub struct Graph {
     nodes: Vec<Node>,
-    known: HashMap<Operation, NodeId>,
+    known: NodeMap<Operation, NodeId>,
     tables: Vec<Table>,
     orders: Vec<usize>,
     /// For each input the one that is its rate, if that is given.
@@ -47,7 +48,7 @@ impl Graph {
     pub fn new(orders: &[usize], node_counts: &[usize]) -> Self {
         Self {
             nodes: Vec::new(),
-            known: HashMap::new(),
+            known: NodeMap::default(),
             tables: Vec::new(),
             orders: orders.to_vec(),
             input_rates: Vec::new(),

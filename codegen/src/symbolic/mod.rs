@@ -1,7 +1,7 @@
 //! Expressions as nodes of one hash-consed graph, and what is done with them without knowing any
 //! mechanics.
 //!
-//! `operation` (of `arguments`) and `graph` (the nodes), `simplify` (the algebraic laws, applied
+//! `operation` (of `arguments`) and `graph` (the nodes, known by `node_map`), `simplify` (the algebraic laws, applied
 //! by the constructors), `tables` and `table_text` (constants of a basis), `matrix`, `differentiate` and
 //! `modal_derivative` (derivatives that keep their structure), `limits` and `orders` (derivatives at zeros
 //! of roots), `substitute`, `expand`, `degree` and `operation_count` (walks over nodes), `association`
@@ -19,6 +19,7 @@ pub mod graph;
 pub(crate) mod limits;
 pub mod matrix;
 pub mod modal_derivative;
+pub(crate) mod node_map;
 pub(crate) mod operation;
 pub(crate) mod operation_count;
 pub(crate) mod orders;

@@ -1,19 +1,18 @@
 //! Derivatives by a field's modes: of a scalar a vector, its gradient, and of a vector a structured matrix
 //! (diagonal, outer products and tables).
 
-use std::collections::HashMap;
-
 use crate::symbolic::differentiate::{Moving, choice, choose, partial_derivatives};
 use crate::symbolic::graph::{Graph, NodeId, Operation, Shape, Space};
 use crate::symbolic::matrix::StructuredMatrix;
+use crate::symbolic::node_map::NodeMap;
 
 /// Derivatives by the modes of one field.
 pub struct ModalDerivative {
     variable: NodeId,
     space: Space,
     moving: Moving,
-    gradients: HashMap<NodeId, NodeId>,
-    jacobians: HashMap<NodeId, StructuredMatrix>,
+    gradients: NodeMap<NodeId, NodeId>,
+    jacobians: NodeMap<NodeId, StructuredMatrix>,
 }
 
 impl ModalDerivative {
@@ -24,8 +23,8 @@ impl ModalDerivative {
                 variable,
                 space,
                 moving: Moving::default(),
-                gradients: HashMap::new(),
-                jacobians: HashMap::new(),
+                gradients: NodeMap::default(),
+                jacobians: NodeMap::default(),
             }),
             _ => None,
         }
@@ -33,6 +32,9 @@ impl ModalDerivative {
 
     fn moves(&mut self, graph: &Graph, id: NodeId) -> bool {
         let variable = self.variable;
+        if !graph.may_depend_on(id, variable) {
+            return false;
+        }
         self.moving.has(graph, id, &|graph, id| {
             if !graph.may_depend_on(id, variable) {
                 return Some(false);
@@ -121,8 +123,8 @@ impl ModalDerivative {
             variable: self.variable,
             space: self.space,
             moving: Moving::default(),
-            gradients: HashMap::new(),
-            jacobians: HashMap::new(),
+            gradients: NodeMap::default(),
+            jacobians: NodeMap::default(),
         };
         held.moving.known.insert(solution, false);
         held.of_elements(graph, product, rows)
