@@ -133,3 +133,56 @@ fn too_large(size: u64) -> Diagnostic {
         .at(Span::new(0, 0), "not read")
         .help(format!("at most {MAX_SIZE} bytes (1 MiB) are read"))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnostic::MAX_LISTED;
+    use crate::suggest::tests::COMPARED;
+
+    const HEAD: &str = "[model]\nname = \"a\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\n[coordinates]\n\
+                        x = { unit = \"m\" }\n[kinetic]\nk = \"1/2*m*dot(x)^2\"\n";
+
+    /// As many lines as a specification may have behind its head.
+    fn filled(section: &str, most: usize, line: &dyn Fn(usize) -> String) -> String {
+        let mut text = HEAD.to_owned() + section;
+        for line in (0..most).map(line) {
+            if (text.len() + line.len()) as u64 > MAX_SIZE {
+                break;
+            }
+            text.push_str(&line);
+        }
+        text
+    }
+
+    /// Comparisons of names for one finding: no name has more than these to be compared with.
+    const NAMES: usize = 2000;
+
+    #[test]
+    fn the_work_for_mistakes_does_not_grow_with_their_number() {
+        let any = usize::MAX;
+        for (section, most, line) in [
+            (
+                "",
+                any,
+                &(|k| format!("[s{k}]\n")) as &dyn Fn(usize) -> String,
+            ),
+            ("", any, &|k| format!("k{k} = 1\n")),
+            ("[observables]\n", 1900, &|k| {
+                format!("o{k} = {{ value = \"y{k}\", unit = \"m\" }}\n")
+            }),
+            ("[definitions]\n", 1900, &|k| format!("d{k} = \"e{k}\"\n")),
+            ("[forces]\n", 1900, &|k| {
+                format!("f{k} = {{ of = \"x\", value = \"m\" }}\n")
+            }),
+        ] {
+            let text = filled(section, most, line);
+            COMPARED.set(0);
+            let found = check(Source::new("full.toml", text)).expect_err(section);
+            let (listed, compared) = (found.list().len(), COMPARED.get());
+            assert!(listed <= MAX_LISTED, "{section}: {listed}");
+            assert!(compared <= MAX_LISTED * NAMES, "{section}: {compared}");
+            assert!(found.render(false).len() < 100_000, "{section}");
+        }
+    }
+}

@@ -11,6 +11,7 @@ pub fn nearest<'k>(wrong: &str, known: impl IntoIterator<Item = &'k str>) -> Opt
         .into_iter()
         .filter(|name| *name != wrong)
         .map(|name| {
+            count_comparison();
             let distance = strsim::damerau_levenshtein(&lowered, &name.to_lowercase());
             (distance, name)
         })
@@ -22,6 +23,14 @@ pub fn nearest<'k>(wrong: &str, known: impl IntoIterator<Item = &'k str>) -> Opt
 /// "did you mean ...?", if a known name is near enough.
 pub fn did_you_mean<'k>(wrong: &str, known: impl IntoIterator<Item = &'k str>) -> Option<String> {
     nearest(wrong, known).map(|name| format!("did you mean `{name}`?"))
+}
+
+#[cfg(not(test))]
+fn count_comparison() {}
+
+#[cfg(test)]
+fn count_comparison() {
+    tests::COMPARED.with(|compared| compared.set(compared.get() + 1));
 }
 
 /// How many letters two names have in common from their beginning.
@@ -43,8 +52,14 @@ fn allowed(length: usize) -> usize {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
+    use std::cell::Cell;
+
+    thread_local! {
+        /// Number of names that were compared on this thread.
+        pub(crate) static COMPARED: Cell<usize> = const { Cell::new(0) };
+    }
 
     #[test]
     fn misspelt_names_are_found_and_distant_ones_are_not() {

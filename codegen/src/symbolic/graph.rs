@@ -33,6 +33,8 @@ struct Node {
 pub struct Graph {
     nodes: Vec<Node>,
     known: NodeMap<Operation, NodeId>,
+    /// The numbers 0 and 1, once they are there.
+    pub(super) zero_and_one: [Option<NodeId>; 2],
     tables: Vec<Table>,
     orders: Vec<usize>,
     /// For each input the one that is its rate, if that is given.
@@ -49,6 +51,7 @@ impl Graph {
         Self {
             nodes: Vec::new(),
             known: NodeMap::default(),
+            zero_and_one: [None; 2],
             tables: Vec::new(),
             orders: orders.to_vec(),
             input_rates: Vec::new(),

@@ -20,12 +20,21 @@ impl Graph {
 
     /// The number 0.
     pub fn zero(&mut self) -> NodeId {
-        self.constant(0.0)
+        self.small_number(0)
     }
 
     /// The number 1.
     pub fn one(&mut self) -> NodeId {
-        self.constant(1.0)
+        self.small_number(1)
+    }
+
+    fn small_number(&mut self, number: u8) -> NodeId {
+        if let Some(known) = self.zero_and_one[usize::from(number)] {
+            return known;
+        }
+        let made = self.constant(f64::from(number));
+        self.zero_and_one[usize::from(number)] = Some(made);
+        made
     }
 
     /// The value of a constant node.
@@ -64,6 +73,12 @@ impl Graph {
     /// A linear combination. Laws: numbers are folded, c (k a) = (c k) a, and equal
     /// nodes are collected; a sum inside a sum stays a node of its own.
     pub fn combine(&mut self, terms: &[(f64, NodeId)]) -> NodeId {
+        // No law applies to one term that is no product.
+        if let [(1.0, only)] = *terms
+            && !matches!(self.operation(only), Operation::Product(_))
+        {
+            return only;
+        }
         let mut collected = BTreeMap::new();
         for &(factor, id) in terms {
             self.collect(&mut collected, factor, id, false);
@@ -152,6 +167,16 @@ impl Graph {
 
     /// a b.
     pub fn multiply(&mut self, a: NodeId, b: NodeId) -> NodeId {
+        // No number in the other, which may be infinite.
+        let holds_number = |id| match self.operation(id) {
+            Operation::Constant(_) => true,
+            Operation::Sum(terms) => terms.len() == 1,
+            _ => false,
+        };
+        let vanishes = |zero, other| self.is_zero(zero) && !holds_number(other);
+        if vanishes(a, b) || vanishes(b, a) {
+            return self.zero();
+        }
         self.product(&[(a, 1), (b, 1)])
     }
 

@@ -4,6 +4,7 @@
 
 mod arrays;
 mod definiteness;
+mod documented_limits;
 mod emission;
 mod examination;
 mod expressions;

@@ -236,7 +236,9 @@ impl SmallSystem {
         for (step, &row) in order.iter().enumerate().rev() {
             let mut terms = vec![(1.0, right[row])];
             for &column in &order[step + 1..] {
-                terms.push((-1.0, graph.multiply(matrix[row][column], unknowns[column])));
+                if !graph.is_zero(matrix[row][column]) {
+                    terms.push((-1.0, graph.multiply(matrix[row][column], unknowns[column])));
+                }
             }
             let rest = graph.combine(&terms);
             unknowns[row] = graph.multiply(rest, reciprocals[step]);

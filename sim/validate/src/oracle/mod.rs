@@ -7,7 +7,7 @@
 //! on `legendre` nodes with `shapes`), `scene` (a state and directions in it),
 //! `evaluate` (any number type, with `functions`; [`Conditioned`] numbers tell how far they
 //! can be known), `integrals` (what all rows share),
-//! `terms` (rows of one named term), `constraints` (what stays zero), [`Oracle`] (all rows), `energy` (energies and powers), `observables`,
+//! `terms` (rows of one named term), `constraints` (what stays zero), `rows` (all rows of an [`Oracle`]), `energy` (energies and powers), `observables`,
 //! `switches` (where piecewise functions change side).
 //!
 //! The rows: with L = T - V, for every generalised coordinate j
@@ -38,6 +38,7 @@ mod lower;
 mod observables;
 mod places;
 mod ranges;
+mod rows;
 mod scene;
 mod shapes;
 mod splines;
@@ -58,12 +59,9 @@ pub use switches::{Side, Switch, SwitchGradient, SwitchValue};
 use constraints::{LoweredConstraint, lower_constraints, stabilisation_rate};
 use eomgen_model_spec::evaluate::evaluate as evaluate_constant;
 use eomgen_model_spec::model::{Expr, Model};
-use evaluate::Pass;
 use lower::Lowering;
-use nalgebra::DMatrix;
 use observables::lower_observables;
-use scene::{Direction, Scene};
-use switches::Imposed;
+use scene::Scene;
 use system::System;
 use terms::{Lowered, LoweredForce, lower_force, lower_terms};
 use tree::Tree;
@@ -194,136 +192,6 @@ impl Oracle {
         self.system.domains.iter().map(|domain| domain.length)
     }
 
-    /// The equations of motion at a state: coordinates, rates, states of first order, in SI.
-    ///
-    /// # Errors
-    /// [`OracleError::Length`] if the state or the inputs do not fit.
-    pub fn equations(
-        &self,
-        time: f64,
-        state: &[f64],
-        inputs: &[f64],
-    ) -> Result<Equations, OracleError> {
-        Ok(self.equations_of(&self.scene(time, state, None, inputs)?))
-    }
-
-    /// The equations of motion with every piecewise function on the side that `sides` gives
-    /// its switch, in the order of [`Oracle::switches`], whatever the state says.
-    ///
-    /// # Errors
-    /// [`OracleError::Length`] if the state, the inputs or the sides do not fit.
-    pub fn equations_on(
-        &self,
-        sides: &[Side],
-        time: f64,
-        state: &[f64],
-        inputs: &[f64],
-    ) -> Result<Equations, OracleError> {
-        expect_length("sides", self.switches.len(), sides.len())?;
-        let mut scene = self.scene(time, state, None, inputs)?;
-        scene.imposed = Some(Imposed {
-            switches: &self.switches,
-            sides,
-        });
-        Ok(self.equations_of(&scene))
-    }
-
-    /// The equations of motion at a state of the model's domain: every term and both
-    /// energies are numbers and the mass matrix is positive definite. None elsewhere.
-    ///
-    /// # Errors
-    /// [`OracleError::Length`] if the state or the inputs do not fit.
-    pub fn equations_inside(
-        &self,
-        time: f64,
-        state: &[f64],
-        inputs: &[f64],
-    ) -> Result<Option<Equations>, OracleError> {
-        let equations = self.equations(time, state, inputs)?;
-        let totals = [
-            self.energy(time, state, inputs)?,
-            self.power(time, state, inputs)?,
-        ];
-        let finite = totals.iter().all(|total| total.is_finite()) && equations.is_finite();
-        Ok((finite && equations.is_definite()).then_some(equations))
-    }
-
-    fn equations_of(&self, scene: &Scene<'_>) -> Equations {
-        let mut terms = Vec::new();
-        for term in &self.kinetic {
-            terms.push(term.rows(scene, RowTermKind::Momentum));
-            terms.push(term.rows(scene, RowTermKind::KineticGradient));
-        }
-        for term in &self.potential {
-            terms.push(term.rows(scene, RowTermKind::PotentialGradient));
-        }
-        for term in &self.dissipation {
-            terms.push(term.rows(scene, RowTermKind::Dissipation));
-        }
-        for force in &self.forces {
-            terms.push(force.rows(scene));
-        }
-        let (mass, mass_magnitude) = self.mass(scene);
-        Equations {
-            mass,
-            mass_magnitude,
-            terms,
-            state_rates: self.state_rates(scene),
-            constraints: (self.constraints.iter())
-                .map(|constraint| constraint.row(scene, self.stabilisation_rate))
-                .collect(),
-        }
-    }
-
-    /// The addends of the rates of states of first order.
-    fn state_rates(&self, scene: &Scene<'_>) -> Vec<Vec<Conditioned>> {
-        let pass = Pass::new(scene, Direction::Still, Direction::Still);
-        let rates = self.system.state_rates.iter();
-        rates
-            .map(|addends| addends.iter().map(|tree| pass.value(tree).re).collect())
-            .collect()
-    }
-
-    /// How the rate of each state of first order changes with itself alone, 1/s.
-    ///
-    /// # Errors
-    /// [`OracleError::Length`] if the state or the inputs do not fit.
-    pub fn state_decays(
-        &self,
-        time: f64,
-        state: &[f64],
-        inputs: &[f64],
-    ) -> Result<Vec<f64>, OracleError> {
-        let scene = self.scene(time, state, None, inputs)?;
-        let decay = |index: usize| {
-            let pass = Pass::new(&scene, Direction::Still, Direction::State(index));
-            pass.value(&Tree::StateRate(index)).eps2.value
-        };
-        Ok((0..self.states).map(decay).collect())
-    }
-
-    /// Second derivatives of the potential energy by each generalised coordinate alone.
-    ///
-    /// # Errors
-    /// [`OracleError::Length`] if the state or the inputs do not fit.
-    pub fn stiffness_diagonal(
-        &self,
-        time: f64,
-        state: &[f64],
-        inputs: &[f64],
-    ) -> Result<Vec<f64>, OracleError> {
-        let scene = self.scene(time, state, None, inputs)?;
-        let entry = |row| {
-            let pass = Pass::new(&scene, Direction::Position(row), Direction::Position(row));
-            let terms = self.potential.iter();
-            terms
-                .filter(|term| self.system.concerns(&term.dependence, row))
-                .map(|term| pass.value(&term.tree).eps1eps2.value)
-                .sum()
-        };
-        Ok((0..self.size()).map(entry).collect())
-    }
-
     fn scene<'s>(
         &'s self,
         time: f64,
@@ -334,36 +202,6 @@ impl Oracle {
         expect_length("state entries", self.state_length(), state.len())?;
         expect_length("inputs", self.input_count(), inputs.len())?;
         Ok(Scene::new(&self.system, time, state, accelerations, inputs))
-    }
-
-    /// M_jk = d^2 T/dq_j' dq_k' and the magnitudes of its entries, the upper half computed
-    /// and mirrored.
-    fn mass(&self, scene: &Scene<'_>) -> (DMatrix<f64>, DMatrix<f64>) {
-        let size = self.size();
-        let mut mass = DMatrix::zeros(size, size);
-        let mut magnitude = DMatrix::zeros(size, size);
-        for row in 0..size {
-            for column in row..size {
-                let mut terms = self
-                    .kinetic
-                    .iter()
-                    .filter(|term| {
-                        self.system.concerns(&term.dependence, row)
-                            && self.system.concerns(&term.dependence, column)
-                    })
-                    .peekable();
-                if terms.peek().is_none() {
-                    continue;
-                }
-                let pass = Pass::new(scene, Direction::Rate(row), Direction::Rate(column));
-                let entry: Conditioned = terms.map(|term| pass.value(&term.tree).eps1eps2).sum();
-                for place in [(row, column), (column, row)] {
-                    mass[place] = entry.value;
-                    magnitude[place] = entry.magnitude;
-                }
-            }
-        }
-        (mass, magnitude)
     }
 }
 

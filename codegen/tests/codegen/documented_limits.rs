@@ -1,0 +1,196 @@
+//! The limits of a specification, each with what is taken at it, by counted work, and what is said of one more.
+
+use std::fmt::Write;
+
+use eomgen_codegen::examination::examine;
+use eomgen_codegen::variant::Variant;
+use eomgen_model_spec::source::Source;
+use eomgen_model_spec::{MAX_SIZE, check};
+
+use crate::support::{equations, model};
+
+/// A mass with this kinetic energy, beside what stands in further lines.
+fn mass(kinetic: &str, further: &str) -> String {
+    format!(
+        "[model]\nname = \"limited\"\n[parameters]\nm = {{ value = 2, unit = \"kg\" }}\n\
+         l = {{ value = 1, unit = \"m\" }}\n[coordinates]\nx = {{ unit = \"m\" }}\n\
+         [kinetic]\nmass = \"{kinetic}\"\n{further}"
+    )
+}
+
+const KINETIC: &str = "1/2*m*dot(x)^2";
+
+/// A string of which a function of the position is integrated.
+fn string(integrand: &str) -> String {
+    format!(
+        "[model]\nname = \"string\"\n[parameters]\nmu = {{ value = 1, unit = \"kg/m\" }}\n\
+         l = {{ value = 1, unit = \"m\" }}\n[fields.w]\nalong = \"s\"\nfrom = 0\nto = \"l\"\nbasis = \"string\"\n\
+         coordinates = \"q\"\norder = 2\nunit = \"m\"\n[kinetic]\nall = \"1/2*integral(mu*{integrand}*dot(w)^2, w)\"\n"
+    )
+}
+
+/// Number of nodes that an examination takes.
+fn nodes(text: &str) -> usize {
+    let examined = examine(&model(text)).unwrap_or_else(|found| panic!("{}", found.message));
+    examined.expect("no field").nodes
+}
+
+/// What is said of a text that is refused.
+fn refusal(text: &str) -> String {
+    match check(Source::new("limited.toml", text)) {
+        Ok(checked) => {
+            let orders = checked.model.orders(None).expect("orders");
+            let refused = Variant::derive(&checked.model, &orders).map(drop);
+            refused.expect_err("beyond a limit").render(false)
+        }
+        Err(found) => found.render(false),
+    }
+}
+
+/// Takes the text at a limit with no more nodes than allowed and refuses that beyond it.
+fn hold(said: &str, at: &str, allowed: usize, beyond: &str) {
+    let nodes = nodes(at);
+    assert!(nodes <= allowed, "{said}: {nodes} nodes");
+    let refusal = refusal(beyond);
+    assert!(refusal.contains(said), "{refusal}");
+}
+
+#[test]
+fn names_have_64_characters() {
+    let named = |length: usize| {
+        let name = "x".repeat(length);
+        mass(KINETIC, &format!("[definitions]\n{name} = \"2*x\"\n"))
+    };
+    hold("at most 64 characters", &named(64), 20, &named(65));
+}
+
+#[test]
+fn units_have_64_characters() {
+    let declared = |length: usize| {
+        let unit = format!("{:<length$}", "kg");
+        mass(KINETIC, "").replace("unit = \"kg\"", &format!("unit = \"{unit}\""))
+    };
+    hold(
+        "a unit has at most 64 characters",
+        &declared(64),
+        20,
+        &declared(65),
+    );
+}
+
+#[test]
+fn expressions_are_200_deep() {
+    let summed = |parts: usize| {
+        let value = vec!["x"; parts].join("+");
+        mass(
+            KINETIC,
+            &format!("[observables]\no = {{ value = \"{value}\", unit = \"m\" }}\n"),
+        )
+    };
+    hold("nested more than 200 deep", &summed(200), 420, &summed(201));
+}
+
+#[test]
+fn definitions_written_out_are_600_deep() {
+    // Each definition adds a product to the depth, the observable another one.
+    let chain = |count: usize| {
+        let mut lines = String::from("[definitions]\nd1 = \"2*x\"\n");
+        for index in 2..=count {
+            writeln!(lines, "d{index} = \"-d{}\"", index - 1).expect("a string");
+        }
+        mass(KINETIC, &lines)
+    };
+    let last = (1..=601)
+        .rev()
+        .find(|count| check(Source::new("deep.toml", chain(*count))).is_ok());
+    let last = last.expect("some depth is taken");
+    assert!((295..=600).contains(&last), "{last}");
+    hold(
+        "this is more than 600 deep",
+        &chain(last),
+        2 * last,
+        &chain(last + 1),
+    );
+}
+
+#[test]
+fn derivatives_by_the_position_are_of_order_4() {
+    let bent = |order: usize| {
+        string("l^0").replace(
+            "dot(w)^2",
+            &format!("(dot(w)^2 + l^{}*0*diff(dot(w), s, {order})^2)", 2 * order),
+        )
+    };
+    assert!(equations(&model(&bent(4)), 2).graph.len() < 400);
+    let said = refusal(&bent(5));
+    assert!(
+        said.contains("a derivative by the position is of order 1, 2, 3 or 4"),
+        "{said}"
+    );
+}
+
+#[test]
+fn integrands_have_4096_terms() {
+    let sum = |terms: usize| {
+        let terms = (0..terms).map(|place| format!("(s/l)^{}", place + 1));
+        format!("({})", terms.collect::<Vec<_>>().join(" + "))
+    };
+    let powers = |factors: usize| vec![sum(4); factors].join("*");
+    let at = equations(&model(&string(&powers(2))), 2).graph.len();
+    assert!(at < 400, "{at} nodes");
+    let said = refusal(&string(&format!("{}*{}", sum(100), sum(100))));
+    assert!(
+        said.contains("more than 4096 terms when multiplied out"),
+        "{said}"
+    );
+}
+
+#[test]
+fn orders_go_to_128() {
+    let at = |order: usize| string("1").replace("order = 2", &format!("order = {order}"));
+    assert!(equations(&model(&at(128)), 128).graph.len() < 100);
+    let said = refusal(&at(129));
+    assert!(said.contains("the order 129 is above the limit"), "{said}");
+}
+
+#[test]
+fn specifications_have_a_mebibyte() {
+    let filled = |size: usize| {
+        let text = mass(KINETIC, "");
+        let rest = size - text.len();
+        text + "#" + &"-".repeat(rest - 1)
+    };
+    let most = MAX_SIZE as usize;
+    hold(
+        "at most 1048576 bytes (1 MiB) are read",
+        &filled(most),
+        20,
+        &filled(most + 1),
+    );
+}
+
+#[test]
+fn findings_beyond_20_are_counted() {
+    let wrong = |count: usize| {
+        let line = |place: usize| format!("o{place} = {{ value = \"x + m\", unit = \"m\" }}\n");
+        mass(
+            KINETIC,
+            &("[observables]\n".to_owned() + &(0..count).map(line).collect::<String>()),
+        )
+    };
+    let found = |count: usize| check(Source::new("wrong.toml", wrong(count))).expect_err("units");
+    assert_eq!((found(20).list().len(), found(20).omitted()), (20, 0));
+    assert_eq!((found(21).list().len(), found(21).omitted()), (20, 1));
+}
+
+#[test]
+fn literals_are_finite_and_not_lost() {
+    let weighed = |number: &str| mass(&format!("{number}*m*dot(x)^2"), "");
+    hold("is too large", &weighed("1e307"), 20, &weighed("1e309"));
+    hold(
+        "it would be read as 0",
+        &weighed("1e-300"),
+        20,
+        &weighed("1e-400"),
+    );
+}
