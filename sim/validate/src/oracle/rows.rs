@@ -65,7 +65,7 @@ impl Oracle {
         Ok((finite && equations.is_definite()).then_some(equations))
     }
 
-    fn equations_of(&self, scene: &Scene<'_>) -> Equations {
+    pub(super) fn equations_of(&self, scene: &Scene<'_>) -> Equations {
         let mut terms = Vec::new();
         for term in &self.kinetic {
             terms.push(term.rows(scene, RowTermKind::Momentum));

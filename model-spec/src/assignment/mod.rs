@@ -1,0 +1,212 @@
+//! Quantities given beside a specification, as `NAME=VALUE` of an option: read as the specification reads
+//! its own.
+//!
+//! A plain number is in the unit of what is set. Any other value is an expression of parameters and
+//! constants, in SI and of the right unit, as `pi/3` or `2*l`; or it has a unit of its own behind it, as
+//! `30 deg` or `2*sqrt(2) mm`.
+
+mod quantity_reader;
+mod settings;
+
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::source::Source;
+use crate::span::Span;
+
+pub use quantity_reader::QuantityReader;
+
+/// The parts of `NAME=VALUE`, with their places.
+#[derive(Clone, Debug)]
+pub struct Assignment {
+    source: Source,
+    name: Span,
+    value: Span,
+}
+
+impl Assignment {
+    /// Splits the text of an option; `option` stands for the file in messages, as `--set` does.
+    ///
+    /// # Errors
+    /// There is no `=`, or nothing beside it.
+    pub fn split(option: &str, text: &str) -> Result<Self, Diagnostics> {
+        let source = Source::new(option, text);
+        let trimmed = |start: usize, end: usize| {
+            let part = &text[start..end];
+            let start = start + part.len() - part.trim_start().len();
+            Span::new(start, start + part.trim().len())
+        };
+        let parts = text
+            .find('=')
+            .map(|at| [trimmed(0, at), trimmed(at + 1, text.len())]);
+        match parts {
+            Some([name, value]) if name.start < name.end && value.start < value.end => Ok(Self {
+                source,
+                name,
+                value,
+            }),
+            _ => {
+                let message = format!("{option} {text}: expected NAME=VALUE");
+                let wrong = Diagnostic::error(message).at(Span::new(0, text.len()), "");
+                let help = "VALUE is a number, an expression of parameters, or one with a unit: k=2*k_0, \
+                            theta=pi/3, theta=\"30 deg\"";
+                Err(Diagnostics::one(source, wrong.help(help)))
+            }
+        }
+    }
+
+    /// What is set.
+    pub fn name(&self) -> &str {
+        &self.source.text[self.name.start..self.name.end]
+    }
+
+    /// The whole text.
+    pub fn text(&self) -> &str {
+        &self.source.text
+    }
+
+    /// The finding that the name is wrong.
+    pub fn refuse_name(&self, message: String, help: Option<String>) -> Diagnostics {
+        let wrong = Diagnostic::error(message).at(self.name, "").help_if(help);
+        Diagnostics::one(self.source.clone(), wrong)
+    }
+
+    fn value(&self) -> &str {
+        &self.source.text[self.value.start..self.value.end]
+    }
+
+    fn place(&self, start: usize, end: usize) -> Span {
+        Span::new(self.value.start + start, self.value.start + end)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Model;
+    use crate::unit::Unit;
+
+    const TEXT: &str = r#"
+[model]
+name = "pendulum"
+[parameters]
+m = { value = 2, unit = "kg" }
+l = { value = 500, unit = "mm" }
+a = { value = 30, unit = "deg" }
+r = { value = 3 }
+d = { value = "l/r", unit = "mm" }
+[coordinates]
+theta = { unit = "rad" }
+x = { unit = "m" }
+[kinetic]
+mass = "1/2*m*l^2*dot(theta)^2*r + 1/2*m*dot(x)^2"
+[observables]
+kept = "a + d/l"
+"#;
+
+    fn model() -> Model {
+        crate::check(Source::new("pendulum.toml", TEXT))
+            .expect("a model")
+            .model
+    }
+
+    fn read(text: &str, unit: &str) -> Result<f64, String> {
+        let model = model();
+        let given = Assignment::split("--at", text).map_err(|error| error.to_string())?;
+        let unit = Unit::parse(unit).expect("a unit");
+        let reader = QuantityReader::new(&model).expect("a reader");
+        reader
+            .read(&given, &unit)
+            .map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn values_are_numbers_expressions_or_have_a_unit() {
+        use std::f64::consts::PI;
+        for (text, unit, right) in [
+            ("theta=0.5", "rad", 0.5),
+            ("theta = -1e-3", "rad", -1e-3),
+            ("theta=pi", "rad", PI),
+            ("theta=30 deg", "rad", PI / 6.0),
+            ("theta=-(10 + 20) deg", "rad", -PI / 6.0),
+            ("theta=a", "rad", PI / 6.0),
+            ("theta=2*pi/3", "rad", 2.0 * PI / 3.0),
+            ("theta=pi rad", "rad", PI),
+            ("x=2*l", "m", 1.0),
+            ("x=250 mm", "m", 0.25),
+            ("x=1/4", "m", 0.25),
+            ("u=3 N m", "N m", 3.0),
+            ("u=2 kN mm", "N m", 2.0),
+            ("l=1/3 m", "mm", 1000.0 / 3.0),
+            ("l=250 mm", "mm", 250.0),
+            ("l=250", "mm", 250.0),
+            ("l=l/2", "mm", 250.0),
+            ("a=pi/2", "deg", 90.0),
+            ("a=2", "deg", 2.0),
+        ] {
+            let found = read(text, unit).unwrap_or_else(|error| panic!("{text}: {error}"));
+            assert!(
+                (found - right).abs() <= 1e-15 * right.abs().max(1.0),
+                "{text}: {found}"
+            );
+        }
+    }
+
+    #[test]
+    fn wrong_values_are_refused_with_their_place() {
+        for (text, unit, parts) in [
+            ("theta", "rad", &["expected NAME=VALUE"][..]),
+            ("theta=", "rad", &["expected NAME=VALUE"]),
+            (
+                "theta=2*pii",
+                "rad",
+                &["--at:1:9", "unknown name `pii`", "`pi`"],
+            ),
+            ("theta=2*", "rad", &["--at:1:9"]),
+            ("theta=30 mm", "rad", &["--at:1:10", "in rad, not in mm"]),
+            (
+                "theta=30 degs",
+                "rad",
+                &["--at:1:10", "unknown unit `degs`"],
+            ),
+            ("x=a", "m", &["--at:1:3", "a pure number"]),
+            ("x=m", "m", &["--at:1:3", "in kg"]),
+            (
+                "x=2*l mm",
+                "m",
+                &["--at:1:3", "a second unit", "leave the unit out"],
+            ),
+            ("l=1/3", "mm", &["--at:1:3", "1/3 mm"]),
+            ("x=nan", "m", &["finite"]),
+            ("x=1/0", "m", &["finite"]),
+            ("x=theta", "m", &["--at:1:3", "a coordinate"]),
+            ("x=1=2", "m", &["--at:1:4"]),
+            ("x=3 (2)", "m", &["--at:1:5"]),
+        ] {
+            let error = read(text, unit).expect_err(text);
+            for part in parts {
+                assert!(
+                    error.contains(part),
+                    "{text}: {part} is missing in\n{error}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn settings_see_those_before_them() {
+        let model = model();
+        let given = ["l=1 m", "m=2*m", "d=l/4", "l=d"].map(|text| Assignment::split("--set", text));
+        let given = given.map(|given| given.expect("an assignment"));
+        let found = model.read_settings(&given).expect("settings");
+        let values: Vec<f64> = found.iter().map(|(_, value)| *value).collect();
+        assert_eq!(values, [1000.0, 4.0, 250.0, 250.0]);
+        let wrong = Assignment::split("--set", "ll=1").expect("an assignment");
+        let error = model
+            .read_settings(&[wrong])
+            .expect_err("no such parameter")
+            .to_string();
+        assert!(
+            error.contains("--set:1:1") && error.contains("did you mean `l`"),
+            "{error}"
+        );
+    }
+}

@@ -1,0 +1,192 @@
+//! Values of assignments, read by the names and parameter values of a model.
+
+use super::Assignment;
+use crate::ast::{Syntax, SyntaxKind};
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::dimension::Dimension;
+use crate::document;
+use crate::evaluate::evaluate;
+use crate::expression::{Resolver, Scope};
+use crate::infer::{Inference, Words};
+use crate::lexer::{Token, TokenKind, tokens};
+use crate::model::{Expr, Model};
+use crate::names::Names;
+use crate::parser::parse;
+use crate::space;
+use crate::span::Span;
+use crate::unit::Unit;
+
+/// Reads quantities by the names and parameter values of a model.
+pub struct QuantityReader<'m> {
+    model: &'m Model,
+    names: Names,
+    values: Vec<f64>,
+}
+
+impl<'m> QuantityReader<'m> {
+    /// A reader at the parameter values of the model.
+    ///
+    /// # Errors
+    /// As [`crate::check`], of a model that was changed by hand.
+    pub fn new(model: &'m Model) -> Result<Self, Diagnostics> {
+        let mut document = document::read(&model.source)?;
+        space::expand(&mut document, &model.source)?;
+        let mut found = Diagnostics::new(model.source.clone());
+        let names = Names::declare(&document, &mut found);
+        match found.is_empty() {
+            true => Ok(Self {
+                values: model.evaluated_parameters(),
+                model,
+                names,
+            }),
+            false => Err(found),
+        }
+    }
+
+    /// The value of an assignment, in the unit of what it sets.
+    ///
+    /// # Errors
+    /// What is no expression, a name that is not known, a unit that does not fit, a value that is not finite;
+    /// each with its place in the option.
+    pub fn read(&self, given: &Assignment, unit: &Unit) -> Result<f64, Diagnostics> {
+        let value = self.value(given, unit);
+        let finite = value.and_then(|value| match value.is_finite() {
+            true => Ok(value),
+            false => {
+                let message = format!("{}: `{}` comes out as {value}", given.text(), given.name());
+                Err(Diagnostic::error(message)
+                    .at(given.value, "")
+                    .help("expected a finite number"))
+            }
+        });
+        finite.map_err(|wrong| Diagnostics::one(given.source.clone(), wrong))
+    }
+
+    fn value(&self, given: &Assignment, unit: &Unit) -> Result<f64, Diagnostic> {
+        let text = given.value();
+        if let Ok(number) = text.parse::<f64>() {
+            return Ok(number);
+        }
+        let all = tokens(text, |start, end| given.place(start, end))?;
+        let split = unit_start(&all);
+        let (expression, own) = all.split_at(split);
+        let end = own
+            .first()
+            .map_or(given.value.end, |token| token.span.start);
+        let syntax = parse(expression, Span::new(end, given.value.end.max(end)))?;
+        let value = Resolver::new(&self.names, Scope::Parameters).resolve(&syntax)?;
+        let dimension = self.dimension(&value)?;
+        let number = evaluate(&value, &self.values);
+        match own.first() {
+            Some(first) => {
+                let place = Span::new(first.span.start, given.value.end);
+                let written = &given.source.text[place.start..place.end];
+                self.in_unit(given, number, dimension, value.span, (written, place), unit)
+            }
+            None => in_si(given, number, dimension, &syntax, unit),
+        }
+    }
+
+    fn dimension(&self, value: &Expr) -> Result<Option<Dimension>, Diagnostic> {
+        let inference = Inference {
+            model: self.model,
+            definitions: Vec::new(),
+            coefficients: Vec::new(),
+        };
+        inference.infer(value)
+    }
+
+    /// A number with a unit of its own.
+    fn in_unit(
+        &self,
+        given: &Assignment,
+        number: f64,
+        dimension: Option<Dimension>,
+        place: Span,
+        (written, written_place): (&str, Span),
+        unit: &Unit,
+    ) -> Result<f64, Diagnostic> {
+        if let Some(dimension) = dimension.filter(|dimension| !dimension.is_none()) {
+            return Err(Diagnostic::error(format!(
+                "this value is {} without a unit",
+                Words(dimension)
+            ))
+            .at(place, Words(dimension).to_string())
+            .also(written_place, "a second unit")
+            .help("leave the unit out: parameters have theirs"));
+        }
+        let own = Unit::parse(written).map_err(|error| {
+            Diagnostic::error(error.message)
+                .at(written_place, "not a unit")
+                .help_if(error.help)
+        })?;
+        if own.dimension != unit.dimension {
+            let message = format!("`{}` is in {unit}, not in {own}", given.name());
+            return Err(Diagnostic::error(message)
+                .at(written_place, "another kind of quantity")
+                .help(format!("give a unit such as {unit}")));
+        }
+        Ok(match own == *unit {
+            true => number,
+            false => unit.from_si(own.to_si(number)),
+        })
+    }
+}
+
+/// An expression without a unit behind it, which is in SI.
+fn in_si(
+    given: &Assignment,
+    number: f64,
+    dimension: Option<Dimension>,
+    syntax: &Syntax,
+    unit: &Unit,
+) -> Result<f64, Diagnostic> {
+    match dimension {
+        None => Ok(unit.from_si(number)),
+        Some(own) if own == unit.dimension => Ok(unit.from_si(number)),
+        Some(own) if own.is_none() && unit.is_coherent() && holds_no_names(syntax) => Ok(number),
+        Some(own) => {
+            let message = format!(
+                "the value of `{}` is {}, expected in {unit}",
+                given.name(),
+                Words(own)
+            );
+            let help = match own.is_none() {
+                true => format!(
+                    "write the unit behind it: {}=\"{} {unit}\"",
+                    given.name(),
+                    given.value()
+                ),
+                false => format!(
+                    "parameters have their units; expected {}",
+                    Words(unit.dimension)
+                ),
+            };
+            Err(Diagnostic::error(message)
+                .at(syntax.span, Words(own).to_string())
+                .help(help))
+        }
+    }
+}
+
+/// Where a unit begins behind an expression: at an operand that follows another without an operator.
+fn unit_start(tokens: &[Token]) -> usize {
+    let ends = |kind: &TokenKind| {
+        matches!(
+            kind,
+            TokenKind::Number(_) | TokenKind::Name(_) | TokenKind::Close
+        )
+    };
+    let begins = |kind: &TokenKind| matches!(kind, TokenKind::Number(_) | TokenKind::Name(_));
+    let mut pairs = tokens.windows(2);
+    let found = pairs.position(|pair| ends(&pair[0].kind) && begins(&pair[1].kind));
+    found.map_or(tokens.len(), |place| place + 1)
+}
+
+fn holds_no_names(tree: &Syntax) -> bool {
+    let mut none = true;
+    tree.visit(&mut |part| {
+        none &= !matches!(&part.kind, SyntaxKind::Name(name) if name != "pi");
+    });
+    none
+}

@@ -1,0 +1,48 @@
+//! Parameters set by assignments, and the units of what can be set.
+
+use super::Assignment;
+use super::quantity_reader::QuantityReader;
+use crate::diagnostic::{Diagnostics, quoted};
+use crate::model::{Model, ParameterValue};
+use crate::unit::Unit;
+
+impl Model {
+    /// The values of assignments to parameters, one after the other, in the units that the specification
+    /// declares; an expression sees what was set before it.
+    ///
+    /// # Errors
+    /// A name that no parameter has, and as [`QuantityReader::read`].
+    pub fn read_settings(&self, given: &[Assignment]) -> Result<Vec<(String, f64)>, Diagnostics> {
+        let mut set = Vec::with_capacity(given.len());
+        let mut model = self.clone();
+        for assignment in given {
+            let name = assignment.name();
+            let Some(place) = model.parameters.iter().position(|known| known.name == name) else {
+                let message = format!("the model has no parameter {}", quoted(name));
+                return Err(assignment.refuse_name(message, Some(self.parameters_like(name))));
+            };
+            let unit = model.parameters[place].unit.clone();
+            let value = QuantityReader::new(&model)?.read(assignment, &unit)?;
+            model.parameters[place].value = ParameterValue::Number(unit.to_si(value));
+            set.push((name.to_owned(), value));
+        }
+        Ok(set)
+    }
+
+    /// The units of the states at these orders, in their order: coordinates and modes, their rates, states
+    /// of first order.
+    pub fn state_units(&self, orders: &[usize]) -> Vec<Unit> {
+        let mut units: Vec<Unit> = self
+            .coordinates
+            .iter()
+            .map(|known| known.unit.clone())
+            .collect();
+        for (field, order) in self.fields.iter().zip(orders) {
+            units.extend(std::iter::repeat_n(field.unit.clone(), *order));
+        }
+        let rates: Vec<Unit> = units.iter().filter_map(Unit::per_second).collect();
+        units.extend(rates);
+        units.extend(self.states.iter().map(|state| state.unit.clone()));
+        units
+    }
+}
