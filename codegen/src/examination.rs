@@ -1,5 +1,5 @@
-//! What can be refused of a model, without its equations of motion: every expression is translated, every
-//! coordinate has inertia, and constraints can hold and do not depend on each other.
+//! Refusals of a model that need no equations of motion: expressions that cannot be translated, coordinates
+//! without inertia, and constraints that never hold or depend on each other.
 
 use eomgen_model_spec::diagnostic::Diagnostic;
 use eomgen_model_spec::model::Model;
@@ -12,7 +12,7 @@ use crate::mechanics::translate::DeriveError;
 use crate::mechanics::unsolved::Unsolved;
 use crate::symbolic::graph::NodeId;
 
-/// The work that an examination took.
+/// Counted work of an examination.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Examination {
     /// Number of nodes of the graph.
@@ -21,12 +21,12 @@ pub struct Examination {
     pub updates: usize,
 }
 
-/// Examines a model; None if its equations have to be derived for that: those of fields, and of kinetic
-/// energies that take functions of velocities.
+/// Examines a model. Returns None for a model with fields and for a kinetic energy with functions of
+/// velocities: derive their equations instead.
 ///
 /// # Errors
-/// What cannot be derived, constraints that never hold or depend on each other, and coordinates without
-/// inertia at the initial state.
+/// Expressions that cannot be derived, constraints that never hold or depend on each other, and coordinates
+/// without inertia at the initial state.
 pub fn examine(model: &Model) -> Result<Option<Examination>, Diagnostic> {
     if !model.fields.is_empty() {
         return Ok(None);

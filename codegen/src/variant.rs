@@ -14,6 +14,8 @@ use crate::mechanics::inertia;
 use crate::mechanics::outputs::derive_outputs;
 use crate::mechanics::outputs::{Output, Outputs};
 use crate::mechanics::sliding::with_sides;
+use crate::mechanics::translate::{DeriveError, Translator};
+use crate::mechanics::unsolved::translate_impacts;
 use crate::program::evaluator::{Evaluator, Point};
 use crate::program::lowering::lower_with_outputs;
 use crate::program::{Program, Quantity};
@@ -94,9 +96,22 @@ impl Variant {
 pub fn examine(model: &Model, orders: &[usize]) -> Result<(), Diagnostics> {
     match examination::examine(model) {
         Ok(Some(_)) => Ok(()),
-        Ok(None) => Variant::derive(model, orders).map(|_| ()),
+        Ok(None) => examine_by_equations(model, orders),
         Err(diagnostic) => Err(Diagnostics::one(model.source.clone(), diagnostic)),
     }
+}
+
+/// The same by the equations of motion, without the changes of rates by impacts: they grow with the square of
+/// their number and refuse nothing.
+fn examine_by_equations(model: &Model, orders: &[usize]) -> Result<(), Diagnostics> {
+    let translated = translate_impacts(&mut Translator::new(model, orders));
+    let found = |error: DeriveError| Diagnostics::one(model.source.clone(), error.diagnostic());
+    translated.map_err(found)?;
+    let without_impacts = Model {
+        impacts: Vec::new(),
+        ..model.clone()
+    };
+    Variant::derive(&without_impacts, orders).map(drop)
 }
 
 fn check_inertia(model: &Model, orders: &[usize], variant: &Variant) -> Result<(), Diagnostic> {

@@ -1,4 +1,4 @@
-//! Interval arithmetic: bounds of an expression over all values of what it is made of.
+//! Interval arithmetic: bounds of an expression over all values of its variables.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -80,7 +80,7 @@ impl Interval {
         }
     }
 
-    /// The numbers to a constant power, where that is defined.
+    /// The defined powers of its numbers to a constant exponent.
     pub fn power(self, exponent: f64) -> Self {
         let raised = |x: f64| x.powf(exponent);
         if exponent < 0.0 {
@@ -94,7 +94,7 @@ impl Interval {
         }
     }
 
-    /// The values of a function of one or two numbers, where it is defined.
+    /// The defined values of a function of one or two arguments.
     pub fn of_function(function: Function, arguments: &[Self]) -> Self {
         match arguments {
             [only] => only.of_one(function),

@@ -178,7 +178,11 @@ fn not_derived(constraints: &str) -> String {
 
 #[test]
 fn constraints_that_cannot_hold_are_named() {
-    let never = changed("x^2 + y^2 - l^2", "x^2 + y^2 + l^2");
+    let never = not_derived("x^2 + y^2 + l^2");
+    assert!(never.contains("`rod` is never zero"), "{never}");
+    assert!(never.contains("is at least 4.900e-1 m^2"), "{never}");
+    // Bounds of the terms do not show it.
+    let never = changed("x^2 + y^2 - l^2", "x^2 + y^2 + l*x + l^2");
     assert!(
         refusal(&never).contains("`rod` stays at"),
         "{}",
@@ -209,7 +213,7 @@ fn constraints_that_depend_on_each_other_are_refused_where_they_stand() {
         ),
         (
             "x^2 + y^2 - l^2",
-            "2*x^2 + 2*y^2 + l^2",
+            "2*x^2 + 2*y^2 - l^2",
             "`again` contradicts `rod`",
         ),
         // Constraints along straight lines follow from others wherever the machine is.

@@ -139,7 +139,7 @@ impl Writer {
         let mut text = format!("{real} {parts}[{count}];\n");
         let first = assignment(&format!("{parts}[i]"), &self.expression(element));
         text += &looped("i", count, &first);
-        // An element that is a sum itself is added as a whole.
+        // Parentheses around a sum: C adds from left to right.
         let element = self.at(element, Level::Product);
         let blocks = length / PARTIAL_SUMS;
         let added = |first: &str, part: &str| {

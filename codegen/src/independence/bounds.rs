@@ -1,4 +1,4 @@
-//! Constraints that no state fulfils, by bounds of their expressions over all states.
+//! Refusal of constraints that no state fulfils, by bounds of their expressions over all states.
 
 use eomgen_model_spec::diagnostic::Diagnostic;
 use eomgen_model_spec::interval::Interval;

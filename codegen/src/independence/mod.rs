@@ -1,9 +1,8 @@
-//! Whether the constraints of a model are independent of each other, and can hold.
+//! Refusal of constraints that depend on each other or never hold.
 //!
 //! `rows` (their derivatives at a state, in a scale without units, by a program) and `nodes` (the same by
 //! nodes), `dependence` (which of them depend on others), `projection` (states that keep them), `check`
-//! (refuses a model whose constraints depend on each other wherever they hold), `bounds` (refuses constraints
-//! that never hold).
+//! (refuses dependent constraints), `bounds` (refuses constraints that are never zero).
 
 pub(crate) mod bounds;
 mod check;

@@ -1,5 +1,5 @@
-//! The derivatives and residuals of constraints of a model without fields, by its nodes: no equations of
-//! motion are needed.
+//! Derivatives and residuals of constraints from the nodes of a model without fields. They need no equations
+//! of motion.
 
 use crate::independence::rows::{ConstraintGeometry, positive};
 use crate::mechanics::inertia::point::Point as NodePoint;
@@ -13,9 +13,9 @@ pub(crate) struct NodeGeometry<'u> {
     model: &'u Unsolved,
     parameters: Vec<f64>,
     coordinates: usize,
-    /// What derivatives and residuals are computed from, operands first.
+    /// Nodes of derivatives and residuals, operands first.
     constraints: Vec<NodeId>,
-    /// What the kinetic energy is computed from, operands first.
+    /// Nodes of the kinetic energy, operands first.
     energy: Vec<NodeId>,
 }
 

@@ -22,8 +22,8 @@ pub(crate) enum GradientBy {
     Rates,
 }
 
-/// The derivatives of a scalar by coordinates or by rates that are not 0, with their places. The work grows
-/// with what the scalar is computed from.
+/// Nonzero derivatives of a scalar by coordinates or by rates, with their places. The work grows with the
+/// number of nodes of the scalar.
 pub(crate) fn nonzero_gradient(
     graph: &mut Graph,
     scalar: NodeId,

@@ -180,7 +180,7 @@ impl Unit {
         found
     }
 
-    /// What a node is computed from where the operands are held: they, and leaves.
+    /// Leaves of a node, the operands counted among them.
     fn leaves(&self, graph: &Graph, node: NodeId) -> BTreeSet<NodeId> {
         let mut found = BTreeSet::new();
         let mut seen = HashSet::new();
@@ -209,7 +209,7 @@ impl Unit {
             if !is_velocity(graph, slope) {
                 continue;
             }
-            // Others have no derivative.
+            // Derivatives by other operands are 0.
             let within = self.leaves(graph, slope);
             let (earlier, held) = (&self.operands[..=place], &self.operands);
             let held: Vec<NodeId> = held
@@ -320,7 +320,7 @@ fn rate_dependent_parts(graph: &Graph, node: NodeId) -> Vec<NodeId> {
 fn partial(graph: &mut Graph, node: NodeId, held: &[NodeId], by: NodeId) -> NodeId {
     let (zero, one) = (graph.zero(), graph.one());
     let mut direction = Direction::default();
-    // The derivative of others is 0 in any case.
+    // The derivatives of other parts are 0 without a seed.
     let moving = held.iter().filter(|part| graph.may_depend_on(**part, by));
     for part in moving {
         direction.seed(*part, zero);

@@ -1,9 +1,9 @@
-//! A model without fields as nodes, without its equations of motion: every expression is translated, and
-//! constraints and distances are differentiated by what they depend on. The work grows as the specification
-//! does, where equations may grow with its square and more.
+//! A model without fields as nodes, before its equations of motion are derived. Every expression is translated;
+//! constraints and distances of impacts are differentiated by the coordinates that they hold. The work is
+//! proportional to the size of the specification; that of equations grows with its square or faster.
 
 use eomgen_model_spec::ids::{ConstraintId, StateId};
-use eomgen_model_spec::model::{CoefficientKind, Impact, Model};
+use eomgen_model_spec::model::{CoefficientKind, Model};
 
 use crate::mechanics::coefficients::row_of;
 use crate::mechanics::constraints::not_linear;
@@ -14,7 +14,7 @@ use crate::mechanics::lagrange::{GradientBy, nonzero_gradient};
 use crate::mechanics::translate::{Derived, Translator, along_motion};
 use crate::symbolic::graph::{Argument, Dependence, Graph, NodeId, Operation, Variable};
 
-/// A model whose accelerations are not solved for.
+/// A translated model without accelerations.
 pub(crate) struct Unsolved {
     pub(crate) graph: Graph,
     /// T, in J.
@@ -25,9 +25,9 @@ pub(crate) struct Unsolved {
 
 /// A constraint as nodes.
 pub(crate) struct ConstraintNodes {
-    /// What stays zero.
+    /// The expression that a motion keeps at zero.
     pub(crate) residual: NodeId,
-    /// Its derivatives by coordinates, or by rates, that are not 0, with their places.
+    /// Nonzero derivatives by coordinates, or by rates, with their places.
     pub(crate) derivatives: Vec<(usize, NodeId)>,
 }
 
@@ -35,7 +35,7 @@ impl Unsolved {
     /// Translates a model without fields.
     ///
     /// # Errors
-    /// What cannot be derived.
+    /// Expressions that cannot be derived.
     pub(crate) fn translate(model: &Model) -> Derived<Self> {
         let mut translator = Translator::new(model, &[]);
         let mut terms = Vec::new();
@@ -54,9 +54,7 @@ impl Unsolved {
             translator.node(&observable.value)?;
         }
         translate_coefficients(&mut translator)?;
-        for impact in &model.impacts {
-            translate_impact(&mut translator, impact)?;
-        }
+        translate_impacts(&mut translator)?;
         Ok(Self {
             graph: translator.graph,
             kinetic,
@@ -92,7 +90,7 @@ fn translate_constraints(translator: &mut Translator) -> Derived<Vec<ConstraintN
         });
         multipliers.push(multiplier);
     }
-    // What depends on rates, as multipliers do, stands for them.
+    // Observables may hold multipliers. Placeholders depend on rates, as multipliers do.
     translator.known_multipliers(&multipliers);
     Ok(found)
 }
@@ -107,7 +105,7 @@ fn translate_coefficients(translator: &mut Translator) -> Derived<()> {
                 if let Some(times) = times {
                     translator.node(times)?;
                 }
-                // A number of which nothing is known stands for the factor.
+                // A placeholder: the factor needs accelerations.
                 let unknown = Operation::Argument(Argument::Weights, Variable::Time);
                 translator.graph.intern(unknown)
             }
@@ -117,12 +115,21 @@ fn translate_coefficients(translator: &mut Translator) -> Derived<()> {
     Ok(())
 }
 
-fn translate_impact(translator: &mut Translator, impact: &Impact) -> Derived<()> {
-    let distance = translator.node(&impact.when)?;
-    translator.node(&impact.restitution)?;
-    let graph = &mut translator.graph;
-    if nonzero_gradient(graph, distance, &GradientBy::Coordinates).is_empty() {
-        return Err(moves_nothing(impact));
+/// Translates impacts without the changes of rates that they cause.
+///
+/// # Errors
+/// Expressions that cannot be derived, and a distance that no coordinate changes.
+pub(crate) fn translate_impacts(translator: &mut Translator) -> Derived<()> {
+    let model = translator.model;
+    for impact in &model.impacts {
+        let distance = translator.node(&impact.when)?;
+        translator.node(&impact.restitution)?;
+        let graph = &mut translator.graph;
+        // The distance of a field may hold no modes at order 0.
+        let is_rigid = model.fields.is_empty();
+        if is_rigid && nonzero_gradient(graph, distance, &GradientBy::Coordinates).is_empty() {
+            return Err(moves_nothing(impact));
+        }
     }
     Ok(())
 }

@@ -30,7 +30,7 @@ impl Moving {
             return known;
         }
         let moves = match leaf(graph, id) {
-            // Found again as fast as it would be remembered: most of a long sum holds one variable.
+            // As fast to find again as to look up.
             Some(false) => return false,
             Some(true) => true,
             None => {
@@ -53,7 +53,7 @@ pub struct Direction<'a> {
     known: NodeMap<NodeId, NodeId>,
     /// What was seeded with a derivative.
     seeds: Vec<NodeId>,
-    /// Whether those with the derivative 0 are taken out.
+    /// Set once seeds with the derivative 0 are removed.
     has_moving_seeds_alone: bool,
     moving: Moving,
 }
@@ -121,7 +121,7 @@ impl<'a> Direction<'a> {
         let seeds = &self.seeds;
         let is_out_of_reach =
             |id| !tangents && !seeds.iter().any(|seed| graph.may_depend_on(id, *seed));
-        // Most terms of a long sum: nothing is looked up for them.
+        // Most terms of a long sum end here, without a lookup.
         if is_out_of_reach(id) {
             return false;
         }

@@ -33,7 +33,7 @@ struct Node {
 pub struct Graph {
     nodes: Vec<Node>,
     known: NodeMap<Operation, NodeId>,
-    /// The numbers 0 and 1, once they are there.
+    /// Nodes of the numbers 0 and 1, once made.
     pub(super) zero_and_one: [Option<NodeId>; 2],
     tables: Vec<Table>,
     orders: Vec<usize>,

@@ -1,5 +1,5 @@
-//! Maps by nodes and operations. They are looked up millions of times in a derivation and hold nothing that
-//! an attacker chooses, so that a few operations per word hash enough (the hash of Firefox and rustc).
+//! Maps by nodes and operations. A derivation looks up millions of entries, and no attacker chooses them: a few
+//! operations per word suffice (FxHash of Firefox and rustc).
 
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
@@ -7,7 +7,7 @@ use std::hash::{BuildHasherDefault, Hasher};
 /// A map by nodes or operations.
 pub(crate) type NodeMap<K, V> = HashMap<K, V, BuildHasherDefault<WordHasher>>;
 
-/// A hash of words: each is multiplied into what came before.
+/// A polynomial hash of words.
 #[derive(Clone, Default)]
 pub(crate) struct WordHasher {
     state: u64,

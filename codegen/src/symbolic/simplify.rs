@@ -73,7 +73,7 @@ impl Graph {
     /// A linear combination. Laws: numbers are folded, c (k a) = (c k) a, and equal
     /// nodes are collected; a sum inside a sum stays a node of its own.
     pub fn combine(&mut self, terms: &[(f64, NodeId)]) -> NodeId {
-        // No law applies to one term that is no product.
+        // No law changes a single term that is no product.
         if let [(1.0, only)] = *terms
             && !matches!(self.operation(only), Operation::Product(_))
         {
@@ -167,7 +167,7 @@ impl Graph {
 
     /// a b.
     pub fn multiply(&mut self, a: NodeId, b: NodeId) -> NodeId {
-        // No number in the other, which may be infinite.
+        // 0 times an infinite number is no 0.
         let holds_number = |id| match self.operation(id) {
             Operation::Constant(_) => true,
             Operation::Sum(terms) => terms.len() == 1,

@@ -1,4 +1,4 @@
-//! The limits of a specification, each with what is taken at it, by counted work, and what is said of one more.
+//! Documented limits of a specification: a model at each limit, with counted work, and the refusal beyond it.
 
 use std::fmt::Write;
 
@@ -9,7 +9,7 @@ use eomgen_model_spec::{MAX_SIZE, check};
 
 use crate::support::{equations, model};
 
-/// A mass with this kinetic energy, beside what stands in further lines.
+/// A mass with this kinetic energy, and further lines.
 fn mass(kinetic: &str, further: &str) -> String {
     format!(
         "[model]\nname = \"limited\"\n[parameters]\nm = {{ value = 2, unit = \"kg\" }}\n\
@@ -29,13 +29,13 @@ fn string(integrand: &str) -> String {
     )
 }
 
-/// Number of nodes that an examination takes.
+/// Number of nodes of an examination.
 fn nodes(text: &str) -> usize {
     let examined = examine(&model(text)).unwrap_or_else(|found| panic!("{}", found.message));
     examined.expect("no field").nodes
 }
 
-/// What is said of a text that is refused.
+/// The message that refuses a text.
 fn refusal(text: &str) -> String {
     match check(Source::new("limited.toml", text)) {
         Ok(checked) => {

@@ -1,4 +1,4 @@
-//! What is refused of a model without its equations, and how the work for that grows.
+//! Refusals of a model that need no equations, and the growth of their work.
 
 use eomgen_codegen::examination::{Examination, examine};
 use eomgen_codegen::variant::Variant;

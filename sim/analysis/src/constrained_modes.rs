@@ -45,7 +45,7 @@ pub fn constrained_modes(
     })
 }
 
-/// The modes of a machine whose states all feel each other or are held together.
+/// The modes of a single connected part with constraints.
 fn modes_within(
     matrix: &DMatrix<f64>,
     held: &DMatrix<f64>,

@@ -1,5 +1,5 @@
-//! Parts of a linearised machine that do not feel each other: their modes are found one part after the other,
-//! so that the work is that of each and not of all together.
+//! Independent parts of a linearised machine. Solving them one by one takes the sum of their work; the work for
+//! one matrix of all grows with the cube of its size.
 
 use nalgebra::DMatrix;
 
@@ -7,7 +7,7 @@ use nalgebra::DMatrix;
 pub(crate) struct Part {
     /// A of its coordinates, their rates and its states of first order.
     pub matrix: DMatrix<f64>,
-    /// The rows of what is held of these.
+    /// The rows of C of these states.
     pub held: DMatrix<f64>,
     /// Number of its coordinates.
     pub degrees: usize,

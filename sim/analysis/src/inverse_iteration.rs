@@ -44,7 +44,7 @@ pub(crate) fn null_vector_at(
     vector
 }
 
-/// Triangular factors of a square matrix, with what is not 0 by its band left out.
+/// Triangular factors of a square matrix within its band.
 struct Factors {
     steps: Vec<Step>,
 }
@@ -73,7 +73,7 @@ impl Factors {
                 right = right.max(column.saturating_sub(place));
             }
         }
-        // A pivot from further down brings its row's band along.
+        // A row that is exchanged upward widens the upper band.
         let right = right + below;
         let steps = (0..count).map(|place| {
             let last_row = count.min(place + below + 1);

@@ -101,7 +101,7 @@ pub(crate) fn gather(
     Ok(all)
 }
 
-/// The natural modes of a machine whose states all feel each other.
+/// The natural modes of a single connected part.
 pub(crate) fn connected_modes(
     matrix: &DMatrix<f64>,
     degrees: usize,
