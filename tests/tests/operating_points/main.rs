@@ -3,6 +3,7 @@
 mod bases;
 mod drawn_modes;
 mod given;
+mod growth;
 mod tables;
 
 use std::f64::consts::{PI, TAU};

@@ -1,0 +1,149 @@
+//! Growth of the work of `check` and `modes`: instructions counted by callgrind for a model and one of twice
+//! its size. Skipped without valgrind, and in unoptimised builds.
+
+use std::process::Command;
+
+use eomgen_tests::program::path;
+
+/// Allowed ratio of instructions when a model doubles.
+const MOST: f64 = 2.5;
+
+/// A section with a line for each of so many places.
+fn section(name: &str, count: usize, line: &dyn Fn(usize) -> String) -> String {
+    let lines = (0..count).map(|place| line(place) + "\n");
+    format!("[{name}]\n{}", lines.collect::<String>())
+}
+
+/// Masses along lines of their own, with further sections.
+fn masses(count: usize, further: &str) -> String {
+    "[model]\nname = \"grown\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\nk = { value = 3, unit = \"N/m\" }\n"
+        .to_owned()
+        + &section("coordinates", count, &|k| format!("q{k} = {{ unit = \"m\" }}"))
+        + &section("kinetic", count, &|k| format!("T{k} = \"1/2*m*dot(q{k})^2\""))
+        + further
+}
+
+/// Masses that hang on a spring each.
+fn hung(count: usize) -> String {
+    let spring = |k: usize| format!("V{k} = \"1/2*{}*k*q{k}^2\"", k + 1);
+    masses(count, &section("potential", count, &spring))
+}
+
+/// Masses that fall on a floor each.
+fn falling(count: usize) -> String {
+    let floor = |k: usize| format!("i{k} = {{ when = \"q{k}\", restitution = \"1/2\" }}");
+    masses(count, &section("impacts", count, &floor))
+}
+
+/// Masses held together in pairs.
+fn paired(count: usize) -> String {
+    let pair = |k: usize| format!("c{k} = {{ zero = \"q{} - q{}\" }}", 2 * k, 2 * k + 1);
+    masses(2 * count, &section("constraints", count, &pair))
+}
+
+/// A chain of springs with a named coefficient for each mass.
+fn named(count: usize) -> String {
+    let spring = |k: usize| match k {
+        0 => "V0 = \"1/2*k*q0^2\"".to_owned(),
+        _ => format!("V{k} = \"1/2*k*(q{k} - q{})^2\"", k - 1),
+    };
+    let named = |k: usize| format!("a{k} = {{ of = \"q{k}\", by = \"q{k}\" }}");
+    let potential = section("potential", count, &spring);
+    masses(
+        count,
+        &(potential + &section("coefficients", count, &named)),
+    )
+}
+
+/// Strings that each may hit a floor.
+fn strings(count: usize) -> String {
+    let field = |k: usize| {
+        format!(
+            "[fields.w{k}]\nalong = \"s{k}\"\nfrom = 0\nto = \"l\"\nbasis = \"string\"\ncoordinates = \"q{k}_\"\n\
+             order = 3\nunit = \"m\"\n"
+        )
+    };
+    "[model]\nname = \"strings\"\n[parameters]\nmu = { value = 1, unit = \"kg/m\" }\nH = { value = 2, unit = \"N\" }\n\
+     l = { value = 1, unit = \"m\" }\n"
+        .to_owned()
+        + &(0..count).map(field).collect::<String>()
+        + &section("kinetic", count, &|k| {
+            format!("T{k} = \"1/2*integral(mu*dot(w{k})^2, w{k})\"")
+        })
+        + &section("potential", count, &|k| {
+            format!("V{k} = \"1/2*integral(H*diff(w{k}, s{k})^2, w{k})\"")
+        })
+        + &section("impacts", count, &|k| {
+            format!("i{k} = {{ when = \"at(w{k}, l/2) + l\", restitution = \"1/2\" }}")
+        })
+}
+
+/// Instructions of a command on a specification.
+fn instructions(command: &str, text: &str) -> f64 {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("model.toml");
+    std::fs::write(&file, text).expect("written");
+    let output = Command::new("valgrind")
+        .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
+        .arg(path())
+        .args([command, &file.display().to_string()])
+        .output()
+        .expect("valgrind starts");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    let counted = said
+        .lines()
+        .find_map(|line| line.split_once("Collected : "));
+    let (_, count) = counted.unwrap_or_else(|| panic!("no count: {said}"));
+    count.trim().parse().expect("a number")
+}
+
+/// Fails if a command on a model of twice the size takes more than allowed.
+fn compare(command: &str, size: usize, text: impl Fn(usize) -> String) {
+    if Command::new("valgrind").arg("--version").output().is_err() {
+        skips::skip(
+            "work was not counted, for want of valgrind (Debian: apt-get install valgrind)",
+        );
+        return;
+    }
+    if cfg!(debug_assertions) {
+        skips::skip("work was not counted: it is that of optimised code, cargo test --release");
+        return;
+    }
+    let [single, double] = [size, 2 * size].map(|size| instructions(command, &text(size)));
+    let ratio = double / single;
+    assert!(
+        ratio <= MOST,
+        "{command}: {single} to {double}, {ratio:.2}-fold"
+    );
+}
+
+#[test]
+fn check_of_masses_doubles_with_them() {
+    compare("check", 200, |count| masses(count, ""));
+}
+
+#[test]
+fn check_of_impacts_doubles_with_them() {
+    compare("check", 50, falling);
+}
+
+#[test]
+fn check_of_constraints_doubles_with_them() {
+    compare("check", 50, paired);
+}
+
+#[test]
+fn check_of_coefficients_doubles_with_them() {
+    compare("check", 100, named);
+}
+
+#[test]
+fn check_of_fields_with_impacts_doubles_with_them() {
+    compare("check", 16, strings);
+}
+
+#[test]
+fn modes_of_independent_masses_double_with_them() {
+    compare("modes", 30, hung);
+}
