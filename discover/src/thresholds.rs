@@ -432,7 +432,7 @@ pub const INITIAL_PARTS: [f64; 5] = [1.0, 0.3, 0.1, 3.0, 10.0];
 /// to either side.
 pub const OTHER_SHAPES: [f64; 2] = [0.4, 2.5];
 
-/// Corrections of a size that started at one SI unit once it is near the wanted one. Each costs a motion.
+/// Corrections of a size that started at a typical one once it is near the wanted one. Each costs a motion.
 pub const SIZE_CORRECTIONS: usize = 2;
 
 /// Attempts to find the size at which a candidate is linearised or simulated.

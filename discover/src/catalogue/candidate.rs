@@ -52,6 +52,9 @@ pub struct Candidate {
     pub dropped_prior: Option<What>,
 }
 
+/// A parameter that is absent at infinity is nearly absent at this multiple of its typical size.
+pub(super) const NEARLY_INFINITE: f64 = 1e12;
+
 /// A parameter of a candidate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CandidateParameter {
@@ -67,6 +70,8 @@ pub struct CandidateParameter {
     pub shape: Option<f64>,
     /// What a parameter is shifted from that the model has already, or that is not 0 where the effect is absent.
     pub offset: Option<ParameterOffset>,
+    /// Typical size of a quantity in its unit, SI.
+    pub typical_size: f64,
     pub(crate) doc: String,
 }
 
@@ -105,7 +110,7 @@ impl CandidateParameter {
     pub fn absent(&self) -> f64 {
         match (self.inverse, self.shape) {
             (_, Some(shape)) => shape,
-            (true, None) => 1e12,
+            (true, None) => NEARLY_INFINITE * self.typical_size,
             (false, None) => self.base(),
         }
     }
@@ -305,14 +310,16 @@ fn candidate(
     for parameter in &effect.parameters {
         let name = free_name(&parameter.name, &site.name, &mut taken);
         arguments.insert(parameter.name.clone(), name.clone());
+        let unit = plain_unit(&instantiated(&parameter.unit, &arguments)?);
         parameters.push(CandidateParameter {
             name,
-            unit: plain_unit(&instantiated(&parameter.unit, &arguments)?),
+            typical_size: motion.typical_size(&unit),
             positive: parameter.positive,
             inverse: parameter.inverse,
             shape: parameter
                 .shape
-                .map(|shape| shape.share * motion.scale(shape.scale, site)),
+                .map(|shape| shape.share * motion.scale(shape.scale, site, &unit)),
+            unit,
             offset: None,
             doc: parameter.doc.clone(),
         });
@@ -391,6 +398,7 @@ pub fn offset_of(parameter: &Parameter) -> Option<Candidate> {
     let shifted = CandidateParameter {
         name: parameter.name.clone(),
         unit: parameter.unit.text.clone(),
+        typical_size: from.abs(),
         positive: false,
         inverse: false,
         shape: None,

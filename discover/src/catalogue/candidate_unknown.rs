@@ -1,6 +1,6 @@
 //! A candidate's parameter as something to be estimated.
 
-use crate::catalogue::candidate::CandidateParameter;
+use crate::catalogue::candidate::{CandidateParameter, NEARLY_INFINITE};
 use crate::interval::Interval;
 use crate::model::unknowns::{Unknown, What};
 use crate::thresholds;
@@ -20,7 +20,7 @@ impl CandidateUnknown {
     /// A candidate's parameter as an unknown.
     pub fn of(parameter: &CandidateParameter) -> Self {
         let low = match (parameter.inverse, parameter.positive) {
-            (true, _) => 1e-12,
+            (true, _) => 1.0 / (NEARLY_INFINITE * parameter.typical_size),
             (false, true) => 0.0,
             (false, false) => f64::NEG_INFINITY,
         };
@@ -44,8 +44,8 @@ impl CandidateUnknown {
             limits: bounds,
             scale: match (parameter.shape, parameter.inverse) {
                 (Some(shape), _) => shape,
-                (None, true) => 1e-4,
-                (None, false) if base == 0.0 => 1.0,
+                (None, true) => 1e-4 / parameter.typical_size,
+                (None, false) if base == 0.0 => parameter.typical_size,
                 (None, false) => base.abs(),
             },
         };

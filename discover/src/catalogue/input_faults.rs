@@ -1,5 +1,6 @@
 //! Inputs that act otherwise than they are recorded, as candidates: each a single unknown.
 
+use eomgen_compiled_model::TypicalSizes;
 use eomgen_model_spec::model::{Input, Model};
 
 use crate::catalogue::candidate::{Candidate, CandidateParameter, ParameterOffset, dropped_prior};
@@ -37,6 +38,7 @@ pub fn input_faults(model: &Model, path: &str) -> Vec<Candidate> {
 }
 
 fn candidate(model: &Model, input: &Input, fault: InputFault) -> Option<Candidate> {
+    let orders: Vec<usize> = model.fields.iter().map(|field| field.order).collect();
     let name = fault.parameter(&input.name);
     let changes = in_the_place_of(model, &input.name, &fault.acting(&input.name));
     if changes.is_empty() {
@@ -46,6 +48,7 @@ fn candidate(model: &Model, input: &Input, fault: InputFault) -> Option<Candidat
     let what = What::Parameter(name.clone());
     let parameter = CandidateParameter {
         name,
+        typical_size: TypicalSizes::new(model, &orders).size(input.unit.dimension),
         unit: fault.unit(input),
         positive: false,
         inverse: false,

@@ -3,6 +3,10 @@
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
+use eomgen_compiled_model::TypicalSizes;
+use eomgen_model_spec::dimension::Dimension;
+use eomgen_model_spec::unit::Unit;
+
 use crate::catalogue::effect::Scale;
 use crate::catalogue::site::Site;
 use crate::interval::Interval;
@@ -17,18 +21,27 @@ pub struct UsualMotion {
     /// Orders, per turn, of which there is most in the residual force over an angle, by its
     /// expression.
     pub orders: BTreeMap<String, Vec<u32>>,
+    /// Typical sizes of quantities of the model.
+    pub sizes: TypicalSizes,
 }
 
 impl UsualMotion {
-    /// What a shape at a site is a part of; 1 where that is not known.
-    pub(super) fn scale(&self, scale: Scale, site: &Site) -> f64 {
+    /// The typical size of a quantity in a unit, SI.
+    pub(super) fn typical_size(&self, unit: &str) -> f64 {
+        let dimension = Unit::parse(unit).map_or(Dimension::NONE, |unit| unit.dimension);
+        self.sizes.size(dimension)
+    }
+
+    /// The quantity of which a shape at a site is a part, in a unit; its typical size if that is not known.
+    pub(super) fn scale(&self, scale: Scale, site: &Site, unit: &str) -> f64 {
         let known = match scale {
             Scale::Rate => self.rates.get(&site.name).copied(),
             Scale::Travel => self
                 .travel(site)
                 .map(|travel| travel.low.abs().max(travel.high.abs())),
         };
-        known.filter(|scale| *scale > 0.0).unwrap_or(1.0)
+        let known = known.filter(|scale| *scale > 0.0);
+        known.unwrap_or_else(|| self.typical_size(unit))
     }
 
     /// Whether an angle goes through a period of an order; it does where nobody knows how far it

@@ -184,6 +184,7 @@ fn written(model: &Model, expression: &Expression) -> Candidate {
     let size = |name: String| CandidateParameter {
         name,
         unit: equation.force_unit().to_owned(),
+        typical_size: 1.0,
         positive: false,
         inverse: false,
         shape: None,

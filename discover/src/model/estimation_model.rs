@@ -168,6 +168,11 @@ impl EstimationModel {
         self.compiled.model()
     }
 
+    /// Typical sizes of its states in SI, for solvers.
+    pub(crate) fn typical_sizes(&self) -> &[f64] {
+        self.compiled.typical_sizes()
+    }
+
     /// The program of its equations.
     pub(crate) fn program(&self) -> &Program {
         self.compiled.program()
@@ -291,15 +296,16 @@ impl EstimationModel {
         if !self.measured.inputs().is_empty() {
             let given = GivenMotion::of(&evaluator, &self.measured);
             let given = given.ok_or(SimulationError::NotGiven)?;
-            let mut simulation = Simulation::new(&self.measured, evaluator, None, None);
+            let of = (&self.measured, self.typical_sizes());
+            let mut simulation = Simulation::new(of, evaluator, None, None);
             simulation.stop = self.stop.clone();
             simulation.give(given);
             return Ok(simulation);
         }
         let linear_outputs = LinearOutputs::of(&self.measured, &mut evaluator);
         let longest_step = self.longest_step;
-        let mut simulation =
-            Simulation::new(&self.measured, evaluator, linear_outputs, longest_step);
+        let of = (&self.measured, self.typical_sizes());
+        let mut simulation = Simulation::new(of, evaluator, linear_outputs, longest_step);
         simulation.stop = self.stop.clone();
         if self.measured.has_rates() {
             // What cannot be derived with sides is not held either.
@@ -323,7 +329,8 @@ impl EstimationModel {
             .piecewise_linear()
             .map_err(|error| SimulationError::Propagator(error.clone()))?;
         let integrator =
-            ExponentialIntegrator::new(exact.evaluator(&own), self.sample, self.refinement);
+            ExponentialIntegrator::new(exact.evaluator(&own), self.sample, self.refinement)
+                .map(|integrator| integrator.with_typical_sizes(self.typical_sizes()));
         match (integrator, self.is_linear()) {
             // A part that moves that much faster than the samples show is no longer seen to move.
             (Err(NotIntegrated::Steps(steps)), _)

@@ -25,6 +25,8 @@ use eomgen_sim::ode::runge_kutta::RungeKutta;
 /// A model at fixed parameters.
 pub struct Simulation<'m> {
     measured: &'m MeasuredOutputs,
+    /// Typical sizes of the states, for the solver.
+    typical_sizes: &'m [f64],
     evaluator: RefCell<Evaluator>,
     buffers: Buffers,
     linear_outputs: Option<LinearOutputs>,
@@ -96,13 +98,14 @@ pub struct OutputTangents {
 impl<'m> Simulation<'m> {
     /// A simulation by Runge-Kutta steps, or by a solver where there are none.
     pub(crate) fn new(
-        measured: &'m MeasuredOutputs,
+        (measured, typical_sizes): (&'m MeasuredOutputs, &'m [f64]),
         evaluator: Evaluator,
         linear_outputs: Option<LinearOutputs>,
         longest_step: Option<LongestStep>,
     ) -> Self {
         Self {
             measured,
+            typical_sizes,
             evaluator: RefCell::new(evaluator),
             buffers: measured.buffers(),
             linear_outputs,
@@ -273,7 +276,9 @@ impl<'m> Simulation<'m> {
             max_switch_rate: thresholds::FASTEST_SWITCHING,
             ..Settings::with_tolerance(thresholds::SOLVER_TOLERANCE)
         };
-        let driven = Driven::new(&self.evaluator, inputs).with_sliding(self.sided.take());
+        let driven = Driven::new(&self.evaluator, inputs)
+            .with_typical_sizes(self.typical_sizes)
+            .with_sliding(self.sided.take());
         let found = simulate(&driven, initial, span, samples, &settings, &mut |_| {});
         self.sided = driven.into_sided();
         found

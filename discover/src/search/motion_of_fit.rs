@@ -2,6 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use eomgen_compiled_model::TypicalSizes;
+
 use crate::catalogue::effect::SiteKind;
 use crate::catalogue::site::Site;
 use crate::catalogue::usual_motion::UsualMotion;
@@ -26,5 +28,6 @@ pub fn motion_of(problem: &EstimationProblem<'_>, fit: &Fit, sites: &[Site]) -> 
         rates: usual_rates(problem.dataset, fit.model.specification()),
         travels,
         orders: Default::default(),
+        sizes: TypicalSizes::new(fit.model.specification(), fit.model.orders()),
     }
 }

@@ -2,6 +2,8 @@
 //! else is accepted, and beside what is accepted where they look like it; and waves over an angle that
 //! look like it.
 
+use eomgen_compiled_model::TypicalSizes;
+
 use crate::catalogue::candidate::{self, Candidate, candidates};
 use crate::catalogue::input_faults::input_faults;
 use crate::catalogue::sites::sites;
@@ -47,7 +49,10 @@ pub fn offsets(context: Context<'_>) -> Vec<Candidate> {
             model,
             scaling,
             &sites(model),
-            &UsualMotion::default(),
+            &UsualMotion {
+                sizes: TypicalSizes::new(model, fit.model.orders()),
+                ..UsualMotion::default()
+            },
         ))
         .collect()
 }

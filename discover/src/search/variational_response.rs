@@ -201,7 +201,8 @@ fn ready(
             model.set(&mut values, &parameter.name, candidate_unknown.base + size);
             values
         };
-        let Some(size) = small(&model, &at, points) else {
+        let start = candidate_unknown.unknown.scale;
+        let Some(size) = small(&model, &at, (points, start)) else {
             return Some(Err(DiscoverError::NotExcited));
         };
         moved.push(MovedValues {
@@ -223,9 +224,12 @@ fn ready(
 
 /// The size of a parameter that changes accelerations, or rates of states of first order, by a small part;
 /// none if none does.
-fn small(model: &EstimationModel, at: &dyn Fn(f64) -> Vec<f64>, points: &Points) -> Option<f64> {
-    // One SI unit is an arbitrary start, so iterate to the size itself and not only near it.
-    let mut size = 1.0;
+fn small(
+    model: &EstimationModel,
+    at: &dyn Fn(f64) -> Vec<f64>,
+    (points, start): (&Points, f64),
+) -> Option<f64> {
+    let mut size = start;
     let mut found = None;
     for _ in 0..thresholds::SIZE_ATTEMPTS {
         let mut evaluator = model.evaluator(&at(size));

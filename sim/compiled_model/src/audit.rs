@@ -6,7 +6,7 @@
 //! work. A contact whose distance depends on the time or on inputs does work that no power of the
 //! model counts: what happens there is left out.
 
-use eomgen_sim::ode::{Interior, ObservedStep, SMALLEST_MAGNITUDE};
+use eomgen_sim::ode::{Interior, ObservedStep, UNMOVED_PART};
 
 /// How many times the energy may change by an error that the tolerance allows in every entry of
 /// the state, where no estimate of an error is relied on: from step to step, in the short step over
@@ -154,13 +154,21 @@ pub(crate) struct Auditor {
 }
 
 impl Auditor {
-    /// An auditor of a motion with a relative tolerance; none for an exact one.
-    pub fn new(tolerance: Option<f64>, moving_contacts: Option<String>) -> Self {
+    /// An auditor of a motion with a relative tolerance, none for an exact one, and with the typical sizes of its
+    /// states.
+    pub fn new(
+        tolerance: Option<f64>,
+        typical_sizes: &[f64],
+        moving_contacts: Option<String>,
+    ) -> Self {
         Self {
             tolerance: tolerance.unwrap_or(EXACT_TOLERANCE),
             is_exact: tolerance.is_none(),
             moving_contacts,
-            sizes: Vec::new(),
+            sizes: typical_sizes
+                .iter()
+                .map(|size| UNMOVED_PART * size)
+                .collect(),
             energy: None,
             pending: 0.0,
             last_allowed: 0.0,
@@ -375,7 +383,6 @@ impl Auditor {
     }
 
     fn raise_sizes(&mut self, state: &[f64]) {
-        self.sizes.resize(state.len(), SMALLEST_MAGNITUDE);
         for (size, entry) in self.sizes.iter_mut().zip(state) {
             *size = size.max(entry.abs());
         }
@@ -446,7 +453,7 @@ mod tests {
 
     /// The audit of the oscillator's motion in steps of 0.1 s, tampered with from step 20 on.
     fn audited(tamper: impl Fn(&mut [f64; 2]), energies: &mut Energies<'_>) -> Audit {
-        let mut auditor = Auditor::new(Some(1e-9), None);
+        let mut auditor = Auditor::new(Some(1e-9), &[1.0; 2], None);
         let state = |t: f64| [t.cos(), -t.sin()];
         for count in 0..40 {
             let (t, next) = (0.1 * f64::from(count), 0.1 * f64::from(count + 1));
@@ -512,7 +519,7 @@ mod tests {
 
     #[test]
     fn an_impact_may_lose_energy_and_not_gain_it() {
-        let mut auditor = Auditor::new(Some(1e-9), None);
+        let mut auditor = Auditor::new(Some(1e-9), &[1.0; 2], None);
         auditor.impact(1.0, (&[0.0, -1.0], &[0.0, 0.5]), &mut oscillator);
         assert_eq!(auditor.audit().faults, 0);
         assert_eq!(auditor.audit().impacts, 0.5 * (0.25 - 1.0));

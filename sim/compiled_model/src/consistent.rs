@@ -45,7 +45,9 @@ impl Instance<'_> {
     ) -> Result<Driven<&'d RefCell<Evaluator>, &'d HeldInputs>, Error> {
         let impacts = self.model().model().impacts.iter();
         let impacts = impacts.map(|impact| impact.name.clone()).collect();
-        let driven = Driven::new(evaluator, inputs).with_projection(self.projection()?);
+        let driven = Driven::new(evaluator, inputs)
+            .with_typical_sizes(self.model().typical_sizes())
+            .with_projection(self.projection()?);
         Ok(driven.with_impacts(impacts).with_sliding(self.sided()?))
     }
 

@@ -25,6 +25,8 @@ pub struct Driven<E, I> {
     contacts: Option<RefCell<Contacts>>,
     sliding: Option<RefCell<Sliding>>,
     auditor: Option<RefCell<Auditor>>,
+    /// Typical sizes of the states; empty if all are 1.
+    typical_sizes: Vec<f64>,
 }
 
 impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
@@ -38,7 +40,14 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
             contacts: None,
             sliding: None,
             auditor: None,
+            typical_sizes: Vec::new(),
         }
+    }
+
+    /// The same with the typical sizes of its states, as [`CompiledModel::typical_sizes`] has them.
+    pub fn with_typical_sizes(mut self, sizes: &[f64]) -> Self {
+        self.typical_sizes = sizes.to_vec();
+        self
     }
 
     /// The same with an auditor of its energy.
@@ -194,11 +203,19 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for Driven<E, 
         });
     }
 
+    fn typical_sizes(&self) -> Vec<f64> {
+        match self.typical_sizes.is_empty() {
+            true => vec![1.0; self.states()],
+            false => self.typical_sizes.clone(),
+        }
+    }
+
     fn jacobian(&self, t: f64, y: &[f64], out: &mut [f64]) {
         let is_on = |sliding: &&RefCell<Sliding>| !RefCell::borrow(sliding).is_free();
         if let Some(sliding) = self.sliding.as_ref().filter(is_on) {
             let inputs = &self.inputs.borrow().at(t);
-            return sliding.borrow_mut().jacobian((t, y), inputs, out);
+            let given = (&inputs[..], &self.typical_sizes()[..]);
+            return sliding.borrow_mut().jacobian((t, y), given, out);
         }
         match &self.jacobians {
             Some(jacobians) if !self.rests() => {

@@ -57,6 +57,7 @@ mod projection;
 mod simulate;
 mod singular;
 mod sliding;
+mod typical_sizes;
 
 pub use audit::{Audit, Imbalance};
 pub use distances::Overlap;
@@ -71,3 +72,4 @@ pub use operating_point::{OperatingPoint, Setting};
 pub use projection::Moved;
 pub use simulate::{DEFAULT_TOLERANCE, Request};
 pub use sliding::{Rest, Sided};
+pub use typical_sizes::TypicalSizes;

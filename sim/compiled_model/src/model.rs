@@ -19,6 +19,7 @@ use eomgen_sim::piecewise_linear::{ExactError, PiecewiseLinear};
 use crate::differentiated::Differentiated;
 use crate::error::Error;
 use crate::sliding::Sided;
+use crate::typical_sizes::typical_sizes;
 
 /// The modal truncation orders that a model is derived at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,6 +78,7 @@ pub struct CompiledModel {
     differentiated: OnceLock<Result<Differentiated, Diagnostics>>,
     sided: OnceLock<Result<Option<SidedProgram>, Diagnostics>>,
     constraints: OnceLock<Option<Program>>,
+    typical_sizes: OnceLock<Vec<f64>>,
 }
 
 impl CompiledModel {
@@ -132,6 +134,7 @@ impl CompiledModel {
             differentiated: OnceLock::new(),
             sided: OnceLock::new(),
             constraints: OnceLock::new(),
+            typical_sizes: OnceLock::new(),
         }
     }
 
@@ -180,6 +183,13 @@ impl CompiledModel {
     pub fn usual_inputs(&self) -> Vec<f64> {
         let none = || vec![0.0; self.model.inputs.len()];
         self.model.typical_inputs(0.0).unwrap_or_else(|_| none())
+    }
+
+    /// Typical sizes of the states in SI, by their units: powers of two to which the model's parameters, initial
+    /// values and ranges lead.
+    pub fn typical_sizes(&self) -> &[f64] {
+        let sizes = || typical_sizes(&self.model, &self.orders);
+        self.typical_sizes.get_or_init(sizes)
     }
 
     /// The names of the observables, `energy` and `power` last.

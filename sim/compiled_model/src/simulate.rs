@@ -260,7 +260,7 @@ impl Instance<'_> {
         let moving = self.moving_contact().map(|name| {
             format!("the contact of the impact `{name}` moves, and its work is not in the model")
         });
-        Auditor::new(tolerance, moving)
+        Auditor::new(tolerance, self.model().typical_sizes(), moving)
     }
 
     /// What kind of reason an error is.

@@ -15,10 +15,11 @@ const ANEW: usize = 4;
 const OF_MOVE: f64 = 1e-3;
 const OF_ITSELF: f64 = 1e-8;
 
-/// And by no less, SI: states at rest at 0.
-const LEAST: f64 = 1e-10;
+/// And by no less than this part of its typical size: states at rest at 0.
+const OF_TYPICAL_SIZE: f64 = 1e-10;
 
-/// Accelerations that change by less than this part of the largest do so by rounding.
+/// An acceleration that changes by less than this part of the largest that it has been does so by rounding.
+/// Each is compared with itself: they have different units.
 const ROUNDING: f64 = 1e-10;
 
 impl ExponentialIntegrator {
@@ -63,7 +64,9 @@ impl ExponentialIntegrator {
         slopes.rates.resize(rows, 0.0);
         self.rates(motion, &mut slopes.rates);
         let accelerations = slopes.rates[degrees..n].iter();
-        let largest = accelerations.fold(0.0f64, |most, a| most.max(a.abs()));
+        for (largest, acceleration) in slopes.largest.iter_mut().zip(accelerations) {
+            *largest = largest.max(acceleration.abs());
+        }
         let (mut base, mut moved) = (
             std::mem::take(&mut slopes.base),
             std::mem::take(&mut slopes.moved),
@@ -73,7 +76,7 @@ impl ExponentialIntegrator {
         self.remainder_at(here, (t, &slopes.state, &motion.given), force, &mut base)?;
         for place in 0..n {
             let x = motion.state[place];
-            slopes.state[place] = x + self.difference(x, slopes.rates[place]);
+            slopes.state[place] = x + self.difference(place, x, slopes.rates[place]);
             let size = slopes.state[place] - x;
             self.remainder_at(here, (t, &slopes.state, &motion.given), force, &mut moved)?;
             slopes.state[place] = x;
@@ -82,7 +85,8 @@ impl ExponentialIntegrator {
             }
             let mut matters = false;
             let column = &mut slopes.there[place * forced..(place + 1) * forced];
-            for (slot, (after, before)) in column.iter_mut().zip(pairs(&moved, &base)) {
+            let slots = column.iter_mut().zip(&slopes.largest);
+            for ((slot, largest), (after, before)) in slots.zip(pairs(&moved, &base)) {
                 matters |= (after - before).abs() > ROUNDING * largest;
                 *slot = (after - before) / size;
             }
@@ -114,7 +118,7 @@ impl ExponentialIntegrator {
         let here = values[guard];
         for (place, slot) in gradient.iter_mut().enumerate() {
             let x = state[place];
-            state[place] = x + self.difference(x, rates[place]);
+            state[place] = x + self.difference(place, x, rates[place]);
             force.at_guards(t, &state, inputs, &mut values);
             *slot = (values[guard] - here) / (state[place] - x);
             state[place] = x;
@@ -123,9 +127,9 @@ impl ExponentialIntegrator {
     }
 
     /// By how much a state with a rate is changed.
-    fn difference(&self, x: f64, rate: f64) -> f64 {
+    fn difference(&self, place: usize, x: f64, rate: f64) -> f64 {
         let size = (OF_MOVE * (rate * self.step).abs()).max(OF_ITSELF * x.abs());
-        size.max(LEAST)
+        size.max(OF_TYPICAL_SIZE * self.typical_sizes[place])
     }
 
     /// Whether a surface lies between a motion's state and the same with one state changed.

@@ -80,6 +80,7 @@ impl ExponentialIntegrator {
             return Err(NotIntegrated::Steps(steps));
         }
         Ok(Self {
+            typical_sizes: vec![1.0; evaluator.states()],
             states: evaluator.states(),
             degrees: evaluator.degrees_of_freedom(),
             surfaces,
@@ -93,6 +94,12 @@ impl ExponentialIntegrator {
             last_own: (Vec::new(), 0),
             apart: RegimeDifference::default(),
         })
+    }
+
+    /// Takes the typical sizes of the states, 1 without them: differences by states at rest at 0 follow them.
+    pub fn with_typical_sizes(mut self, sizes: &[f64]) -> Self {
+        self.typical_sizes = sizes.to_vec();
+        self
     }
 
     /// Gives up motions that cross more surfaces: one that friction holds without a regime of its own

@@ -18,6 +18,8 @@ pub struct Slopes {
     pub base: Remainder,
     pub moved: Remainder,
     pub rates: Vec<f64>,
+    /// The largest that each acceleration has been.
+    pub largest: Vec<f64>,
     pub state: Vec<f64>,
 }
 
@@ -27,6 +29,7 @@ impl Slopes {
         Self {
             here: vec![0.0; states * forced],
             there: vec![0.0; states * forced],
+            largest: vec![0.0; forced],
             base: Remainder::none(forced, surfaces),
             moved: Remainder::none(forced, surfaces),
             ..Self::default()

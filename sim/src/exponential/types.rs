@@ -16,6 +16,8 @@ pub struct ExponentialIntegrator {
     pub(super) regimes: Vec<Regime>,
     pub(super) known: HashMap<Vec<Side>, Option<usize>>,
     pub(super) states: usize,
+    /// The typical size of each state.
+    pub(super) typical_sizes: Vec<f64>,
     /// Degrees of freedom: as many positions come first in the state, then as many rates.
     pub(super) degrees: usize,
     /// The length of a step, s.

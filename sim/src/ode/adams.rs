@@ -72,8 +72,7 @@ pub struct Adams {
 impl Stepper for Adams {
     const IS_EXPLICIT: bool = true;
 
-    fn new(start: Point, step: f64, tolerance: f64) -> Self {
-        let magnitudes = Magnitudes::of(&start.y, tolerance);
+    fn new(start: Point, step: f64, magnitudes: Magnitudes) -> Self {
         Self {
             before: Stand::new(start.clone()),
             now: Stand::new(start),

@@ -42,10 +42,10 @@ pub struct DormandPrince853 {
 impl Stepper for DormandPrince853 {
     const IS_EXPLICIT: bool = true;
 
-    fn new(start: Point, step: f64, tolerance: f64) -> Self {
+    fn new(start: Point, step: f64, magnitudes: Magnitudes) -> Self {
         Self {
             method: Method::dop853(),
-            magnitudes: Magnitudes::of(&start.y, tolerance),
+            magnitudes,
             last: start.clone(),
             here: start,
             step,
@@ -328,7 +328,11 @@ mod tests {
                 y: vec![1.0],
             };
             let watched = Watched::new(&Growth, start.t, &start.y);
-            let mut stepper = DormandPrince853::new(start, length, 1e-1);
+            let mut stepper = DormandPrince853::new(
+                start.clone(),
+                length,
+                Magnitudes::of(&start.y, &[1.0], 1e-1),
+            );
             assert!(stepper.interpolated(0.0).is_none());
             let outcome = stepper.advance(&watched, 10.0).expect("a step");
             assert!(outcome.is_accepted && outcome.length == length);
@@ -363,7 +367,8 @@ mod tests {
             y: vec![1.0],
         };
         let watched = Watched::new(&Growth, start.t, &start.y);
-        let mut stepper = DormandPrince853::new(start, 3.0, 1e-10);
+        let mut stepper =
+            DormandPrince853::new(start.clone(), 3.0, Magnitudes::of(&start.y, &[1.0], 1e-10));
         let outcome = stepper.advance(&watched, 10.0).expect("a trial");
         assert_eq!(
             outcome,
@@ -382,7 +387,8 @@ mod tests {
             y: vec![1.0],
         };
         let watched = Watched::new(&Growth, start.t, &start.y);
-        let mut stepper = DormandPrince853::new(start, 0.5, 1e-3);
+        let mut stepper =
+            DormandPrince853::new(start.clone(), 0.5, Magnitudes::of(&start.y, &[1.0], 1e-3));
         let outcome = stepper.advance(&watched, 0.3).expect("a step");
         assert!(outcome.is_accepted && stepper.here().t == 0.3 && stepper.step() >= 0.5);
     }

@@ -6,6 +6,7 @@ use super::adams::Adams;
 use super::dormand_prince::DormandPrince853;
 use super::error::SolveError;
 use super::grazing::passed_over;
+use super::magnitudes::Magnitudes;
 use super::radau::Radau;
 use super::request;
 use super::resolution::{PARTS, Resolution};
@@ -97,9 +98,10 @@ fn run<S: System + ?Sized, M: Stepper>(
     let watched = Watched::new(system, start.t, &start.y);
     watched.keep_sides(true);
     let step = FIRST_STEP * (span.1 - span.0);
+    let magnitudes = Magnitudes::of(&start.y, &system.typical_sizes(), settings.tolerance);
     let mut driver = Driver {
         watched: &watched,
-        stepper: M::new(start, step, settings.tolerance),
+        stepper: M::new(start, step, magnitudes),
         settings,
         samples,
         end: span.1,

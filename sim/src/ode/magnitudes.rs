@@ -1,6 +1,6 @@
 //! The scale on which the errors of a step are measured; see the solver's page.
 
-use super::settings::SMALLEST_MAGNITUDE;
+use super::settings::UNMOVED_PART;
 
 /// What rounding is, in units of the last place.
 const ROUNDING: f64 = 10.0;
@@ -14,15 +14,25 @@ const ROUNDING_OF_OTHERS: f64 = 1000.0;
 /// The largest magnitude of each component so far, and the tolerance relative to it.
 pub struct Magnitudes {
     largest: Vec<f64>,
+    /// What each component counts as before it moves.
+    smallest: Vec<f64>,
     tolerance: f64,
 }
 
 impl Magnitudes {
-    /// Magnitudes of a state where a motion begins.
-    pub fn of(y: &[f64], tolerance: f64) -> Self {
-        let largest = y.iter().map(|y| y.abs().max(SMALLEST_MAGNITUDE));
+    /// Magnitudes of a state where a motion begins, with the typical sizes of its components.
+    pub fn of(y: &[f64], typical_sizes: &[f64], tolerance: f64) -> Self {
+        let smallest: Vec<f64> = typical_sizes
+            .iter()
+            .map(|size| UNMOVED_PART * size)
+            .collect();
+        let largest = y
+            .iter()
+            .zip(&smallest)
+            .map(|(y, smallest)| y.abs().max(*smallest));
         Self {
             largest: largest.collect(),
+            smallest,
             tolerance,
         }
     }
@@ -31,10 +41,11 @@ impl Magnitudes {
     /// has come to rest is small, and its rounding is not.
     pub fn afresh(&self) -> Self {
         let roundings = ROUNDING * f64::EPSILON / self.tolerance;
-        let largest = self.largest.iter();
-        let largest = largest.map(|largest| SMALLEST_MAGNITUDE.max(roundings * largest));
+        let largest = self.largest.iter().zip(&self.smallest);
+        let largest = largest.map(|(largest, smallest)| smallest.max(roundings * largest));
         Self {
             largest: largest.collect(),
+            smallest: self.smallest.clone(),
             tolerance: self.tolerance,
         }
     }

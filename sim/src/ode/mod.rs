@@ -25,8 +25,8 @@
 //! error in component i stays below `tolerance` times (|y_i| + the largest |y_i| so
 //! far), in the root-mean-square over the components. Nothing is said about units, so
 //! mesh deflections of micrometres and rotations of several radians get the same number
-//! of digits. While a component has not moved yet its largest magnitude counts as
-//! [`SMALLEST_MAGNITUDE`].
+//! of digits. Before a component moves, [`UNMOVED_PART`] of its typical size ([`System::typical_sizes`]) counts
+//! as its largest magnitude.
 
 mod adams;
 mod attempt;
@@ -57,6 +57,6 @@ mod watch;
 pub use driver::{simulate, simulate_into};
 pub use error::{NOT_POSITIVE, SolveError};
 pub use names::{Names, Surface, Unfollowed};
-pub use settings::{Method, SMALLEST_MAGNITUDE, Settings};
+pub use settings::{Method, Settings, UNMOVED_PART, difference_step};
 pub use system::{Interior, ObservedStep, System, jacobian_by_differences};
 pub use trajectory::{Switch, Trajectory, Work};

@@ -58,8 +58,7 @@ pub struct Radau {
 impl Stepper for Radau {
     const IS_EXPLICIT: bool = false;
 
-    fn new(start: Point, step: f64, tolerance: f64) -> Self {
-        let magnitudes = Magnitudes::of(&start.y, tolerance);
+    fn new(start: Point, step: f64, magnitudes: Magnitudes) -> Self {
         Self {
             last: start.clone(),
             here: start,

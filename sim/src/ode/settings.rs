@@ -1,7 +1,15 @@
 //! How accurate, and how long to try.
 
-/// What a component that has not moved yet counts as, in its own unit.
-pub const SMALLEST_MAGNITUDE: f64 = 1e-9;
+/// A component that has not moved yet counts as this part of its typical size.
+pub const UNMOVED_PART: f64 = 1e-9;
+
+/// Smallest size of a component over which differences are taken, as a part of its typical size.
+const DIFFERENCE_PART: f64 = 1e-3;
+
+/// The step of a forward difference by a component with a value and a typical size.
+pub fn difference_step(value: f64, typical_size: f64) -> f64 {
+    f64::EPSILON.sqrt() * value.abs().max(DIFFERENCE_PART * typical_size)
+}
 
 /// The tightest tolerance: below it rounding hides the error estimate.
 pub(super) const TIGHTEST_TOLERANCE: f64 = 1e-14;

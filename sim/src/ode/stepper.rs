@@ -25,7 +25,7 @@ pub trait Stepper: Sized {
     const IS_EXPLICIT: bool;
 
     /// Steps from `start`, the first one of length `step` (s) at most.
-    fn new(start: Point, step: f64, tolerance: f64) -> Self;
+    fn new(start: Point, step: f64, magnitudes: Magnitudes) -> Self;
 
     /// Where the next step begins.
     fn here(&self) -> &Point;

@@ -1,6 +1,6 @@
 //! What the solver needs to know of a system.
 
-use super::settings::SMALLEST_MAGNITUDE;
+use super::settings::difference_step;
 
 /// A step that a solver has made, for those who observe a motion. Looking at it changes nothing.
 pub struct ObservedStep<'s> {
@@ -28,6 +28,12 @@ pub trait System {
 
     /// Writes y' at time `t` and state `y` to `out`; all have [`System::states`] entries.
     fn rates(&self, t: f64, y: &[f64], out: &mut [f64]);
+
+    /// Typical sizes of the states, in their own units: [`System::states`] entries. Solvers compare states
+    /// near 0 with them.
+    fn typical_sizes(&self) -> Vec<f64> {
+        vec![1.0; self.states()]
+    }
 
     /// Writes the derivatives of the rates by the state at time `t` and state `y` to `out`, row by
     /// row: entry (i, j), of y_i' by y_j, at `i * states + j`. Implicit methods ask for it. By
@@ -101,6 +107,10 @@ impl<S: System + ?Sized> System for &S {
         (**self).rates(t, y, out);
     }
 
+    fn typical_sizes(&self) -> Vec<f64> {
+        (**self).typical_sizes()
+    }
+
     fn jacobian(&self, t: f64, y: &[f64], out: &mut [f64]) {
         (**self).jacobian(t, y, out);
     }
@@ -153,8 +163,9 @@ pub fn jacobian_by_differences<S: System + ?Sized>(system: &S, t: f64, y: &[f64]
     let mut base = vec![0.0; states];
     system.rates(t, y, &mut base);
     let (mut moved, mut rates) = (y.to_vec(), vec![0.0; states]);
+    let sizes = system.typical_sizes();
     for column in 0..states {
-        let step = f64::EPSILON.sqrt() * y[column].abs().max(SMALLEST_MAGNITUDE);
+        let step = difference_step(y[column], sizes[column]);
         moved[column] = y[column] + step;
         system.rates(t, &moved, &mut rates);
         for row in 0..states {

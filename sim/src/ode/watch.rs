@@ -7,7 +7,7 @@ use std::cell::{Cell, RefCell};
 use differential_equations::ode::ODE;
 
 use super::point::Point;
-use super::settings::SMALLEST_MAGNITUDE;
+use super::settings::UNMOVED_PART;
 use super::system::{Interior, ObservedStep, System};
 
 /// The side of every switching surface: -1, 1, or 0 where a step begins on it.
@@ -212,7 +212,9 @@ impl<'a, S: System + ?Sized> Watched<'a, S> {
     pub fn fastest(&self, t: f64, y: &[f64]) -> usize {
         let mut rates = vec![0.0; y.len()];
         self.system.rates(t, y, &mut rates);
-        let speed = |index: usize| rates[index].abs() / y[index].abs().max(SMALLEST_MAGNITUDE);
+        let sizes = self.system.typical_sizes();
+        let size = |index: usize| y[index].abs().max(UNMOVED_PART * sizes[index]);
+        let speed = |index: usize| rates[index].abs() / size(index);
         let all = 0..y.len();
         all.max_by(|a, b| speed(*a).total_cmp(&speed(*b)))
             .unwrap_or(0)

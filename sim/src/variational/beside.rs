@@ -58,6 +58,12 @@ impl<S: System + ?Sized> System for Beside<'_, S> {
         2 * self.system.states()
     }
 
+    fn typical_sizes(&self) -> Vec<f64> {
+        let mut sizes = self.system.typical_sizes();
+        sizes.resize(self.states(), 1.0);
+        sizes
+    }
+
     fn rates(&self, t: f64, y: &[f64], out: &mut [f64]) {
         let states = self.system.states();
         let (y, v) = y.split_at(states);

@@ -148,7 +148,9 @@ fn exact(instance: &Instance<'_>, stretches: &Stretches) -> Result<Growths, Fail
 /// The growth of a vector that follows the variational equation.
 fn followed(instance: &Instance<'_>, stretches: &Stretches) -> Result<Growths, Failure> {
     let (evaluator, inputs) = (RefCell::new(instance.evaluator()?), instance.no_inputs());
-    let system = Driven::new(&evaluator, &inputs).with_jacobian(instance.jacobian_evaluator()?);
+    let system = Driven::new(&evaluator, &inputs)
+        .with_typical_sizes(instance.model().typical_sizes())
+        .with_jacobian(instance.jacobian_evaluator()?);
     let (felt, settings) = (instance.felt_states()?, Settings::with_tolerance(TOLERANCE));
     Ok(growths(
         &system,

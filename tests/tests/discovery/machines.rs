@@ -195,6 +195,18 @@ impl Machine {
 
     /// The motion that the model makes from its input, at times so far apart, s.
     pub fn motion(&self, folder: &Path, name: &str, turn: f64, step: f64) -> Table {
+        self.motion_by("auto", folder, name, turn, step)
+    }
+
+    /// The same by a solver.
+    pub fn motion_by(
+        &self,
+        solver: &str,
+        folder: &Path,
+        name: &str,
+        turn: f64,
+        step: f64,
+    ) -> Table {
         let (unit, size) = self.input;
         let mut input = "t,u\n".to_owned();
         for sample in 0..SAMPLES {
@@ -227,6 +239,8 @@ impl Machine {
             &motion,
             "--tolerance",
             "1e-10",
+            "--solver",
+            solver,
         ]);
         Table::read(&file("_motion.csv"))
     }

@@ -7,7 +7,7 @@ use eomgen_model_spec::unit::Unit;
 use serde_json::Value;
 
 use crate::machines::{
-    BEAM, CYLINDER, Channel, Machine, PENDULUM, Table, answered, description, mass, spread,
+    BEAM, CYLINDER, Channel, Machine, PENDULUM, STEP, Table, answered, description, mass, spread,
 };
 
 /// Largest relative difference between answers, due to rounding.
@@ -138,6 +138,57 @@ fn write_in_units(folder: &Path, machine: &Machine, channel: &Channel, units: Un
         }
         own.write(&folder.join(name));
     }
+}
+
+/// Trajectories by a solver are the same in all units. `columns`: those of `simulate` with their units.
+fn trajectories_agree(machine: &Machine, solver: &str, columns: &[(&str, &str)]) {
+    let motion = |units: Units| {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (unit, size) = machine.input;
+        let own = Machine {
+            specification: in_units(&machine.specification, units),
+            input: (unit, size * factor(unit, units)),
+            channels: Vec::new(),
+        };
+        fs::write(folder.path().join("model.toml"), &own.specification).expect("a file");
+        own.motion_by(solver, folder.path(), "train", 0.0, STEP)
+    };
+    let own = motion([0; 3]);
+    for units in [[-17, -20, 0], [17, 20, 0], [-20, 20, 10], [40, 40, -30]] {
+        let other = motion(units);
+        for (column, unit) in columns {
+            let own = own.column(column);
+            let largest = own
+                .iter()
+                .fold(0.0_f64, |most, value| most.max(value.abs()));
+            for (other, own) in other.column(column).iter().zip(&own) {
+                let difference = (other / factor(unit, units) - own).abs() / largest;
+                assert!(
+                    difference < 1e-9,
+                    "{solver} {units:?} {column}: {other} and {own}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn trajectories() {
+    let positions = [("x", "m"), ("x_dot", "m/s"), ("energy", "J")];
+    let cylinder = Machine::new(CYLINDER, ("V", 1.0), &[]);
+    let friction = "u - F*sign(dot(x)) - k_3*x^3";
+    let stick = mass("1/2*k*x^2", "k*x", friction, "");
+    let linear = mass("1/2*k*deadzone(x, b)^2", "k*deadzone(x, b)", "u", "");
+    for solver in ["rk", "radau"] {
+        trajectories_agree(
+            &cylinder,
+            solver,
+            &[&positions[..2], &[("p", "Pa")]].concat(),
+        );
+        trajectories_agree(&stick, solver, &positions);
+    }
+    trajectories_agree(&linear, "adams", &positions);
+    trajectories_agree(&linear, "exact", &positions);
 }
 
 /// Very small, very large, and lengths and masses that go opposite ways.

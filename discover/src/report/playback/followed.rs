@@ -94,7 +94,7 @@ fn seen(
     };
     let start = best.mapped(model, &best.test.estimate.initial_states[piece.window]);
     let span = (*times.first()?, *times.last()?);
-    let driven = Driven::new(&evaluator, inputs);
+    let driven = Driven::new(&evaluator, inputs).with_typical_sizes(model.typical_sizes());
     let trajectory = simulate(&driven, &start, span, times, &settings, &mut |_| {}).ok()?;
     let mut quantities = Vec::new();
     let mut buffers = model.measured.buffers();

@@ -15,7 +15,7 @@ pub(crate) use observed::Observed;
 pub use observed::Rest;
 pub use sided::Sided;
 
-use eomgen_sim::ode::SMALLEST_MAGNITUDE;
+use eomgen_sim::ode::difference_step;
 use eomgen_sim::sliding_modes::{Arrival, Verdict};
 use sided::CORRECTIONS;
 
@@ -25,9 +25,6 @@ const DRIFT: f64 = 1e-12;
 
 /// The same beside what the surface's own force does to it in the time since it holds.
 const DRIFT_OF_A_FORCE: f64 = 1e-13;
-
-/// A state counts as this part of the largest for differences.
-const SMALL: f64 = 1e-3;
 
 /// A function that moves by a step over a surface touches others within so many times its move.
 const NEAR: f64 = 4.0;
@@ -144,7 +141,12 @@ impl Sliding {
 
     /// The derivatives of the rates by the state, where this is active, by differences: what holds goes on
     /// holding, and sides stay what they are.
-    pub fn jacobian(&mut self, (t, state): (f64, &[f64]), inputs: &[f64], out: &mut [f64]) {
+    pub fn jacobian(
+        &mut self,
+        (t, state): (f64, &[f64]),
+        (inputs, typical_sizes): (&[f64], &[f64]),
+        out: &mut [f64],
+    ) {
         let (sides, held) = (self.sides((t, state), inputs), self.holding());
         self.found_at = None;
         let count = state.len();
@@ -154,11 +156,9 @@ impl Sliding {
         };
         let (mut base, mut moved_rates) = (vec![0.0; count], vec![0.0; count]);
         rates(state, &mut base);
-        let largest = state.iter().fold(0.0_f64, |most, y| most.max(y.abs()));
         let mut moved = state.to_vec();
         for column in 0..count {
-            let size = state[column].abs().max(SMALL * largest);
-            moved[column] = state[column] + f64::EPSILON.sqrt() * size.max(SMALLEST_MAGNITUDE);
+            moved[column] = state[column] + difference_step(state[column], typical_sizes[column]);
             rates(&moved, &mut moved_rates);
             let step = moved[column] - state[column];
             for row in 0..count {
