@@ -2,6 +2,7 @@
 
 import json
 import re
+import shutil
 
 import numpy as np
 import pytest
@@ -73,6 +74,25 @@ def test_the_hidden_friction_is_found(found, told):
     assert gap["after"]["test"] < 0.1 * gap["before"]["test"]
     assert d.document["validation"]["passed"]
     assert "q" in d.where and any("fitting" in line for line in told)
+
+
+def test_hidden_characters_of_names_do_not_reach_the_progress(stage, dataset, tmp_path):
+    class Heard(Exception):
+        pass
+
+    def hear(line):
+        lines.append(line)
+        raise Heard
+
+    for name in ("train.csv", "test.csv"):
+        shutil.copy(dataset.parent / name, tmp_path)
+    hostile = '\n[inputs."a\\u202e\\u001b"]\ncolumn = "t"\nunit = "N"\n'
+    text = dataset.read_text(encoding="utf-8") + hostile
+    (tmp_path / "dataset.toml").write_text(text, encoding="utf-8")
+    lines = []
+    with pytest.raises(Heard):
+        eomgen.discover(stage, tmp_path / "dataset.toml", progress=hear)
+    assert lines[0].startswith("note: the model has no input `a\\u{202e}\\u{1b}`"), lines
 
 
 def test_the_files_are_those_of_the_result(found):

@@ -73,6 +73,7 @@ pub fn refused(arguments: &[&str]) -> String {
     let shown = arguments.join(" ");
     assert_eq!(output.status.code(), Some(2), "{shown}: {message}");
     assert!(message.contains("error"), "{shown}: {message}");
+    assert!(!message.contains("error: error"), "{shown}: {message}");
     assert!(!message.contains("panicked"), "{shown}: {message}");
     message
 }

@@ -343,3 +343,34 @@ fn a_mass_matrix_that_loses_its_definiteness_is_named() {
         assert!(found.rows.len() > 40);
     }
 }
+
+/// A force so large that the energy of the motion overflows.
+#[test]
+fn energy_that_overflows_is_no_success() {
+    let spec = r#"
+[model]
+name = "mass"
+[parameters]
+m = { value = 1, unit = "kg" }
+[coordinates]
+x = { unit = "m" }
+[inputs]
+u = { unit = "N" }
+[kinetic]
+T = "1/2*m*dot(x)^2"
+[forces]
+push = { on = "x", value = "u" }
+"#;
+    let folder = tempfile::tempdir().expect("a folder");
+    let spec = written(folder.path(), spec);
+    let out = folder.path().join("a.csv").display().to_string();
+    let arguments = ["simulate", &spec, "--until", "1", "--out", &out];
+    let output = run(&[&arguments[..], &["--input", "u=1e200"]].concat());
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    assert!(
+        message
+            .contains("error: `energy` is not finite in 1000 of 1001 rows, first at t = 0.001 s"),
+        "{message}"
+    );
+}

@@ -66,14 +66,19 @@ impl GivenMotion {
                 inputs[*place] = here;
             }
             let left = &wanted - &present;
-            let change = DMatrix::from_columns(&columns).lu().solve(&left)?;
+            let matrix = DMatrix::from_columns(&columns);
+            let change = matrix.clone().lu().solve(&left)?;
             for (input, change) in self.required.iter().zip(change.iter()) {
                 inputs[input.place] += change;
             }
             present = at(&inputs);
-            // Terms that nearly cancel leave what rounding makes of them.
-            let scale = wanted.amax() + left.amax();
-            if (&wanted - &present).amax() <= thresholds::REQUIRED_ERROR * scale {
+            // Terms that nearly cancel leave what rounding makes of them. Second rates have different units.
+            let applied = self.required.iter().map(|input| inputs[input.place].abs());
+            let applied = DVector::from_iterator(self.required.len(), applied);
+            let sizes = wanted.abs() + left.abs() + matrix.abs() * applied;
+            let missed = (&wanted - &present).abs();
+            let mut pairs = missed.iter().zip(&sizes);
+            if pairs.all(|(missed, size)| *missed <= thresholds::REQUIRED_ERROR * size) {
                 return Some(inputs);
             }
         }
