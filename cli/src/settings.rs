@@ -3,6 +3,7 @@
 use eomgen_model_spec::assignment::Assignment;
 use eomgen_model_spec::edit::{self, Edit, EditError, PrescribeInput};
 use eomgen_model_spec::model::{Model, ParameterValue, STABILISATION_RATE};
+use eomgen_model_spec::suggest::did_you_mean;
 
 use crate::error::{Error, Result, warn};
 
@@ -68,7 +69,8 @@ pub fn with_inputs(mut model: Model, prescribed: &[String]) -> Result<Model> {
             name: name.trim().to_owned(),
             value: value.trim().to_owned(),
         });
-        let edited = edit::apply(&model.source, &[edit]).map_err(|error| wrong(&said(&error)))?;
+        let edited =
+            edit::apply(&model.source, &[edit]).map_err(|error| wrong(&said(&error, &model)))?;
         let source = model.source.edited(edited);
         let checked = eomgen_model_spec::check(source).map_err(Error::Specification)?;
         model = checked.model;
@@ -77,7 +79,7 @@ pub fn with_inputs(mut model: Model, prescribed: &[String]) -> Result<Model> {
 }
 
 /// What is wrong with an edit, without the places of the edited text, which nobody has.
-fn said(error: &EditError) -> String {
+fn said(error: &EditError, model: &Model) -> String {
     match error {
         EditError::Invalid(found) => {
             let said = found.list().iter().map(|one| match &one.help {
@@ -87,7 +89,16 @@ fn said(error: &EditError) -> String {
             let said: Vec<String> = said.collect();
             said.join("; ")
         }
-        EditError::MissingTerm { name, .. } => format!("the model has no input `{name}`"),
+        EditError::MissingTerm { name, .. } => {
+            let inputs = model.inputs.iter().filter(|input| input.rate_of.is_none());
+            let inputs: Vec<&str> = inputs.map(|input| input.name.as_str()).collect();
+            let meant = did_you_mean(name, inputs.iter().copied());
+            let cure = meant.unwrap_or_else(|| match inputs.is_empty() {
+                true => "it has none; leave --input out".to_owned(),
+                false => format!("it has {}", inputs.join(", ")),
+            });
+            format!("the model has no input `{name}`; {cure}")
+        }
         error => error.to_string(),
     }
 }

@@ -14,7 +14,7 @@ const ROUNDING_OF_OTHERS: f64 = 1000.0;
 /// The largest magnitude of each component so far, and the tolerance relative to it.
 pub struct Magnitudes {
     largest: Vec<f64>,
-    /// What each component counts as before it moves.
+    /// Smallest magnitude of each component.
     smallest: Vec<f64>,
     tolerance: f64,
 }

@@ -223,7 +223,7 @@ impl<'t> Block<'t> {
     }
 }
 
-/// The cells of a line, without quotes and without what a separator at its end leaves.
+/// The cells of a line without quotes; a separator at its end adds none.
 fn cells(line: &str, separator: Separator) -> Vec<String> {
     row(line, separator, None)
 }

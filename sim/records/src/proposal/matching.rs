@@ -70,7 +70,7 @@ pub(crate) struct Quantity {
     pub unit: Unit,
     /// Whether it is an input.
     pub is_input: bool,
-    /// Whether a unit alone may identify it: derivatives of observables need their name.
+    /// Whether a unit may identify it without a name; derivatives of observables need theirs.
     is_found_by_unit: bool,
 }
 
@@ -337,7 +337,7 @@ mod tests {
         }
         assert_eq!(names(&[("x_c [furlong]", ""), ("x_c_dot", "knots")]), []);
         assert_eq!(names(&[("x_c_ddot", "")]), [pair("x_c_ddot", "x_c_ddot")]);
-        // Derivatives of observables are found by their names alone.
+        // Derivatives of observables are found only by their names.
         assert_eq!(
             names(&[("tip_ddot", "m/s2"), ("Theta_s_dot", "deg/s")]),
             [

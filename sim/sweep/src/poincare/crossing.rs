@@ -172,6 +172,10 @@ impl<S: System> System for Watched<'_, S> {
         self.system.states()
     }
 
+    fn typical_sizes(&self) -> Vec<f64> {
+        self.system.typical_sizes()
+    }
+
     fn rates(&self, t: f64, y: &[f64], out: &mut [f64]) {
         self.system.rates(t, y, out);
     }
