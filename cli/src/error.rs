@@ -71,7 +71,11 @@ impl Error {
     /// Says what is wrong on stderr and gives the exit status.
     pub fn report(&self) -> ExitCode {
         match self {
-            Self::Input(message) => warn(&format!("error: {message}")),
+            Self::Input(message) => {
+                // Libraries whose errors are texts hand on rendered findings, which have their prefix.
+                let message = message.strip_prefix("error: ").unwrap_or(message);
+                warn(&format!("error: {message}"));
+            }
             Self::Specification(diagnostics) => warn_of(diagnostics),
             Self::Failed => return ExitCode::from(1),
         }
