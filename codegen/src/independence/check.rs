@@ -8,7 +8,8 @@ use eomgen_model_spec::variant::ModelError;
 
 use super::dependence::dependent_combination;
 use super::projection::{Place, project};
-use super::rows::{ConstraintGeometry, norm, positive};
+use super::rows::{ConstraintGeometry, positive};
+use super::vectors::norm;
 
 /// Rows in parts of their largest lengths depend on each other if no more than this is left of one beside the
 /// others. Searches for a state end where about 1e-6 is left.

@@ -1,6 +1,6 @@
 //! Which of several vectors depends on the others: Gram-Schmidt, the longest rest first.
 
-use super::rows::{dot, norm};
+use super::vectors::{dot, norm};
 
 /// A vector with its part in the combination of vectors that it is.
 struct Rest {

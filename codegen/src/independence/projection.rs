@@ -1,7 +1,8 @@
 //! States near a given one that keep the holonomic constraints, by Newton's method with the inertias of the
 //! coordinates as its metric. Where constraints depend on each other their directions are damped out.
 
-use super::rows::{ConstraintGeometry, dot};
+use super::rows::ConstraintGeometry;
+use super::vectors::dot;
 use crate::program::evaluator::Point;
 
 /// Steps before the search is given up: where rows depend on each other a step halves the residuals.

@@ -97,9 +97,14 @@ impl ConstraintRows {
         self.evaluator.prepare(parameters);
     }
 
+    /// Number of coordinates and modes: the columns of A.
+    pub fn degrees_of_freedom(&self) -> usize {
+        self.evaluator.program().degrees_of_freedom()
+    }
+
     /// The rows of A, each entry divided by the square root of its coordinate's inertia.
     pub fn rows(&mut self, point: Point<'_>) -> Vec<Vec<f64>> {
-        let degrees = self.evaluator.program().degrees_of_freedom();
+        let degrees = self.degrees_of_freedom();
         let mut rows = vec![vec![0.0; degrees]; self.residuals.len()];
         let Some(jacobian) = self.evaluator.program().outputs.jacobians.first().cloned() else {
             return rows;
@@ -117,7 +122,7 @@ impl ConstraintRows {
     }
 
     fn diagonal(&mut self, point: Point<'_>) -> Vec<f64> {
-        let degrees = self.evaluator.program().degrees_of_freedom();
+        let degrees = self.degrees_of_freedom();
         let mut mass = vec![0.0; degrees * degrees];
         self.evaluator.mass_matrix(point, &mut mass);
         let diagonal = (0..degrees).map(|place| mass[place * degrees + place]);
@@ -150,14 +155,4 @@ impl ConstraintGeometry for ConstraintRows {
 /// 1 for a length or an inertia that is not positive.
 pub(super) fn positive(size: f64) -> f64 {
     if size > 0.0 { size } else { 1.0 }
-}
-
-/// The length of a vector.
-pub fn norm(vector: &[f64]) -> f64 {
-    dot(vector, vector).sqrt()
-}
-
-/// The product of two vectors.
-pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -5,7 +5,7 @@
 use std::cell::RefCell;
 
 use eomgen_codegen::independence::dependence::dependent_combination;
-use eomgen_codegen::independence::rows::norm;
+use eomgen_codegen::independence::vectors::norm;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_model_spec::dimension::Dimension;
 use eomgen_model_spec::model::{Constraint, STABILISATION_RATE};

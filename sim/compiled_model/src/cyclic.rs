@@ -5,6 +5,7 @@
 //! together. Candidates are the null space of the accelerations' Jacobian by the coordinates; each is
 //! confirmed by finite displacements.
 
+use eomgen_codegen::independence::vectors::largest;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_model_spec::dimension::Dimension;
 
@@ -174,7 +175,7 @@ impl Instance<'_> {
 /// A basis of the null space of a matrix given by rows, each vector with 1 in a place of its own. Units of
 /// rows and columns do not matter.
 fn null_directions(rows: &[Vec<f64>], columns: usize) -> Vec<Vec<f64>> {
-    let row_sizes = rows.iter().map(|row| largest(row.iter().copied()));
+    let row_sizes = rows.iter().map(|row| largest(row));
     let mut matrix: Vec<Vec<f64>> = rows
         .iter()
         .zip(row_sizes)
@@ -183,7 +184,7 @@ fn null_directions(rows: &[Vec<f64>], columns: usize) -> Vec<Vec<f64>> {
         .collect();
     let units: Vec<f64> = (0..columns)
         .map(
-            |column| match largest(matrix.iter().map(|row| row[column])) {
+            |column| match largest(matrix.iter().map(|row| &row[column])) {
                 0.0 => 1.0,
                 size => 1.0 / size,
             },
@@ -228,10 +229,6 @@ fn null_directions(rows: &[Vec<f64>], columns: usize) -> Vec<Vec<f64>> {
         direction
     })
     .collect()
-}
-
-fn largest(entries: impl Iterator<Item = f64>) -> f64 {
-    entries.fold(0.0, |most, entry| most.max(entry.abs()))
 }
 
 #[cfg(test)]

@@ -1,6 +1,8 @@
 //! Linear complementarity: impulses or forces that push where something would go through, and do not
 //! pull. The matrix is symmetric and positive semidefinite, as Delassus' is.
 
+use eomgen_codegen::independence::vectors::{dot, largest};
+
 /// A pivot that is this small beside its diagonal entry is rounding: its row follows from others.
 const INDEPENDENT: f64 = 1e-10;
 
@@ -12,14 +14,14 @@ const NOTHING: f64 = 1e-12;
 pub(super) fn complementary(w: &[Vec<f64>], c: &[f64]) -> Vec<f64> {
     let mut x = vec![0.0; c.len()];
     let mut pushing: Vec<usize> = Vec::new();
-    let largest = c.iter().fold(0.0_f64, |most, entry| most.max(entry.abs()));
+    let zero = NOTHING * largest(c);
     let mut follows = vec![false; c.len()];
     // Each round lowers a convex function of x; the bound is for rounding.
     for _ in 0..10 * (c.len() + 1) {
         let rest = |row: usize| dot(&w[row], &x) + c[row];
         let outside = (0..c.len()).filter(|row| !pushing.contains(row) && !follows[*row]);
         let worst = outside.min_by(|a, b| rest(*a).total_cmp(&rest(*b)));
-        let Some(next) = worst.filter(|row| rest(*row) < -NOTHING * largest) else {
+        let Some(next) = worst.filter(|row| rest(*row) < -zero) else {
             break;
         };
         pushing.push(next);
@@ -85,10 +87,6 @@ pub(super) fn balance(w: &[Vec<f64>], c: &[f64], rows: &[usize]) -> Vec<f64> {
         y[row] = if pivot == 0.0 { 0.0 } else { rest / pivot };
     }
     y
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 #[cfg(test)]
