@@ -16,7 +16,6 @@ use crate::driven::Driven;
 use crate::error::Error;
 use crate::instance::Instance;
 use crate::motion::{Cause, Choice, Motion, Solver, Stopped};
-use crate::projection::Projection;
 
 /// The relative tolerance where nothing is said about it.
 pub const DEFAULT_TOLERANCE: f64 = 1e-9;
@@ -238,8 +237,20 @@ impl Instance<'_> {
                 let (t, surfaces) = (SolveError::time(&error), system.surfaces());
                 let cause = self.cause(&error);
                 let ended_at = t.unwrap_or(request.span().0);
-                let passed = system.projection().and_then(|projection| {
-                    singular_position(projection, &cause, ended_at, &so_far, request.inputs)
+                let may_be = matches!(cause, Cause::NotFinite | Cause::Limit);
+                let passed = system.projection().filter(|_| may_be);
+                let passed = passed.and_then(|projection| {
+                    let state = &so_far.trajectory.last;
+                    let mut rates = vec![0.0; state.len()];
+                    let inputs = &request.inputs.at(ended_at);
+                    let point = Point {
+                        t: ended_at,
+                        state,
+                        inputs,
+                    };
+                    evaluator.borrow_mut().rates(point, &mut rates);
+                    let mut watch = projection.watch.borrow_mut();
+                    watch.ended((ended_at, state), &rates, request.inputs)
                 });
                 let (t, singular) = match passed {
                     Some((passed, reason)) => (Some(passed), Some(reason)),
@@ -257,10 +268,12 @@ impl Instance<'_> {
 
     /// An auditor of a motion with a relative tolerance; none for an exact one.
     fn auditor(&self, tolerance: Option<f64>) -> Auditor {
-        let moving = self.moving_contact().map(|name| {
-            format!("the contact of the impact `{name}` moves, and its work is not in the model")
+        let driven = self.driven_contact().map(|name| {
+            format!(
+                "inputs move the contact of the impact `{name}`, which jumps where they do between samples"
+            )
         });
-        Auditor::new(tolerance, self.model().typical_sizes(), moving)
+        Auditor::new(tolerance, self.model().typical_sizes(), driven)
     }
 
     /// What kind of reason an error is.
@@ -309,23 +322,6 @@ impl Instance<'_> {
             unfollowed,
         })
     }
-}
-
-/// The time of the singular position at which a motion ended, and what is to be said of it.
-fn singular_position(
-    projection: &Projection,
-    cause: &Cause,
-    ended_at: f64,
-    motion: &Motion,
-    inputs: &HeldInputs,
-) -> Option<(f64, String)> {
-    let mut watch = projection.watch.borrow_mut();
-    if let Some((t, reason)) = watch.found() {
-        return Some((t, reason.to_owned()));
-    }
-    let may_be = matches!(cause, Cause::NotFinite | Cause::Limit);
-    let reason = may_be.then(|| watch.reason_at(ended_at, &motion.trajectory.last, inputs));
-    Some((ended_at, reason??))
 }
 
 /// Auditor of a motion by the exact solver, and the evaluator of its energies.

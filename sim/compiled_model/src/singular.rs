@@ -3,36 +3,55 @@
 //! With the rows R of the constraints in the metric of the inertias, F = (R R^T)^(-1/2) R has orthonormal rows
 //! that turn smoothly along a motion. Where R loses rank and regains it, as that of a parallelogram does that
 //! folds flat, a direction of F changes its sign: F_1 F_2^T of the states before and after has the eigenvalue
-//! -1 there, however long the step between them is. Between two states the coordinates are interpolated by
-//! their rates.
+//! -1 there, however long the step between them is. Inside a step coordinates follow the cubic through
+//! coordinates and rates of both ends.
+//!
+//! The rounding of accelerations grows with the reciprocal square of the least singular value of R, so that
+//! steps may fail before the position itself. The motion is then continued from its last state by coordinates,
+//! rates and accelerations there.
 
 use eomgen_analysis::qr_iteration::symmetric_eigen;
-use eomgen_codegen::independence::rows::{ConstraintRows, norm};
+use eomgen_codegen::independence::rows::ConstraintRows;
+use eomgen_codegen::independence::vectors::norm;
 use eomgen_codegen::program::evaluator::Point;
 use eomgen_sim::inputs::HeldInputs;
 use nalgebra::{DMatrix, DVector};
 
-/// Rows of two states of which no direction turned by more than 60 degrees.
+/// Least eigenvalue of the symmetric part of F_1 F_2^T if no direction turned by more than 60 degrees.
 const TURNED_LITTLE: f64 = 0.5;
 
 /// Halvings of a step in the search for a singular position.
 const MOST_HALVINGS: u32 = 40;
 
-/// Least singular value of the scaled constraint derivatives below which a stop of the solver is put down to them.
-/// The rounding of accelerations grows with its reciprocal squared: at 1e-2 it reaches 1e-12, and steps at usual
-/// tolerances fail before the position itself is reached.
-const SINGULAR: f64 = 1e-2;
+/// Least singular value of the scaled rows at which constraints count as dependent.
+const SINGULAR: f64 = 1e-3;
+
+/// Least singular value of the scaled rows from which a motion is continued to a singular position.
+const NEAR: f64 = 0.1;
+
+/// Doublings of the time over which a motion is continued, from the resolution of the time on.
+const MOST_DOUBLINGS: i32 = 52;
 
 /// A constraint is named with others if its part in their combination is no less beside the largest.
 const TAKES_PART: f64 = 0.1;
 
-/// A state that a motion came to.
+/// States before the present one that are remembered: the start of a step, and of the one before.
+const REMEMBERED: usize = 2;
+
+/// A state of a motion.
 struct Passed {
     t: f64,
     state: Vec<f64>,
     /// F.
     frame: DMatrix<f64>,
+    /// Least singular value of the scaled rows.
+    least: f64,
+    /// Combination of the constraints that belongs to it.
+    combined: DVector<f64>,
 }
+
+/// States between or beyond known ones, by the time (s).
+type Path<'p> = dyn Fn(f64) -> Vec<f64> + 'p;
 
 /// Follows the rows of the constraints along a motion.
 pub(crate) struct SingularityWatch {
@@ -41,7 +60,8 @@ pub(crate) struct SingularityWatch {
     names: Vec<String>,
     /// The largest length of each row so far: one may vanish by itself.
     lengths: Vec<f64>,
-    last: Option<Passed>,
+    /// The last states, by their times.
+    passed: Vec<Passed>,
     found: Option<(f64, String)>,
 }
 
@@ -51,51 +71,50 @@ impl SingularityWatch {
             rows,
             lengths: vec![0.0; names.len()],
             names,
-            last: None,
+            passed: Vec::new(),
             found: None,
         }
     }
 
-    /// The time (s) of a singular position that the motion has passed, and what is to be said of it.
-    pub(crate) fn found(&self) -> Option<(f64, &str)> {
-        let (t, reason) = self.found.as_ref()?;
-        Some((*t, reason))
-    }
-
-    /// Whether the motion has passed a singular position on its way to a state, which is the next to begin
-    /// from.
+    /// Returns whether the motion passes a singular position on its way to a state from the last one before.
     pub(crate) fn passes(&mut self, t: f64, state: &[f64], inputs: &HeldInputs) -> bool {
+        // Steps that led farther were taken back.
+        self.passed.retain(|earlier| earlier.t < t);
         let Some(here) = self.at(t, state.to_vec(), inputs) else {
             return false;
         };
-        let last = self.last.take().filter(|last| last.t < t);
-        let passed = last.and_then(|last| {
-            let middle = self.between(&last, &here, inputs)?;
-            let first = self.search(&last, &middle, inputs, MOST_HALVINGS);
-            first.or_else(|| self.search(&middle, &here, inputs, MOST_HALVINGS))
-        });
-        if let Some(passed) = &passed {
-            let rows = self.scaled_rows(passed.t, &passed.state, inputs);
-            let least = least(&rows);
-            self.found = least.map(|(_, combined)| (passed.t, self.reason(passed.t, &combined)));
+        if let Some(last) = self.passed.pop() {
+            let path = cubic(&last, &here, self.degrees());
+            let fold = self.fold_between(&last, &here, &path, inputs);
+            self.passed.push(last);
+            if let Some(fold) = fold {
+                self.found = Some(self.report(&fold));
+                return true;
+            }
         }
-        self.last = Some(here);
-        passed.is_some()
+        self.passed.push(here);
+        let forgotten = self.passed.len().saturating_sub(REMEMBERED);
+        self.passed.drain(..forgotten);
+        false
     }
 
-    /// What is to be said of constraints that depend on each other at a state; nothing where none do.
-    pub(crate) fn reason_at(
+    /// Returns the time (s) of the singular position at which the motion ended and a message; `None` if it
+    /// ended at none. The solver stopped at `t` (s) and `state`, with these rates.
+    pub(crate) fn ended(
         &mut self,
-        t: f64,
-        state: &[f64],
+        (t, state): (f64, &[f64]),
+        rates: &[f64],
         inputs: &HeldInputs,
-    ) -> Option<String> {
-        let rows = self.scaled_rows(t, state, inputs);
-        if rows.iter().any(|entry| !entry.is_finite()) {
-            return None;
-        }
-        let (value, combined) = least(&rows)?;
-        (value <= SINGULAR).then(|| self.reason(t, &combined))
+    ) -> Option<(f64, String)> {
+        let ahead = self.at(t, state.to_vec(), inputs).and_then(|last| {
+            if last.least > NEAR {
+                return None;
+            }
+            let fold = self.fold_ahead(&last, rates, inputs);
+            let fold = fold.or((last.least <= SINGULAR).then_some(last))?;
+            Some(self.report(&fold))
+        });
+        ahead.or_else(|| self.found.clone())
     }
 
     fn scaled_rows(&mut self, t: f64, state: &[f64], inputs: &HeldInputs) -> DMatrix<f64> {
@@ -116,31 +135,66 @@ impl SingularityWatch {
             return None;
         }
         let mut squares = symmetric_eigen(&(&rows * rows.transpose()))?;
+        let (place, least) = squares.eigenvalues.argmin();
+        let combined = squares.eigenvectors.column(place).into_owned();
         for value in squares.eigenvalues.iter_mut() {
             *value = value.max(f64::MIN_POSITIVE).sqrt().recip();
         }
-        let frame = squares.recompose() * rows;
-        Some(Passed { t, state, frame })
+        Some(Passed {
+            t,
+            state,
+            frame: squares.recompose() * rows,
+            least: least.max(0.0).sqrt(),
+            combined,
+        })
     }
 
-    /// The state in the middle between two, by the cubic through coordinates and rates of both.
-    fn between(&mut self, a: &Passed, b: &Passed, inputs: &HeldInputs) -> Option<Passed> {
-        let degrees = a.frame.ncols();
-        let (step, mut state) = (b.t - a.t, a.state.clone());
-        for k in 0..degrees {
-            let (from, to) = (a.state[k], b.state[k]);
-            let (rate, rate_to) = (a.state[degrees + k], b.state[degrees + k]);
-            state[k] = 0.5 * (from + to) + 0.125 * step * (rate - rate_to);
-            state[degrees + k] = 1.5 * (to - from) / step - 0.25 * (rate + rate_to);
-        }
-        self.at(a.t + 0.5 * step, state, inputs)
-    }
-
-    /// The singular position between two states, if there is one.
-    fn search(
+    /// The singular position of a step, if there is one.
+    fn fold_between(
         &mut self,
         a: &Passed,
         b: &Passed,
+        path: &Path<'_>,
+        inputs: &HeldInputs,
+    ) -> Option<Passed> {
+        let t = 0.5 * (a.t + b.t);
+        let middle = self.at(t, path(t), inputs)?;
+        let first = self.search((a, &middle), path, inputs, MOST_HALVINGS);
+        first.or_else(|| self.search((&middle, b), path, inputs, MOST_HALVINGS))
+    }
+
+    /// The singular position ahead of a state with these rates, if the motion continues to one.
+    fn fold_ahead(&mut self, last: &Passed, rates: &[f64], inputs: &HeldInputs) -> Option<Passed> {
+        let degrees = self.degrees();
+        let path = |t: f64| {
+            let (time, mut state) = (t - last.t, last.state.clone());
+            for k in 0..degrees {
+                let (rate, acceleration) = (last.state[degrees + k], rates[degrees + k]);
+                state[k] += time * (rate + 0.5 * time * acceleration);
+                state[degrees + k] += time * acceleration;
+            }
+            state
+        };
+        for doubling in 0..MOST_DOUBLINGS {
+            let t = last.t + f64::EPSILON * last.t.abs() * 2.0_f64.powi(doubling);
+            let there = self.at(t, path(t), inputs)?;
+            let fold = self.search((last, &there), &path, inputs, MOST_HALVINGS);
+            if fold.is_some() || there.least > 2.0 * NEAR {
+                return fold;
+            }
+        }
+        None
+    }
+
+    fn degrees(&self) -> usize {
+        self.rows.degrees_of_freedom()
+    }
+
+    /// The singular position between two states on a path, if there is one.
+    fn search(
+        &mut self,
+        (a, b): (&Passed, &Passed),
+        path: &Path<'_>,
         inputs: &HeldInputs,
         halvings: u32,
     ) -> Option<Passed> {
@@ -149,12 +203,17 @@ impl SingularityWatch {
         if symmetric_eigen(&symmetric)?.eigenvalues.min() > TURNED_LITTLE {
             return None;
         }
-        let middle = self.between(a, b, inputs)?;
-        if halvings == 0 || middle.t <= a.t || middle.t >= b.t {
+        let t = a.t + 0.5 * (b.t - a.t);
+        let middle = self.at(t, path(t), inputs)?;
+        if halvings == 0 || t <= a.t || t >= b.t {
             return Some(middle);
         }
-        let first = self.search(a, &middle, inputs, halvings - 1);
-        first.or_else(|| self.search(&middle, b, inputs, halvings - 1))
+        let first = self.search((a, &middle), path, inputs, halvings - 1);
+        first.or_else(|| self.search((&middle, b), path, inputs, halvings - 1))
+    }
+
+    fn report(&self, fold: &Passed) -> (f64, String) {
+        (fold.t, self.reason(fold.t, &fold.combined))
     }
 
     fn reason(&self, t: f64, combined: &DVector<f64>) -> String {
@@ -179,11 +238,23 @@ impl SingularityWatch {
     }
 }
 
-/// Returns the smallest singular value of a matrix with its combination of rows; `None` if the iteration does not
-/// converge.
-fn least(rows: &DMatrix<f64>) -> Option<(f64, DVector<f64>)> {
-    let squares = symmetric_eigen(&(rows * rows.transpose()))?;
-    let (least, value) = squares.eigenvalues.argmin();
-    let combined = squares.eigenvectors.column(least).into_owned();
-    Some((value.max(0.0).sqrt(), combined))
+/// The cubic through coordinates and rates of two states.
+fn cubic(a: &Passed, b: &Passed, degrees: usize) -> impl Fn(f64) -> Vec<f64> + use<> {
+    let (begin, step) = (a.t, b.t - a.t);
+    let (from, to) = (a.state.clone(), b.state.clone());
+    move |t| {
+        let part = (t - begin) / step;
+        let mut state = from.clone();
+        for k in 0..degrees {
+            let (rate, rate_to) = (step * from[degrees + k], step * to[degrees + k]);
+            let moved = to[k] - from[k];
+            let (square, cube) = (
+                3.0 * moved - 2.0 * rate - rate_to,
+                rate + rate_to - 2.0 * moved,
+            );
+            state[k] = from[k] + part * (rate + part * (square + part * cube));
+            state[degrees + k] = (rate + part * (2.0 * square + 3.0 * part * cube)) / step;
+        }
+        state
+    }
 }
