@@ -1,0 +1,205 @@
+//! Equilibria against closed forms.
+
+use crate::{CompiledModel, EquilibriumRequest, Error, Instance, Orders};
+
+use super::Equilibrium;
+
+/// A pendulum with a motor, its angle from below.
+const PENDULUM: &str = r#"
+[model]
+name = "pendulum"
+[parameters]
+m = { value = 2, unit = "kg" }
+l = { value = 0.5, unit = "m" }
+g = { value = 9.81, unit = "m/s^2" }
+[coordinates]
+theta = { unit = "rad", initial = 2.8 }
+[inputs]
+u = { unit = "N m" }
+[kinetic]
+mass = "1/2*m*l^2*dot(theta)^2"
+[potential]
+weight = "-m*g*l*cos(theta)"
+[forces]
+motor = { on = "theta", value = "u" }
+"#;
+
+fn fixed(run: &Instance<'_>, fixed: &[(&str, f64)]) -> Result<Equilibrium, Error> {
+    run.equilibrium(EquilibriumRequest { start: &[], fixed })
+}
+
+fn from(run: &Instance<'_>, start: &[(&str, f64)]) -> Result<Equilibrium, Error> {
+    run.equilibrium(EquilibriumRequest { start, fixed: &[] })
+}
+
+fn compiled(text: &str) -> CompiledModel {
+    CompiledModel::of_text("model.toml", text, Orders::Declared).expect("a model")
+}
+
+fn model() -> CompiledModel {
+    CompiledModel::of_text("pendulum.toml", PENDULUM, Orders::Declared).expect("a model")
+}
+
+#[test]
+fn the_nearest_equilibrium_is_found() {
+    let model = model();
+    let run = model.at_declared().expect("an instance");
+    let found = fixed(&run, &[]).expect("an equilibrium");
+    assert!(
+        (found.at.state[0] - std::f64::consts::PI).abs() < 1e-12,
+        "{found:?}"
+    );
+    assert_eq!(found.at.inputs, [0.0]);
+    let held = fixed(&run, &[("theta", 0.3)]).expect("a torque");
+    let right = 2.0 * 9.81 * 0.5 * 0.3_f64.sin();
+    assert!(
+        (held.at.inputs[0] - right).abs() < 1e-12 * right,
+        "{held:?}"
+    );
+    let loaded = fixed(&run, &[("u", 5.0)]).expect("an angle");
+    assert!(
+        (loaded.at.state[0].sin() * 9.81 - 5.0).abs() < 1e-11,
+        "{loaded:?}"
+    );
+}
+
+#[test]
+fn where_there_is_none_it_is_said() {
+    let model = model();
+    let run = model.at_declared().expect("an instance");
+    for given in [&[("u", 20.0)][..], &[("theta", 0.3), ("u", 0.0)]] {
+        let found = fixed(&run, given);
+        assert!(
+            matches!(found, Err(Error::Stopped { .. })),
+            "{given:?}: {found:?}"
+        );
+    }
+    for given in [("theta_dot", 1.0), ("thta", 0.0), ("u", f64::NAN)] {
+        let refused = fixed(&run, &[given]);
+        assert!(
+            matches!(refused, Err(Error::Request(_))),
+            "{given:?}: {refused:?}"
+        );
+    }
+}
+
+#[test]
+fn a_pendulum_goes_to_the_nearer_equilibrium() {
+    use std::f64::consts::{FRAC_PI_2, PI};
+    let model = model();
+    let run = model.at_declared().expect("an instance");
+    for (start, right) in [
+        (1.5, 0.0),
+        (1.57, 0.0),
+        (1.58, PI),
+        (1.7, PI),
+        (4.5, PI),
+        (4.8, 2.0 * PI),
+    ] {
+        let found = from(&run, &[("theta", start)]).expect("an equilibrium");
+        assert!(
+            (found.at.state[0] - right).abs() < 1e-9,
+            "{start}: {found:?}"
+        );
+    }
+    let found = from(&run, &[("theta", FRAC_PI_2)])
+        .expect("an equilibrium")
+        .at
+        .state[0];
+    assert!(found.abs() < 1e-9 || (found - PI).abs() < 1e-9, "{found}");
+    // The slope of the force is exactly 0 where a level pendulum's angle is measured from level.
+    let level = PENDULUM.replace("-m*g*l*cos(theta)", "m*g*l*sin(theta)");
+    let model = compiled(&level.replace("2.8", "0"));
+    let run = model.at_declared().expect("an instance");
+    let found = from(&run, &[]).expect("an equilibrium").at.state[0];
+    assert!((found + FRAC_PI_2).abs() < 1e-9, "it falls: {found}");
+}
+
+#[test]
+fn a_search_stays_within_the_declared_range() {
+    let within = PENDULUM.replace("initial = 2.8", "range = [0.4, 4], initial = 1.2");
+    let model = compiled(&within);
+    let run = model.at_declared().expect("an instance");
+    let found = from(&run, &[]);
+    assert!(
+        matches!(found, Err(Error::Stopped { .. })),
+        "0 is outside: {found:?}"
+    );
+    let found = from(&run, &[("theta", 2.0)])
+        .expect("an equilibrium")
+        .at
+        .state[0];
+    assert!((found - std::f64::consts::PI).abs() < 1e-9, "{found}");
+    assert!(matches!(
+        from(&run, &[("theta", 5.0)]),
+        Err(Error::Request(_))
+    ));
+}
+
+#[test]
+fn a_spring_of_two_rates_is_in_equilibrium_beyond_its_kink() {
+    let text = PENDULUM
+        .replace(
+            "-m*g*l*cos(theta)",
+            "1/2*c*(min(theta, 0)^2 + 100*max(theta, 0)^2) - p*theta",
+        )
+        .replace(
+            "[coordinates]",
+            "c = { value = 2, unit = \"N m\" }\np = { value = 3, unit = \"N m\" }\n[coordinates]",
+        )
+        .replace("2.8", "-1");
+    let model = compiled(&text);
+    let run = model.at_declared().expect("an instance");
+    let found = from(&run, &[]).expect("an equilibrium").at.state[0];
+    assert!((found - 0.015).abs() < 1e-12, "{found}");
+}
+
+/// A disc on a shaft with friction, its motor, and a bob that swings out as it turns.
+const GOVERNOR: &str = r#"
+[model]
+name = "governor"
+[parameters]
+J = { value = 2, unit = "kg m^2" }
+m = { value = 0.5, unit = "kg" }
+l = { value = 0.4, unit = "m" }
+g = { value = 9.81, unit = "m/s^2" }
+c = { value = 0.1, unit = "N m s" }
+T = { value = 0.8, unit = "N m" }
+[coordinates]
+phi = { unit = "rad" }
+theta = { unit = "rad", initial = 0.5 }
+[inputs]
+u = { unit = "N m" }
+[kinetic]
+all = "1/2*J*dot(phi)^2 + 1/2*m*l^2*(dot(theta)^2 + sin(theta)^2*dot(phi)^2)"
+[potential]
+weight = "-m*g*l*cos(theta)"
+[dissipation]
+bearing = "1/2*c*dot(phi)^2"
+[forces]
+motor = { on = "phi", value = "T + u" }
+"#;
+
+#[test]
+fn steady_running_is_an_equilibrium() {
+    let model = compiled(GOVERNOR);
+    let run = model.at_declared().expect("an instance");
+    // T = c omega at 8 rad/s; the bob stands out by cos(theta) = g/(l omega^2).
+    let right = (9.81 / (0.4 * 64.0_f64)).acos();
+    let found = from(&run, &[("theta", 1.0)]).expect("steady running");
+    assert!((found.at.state[2] - 8.0).abs() < 1e-8, "{found:?}");
+    assert!((found.at.state[1] - right).abs() < 1e-8, "{found:?}");
+    assert!(found.free.contains(&"phi_dot".to_owned()), "{found:?}");
+    assert!(run.is_equilibrium(&found.at).expect("an answer"));
+    // At a speed that is fixed the motor holds it.
+    let found = run.equilibrium(EquilibriumRequest {
+        start: &[("theta", 1.0)],
+        fixed: &[("phi_dot", 10.0)],
+    });
+    let found = found.expect("steady running");
+    assert_eq!(found.at.state[2], 10.0);
+    assert!((found.at.inputs[0] - 0.2).abs() < 1e-9, "{found:?}");
+    let mut slipping = found.at.clone();
+    slipping.state[3] = 0.1;
+    assert!(!run.is_equilibrium(&slipping).expect("an answer"));
+}
