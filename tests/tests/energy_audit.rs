@@ -139,14 +139,109 @@ fn losses_at_impacts_are_booked_and_are_no_fault() {
 }
 
 #[test]
-fn a_table_that_shakes_does_work_that_is_left_out() {
+fn the_work_of_a_table_that_shakes_is_booked() {
     let text = BALL
         .replace("when = \"y\"", "when = \"y - A*sin(w*t)\"")
         .replace("A = { value = 0,", "A = { value = 0.01,");
+    for (text, solver) in [
+        &text,
+        &text.replace("initial = 0.5", "initial = 0, initial_rate = 0.2"),
+    ]
+    .into_iter()
+    .flat_map(|text| [(text, Solver::Rk), (text, Solver::Radau)])
+    {
+        let audit = audited(text, 2.0, solver, 1e-9);
+        assert_eq!(audit.faults, 0, "{audit:?}");
+        assert_eq!(audit.not_applicable, None);
+        assert!(audit.impacts <= 0.0 && audit.work != 0.0, "{audit:?}");
+        assert!(audit.unexplained().abs() < 1e-6, "{audit:?}");
+    }
+}
+
+#[test]
+fn a_wall_that_moves_does_the_work_of_its_impulse() {
+    // The ball rests until the wall hits it with V: it leaves with (1 + e) V.
+    let text = BALL
+        .replace("weight = \"m*g*y\"", "weight = \"0*m*g*y\"")
+        .replace("when = \"y\"", "when = \"y - A*w*t\"")
+        .replace("A = { value = 0,", "A = { value = 0.05,");
+    for solver in [Solver::Rk, Solver::Radau] {
+        let audit = audited(&text, 2.0, solver, 1e-9);
+        let (energy, work) = (0.5 * 0.2 * 1.7_f64.powi(2), 0.2 * 1.7);
+        assert_eq!(audit.faults, 0, "{audit:?}");
+        assert!((audit.energy_change - energy).abs() < 1e-9, "{audit:?}");
+        assert!((audit.work - work).abs() < 1e-9, "{audit:?}");
+        assert!((audit.impacts - (energy - work)).abs() < 1e-9, "{audit:?}");
+    }
+}
+
+#[test]
+fn a_lift_does_the_work_of_what_it_carries() {
+    let text = BALL
+        .replace("initial = 0.5", "initial = 0, initial_rate = 1")
+        .replace("when = \"y\"", "when = \"y - A*w*t\"")
+        .replace("A = { value = 0,", "A = { value = 0.05,");
+    for solver in [Solver::Rk, Solver::Radau] {
+        let audit = audited(&text, 2.0, solver, 1e-9);
+        assert_eq!(audit.faults, 0, "{audit:?}");
+        assert!((audit.work - 0.2 * 9.81 * 2.0).abs() < 1e-9, "{audit:?}");
+        assert!(audit.impacts.abs() < 1e-9, "{audit:?}");
+    }
+}
+
+#[test]
+fn inputs_that_move_a_contact_leave_it_out() {
+    let text = BALL.replace("when = \"y\"", "when = \"y - s\"").replace(
+        "[kinetic]",
+        "[inputs]\ns = { unit = \"m\", rates = 2 }\n[kinetic]",
+    );
     let audit = audited(&text, 2.0, Solver::Rk, 1e-9);
     assert_eq!(audit.faults, 0, "{audit:?}");
     let reason = audit.not_applicable.expect("a reason");
     assert!(reason.contains("`table`"), "{reason}");
+}
+
+/// A mass that nothing moves until a force sets in.
+const PUSHED: &str = r#"
+[model]
+name = "pushed"
+[parameters]
+m = { value = 1, unit = "kg" }
+F = { value = 30, unit = "N" }
+a = { value = 3, unit = "s" }
+c = { value = 1, unit = "N s^2/m^2" }
+[coordinates]
+x = { unit = "m" }
+[kinetic]
+mass = "1/2*m*dot(x)^2"
+[forces]
+push = { on = "x", value = "F*above(t - a)" }
+damper = { on = "x", value = "-c*dot(x)*abs(dot(x))" }
+"#;
+
+#[test]
+fn a_force_that_sets_in_is_no_fault() {
+    for (force, begin) in [
+        ("30", "3"),
+        ("1000", "3"),
+        ("30", "0.7"),
+        ("3e6", "300"),
+        ("1e-6", "7.3"),
+    ] {
+        let text = PUSHED
+            .replace("value = 30,", &format!("value = {force},"))
+            .replace("value = 3,", &format!("value = {begin},"));
+        let until = 2.0 * begin.parse::<f64>().expect("a number");
+        for tolerance in [1e-9, 1e-5] {
+            for solver in [Solver::Rk, Solver::Radau] {
+                let audit = audited(&text, until, solver, tolerance);
+                assert_eq!(
+                    audit.faults, 0,
+                    "{force} {begin} {solver} {tolerance}: {audit:?}"
+                );
+            }
+        }
+    }
 }
 
 #[test]

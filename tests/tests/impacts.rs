@@ -44,21 +44,22 @@ fn simulated(model: &CompiledModel, settings: &[(&str, f64)], times: &[f64]) -> 
     motion.unwrap_or_else(|error| panic!("{settings:?}: {error}"))
 }
 
-/// How high a ball is that fell from 1 m: flights from speeds v, e v, e^2 v; the first begins in the
-/// middle.
-fn bounced(g: f64, e: f64, t: f64) -> f64 {
-    let v0 = (2.0 * g).sqrt();
-    let (mut begin, mut v) = (-v0 / g, v0);
-    while v > 1e-9 && begin + 2.0 * v / g < t {
-        begin += 2.0 * v / g;
+/// How high a ball is at a time after it left the floor: flights from speeds v, e v, e^2 v.
+fn launched(g: f64, e: f64, mut since: f64, mut v: f64) -> f64 {
+    while v > 1e-9 && 2.0 * v / g < since {
+        since -= 2.0 * v / g;
         v *= e;
     }
-    let since = t - begin;
-    if v > 1e-9 {
-        v * since - 0.5 * g * since * since
-    } else {
-        0.0
+    match v > 1e-9 {
+        true => v * since - 0.5 * g * since * since,
+        false => 0.0,
     }
+}
+
+/// How high a ball is that fell from 1 m.
+fn bounced(g: f64, e: f64, t: f64) -> f64 {
+    let v = (2.0 * g).sqrt();
+    launched(g, e, t + v / g, v)
 }
 
 #[test]
@@ -75,6 +76,98 @@ fn a_ball_bounces_as_often_and_as_high_as_its_closed_form_and_rests() {
                 "{e} {t}: {} {height}",
                 state[0]
             );
+        }
+    }
+}
+
+/// A motion from a state at the first of the times, by each solver that takes impacts.
+fn motions(model: &CompiledModel, initial: &[f64], times: &[f64]) -> Vec<Motion> {
+    let run = model.at_declared().unwrap();
+    let solvers = [Solver::Rk, Solver::Radau].into_iter();
+    let motions = solvers.map(|solver| {
+        let motion = run.simulate(initial, times, &run.no_inputs(), solver);
+        let motion = motion.unwrap_or_else(|error| panic!("{solver} {initial:?}: {error}"));
+        let overlap = run.first_overlap_of(&motion, 1e-9).unwrap();
+        assert!(overlap.is_none(), "{solver} {initial:?}: {overlap:?}");
+        motion
+    });
+    motions.collect()
+}
+
+#[test]
+fn a_ball_that_starts_on_the_floor_rests_or_bounces() {
+    let model = example("bouncing_ball", Orders::Declared);
+    let (g, e) = (9.81, 0.8);
+    for begin in [0.0, 5.0] {
+        for speed in [0.0, 1.0, -1.0] {
+            let times: Vec<f64> = (0..=20).map(|step| begin + f64::from(step) * 0.1).collect();
+            let first = if speed < 0.0 { -e * speed } else { speed };
+            for motion in motions(&model, &[0.0, speed], &times) {
+                for (t, state) in times.iter().zip(&motion.trajectory.states) {
+                    let height = launched(g, e, t - begin, first);
+                    assert!(
+                        (state[0] - height).abs() < 1e-9,
+                        "{begin} {speed} {t}: {state:?} {height}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn what_starts_in_several_contacts_at_the_origin_rests() {
+    let text = |potential: &str, impacts: &str| {
+        format!(
+            r#"
+[model]
+name = "contacts"
+[parameters]
+m = {{ value = 1, unit = "kg" }}
+g = {{ value = 9.81, unit = "m/s^2" }}
+[coordinates]
+x = {{ unit = "m" }}
+y = {{ unit = "m" }}
+[kinetic]
+k = "1/2*m*(dot(x)^2 + dot(y)^2)"
+[potential]
+p = "{potential}"
+[impacts]
+{impacts}
+"#
+        )
+    };
+    for (potential, impacts) in [
+        (
+            "m*g*y",
+            "floor = { when = \"y\", restitution = 0.5 }\nwall = { when = \"x\", restitution = 0.5 }",
+        ),
+        (
+            "m*g*(x + y)",
+            "lower = { when = \"y\", restitution = 0.5 }\nupper = { when = \"x - y\", restitution = 0.3 }",
+        ),
+        (
+            "m*g*(0.6*y + 0.8*x)",
+            "floor = { when = \"0.6*y + 0.8*x\", restitution = 0.5 }\nwall = { when = \"0.8*y - 0.6*x\", restitution = 0.5 }",
+        ),
+        (
+            "m*g*y",
+            "floor = { when = \"y\", restitution = 0.5 }\nroof = { when = \"-y\", restitution = 0.5 }",
+        ),
+    ] {
+        let model =
+            CompiledModel::of_text("contacts.toml", &text(potential, impacts), Orders::Declared)
+                .unwrap();
+        for begin in [0.0, 3.0] {
+            let times: Vec<f64> = (0..=10).map(|step| begin + f64::from(step) * 0.1).collect();
+            for motion in motions(&model, &[0.0; 4], &times) {
+                for state in &motion.trajectory.states {
+                    let most = state
+                        .iter()
+                        .fold(0.0_f64, |most, entry| entry.abs().max(most));
+                    assert!(most < 1e-12, "{impacts}: {state:?}");
+                }
+            }
         }
     }
 }

@@ -3,6 +3,7 @@
 
 use eomgen_codegen::program::Op;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_sim::ode::UNMOVED_PART;
 
 use crate::audit::{ERROR_FACTOR, allowed_change};
 use crate::error::Error;
@@ -55,7 +56,8 @@ impl Instance<'_> {
         }
         let mut evaluator = self.evaluator()?;
         let trajectory = &motion.trajectory;
-        let mut sizes = vec![0.0_f64; self.initial().len()];
+        let typical = self.model().typical_sizes().iter();
+        let mut sizes: Vec<f64> = typical.map(|size| UNMOVED_PART * size).collect();
         for (&t, state) in trajectory.times.iter().zip(&trajectory.states) {
             for (size, entry) in sizes.iter_mut().zip(state) {
                 *size = size.max(entry.abs());
@@ -85,14 +87,16 @@ impl Instance<'_> {
         Ok(None)
     }
 
-    /// The first impact whose distance depends on the time or on inputs.
-    pub(crate) fn moving_contact(&self) -> Option<&str> {
+    /// The first impact whose distance depends on inputs.
+    pub(crate) fn driven_contact(&self) -> Option<&str> {
         let program = self.model().program();
-        let moves = |op: &Op| matches!(op, Op::Time | Op::Input(_));
+        let is_driven = |op: &Op| matches!(op, Op::Input(_));
         let mut impacts = program.impacts.iter();
         let place = impacts.position(|impact| {
             let values = program.reachable(&[impact.distance]);
-            values.iter().any(|value| moves(&program.value(*value).op))
+            values
+                .iter()
+                .any(|value| is_driven(&program.value(*value).op))
         })?;
         let impact = self.model().model().impacts.get(place)?;
         Some(&impact.name)

@@ -62,7 +62,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
         Some(auditor.borrow().audit().clone())
     }
 
-    /// Energy and power, with the forces that hold the motion where surfaces do.
+    /// Energy and power, with the forces that hold the motion where surfaces do, and those of contacts at rest.
     fn energies(&self, t: f64, state: &[f64]) -> EnergyAt {
         let mut observables = vec![0.0; self.evaluator().program().observables.len()];
         match self.sliding.as_ref().filter(|_| self.slides()) {
@@ -75,7 +75,13 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
                 evaluator.observables(point, &mut observables);
             }),
         }
-        EnergyAt::of(&observables)
+        let mut found = EnergyAt::of(&observables);
+        if let Some(contacts) = &self.contacts {
+            found.power += self.at(t, state, |evaluator, point| {
+                contacts.borrow_mut().power(evaluator, point)
+            });
+        }
+        found
     }
 
     /// The same that keeps states on the constraints, at the same parameters.
@@ -295,11 +301,13 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for Driven<E, 
             contacts
                 .borrow_mut()
                 .cross(&mut self.evaluator(), inputs, before, t, y);
+            let work = contacts.borrow().impact_work();
             if let (Some(auditor), Some(arrived)) = (&self.auditor, arrived)
                 && arrived != y
             {
                 let energies = &mut |t: f64, y: &[f64]| self.energies(t, y);
-                auditor.borrow_mut().impact(t, (&arrived, y), energies);
+                let states = (&arrived[..], &*y);
+                auditor.borrow_mut().impact(t, states, work, energies);
             }
         }
         if let Some(sliding) = &self.sliding {
@@ -334,7 +342,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for Driven<E, 
         };
         let mut auditor = auditor.borrow_mut();
         let energies = &mut |t: f64, y: &[f64]| self.energies(t, y);
-        match auditor.moving_contacts().map(str::to_owned) {
+        match auditor.driven_contacts().map(str::to_owned) {
             Some(reason) if self.rests() => auditor.leave_out(step, energies, &reason),
             _ => auditor.step(step, energies),
         }

@@ -1,9 +1,10 @@
 //! Bodies that hit: which contacts touch together, how rates jump there, and what rests afterwards.
 
+use eomgen_codegen::independence::vectors::{dot, largest};
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 
 use super::complementarity::complementary;
-use super::{Contacts, MOST_IN_A_ROW, OF_A_DISTANCE, Overlap, largest, rounding_of};
+use super::{Contacts, MOST_IN_A_ROW, OF_A_DISTANCE, Overlap, rounding_of};
 
 /// A flight that is this short beside the time since the start is rest.
 const SHORTEST_FLIGHT: f64 = 1e-8;
@@ -43,6 +44,7 @@ impl Contacts {
         t: f64,
         state: &mut [f64],
     ) {
+        self.impact_work = 0.0;
         let count = self.names.len();
         let degrees = own.program().degrees_of_freedom();
         let (mut near, mut beyond) = (vec![0.0; count], vec![0.0; count]);
@@ -105,6 +107,20 @@ impl Contacts {
             even: OF_A_DISTANCE * largest_acceleration(own, Point { t, state, inputs }),
         };
         self.settle(&touching, &flight);
+        self.stop_closed(own, (t, inputs), state);
+    }
+
+    /// Takes what is left of the rates of closed contacts, where the next flight would be none.
+    fn stop_closed(&mut self, own: &mut Evaluator, (t, inputs): (f64, &[f64]), state: &mut [f64]) {
+        if self.closed.is_empty() {
+            return;
+        }
+        let degrees = own.program().degrees_of_freedom();
+        let drifts = self.drifts(own, Point { t, state, inputs });
+        own.impacts(Point { t, state, inputs }, &mut self.at);
+        let impulses = self.balanced(&self.closed, |impact| impact.rate);
+        self.push(&self.closed, &impulses, &mut state[degrees..2 * degrees]);
+        self.impact_work -= work_against(&drifts, &self.closed, &impulses);
     }
 
     /// Whether no contact that touches needs an impulse.
@@ -150,7 +166,7 @@ impl Contacts {
         let adds_energy = |impulses: &[f64]| {
             let rows = touching.iter().zip(&delassus).zip(impulses);
             let gained = rows.map(|((place, row), impulse)| {
-                let pushed: f64 = row.iter().zip(impulses).map(|(w, p)| w * p).sum();
+                let pushed = dot(row, impulses);
                 impulse * (2.0 * self.hit_rate(*place, ago) + pushed)
             });
             let (sum, size) = gained.fold((0.0, 0.0), |(sum, size), gain| {
@@ -186,10 +202,13 @@ impl Contacts {
     ) -> Result<(Vec<usize>, f64), Overlap> {
         let degrees = own.program().degrees_of_freedom();
         let mut still = 0.0_f64;
+        let drifts = self.drifts(own, Point { t, state, inputs });
+        own.impacts(Point { t, state, inputs }, &mut self.at);
         loop {
             let impulses = self.impulses(&touching, ago).ok_or(Overlap::NoImpulse)?;
+            self.impact_work -= work_against(&drifts, &touching, &impulses);
             let (coordinates, rates) = state[..2 * degrees].split_at_mut(degrees);
-            let most = largest(rates) + self.largest_push(&touching, &impulses);
+            let most = largest(&*rates) + self.largest_push(&touching, &impulses);
             still = still.max(OF_A_DISTANCE * most);
             self.push(&touching, &impulses, rates);
             let moved: Vec<f64> = impulses.iter().map(|impulse| impulse * ago).collect();
@@ -256,13 +275,15 @@ impl Contacts {
 
 /// Whether impulses leave no rate negative.
 fn solves(delassus: &[Vec<f64>], rates: &[f64], impulses: &[f64]) -> bool {
-    let worst = rates
-        .iter()
-        .fold(0.0_f64, |most, rate| most.max(rate.abs()));
-    delassus.iter().zip(rates).all(|(row, rate)| {
-        let pushed: f64 = row.iter().zip(impulses).map(|(w, p)| w * p).sum();
-        pushed + rate >= -UNSOLVED * worst
-    })
+    let unsolved = UNSOLVED * largest(rates);
+    let mut rows = delassus.iter().zip(rates);
+    rows.all(|(row, rate)| dot(row, impulses) + rate >= -unsolved)
+}
+
+/// The work (J) of impulses at these contacts against distances that change with the time.
+fn work_against(drifts: &[f64], places: &[usize], impulses: &[f64]) -> f64 {
+    let works = places.iter().zip(impulses);
+    works.map(|(place, impulse)| impulse * drifts[*place]).sum()
 }
 
 /// The largest acceleration of a coordinate, without what contacts push.

@@ -10,10 +10,13 @@
 
 mod complementarity;
 mod impulses;
+mod kept;
+mod power;
 mod start;
 
 use std::collections::VecDeque;
 
+use eomgen_codegen::independence::vectors::largest;
 use eomgen_codegen::program::evaluator::{Evaluator, ImpactAt, Point};
 
 use complementarity::{balance, complementary};
@@ -24,9 +27,6 @@ const ROUNDING: f64 = 1e-11;
 
 /// Rounding of a distance, beside the largest coordinate and how far that has come.
 const OF_A_DISTANCE: f64 = 64.0 * f64::EPSILON;
-
-/// A distance this far below zero, beside the largest that a coordinate was, is no error of a step.
-const OVERLAP: f64 = 1e-6;
 
 /// So many impacts within the shortest flights for each of them have no end.
 const MOST_IN_A_ROW: usize = 256;
@@ -52,6 +52,8 @@ pub(crate) struct Contacts {
     size: f64,
     /// When the last impacts were, s.
     recent: VecDeque<f64>,
+    /// The work of contacts that move in the last impact, J.
+    impact_work: f64,
     /// The impact at which the motion ended, and why.
     overlap: Option<(usize, Overlap)>,
 }
@@ -67,14 +69,6 @@ enum Overlap {
     Endless,
 }
 
-/// The first distance that is below zero by more than is allowed.
-fn first_below(own: &mut Evaluator, point: Point<'_>, allowed: f64) -> Option<(usize, f64)> {
-    let mut distances = vec![0.0; own.program().impacts.len()];
-    own.distances(point, &mut distances);
-    let mut all = distances.into_iter().enumerate();
-    all.find(|(_, distance)| *distance < -allowed || distance.is_nan())
-}
-
 impl Contacts {
     pub fn new(names: Vec<String>) -> Self {
         let count = names.len();
@@ -87,6 +81,7 @@ impl Contacts {
             at: Vec::new(),
             size: 0.0,
             recent: VecDeque::with_capacity(MOST_IN_A_ROW),
+            impact_work: 0.0,
             overlap: None,
         }
     }
@@ -150,45 +145,6 @@ impl Contacts {
                  flights. Lower its restitution, or take a stiff spring in place of the impact"
             ),
         })
-    }
-
-    /// Brings a state onto the closed contacts, and opens those that would have to pull; how many
-    /// evaluations that took. A state in which bodies overlap is made of no numbers, which ends the
-    /// motion.
-    pub fn keep(
-        &mut self,
-        own: &mut Evaluator,
-        (t, inputs): (f64, &[f64]),
-        state: &mut [f64],
-    ) -> u64 {
-        let degrees = own.program().degrees_of_freedom();
-        self.size = self.size.max(largest(&state[..degrees]));
-        let deepest = OVERLAP * self.size;
-        if let Some((place, _)) = first_below(own, Point { t, state, inputs }, deepest) {
-            self.overlap = Some((place, Overlap::Penetrated));
-            state.fill(f64::NAN);
-            return 1;
-        }
-        // A step that was taken back may have ended below.
-        self.overlap = None;
-        if self.closed.is_empty() {
-            return 0;
-        }
-        for _ in 0..CORRECTIONS {
-            own.impacts(Point { t, state, inputs }, &mut self.at);
-            let (coordinates, rates) = state.split_at_mut(degrees);
-            let corrections = self.balanced(&self.closed, |impact| impact.distance);
-            self.push(&self.closed, &corrections, coordinates);
-            let corrections = self.balanced(&self.closed, |impact| impact.rate);
-            self.push(&self.closed, &corrections, rates);
-        }
-        own.impacts(Point { t, state, inputs }, &mut self.at);
-        let pulls = |(place, force): (&usize, f64)| force + self.allowances[*place] < 0.0;
-        if self.closed.iter().zip(self.forces()).any(pulls) {
-            let touching = std::mem::take(&mut self.closed);
-            self.close(&touching, rounding_of(state, degrees, t));
-        }
-        CORRECTIONS as u64 + 1
     }
 
     /// Closes those of the contacts that touch which then push.
@@ -278,10 +234,4 @@ impl Contacts {
 fn rounding_of(state: &[f64], degrees: usize, t: f64) -> f64 {
     let (coordinates, rates) = state[..2 * degrees].split_at(degrees);
     f64::MIN_POSITIVE + OF_A_DISTANCE * (largest(coordinates) + t.abs() * largest(rates))
-}
-
-fn largest(entries: &[f64]) -> f64 {
-    entries
-        .iter()
-        .fold(0.0, |most, entry| entry.abs().max(most))
 }

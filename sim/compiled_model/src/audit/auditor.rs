@@ -1,0 +1,231 @@
+//! The energy balance of a motion while it goes on.
+
+use eomgen_sim::ode::{Interior, ObservedStep, UNMOVED_PART};
+
+use super::allowed::{ERROR_FACTOR, unlocated_work};
+use super::{Audit, Energies, EnergyAt, Imbalance};
+
+/// How many times the energy may change by an error that the tolerance allows in every entry of the state, in a
+/// step whose length follows from an estimated error.
+const ESTIMATE_FACTOR: f64 = 1000.0;
+
+/// A step that is shorter than this part of the one before leads over a surface.
+const SHORT: f64 = 1e-3;
+
+/// A difference below this part of what was last found to be allowed is not looked at.
+const NEGLIGIBLE: f64 = 1e-2;
+
+/// The most panels of a quadrature by interpolated states.
+const MOST_PANELS: usize = 4096;
+
+/// The same by states that take a step each.
+const MOST_RESOLVED_PANELS: usize = 16;
+
+/// The tolerance of a solver without one.
+const EXACT_TOLERANCE: f64 = 1e-9;
+
+/// Keeps the energy balance of a motion while it goes on.
+#[derive(Debug)]
+pub(crate) struct Auditor {
+    pub(super) tolerance: f64,
+    /// Whether steps have no error but rounding.
+    is_exact: bool,
+    /// Why contacts are not judged, if they are not.
+    driven_contacts: Option<String>,
+    /// The largest that each entry of the state has been.
+    pub(super) sizes: Vec<f64>,
+    /// The energy behind the last step.
+    energy: Option<f64>,
+    /// What impacts have changed of it since, J.
+    pending: f64,
+    /// The last change that errors were found to explain, J.
+    last_allowed: f64,
+    /// The length of the last step with a known inside, s.
+    last_length: f64,
+    pub(super) audit: Audit,
+}
+
+impl Auditor {
+    /// An auditor of a motion with a relative tolerance, none for an exact one, and with the typical sizes of its
+    /// states.
+    pub fn new(
+        tolerance: Option<f64>,
+        typical_sizes: &[f64],
+        driven_contacts: Option<String>,
+    ) -> Self {
+        Self {
+            tolerance: tolerance.unwrap_or(EXACT_TOLERANCE),
+            is_exact: tolerance.is_none(),
+            driven_contacts,
+            sizes: typical_sizes
+                .iter()
+                .map(|size| UNMOVED_PART * size)
+                .collect(),
+            energy: None,
+            pending: 0.0,
+            last_allowed: 0.0,
+            last_length: 0.0,
+            audit: Audit::default(),
+        }
+    }
+
+    /// The balance so far.
+    pub fn audit(&self) -> &Audit {
+        &self.audit
+    }
+
+    /// Judges a step.
+    pub fn step(&mut self, step: &mut ObservedStep<'_>, energies: &mut Energies<'_>) {
+        let (start, end) = (step.start, step.end);
+        self.raise_sizes(start.1);
+        self.raise_sizes(end.1);
+        let ends = (self.at(energies, start), self.at(energies, end));
+        if let Some(before) = self.energy.replace(ends.1.energy) {
+            self.jump(start, ends.0.energy - before, energies);
+        }
+        let change = ends.1.energy - ends.0.energy - std::mem::take(&mut self.pending);
+        let (mut work, has_interior) = self.simpson(step, energies, ends);
+        let length = end.0 - start.0;
+        if has_interior {
+            self.last_length = length;
+        }
+        let is_estimated = has_interior || length > SHORT * self.last_length;
+        // What is no number is not negligible.
+        let is_negligible = (change - work).abs() <= NEGLIGIBLE * self.last_allowed;
+        if !is_negligible {
+            let factor = match is_estimated && !self.is_exact {
+                true => ESTIMATE_FACTOR,
+                false => ERROR_FACTOR,
+            };
+            let values = [ends.0.energy, ends.1.energy];
+            let allowed = self.allowed(energies, factor, &[start, end], &values)
+                + unlocated_work(end.0, ends);
+            self.last_allowed = allowed;
+            let judged = (ends, change);
+            let (found, tolerance) = self.look_closely(step, energies, judged, (factor, allowed));
+            work = found;
+            self.judge(end.0, change - work, tolerance);
+        }
+        self.audit.energy_change += change;
+        self.audit.work += work;
+    }
+
+    /// Judges what changed the energy between two steps: a surface, or the return to constraints.
+    fn jump(&mut self, start: (f64, &[f64]), change: f64, energies: &mut Energies<'_>) {
+        self.audit.energy_change += change;
+        let is_negligible = change.abs() <= NEGLIGIBLE / ESTIMATE_FACTOR * self.last_allowed;
+        if change != 0.0 && !is_negligible {
+            let values = [self.energy.unwrap_or(0.0)];
+            let allowed = self.allowed(energies, ERROR_FACTOR, &[start], &values);
+            self.judge(start.0, change, allowed);
+        }
+    }
+
+    /// Notes a change of the energy that is larger than the tolerance, or no number.
+    fn judge(&mut self, t: f64, size: f64, tolerance: f64) {
+        if size.abs() > tolerance || size.is_nan() {
+            self.audit.note(Imbalance { t, size, tolerance });
+        }
+    }
+
+    /// The work of a step whose energy changes so, as accurately as is needed, and the change that
+    /// errors explain.
+    fn look_closely(
+        &mut self,
+        step: &mut ObservedStep<'_>,
+        energies: &mut Energies<'_>,
+        (ends, change): ((EnergyAt, EnergyAt), f64),
+        (factor, mut allowed): (f64, f64),
+    ) -> (f64, f64) {
+        let (mut work, mut tolerance) = (f64::NAN, f64::NAN);
+        for (interior, panels) in [
+            (Interior::Interpolated, MOST_PANELS),
+            (Interior::Resolved, MOST_RESOLVED_PANELS),
+        ] {
+            let uncertainty;
+            (work, uncertainty) = self.work(step, energies, ends, (interior, panels, allowed));
+            tolerance = allowed + uncertainty;
+            if (change - work).abs() <= tolerance {
+                return (work, tolerance);
+            }
+            // A part of the energy may be larger inside than at the ends.
+            let middle = 0.5 * (step.start.0 + step.end.0);
+            if let Some(state) = (step.inside)(middle, interior) {
+                let inside = self.allowed(energies, factor, &[(middle, &state)], &[]);
+                allowed = allowed.max(inside);
+                tolerance = allowed + uncertainty;
+            }
+        }
+        (work, tolerance)
+    }
+
+    /// Leaves out a step that cannot be judged, for a reason.
+    pub fn leave_out(
+        &mut self,
+        step: &ObservedStep<'_>,
+        energies: &mut Energies<'_>,
+        reason: &str,
+    ) {
+        self.raise_sizes(step.end.1);
+        let first = match self.energy {
+            Some(energy) => energy,
+            None => self.at(energies, step.start).energy,
+        };
+        let last = self.at(energies, step.end).energy;
+        let change = last - first - std::mem::take(&mut self.pending);
+        self.energy = Some(last);
+        self.audit.energy_change += change;
+        self.audit.unaudited += change;
+        let why = &mut self.audit.not_applicable;
+        why.get_or_insert_with(|| reason.to_owned());
+    }
+
+    /// Books an impact at time `t` (s) that changes the state, where contacts that move do this work (J).
+    pub fn impact(
+        &mut self,
+        t: f64,
+        (from, to): (&[f64], &[f64]),
+        work: f64,
+        energies: &mut Energies<'_>,
+    ) {
+        let before = self.at(energies, (t, from)).energy;
+        let after = self.at(energies, (t, to)).energy;
+        let change = after - before;
+        // The step that leads here ends behind the impact.
+        self.pending += change;
+        self.audit.energy_change += change;
+        if let Some(reason) = &self.driven_contacts {
+            self.audit.unaudited += change;
+            self.audit.not_applicable.get_or_insert(reason.clone());
+            return;
+        }
+        let gain = change - work;
+        self.audit.work += work;
+        self.audit.impacts += gain;
+        if gain > 0.0 {
+            let states = [(t, from), (t, to)];
+            let allowed = self.allowed(energies, ERROR_FACTOR, &states, &[before, after, work]);
+            self.judge(t, gain, allowed);
+        }
+    }
+
+    /// Why closed contacts are not judged, if they are not.
+    pub fn driven_contacts(&self) -> Option<&str> {
+        self.driven_contacts.as_deref()
+    }
+
+    pub(super) fn at(
+        &mut self,
+        energies: &mut Energies<'_>,
+        (t, state): (f64, &[f64]),
+    ) -> EnergyAt {
+        self.audit.evaluations += 1;
+        energies(t, state)
+    }
+
+    fn raise_sizes(&mut self, state: &[f64]) {
+        for (size, entry) in self.sizes.iter_mut().zip(state) {
+            *size = size.max(entry.abs());
+        }
+    }
+}

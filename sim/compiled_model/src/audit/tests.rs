@@ -1,0 +1,91 @@
+//! The auditor on motions that are known.
+
+use eomgen_sim::ode::ObservedStep;
+
+use super::{Audit, Auditor, Energies, EnergyAt};
+
+/// A mass of 1 kg on a spring of 1 N/m; its state is (x, v).
+fn oscillator(_: f64, state: &[f64]) -> EnergyAt {
+    EnergyAt {
+        energy: 0.5 * (state[0] * state[0] + state[1] * state[1]),
+        power: 0.0,
+    }
+}
+
+/// The audit of the oscillator's motion in steps of 0.1 s, tampered with from step 20 on.
+fn audited(tamper: impl Fn(&mut [f64; 2]), energies: &mut Energies<'_>) -> Audit {
+    let mut auditor = Auditor::new(Some(1e-9), &[1.0; 2], None);
+    let state = |t: f64| [t.cos(), -t.sin()];
+    for count in 0..40 {
+        let (t, next) = (0.1 * f64::from(count), 0.1 * f64::from(count + 1));
+        let (start, mut end) = (state(t), state(next));
+        if count >= 20 {
+            tamper(&mut end);
+        }
+        let mut step = ObservedStep {
+            start: (t, &start),
+            end: (next, &end),
+            inside: &mut |t, _| Some(state(t).to_vec()),
+        };
+        auditor.step(&mut step, energies);
+    }
+    auditor.audit().clone()
+}
+
+#[test]
+fn an_exact_motion_has_no_fault() {
+    let audit = audited(|_| {}, &mut oscillator);
+    assert_eq!(audit.faults, 0);
+    assert!(audit.evaluations < 40 * 20, "{}", audit.evaluations);
+}
+
+#[test]
+fn a_tampered_state_is_a_fault_with_its_time_and_size() {
+    let audit = audited(|state| state[1] *= 1.0 + 1e-4, &mut oscillator);
+    let fault = audit.first_fault.expect("a fault");
+    assert!((fault.t - 2.1).abs() < 1e-12);
+    let v: f64 = (2.1_f64).sin();
+    assert!((fault.size - 1e-4 * v * v).abs() < 1e-8, "{}", fault.size);
+}
+
+#[test]
+fn an_energy_that_jumps_beside_the_state_is_a_fault() {
+    // x falls through cos(2.05) between 2.0 and 2.1 s.
+    let wall = 2.05_f64.cos();
+    let mut jump = |t: f64, state: &[f64]| EnergyAt {
+        energy: oscillator(t, state).energy + f64::from(state[0] < wall),
+        power: 0.0,
+    };
+    let audit = audited(|_| {}, &mut jump);
+    let fault = audit.first_fault.expect("a fault");
+    assert!((fault.t - 2.1).abs() < 1e-12 && (fault.size - 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn work_that_is_done_is_no_fault_and_work_that_is_not_is_one() {
+    // The energy grows by 0.2 J/s by the work of a force, or by nothing.
+    let mut pushed = |t: f64, state: &[f64]| EnergyAt {
+        energy: oscillator(t, state).energy + 0.1 * t * t,
+        power: 0.2 * t,
+    };
+    let audit = audited(|_| {}, &mut pushed);
+    assert_eq!(audit.faults, 0);
+    assert!((audit.work - 1.6).abs() < 1e-12);
+    let mut idle = |t: f64, state: &[f64]| EnergyAt {
+        power: 0.0,
+        ..pushed(t, state)
+    };
+    assert_eq!(audited(|_| {}, &mut idle).faults, 40);
+}
+
+#[test]
+fn an_impact_may_lose_energy_and_not_gain_it() {
+    let mut auditor = Auditor::new(Some(1e-9), &[1.0; 2], None);
+    auditor.impact(1.0, (&[0.0, -1.0], &[0.0, 0.5]), 0.0, &mut oscillator);
+    assert_eq!(auditor.audit().faults, 0);
+    assert_eq!(auditor.audit().impacts, 0.5 * (0.25 - 1.0));
+    auditor.impact(2.0, (&[0.0, -1.0], &[0.0, 1.1]), 0.0, &mut oscillator);
+    let fault = auditor.audit().first_fault.expect("a fault");
+    assert_eq!(fault.t, 2.0);
+    assert!((fault.size - 0.5 * 0.21).abs() < 1e-12);
+}

@@ -1,0 +1,91 @@
+//! States kept on closed contacts, and bodies that overlap.
+
+use eomgen_codegen::independence::vectors::largest;
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
+
+use super::{CORRECTIONS, Contacts, OF_A_DISTANCE, Overlap, rounding_of};
+
+/// A distance this far below zero, beside the largest that a coordinate was, is no error of a step; nor is what
+/// corrections leave of the distance of a closed contact, beside what it was.
+const OVERLAP: f64 = 1e-6;
+
+impl Contacts {
+    /// Brings a state onto the closed contacts, opens those that would have to pull, and returns the number of
+    /// evaluations. A state in which bodies overlap is replaced by NaN, which ends the motion.
+    pub fn keep(
+        &mut self,
+        own: &mut Evaluator,
+        (t, inputs): (f64, &[f64]),
+        state: &mut [f64],
+    ) -> u64 {
+        let degrees = own.program().degrees_of_freedom();
+        self.size = self.size.max(largest(&state[..degrees]));
+        // A step that was taken back may have ended below.
+        self.overlap = None;
+        let mut arrived = vec![0.0; self.names.len()];
+        own.distances(Point { t, state, inputs }, &mut arrived);
+        if let Some(place) = self.overlapping_open(own, Point { t, state, inputs }, &arrived) {
+            return self.end_overlapping(place, state);
+        }
+        if self.closed.is_empty() {
+            return 0;
+        }
+        for _ in 0..CORRECTIONS {
+            own.impacts(Point { t, state, inputs }, &mut self.at);
+            let (coordinates, rates) = state.split_at_mut(degrees);
+            let corrections = self.balanced(&self.closed, |impact| impact.distance);
+            self.push(&self.closed, &corrections, coordinates);
+            let corrections = self.balanced(&self.closed, |impact| impact.rate);
+            self.push(&self.closed, &corrections, rates);
+        }
+        own.impacts(Point { t, state, inputs }, &mut self.at);
+        let is_left = |place: &&usize| {
+            let (before, after) = (arrived[**place], self.at[**place].distance);
+            is_below(after, OVERLAP * self.size.max(before.abs()))
+        };
+        if let Some(place) = self.closed.iter().find(is_left) {
+            return self.end_overlapping(*place, state);
+        }
+        let pulls = |(place, force): (&usize, f64)| force + self.allowances[*place] < 0.0;
+        if self.closed.iter().zip(self.forces()).any(pulls) {
+            let touching = std::mem::take(&mut self.closed);
+            self.close(&touching, rounding_of(state, degrees, t));
+        }
+        CORRECTIONS as u64 + 1
+    }
+
+    /// The first open contact whose distance is below zero by more than errors of steps, and by more than the
+    /// rounding of state, time and what it has covered since the start.
+    fn overlapping_open(
+        &mut self,
+        own: &mut Evaluator,
+        point: Point<'_>,
+        distances: &[f64],
+    ) -> Option<usize> {
+        let deepest = OVERLAP * self.size;
+        let mut open = (0..distances.len()).filter(|place| !self.closed.contains(place));
+        open.find(|place| is_below(distances[*place], deepest))?;
+        own.impacts(point, &mut self.at);
+        let degrees = own.program().degrees_of_freedom();
+        let located = rounding_of(point.state, degrees, point.t);
+        let elapsed = point.t - self.start.unwrap_or(point.t);
+        let rounding = |place: usize| {
+            let impact = &self.at[place];
+            let covered = elapsed * (impact.rate.abs() + elapsed * impact.acceleration.abs());
+            located + OF_A_DISTANCE * covered
+        };
+        let mut open = (0..distances.len()).filter(|place| !self.closed.contains(place));
+        open.find(|place| is_below(distances[*place], deepest + rounding(*place)))
+    }
+
+    fn end_overlapping(&mut self, place: usize, state: &mut [f64]) -> u64 {
+        self.overlap = Some((place, Overlap::Penetrated));
+        state.fill(f64::NAN);
+        1
+    }
+}
+
+/// Whether a distance is below zero by more than is allowed, or is no number.
+fn is_below(distance: f64, allowed: f64) -> bool {
+    distance < -allowed || distance.is_nan()
+}

@@ -1,0 +1,39 @@
+//! The work of contacts that move: a force F of one whose distance g(q, t) changes with the time does work with
+//! the power F g_q q' = F (g' - g_t), an impulse P the work -P g_t beside what restitution loses.
+
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
+
+use super::Contacts;
+
+impl Contacts {
+    /// Power (W) of the forces of the closed contacts.
+    pub fn power(&mut self, own: &mut Evaluator, point: Point<'_>) -> f64 {
+        if self.closed.is_empty() {
+            return 0.0;
+        }
+        let drifts = self.drifts(own, point);
+        own.impacts(point, &mut self.at);
+        let forces = self.closed.iter().zip(self.forces());
+        forces
+            .map(|(place, force)| force * (self.at[*place].rate - drifts[*place]))
+            .sum()
+    }
+
+    /// Work (J) of the contacts that move in the last impact.
+    pub fn impact_work(&self) -> f64 {
+        self.impact_work
+    }
+
+    /// The rate g_t of each distance where no coordinate moves.
+    pub(super) fn drifts(&mut self, own: &mut Evaluator, point: Point<'_>) -> Vec<f64> {
+        let degrees = own.program().degrees_of_freedom();
+        let mut state = point.state.to_vec();
+        state[degrees..2 * degrees].fill(0.0);
+        let still = Point {
+            state: &state,
+            ..point
+        };
+        own.impacts(still, &mut self.at);
+        self.at.iter().map(|impact| impact.rate).collect()
+    }
+}
