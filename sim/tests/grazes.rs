@@ -112,3 +112,59 @@ fn a_swing_that_stays_before_the_wall_has_no_contact() {
         assert_eq!(far.work.evaluations, free.work.evaluations, "{method:?}");
     }
 }
+
+/// x'' = 500, less v beyond a wall far from the origin.
+struct FarWall;
+
+impl FarWall {
+    const PLACE: f64 = 4.117_640_416_056_029;
+}
+
+impl System for FarWall {
+    fn states(&self) -> usize {
+        2
+    }
+
+    fn rates(&self, _: f64, y: &[f64], out: &mut [f64]) {
+        let drag = if y[0] > Self::PLACE {
+            100.0 * y[1]
+        } else {
+            0.0
+        };
+        out.copy_from_slice(&[y[1], 500.0 - drag]);
+    }
+
+    fn guard_count(&self) -> usize {
+        1
+    }
+
+    fn guards(&self, _: f64, y: &[f64], out: &mut [f64]) {
+        out[0] = y[0] - Self::PLACE;
+    }
+}
+
+#[test]
+fn a_wall_is_crossed_where_the_place_moves_by_less_than_its_rounding() {
+    for (method, distance) in [
+        (Method::DormandPrince853, 4e-9),
+        (Method::DormandPrince853, 4e-12),
+        (Method::Radau, 4e-9),
+        (Method::Adams, 4e-9),
+    ] {
+        let settings = Settings {
+            method,
+            max_steps: 10_000,
+            ..Settings::with_tolerance(1e-12)
+        };
+        let initial = [FarWall::PLACE - distance, 2e-7];
+        let motion = simulate(&FarWall, &initial, (0.0, 1e-3), &[], &settings, &mut |_| {});
+        let motion = motion.unwrap_or_else(|error| panic!("{method:?} {distance}: {error}"));
+        // v = 5 (1 - exp(-100 t)) beyond.
+        let before = (2.0 * distance / 500.0_f64).sqrt();
+        let entered = 500.0 * before;
+        let decayed = (-100.0 * (1e-3 - before)).exp();
+        let expected = 5.0 + (entered - 5.0) * decayed;
+        let error = (motion.last[1] - expected).abs();
+        assert!(error < 1e-6, "{method:?} {distance}: {error}");
+    }
+}

@@ -125,20 +125,21 @@ pub struct Stages {
 
 impl Stages {
     /// The stages of a step from `start` with these `factors`, starting from the polynomial of the
-    /// step before if there is one. Where Newton's method does not converge, the error holds the
-    /// stages that it came to. Its iterates are not looked at: where they are means nothing.
+    /// step before if there is one. If Newton's method does not converge, the error holds its last two
+    /// iterates: across a surface it may jump to and fro.
     pub fn solve<S: System + ?Sized>(
         watched: &Watched<'_, S>,
         start: &Point,
         factors: &Factors,
         before: Option<&Self>,
         magnitudes: &Magnitudes,
-    ) -> Result<Self, Self> {
+    ) -> Result<Self, [Self; 2]> {
         let (length, states) = (factors.length, start.y.len());
         let mut z = match before {
             Some(before) => nodes().map(|node| before.beyond(node * length)),
             None => [(); 3].map(|()| DVector::zeros(states)),
         };
+        let mut z_before = z.clone();
         let mut w = transformed(&T_INVERSE, &z);
         let tolerance = magnitudes.tolerance();
         let enough = STAGES.min(tolerance.sqrt());
@@ -160,7 +161,7 @@ impl Stages {
             for (w, change) in w.iter_mut().zip(&change) {
                 *w += change;
             }
-            z = transformed(&T, &w);
+            z_before = std::mem::replace(&mut z, transformed(&T, &w));
             let is_first = iterations == 1;
             if !is_first {
                 contraction = size / last_change;
@@ -186,12 +187,12 @@ impl Stages {
             }
             last_change = size;
         }
-        Err(Self {
+        Err([z_before, z].map(|z| Self {
             z,
             length,
             iterations: MOST_ITERATIONS,
             contraction,
-        })
+        }))
     }
 
     /// Notices if a stage lies beyond a surface.

@@ -253,9 +253,13 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     /// Takes an accepted step of `length` s back that did not see what switching functions do, for a shorter
     /// one; else keeps the next one so short that it will.
     fn shortened(&mut self, values: &[Vec<f64>; 5], length: f64) -> bool {
-        let longest = self
-            .resolution
-            .longest(values, |guard| self.watched.side(guard));
+        let side = |guard| self.watched.side(guard);
+        let mut longest = self.resolution.longest(values, side, &[]);
+        if longest < 1.0 {
+            let start = self.stepper.last();
+            let roundings = self.watched.guard_roundings(start.t, &start.y);
+            longest = self.resolution.longest(values, side, &roundings);
+        }
         let is_seen = longest >= 1.0;
         if is_seen {
             let step = self.stepper.step();
@@ -340,8 +344,8 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         }
         if let Some(y) = self.projected.take() {
             check_finite(begin, &y)?;
-            self.stepper.restart(Point { t, y }, self.stepper.step());
-            self.stepper.settle(self.projected.is_some());
+            self.stepper.correct(y);
+            self.stepper.settle(false);
         }
         while let Some(sample) = self.next_sample().filter(|sample| *sample <= t) {
             self.trajectory.times.push(sample);

@@ -5,6 +5,7 @@ use super::dormand_prince::single_step;
 use super::driver::{Accepted, Driver};
 use super::error::SolveError;
 use super::grazing::leapt_over;
+use super::resolution::ROUNDINGS;
 use super::stepper::{Point, Stepper};
 use super::system::System;
 
@@ -68,7 +69,8 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     /// resolved, and goes on with steps of `length`.
     fn step_over(&mut self, mut window: f64, length: f64) -> Result<(), SolveError> {
         let start = self.stepper.here().clone();
-        while window < length {
+        let mut last = 0.0;
+        while last < length {
             self.check_steps()?;
             self.trajectory.work.trials += 1;
             let Some(mut point) = self.resolved_step(&start, window) else {
@@ -91,7 +93,8 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
                     return Ok(());
                 }
             }
-            window *= 4.0;
+            last = window;
+            window = (4.0 * window).min(length);
         }
         // The surface was touched, by a trial state or by the motion, and not crossed by a step that
         // meets the tolerance.
@@ -101,7 +104,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
 
     /// The point that a step of `window` s leads to from `start`, if the step meets the tolerance. The error
     /// estimate of a method means nothing across a surface: the step must be so short that the rates
-    /// at neither end lead to another point, or as short as times can be told apart. Such a step is explicit
+    /// at neither end lead to another point, or as short as times or states can be told apart. Such a step is explicit
     /// for every method: Newton's method may not converge across a jump, and nothing is stiff in it.
     fn resolved_step(&self, start: &Point, window: f64) -> Option<Point> {
         self.watched.reset();
@@ -117,7 +120,25 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             self.stepper.magnitudes().norm(errors, &point.y) <= 1.0
         };
         let is_shortest = window <= SHORTEST_WINDOW * self.shortest_step();
-        (is_shortest || [near, beyond].iter().all(is_resolved)).then_some(point)
+        let is_taken = is_shortest
+            || [near, beyond].iter().all(is_resolved)
+            || self.moves_by_rounding(start, &point);
+        is_taken.then_some(point)
+    }
+
+    /// Whether a step crosses a surface, and moves the switching functions of all that it crosses by their
+    /// rounding: no shorter one may cross them.
+    fn moves_by_rounding(&self, start: &Point, end: &Point) -> bool {
+        let [from, to] = [start, end].map(|point| self.watched.guards_at(point.t, &point.y));
+        let crossed = (0..to.len()).filter(|guard| self.watched.is_beyond(*guard, to[*guard]));
+        let crossed: Vec<usize> = crossed.collect();
+        if crossed.is_empty() {
+            return false;
+        }
+        let roundings = self.watched.guard_roundings(start.t, &start.y);
+        let is_rounding =
+            |guard: &usize| (to[*guard] - from[*guard]).abs() <= ROUNDINGS * roundings[*guard];
+        crossed.iter().all(is_rounding)
     }
 
     /// The same whatever its error, where the rates of the near side have no value beyond the surface, and

@@ -96,6 +96,12 @@ impl Stepper for Radau {
         self.step = step;
     }
 
+    /// The stages of the last step still predict those of the next one, and its error the length.
+    fn correct(&mut self, y: Vec<f64>) {
+        self.here.y = y;
+        self.rates = None;
+    }
+
     fn magnitudes(&self) -> &Magnitudes {
         &self.magnitudes
     }
@@ -131,9 +137,11 @@ impl Stepper for Radau {
         };
         let stages = match solved {
             Ok(stages) => stages,
-            Err(stages) => {
+            Err(iterates) => {
                 // A surface may be what makes it hard.
-                stages.look(watched, &self.here);
+                for stages in iterates {
+                    stages.look(watched, &self.here);
+                }
                 self.refuse(0.5 * length);
                 return Ok(outcome(false));
             }

@@ -19,6 +19,9 @@ const WITHIN_REACH: f64 = 20.0;
 /// In units of the tolerance, what a function's values inside a step may be off by.
 const ERRORS: f64 = 10.0;
 
+/// So many roundings of a function count as none of its moves.
+pub const ROUNDINGS: f64 = 8.0;
+
 /// The parts of a step where functions are asked.
 pub const PARTS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
@@ -40,8 +43,14 @@ impl Resolution {
     }
 
     /// The values of the functions at [`PARTS`] of a step, and the sides on which it began: by which factor
-    /// a step is longer at most that still sees all, or shorter than 1 where this one did not.
-    pub fn longest(&self, values: &[Vec<f64>; 5], sides: impl Fn(usize) -> f64) -> f64 {
+    /// a step is longer at most that still sees all, or shorter than 1 where this one did not. Moves within the
+    /// `roundings` of the functions, where these are known, are none.
+    pub fn longest(
+        &self,
+        values: &[Vec<f64>; 5],
+        sides: impl Fn(usize) -> f64,
+        roundings: &[f64],
+    ) -> f64 {
         let mut longest = f64::INFINITY;
         for guard in 0..values[0].len() {
             let side = sides(guard);
@@ -49,7 +58,8 @@ impl Resolution {
             let before = self.sizes.get(guard).copied().unwrap_or(0.0);
             let size = largest(samples, before);
             if side != 0.0 {
-                longest = longest.min(factor(samples, self.error * size));
+                let rounding = ROUNDINGS * roundings.get(guard).copied().unwrap_or(0.0);
+                longest = longest.min(factor(samples, rounding.max(self.error * size)));
             }
         }
         longest
@@ -96,7 +106,7 @@ mod tests {
 
     fn of(function: impl Fn(f64) -> f64, length: f64) -> f64 {
         let values = PARTS.map(|part| vec![function(part * length)]);
-        Resolution::new(1e-9).longest(&values, |_| 1.0)
+        Resolution::new(1e-9).longest(&values, |_| 1.0, &[])
     }
 
     #[test]
@@ -119,7 +129,7 @@ mod tests {
             let (mut t, mut length) = (0.1, 1e-6);
             while t < 1000.0 {
                 let values = PARTS.map(|part| vec![offset + (t + part * length).sin()]);
-                let longest = resolution.longest(&values, |_| 1.0);
+                let longest = resolution.longest(&values, |_| 1.0, &[]);
                 if longest >= 1.0 {
                     resolution.settle(&values);
                     t += length;

@@ -43,6 +43,12 @@ pub trait Stepper: Sized {
     /// `step` (s) at most and without relying on what came before.
     fn restart(&mut self, point: Point, step: f64);
 
+    /// Goes on from a state that replaces the one here and differs from it by errors of the last step.
+    fn correct(&mut self, y: Vec<f64>) {
+        let t = self.here().t;
+        self.restart(Point { t, y }, self.step());
+    }
+
     /// Scales of the errors. They follow the states of the trajectory alone; see
     /// [`Stepper::settle`].
     fn magnitudes(&self) -> &Magnitudes;

@@ -142,7 +142,23 @@ impl<'a, S: System + ?Sized> Watched<'a, S> {
         guards
     }
 
-    /// The same where nothing jumps yet at the end of a step; see [`Watched::see_until`].
+    /// By how much the rounding of `y` changes the switching functions there.
+    pub fn guard_roundings(&self, t: f64, y: &[f64]) -> Vec<f64> {
+        let here = self.guards_at(t, y);
+        let mut roundings = vec![0.0; here.len()];
+        let mut beside = y.to_vec();
+        for (place, entry) in y.iter().enumerate() {
+            beside[place] = entry.next_up();
+            let guards = self.guards_at(t, &beside);
+            beside[place] = *entry;
+            for (rounding, (guard, here)) in roundings.iter_mut().zip(guards.iter().zip(&here)) {
+                *rounding += (guard - here).abs();
+            }
+        }
+        roundings
+    }
+
+    /// The same as [`Watched::guards_at`] where nothing jumps yet at the end of a step; see [`Watched::see_until`].
     pub fn guards_seen(&self, t: f64, y: &[f64]) -> Vec<f64> {
         self.guards_at(self.seen(t), y)
     }
