@@ -1,15 +1,11 @@
 //! The change of an energy that errors of a solver explain.
 
-use super::auditor::Auditor;
-use super::{Energies, EnergyAt};
+use super::EnergyAt;
 
 /// How many times the energy may change by an error that the tolerance allows in every entry of
 /// the state, where no estimate of an error is relied on: from step to step, in the short step over
 /// a surface, at an impact.
 pub(crate) const ERROR_FACTOR: f64 = 30.0;
-
-/// Roundings of an energy that count as none.
-const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 
 /// Roundings of a time within which solvers locate a jump of the rates.
 const LOCATED: f64 = 16.0 * f64::EPSILON;
@@ -18,32 +14,6 @@ const LOCATED: f64 = 16.0 * f64::EPSILON;
 /// acts from a time on that is known to that rounding.
 pub(super) fn unlocated_work(t: f64, (first, last): (EnergyAt, EnergyAt)) -> f64 {
     LOCATED * t.abs() * first.power.abs().max(last.power.abs())
-}
-
-impl Auditor {
-    /// The change of the energy that errors at these states explain.
-    pub(super) fn allowed(
-        &mut self,
-        energies: &mut Energies<'_>,
-        factor: f64,
-        states: &[(f64, &[f64])],
-        values: &[f64],
-    ) -> f64 {
-        let mut largest: f64 = 0.0;
-        for (t, state) in states {
-            let mut evaluations = 0;
-            let energy = &mut |state: &[f64]| {
-                evaluations += 1;
-                energies(*t, state).energy
-            };
-            largest = largest.max(allowed_change(state, &self.sizes, self.tolerance, energy));
-            self.audit.evaluations += evaluations;
-        }
-        let rounding = values
-            .iter()
-            .fold(0.0_f64, |most, value| most.max(value.abs()));
-        factor * largest + ROUNDINGS * rounding
-    }
 }
 
 /// The change of a quantity of the state that errors explain: the sum over the entries of the

@@ -2,7 +2,7 @@
 
 use eomgen_sim::ode::{Interior, ObservedStep, UNMOVED_PART};
 
-use super::allowed::{ERROR_FACTOR, unlocated_work};
+use super::allowed::{ERROR_FACTOR, allowed_change, unlocated_work};
 use super::{Audit, Energies, EnergyAt, Imbalance};
 
 /// How many times the energy may change by an error that the tolerance allows in every entry of the state, in a
@@ -21,19 +21,22 @@ const MOST_PANELS: usize = 4096;
 /// The same by states that take a step each.
 const MOST_RESOLVED_PANELS: usize = 16;
 
+/// Roundings of an energy that count as none.
+const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
+
 /// The tolerance of a solver without one.
 const EXACT_TOLERANCE: f64 = 1e-9;
 
 /// Keeps the energy balance of a motion while it goes on.
 #[derive(Debug)]
 pub(crate) struct Auditor {
-    pub(super) tolerance: f64,
+    tolerance: f64,
     /// Whether steps have no error but rounding.
     is_exact: bool,
     /// Why contacts are not judged, if they are not.
     driven_contacts: Option<String>,
     /// The largest that each entry of the state has been.
-    pub(super) sizes: Vec<f64>,
+    sizes: Vec<f64>,
     /// The energy behind the last step.
     energy: Option<f64>,
     /// What impacts have changed of it since, J.
@@ -227,5 +230,29 @@ impl Auditor {
         for (size, entry) in self.sizes.iter_mut().zip(state) {
             *size = size.max(entry.abs());
         }
+    }
+
+    /// The change of the energy that errors at these states explain.
+    fn allowed(
+        &mut self,
+        energies: &mut Energies<'_>,
+        factor: f64,
+        states: &[(f64, &[f64])],
+        values: &[f64],
+    ) -> f64 {
+        let mut largest: f64 = 0.0;
+        for (t, state) in states {
+            let mut evaluations = 0;
+            let energy = &mut |state: &[f64]| {
+                evaluations += 1;
+                energies(*t, state).energy
+            };
+            largest = largest.max(allowed_change(state, &self.sizes, self.tolerance, energy));
+            self.audit.evaluations += evaluations;
+        }
+        let rounding = values
+            .iter()
+            .fold(0.0_f64, |most, value| most.max(value.abs()));
+        factor * largest + ROUNDINGS * rounding
     }
 }
