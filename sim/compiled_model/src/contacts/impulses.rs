@@ -110,7 +110,8 @@ impl Contacts {
         self.stop_closed(own, (t, inputs), state);
     }
 
-    /// Takes what is left of the rates of closed contacts, where the next flight would be none.
+    /// Takes what is left of the rates of closed contacts that move, which do work by that. Where none moves
+    /// this is left to the correction of the state.
     fn stop_closed(&mut self, own: &mut Evaluator, (t, inputs): (f64, &[f64]), state: &mut [f64]) {
         if self.closed.is_empty() {
             return;
@@ -118,6 +119,9 @@ impl Contacts {
         let degrees = own.program().degrees_of_freedom();
         let drifts = self.drifts(own, Point { t, state, inputs });
         own.impacts(Point { t, state, inputs }, &mut self.at);
+        if self.closed.iter().all(|place| drifts[*place] == 0.0) {
+            return;
+        }
         let impulses = self.balanced(&self.closed, |impact| impact.rate);
         self.push(&self.closed, &impulses, &mut state[degrees..2 * degrees]);
         self.impact_work -= work_against(&drifts, &self.closed, &impulses);
