@@ -139,8 +139,8 @@ pub const PRIOR_REACH: f64 = 3.0;
 /// four hundred is by chance.
 pub const SHIFTED: f64 = 3.0;
 
-/// How much wider uncertainties are than a straight line at the estimate makes them: rounding by
-/// encoders that goes with the signal, initial states that hold each other, and the bends of the
+/// How much wider uncertainties of effects are than a straight line at the estimate makes them: rounding
+/// by encoders that goes with the signal, initial states that hold each other, and the bends of the
 /// model are not in it. Of some forty estimates of effects made for this, two in three were
 /// within 1.645 of the narrower ones.
 pub const WIDER: f64 = 1.8;
@@ -246,6 +246,11 @@ pub const MOST_STEP_DOUBLINGS: u32 = 7;
 /// The root mean square error of steps of one length, in standard deviations of the noise, with which
 /// a simulation is compared.
 pub const STEP_ERROR: f64 = 0.2;
+
+/// The root of the sum of squares, over all numbers of the records, of the error of Runge-Kutta steps, in
+/// standard deviations of the noise: it moves no estimate by more than this part of its standard
+/// deviation.
+pub const SUMMED_STEP_ERROR: f64 = 0.1;
 
 /// Relative error of one step of the solver with error control: far below any sensor's noise.
 pub const SOLVER_TOLERANCE: f64 = 1e-7;
@@ -376,12 +381,15 @@ pub const TANGENT_ERROR: f64 = 0.1;
 /// rounding, and its error falls with the square.
 pub const CENTRAL_QUOTIENT: f64 = 0.001;
 
-/// The most Gauss-Newton steps along what the records hardly show: such a valley is curved, and the
-/// better it is seen, the shorter they are.
-pub const VALLEY_STEPS: usize = 12;
+/// The most of the last Gauss-Newton steps of a fit: a valley along what the records hardly show is
+/// curved, and the better it is seen, the shorter they are.
+pub const LAST_STEPS: usize = 12;
 
-/// Steps along what the records hardly show go on while they lower the cost by this part of what
-/// one standard deviation is worth.
+/// Corrections of a step for its curvature: each takes away most of what the one before left.
+pub const CORRECTIONS: usize = 4;
+
+/// The last steps of a fit go on while they lower the cost by this part of what one standard deviation
+/// is worth.
 pub const LEAST_INFORMATION: f64 = 0.01;
 
 /// A sensor's, whose outputs are linear in it, over this part.

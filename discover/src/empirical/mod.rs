@@ -245,7 +245,7 @@ fn simplest(
         let fit = fitted(problem, before, &candidate, &expression)?;
         let (first, count) = (before.unknowns.len(), expression.terms.len());
         let (own, kinks) = fit.train.estimate.theta[first..].split_at(count);
-        let sizes = own.iter().zip(&fit.sd[first..]);
+        let sizes = own.iter().zip(&fit.wider_sd[first..]);
         let t: Vec<f64> = sizes.map(|(value, sd)| (value / sd).abs()).collect();
         let weakest = (0..t.len()).min_by(|a, b| t[*a].total_cmp(&t[*b]));
         match weakest.filter(|term| t.len() > 1 && t[*term] < thresholds::SIGNIFICANCE) {

@@ -111,7 +111,7 @@ fn is_held(fit: &Fit) -> bool {
 
 /// A fit's unknowns with their standard deviations.
 fn estimates(fit: &Fit) -> Vec<(f64, f64)> {
-    let pairs = fit.train.estimate.theta.iter().zip(&fit.sd);
+    let pairs = fit.train.estimate.theta.iter().zip(&fit.wider_sd);
     pairs.map(|(value, sd)| (*value, *sd)).collect()
 }
 

@@ -19,11 +19,11 @@ pub struct Fit {
     pub model: EstimationModel,
     /// What was estimated.
     pub unknowns: Vec<Unknown>,
-    /// One standard deviation of each, with correlated residuals allowed for.
+    /// One standard deviation of each if the model is right, with correlated residuals allowed for and
+    /// no window's initial state known from the window before.
     pub sd: Vec<f64>,
-    /// The same where no window's initial state is known from the window before: what is carried at
-    /// these unknowns does not hold at others, and makes scales more certain than they are.
-    pub sd_without_carried: Vec<f64>,
+    /// The same by which effects are judged, [`thresholds::WIDER`]: their model may be wrong.
+    pub wider_sd: Vec<f64>,
     /// How far off each would be by a misfit of one standard deviation of the noise in every sample
     /// that looks like what the unknown does.
     pub by_alike_misfit: Vec<f64>,
@@ -57,7 +57,7 @@ impl Fit {
     pub fn sd_beside_misfit(&self, id: UnknownId, floor: f64) -> f64 {
         let left = (self.train.rms.powi(2) - floor.powi(2)).max(0.0).sqrt();
         let misfit = thresholds::MISFIT_ALIKE * left * self.by_alike_misfit[id];
-        self.sd_without_carried[id].hypot(misfit)
+        self.wider_sd[id].hypot(misfit)
     }
 
     /// Unknowns to begin with where something is added: parameters and sensors that took up what

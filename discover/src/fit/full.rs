@@ -5,13 +5,13 @@ use crate::error::DiscoverError;
 use crate::fit::continuation::{continuation, continuation_by_secants, secants};
 use crate::fit::fitted::Fit;
 use crate::fit::gauss_newton::{Estimate, damped_gauss_newton, derivatives_at, evaluated};
-use crate::fit::initial_states::{self, carried, following};
+use crate::fit::initial_states::{self, carry, following};
 use crate::fit::preliminary::{self, PreliminaryFit};
 use crate::fit::prior::{InitialStatePrior, InitialStates};
 use crate::fit::residuals::Residuals;
 use crate::fit::shooting::Shooting;
-use crate::fit::uncertainty::{Uncertainty, uncertainties};
-use crate::fit::whole_motions::{is_ill_conditioned, refined};
+use crate::fit::uncertainty::uncertainties;
+use crate::fit::whole_motions::{settled, whitening};
 use crate::ids::WindowId;
 use crate::model::problem::EstimationProblem;
 use crate::model::specification_texts::SpecificationTexts;
@@ -80,28 +80,29 @@ pub fn complete(
         is_far,
     } = converged(problem, &mut all, near, preliminary.most);
     let prior_weight = all.prior_weight;
-    let loose = prior.without_carried();
-    let mut tangents = derivatives_at(&all, &train.estimate);
-    let mut differences = None;
-    if !is_far && is_ill_conditioned(&all, &loose, &train.estimate.initial_states, &tangents) {
-        let (estimate, by_motions) = refined(&all, &loose, train.estimate);
-        carry(&all, &mut prior, &estimate.theta, &estimate.initial_states);
-        train = Residuals::of(&all, estimate);
-        tangents = derivatives_at(&all, &train.estimate);
-        differences = Some(by_motions);
-    }
+    // What the motion carries from window to window holds at these unknowns, not at others: it would
+    // hold the estimate where it is, and make it more certain than it is.
+    let mut loose = prior.without_carried();
+    let derivatives = match is_far {
+        true => derivatives_at(&all, &train.estimate),
+        false => {
+            loose.whitening = whitening(&all, &train.estimate);
+            let (estimate, derivatives) = settled(&all, &mut loose, train.estimate);
+            carry(&all, &mut prior, &estimate.theta, &estimate.initial_states);
+            train = Residuals::of(&all, estimate);
+            derivatives
+        }
+    };
     let estimate = &train.estimate;
-    // Tangents through impacts grow without bound, secants and differences of motions that ended in
-    // other folds are too steep: any of them would make unknowns too certain.
+    // Tangents through impacts grow without bound, secants of motions that ended in other folds are
+    // too steep: either would make unknowns too certain.
     let secants = is_followed.then(|| {
         let horizons = thresholds::HORIZONS.len();
         let follow = following(problem, &all, &preliminary.ranges, horizons);
-        secants(&all, estimate, tangents.clone(), &follow)
+        secants(&all, estimate, derivatives.clone(), &follow)
     });
-    let mut linear: Vec<_> = [Some(tangents), secants].into_iter().flatten().collect();
-    let known = uncertainties(&all, &prior, estimate, &linear);
-    linear.extend(differences);
-    let without_carried = uncertainties(&all, &loose, estimate, &linear);
+    let linear: Vec<_> = [Some(derivatives), secants].into_iter().flatten().collect();
+    let known = uncertainties(&all, &loose, estimate, &linear);
     let held_out = Shooting {
         windows: &problem.test,
         prior_weight: 1.0,
@@ -119,15 +120,15 @@ pub fn complete(
     // A fit worse than noise does not know its unknowns better than its own misfit allows.
     let inflation = train.inflation();
     let numbers = problem.train.numbers();
-    let sd = |known: &[Uncertainty]| {
-        let sds = known.iter().map(|known| known.sd(thresholds::WIDER));
+    let sd = |wider: f64| {
+        let sds = known.iter().map(|known| known.sd(wider));
         sds.map(|sd| sd * inflation.sqrt()).collect()
     };
-    let by_noise = without_carried.iter().map(|known| known.by_noise);
+    let by_noise = known.iter().map(|known| known.by_noise);
     Ok(Fit {
         by_alike_misfit: by_noise.map(|sd| sd * numbers.sqrt()).collect(),
-        sd_without_carried: sd(&without_carried),
-        sd: sd(&known),
+        sd: sd(1.0),
+        wider_sd: sd(thresholds::WIDER),
         texts: preliminary.texts,
         unknowns: preliminary.unknowns,
         ranges: preliminary.ranges,
@@ -304,20 +305,4 @@ fn refreshed(
     carry(shooting, &mut prior, &found.theta, &initial_states);
     let found = evaluated(shooting, &prior, found.theta, initial_states);
     (prior, found)
-}
-
-/// Takes for known of each window what the motion of the one before carries there: it holds at these
-/// unknowns, not at others.
-fn carry(
-    shooting: &Shooting<'_>,
-    prior: &mut InitialStatePrior,
-    theta: &[f64],
-    initial_states: &[Vec<f64>],
-) {
-    let carried = carried(shooting, theta, initial_states);
-    for (mean, carried) in prior.mean.iter_mut().zip(carried) {
-        if let Some(carried) = carried {
-            *mean = carried;
-        }
-    }
 }

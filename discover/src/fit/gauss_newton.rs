@@ -162,18 +162,29 @@ pub(crate) fn reduced_blocks(
 }
 
 /// The next estimate, if there is one that is better.
-pub(crate) fn step(
+fn step(
     shooting: &Shooting<'_>,
     prior: &InitialStatePrior,
     present: &Estimate,
     linear: &[Option<WindowDerivatives>],
+) -> Option<Estimate> {
+    step_with(shooting, prior, present, linear, |next| next)
+}
+
+/// Returns the next estimate after a correction, if there is one that is better.
+pub(crate) fn step_with(
+    shooting: &Shooting<'_>,
+    prior: &InitialStatePrior,
+    present: &Estimate,
+    linear: &[Option<WindowDerivatives>],
+    correction: impl Fn(Estimate) -> Estimate,
 ) -> Option<Estimate> {
     let windows = reduced_blocks(prior, present, linear);
     for damping in thresholds::STEP_DAMPING {
         let change = change_of_unknowns(shooting, present, &windows, damping);
         for part in thresholds::STEP_PARTS {
             let theta = moved_unknowns(shooting, present, &change, part);
-            let next = followed(shooting, prior, present, &windows, theta);
+            let next = correction(followed(shooting, prior, present, &windows, theta));
             if next.cost < present.cost {
                 return Some(next);
             }
@@ -277,6 +288,62 @@ pub(crate) fn followed(
         ..
     } = best;
     totalled(shooting, prior, theta, initial_states, squares)
+}
+
+/// Corrects the initial states after a long step of the unknowns: by steps with the derivatives where that
+/// step began and the residuals where it ended, for each window as long as that helps.
+pub(crate) fn with_states_corrected(
+    shooting: &Shooting<'_>,
+    prior: &InitialStatePrior,
+    estimate: Estimate,
+    near: &[Option<WindowDerivatives>],
+) -> Estimate {
+    if shooting.ranges.is_none() {
+        return estimate;
+    }
+    let held = DVector::zeros(shooting.unknowns.len());
+    let mut best = estimate;
+    for _ in 0..thresholds::CORRECTIONS {
+        let residuals = shooting.residuals(&best.theta, &best.initial_states);
+        let windows = WindowId::first(residuals.len()).zip(residuals).zip(near);
+        let moved = windows.map(|((window, residual), near)| {
+            let start = &best.initial_states[window];
+            let step = residual.zip(near.as_ref()).and_then(|(residual, near)| {
+                let here = WindowDerivatives {
+                    residual: DVector::from_vec(residual.values),
+                    ..near.clone()
+                };
+                reduced_block(&here, prior, window, start).initial_state_step(&held, 0.0, prior)
+            });
+            match step {
+                Some(step) => {
+                    let moved = start.iter().zip(step.iter()).map(|(x, d)| x + d);
+                    shooting.model.admissible(moved.collect())
+                }
+                None => start.clone(),
+            }
+        });
+        let moved: Vec<Vec<f64>> = moved.collect();
+        let corrected = evaluated(shooting, prior, best.theta.clone(), moved);
+        let before = best.cost;
+        for window in WindowId::first(best.squares.len()) {
+            if total(&corrected, prior, window) < total(&best, prior, window) {
+                best.squares[window] = corrected.squares[window];
+                best.initial_states[window].clone_from(&corrected.initial_states[window]);
+            }
+        }
+        let Estimate {
+            theta,
+            initial_states,
+            squares,
+            ..
+        } = best;
+        best = totalled(shooting, prior, theta, initial_states, squares);
+        if before - best.cost < thresholds::LEAST_INFORMATION * shooting.prior_weight {
+            break;
+        }
+    }
+    best
 }
 
 fn total(estimate: &Estimate, prior: &InitialStatePrior, window: WindowId) -> f64 {

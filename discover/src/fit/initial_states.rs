@@ -187,6 +187,7 @@ fn followed(
             mean,
             sd: known.sd.to_vec(),
             sources: known.sources.to_vec(),
+            whitening: None,
         },
         states,
     }
@@ -248,6 +249,7 @@ impl Chain<'_> {
             mean: vec![Vec::new(); list.len()],
             sd: self.known.sd.to_vec(),
             sources: self.known.sources.to_vec(),
+            whitening: None,
         };
         let mut found = Vec::with_capacity(windows.len());
         for id in windows {
@@ -309,4 +311,20 @@ fn read_smoothed(
         }
     }
     Ok(initial_states)
+}
+
+/// Takes for known of each window what the motion of the one before carries there: it holds at these
+/// unknowns, not at others.
+pub(crate) fn carry(
+    shooting: &Shooting<'_>,
+    prior: &mut InitialStatePrior,
+    theta: &[f64],
+    initial_states: &[Vec<f64>],
+) {
+    let carried = carried(shooting, theta, initial_states);
+    for (mean, carried) in prior.mean.iter_mut().zip(carried) {
+        if let Some(carried) = carried {
+            *mean = carried;
+        }
+    }
 }

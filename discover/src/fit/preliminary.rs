@@ -137,6 +137,7 @@ pub fn expected(
             false => spread(&ranges),
         },
         sources: fit.prior.sources.clone(),
+        whitening: None,
     };
     Ok(PreliminaryFit {
         cost,

@@ -2,6 +2,7 @@
 
 use crate::ids::WindowId;
 use crate::thresholds;
+use nalgebra::{DMatrix, DVector};
 
 /// Where that comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,6 +25,9 @@ pub struct InitialStatePrior {
     pub sd: Vec<f64>,
     /// Where each mean comes from; all are carried where nothing stands here.
     pub sources: Vec<Source>,
+    /// Rows that bring measured initial states to unit variance, where it is known how states move
+    /// together.
+    pub whitening: Option<DMatrix<f64>>,
 }
 
 impl InitialStatePrior {
@@ -32,8 +36,33 @@ impl InitialStatePrior {
         let Some(mean) = self.mean.get(window.index()) else {
             return 0.0;
         };
-        let terms = start.iter().zip(mean).zip(self.sd_in(window));
-        terms.map(|((x, m), sd)| ((x - m) / sd).powi(2)).sum()
+        let deviation = start.iter().zip(mean).map(|(x, m)| x - m);
+        let deviation = DVector::from_iterator(start.len().min(mean.len()), deviation);
+        (self.rows(window) * deviation).norm_squared()
+    }
+
+    /// Rows of the least-squares problem of a window's initial state: a deviation from the mean times these
+    /// is in standard deviations.
+    pub fn rows(&self, window: WindowId) -> DMatrix<f64> {
+        let source = self.sources.get(window.index());
+        match (&self.whitening, source) {
+            (Some(rows), Some(Source::Measured)) => rows.clone(),
+            _ => {
+                let weights = self.sd_in(window).map(|sd| 1.0 / sd);
+                DMatrix::from_diagonal(&DVector::from_iterator(self.sd.len(), weights))
+            }
+        }
+    }
+
+    /// Rows that damp a step of an initial state.
+    pub fn damping_rows(&self) -> DMatrix<f64> {
+        match &self.whitening {
+            Some(rows) => rows / thresholds::INITIAL_STATE_PRIOR,
+            None => {
+                let weights = self.sd.iter().map(|sd| 1.0 / sd);
+                DMatrix::from_diagonal(&DVector::from_iterator(self.sd.len(), weights))
+            }
+        }
     }
 
     /// The same with nothing carried from window to window: what a motion at these unknowns carries does

@@ -10,10 +10,11 @@ use crate::fit::acceleration_differences::{AccelerationDifferences, MovedEvaluat
 use crate::fit::shooting::{Residual, Sensors, Shooting};
 use crate::model::linear_outputs::LinearOutputs;
 use crate::model::output_times::OutputTimes;
-use crate::model::simulation::{NeighbourDrives, OutputTangents, Simulation};
+use crate::model::simulation::{NeighbourDrives, OutputTangents, Outputs, Simulation};
 use crate::model::unknowns::{Unknown, What};
 use crate::thresholds;
 use eomgen_records::windows::Window;
+use eomgen_sim::exponential::MovedParameters;
 
 /// A window's residuals and derivatives.
 #[derive(Clone)]
@@ -51,9 +52,10 @@ struct SteppedNeighbour<'a> {
 enum Neighbour<'a> {
     /// One that runs itself.
     Runs(Box<Simulation<'a>>),
-    /// One whose accelerations, and what it shows, tell how an integrated motion differs.
+    /// One whose accelerations, unless the integrator differentiates by the parameter itself, and what it
+    /// shows tell how an integrated motion differs.
     Drives {
-        evaluator: Box<Evaluator>,
+        evaluator: Option<Box<Evaluator>>,
         linear_outputs: Option<LinearOutputs>,
     },
 }
@@ -67,11 +69,15 @@ impl<'a> SensitivityEvaluator<'a> {
     /// The evaluator at these unknowns, if there is a motion.
     pub fn new(shooting: &Shooting<'a>, theta: &[f64], level: f64) -> Option<Self> {
         let values = shooting.values(theta);
-        let base = shooting.model.simulation(&values).ok()?;
+        let mut base = shooting.model.simulation(&values).ok()?;
         let equations = shooting.model.evaluator(&values);
+        let is_differentiated = base.carries_tangents() && shooting.model.is_linear();
+        if is_differentiated {
+            base.differentiate_by(&values, moved_parameters(shooting, theta));
+        }
         let mut neighbours = Vec::with_capacity(theta.len());
         for (number, unknown) in shooting.unknowns.iter().enumerate() {
-            if !matches!(unknown.what, What::Parameter(_) | What::Inverse(_)) {
+            if !unknown.is_of_model() {
                 neighbours.push(None);
                 continue;
             }
@@ -80,8 +86,9 @@ impl<'a> SensitivityEvaluator<'a> {
             moved[number] += step;
             let values = shooting.values(&moved);
             let neighbour = if base.carries_tangents() {
+                let evaluator = || Box::new(shooting.model.evaluator(&values));
                 Neighbour::Drives {
-                    evaluator: Box::new(shooting.model.evaluator(&values)),
+                    evaluator: (!is_differentiated).then(evaluator),
                     linear_outputs: shooting.model.linear_outputs(&values),
                 }
             } else {
@@ -153,21 +160,25 @@ impl<'a> SensitivityEvaluator<'a> {
         let samples = &shooting.windows.list[window];
         let inputs = shooting.windows.inputs(samples);
         let times = &shooting.output_times(samples);
+        let count = self.neighbours.iter().flatten().count();
         let moved = self.neighbours.iter_mut().flatten();
         let moved = moved.filter_map(|of| match &mut of.neighbour {
-            Neighbour::Drives { evaluator, .. } => Some(MovedEvaluator {
+            Neighbour::Drives {
+                evaluator: Some(evaluator),
+                ..
+            } => Some(MovedEvaluator {
                 evaluator,
                 size: of.step,
             }),
-            Neighbour::Runs(_) => None,
+            Neighbour::Drives { .. } | Neighbour::Runs(_) => None,
         });
         let mut differences = AccelerationDifferences::new(&mut self.equations, moved.collect());
         let driven = differences.drives();
-        let count = driven.count;
         let by_state = shooting.ranges.is_some();
+        let directions = (by_state, count - driven.count);
         let integrated = self
             .base
-            .linearised(start, &times.times, inputs, by_state, driven)?;
+            .linearised(start, &times.times, inputs, directions, driven)?;
         let seen = shooting.seen(times, &self.sensors, &integrated.outputs.values);
         let residual = DVector::from_vec(shooting.normalised(samples, &seen));
         let states = if by_state { start.len() } else { 0 };
@@ -178,12 +189,8 @@ impl<'a> SensitivityEvaluator<'a> {
         for (column, neighbour) in self.neighbours.iter().enumerate() {
             let unknown = &shooting.unknowns[column];
             let Some(SteppedNeighbour { neighbour, step }) = neighbour else {
-                let (sensors, step) = moved_sensors(&self.sensors, unknown);
-                let moved = shooting.seen(times, &sensors, &integrated.outputs.values);
-                let moved = shooting.normalised(samples, &moved);
-                for (row, (after, before)) in moved.iter().zip(residual.iter()).enumerate() {
-                    by_unknown[(row, column)] = (after - before) / step;
-                }
+                let derivative = self.by_sensor(samples, times, unknown, &integrated.outputs);
+                by_unknown.set_column(column, &derivative);
                 continue;
             };
             by_unknown.set_column(column, &by_drive.column(drive));
@@ -230,7 +237,7 @@ impl<'a> SensitivityEvaluator<'a> {
         let count = driven.count;
         let found = self
             .base
-            .linearised(start, &times.times, inputs, false, driven)?;
+            .linearised(start, &times.times, inputs, (false, 0), driven)?;
         Some(self.columns(samples, times, count, &found.by_drive))
     }
 
@@ -261,25 +268,26 @@ impl<'a> SensitivityEvaluator<'a> {
             None => self.by_state(window, start, &residual)?,
         };
         let mut by_unknown = DMatrix::zeros(residual.len(), self.neighbours.len());
+        let mut sensed = Vec::new();
         for (column, neighbour) in self.neighbours.iter_mut().enumerate() {
             let unknown = &shooting.unknowns[column];
-            let (moved, step) = match neighbour {
-                Some(SteppedNeighbour { neighbour, step }) => {
-                    let Neighbour::Runs(simulation) = neighbour else {
-                        return None;
-                    };
-                    let moved = simulation.outputs(start, &times.times, inputs).ok()?;
-                    (shooting.seen(times, &self.sensors, &moved.values), *step)
-                }
-                None => {
-                    let (sensors, step) = moved_sensors(&self.sensors, unknown);
-                    (shooting.seen(times, &sensors, &outputs.values), step)
-                }
+            let Some(SteppedNeighbour { neighbour, step }) = neighbour else {
+                sensed.push((column, unknown));
+                continue;
             };
+            let Neighbour::Runs(simulation) = neighbour else {
+                return None;
+            };
+            let moved = simulation.outputs(start, &times.times, inputs).ok()?;
+            let moved = shooting.seen(times, &self.sensors, &moved.values);
             let moved = shooting.normalised(samples, &moved);
             for (row, (after, before)) in moved.iter().zip(residual.iter()).enumerate() {
-                by_unknown[(row, column)] = (after - before) / step;
+                by_unknown[(row, column)] = (after - before) / *step;
             }
+        }
+        for (column, unknown) in sensed {
+            let derivative = self.by_sensor(samples, times, unknown, &outputs);
+            by_unknown.set_column(column, &derivative);
         }
         Some(WindowDerivatives {
             residual,
@@ -287,6 +295,23 @@ impl<'a> SensitivityEvaluator<'a> {
             by_unknown,
             last: outputs.last,
         })
+    }
+
+    /// The derivative of a window's residuals by an unknown of a sensor.
+    fn by_sensor(
+        &self,
+        samples: &Window,
+        times: &OutputTimes<'_>,
+        unknown: &Unknown,
+        outputs: &Outputs,
+    ) -> DVector<f64> {
+        let step = thresholds::SENSOR_QUOTIENT * unknown.scale;
+        let [after, before] = [step, -step].map(|step| {
+            let sensors = moved_sensors(&self.sensors, unknown, step);
+            let seen = self.shooting.seen(times, &sensors, &outputs.values);
+            DVector::from_vec(self.shooting.normalised(samples, &seen))
+        });
+        (after - before) / (2.0 * step)
     }
 
     /// Derivatives of the quantities, for each time a row per column, as the sensors show
@@ -379,6 +404,27 @@ pub fn linearised(
     })
 }
 
+/// Values of the model's parameters to both sides of each unknown that is one of them, within its bounds.
+fn moved_parameters(shooting: &Shooting<'_>, theta: &[f64]) -> Vec<Vec<MovedParameters>> {
+    let unknowns = shooting.unknowns.iter().enumerate();
+    let of_model = unknowns.filter(|(_, unknown)| unknown.is_of_model());
+    let moved = of_model.map(|(number, unknown)| {
+        let size = thresholds::CENTRAL_QUOTIENT * unknown.scale;
+        // Beyond a bound that a prior sets there is motion too.
+        let reach = unknown.bounds.hull(unknown.limits);
+        let ends = [-size, size].map(|change| {
+            let mut moved = theta.to_vec();
+            moved[number] = reach.clamp(theta[number] + change);
+            MovedParameters {
+                values: shooting.values(&moved),
+                change: moved[number] - theta[number],
+            }
+        });
+        ends.to_vec()
+    });
+    moved.collect()
+}
+
 /// The step of a parameter's difference quotient; away from a bound that is near.
 fn quotient_step(unknown: &Unknown, value: f64) -> f64 {
     let step = thresholds::PARAMETER_QUOTIENT * unknown.scale;
@@ -389,9 +435,8 @@ fn quotient_step(unknown: &Unknown, value: f64) -> f64 {
     }
 }
 
-/// The sensors with one unknown moved, and the step.
-fn moved_sensors(sensors: &Sensors, unknown: &Unknown) -> (Sensors, f64) {
-    let step = thresholds::SENSOR_QUOTIENT * unknown.scale;
+/// The sensors with one unknown moved by a step.
+fn moved_sensors(sensors: &Sensors, unknown: &Unknown, step: f64) -> Sensors {
     let mut moved = sensors.clone();
     match unknown.what {
         What::Gain(channel) => moved.gain[channel] += step,
@@ -400,5 +445,5 @@ fn moved_sensors(sensors: &Sensors, unknown: &Unknown) -> (Sensors, f64) {
         What::InputDelay => moved.delay.iter_mut().for_each(|delay| *delay += step),
         What::Parameter(_) | What::Inverse(_) => {}
     }
-    (moved, step)
+    moved
 }

@@ -39,9 +39,16 @@ pub fn reduced_block(
         .view_mut((0, states + unknowns), (rows, 1))
         .copy_from(&linear.residual);
     if let Some(mean) = prior.mean.get(window.index()) {
-        for (state, sd) in prior.sd_in(window).enumerate().take(states) {
-            matrix[(rows + state, state)] = 1.0 / sd;
-            matrix[(rows + state, states + unknowns)] = (start[state] - mean[state]) / sd;
+        let weights = prior.rows(window);
+        if states > 0 {
+            matrix
+                .view_mut((rows, 0), (states, states))
+                .copy_from(&weights);
+            let deviation = DVector::from_fn(states, |state, _| start[state] - mean[state]);
+            let last = (rows, states + unknowns);
+            matrix
+                .view_mut(last, (states, 1))
+                .copy_from(&(weights * deviation));
         }
     }
     ReducedBlock {
@@ -74,8 +81,9 @@ impl ReducedBlock {
         let right =
             -(self.factor.view((0, n), (n, p)) * unknowns + self.factor.column(n + p).rows(0, n));
         rows.view_mut((0, n), (n, 1)).copy_from(&right);
-        for (state, sd) in prior.sd.iter().enumerate() {
-            rows[(n + state, state)] = damping.sqrt() / sd;
+        if !prior.sd.is_empty() && n > 0 {
+            let damped = prior.damping_rows() * damping.sqrt();
+            rows.view_mut((n, 0), (n, n)).copy_from(&damped);
         }
         let factor = rows.qr().r();
         let right = factor.column(n).rows(0, n).into_owned();
@@ -111,9 +119,13 @@ impl StateProjection {
             .copy_from(&linear.by_state);
         let mut prior_residual = DVector::zeros(states);
         if let Some(mean) = prior.mean.get(window.index()) {
-            for (state, sd) in prior.sd_in(window).enumerate().take(states) {
-                by_state[(rows + state, state)] = 1.0 / sd;
-                prior_residual[state] = (start[state] - mean[state]) / sd;
+            let weights = prior.rows(window);
+            if states > 0 {
+                let deviation = DVector::from_fn(states, |state, _| start[state] - mean[state]);
+                by_state
+                    .view_mut((rows, 0), (states, states))
+                    .copy_from(&weights);
+                prior_residual.copy_from(&(weights * deviation));
             }
         }
         Self {

@@ -1,30 +1,34 @@
-//! Estimates where unknowns share a direction that the records hardly show, such as the gain of the
-//! only channel with every parameter of an equation. Neighbouring motions that come along are off by a
-//! few percent, which would decide along such a direction in place of the priors; central differences
-//! of whole motions are the derivatives of what is minimised.
+//! The last steps of a fit, until the estimate is where the priors and the records put it: with no
+//! window's initial state known from the window before, by the derivatives of what is minimised. Where
+//! unknowns share a direction that the records hardly show, such as the gain of the only channel with
+//! every parameter of an equation, neighbouring motions that are off by a few percent would decide
+//! along it in place of the priors; there derivatives are central differences of whole motions.
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::fit::gauss_newton::{Estimate, evaluated, step};
+use crate::fit::gauss_newton::{
+    Estimate, derivatives_at, evaluated, step_with, with_states_corrected,
+};
 use crate::fit::information::record_factor;
+use crate::fit::initial_states::carry;
 use crate::fit::prior::InitialStatePrior;
 use crate::fit::sensitivity::WindowDerivatives;
 use crate::fit::shooting::{Residual, Shooting};
-use crate::ids::UnknownId;
+use crate::fit::variable_projection::triangular_factor;
+use crate::ids::{UnknownId, WindowId};
 use crate::thresholds;
 
-/// Whether unknowns share a direction along which derivatives that are off by
-/// [`thresholds::TANGENT_ERROR`] say more than the records do, and whole motions say what is true: where
-/// motions have switches, impacts fold small differences, and steps end in one fold or another.
-pub(crate) fn is_ill_conditioned(
+/// States that do not move may start so far from where they are, in parts of their range.
+const LEAST_RANGE: f64 = 1e-6;
+
+/// Returns whether unknowns share a direction along which derivatives that are off by
+/// [`thresholds::TANGENT_ERROR`] tell more than the records do.
+fn is_ill_conditioned(
     shooting: &Shooting<'_>,
     prior: &InitialStatePrior,
     initial_states: &[Vec<f64>],
     linear: &[Option<WindowDerivatives>],
 ) -> bool {
-    if !shooting.model.program().guards.is_empty() {
-        return false;
-    }
     let factor = record_factor(shooting.unknowns.len(), prior, initial_states, linear);
     let shown = factor.column_iter().filter(|column| column.norm() > 0.0);
     let columns: Vec<DVector<f64>> = shown.map(|column| column.normalize()).collect();
@@ -32,22 +36,84 @@ pub(crate) fn is_ill_conditioned(
         && DMatrix::from_columns(&columns).singular_values().min() < thresholds::TANGENT_ERROR
 }
 
-/// Gauss-Newton steps by differences of whole motions, until what they gain is less than the priors
-/// can tell; and the derivatives at the end.
-pub(crate) fn refined(
+/// Returns rows that bring a state's deviation from its mean along the windows' motions to unit variance:
+/// states that move together, as those of a stiff spring's ends, start together. `ranges`: the range of
+/// each state, of which a motion that stands still takes a small part.
+pub(crate) fn whitening(shooting: &Shooting<'_>, estimate: &Estimate) -> Option<DMatrix<f64>> {
+    let ranges = shooting.ranges?;
+    let mut simulation = shooting
+        .model
+        .simulation(&shooting.values(&estimate.theta))
+        .ok()?;
+    let mut states = Vec::new();
+    for window in WindowId::first(shooting.windows.list.len()) {
+        let samples = &shooting.windows.list[window];
+        let inputs = shooting.windows.inputs(samples);
+        let motion = simulation.states(&estimate.initial_states[window], &samples.times, inputs);
+        states.extend(motion.ok()?);
+    }
+    let count = states.len() as f64;
+    let scaled = DMatrix::from_fn(states.len(), ranges.len(), |row, state| {
+        states[row][state] / ranges[state]
+    });
+    let mean = scaled.row_mean();
+    let deviations = DMatrix::from_fn(states.len(), ranges.len(), |row, state| {
+        (scaled[(row, state)] - mean[state]) / count.sqrt()
+    });
+    let least = DMatrix::from_diagonal_element(ranges.len(), ranges.len(), LEAST_RANGE);
+    let factor = triangular_factor(&deviations, &least);
+    let inverse = factor.transpose().try_inverse()?;
+    Some(DMatrix::from_fn(
+        ranges.len(),
+        ranges.len(),
+        |row, state| inverse[(row, state)] / ranges[state],
+    ))
+}
+
+/// Takes the last steps of a fit; returns the estimate and the derivatives there.
+pub(crate) fn settled(
     shooting: &Shooting<'_>,
-    prior: &InitialStatePrior,
+    prior: &mut InitialStatePrior,
     from: Estimate,
 ) -> (Estimate, Vec<Option<WindowDerivatives>>) {
-    let mut present = evaluated(shooting, prior, from.theta, from.initial_states);
-    let mut linear = central_differences(shooting, &present);
-    for _ in 0..thresholds::VALLEY_STEPS {
-        let Some(next) = step(shooting, prior, &present, &linear) else {
+    let (estimate, linear) = steps(shooting, prior, from, derivatives_at);
+    let values = shooting.values(&estimate.theta);
+    let simulation = shooting.model.simulation(&values);
+    let are_exact = simulation.is_ok_and(|simulation| simulation.carries_tangents());
+    if are_exact && shooting.model.is_linear() {
+        return (estimate, linear);
+    }
+    if !is_ill_conditioned(shooting, prior, &estimate.initial_states, &linear) {
+        return (estimate, linear);
+    }
+    let differences = |shooting: &Shooting<'_>, estimate: &Estimate| {
+        central_differences(shooting, estimate, &linear)
+    };
+    steps(shooting, prior, estimate, differences)
+}
+
+/// Takes Gauss-Newton steps by these derivatives, until what they gain is less than the priors can
+/// tell; returns the estimate and the derivatives there.
+fn steps(
+    shooting: &Shooting<'_>,
+    prior: &mut InitialStatePrior,
+    from: Estimate,
+    derivatives: impl Fn(&Shooting<'_>, &Estimate) -> Vec<Option<WindowDerivatives>>,
+) -> (Estimate, Vec<Option<WindowDerivatives>>) {
+    let with_carried = |prior: &mut InitialStatePrior, estimate: Estimate| {
+        carry(shooting, prior, &estimate.theta, &estimate.initial_states);
+        evaluated(shooting, prior, estimate.theta, estimate.initial_states)
+    };
+    let mut present = with_carried(prior, from);
+    let mut linear = derivatives(shooting, &present);
+    for _ in 0..thresholds::LAST_STEPS {
+        let corrected = |next| with_states_corrected(shooting, prior, next, &linear);
+        let Some(next) = step_with(shooting, prior, &present, &linear, corrected) else {
             break;
         };
         let decrease = present.cost - next.cost;
-        present = next;
-        linear = central_differences(shooting, &present);
+        present = with_carried(prior, next);
+        linear = derivatives(shooting, &present);
         if decrease < thresholds::LEAST_INFORMATION * shooting.prior_weight {
             break;
         }
@@ -55,10 +121,13 @@ pub(crate) fn refined(
     (present, linear)
 }
 
-/// Residuals and derivatives of every window; none where a motion cannot be followed.
+/// Returns residuals and derivatives of every window; none where a motion cannot be followed. By `near`,
+/// derivatives near there, differences are taken over changes that move no output by more than a part of
+/// its noise: a motion with dry friction is linear over no more.
 fn central_differences(
     shooting: &Shooting<'_>,
     estimate: &Estimate,
+    near: &[Option<WindowDerivatives>],
 ) -> Vec<Option<WindowDerivatives>> {
     let Estimate {
         theta,
@@ -68,7 +137,12 @@ fn central_differences(
     let by_unknown: Vec<Columns> = (UnknownId::first(theta.len()))
         .map(|id| {
             let unknown = &shooting.unknowns[id];
-            let size = thresholds::CENTRAL_QUOTIENT * unknown.scale;
+            let columns = near
+                .iter()
+                .flatten()
+                .map(|of| of.by_unknown.column(id.index()));
+            let steepest = columns.map(|column| column.amax()).fold(0.0, f64::max);
+            let size = small_change(unknown.scale, steepest);
             // Beyond a bound that a prior sets there is motion too.
             let reach = unknown.bounds.hull(unknown.limits);
             let ends = [size, -size].map(|change| {
@@ -78,18 +152,24 @@ fn central_differences(
             });
             let span = ends[0][id] - ends[1][id];
             let [after, before] = ends.map(|theta| shooting.residuals(&theta, initial_states));
-            columns(after, before, span)
+            columns_of(after, before, &vec![span; initial_states.len()])
         })
         .collect();
     let by_state: Vec<Columns> = (shooting.ranges.unwrap_or_default().iter().enumerate())
         .map(|(state, range)| {
-            let size = thresholds::CENTRAL_QUOTIENT * range;
-            let [after, before] = [size, -size].map(|change| {
+            let sizes = near.iter().map(|of| {
+                let steepest = of.as_ref().map(|of| of.by_state.column(state).amax());
+                small_change(*range, steepest.unwrap_or(0.0))
+            });
+            let sizes: Vec<f64> = sizes.collect();
+            let [after, before] = [1.0, -1.0].map(|sign| {
                 let mut moved = initial_states.clone();
-                moved.iter_mut().for_each(|start| start[state] += change);
+                let starts = moved.iter_mut().zip(&sizes);
+                starts.for_each(|(start, size)| start[state] += sign * size);
                 shooting.residuals(theta, &moved)
             });
-            columns(after, before, 2.0 * size)
+            let spans: Vec<f64> = sizes.iter().map(|size| 2.0 * size).collect();
+            columns_of(after, before, &spans)
         })
         .collect();
     let residuals = shooting.residuals(theta, initial_states);
@@ -118,13 +198,23 @@ fn central_differences(
 /// A derivative of each window's residuals; none where a motion cannot be followed.
 type Columns = Vec<Option<DVector<f64>>>;
 
-/// Difference quotients of each window's residuals.
-fn columns(after: Vec<Option<Residual>>, before: Vec<Option<Residual>>, span: f64) -> Columns {
-    let windows = after.into_iter().zip(before);
+/// Returns the change over which a difference is taken, of something with this scale of which the
+/// outputs, in standard deviations of their noise, have this largest derivative.
+fn small_change(scale: f64, steepest: f64) -> f64 {
+    (thresholds::CENTRAL_QUOTIENT * scale).min(thresholds::QUOTIENT / steepest)
+}
+
+/// Returns difference quotients of each window's residuals.
+fn columns_of(
+    after: Vec<Option<Residual>>,
+    before: Vec<Option<Residual>>,
+    spans: &[f64],
+) -> Columns {
+    let windows = after.into_iter().zip(before).zip(spans);
     windows
-        .map(|(after, before)| {
+        .map(|((after, before), span)| {
             let difference = DVector::from_vec(after?.values) - DVector::from_vec(before?.values);
-            let quotient = difference / span;
+            let quotient = difference / *span;
             (quotient.iter().all(|entry| entry.is_finite())).then_some(quotient)
         })
         .collect()

@@ -56,6 +56,10 @@ pub struct EstimationModel {
     pub(crate) stop: Stop,
 }
 
+/// Differences between Runge-Kutta steps of one length and of half of it are so many times the error of
+/// the shorter ones, which falls with the fourth power.
+const RUNGE_KUTTA_GAIN: f64 = 15.0;
+
 /// What of a model is linear between switches.
 enum LinearPart {
     /// All of it.
@@ -226,13 +230,14 @@ impl EstimationModel {
 
     /// Decides in how many steps a motion goes from one output to the next, where that is not
     /// known beforehand: as many as change its outputs by less than a part of the noise, tested
-    /// on the beginning of a record. Where there are none, a solver with error control goes on
+    /// on the beginning of a record. `numbers`: how many numbers are fitted. Where there are none, a solver with error control goes on
     /// deciding.
     pub fn choose_steps(
         &mut self,
         record: &Record,
         initial: &[f64],
         noise: &[f64],
+        numbers: f64,
         output_rate: OutputRate,
     ) {
         let samples = record.times.len().min(thresholds::STEP_TEST_SAMPLES);
@@ -255,6 +260,10 @@ impl EstimationModel {
             let outputs = simulation.outputs(initial, times, &record.inputs).ok()?;
             Some(outputs.values)
         };
+        let error = match has_linear_part {
+            true => thresholds::STEP_ERROR,
+            false => thresholds::SUMMED_STEP_ERROR * RUNGE_KUTTA_GAIN / numbers.sqrt(),
+        };
         let mut coarse = run(self, 0);
         for doubling in 1..thresholds::MOST_STEP_DOUBLINGS {
             let fine = run(self, doubling);
@@ -264,7 +273,7 @@ impl EstimationModel {
                     ((a - b) / noise[number % noise.len()]).powi(2)
                 };
                 let sum: f64 = pairs.map(square).sum();
-                sum < thresholds::STEP_ERROR.powi(2) * coarse.len() as f64
+                sum < error.powi(2) * coarse.len() as f64
             };
             if coarse.as_ref().zip(fine.as_ref()).is_some_and(near) {
                 if has_linear_part {

@@ -134,7 +134,7 @@ mod tests {
             EstimationModel::of(&with, Some(&rig), "rig", Some(4), &channels).expect("a model");
         let mut initial = vec![0.0; integrated.state_count()];
         initial[0] = 60e-6;
-        integrated.choose_steps(&record, &initial, &[1e-7], OutputRate::SAMPLES);
+        integrated.choose_steps(&record, &initial, &[1e-7], 400.0, OutputRate::SAMPLES);
         (integrated, with, record, channels, initial)
     }
 
@@ -171,7 +171,7 @@ mod tests {
             drives: &mut Free,
         };
         let found = simulation
-            .linearised(&initial, times, &record.inputs, true, free)
+            .linearised(&initial, times, &record.inputs, (true, 0), free)
             .expect("tangents");
         let count = initial.len();
         for (state, tangent) in found.by_state[3 * count..].iter().enumerate() {

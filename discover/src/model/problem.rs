@@ -105,7 +105,8 @@ impl<'d> EstimationProblem<'d> {
         model.stop = self.stop.clone();
         let record = &self.dataset.train[0];
         let first = self.first_state(&model, record);
-        model.choose_steps(record, &first, &self.noise, self.output_rate);
+        let numbers = self.train.numbers();
+        model.choose_steps(record, &first, &self.noise, numbers, self.output_rate);
         Ok(model)
     }
 

@@ -19,7 +19,9 @@ use crate::model::measured_outputs::{Buffers, MeasuredOutputs};
 use crate::model::nonlinear_remainder::NonlinearRemainder;
 use crate::model::stop::Stop;
 use crate::thresholds;
-use eomgen_sim::exponential::{Drives, ExponentialIntegrator, Force, Options, Tangents};
+use eomgen_sim::exponential::{
+    Directions, Drives, ExponentialIntegrator, Force, MovedParameters, Options, Tangents,
+};
 use eomgen_sim::ode::runge_kutta::RungeKutta;
 
 /// A model at fixed parameters.
@@ -64,7 +66,7 @@ pub struct LinearisedMotion {
     pub states: Vec<Vec<f64>>,
     /// For each sample a row of derivatives per initial state, one number per channel.
     pub by_state: Vec<f64>,
-    /// The same for each drive.
+    /// The same for each parameter, then for each drive.
     pub by_drive: Vec<f64>,
 }
 
@@ -177,14 +179,22 @@ impl<'m> Simulation<'m> {
         self.linear_outputs.as_ref()
     }
 
+    /// Differentiates by parameters: for each of them values to its sides; `own`: those of the model, all
+    /// of which are those of its linear part.
+    pub(crate) fn differentiate_by(&mut self, own: &[f64], moved: Vec<Vec<MovedParameters>>) {
+        if let Some(integrator) = &mut self.integrator {
+            integrator.differentiate_by(own, moved);
+        }
+    }
+
     /// The motion from an initial state with neighbouring ones, where these come along: of every
-    /// initial state, if `by_state`, and driven ones.
+    /// initial state, if `by_state`, of so many parameters by which it is differentiated, and driven ones.
     pub fn linearised(
         &mut self,
         initial: &[f64],
         samples: &[f64],
         inputs: &HeldInputs,
-        by_state: bool,
+        (by_state, by_parameter): (bool, usize),
         driven: NeighbourDrives<'_>,
     ) -> Option<LinearisedMotion> {
         self.stop.check().ok()?;
@@ -193,8 +203,11 @@ impl<'m> Simulation<'m> {
         let n = initial.len();
         let mut tangents = Tangents::new(
             (n, integrator.degrees_of_freedom()),
-            by_state,
-            driven.count,
+            Directions {
+                by_state,
+                by_parameter,
+                driven: driven.count,
+            },
             driven.drives,
         );
         let mut found = LinearisedMotion::default();

@@ -80,6 +80,11 @@ pub struct Unknown {
 }
 
 impl Unknown {
+    /// Whether it is a parameter of the model, not of a sensor.
+    pub(crate) fn is_of_model(&self) -> bool {
+        matches!(self.what, What::Parameter(_) | What::Inverse(_))
+    }
+
     /// A value moved into the bounds.
     pub fn admissible(&self, value: f64) -> f64 {
         self.bounds.clamp(value)

@@ -90,7 +90,7 @@ fn has_moved(fit: &Fit, unknown: UnknownId, at_all: bool) -> bool {
     let least = if at_all {
         0.0
     } else {
-        thresholds::WRITTEN_FROM * fit.sd[unknown]
+        thresholds::WRITTEN_FROM * fit.wider_sd[unknown]
     };
     (fit.train.estimate.theta[unknown] - fit.unknowns[unknown].start).abs() > least
 }

@@ -138,8 +138,8 @@ pub fn significance(fit: &Fit, own: &[EffectUnknown], effect: EffectId) -> f64 {
     let scaling = own
         .iter()
         .filter(|own| own.effect == effect && !own.is_shape);
-    let ratios =
-        scaling.map(|own| (fit.train.estimate.theta[own.unknown] - own.base) / fit.sd[own.unknown]);
+    let ratios = scaling
+        .map(|own| (fit.train.estimate.theta[own.unknown] - own.base) / fit.wider_sd[own.unknown]);
     ratios.map(|t| t * t).sum::<f64>().sqrt()
 }
 
@@ -161,7 +161,7 @@ fn within_prior(fit: &Fit, own: &[EffectUnknown], errors: f64) -> Option<Rejecti
     own.iter().find_map(|own| {
         let prior = own.prior?;
         let off = (fit.train.estimate.theta[own.unknown] - own.base).abs() / prior;
-        let sd = fit.sd[own.unknown] / prior;
+        let sd = fit.wider_sd[own.unknown] / prior;
         let is_off = off - errors * sd > thresholds::SHIFTED;
         (!is_off).then(|| Rejection::WithinPrior {
             name: fit.unknowns[own.unknown].label.clone(),

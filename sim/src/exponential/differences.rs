@@ -38,7 +38,7 @@ impl ExponentialIntegrator {
                 self.differentiate(motion, t, &mut **force, slopes)?;
             }
             let regime = &self.regimes[motion.regime];
-            tangents.catch_up(regime, t, &motion.state, &motion.given[1..]);
+            tangents.catch_up(regime, t, &motion.state, &motion.given);
         }
         Ok(())
     }

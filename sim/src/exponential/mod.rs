@@ -15,6 +15,7 @@
 mod crossing;
 mod differences;
 mod kernels;
+mod parameter_derivatives;
 mod parts;
 mod regime;
 mod release;
@@ -31,12 +32,14 @@ use crate::inputs::HeldInputs;
 use eomgen_codegen::program::affine::AffineEvaluator;
 
 use crossing::first_crossing;
+pub use parameter_derivatives::MovedParameters;
+use parameter_derivatives::regime_derivatives;
 use regime::Regime;
 pub use remainder::Force;
 use remainder::{RegimeDifference, Remainder};
 use slopes::Slopes;
 use surfaces::{Side, Surfaces, dot};
-pub use tangents::{Drives, Free, Tangents};
+pub use tangents::{Directions, Drives, Free, Tangents};
 use types::Motion;
 pub use types::{ExponentialIntegrator, NotIntegrated, Options, Show};
 
@@ -93,6 +96,8 @@ impl ExponentialIntegrator {
             own: Vec::new(),
             last_own: (Vec::new(), 0),
             apart: RegimeDifference::default(),
+            own_parameters: Vec::new(),
+            moved: Vec::new(),
         })
     }
 
@@ -100,6 +105,16 @@ impl ExponentialIntegrator {
     pub fn with_typical_sizes(mut self, sizes: &[f64]) -> Self {
         self.typical_sizes = sizes.to_vec();
         self
+    }
+
+    /// Differentiates by parameters: for each of them values to one side of `own`, the parameters of the
+    /// evaluator, or to both.
+    pub fn differentiate_by(&mut self, own: &[f64], moved: Vec<Vec<MovedParameters>>) {
+        self.regimes.clear();
+        self.known.clear();
+        self.last_own = (Vec::new(), 0);
+        self.own_parameters = own.to_vec();
+        self.moved = moved;
     }
 
     /// Gives up motions that cross more surfaces: one that friction holds without a regime of its own
@@ -229,13 +244,26 @@ impl ExponentialIntegrator {
         if let Some(known) = self.known.get(sides) {
             return *known;
         }
-        let made = Regime::new(&mut self.evaluator, &self.surfaces, sides, self.step);
-        let place = made.map(|regime| {
+        let place = self.new_regime(sides).map(|regime| {
             self.regimes.push(regime);
             self.regimes.len() - 1
         });
         self.known.insert(sides.to_vec(), place);
         place
+    }
+
+    fn new_regime(&mut self, sides: &[Side]) -> Option<Regime> {
+        let mut regime = Regime::new(&mut self.evaluator, &self.surfaces, sides, self.step)?;
+        if !self.moved.is_empty() {
+            regime.by_parameter = regime_derivatives(
+                &mut self.evaluator,
+                &self.surfaces,
+                sides,
+                self.step,
+                (&self.own_parameters, &self.moved),
+            )?;
+        }
+        Some(regime)
     }
 
     /// Goes on with constant inputs to a time, s.

@@ -5,7 +5,7 @@ use super::release::Release;
 use super::remainder::Remainder;
 use super::remainder_at::AHEAD;
 use super::surfaces::{Row, Side, dot};
-use super::tangents::series;
+use super::tangents::{Reached, series};
 use super::types::{ExponentialIntegrator, Motion, Options};
 
 /// Crossings within a step after which the rest of it is made without looking.
@@ -316,7 +316,15 @@ impl ExponentialIntegrator {
                 Some(force) => self.gradient(motion, (surface, t), &mut **force, &rates),
                 None => function,
             };
-            tangents.switch((&gradient, here), &rates, &after);
+            let by_parameter = self.regimes[before].by_parameter.iter();
+            let by_parameter = by_parameter
+                .map(|derivative| derivative.functions[surface].at(&motion.state, &motion.given));
+            let reached = Reached {
+                gradient: &gradient,
+                by_parameter: &by_parameter.collect::<Vec<f64>>(),
+                rate: here,
+            };
+            tangents.switch(&reached, &rates, &after);
         }
         Ok(())
     }

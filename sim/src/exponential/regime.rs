@@ -9,6 +9,7 @@ use nalgebra::DMatrix;
 use crate::balancing::{LARGEST, balance, scaled};
 
 use super::kernels::Columns;
+use super::parameter_derivatives::RegimeDerivative;
 use super::surfaces::{Row, Side, Surfaces, dot};
 
 /// Forces on the two sides of a surface that differ by less than this part do not.
@@ -23,7 +24,7 @@ const ASIDE: f64 = 1e-6;
 pub const TERMS: usize = 14;
 
 /// Steps that neighbouring motions make at once are doubled so often at most.
-const DOUBLINGS: usize = 6;
+pub(super) const DOUBLINGS: usize = 6;
 
 /// A regime.
 #[derive(Clone, Debug)]
@@ -39,9 +40,10 @@ pub struct Regime {
     pub step_given: Columns,
     /// What accelerations held over the step add to it.
     pub step_force: Columns,
-    /// For neighbouring motions: the state's part of one step, of two, four and so on, and what
-    /// accelerations held so long add.
-    pub doubled: Vec<(Columns, Columns)>,
+    /// For neighbouring motions: one step, two, four and so on.
+    pub doubled: Vec<DoubledStep>,
+    /// Derivatives by each of the parameters that the integrator differentiates by.
+    pub(super) by_parameter: Vec<RegimeDerivative>,
     /// The surfaces' functions.
     pub functions: Vec<Row>,
     /// And their rates.
@@ -51,6 +53,17 @@ pub struct Regime {
     /// What accelerations that come from elsewhere add to these sides, a row for each, and what that
     /// adds to the accelerations, a column for each.
     borne: (DMatrix<f64>, DMatrix<f64>),
+}
+
+/// Several steps at once.
+#[derive(Clone, Debug)]
+pub struct DoubledStep {
+    /// The state at their end by the one at their beginning.
+    pub state: Columns,
+    /// What a unit constant and the inputs, held so long, add.
+    pub given: Columns,
+    /// What accelerations held so long add.
+    pub force: Columns,
 }
 
 /// A surface that holds a motion.
@@ -71,12 +84,30 @@ pub struct HeldSurface {
 }
 
 /// The rates of a regime as matrices.
-struct Rates {
-    state: DMatrix<f64>,
-    given: DMatrix<f64>,
+#[derive(Clone)]
+pub(super) struct Rates {
+    /// By the state.
+    pub state: DMatrix<f64>,
+    /// By a unit constant and the inputs.
+    pub given: DMatrix<f64>,
 }
 
 impl Rates {
+    /// Whether all entries are finite.
+    pub fn are_finite(&self) -> bool {
+        let entries = self.state.iter().chain(self.given.iter());
+        entries.copied().all(f64::is_finite)
+    }
+
+    /// Both blocks as rows of a square matrix; the others are 0.
+    pub fn joined(&self) -> DMatrix<f64> {
+        let (n, given) = self.given.shape();
+        let mut whole = DMatrix::zeros(n + given, n + given);
+        whole.view_mut((0, 0), (n, n)).copy_from(&self.state);
+        whole.view_mut((0, n), (n, given)).copy_from(&self.given);
+        whole
+    }
+
     fn of(system: &AffineSystem) -> Self {
         let n = system.states;
         let inputs = system.rates.inputs.len() / n.max(1);
@@ -99,20 +130,13 @@ impl Regime {
         sides: &[Side],
         step: f64,
     ) -> Option<Self> {
-        let system = evaluator.system(&surfaces.numbers(sides, |_| 0.0));
-        let mut rates = Rates::of(&system);
-        let functions = surfaces.rows(&system);
+        let (rates, functions, held) = held_rates(evaluator, surfaces, sides)?;
         let Held {
             sides: held,
             factor,
             jumps,
-        } = hold(evaluator, surfaces, sides, &functions, &mut rates)?;
-        if rates
-            .state
-            .iter()
-            .chain(rates.given.iter())
-            .any(|e| !e.is_finite())
-        {
+        } = held;
+        if !rates.are_finite() {
             return None;
         }
         let held = held.into_iter().enumerate();
@@ -128,17 +152,16 @@ impl Regime {
                 }
             })
             .collect();
-        let n = system.states;
-        let (degrees, forced) = (system.degrees, n - system.degrees);
+        let n = rates.state.nrows();
+        let degrees = evaluator.degrees_of_freedom();
+        let forced = n - degrees;
         let borne = (
             factor.columns(degrees, forced).into_owned(),
             jumps.rows(degrees, forced).into_owned(),
         );
-        let columns = n + rates.given.ncols() + forced;
-        let mut whole = DMatrix::zeros(columns, columns);
-        whole.view_mut((0, 0), (n, n)).copy_from(&rates.state);
         let given = rates.given.ncols();
-        whole.view_mut((0, n), (n, given)).copy_from(&rates.given);
+        let columns = n + given + forced;
+        let mut whole = rates.joined().resize(columns, columns, 0.0);
         for place in 0..forced {
             whole[(degrees + place, n + given + place)] = 1.0;
         }
@@ -146,10 +169,11 @@ impl Regime {
         let mut doubled = Vec::with_capacity(DOUBLINGS);
         let mut longer = flow.clone();
         for _ in 0..DOUBLINGS {
-            doubled.push((
-                Columns::of(n, n, |r, c| longer[(r, c)]),
-                Columns::of(n, forced, |r, c| longer[(r, n + given + c)]),
-            ));
+            doubled.push(DoubledStep {
+                state: Columns::of(n, n, |r, c| longer[(r, c)]),
+                given: Columns::of(n, given, |r, c| longer[(r, n + c)]),
+                force: Columns::of(n, forced, |r, c| longer[(r, n + given + c)]),
+            });
             longer = &longer * &longer;
         }
         let speeds: Vec<Row> = functions.iter().map(|row| along(row, &rates)).collect();
@@ -169,6 +193,7 @@ impl Regime {
             step_given: Columns::of(rows, given, |r, c| row_of(r, n + c, Some(c))),
             step_force: Columns::of(rows, forced, |r, c| row_of(r, n + given + c, None)),
             doubled,
+            by_parameter: Vec::new(),
             given: rates.given,
             functions,
             rates: speeds,
@@ -229,8 +254,21 @@ fn along(row: &Row, rates: &Rates) -> Row {
     }
 }
 
+/// Returns the rates with these sides, the surfaces' functions, and how surfaces hold the motion.
+pub(super) fn held_rates(
+    evaluator: &mut AffineEvaluator,
+    surfaces: &Surfaces,
+    sides: &[Side],
+) -> Option<(Rates, Vec<Row>, Held)> {
+    let system = evaluator.system(&surfaces.numbers(sides, |_| 0.0));
+    let mut rates = Rates::of(&system);
+    let functions = surfaces.rows(&system);
+    let held = hold(evaluator, surfaces, sides, &functions, &mut rates)?;
+    Some((rates, functions, held))
+}
+
 /// How surfaces hold a motion.
-struct Held {
+pub(super) struct Held {
     /// For each of them its place and its side.
     sides: Vec<(usize, Row)>,
     /// What rates add to these sides, a row for each.
@@ -301,6 +339,14 @@ fn state_scale(rates: &DMatrix<f64>) -> Vec<f64> {
 /// exp(W h) of a matrix whose first `states` rows are rates and whose others are 0: balanced, because
 /// the norm decides how often the exponential is squared.
 fn exponential(whole: &DMatrix<f64>, states: usize, step: f64) -> DMatrix<f64> {
+    let scale = flow_scale(whole, states, step);
+    let flow = (scaled(whole, &scale) * step).exp();
+    let back: Vec<f64> = scale.iter().map(|factor| 1.0 / factor).collect();
+    scaled(&flow, &back)
+}
+
+/// Powers of two that balance such a matrix for its exponential.
+pub(super) fn flow_scale(whole: &DMatrix<f64>, states: usize, step: f64) -> Vec<f64> {
     let rates = whole.view((0, 0), (states, states)).into_owned();
     let mut scale = state_scale(&rates);
     let largest = scaled(&rates, &scale).amax().max(1.0 / step);
@@ -316,9 +362,7 @@ fn exponential(whole: &DMatrix<f64>, states: usize, step: f64) -> DMatrix<f64> {
             1.0
         });
     }
-    let flow = (scaled(whole, &scale) * step).exp();
-    let back: Vec<f64> = scale.iter().map(|factor| 1.0 / factor).collect();
-    scaled(&flow, &back)
+    scale
 }
 
 /// The largest magnitude of the rates' eigenvalues over the regimes, 1/s.

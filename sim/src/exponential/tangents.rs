@@ -1,8 +1,9 @@
 //! Neighbouring motions to first order, carried along an integration: through steps by the regime's
-//! own matrix, through switches by the saltation matrix, driven by accelerations that differ.
+//! own matrix, through switches by the saltation matrix, driven by a parameter that differs or by
+//! accelerations.
 
 use super::kernels::{self, Columns};
-use super::regime::{HeldSurface, Regime, TERMS};
+use super::regime::{DoubledStep, HeldSurface, Regime, TERMS};
 use super::slopes::Slopes;
 use super::surfaces::dot;
 
@@ -29,18 +30,43 @@ impl Drives for Free {
     fn at(&mut self, _: f64, _: &[f64], _: &[f64], _: &mut [f64]) {}
 }
 
-/// Tangent vectors: those of the initial state first, then the driven ones.
+/// The function of a surface that a motion has reached.
+pub(super) struct Reached<'r> {
+    /// Its derivatives by the state.
+    pub gradient: &'r [f64],
+    /// Its derivatives by the parameters of tangent vectors.
+    pub by_parameter: &'r [f64],
+    /// Its rate, per s.
+    pub rate: f64,
+}
+
+/// Tangent vectors that go along.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Directions {
+    /// Whether those of all initial states do.
+    pub by_state: bool,
+    /// Those of the first so many parameters by which the integrator differentiates.
+    pub by_parameter: usize,
+    /// So many driven by accelerations.
+    pub driven: usize,
+}
+
+/// Tangent vectors: those of the initial state first, then those of parameters, then the driven ones.
 pub struct Tangents<'d> {
     states: usize,
     degrees: usize,
     /// How many are of the initial state.
     free: usize,
+    by_parameter: usize,
     driven: usize,
     /// Numbers from one vector to the next.
     pub stride: usize,
     /// The vectors.
     pub vectors: Vec<f64>,
     next: Vec<f64>,
+    /// The state of the motion where the vectors stand, and a later one.
+    from: Vec<f64>,
+    later: Vec<f64>,
     /// Steps that the motion has made and the vectors have not.
     pending: usize,
     /// The motion stands on a surface, where rounding decides what the drives are.
@@ -55,25 +81,32 @@ pub struct Tangents<'d> {
 }
 
 impl<'d> Tangents<'d> {
-    /// Of a model with so many states and degrees of freedom. The vectors of all initial states, if they are wanted, and driven ones that begin as
-    /// nothing.
+    /// Creates the vectors of a model with so many states and degrees of freedom. Those of parameters and
+    /// the driven ones begin as 0.
     pub fn new(
         (states, degrees): (usize, usize),
-        by_state: bool,
-        driven: usize,
+        directions: Directions,
         drives: &'d mut dyn Drives,
     ) -> Self {
         let forced = states - degrees;
+        let Directions {
+            by_state,
+            by_parameter,
+            driven,
+        } = directions;
         Self {
             states,
             degrees,
             free: if by_state { states } else { 0 },
+            by_parameter,
             driven,
             stride: states.next_multiple_of(kernels::LANES),
             pending: 0,
             on_surface: false,
             vectors: Vec::new(),
             next: Vec::new(),
+            from: Vec::new(),
+            later: Vec::new(),
             drives,
             here: vec![0.0; driven * forced],
             there: vec![0.0; driven * forced],
@@ -85,11 +118,12 @@ impl<'d> Tangents<'d> {
     /// Begins at a state in a regime.
     pub fn begin(&mut self, regime: &Regime, at: (f64, &[f64], &[f64])) {
         let stride = self.stride;
-        self.vectors = vec![0.0; stride * (self.free + self.driven)];
+        self.vectors = vec![0.0; stride * self.count()];
         for place in 0..self.free {
             self.vectors[place * stride + place] = 1.0;
         }
         self.next = self.vectors.clone();
+        self.from = at.1.to_vec();
         self.pending = 0;
         self.find_drives(regime, at);
     }
@@ -105,7 +139,7 @@ impl<'d> Tangents<'d> {
 
     /// How many vectors there are.
     pub fn count(&self) -> usize {
-        self.free + self.driven
+        self.free + self.by_parameter + self.driven
     }
 
     /// The motion went on by a whole step; whether the vectors have to follow.
@@ -132,15 +166,16 @@ impl<'d> Tangents<'d> {
         }
     }
 
-    /// Makes the steps that are still to be made, in a regime, up to a state.
-    pub fn catch_up(&mut self, regime: &Regime, t: f64, state: &[f64], inputs: &[f64]) {
+    /// Makes the steps that are still to be made, in a regime, up to a state. `given`: a unit constant and
+    /// the inputs.
+    pub fn catch_up(&mut self, regime: &Regime, t: f64, state: &[f64], given: &[f64]) {
         if self.pending == 0 {
             return;
         }
         if self.driven > 0 {
             let forced = self.states - self.degrees;
             let there = (&mut self.there[..], forced);
-            drives_in(regime, &mut *self.drives, (t, state, inputs), there);
+            drives_in(regime, &mut *self.drives, (t, state, &given[1..]), there);
             for (a, b) in self.here.iter_mut().zip(&self.there) {
                 *a = if self.on_surface { *b } else { 0.5 * (*a + b) };
             }
@@ -149,8 +184,9 @@ impl<'d> Tangents<'d> {
         while self.pending > 0 {
             let doubling = (self.pending.ilog2() as usize).min(regime.doubled.len() - 1);
             self.pending -= 1 << doubling;
-            self.several(&regime.doubled[doubling]);
+            self.several(regime, doubling, given);
         }
+        self.from.copy_from_slice(state);
         std::mem::swap(&mut self.here, &mut self.there);
         if let Some(slopes) = &mut self.slopes {
             slopes.arrive();
@@ -159,11 +195,30 @@ impl<'d> Tangents<'d> {
 
     /// Makes several steps at once, with the drives held, and corrected at the end what is felt
     /// of the forces that change with the state.
-    fn several(&mut self, (state, force): &(Columns, Columns)) {
+    fn several(&mut self, regime: &Regime, doubling: usize, given: &[f64]) {
         let forced = self.states - self.degrees;
+        let DoubledStep {
+            state,
+            given: of_given,
+            force,
+        } = &regime.doubled[doubling];
         self.next.fill(0.0);
+        let parameters = self.next.chunks_exact_mut(self.stride).skip(self.free);
+        let by_parameter = parameters.zip(&regime.by_parameter);
+        for (out, derivative) in by_parameter.take(self.by_parameter) {
+            let (of_state, of_given) = &derivative.doubled[doubling];
+            of_state.add_product(&self.from, out);
+            of_given.add_product(given, out);
+        }
+        if self.by_parameter > 0 && self.pending > 0 {
+            self.later.clear();
+            self.later.resize(self.stride, 0.0);
+            state.add_product(&self.from, &mut self.later);
+            of_given.add_product(given, &mut self.later);
+            self.from.copy_from_slice(&self.later[..self.states]);
+        }
         for place in 0..self.driven {
-            let first = (self.free + place) * self.stride;
+            let first = (self.free + self.by_parameter + place) * self.stride;
             let out = &mut self.next[first..first + self.stride];
             force.add_product(&self.here[place * forced..(place + 1) * forced], out);
         }
@@ -190,16 +245,18 @@ impl<'d> Tangents<'d> {
         if self.on_surface {
             self.find_drives(regime, end);
         }
+        self.parameters_part(regime, tau, end.2);
+        let driven = self.free + self.by_parameter;
         let mut rates = vec![0.0; regime.matrix.rows];
-        for place in 0..self.count() {
+        for place in (0..self.free).chain(driven..self.count()) {
             let vector = &mut self.vectors[place * self.stride..place * self.stride + n];
             rates.fill(0.0);
             regime.matrix.add_product(vector, &mut rates);
             if let Some(slopes) = &self.slopes {
                 slopes.add_begin(vector, &mut rates[degrees..n]);
             }
-            if place >= self.free {
-                let first = (place - self.free) * forced;
+            if place >= driven {
+                let first = (place - driven) * forced;
                 let drives = &self.here[first..first + forced];
                 rates[degrees..n]
                     .iter_mut()
@@ -209,23 +266,70 @@ impl<'d> Tangents<'d> {
             series(&regime.matrix, vector, &mut rates, tau, PART_ERROR);
         }
         self.find_drives(regime, end);
+        self.from.copy_from_slice(end.1);
         if let Some(slopes) = &mut self.slopes {
             slopes.arrive();
         }
     }
 
-    /// Goes through a switch: the gradient of the function that reached its surface and its
-    /// rate, the rates before and after.
-    pub fn switch(&mut self, (gradient, rate): (&[f64], f64), before: &[f64], after: &[f64]) {
+    /// Moves the vectors of parameters by a part of a step, s: by the series of the exponential of the
+    /// motion and its derivative together.
+    fn parameters_part(&mut self, regime: &Regime, tau: f64, inputs: &[f64]) {
+        if self.by_parameter == 0 {
+            return;
+        }
+        let (n, rows) = (self.states, regime.matrix.rows);
+        let given: Vec<f64> = [1.0].iter().chain(inputs).copied().collect();
+        // The terms of the motion's own series: the k-th is tau/k times the matrix times the one before.
+        let mut motion: Vec<Vec<f64>> = Vec::with_capacity(TERMS);
+        for k in 1..TERMS {
+            let mut term = vec![0.0; rows];
+            match motion.last() {
+                None => regime.rates(&self.from, &given, &mut term),
+                Some(before) => regime.matrix.add_product(&before[..n], &mut term),
+            }
+            term.iter_mut().for_each(|slot| *slot *= tau / k as f64);
+            motion.push(term);
+        }
+        let parameters = self.vectors.chunks_exact_mut(self.stride).skip(self.free);
+        for (vector, derivative) in parameters.zip(&regime.by_parameter).take(self.by_parameter) {
+            let mut term = vec![0.0; rows];
+            regime.matrix.add_product(&vector[..n], &mut term);
+            derivative.state.add_product(&self.from, &mut term);
+            derivative.given.add_product(&given, &mut term);
+            for k in 1..=TERMS {
+                let sums = vector[..n].iter_mut().zip(&mut term);
+                sums.for_each(|(x, slot)| {
+                    *slot *= tau / k as f64;
+                    *x += *slot;
+                });
+                let Some(of_motion) = motion.get(k - 1) else {
+                    break;
+                };
+                let mut next = vec![0.0; rows];
+                regime.matrix.add_product(&term[..n], &mut next);
+                derivative.state.add_product(&of_motion[..n], &mut next);
+                term = next;
+            }
+        }
+    }
+
+    /// Goes through a switch: the gradient of the function that reached its surface, its derivatives by
+    /// the parameters and its rate, the rates before and after.
+    pub(super) fn switch(&mut self, reached: &Reached<'_>, before: &[f64], after: &[f64]) {
         self.leave_surface();
         let n = self.states;
+        let Reached { gradient, rate, .. } = *reached;
         let terms = gradient.iter().zip(before);
         let size: f64 = terms.map(|(a, b)| (a * b).abs()).sum();
         if rate.abs() <= GRAZING * size {
             return;
         }
-        for vector in self.vectors.chunks_exact_mut(self.stride.max(1)) {
-            let delay = dot(gradient, &vector[..n]) / rate;
+        let free = std::iter::repeat_n(0.0, self.free);
+        let moved = free.chain(reached.by_parameter.iter().copied());
+        let moved = moved.chain(std::iter::repeat(0.0));
+        for (vector, moved) in self.vectors.chunks_exact_mut(self.stride.max(1)).zip(moved) {
+            let delay = (dot(gradient, &vector[..n]) + moved) / rate;
             for ((slot, a), b) in vector[..n].iter_mut().zip(after).zip(before) {
                 *slot += (a - b) * delay;
             }

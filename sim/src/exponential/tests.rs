@@ -6,7 +6,7 @@ use crate::piecewise_linear::PiecewiseLinear;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::Source;
 
-use super::{Drives, ExponentialIntegrator, Free, Options, Tangents};
+use super::{Directions, Drives, ExponentialIntegrator, Free, MovedParameters, Options, Tangents};
 
 fn rig() -> Model {
     let path =
@@ -130,7 +130,7 @@ fn tangents_are_differences_of_neighbouring_motions() {
     let mut integrator =
         ExponentialIntegrator::new(exact.evaluator(&values), 5e-4, 1.0).expect("can be integrated");
     let mut free = Free;
-    let mut tangents = Tangents::new((14, 7), true, 0, &mut free);
+    let mut tangents = Tangents::new((14, 7), by_state(), &mut free);
     let mut found = vec![0.0; 14 * 14];
     let options = Options {
         force: None,
@@ -167,6 +167,20 @@ fn tangents_are_differences_of_neighbouring_motions() {
                 "{k} by {place}: {difference:e} of {scale:e}"
             );
         }
+    }
+}
+
+fn by_state() -> Directions {
+    Directions {
+        by_state: true,
+        ..Directions::default()
+    }
+}
+
+fn driven(driven: usize) -> Directions {
+    Directions {
+        driven,
+        ..Directions::default()
     }
 }
 
@@ -228,7 +242,7 @@ fn a_driven_tangent_is_the_motion_of_what_drives_it() {
     let inputs = HeldInputs::new(vec![0.0], vec![5.0], 1).expect("inputs");
     let times: Vec<f64> = (0..=100).map(|k| f64::from(k) * 0.01).collect();
     let mut push = Push;
-    let mut tangents = Tangents::new((2, 1), false, 2, &mut push);
+    let mut tangents = Tangents::new((2, 1), driven(2), &mut push);
     let mut last = Vec::new();
     let options = Options {
         force: None,
@@ -314,7 +328,7 @@ fn a_motion_that_is_held_is_not_driven_off_its_surface() {
     let inputs = HeldInputs::new(vec![0.0, 1.0], vec![2.0, 5.0], 1).expect("inputs");
     let times: Vec<f64> = (0..=200).map(|k| f64::from(k) * 0.01).collect();
     let mut push = Push;
-    let mut tangents = Tangents::new((2, 1), false, 2, &mut push);
+    let mut tangents = Tangents::new((2, 1), driven(2), &mut push);
     let mut driven = Vec::new();
     let options = Options {
         force: None,
@@ -334,4 +348,118 @@ fn a_motion_that_is_held_is_not_driven_off_its_surface() {
         .expect("a motion");
     assert!(driven[100].abs() < 1e-12, "{:e}", driven[100]);
     assert!((driven[200] - 0.5).abs() < 1e-3, "{:e}", driven[200]);
+}
+
+/// Returns the derivatives of the motion at its samples by each independent parameter.
+fn by_parameters(
+    exact: &PiecewiseLinear,
+    values: &[f64],
+    (initial, times): (&[f64], &[f64]),
+    inputs: &HeldInputs,
+) -> Vec<Vec<Vec<f64>>> {
+    let sample = times[1] - times[0];
+    let mut integrator = ExponentialIntegrator::new(exact.evaluator(values), sample, 4.0)
+        .expect("can be integrated");
+    let ends = (0..values.len()).map(|place| {
+        let end = |change: f64| {
+            let mut moved = values.to_vec();
+            moved[place] += change;
+            MovedParameters {
+                values: moved,
+                change,
+            }
+        };
+        let size = 1e-4 * values[place];
+        vec![end(-size), end(size)]
+    });
+    integrator.differentiate_by(values, ends.collect());
+    let states = initial.len();
+    let directions = Directions {
+        by_parameter: values.len(),
+        ..Directions::default()
+    };
+    let mut free = Free;
+    let mut tangents = Tangents::new((states, states / 2), directions, &mut free);
+    let mut derivatives = Vec::new();
+    let options = Options {
+        force: None,
+        tangents: Some(&mut tangents),
+    };
+    integrator
+        .run(initial, times, inputs, options, &mut |_, _, tangents| {
+            let tangents = tangents.expect("tangents");
+            let vectors = tangents.vectors.chunks_exact(tangents.stride);
+            derivatives.push(vectors.map(|vector| vector[..states].to_vec()).collect());
+        })
+        .expect("a motion");
+    derivatives
+}
+
+#[test]
+fn derivatives_by_parameters_are_those_of_the_exact_motion_through_friction_and_play() {
+    let with_play = r#"
+[model]
+name = "play"
+[parameters]
+J_1 = { value = 0.01, unit = "kg m^2" }
+J_2 = { value = 0.02, unit = "kg m^2" }
+k = { value = 6000, unit = "N m/rad" }
+d = { value = 3, unit = "N m s/rad" }
+g = { value = 0.002, unit = "rad" }
+[coordinates]
+alpha = { unit = "rad" }
+beta = { unit = "rad" }
+[inputs]
+u = { unit = "N m" }
+[kinetic]
+inertias = "1/2*J_1*dot(alpha)^2 + 1/2*J_2*dot(beta)^2"
+[potential]
+coupling = "1/2*k*deadzone(alpha - beta, g)^2"
+[forces]
+motor = { on = "alpha", value = "u" }
+impact = { on = "alpha", value = "-d*dot(alpha)*above(alpha - beta - g)" }
+"#;
+    let play = eomgen_model_spec::check(Source::new("play", with_play))
+        .expect("valid")
+        .model;
+    for (name, model, sample, size) in [("axis", axis(), 2e-3, 200.0), ("play", play, 1e-3, 1.0)] {
+        let exact = PiecewiseLinear::of(&model, &[]).expect("piecewise linear");
+        let values = exact_values(&model);
+        let times: Vec<f64> = (0..300).map(|k| f64::from(k) * sample).collect();
+        let push = times.iter().map(|t| size * (22.0 * t).sin());
+        let inputs = HeldInputs::new(times.clone(), push.collect(), 1).expect("inputs");
+        let initial = [0.0, 1e-5, 0.0, 0.0];
+        let found = by_parameters(&exact, &values, (&initial, &times), &inputs);
+        let span = (0.0, times[299]);
+        let motion = |values: &[f64]| {
+            let mut propagator = exact.at(values).expect("a propagator");
+            propagator
+                .simulate(&initial, span, &times, &inputs, &mut |_| {})
+                .expect("a motion")
+        };
+        assert!(motion(&values).switches.len() >= 5, "{name}");
+        for place in 0..values.len() {
+            let step = 1e-6 * values[place];
+            let [after, before] = [step, -step].map(|change| {
+                let mut moved = values.clone();
+                moved[place] += change;
+                motion(&moved).states
+            });
+            for state in 0..2 {
+                let wanted =
+                    |sample: usize| (after[sample][state] - before[sample][state]) / (2.0 * step);
+                let scale = (0..300)
+                    .map(wanted)
+                    .fold(0.0f64, |most, d| most.max(d.abs()));
+                for sample in 0..300 {
+                    let difference = (found[sample][place][state] - wanted(sample)).abs();
+                    assert!(
+                        difference <= 2e-4 * scale,
+                        "{name}, state {state} by parameter {place} at sample {sample}: \
+                         {difference:e} of {scale:e}"
+                    );
+                }
+            }
+        }
+    }
 }

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use eomgen_codegen::program::affine::AffineEvaluator;
 
+use super::parameter_derivatives::MovedParameters;
 use super::regime::Regime;
 use super::remainder::{Force, RegimeDifference, Remainder};
 use super::surfaces::{Side, Surfaces};
@@ -30,6 +31,9 @@ pub struct ExponentialIntegrator {
     pub(super) own: Vec<Side>,
     pub(super) last_own: (Vec<Side>, usize),
     pub(super) apart: RegimeDifference,
+    /// The evaluator's own parameters and those to their sides, by which is differentiated.
+    pub(super) own_parameters: Vec<f64>,
+    pub(super) moved: Vec<Vec<MovedParameters>>,
 }
 
 /// Why a model is not integrated in steps of one length.

@@ -12,6 +12,7 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 
 use super::machines::Machine;
+use eomgen_discover::thresholds::SHIFTED;
 
 /// Usual priors of a sensor: standard deviations of its gain, of its bias in standard deviations of its
 /// noise, and of its delay in samples.
@@ -42,16 +43,16 @@ pub fn write(
     let mut truth = Vec::new();
     for (name, relative) in machine.uncertain {
         let value = declared.value(name).ok_or("an unknown parameter")?;
-        truth.push(value * (1.0 + relative * normal(&mut draw)));
+        truth.push(value * (1.0 + relative * expected(&mut draw)));
     }
     let names = machine.uncertain.iter().map(|(name, _)| *name);
     let settings: Vec<(&str, f64)> = names.zip(truth.iter().copied()).collect();
     let instance = model.with(&settings).map_err(|error| error.to_string())?;
     let sensors: Vec<Sensor> = (machine.channels.iter())
         .map(|channel| Sensor {
-            gain: 1.0 + SENSOR[0] * normal(&mut draw),
-            bias: SENSOR[1] * channel.noise * normal(&mut draw),
-            delay: SENSOR[2] * machine.sample * normal(&mut draw),
+            gain: 1.0 + SENSOR[0] * expected(&mut draw),
+            bias: SENSOR[1] * channel.noise * expected(&mut draw),
+            delay: SENSOR[2] * machine.sample * expected(&mut draw),
         })
         .collect();
     for (file, samples) in [
@@ -158,6 +159,17 @@ fn dataset(machine: &Machine) -> String {
 /// Draws a number of mean 0 and standard deviation 1.
 fn normal(draw: &mut ChaCha8Rng) -> f64 {
     StandardNormal.sample(draw)
+}
+
+/// Draws what a prior of mean 0 and standard deviation 1 expects. A fit keeps parameters and sensors within
+/// [`SHIFTED`] standard deviations: beyond, they are an effect.
+fn expected(draw: &mut ChaCha8Rng) -> f64 {
+    loop {
+        let value = normal(draw);
+        if value.abs() < SHIFTED {
+            return value;
+        }
+    }
 }
 
 /// Draws a number between 0 and 1.

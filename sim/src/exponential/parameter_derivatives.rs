@@ -1,0 +1,148 @@
+//! Derivatives of a regime by parameters: exact for a neighbouring motion between switches, where held
+//! drives follow no mode that turns far within a step.
+
+use eomgen_codegen::program::affine::AffineEvaluator;
+use nalgebra::DMatrix;
+
+use super::kernels::Columns;
+use super::regime::{DOUBLINGS, Rates, TERMS, flow_scale, held_rates};
+use super::surfaces::{Row, Side, Surfaces};
+use crate::balancing::scaled;
+
+/// A series of the exponential converges to rounding within [`TERMS`] terms for a matrix whose norm is
+/// below this.
+const SERIES_NORM: f64 = 0.5;
+
+/// Independent parameters (SI, in the order of the model's program) at which one of them differs.
+#[derive(Clone, Debug)]
+pub struct MovedParameters {
+    /// All values.
+    pub values: Vec<f64>,
+    /// The difference of the one, SI.
+    pub change: f64,
+}
+
+/// Derivatives of a regime by one parameter.
+#[derive(Clone, Debug)]
+pub(super) struct RegimeDerivative {
+    /// Of the rates' matrix, states x states.
+    pub state: Columns,
+    /// Of what a unit constant and the inputs do to the rates.
+    pub given: Columns,
+    /// Of the surfaces' functions.
+    pub functions: Vec<Row>,
+    /// For one step, two, four and so on: what the state where the steps begin adds to a neighbouring
+    /// motion, and what a unit constant and the inputs add.
+    pub doubled: Vec<(Columns, Columns)>,
+}
+
+/// The rates of a regime and the functions of its surfaces.
+type RegimeRows = (Rates, Vec<Row>);
+
+/// Finds the derivatives of a regime by each parameter; `base`: the values of the evaluator's own
+/// parameters. None if one of them cannot be found.
+pub(super) fn regime_derivatives(
+    evaluator: &mut AffineEvaluator,
+    surfaces: &Surfaces,
+    sides: &[Side],
+    step: f64,
+    (base, moved): (&[f64], &[Vec<MovedParameters>]),
+) -> Option<Vec<RegimeDerivative>> {
+    let mut rows_at = |values: &[f64]| -> Option<RegimeRows> {
+        evaluator.set_parameters(values);
+        let (rates, functions, _) = held_rates(evaluator, surfaces, sides)?;
+        rates.are_finite().then_some((rates, functions))
+    };
+    let own = rows_at(base)?;
+    let derivatives = moved.iter().map(|ends| {
+        let ends = ends.iter().filter_map(|end| {
+            let rows = rows_at(&end.values).filter(|_| end.change != 0.0)?;
+            Some((rows, end.change))
+        });
+        let mut ends: Vec<(RegimeRows, f64)> = ends.collect();
+        ends.push((own.clone(), 0.0));
+        let [(a, from), (b, to), ..] = &ends[..] else {
+            return None;
+        };
+        Some(difference(&own.0, (a, b), to - from, step))
+    });
+    let derivatives = derivatives.collect();
+    evaluator.set_parameters(base);
+    derivatives
+}
+
+/// The difference quotient of a regime's rows over `span`, with what it does to neighbouring motions.
+fn difference(
+    own: &Rates,
+    (a, b): (&RegimeRows, &RegimeRows),
+    span: f64,
+    step: f64,
+) -> RegimeDerivative {
+    let rates = Rates {
+        state: (&b.0.state - &a.0.state) / span,
+        given: (&b.0.given - &a.0.given) / span,
+    };
+    let quotient = |a: &[f64], b: &[f64]| -> Vec<f64> {
+        let pairs = a.iter().zip(b);
+        pairs.map(|(a, b)| (b - a) / span).collect()
+    };
+    let functions = a.1.iter().zip(&b.1).map(|(a, b)| Row {
+        state: quotient(&a.state, &b.state),
+        given: quotient(&a.given, &b.given),
+    });
+    let (n, given) = (rates.state.nrows(), rates.given.ncols());
+    let doubled = flow_derivatives(&own.joined(), &rates.joined(), n, step);
+    let doubled = doubled.iter().map(|of| {
+        (
+            Columns::of(n, n, |r, c| of[(r, c)]),
+            Columns::of(n, given, |r, c| of[(r, n + c)]),
+        )
+    });
+    RegimeDerivative {
+        functions: functions.collect(),
+        doubled: doubled.collect(),
+        state: Columns::of(n, n, |r, c| rates.state[(r, c)]),
+        given: Columns::of(n, given, |r, c| rates.given[(r, c)]),
+    }
+}
+
+/// Derivatives of exp(W h) where W changes as V, for h of one step, two, four and so on: the Fréchet
+/// derivative by the series and by squaring (Higham, Functions of Matrices, 2008, section 10.6). The
+/// first `states` rows of both are rates, the others are 0.
+fn flow_derivatives(
+    whole: &DMatrix<f64>,
+    change: &DMatrix<f64>,
+    states: usize,
+    step: f64,
+) -> Vec<DMatrix<f64>> {
+    let scale = flow_scale(whole, states, step);
+    let back: Vec<f64> = scale.iter().map(|factor| 1.0 / factor).collect();
+    let (w, v) = (scaled(whole, &scale) * step, scaled(change, &scale) * step);
+    let norm = w.column_iter().map(|column| column.lp_norm(1));
+    let norm = norm.fold(0.0, f64::max);
+    let squarings = (norm / SERIES_NORM).log2().ceil().max(0.0);
+    let (w, v) = (w / squarings.exp2(), v / squarings.exp2());
+    let count = w.nrows();
+    let (mut flow, mut derivative) = (DMatrix::identity(count, count), v.clone());
+    let (mut term, mut of_term) = (w.clone(), v.clone());
+    flow += &term;
+    for k in 2..=TERMS {
+        of_term = (&v * &term + &w * &of_term) / k as f64;
+        term = &w * &term / k as f64;
+        flow += &term;
+        derivative += &of_term;
+    }
+    let double = |flow: &mut DMatrix<f64>, derivative: &mut DMatrix<f64>| {
+        *derivative = &*derivative * &*flow + &*flow * &*derivative;
+        *flow = &*flow * &*flow;
+    };
+    for _ in 0..squarings as usize {
+        double(&mut flow, &mut derivative);
+    }
+    let mut doubled = Vec::with_capacity(DOUBLINGS);
+    for _ in 0..DOUBLINGS {
+        doubled.push(scaled(&derivative, &back));
+        double(&mut flow, &mut derivative);
+    }
+    doubled
+}
