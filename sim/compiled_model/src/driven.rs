@@ -44,7 +44,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
         }
     }
 
-    /// The same with the typical sizes of its states, as [`CompiledModel::typical_sizes`] has them.
+    /// The same with the typical sizes of its states, as [`crate::CompiledModel::typical_sizes`] has them.
     pub fn with_typical_sizes(mut self, sizes: &[f64]) -> Self {
         self.typical_sizes = sizes.to_vec();
         self

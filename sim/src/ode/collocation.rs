@@ -133,7 +133,7 @@ impl Stages {
         factors: &Factors,
         before: Option<&Self>,
         magnitudes: &Magnitudes,
-    ) -> Result<Self, [Self; 2]> {
+    ) -> Result<Self, Box<[Self; 2]>> {
         let (length, states) = (factors.length, start.y.len());
         let mut z = match before {
             Some(before) => nodes().map(|node| before.beyond(node * length)),
@@ -187,12 +187,12 @@ impl Stages {
             }
             last_change = size;
         }
-        Err([z_before, z].map(|z| Self {
+        Err(Box::new([z_before, z].map(|z| Self {
             z,
             length,
             iterations: MOST_ITERATIONS,
             contraction,
-        }))
+        })))
     }
 
     /// Notices if a stage lies beyond a surface.

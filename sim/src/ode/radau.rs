@@ -139,7 +139,7 @@ impl Stepper for Radau {
             Ok(stages) => stages,
             Err(iterates) => {
                 // A surface may be what makes it hard.
-                for stages in iterates {
+                for stages in iterates.iter() {
                     stages.look(watched, &self.here);
                 }
                 self.refuse(0.5 * length);

@@ -8,21 +8,18 @@ use nalgebra::{DMatrix, DVector};
 const CONTRADICTION: f64 = 1e-12;
 /// Corrections per unknown before the solution counts as found.
 const ROUNDS: usize = 10;
+/// Rounds after which rows and columns have like sizes: each halves what is left of the logarithms.
+const SCALING_ROUNDS: usize = 20;
 /// Iterations of a singular value decomposition before it is given up.
 const SVD_ITERATIONS: usize = 10_000;
 
 /// Whether no point z has a positive product with every row (Gordan: a combination of rows with
 /// weights that are not negative is then 0). Rows of zeros are left out.
 pub(crate) fn cone_is_empty(rows: &[Vec<f64>]) -> bool {
-    let scales = column_scales(rows);
-    let scaled = |row: &Vec<f64>| {
-        let entries = row.iter().zip(&scales).map(|(entry, scale)| entry / scale);
-        DVector::from_iterator(row.len(), entries)
-    };
-    let rows: Vec<DVector<f64>> = rows
-        .iter()
-        .map(scaled)
+    let rows: Vec<DVector<f64>> = equilibrated(rows)
+        .into_iter()
         .filter_map(|row| {
+            let row = DVector::from_vec(row);
             let length = row.norm();
             (length > 0.0 && length.is_finite()).then(|| row / length)
         })
@@ -33,21 +30,38 @@ pub(crate) fn cone_is_empty(rows: &[Vec<f64>]) -> bool {
     residual.norm() <= CONTRADICTION
 }
 
-/// Largest magnitude in each column, 1 for a column of zeros. Units of the unknowns, by which columns may be
-/// multiplied, do not change whether a cone is empty.
-fn column_scales(rows: &[Vec<f64>]) -> Vec<f64> {
-    let count = rows.first().map_or(0, Vec::len);
-    let largest = |column: usize| {
-        rows.iter()
-            .fold(0.0_f64, |most, row| most.max(row[column].abs()))
-    };
-    (0..count)
-        .map(largest)
-        .map(|largest| match largest > 0.0 && largest.is_finite() {
-            true => largest,
-            false => 1.0,
-        })
-        .collect()
+/// Scales rows and columns to like sizes: each by the root of its largest and its least entry, in turn.
+/// Neither the length of a row nor the unit of an unknown changes whether a cone is empty, but a small constant
+/// beside a large one of another unknown would be taken for rounding.
+fn equilibrated(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let mut rows = rows.to_vec();
+    let columns = rows.first().map_or(0, Vec::len);
+    for _ in 0..SCALING_ROUNDS {
+        for column in 0..columns {
+            let size = middle_size(rows.iter().map(|row| row[column]));
+            rows.iter_mut().for_each(|row| row[column] /= size);
+        }
+        for row in &mut rows {
+            let size = middle_size(row.iter().copied());
+            row.iter_mut().for_each(|entry| *entry /= size);
+        }
+    }
+    rows
+}
+
+/// The geometric mean of the largest and the least magnitude other than 0; 1 if there is none.
+fn middle_size(entries: impl Iterator<Item = f64>) -> f64 {
+    let sizes = entries
+        .map(f64::abs)
+        .filter(|size| *size > 0.0 && size.is_finite());
+    let (least, most) = sizes.fold((f64::INFINITY, 0.0_f64), |(least, most), size| {
+        (least.min(size), most.max(size))
+    });
+    if most > 0.0 {
+        least.sqrt() * most.sqrt()
+    } else {
+        1.0
+    }
 }
 
 /// The shortest x with `row * x >= bound` for every row and bound; `None` if there is none.
@@ -182,6 +196,23 @@ mod tests {
                 vec![0.0, 1.0]
             ]));
         }
+    }
+
+    #[test]
+    fn a_small_gap_beside_a_large_constant_is_no_contradiction() {
+        // -0.2 < u < 0.2 and 1e5 < p < 3e12.
+        let mut cone = vec![
+            vec![1.0, 0.0, 0.2],
+            vec![-1.0, 0.0, 0.2],
+            vec![0.0, 1.0, -1e5],
+            vec![0.0, -1.0, 3e12],
+            vec![0.0, 0.0, 1.0],
+        ];
+        assert!(!cone_is_empty(&cone));
+        // u > 0.2 and u < -0.2.
+        cone[0][2] = -0.2;
+        cone[1][2] = -0.2;
+        assert!(cone_is_empty(&cone));
     }
 
     #[test]
