@@ -56,7 +56,7 @@
 //!    (equations for people).
 //!
 //! [`variant`] goes from a model to its program in one call, and refuses constraints that are not
-//! independent ([`independence`]). [`examination`] finds most of what is refused without equations. [`singular_terms`] finds terms without a derivative at a point.
+//! independent ([`independence`]). [`examination`] finds most mistakes without equations. [`singular_terms`] finds terms without a derivative at a point.
 
 pub mod c;
 pub mod examination;

@@ -385,7 +385,8 @@ pub const CENTRAL_QUOTIENT: f64 = 0.001;
 /// curved, and the better it is seen, the shorter they are.
 pub const LAST_STEPS: usize = 12;
 
-/// Corrections of a step for its curvature: each takes away most of what the one before left.
+/// The most corrections of the initial states after a step of the unknowns; each removes most of the error
+/// that is left.
 pub const CORRECTIONS: usize = 4;
 
 /// The last steps of a fit go on while they lower the cost by this part of what one standard deviation

@@ -19,7 +19,7 @@ fn corpus() -> Vec<PathBuf> {
     paths
 }
 
-/// What is wrong with a text.
+/// The mistakes of a text.
 fn refused(name: &str, text: &str) -> Diagnostics {
     let found = check(Source::new(name, text)).expect_err(name);
     assert!(!found.render(false).is_empty());

@@ -382,7 +382,7 @@ along = { zero = "r*cos(phi) + r*cos(psi) - x" }
 across = { zero = "r*sin(phi) + r*sin(psi)" }
 "#;
 
-/// Four bars, two of one length beside each other and two of another.
+/// Four bars: two adjacent ones of one length, two of another.
 const KITE: &str = r#"
 [model]
 name = "kite"

@@ -1,4 +1,4 @@
-//! Options of commands that read a specification and write what is made of it.
+//! Options of commands that read a specification and write its equations or a page.
 
 use std::path::PathBuf;
 

@@ -80,8 +80,8 @@ pub fn complete(
         is_far,
     } = converged(problem, &mut all, near, preliminary.most);
     let prior_weight = all.prior_weight;
-    // What the motion carries from window to window holds at these unknowns, not at others: it would
-    // hold the estimate where it is, and make it more certain than it is.
+    // A start that is known from the window before depends on these unknowns: it would keep the estimate in
+    // place and make it too certain.
     let mut loose = prior.without_carried();
     let derivatives = match is_far {
         true => derivatives_at(&all, &train.estimate),

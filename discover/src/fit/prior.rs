@@ -25,8 +25,7 @@ pub struct InitialStatePrior {
     pub sd: Vec<f64>,
     /// Where each mean comes from; all are carried where nothing stands here.
     pub sources: Vec<Source>,
-    /// Rows that bring measured initial states to unit variance, where it is known how states move
-    /// together.
+    /// Rows that bring measured initial states to unit variance, if the covariance of the states is known.
     pub whitening: Option<DMatrix<f64>>,
 }
 

@@ -52,8 +52,8 @@ struct SteppedNeighbour<'a> {
 enum Neighbour<'a> {
     /// One that runs itself.
     Runs(Box<Simulation<'a>>),
-    /// One whose accelerations, unless the integrator differentiates by the parameter itself, and what it
-    /// shows tell how an integrated motion differs.
+    /// A model whose accelerations and outputs give the derivative of an integrated motion. No accelerations
+    /// are needed if the integrator differentiates by the parameter itself.
     Drives {
         evaluator: Option<Box<Evaluator>>,
         linear_outputs: Option<LinearOutputs>,

@@ -1,7 +1,6 @@
-//! The last steps of a fit, until the estimate is where the priors and the records put it. Initial states
-//! have a wide prior there. Derivatives are those of what is minimised: exact ones where the model is linear
-//! between switches; otherwise, where unknowns share a direction that the records hardly show, central
-//! differences of whole motions.
+//! The last steps of a fit, to the minimum of the cost with a wide prior of the initial states. Derivatives
+//! are exact if the model is linear between switches. For other models central differences of whole motions
+//! are used if the records hardly determine one direction of the unknowns.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -35,9 +34,8 @@ fn is_ill_conditioned(
         && DMatrix::from_columns(&columns).singular_values().min() < thresholds::TANGENT_ERROR
 }
 
-/// Returns rows that bring a state's deviation from its mean along the windows' motions to unit variance:
-/// states that move together, as those of a stiff spring's ends, start together. `ranges`: the range of
-/// each state, of which a motion that stands still takes a small part.
+/// Returns rows that bring a state's deviation from its mean along the windows' motions to unit covariance:
+/// the ends of a stiff spring move together, so they start together.
 pub(crate) fn whitening(shooting: &Shooting<'_>, estimate: &Estimate) -> Option<DMatrix<f64>> {
     let ranges = shooting.ranges?;
     let mut simulation = shooting

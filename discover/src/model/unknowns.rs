@@ -80,7 +80,7 @@ pub struct Unknown {
 }
 
 impl Unknown {
-    /// Whether it is a parameter of the model, not of a sensor.
+    /// Returns true for parameters of the model, false for those of sensors.
     pub(crate) fn is_of_model(&self) -> bool {
         matches!(self.what, What::Parameter(_) | What::Inverse(_))
     }

@@ -1,4 +1,4 @@
-//! Parameters set by assignments, and the units of what can be set.
+//! Parameters set by assignments, and the units of names that can be set.
 
 use super::Assignment;
 use super::quantity_reader::QuantityReader;

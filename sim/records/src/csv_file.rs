@@ -130,7 +130,7 @@ impl<'t> TextFile<'t> {
         self.record.position().map_or(0, Position::line) + self.skipped
     }
 
-    /// Whether all cells of the present line are blank.
+    /// Returns true if all cells of the present line are blank.
     fn is_blank(&self) -> bool {
         let mut cells = self.record.iter();
         cells.all(|cell| cell.trim_ascii().is_empty())

@@ -27,12 +27,12 @@ pub struct MovedParameters {
 pub(super) struct RegimeDerivative {
     /// Of the rates' matrix, states x states.
     pub state: Columns,
-    /// Of what a unit constant and the inputs do to the rates.
+    /// Of the rates by a unit constant and the inputs.
     pub given: Columns,
     /// Of the surfaces' functions.
     pub functions: Vec<Row>,
-    /// For one step, two, four and so on: what the state where the steps begin adds to a neighbouring
-    /// motion, and what a unit constant and the inputs add.
+    /// For one step, two, four and so on: contributions of the state at the beginning to a tangent vector,
+    /// and of a unit constant and the inputs.
     pub doubled: Vec<(Columns, Columns)>,
 }
 
@@ -71,7 +71,7 @@ pub(super) fn regime_derivatives(
     derivatives
 }
 
-/// The difference quotient of a regime's rows over `span`, with what it does to neighbouring motions.
+/// Returns the difference quotient of a regime's rows over `span`, and its effect on tangent vectors.
 fn difference(
     own: &Rates,
     (a, b): (&RegimeRows, &RegimeRows),

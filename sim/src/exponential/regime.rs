@@ -60,9 +60,9 @@ pub struct Regime {
 pub struct DoubledStep {
     /// The state at their end by the one at their beginning.
     pub state: Columns,
-    /// What a unit constant and the inputs, held so long, add.
+    /// Contribution of a unit constant and the inputs, held so long.
     pub given: Columns,
-    /// What accelerations held so long add.
+    /// Contribution of accelerations held so long.
     pub force: Columns,
 }
 
@@ -93,7 +93,7 @@ pub(super) struct Rates {
 }
 
 impl Rates {
-    /// Whether all entries are finite.
+    /// Returns true if all entries are finite.
     pub fn are_finite(&self) -> bool {
         let entries = self.state.iter().chain(self.given.iter());
         entries.copied().all(f64::is_finite)

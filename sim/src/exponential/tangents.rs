@@ -43,11 +43,11 @@ pub(super) struct Reached<'r> {
 /// Tangent vectors that go along.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Directions {
-    /// Whether those of all initial states do.
+    /// Tangent vectors of all initial states.
     pub by_state: bool,
-    /// Those of the first so many parameters by which the integrator differentiates.
+    /// The number of parameters by which the integrator differentiates, from the first.
     pub by_parameter: usize,
-    /// So many driven by accelerations.
+    /// The number of tangent vectors that accelerations drive.
     pub driven: usize,
 }
 
@@ -64,7 +64,7 @@ pub struct Tangents<'d> {
     /// The vectors.
     pub vectors: Vec<f64>,
     next: Vec<f64>,
-    /// The state of the motion where the vectors stand, and a later one.
+    /// The state of the motion at the time of the vectors, and a later one.
     from: Vec<f64>,
     later: Vec<f64>,
     /// Steps that the motion has made and the vectors have not.

@@ -445,7 +445,7 @@ impact = { on = "alpha", value = "-d*dot(alpha)*above(alpha - beta - g)" }
                 moved[place] += change;
                 motion(&moved).states
             });
-            // Impacts let neighbouring motions part: later, differences are no derivatives.
+            // Neighbouring motions diverge by impacts: later, differences are no derivatives.
             for state in 0..2 {
                 let wanted =
                     |sample: usize| (after[sample][state] - before[sample][state]) / (2.0 * step);

@@ -126,8 +126,8 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         is_taken.then_some(point)
     }
 
-    /// Whether a step crosses a surface, and moves the switching functions of all that it crosses by their
-    /// rounding: no shorter one may cross them.
+    /// Returns true if a step crosses surfaces and changes their functions by no more than rounding: no shorter
+    /// step may cross them.
     fn moves_by_rounding(&self, start: &Point, end: &Point) -> bool {
         let [from, to] = [start, end].map(|point| self.watched.guards_at(point.t, &point.y));
         let crossed = (0..to.len()).filter(|guard| self.watched.is_beyond(*guard, to[*guard]));

@@ -19,7 +19,7 @@ const WITHIN_REACH: f64 = 20.0;
 /// In units of the tolerance, what a function's values inside a step may be off by.
 const ERRORS: f64 = 10.0;
 
-/// So many roundings of a function count as none of its moves.
+/// Changes of a function below this number of roundings are no motion.
 pub const ROUNDINGS: f64 = 8.0;
 
 /// The parts of a step where functions are asked.

@@ -30,9 +30,9 @@ pub(crate) fn cone_is_empty(rows: &[Vec<f64>]) -> bool {
     residual.norm() <= CONTRADICTION
 }
 
-/// Scales rows and columns to like sizes: each by the root of its largest and its least entry, in turn.
-/// Neither the length of a row nor the unit of an unknown changes whether a cone is empty, but a small constant
-/// beside a large one of another unknown would be taken for rounding.
+/// Scales rows and columns to similar sizes: each by the geometric mean of its largest and its least entry.
+/// The length of a row and the unit of an unknown do not change the answer. Without the scaling, a constant
+/// that is small compared with that of another unknown would be taken for rounding.
 fn equilibrated(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let mut rows = rows.to_vec();
     let columns = rows.first().map_or(0, Vec::len);

@@ -14,7 +14,7 @@ fn section(name: &str, count: usize, line: &dyn Fn(usize) -> String) -> String {
     format!("[{name}]\n{}", lines.collect::<String>())
 }
 
-/// Masses along lines of their own, with further sections.
+/// Masses on separate lines, with further sections.
 fn masses(count: usize, further: &str) -> String {
     "[model]\nname = \"grown\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\nk = { value = 3, unit = \"N/m\" }\n"
         .to_owned()

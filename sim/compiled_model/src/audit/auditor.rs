@@ -1,4 +1,4 @@
-//! The energy balance of a motion while it goes on.
+//! The energy balance of a motion, step by step.
 
 use eomgen_sim::ode::{Interior, ObservedStep, UNMOVED_PART};
 

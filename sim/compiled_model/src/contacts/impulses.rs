@@ -110,8 +110,8 @@ impl Contacts {
         self.stop_closed(own, (t, inputs), state);
     }
 
-    /// Takes what is left of the rates of closed contacts that move, which do work by that. Where none moves
-    /// this is left to the correction of the state.
+    /// Stops the remaining motion along closed contacts that move: it would do work. If no contact moves, the
+    /// correction of the state does the same.
     fn stop_closed(&mut self, own: &mut Evaluator, (t, inputs): (f64, &[f64]), state: &mut [f64]) {
         if self.closed.is_empty() {
             return;

@@ -5,8 +5,8 @@ use eomgen_codegen::program::evaluator::{Evaluator, Point};
 
 use super::{CORRECTIONS, Contacts, OF_A_DISTANCE, Overlap, rounding_of};
 
-/// A distance this far below zero, beside the largest that a coordinate was, is no error of a step; nor is what
-/// corrections leave of the distance of a closed contact, beside what it was.
+/// A distance below zero by more than this part of the largest coordinate is no error of a step. For a closed
+/// contact the same part of its distance before the correction may remain after it.
 const OVERLAP: f64 = 1e-6;
 
 impl Contacts {
@@ -54,8 +54,8 @@ impl Contacts {
         CORRECTIONS as u64 + 1
     }
 
-    /// The first open contact whose distance is below zero by more than errors of steps, and by more than the
-    /// rounding of state, time and what it has covered since the start.
+    /// Returns the first open contact whose distance is below zero by more than errors of steps and by more than
+    /// rounding of the state, of the time and of the distance covered since the start.
     fn overlapping_open(
         &mut self,
         own: &mut Evaluator,
@@ -85,7 +85,7 @@ impl Contacts {
     }
 }
 
-/// Whether a distance is below zero by more than is allowed, or is no number.
+/// Returns true if a distance is below zero by more than is allowed, or is no number.
 fn is_below(distance: f64, allowed: f64) -> bool {
     distance < -allowed || distance.is_nan()
 }

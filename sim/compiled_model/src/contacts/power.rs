@@ -1,5 +1,5 @@
 //! The work of contacts that move: a force F of one whose distance g(q, t) changes with the time does work with
-//! the power F g_q q' = F (g' - g_t), an impulse P the work -P g_t beside what restitution loses.
+//! the power F g_q q' = F (g' - g_t), an impulse P the work -P g_t, without the loss by restitution.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 

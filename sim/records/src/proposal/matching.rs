@@ -70,7 +70,7 @@ pub(crate) struct Quantity {
     pub unit: Unit,
     /// Whether it is an input.
     pub is_input: bool,
-    /// Whether a unit may identify it without a name; derivatives of observables need theirs.
+    /// True if a unit may identify it without a name; derivatives of observables need theirs.
     is_found_by_unit: bool,
 }
 

@@ -87,7 +87,7 @@ impl Found<'_> {
         }
     }
 
-    /// Whether a matched column jumps by full turns of this unit.
+    /// True if a matched column jumps by full turns of this unit.
     fn turns_in(&self, matched: &Match, unit: &Unit) -> bool {
         let values = &self.values[matched.column];
         let pattern = wrap_pattern(self.times(), values, full_turn(unit));
