@@ -175,7 +175,7 @@ impl Instance<'_> {
 /// A basis of the null space of a matrix given by rows, each vector with 1 in a place of its own. Units of
 /// rows and columns do not matter.
 fn null_directions(rows: &[Vec<f64>], columns: usize) -> Vec<Vec<f64>> {
-    let row_sizes = rows.iter().map(|row| largest(row));
+    let row_sizes = rows.iter().map(largest);
     let mut matrix: Vec<Vec<f64>> = rows
         .iter()
         .zip(row_sizes)

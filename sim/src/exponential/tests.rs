@@ -452,8 +452,8 @@ impact = { on = "alpha", value = "-d*dot(alpha)*above(alpha - beta - g)" }
                 let scale = (0..120)
                     .map(wanted)
                     .fold(0.0f64, |most, d| most.max(d.abs()));
-                for sample in 0..120 {
-                    let difference = (found[sample][place][state] - wanted(sample)).abs();
+                for (sample, found) in found.iter().enumerate() {
+                    let difference = (found[place][state] - wanted(sample)).abs();
                     assert!(
                         difference <= 5e-4 * scale,
                         "{name}, state {state} by parameter {place} at sample {sample}: \
