@@ -6,6 +6,7 @@ use std::cmp::Ordering;
 
 use crate::catalogue::candidate::Candidate;
 use crate::fit::fitted::Fit;
+use crate::model::unknowns::What;
 use crate::search::acceptance::{EffectUnknown, test_statistics};
 use crate::search::context::Context;
 use crate::search::fitted::FittedHypothesis;
@@ -48,7 +49,7 @@ struct IndistinguishableHalf {
 /// accepted. A parameter that nobody called uncertain is the less plausible answer: it is named
 /// only if it leaves clearly less than what looks like it.
 pub fn selected(context: Context<'_>, tested: TestedPool) -> Option<Selected> {
-    let selected = best(with_other_halves(context, tested))?;
+    let selected = best(context, with_other_halves(context, tested))?;
     let [candidate] = &selected.candidates[..] else {
         return Some(selected);
     };
@@ -66,11 +67,12 @@ pub fn selected(context: Context<'_>, tested: TestedPool) -> Option<Selected> {
         .into_iter()
         .partition(|fitted| fitted.verdict.is_ok() && is_clearly_better(&fitted.fit, fit));
     if !better.is_empty() {
-        return best(TestedPool {
+        let better = TestedPool {
             candidates,
             screening,
             fitted_hypotheses: better,
-        });
+        };
+        return best(context, better);
     }
     let of =
         |fitted: &FittedHypothesis| &candidates[screening.responses[fitted.responses[0]].candidate];
@@ -115,9 +117,9 @@ fn with_other_halves(context: Context<'_>, tested: TestedPool) -> TestedPool {
 }
 
 /// The accepted hypothesis that is best, with what is indistinguishable from it among the others.
-/// Of those that cannot, the one with fewest unknowns is the answer: what more of them do, these do
-/// not need; and of what was declared, what is least off.
-fn best(tested: TestedPool) -> Option<Selected> {
+/// Of those that cannot, one that contradicts no declared prior of a sensor is the answer before one that
+/// does, then the one with fewest unknowns, then the one whose declared parameter is least off.
+fn best(context: Context<'_>, tested: TestedPool) -> Option<Selected> {
     let TestedPool {
         candidates,
         screening,
@@ -136,13 +138,18 @@ fn best(tested: TestedPool) -> Option<Selected> {
             (Some(other), Some(least)) => other < least,
             _ => false,
         };
-        (other.own.len() < least.own.len() || is_less_off || (scales(least) && !scales(other)))
+        let is_likelier = contradicts_sensor(context, least) && !contradicts_sensor(context, other);
+        (other.own.len() < least.own.len()
+            || is_less_off
+            || is_likelier
+            || (scales(least) && !scales(other)))
             && other.verdict.is_ok()
             && indistinguishable_half(least, other, &candidates, &screening).is_some()
     };
     let simpler = FittedId::first(fitted_hypotheses.len()).filter(is_simpler);
     let order = |id: &FittedId| {
         (
+            contradicts_sensor(context, &fitted_hypotheses[*id]),
             fitted_hypotheses[*id].own.len(),
             off(&fitted_hypotheses[*id]).unwrap_or(0.0),
         )
@@ -170,6 +177,19 @@ fn best(tested: TestedPool) -> Option<Selected> {
         candidates: own,
         fitted,
     })
+}
+
+/// Returns true if a hypothesis moves a sensor beyond a prior that the dataset states for it.
+fn contradicts_sensor(context: Context<'_>, fitted: &FittedHypothesis) -> bool {
+    let channels = &context.problem.dataset.channels;
+    let own = fitted.own.iter().filter(|own| own.prior.is_some());
+    own.map(|own| &fitted.fit.unknowns[own.unknown].what)
+        .any(|what| match what {
+            What::Gain(channel) => channels[channel.index()].priors.gain.is_some(),
+            What::Bias(channel) => channels[channel.index()].priors.bias.is_some(),
+            What::Delay(channel) => channels[channel.index()].priors.delay.is_some(),
+            What::Parameter(_) | What::Inverse(_) | What::InputDelay => false,
+        })
 }
 
 /// How far off what was declared is, in standard deviations of its prior; none if something was
