@@ -7,7 +7,7 @@
 //! through both ends and the step is made in parts. What a propagator from switch to switch
 //! does to rounding this does to a small part of any sensor's noise, several times faster, and
 //! neighbouring motions come with it. The files: `types`, `kernels` (products),
-//! `surfaces`, `regime` (matrices of a step), `crossing` (where a step meets a surface), `parts`
+//! `surfaces`, `regime` and `regime_rates` (matrices of a step), `parameter_derivatives`, `crossing` (where a step meets a surface), `parts`
 //! (steps through surfaces), `release` (when a surface no longer holds the motion), `remainder` and `remainder_at` (what is not linear), `tangents`, `slopes`
 //! and `differences` (what these feel of that). The method: Hochbruck and Ostermann, Exponential
 //! integrators, Acta Numerica 19 (2010).
@@ -18,6 +18,7 @@ mod kernels;
 mod parameter_derivatives;
 mod parts;
 mod regime;
+mod regime_rates;
 mod release;
 mod remainder;
 mod remainder_at;

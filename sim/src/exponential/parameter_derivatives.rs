@@ -5,7 +5,7 @@ use eomgen_codegen::program::affine::AffineEvaluator;
 use nalgebra::DMatrix;
 
 use super::kernels::Columns;
-use super::regime::{DOUBLINGS, Rates, TERMS, flow_scale, held_rates};
+use super::regime_rates::{DOUBLINGS, Rates, TERMS, flow_scale, held_rates};
 use super::surfaces::{Row, Side, Surfaces};
 use crate::balancing::scaled;
 

@@ -3,7 +3,8 @@
 //! accelerations.
 
 use super::kernels::{self, Columns};
-use super::regime::{DoubledStep, HeldSurface, Regime, TERMS};
+use super::regime::{DoubledStep, HeldSurface, Regime};
+use super::regime_rates::TERMS;
 use super::slopes::Slopes;
 use super::surfaces::dot;
 

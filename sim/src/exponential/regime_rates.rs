@@ -1,0 +1,159 @@
+//! The rates of a regime as matrices, with the surfaces that hold the motion, and the scale in which
+//! their exponential is taken.
+
+use eomgen_codegen::program::affine::{AffineEvaluator, AffineSystem};
+use nalgebra::DMatrix;
+
+use crate::balancing::{LARGEST, balance, scaled};
+
+use super::surfaces::{Row, Side, Surfaces};
+
+/// Forces on the two sides of a surface that differ by less than this part do not.
+const SAME: f64 = 1e-9;
+
+/// Terms of a series for a part of a step: a step turns no mode by more than about one
+/// radian, and 1/14! is rounding's size.
+pub(super) const TERMS: usize = 14;
+
+/// Steps that neighbouring motions make at once are doubled so often at most.
+pub(super) const DOUBLINGS: usize = 6;
+
+/// The rates of a regime as matrices.
+#[derive(Clone)]
+pub(super) struct Rates {
+    /// By the state.
+    pub state: DMatrix<f64>,
+    /// By a unit constant and the inputs.
+    pub given: DMatrix<f64>,
+}
+
+impl Rates {
+    /// Returns true if all entries are finite.
+    pub fn are_finite(&self) -> bool {
+        let entries = self.state.iter().chain(self.given.iter());
+        entries.copied().all(f64::is_finite)
+    }
+
+    /// Both blocks as rows of a square matrix; the others are 0.
+    pub fn joined(&self) -> DMatrix<f64> {
+        let (n, given) = self.given.shape();
+        let mut whole = DMatrix::zeros(n + given, n + given);
+        whole.view_mut((0, 0), (n, n)).copy_from(&self.state);
+        whole.view_mut((0, n), (n, given)).copy_from(&self.given);
+        whole
+    }
+
+    pub fn of(system: &AffineSystem) -> Self {
+        let n = system.states;
+        let inputs = system.rates.inputs.len() / n.max(1);
+        Self {
+            state: DMatrix::from_row_slice(n, n, &system.rates.state),
+            given: DMatrix::from_fn(n, inputs + 1, |row, column| match column {
+                0 => system.rates.constant[row],
+                _ => system.rates.inputs[row * inputs + column - 1],
+            }),
+        }
+    }
+}
+
+/// Returns the rates with these sides, the surfaces' functions, and how surfaces hold the motion.
+pub(super) fn held_rates(
+    evaluator: &mut AffineEvaluator,
+    surfaces: &Surfaces,
+    sides: &[Side],
+) -> Option<(Rates, Vec<Row>, Held)> {
+    let system = evaluator.system(&surfaces.numbers(sides, |_| 0.0));
+    let mut rates = Rates::of(&system);
+    let functions = surfaces.rows(&system);
+    let held = hold(evaluator, surfaces, sides, &functions, &mut rates)?;
+    Some((rates, functions, held))
+}
+
+/// How surfaces hold a motion.
+pub(super) struct Held {
+    /// For each of them its place and its side.
+    pub sides: Vec<(usize, Row)>,
+    /// What rates add to these sides, a row for each.
+    pub factor: DMatrix<f64>,
+    /// What a side adds to the rates, a column for each.
+    pub jumps: DMatrix<f64>,
+}
+
+/// Makes the rates those of a state that is held where the sides say so.
+fn hold(
+    evaluator: &mut AffineEvaluator,
+    surfaces: &Surfaces,
+    sides: &[Side],
+    functions: &[Row],
+    rates: &mut Rates,
+) -> Option<Held> {
+    let places: Vec<usize> = (0..sides.len())
+        .filter(|place| sides[*place] == Side::Held)
+        .collect();
+    let n = rates.state.nrows();
+    if places.is_empty() {
+        return Some(Held {
+            sides: Vec::new(),
+            factor: DMatrix::zeros(0, n),
+            jumps: DMatrix::zeros(n, 0),
+        });
+    }
+    let mut jumps = DMatrix::zeros(n, places.len());
+    let scale = state_scale(&rates.state);
+    for (column, held) in places.iter().enumerate() {
+        let numbers = surfaces.numbers(sides, |place| f64::from(u8::from(place == *held)));
+        let other = Rates::of(&evaluator.system(&numbers));
+        let difference = scaled(&(&other.state - &rates.state), &scale);
+        let sizes = [&other, rates].map(|rates| scaled(&rates.state, &scale).amax());
+        if difference.amax() > SAME * sizes[0].max(sizes[1]) {
+            return None;
+        }
+        jumps.set_column(column, &(other.given.column(0) - rates.given.column(0)));
+    }
+    let rows = DMatrix::from_fn(places.len(), n, |r, c| functions[places[r]].state[c]);
+    let inverse = (&rows * &jumps).try_inverse()?;
+    let factor = -inverse * rows;
+    let of_state = &factor * &rates.state;
+    let of_given = &factor * &rates.given;
+    rates.state += &jumps * &of_state;
+    rates.given += &jumps * &of_given;
+    let row = |place: usize| Row {
+        state: of_state.row(place).iter().copied().collect(),
+        given: of_given.row(place).iter().copied().collect(),
+    };
+    let held = places.iter().enumerate();
+    Some(Held {
+        sides: held.map(|(k, p)| (*p, row(k))).collect(),
+        factor,
+        jumps,
+    })
+}
+
+/// Powers of two that bring states of different units to like size.
+pub(super) fn state_scale(rates: &DMatrix<f64>) -> Vec<f64> {
+    let one = vec![1.0; rates.nrows()];
+    match rates.iter().all(|entry| entry.abs() < LARGEST) {
+        true => balance(rates, one),
+        false => one,
+    }
+}
+
+/// Powers of two that balance such a matrix for its exponential.
+pub(super) fn flow_scale(whole: &DMatrix<f64>, states: usize, step: f64) -> Vec<f64> {
+    let rates = whole.view((0, 0), (states, states)).into_owned();
+    let mut scale = state_scale(&rates);
+    let largest = scaled(&rates, &scale).amax().max(1.0 / step);
+    for column in whole.column_iter().skip(states) {
+        let entries = column.iter().zip(&scale);
+        let size = entries
+            .map(|(entry, scale)| (entry / scale).abs())
+            .fold(0.0, f64::max);
+        let is_used = size > 0.0 && size.is_finite();
+        scale.push(if is_used {
+            (largest / size).log2().floor().exp2()
+        } else {
+            1.0
+        });
+    }
+    scale
+}
