@@ -52,7 +52,9 @@ pub fn null_fit(problem: &EstimationProblem<'_>, text: &str) -> Result<Fit, Disc
         waiting,
     );
     let fit = match (free, waiting) {
-        (Ok(free), Ok(waiting)) if waiting.train.rms < free.train.rms => waiting,
+        (Ok(free), Ok(waiting)) if waiting.train.estimate.cost < free.train.estimate.cost => {
+            waiting
+        }
         (Ok(fit), _) | (Err(_), Ok(fit)) => fit,
         (Err(error), Err(_)) => return Err(error),
     };
