@@ -173,3 +173,28 @@ fn a_bicycle_that_rolls_upright_is_in_equilibrium_at_its_own_speed() {
         found["at"]
     );
 }
+
+#[test]
+fn modes_beside_a_clipped_root_are_those_of_the_spring() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = r#"
+[model]
+name = "clipped"
+[parameters]
+m = { value = 1, unit = "kg", min = 0 }
+k = { value = 100, unit = "N/m" }
+h = { value = 100, unit = "N/m^(3/2)" }
+d = { value = 0.01, unit = "m" }
+[coordinates]
+x = { unit = "m" }
+[kinetic]
+T = "1/2*m*dot(x)^2"
+[potential]
+V = "1/2*k*x^2"
+[forces]
+contact = { on = "x", value = "-h*sqrt(max(x - d, 0))*d" }
+"#;
+    let model = written(folder.path(), text);
+    let printed = accepted(&["modes", &model]);
+    assert!(printed.contains("1.591549"), "{printed}");
+}
