@@ -98,6 +98,44 @@ fn modes_and_linearise_tell_whether_the_state_is_an_equilibrium() {
     assert!((number(&trimmed, "theta") - PI).abs() < 1e-9);
 }
 
+/// A mass without a spring's force at x = 0, and a pressure that settles.
+const MOVING: &str = r#"
+[model]
+name = "moving"
+[parameters]
+m = { value = 1, unit = "kg" }
+k = { value = 100, unit = "N/m" }
+T = { value = 1, unit = "s" }
+[coordinates]
+x = { unit = "m" }
+[states]
+p = { unit = "Pa", rate = "-p/T" }
+[kinetic]
+T = "1/2*m*dot(x)^2"
+[potential]
+V = "1/2*k*x^2"
+"#;
+
+#[test]
+fn the_warning_names_what_changes_at_a_state_that_is_no_equilibrium() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let model = written(folder.path(), MOVING);
+    let parts = ["the machine moves", "the machine accelerates", "p changes"];
+    for command in ["modes", "linearise"] {
+        for (at, changes) in [
+            ("x_dot=1", [true, false, false]),
+            ("x=1", [false, true, false]),
+            ("p=1", [false, false, true]),
+            ("x=0", [false, false, false]),
+        ] {
+            let found = run(&[command, &model, "--at", at]);
+            assert!(found.status.success(), "{command} {at}");
+            let said = String::from_utf8_lossy(&found.stderr).into_owned();
+            assert_eq!(parts.map(|part| said.contains(part)), changes, "{said}");
+        }
+    }
+}
+
 #[test]
 fn commands_read_expressions_and_units_alike() {
     let folder = tempfile::tempdir().expect("a folder");
