@@ -242,6 +242,17 @@ pub(crate) fn partial_derivatives(
     id: NodeId,
     mut moves: impl FnMut(&Graph, NodeId) -> bool,
 ) -> Vec<(NodeId, NodeId)> {
+    if let Some(guard) = graph.flat_guard(id) {
+        let mut partials = partial_derivatives(
+            graph,
+            guard.inner,
+            &mut moves as &mut dyn FnMut(&Graph, NodeId) -> bool,
+        );
+        for (_, partial) in &mut partials {
+            *partial = graph.guard_flat(guard.permanent(), *partial);
+        }
+        return partials;
+    }
     if let Some([a, b, then, otherwise]) = choice(graph, id) {
         let (zero, one) = (graph.zero(), graph.one());
         let taken = graph.select(a, b, one, zero);

@@ -23,6 +23,16 @@ pub(crate) struct FlatGuard {
     is_permanent: bool,
 }
 
+impl FlatGuard {
+    /// The same guard, which no term drops.
+    pub(super) fn permanent(self) -> Self {
+        Self {
+            is_permanent: true,
+            ..self
+        }
+    }
+}
+
 impl Graph {
     /// The guard that a node is, if it is one.
     pub(crate) fn flat_guard(&self, id: NodeId) -> Option<FlatGuard> {
@@ -159,8 +169,10 @@ impl<'m> Activities<'m> {
             Operation::Sum(_) | Operation::Power(..) => self.any_activity(graph, &operands),
             Operation::Product(_) => {
                 let activity = self.any_activity(graph, &operands);
-                let support = self.support(graph, id);
-                graph.multiply(activity, support)
+                match self.support(graph, id) {
+                    support if support == activity => activity,
+                    support => graph.multiply(activity, support),
+                }
             }
             Operation::Call(Function::Contact | Function::Above, _) => graph.zero(),
             Operation::Call(Function::Deadzone, arguments) => {

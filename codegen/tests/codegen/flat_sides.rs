@@ -103,3 +103,49 @@ fn forces_of_clipped_potentials_have_the_derivative_0_on_the_flat_side() {
         assert_close(slopes(&text, 0.25), -2.0 * curvature, potential);
     }
 }
+
+/// A string with a stop along it.
+const STOPPED: &str = r#"
+[model]
+name = "stopped_string"
+[parameters]
+mu = { value = 1, unit = "kg/m" }
+H = { value = 3, unit = "N" }
+c = { value = 2, unit = "N/m^(1/2)" }
+g = { value = 0.01, unit = "m" }
+l = { value = 1, unit = "m" }
+[fields.w]
+along = "s"
+from = 0
+to = "l"
+basis = "string"
+coordinates = "q"
+order = 2
+unit = "m"
+[kinetic]
+string = "1/2*integral(mu*dot(w)^2, w)"
+[potential]
+tension = "1/2*integral(H*diff(w, s)^2, w)"
+"#;
+
+#[test]
+fn clipped_potentials_along_a_field_add_nothing_on_the_flat_side() {
+    let mut free = evaluator(STOPPED, &[Output::Jacobians]);
+    let state = [0.001, -0.0005, 0.0, 0.0];
+    let sum = |nonzeros: Vec<f64>| nonzeros.iter().sum::<f64>();
+    let expected = sum(jacobian(&mut free, &state));
+    for stop in [
+        "sqrt(max(w - g, 0))",
+        "sqrt(max(w - g, 0)*(1 + w/l))",
+        "(max(w - g, 0)/l)^0.7*l^0.5",
+        "abs(deadzone(w, g))^1.5/l",
+    ] {
+        let text = format!("{STOPPED}stop = \"integral(c*({stop}), w)\"\n");
+        let mut stopped = evaluator(&text, &[Output::Jacobians]);
+        let found = sum(jacobian(&mut stopped, &state));
+        assert!(
+            (found - expected).abs() < 1e-9,
+            "{stop}: {found}, not {expected}"
+        );
+    }
+}
