@@ -4,8 +4,8 @@
 use std::path::Path;
 
 use eomgen_compiled_model::{
-    CompiledModel, Equilibrium, EquilibriumRequest, Error as Failure, Instance, OperatingPoint,
-    Setting,
+    CompiledModel, Departure, Equilibrium, EquilibriumRequest, Error as Failure, Instance,
+    OperatingPoint, Setting,
 };
 use eomgen_model_spec::assignment::{Assignment, QuantityReader};
 use eomgen_model_spec::dimension::Dimension;
@@ -96,14 +96,36 @@ pub fn equilibrium(run: &Instance<'_>, request: EquilibriumRequest<'_>) -> Resul
 
 /// Whether a point is an equilibrium, with a warning if it is not.
 pub fn is_equilibrium(run: &Instance<'_>, at: &OperatingPoint) -> Result<bool> {
-    let found = run.is_equilibrium(at)?;
-    if !found {
-        warn(
-            "warning: this state is no equilibrium: the machine accelerates there, and what is linearised \
-             holds for a short time only; give another state with --at NAME=VALUE, or --at trim",
-        );
+    let found = run.departure(at)?;
+    if !found.is_none() {
+        warn(&format!(
+            "warning: this state is no equilibrium: {}, and what is linearised holds for a short time only; \
+             give another state with --at NAME=VALUE, or --at trim",
+            described(&found)
+        ));
     }
-    Ok(found)
+    Ok(found.is_none())
+}
+
+/// Says which quantities change at a state that is no equilibrium.
+fn described(found: &Departure) -> String {
+    let parts = [
+        ("the machine moves there", &found.moving, "is not 0"),
+        (
+            "the machine accelerates there",
+            &found.accelerating,
+            "changes",
+        ),
+        ("a state changes there", &found.changing, "changes"),
+    ];
+    let parts = parts.iter().filter(|(_, names, _)| !names.is_empty());
+    let parts: Vec<String> = parts
+        .map(|(what, names, verb)| match &names[..] {
+            [name] => format!("{what} ({name} {verb})"),
+            names => format!("{what} ({})", names.join(", ")),
+        })
+        .collect();
+    parts.join(" and ")
 }
 
 /// The initial state with every `NAME=VALUE`.

@@ -1,5 +1,5 @@
-//! Constant parts of expressions, made of numbers and parameters alone: each has a finite value, and
-//! none that is 0 divides anything.
+//! Constant parts of expressions, made of numbers and parameters alone: each has a finite value and lies in the domain
+//! of the function that it is an argument of, and none that is 0 divides anything.
 
 use crate::ast::BinaryOperator;
 use crate::checks::for_each_expression;
@@ -7,7 +7,7 @@ use crate::evaluate::{binary, call};
 use crate::model::{CoefficientKind, Expr, ExprKind, Function, Model};
 use crate::span::Span;
 
-/// A constant that is infinite or not a number.
+/// A constant that is infinite, not a number or outside the domain of a function.
 pub struct NotFinite {
     /// What is wrong.
     pub message: String,
@@ -112,11 +112,32 @@ impl Constants<'_> {
 
     fn call(&self, function: Function, arguments: &[Expr], whole: &Expr) -> Constant {
         let values: Result<Vec<_>, _> = arguments.iter().map(|part| self.value(part)).collect();
-        let Some(values) = values?.into_iter().collect::<Option<Vec<f64>>>() else {
+        let values = values?;
+        if let ([_, half_width], [_, Some(value)]) = (arguments, &values[..])
+            && matches!(function, Function::Deadzone | Function::Contact)
+            && *value < 0.0
+        {
+            return Err(NotFinite {
+                message: format!(
+                    "the half-width of `{}` is negative: {value}",
+                    function.name()
+                ),
+                help: "give a half-width of at least 0",
+                span: half_width.span,
+            });
+        }
+        let Some(values) = values.into_iter().collect::<Option<Vec<f64>>>() else {
             return Ok(None);
         };
         let argument = |place: usize| values.get(place).copied().unwrap_or(f64::NAN);
         let (x, value) = (argument(0), call(function, argument(0), argument(1)));
+        if is_periodic(function) && x.abs() > MAX_ANGLE {
+            return Err(NotFinite {
+                message: format!("`{}` of {x} is outside its domain", function.name()),
+                help: "the angle is at most 1e9 rad, forward or backward",
+                span: whole.span,
+            });
+        }
         if value.is_finite() {
             return Ok(Some(value));
         }
@@ -139,6 +160,13 @@ fn not_finite(value: f64, expr: &Expr) -> NotFinite {
         },
         span: expr.span,
     }
+}
+
+/// Largest angle of a sine, a cosine and a tangent, rad: the emitted functions are NaN beyond.
+const MAX_ANGLE: f64 = 1e9;
+
+fn is_periodic(function: Function) -> bool {
+    matches!(function, Function::Sin | Function::Cos | Function::Tan)
 }
 
 /// Where a function has a finite value.

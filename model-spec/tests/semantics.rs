@@ -592,6 +592,47 @@ fn constants_without_a_finite_value_are_refused_where_they_stand() {
 }
 
 #[test]
+fn constants_outside_the_domain_of_their_function_are_refused() {
+    for (value, message, place) in [
+        (
+            "sin(1e10)",
+            "`sin` of 10000000000 is outside its domain",
+            "sin(",
+        ),
+        (
+            "x*cos(-2e9)",
+            "`cos` of -2000000000 is outside its domain",
+            "cos(",
+        ),
+        ("tan((n + 2)*1e9)", "`tan` of 2000000000 is outside", "tan("),
+        (
+            "deadzone(x, -2*(b + q))",
+            "`deadzone` is negative: -0.2",
+            "-2*(b + q)",
+        ),
+        ("contact(x, -q)*x", "`contact` is negative: -0.1", "-q)"),
+        ("contact(b, -q)*x", "`contact` is negative: -0.1", "-q)"),
+    ] {
+        let text = with_definition(value, "");
+        let text = text.replace("n = {", "q = { value = 0.1, unit = \"m\" }\nn = {");
+        let found = eomgen_model_spec::check(Source::new("test.toml", text.as_str()));
+        let found = found.expect_err(value);
+        assert!(
+            found.render(false).contains(message),
+            "{}",
+            found.render(false)
+        );
+        let label = found.list()[0].primary.as_ref().expect("a place");
+        assert!(text[label.span.start..].starts_with(place), "{value}");
+    }
+    for value in ["sin(1e9)*x", "deadzone(x, b)", "deadzone(x, -x)"] {
+        checked(&with_definition(value, ""));
+    }
+    let model = checked(&with_definition("deadzone(x, b)", "")).model;
+    assert!(model.with_parameter("b", -0.1).is_err());
+}
+
+#[test]
 fn what_is_0_by_a_factor_keeps_its_unit() {
     let unit = |value: &str| {
         let model = checked(&with_definition(value, "")).model;

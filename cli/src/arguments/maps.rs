@@ -76,8 +76,8 @@ pub struct Sweep {
     #[arg(long, value_name = "T", allow_negative_numbers = true)]
     pub until: Option<f64>,
     /// Where `poincare` looks in place of once per forcing period: where a coordinate or a
-    /// rate goes up through a value, or down with `:down`. --transient and --periods count
-    /// crossings then.
+    /// rate goes up through a value, or down with `:down`; an angle with which the equations
+    /// repeat, once per turn. --transient and --periods count crossings then.
     #[arg(long, value_name = "NAME=VALUE[:up|:down]")]
     pub section: Option<String>,
     /// Compute part I of N only; `merge` puts the parts together.

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use eomgen_model_spec::model::Function;
 
 use crate::symbolic::arguments::Arguments;
+use crate::symbolic::flat::guard_partial;
 use crate::symbolic::graph::{Graph, NodeId, Operation, Shape};
 use crate::symbolic::node_map::NodeMap;
 
@@ -225,6 +226,10 @@ pub(super) fn choose(
     let Some([a, b, then, otherwise]) = choice(graph, id) else {
         return graph.zero();
     };
+    if let Some(guard) = graph.flat_guard(id) {
+        let inner = derivative(graph, guard.inner);
+        return graph.guard_flat(guard, inner);
+    }
     let (taken, skipped) = (derivative(graph, then), derivative(graph, otherwise));
     graph.select(a, b, taken, skipped)
 }
@@ -237,6 +242,17 @@ pub(crate) fn partial_derivatives(
     id: NodeId,
     mut moves: impl FnMut(&Graph, NodeId) -> bool,
 ) -> Vec<(NodeId, NodeId)> {
+    if let Some(guard) = graph.flat_guard(id) {
+        let mut partials = partial_derivatives(
+            graph,
+            guard.inner,
+            &mut moves as &mut dyn FnMut(&Graph, NodeId) -> bool,
+        );
+        for (_, partial) in &mut partials {
+            *partial = graph.guard_flat(guard.permanent(), *partial);
+        }
+        return partials;
+    }
     if let Some([a, b, then, otherwise]) = choice(graph, id) {
         let (zero, one) = (graph.zero(), graph.one());
         let taken = graph.select(a, b, one, zero);
@@ -271,9 +287,23 @@ pub(crate) fn partial_derivatives(
                 Some((factor, graph.scale(f64::from(exponent), rest)))
             })
             .collect(),
-        Operation::Power(base, exponent) => power_derivatives(graph, id, base, exponent),
+        Operation::Power(base, exponent) => {
+            let mut partials = power_derivatives(graph, id, base, exponent);
+            if graph
+                .as_constant(exponent)
+                .is_none_or(|number| number < 1.0)
+            {
+                partials[0].1 = guard_partial(graph, partials[0].1, base, &mut moves);
+            }
+            partials.into()
+        }
         Operation::Call(function, arguments) => {
-            function_derivatives(graph, id, function, arguments)
+            let mut partials = function_derivatives(graph, id, function, arguments);
+            if let ([(argument, partial)], true) = (&mut partials[..], has_singular_slope(function))
+            {
+                *partial = guard_partial(graph, *partial, *argument, &mut moves);
+            }
+            partials
         }
         Operation::PivotReciprocal(pivot) => {
             let square = graph.integer_power(id, 2);
@@ -299,13 +329,13 @@ fn power_derivatives(
     id: NodeId,
     base: NodeId,
     exponent: NodeId,
-) -> Vec<(NodeId, NodeId)> {
+) -> [(NodeId, NodeId); 2] {
     let minus_one = graph.constant(-1.0);
     let lowered = graph.add(exponent, minus_one);
     let power = graph.power(base, lowered);
     let by_base = graph.multiply(exponent, power);
     let by_exponent = by_exponent(graph, id, base, exponent);
-    vec![(base, by_base), (exponent, by_exponent)]
+    [(base, by_base), (exponent, by_exponent)]
 }
 
 /// b^e ln(b), with its limit 0 at b = 0 for e > 0. The other branch is not a number where there is no limit.
@@ -346,6 +376,14 @@ fn function_derivatives(
         },
         _ => Vec::new(),
     }
+}
+
+/// Whether the derivative of a function is infinite at a point where the function may be clipped.
+fn has_singular_slope(function: Function) -> bool {
+    matches!(
+        function,
+        Function::Sqrt | Function::Asin | Function::Acos | Function::Ln
+    )
 }
 
 /// The derivative of a function of one argument; `None` where it is 0 almost everywhere.

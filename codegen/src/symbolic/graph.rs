@@ -12,6 +12,7 @@ use std::collections::{HashMap, HashSet};
 use eomgen_model_spec::ids::{FieldId, InputId};
 use eomgen_model_spec::model::Function;
 
+use crate::symbolic::flat::{FlatGuard, is_switch};
 use crate::symbolic::node_map::NodeMap;
 pub use crate::symbolic::operation::{
     Argument, Assembly, Bits, Dependence, NodeId, Operation, ScaledMatrix, Shape, Space, Variable,
@@ -27,6 +28,7 @@ struct Node {
     variables: u64,
     critical_path: u32,
     has_reciprocal_root: bool,
+    holds_switch: bool,
 }
 
 /// The graph of one variant: its nodes, constant tables and the sizes of its spaces.
@@ -43,6 +45,8 @@ pub struct Graph {
     names: HashMap<NodeId, String>,
     taken: HashSet<String>,
     pub(crate) orders_at_zeros: Orders,
+    /// Nodes that guard a factor of a derivative on the flat side of a switch.
+    pub(super) flat_guards: HashMap<NodeId, FlatGuard>,
 }
 
 impl Graph {
@@ -59,6 +63,7 @@ impl Graph {
             names: HashMap::new(),
             taken: HashSet::new(),
             orders_at_zeros: Orders::default(),
+            flat_guards: HashMap::new(),
         }
     }
 
@@ -130,6 +135,11 @@ impl Graph {
         self.nodes[id.0 as usize].has_reciprocal_root
     }
 
+    /// Whether a node is computed from a function that switches between sides.
+    pub(crate) fn holds_switch(&self, id: NodeId) -> bool {
+        self.nodes[id.0 as usize].holds_switch
+    }
+
     /// A table of constants.
     pub fn table(&self, index: usize) -> &Table {
         &self.tables[index]
@@ -177,6 +187,9 @@ impl Graph {
         let critical_path = self.critical_path_of(&operation, dependence);
         let has_reciprocal_root = self.holds_reciprocal_root(&operation);
         let variables = self.variables_of(&operation, dependence);
+        let operands = self.operands(&operation);
+        let holds_switch =
+            is_switch(&operation) || operands.iter().any(|id| self.holds_switch(*id));
         let id = NodeId(self.nodes.len() as u32);
         self.known.insert(operation.clone(), id);
         self.nodes.push(Node {
@@ -186,6 +199,7 @@ impl Graph {
             variables,
             critical_path,
             has_reciprocal_root,
+            holds_switch,
         });
         id
     }

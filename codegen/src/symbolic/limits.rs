@@ -15,8 +15,18 @@ use crate::symbolic::orders::{Bounds, Monomial};
 use crate::symbolic::substitute::substitute;
 
 impl Graph {
-    /// `partial` times `inner`, a term of a derivative, with its limit where a root in it vanishes.
+    /// `partial` times `inner`, a term of a derivative: 0 on the flat side of a switch, and with its limit where
+    /// a root in it vanishes.
     pub(crate) fn derivative_term(&mut self, partial: NodeId, inner: NodeId) -> NodeId {
+        let mut guards = Vec::new();
+        let partial = self.without_flat_guards(partial, &mut guards);
+        let inner = self.without_flat_guards(inner, &mut guards);
+        let term = self.term_with_limits(partial, inner);
+        let guards = guards.into_iter().rev();
+        guards.fold(term, |term, guard| self.guard_flat(guard, term))
+    }
+
+    fn term_with_limits(&mut self, partial: NodeId, inner: NodeId) -> NodeId {
         let mut term = self.multiply(partial, inner);
         if !self.has_reciprocal_root(term) {
             return term;
@@ -146,6 +156,9 @@ impl Graph {
     fn order_by(&mut self, argument: NodeId, bounds: &Bounds, id: NodeId) -> f64 {
         if id == argument {
             return 1.0;
+        }
+        if let Some(guard) = self.flat_guard(id) {
+            return self.order(argument, guard.inner);
         }
         if let Some((factor, exponent)) = self.guarded_power(id) {
             return f64::from(exponent) * self.factor_order(argument, factor, exponent);

@@ -4,7 +4,7 @@
 //! `operation` (of `arguments`) and `graph` (the nodes, known by `node_map`), `simplify` (the algebraic laws, applied
 //! by the constructors), `tables` and `table_text` (constants of a basis), `matrix`, `differentiate` and
 //! `modal_derivative` (derivatives that keep their structure), `limits` and `orders` (derivatives at zeros
-//! of roots), `substitute`, `expand`, `degree` and `operation_count` (walks over nodes), `association`
+//! of roots), `flat` (derivatives on flat sides of switches), `substitute`, `expand`, `degree` and `operation_count` (walks over nodes), `association`
 //! (which factors are multiplied first), `factor` and `trigonometry` (other forms of sums, for whoever
 //! compares what they cost), `formula` (for people).
 
@@ -14,6 +14,7 @@ pub(crate) mod degree;
 pub mod differentiate;
 pub(crate) mod expand;
 pub(crate) mod factor;
+pub(crate) mod flat;
 pub mod formula;
 pub mod graph;
 pub(crate) mod limits;

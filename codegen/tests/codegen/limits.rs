@@ -5,7 +5,7 @@ use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_codegen::variant::Variant;
 
 /// A mass in the plane that a force pushes along x.
-fn pushed(force: &str) -> String {
+pub(crate) fn pushed(force: &str) -> String {
     format!(
         r#"
 [model]
@@ -32,7 +32,7 @@ push = {{ on = "x", value = "F*({force})" }}
     )
 }
 
-fn evaluator(text: &str, outputs: &[Output]) -> Evaluator {
+pub(crate) fn evaluator(text: &str, outputs: &[Output]) -> Evaluator {
     let model = crate::support::model(text);
     let orders = vec![2; model.fields.len()];
     let variant = Variant::derive_with(&model, &orders, outputs)
@@ -41,7 +41,7 @@ fn evaluator(text: &str, outputs: &[Output]) -> Evaluator {
 }
 
 /// The structural nonzeros of the Jacobian of the rates by the state.
-fn jacobian(evaluator: &mut Evaluator, state: &[f64]) -> Vec<f64> {
+pub(crate) fn jacobian(evaluator: &mut Evaluator, state: &[f64]) -> Vec<f64> {
     let jacobians = &evaluator.program().outputs.jacobians;
     let place = jacobians
         .iter()
@@ -58,7 +58,7 @@ fn jacobian(evaluator: &mut Evaluator, state: &[f64]) -> Vec<f64> {
 }
 
 /// The gradient of the acceleration of x by the state, backward.
-fn gradient(evaluator: &mut Evaluator, state: &[f64]) -> Vec<f64> {
+pub(crate) fn gradient(evaluator: &mut Evaluator, state: &[f64]) -> Vec<f64> {
     let mut weights = vec![0.0; state.len()];
     weights[state.len() / 2] = 1.0;
     let mut gradient = vec![f64::NAN; state.len()];
@@ -71,7 +71,7 @@ fn gradient(evaluator: &mut Evaluator, state: &[f64]) -> Vec<f64> {
     gradient
 }
 
-fn acceleration(evaluator: &mut Evaluator, state: &[f64]) -> f64 {
+pub(crate) fn acceleration(evaluator: &mut Evaluator, state: &[f64]) -> f64 {
     let mut rates = vec![f64::NAN; state.len()];
     let point = Point {
         t: 0.0,

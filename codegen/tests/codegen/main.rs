@@ -8,6 +8,7 @@ mod documented_limits;
 mod emission;
 mod examination;
 mod expressions;
+mod flat_sides;
 mod gradients;
 mod guards;
 mod independence;

@@ -268,7 +268,11 @@ impl std::fmt::Display for EditError {
                 quoted(find)
             ),
             Self::Expression { text, diagnostic } => {
-                write!(f, "{}: {}", quoted(text), diagnostic.message)
+                write!(f, "{}: {}", quoted(text), diagnostic.message)?;
+                match &diagnostic.help {
+                    Some(help) => write!(f, " ({help})"),
+                    None => Ok(()),
+                }
             }
             Self::NotFinite { name } => write!(f, "the value of {} is not finite", quoted(name)),
         }

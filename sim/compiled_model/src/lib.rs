@@ -62,7 +62,7 @@ mod typical_sizes;
 pub use audit::{Audit, Imbalance};
 pub use distances::Overlap;
 pub use driven::Driven;
-pub use equilibrium::{Equilibrium, EquilibriumRequest, Stability};
+pub use equilibrium::{Departure, Equilibrium, EquilibriumRequest, Stability};
 pub use error::Error;
 pub use instance::Instance;
 pub use jacobians::{Jacobian, JacobianEvaluator, Linearisation};

@@ -67,6 +67,7 @@ mod units;
 mod unwrapping;
 pub mod windows;
 mod wrap_detection;
+mod wrap_period;
 mod wrapped_columns;
 
 pub use inputs::read_inputs;

@@ -4,6 +4,7 @@
 
 use crate::noise;
 use crate::unwrapping::{median, unwrapped};
+use crate::wrap_period::{ColumnUnit, estimate_period};
 
 /// The fewest samples that are examined.
 const FEWEST: usize = 10;
@@ -11,9 +12,6 @@ const FEWEST: usize = 10;
 /// The largest relative difference between the jumps of one column, of the range from the period, and of a
 /// declared period from the one that is seen.
 pub(crate) const ALIKE: f64 = 0.1;
-
-/// The largest relative difference of jumps that are full turns from a turn.
-const TURN: f64 = 0.05;
 
 /// Motion beyond this many standard deviations of the noise is motion.
 const MOVES: f64 = 5.0;
@@ -33,8 +31,13 @@ const BESIDE: usize = 5;
 /// Jumps of one common size in a column.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WrapPattern {
-    /// Their size, in the column's unit: a full turn exactly if it is about that.
+    /// Their size, in the unit of the values: a usual period exactly if it is within the uncertainty.
     pub period: f64,
+    /// Half the width of the interval in which the jumps place the period; none if they give it as closely
+    /// as the sensor does.
+    pub uncertainty: Option<f64>,
+    /// Whether the period is a usual one.
+    pub is_usual: bool,
     /// The time of the first.
     pub first: f64,
     /// How many there are.
@@ -53,24 +56,36 @@ impl WrapPattern {
         self.is_turn || (self.travels && !is_input)
     }
 
-    /// Its period as it is written in a dataset file, from the number in a unit: a full turn in full, others
-    /// to four digits.
+    /// Returns the period as a dataset file states it, from the number in a unit: a usual one in full,
+    /// others to a digit beyond their uncertainty.
     pub fn written(&self, period: f64) -> String {
-        let rounded = format!("{period:.3e}").parse::<f64>();
-        format!(
-            "{}",
-            rounded.ok().filter(|_| !self.is_turn).unwrap_or(period)
-        )
+        if self.is_turn {
+            return format!("{period}");
+        }
+        let digits = match self.uncertainty {
+            Some(own) if own > 0.0 && !self.is_usual => {
+                (self.period / own).log10().ceil().clamp(1.0, 11.0) as usize + 1
+            }
+            _ => 12,
+        };
+        let rounded = format!("{period:.*e}", digits).parse::<f64>();
+        format!("{}", rounded.unwrap_or(period))
+    }
+
+    /// Returns the uncertainty of the period in its unit, as a remark; none if the jumps give it as closely as
+    /// the sensor does.
+    pub fn doubt(&self, period: f64) -> Option<String> {
+        let own = self.uncertainty? / self.period * period;
+        let rounded = format!("{own:.0e}").parse::<f64>().unwrap_or(own);
+        Some(format!(
+            "uncertain by {rounded}: the data sheet of the sensor has it exactly"
+        ))
     }
 }
 
 /// The pattern of a wrapped column; none if it has no jumps or they do not look like crossings of a
-/// range's end. `turn`: a full turn in the column's unit, if it holds an angle or a number.
-pub(crate) fn wrap_pattern(
-    times: &[f64],
-    column: &[f64],
-    turn: Option<f64>,
-) -> Option<WrapPattern> {
+/// range's end.
+pub(crate) fn wrap_pattern(times: &[f64], column: &[f64], unit: ColumnUnit) -> Option<WrapPattern> {
     let samples: Vec<usize> = (0..column.len())
         .filter(|sample| column[*sample].is_finite())
         .collect();
@@ -79,10 +94,9 @@ pub(crate) fn wrap_pattern(
     }
     let times: Vec<f64> = samples.iter().map(|sample| times[*sample]).collect();
     let values: Vec<f64> = samples.iter().map(|sample| column[*sample]).collect();
-    let (period, jumps) = common_jumps(&values)?;
-    let is_turn = turn.is_some_and(|turn| (period - turn).abs() < TURN * turn);
-    let period = turn.filter(|_| is_turn).unwrap_or(period);
-    let motion = unwrapped(&times, &values, period).values;
+    let jumps = common_jumps(&values)?;
+    let period = estimate_period(&values, &jumps, unit)?;
+    let motion = unwrapped(&times, &values, period.value).values;
     let crossings = crossings(&jumps, &values);
     let threshold = MOVES * noise::estimated(&motion).unwrap_or(0.0);
     let decided: Vec<bool> = crossings
@@ -95,17 +109,19 @@ pub(crate) fn wrap_pattern(
     }
     let mut neighbours = crossings.windows(2);
     Some(WrapPattern {
-        period,
+        period: period.value,
+        uncertainty: period.uncertainty,
+        is_usual: period.is_usual,
         first: times[jumps[0] + 1],
         count: jumps.len(),
-        is_turn,
+        is_turn: period.is_turn,
         travels: neighbours.any(|pair| pair[0].direction == pair[1].direction),
     })
 }
 
-/// The size of the jumps of a column, with the motion at each allowed for, and the samples before them;
-/// none if their sizes differ or are not that of the range.
-fn common_jumps(values: &[f64]) -> Option<(f64, Vec<usize>)> {
+/// Returns the samples before the jumps of a column; none if the sizes of the jumps, less the motion at
+/// each, differ or are not that of the range.
+fn common_jumps(values: &[f64]) -> Option<Vec<usize>> {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let range = high - low;
@@ -129,7 +145,7 @@ fn common_jumps(values: &[f64]) -> Option<(f64, Vec<usize>)> {
     let speeds: Vec<f64> = jumps.iter().map(|jump| beside(*jump).abs()).collect();
     let fastest = speeds.into_iter().fold(0.0, f64::max);
     let fills = (period - range).abs() < fastest + ALIKE * period;
-    (fills && alike as f64 >= MOST * sizes.len() as f64).then_some((period, jumps))
+    (fills && alike as f64 >= MOST * sizes.len() as f64).then_some(jumps)
 }
 
 /// A crossing of the range's end: one jump, or several forth and back by noise.
@@ -184,6 +200,13 @@ fn crossings(jumps: &[usize], values: &[f64]) -> Vec<Crossing> {
 #[cfg(test)]
 mod tests {
     use super::{WrapPattern, wrap_pattern};
+    use crate::wrap_period::ColumnUnit;
+
+    /// Degrees.
+    const UNIT: ColumnUnit = ColumnUnit {
+        size: 1.0,
+        turn: Some(360.0),
+    };
 
     /// Values by sample.
     type Motion<'a> = &'a dyn Fn(usize) -> f64;
@@ -196,7 +219,7 @@ mod tests {
     fn pattern(column: impl Fn(usize) -> f64) -> Option<WrapPattern> {
         let times: Vec<f64> = (0..1000).map(|k| 0.01 * k as f64).collect();
         let column: Vec<f64> = (0..1000).map(column).collect();
-        wrap_pattern(&times, &column, Some(360.0))
+        wrap_pattern(&times, &column, UNIT)
     }
 
     fn between(low: f64, period: f64, value: f64) -> f64 {

@@ -15,6 +15,7 @@ use crate::header::Table;
 use crate::samples::{LOST, span, typical_step};
 use crate::unwrapping::unwrapped;
 use crate::wrap_detection::{ALIKE, WrapPattern, wrap_pattern};
+use crate::wrap_period::ColumnUnit;
 
 /// A period that differs from a full or a half turn by less than this part is one that was rounded.
 const ROUNDED: f64 = 1e-3;
@@ -53,6 +54,14 @@ impl<'d> ReadColumn<'d> {
         Self { start, ..self }
     }
 
+    /// Returns the unit, in SI.
+    fn column_unit(&self) -> ColumnUnit {
+        ColumnUnit {
+            size: self.unit.to_si(1.0) - self.unit.to_si(0.0),
+            turn: self.turn(),
+        }
+    }
+
     /// A full turn in SI, if the column may hold angles.
     fn turn(&self) -> Option<f64> {
         full_turn(self.unit).map(|turn| self.unit.to_si(turn))
@@ -69,8 +78,16 @@ impl<'d> ReadColumn<'d> {
 }
 
 /// A full turn in a unit of angles or of pure numbers.
-pub(crate) fn full_turn(unit: &Unit) -> Option<f64> {
+fn full_turn(unit: &Unit) -> Option<f64> {
     (unit.dimension == Dimension::NONE).then(|| unit.from_si(TAU))
+}
+
+/// Returns the unit of a column whose values are in that unit.
+pub(crate) fn own_unit(unit: &Unit) -> ColumnUnit {
+    ColumnUnit {
+        size: 1.0,
+        turn: full_turn(unit),
+    }
 }
 
 /// Whether a quantity of this unit can wrap around: angles, counts and lengths can.
@@ -95,7 +112,7 @@ pub(crate) fn unwrap_columns(
     };
     for (column, values) in read.iter().zip(columns) {
         let pattern = match can_wrap(column.unit) {
-            true => wrap_pattern(times, values, column.turn()),
+            true => wrap_pattern(times, values, column.column_unit()),
             false => None,
         };
         match (column.column.wrap, pattern) {
@@ -126,7 +143,10 @@ fn check_period(
     if spanned > MOST_PERIODS * period {
         let spanned = unit.from_si(spanned);
         return wrong(
-            format!("the column of `{name}` spans {spanned:.4} {unit}, more than one period"),
+            format!(
+                "the column of `{name}` spans {}, more than one period",
+                with_unit(spanned, unit)
+            ),
             "expected how far the sensor counts before it starts again; leave `wrap` out if it does not"
                 .to_owned(),
         );
@@ -135,11 +155,31 @@ fn check_period(
         Some(pattern) if (pattern.period - period).abs() > ALIKE * period => {
             let seen = unit.from_si(pattern.period);
             wrong(
-                format!("the column of `{name}` jumps by about {seen:.4} {unit}"),
-                format!("write wrap = {}", pattern.written(seen)),
+                format!(
+                    "the column of `{name}` jumps by about {}",
+                    with_unit(seen, unit)
+                ),
+                proposed_key(&pattern, seen, ""),
             )
         }
         _ => Ok(()),
+    }
+}
+
+/// Returns a size in a unit, as messages give it.
+fn with_unit(size: f64, unit: &Unit) -> String {
+    match unit.to_string().as_str() {
+        "1" => format!("{size:.4}"),
+        unit => format!("{size:.4} {unit}"),
+    }
+}
+
+/// Returns the key to write for a period in its unit, at a place, with the uncertainty of the period.
+fn proposed_key(pattern: &WrapPattern, period: f64, place: &str) -> String {
+    let key = format!("write wrap = {}{place}", pattern.written(period));
+    match pattern.doubt(period) {
+        Some(doubt) => format!("{key} ({doubt})"),
+        None => key,
     }
 }
 
@@ -191,11 +231,12 @@ fn refuse_wrapped(
         count => format!("{count} times"),
     };
     let jumps = format!(
-        "{}: `{name}` jumps {count} by about {size:.4} {unit}, first at {:.6} s",
+        "{}: `{name}` jumps {count} by about {}, first at {:.6} s",
         file.display(),
+        with_unit(size, unit),
         pattern.first
     );
-    let cure = format!("write wrap = {} in [{table}.{name}]", pattern.written(size));
+    let cure = proposed_key(pattern, size, &format!(" in [{table}.{name}]"));
     if pattern.is_wrapped(table == "inputs") {
         return Err(Diagnostic::error(jumps)
             .at(column.column.column.span(), "the values wrap around")

@@ -98,6 +98,44 @@ fn modes_and_linearise_tell_whether_the_state_is_an_equilibrium() {
     assert!((number(&trimmed, "theta") - PI).abs() < 1e-9);
 }
 
+/// A mass without a spring's force at x = 0, and a pressure that settles.
+const MOVING: &str = r#"
+[model]
+name = "moving"
+[parameters]
+m = { value = 1, unit = "kg" }
+k = { value = 100, unit = "N/m" }
+T = { value = 1, unit = "s" }
+[coordinates]
+x = { unit = "m" }
+[states]
+p = { unit = "Pa", rate = "-p/T" }
+[kinetic]
+T = "1/2*m*dot(x)^2"
+[potential]
+V = "1/2*k*x^2"
+"#;
+
+#[test]
+fn the_warning_names_what_changes_at_a_state_that_is_no_equilibrium() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let model = written(folder.path(), MOVING);
+    let parts = ["the machine moves", "the machine accelerates", "p changes"];
+    for command in ["modes", "linearise"] {
+        for (at, changes) in [
+            ("x_dot=1", [true, false, false]),
+            ("x=1", [false, true, false]),
+            ("p=1", [false, false, true]),
+            ("x=0", [false, false, false]),
+        ] {
+            let found = run(&[command, &model, "--at", at]);
+            assert!(found.status.success(), "{command} {at}");
+            let said = String::from_utf8_lossy(&found.stderr).into_owned();
+            assert_eq!(parts.map(|part| said.contains(part)), changes, "{said}");
+        }
+    }
+}
+
 #[test]
 fn commands_read_expressions_and_units_alike() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -172,4 +210,29 @@ fn a_bicycle_that_rolls_upright_is_in_equilibrium_at_its_own_speed() {
         "{}",
         found["at"]
     );
+}
+
+#[test]
+fn modes_beside_a_clipped_root_are_those_of_the_spring() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = r#"
+[model]
+name = "clipped"
+[parameters]
+m = { value = 1, unit = "kg", min = 0 }
+k = { value = 100, unit = "N/m" }
+h = { value = 100, unit = "N/m^(3/2)" }
+d = { value = 0.01, unit = "m" }
+[coordinates]
+x = { unit = "m" }
+[kinetic]
+T = "1/2*m*dot(x)^2"
+[potential]
+V = "1/2*k*x^2"
+[forces]
+contact = { on = "x", value = "-h*sqrt(max(x - d, 0))*d" }
+"#;
+    let model = written(folder.path(), text);
+    let printed = accepted(&["modes", &model]);
+    assert!(printed.contains("1.591549"), "{printed}");
 }

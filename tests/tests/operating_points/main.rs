@@ -332,6 +332,8 @@ fn what_makes_no_sense_is_refused_with_what_would() {
         ("--input", "v=1", "no input `v`"),
         ("--input", "u", "NAME=EXPRESSION"),
         ("--input", "u=3*sin(", "--input u=3*sin("),
+        ("--input", "u=t>0.2", "above(x - a)"),
+        ("--input", "u=1 if t", "above(x - a)*A"),
         ("--input", "u=k", "N"),
         ("--input", "u=F_0*sin(3*t)", "--input u=F_0*sin(3*t)"),
         ("--input", "u=x_0*t", "x_0"),

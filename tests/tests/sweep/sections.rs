@@ -259,3 +259,90 @@ fn machines_that_turn_or_travel_repeat_with_their_forcing() {
     let (period, greatest) = repetition(&place, &pendulum, "c=0.5:0.5:1", "phi");
     assert!(period == 1.0 && greatest <= PI, "{period} {greatest}");
 }
+
+/// A rotor that a potential slows down and speeds up; V is its potential.
+const ROTOR: &str = r#"
+[model]
+name = "rotor"
+[parameters]
+J = { value = 1, unit = "kg m^2" }
+a = { value = 0.1, unit = "N m" }
+[coordinates]
+p = { unit = "rad", initial = 0.1, initial_rate = 6 }
+[kinetic]
+k = "1/2*J*dot(p)^2"
+[potential]
+v = "V"
+"#;
+
+/// Runs a sweep of `a` with a section; the value of a column of the measure at its first value.
+fn on_section(
+    place: &Place,
+    text: &str,
+    measure: &str,
+    section: &str,
+) -> impl Fn(&str) -> f64 + use<> {
+    std::fs::write(place.at("model.toml"), text).expect("a specification");
+    let _ = std::fs::remove_dir_all(place.at("out"));
+    let (spec, out) = (place.at("model.toml"), place.at("out"));
+    let (spec, out) = (spec.display().to_string(), out.display().to_string());
+    let line = format!(
+        "sweep|{spec}|--out|{out}|--vary|a=0.1:0.2:2|--measure|{measure}|--section|{section}|--until|60\
+         |--transient|3|--periods|10"
+    );
+    accept(&line.split('|').map(str::to_owned).collect::<Vec<_>>());
+    let found = table(&place.at("out"));
+    let measure = measure.to_owned();
+    move |part: &str| column(&found, &format!("{measure}_{part}"))[0]
+}
+
+#[test]
+fn a_section_by_an_angle_is_crossed_once_per_turn() {
+    let place = Place::new();
+    let rotor = ROTOR.replace("\"V\"", "\"a*cos(p)\"");
+    // The energy is 18 + 0.1 cos(0.1), in every turn.
+    let rate = |p: f64| (36.0 + 0.2 * (0.1f64.cos() - p.cos())).sqrt();
+    for section in ["p=1", "p=1 + 4*pi", "p=-1:up"] {
+        let one = on_section(&place, &rotor, "poincare:p_dot", section);
+        let at = if section.starts_with("p=-") {
+            -1.0
+        } else {
+            1.0
+        };
+        assert_eq!(one("period"), 1.0, "{section}");
+        for point in 1..=10 {
+            let found = one(&point.to_string());
+            assert!((found - rate(at)).abs() < 1e-7, "{section}: {found}");
+        }
+        // One turn takes the mean of 1/rate over the angle.
+        let parts = 0..1000;
+        let turn: f64 = parts
+            .map(|k| 1.0 / rate(std::f64::consts::TAU * f64::from(k) / 1000.0))
+            .sum();
+        let right = std::f64::consts::TAU * turn / 1000.0;
+        assert!((one("time") - right).abs() < 1e-7, "{section}");
+    }
+    let angle = on_section(&place, &rotor, "poincare:p", "p=1");
+    assert_eq!(angle("period"), 1.0);
+    assert!((angle("min") - angle("max")).abs() < 1e-7);
+    // Backwards, without a potential: one step of the solver passes many turns.
+    let back = ROTOR
+        .replace("\"V\"", "\"0*a\"")
+        .replace("rate = 6", "rate = -6");
+    let one = on_section(&place, &back, "poincare:p_dot", "p=1:down");
+    assert_eq!(one("period"), 1.0);
+    assert!((one("time") - std::f64::consts::TAU / 6.0).abs() < 1e-9);
+}
+
+#[test]
+fn a_section_by_an_angle_that_a_spring_tells_apart_is_crossed_at_its_value_only() {
+    let place = Place::new();
+    // w = 2 rad/s, and an amplitude of about 12 rad: the motion comes back once per 2 pi/w.
+    let spring = ROTOR
+        .replace("\"V\"", "\"1/2*40*a*p^2\"")
+        .replace("initial_rate = 6", "initial_rate = 24");
+    let one = on_section(&place, &spring, "poincare:p_dot", "p=1");
+    assert_eq!(one("period"), 1.0);
+    let time = one("time");
+    assert!((time - std::f64::consts::PI).abs() < 1e-6, "{time}");
+}

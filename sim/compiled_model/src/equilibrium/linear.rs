@@ -57,9 +57,16 @@ impl Linear {
             .sum()
     }
 
-    /// Whether all accelerations are below this part of their sizes.
+    /// Returns true if all accelerations are below this part of their sizes.
     pub fn is_below(&self, part: f64) -> bool {
-        self.relative().all(|own| own <= part)
+        self.rows_above(part).is_empty()
+    }
+
+    /// Returns the rows of the accelerations that are not below this part of their sizes.
+    pub fn rows_above(&self, part: f64) -> Vec<usize> {
+        let rows = self.relative().enumerate();
+        let above = rows.filter(|(_, own)| own.is_nan() || *own > part);
+        above.map(|(row, _)| row).collect()
     }
 
     /// Which acceleration is the largest beside its size, and what it is, SI.

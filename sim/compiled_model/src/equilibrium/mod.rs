@@ -41,6 +41,24 @@ pub struct Equilibrium {
     pub depends_on_time: bool,
 }
 
+/// Changes of a state that is no equilibrium, by name; empty at an equilibrium.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Departure {
+    /// Rates that are not 0, except constant speeds along cyclic directions.
+    pub moving: Vec<String>,
+    /// Rates whose accelerations are not 0 beside the terms they are made of.
+    pub accelerating: Vec<String>,
+    /// States of first order whose rates are not 0 beside the terms they are made of.
+    pub changing: Vec<String>,
+}
+
+impl Departure {
+    /// Returns true at an equilibrium.
+    pub fn is_none(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
 /// Where the search begins and what it leaves alone, SI.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct EquilibriumRequest<'r> {
@@ -100,23 +118,37 @@ impl Instance<'_> {
         })
     }
 
-    /// Whether a state stays as it is: whether all accelerations and rates of states of first order are 0
-    /// beside the terms they are made of, and speeds along cyclic directions.
+    /// Returns true if a state stays as it is, as [`Instance::departure`] tells.
     ///
     /// # Errors
     /// As [`Instance::jacobian_evaluator`].
     pub fn is_equilibrium(&self, at: &OperatingPoint) -> Result<bool, Error> {
+        Ok(self.departure(at)?.is_none())
+    }
+
+    /// Returns the rates, accelerations and states of first order that keep a state from being an equilibrium.
+    ///
+    /// # Errors
+    /// As [`Instance::jacobian_evaluator`].
+    pub fn departure(&self, at: &OperatingPoint) -> Result<Departure, Error> {
         let holding = self.stabilised(1.0);
+        let mut found = Departure::default();
         if !self.is_at_rest(at) {
             let directions = holding.cyclic_directions(at)?;
             let mut along = at.clone();
             self.move_along(&mut along, &directions);
-            if !self.has_speeds_of(at, &along) {
-                return Ok(false);
-            }
+            found.moving = self.other_speeds(at, &along);
         }
         let mut search = Search::new(&holding, &[], self.free(at, &[])?)?;
-        Ok(search.linearised(at)?.is_below(NOT_ZERO))
+        let names = self.model().state_names();
+        for row in search.linearised(at)?.rows_above(NOT_ZERO) {
+            let name = names[self.degrees() + row].clone();
+            match row < self.degrees() {
+                true => found.accelerating.push(name),
+                false => found.changing.push(name),
+            }
+        }
+        Ok(found)
     }
 
     /// The names of the rates that are not 0.
@@ -202,16 +234,22 @@ impl Instance<'_> {
         }
     }
 
-    /// Whether the rates of two states are the same, beside the largest of their kind.
-    fn has_speeds_of(&self, one: &OperatingPoint, other: &OperatingPoint) -> bool {
+    /// Returns the names of the rates that differ between two states, beside the largest of their kind.
+    fn other_speeds(&self, one: &OperatingPoint, other: &OperatingPoint) -> Vec<String> {
         let model = self.model();
-        let units = model.model().state_units(model.orders());
+        let (units, names) = (
+            model.model().state_units(model.orders()),
+            model.state_names(),
+        );
         let rates = || self.degrees()..2 * self.degrees();
-        rates().all(|place| {
-            let alike = rates().filter(|other| units[*other].dimension == units[place].dimension);
+        let differs = |place: &usize| {
+            let alike = rates().filter(|other| units[*other].dimension == units[*place].dimension);
             let largest = alike.fold(0.0, |most: f64, other| most.max(one.state[other].abs()));
-            (one.state[place] - other.state[place]).abs() <= SAME_SPEED * largest
-        })
+            let difference = (one.state[*place] - other.state[*place]).abs();
+            difference.is_nan() || difference > SAME_SPEED * largest
+        };
+        let differing = rates().filter(differs);
+        differing.map(|place| names[place].clone()).collect()
     }
 
     /// Refuses a given rate other than 0 of a coordinate that may not move steadily.

@@ -21,7 +21,7 @@ use crate::parquet_file;
 use crate::refusal::Refusal;
 use crate::samples::{FEWEST_SAMPLES, JITTER, typical_step};
 use crate::wrap_detection::{WrapPattern, wrap_pattern};
-use crate::wrapped_columns::{can_wrap, full_turn};
+use crate::wrapped_columns::{can_wrap, own_unit};
 
 use self::matching::{FileColumn, Match, Quantity, matched, quantities};
 
@@ -90,7 +90,7 @@ impl Found<'_> {
     /// True if a matched column jumps by full turns of this unit.
     fn turns_in(&self, matched: &Match, unit: &Unit) -> bool {
         let values = &self.values[matched.column];
-        let pattern = wrap_pattern(self.times(), values, full_turn(unit));
+        let pattern = wrap_pattern(self.times(), values, own_unit(unit));
         pattern.is_some_and(|pattern| pattern.is_turn)
     }
 
@@ -98,7 +98,7 @@ impl Found<'_> {
     fn wrap_pattern(&self, matched: &Match) -> Option<WrapPattern> {
         let (unit, _) = self.unit(matched);
         let values = &self.values[matched.column];
-        let pattern = || wrap_pattern(self.times(), values, full_turn(&unit));
+        let pattern = || wrap_pattern(self.times(), values, own_unit(&unit));
         can_wrap(&unit).then(pattern).flatten()
     }
 

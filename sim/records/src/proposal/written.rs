@@ -184,9 +184,11 @@ fn input(found: &Found<'_>, matched: &Match) -> String {
 /// The key of a column that wraps around.
 fn wrap(pattern: Option<WrapPattern>) -> String {
     pattern.map_or_else(String::new, |pattern| {
+        let doubt = pattern.doubt(pattern.period);
         format!(
-            "wrap = {}\u{1}it jumps by about this; \"none\" if the jumps are real\n",
-            pattern.written(pattern.period)
+            "wrap = {}\u{1}it jumps by about this{}; \"none\" if the jumps are real\n",
+            pattern.written(pattern.period),
+            doubt.map_or_else(String::new, |doubt| format!(", {doubt}"))
         )
     })
 }

@@ -111,17 +111,63 @@ fn a_wrapped_channel_is_refused_with_the_key_to_write() {
     let radians = DESCRIPTION.replace("\"deg\"", "\"rad\"");
     let said = refused(&folder(&radians, |v| wrapped(v).to_radians(), |_| 0.0));
     assert!(said.contains("write wrap = 6.283185307179586 in"), "{said}");
-    let counts = DESCRIPTION.replace("\"deg\"", "\"1\"").replace("0.1", "1");
-    let said = refused(&folder(
-        &counts,
-        |v| (v / 360.0 * 4096.0).floor().rem_euclid(4096.0),
-        |_| 0.0,
-    ));
+    assert!(read(&folder(&with("wrap = \"none\""), wrapped, |_| 0.0)).is_ok());
+}
+
+/// The message about a counter with this period that a motion in turns drives.
+fn refused_counter(period: f64, mut turns: impl FnMut(usize) -> f64) -> String {
+    let counts = DESCRIPTION
+        .replace("\"deg\"", "\"1\"")
+        .replace("0.1", "1")
+        .replace("test = [\"test.csv\"]", "test = [\"train.csv\"]");
+    let folder = folder(&counts, |v| v, |_| 0.0);
+    let mut text = "t,u,phi\n".to_owned();
+    for k in 0..2000_u32 {
+        let count = (turns(k as usize) * period).floor().rem_euclid(period);
+        writeln!(text, "{:.2},0,{count}", 0.01 * f64::from(k)).expect("a string");
+    }
+    write(folder.path(), "train.csv", &text);
+    refused(&folder)
+}
+
+#[test]
+fn the_period_of_a_counter_is_proposed_in_full() {
+    let mut noise = 12345_u64;
+    let mut uniform = move || {
+        noise = noise
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        (noise >> 40) as f64 / 2f64.powi(24) - 0.5
+    };
+    for period in [256.0, 1000.0, 1024.0, 3600.0, 4096.0, 65536.0, 16_777_216.0] {
+        for (wraps, noise) in [(2.0, 0.0), (3.0, 0.0), (2.0, 1.0), (3.0, 1.0)] {
+            let said = refused_counter(period, |k| {
+                let part = f64::from(k as u32) / 2000.0;
+                0.4 + wraps * (part + 0.05 * (9.0 * part).sin()) + noise * uniform() / period
+            });
+            let right = format!("write wrap = {period} in [channels.phi]");
+            assert!(said.contains(&right), "{period}, {wraps}, {noise}: {said}");
+            assert!(
+                noise > 0.0 || period > 1e5 || !said.contains("uncertain"),
+                "{said}"
+            );
+            assert!(!said.contains("0 1,"), "the unit 1 is not named: {said}");
+        }
+    }
+}
+
+#[test]
+fn an_unusual_period_is_proposed_with_its_uncertainty() {
+    let said = refused_counter(5003.0, |k| 0.4 + 0.0017 * k as f64);
     assert!(
-        said.contains("write wrap = 4096 in [channels.phi]") || said.contains("write wrap = 409"),
+        said.contains("write wrap = 5003 in [channels.phi] (uncertain by 1"),
         "{said}"
     );
-    assert!(read(&folder(&with("wrap = \"none\""), wrapped, |_| 0.0)).is_ok());
+    let said = refused_counter(65003.0, |k| 0.4 + 0.0017 * k as f64);
+    assert!(
+        said.contains("write wrap = 65003 in [channels.phi] (uncertain by 1"),
+        "{said}"
+    );
 }
 
 #[test]

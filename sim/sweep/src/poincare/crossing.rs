@@ -1,7 +1,9 @@
-//! Sections by an event: a coordinate or a rate that goes through a value in one direction. The
-//! general solver locates it as it locates switches.
+//! Sections by an event: a coordinate or a rate that goes through a value in one direction. An angle with
+//! which the equations repeat goes through it once per turn. The general solver locates the event as it
+//! locates switches.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
+use std::f64::consts::TAU;
 
 use eomgen_compiled_model::{CompiledModel, Instance};
 use eomgen_model_spec::assignment::{Assignment, QuantityReader};
@@ -9,6 +11,7 @@ use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_sim::ode::{Settings, SolveError, System, simulate};
 
 use super::quantity::place;
+use super::rotation::{Looks, turns_over};
 use crate::error::SweepError;
 use crate::measure::Failure;
 
@@ -62,12 +65,26 @@ impl Crossing {
         })
     }
 
-    /// Whether the motion goes through the value between two points, and at which part of the way.
-    fn between(&self, before: &[f64], after: &[f64]) -> Option<f64> {
+    /// Returns the part of the way at which the motion goes through `value` between two points, if it does
+    /// so in the direction of the section.
+    fn between(&self, value: f64, before: &[f64], after: &[f64]) -> Option<f64> {
         let sign = if self.is_upwards { 1.0 } else { -1.0 };
-        let above = |y: &[f64]| sign * (y[self.state] - self.value);
+        let above = |y: &[f64]| sign * (y[self.state] - value);
         let (from, to) = (above(before), above(after));
         (from <= 0.0 && to > 0.0).then(|| -from / (to - from))
+    }
+
+    /// Returns true if all crossings are at the same value, or at values that the equations do not tell apart.
+    fn is_one_value(&self, instance: &Instance<'_>, seen: &Seen) -> Result<bool, Failure> {
+        let is_near = |point: &Vec<f64>| (point[self.state] - self.value).abs() < 0.5 * TAU;
+        if !instance.is_angle(self.state) || seen.points.iter().all(is_near) {
+            return Ok(true);
+        }
+        let looks = Looks {
+            times: &seen.times,
+            states: &seen.points,
+        };
+        turns_over(instance, &looks, self.state)
     }
 }
 
@@ -88,7 +105,8 @@ pub struct Seen {
     pub between: Vec<Vec<f64>>,
 }
 
-/// The crossings of an instance's motion, so many after others.
+/// Returns `kept` crossings of an instance's motion after the first `transient`. A section by an angle with
+/// which the equations repeat is crossed in every turn.
 ///
 /// # Errors
 /// A motion that cannot be followed, or that has fewer crossings until the time `until`, s.
@@ -99,34 +117,109 @@ pub fn crossings(
     until: f64,
     settings: &Settings,
 ) -> Result<Seen, Failure> {
-    let (evaluator, inputs) = (RefCell::new(instance.evaluator()?), instance.no_inputs());
-    let watched = Watched {
-        system: instance.driven(&evaluator, &inputs)?,
-        crossing,
-        found: RefCell::default(),
+    let find = |in_every_turn| {
+        let wanted = (transient, kept);
+        followed(instance, (crossing, in_every_turn), wanted, until, settings)
     };
-    let (initial, _) = instance.consistent(instance.initial(), 0.0, &inputs)?;
-    let between = watched.follow(&initial, until, (transient, kept), settings)?;
-    let found = watched.found.into_inner();
-    let mut seen = Seen {
-        times: Vec::with_capacity(kept),
-        points: Vec::with_capacity(kept),
-        between,
-    };
-    for (t, state) in found.into_iter().skip(transient).take(kept) {
-        seen.times.push(t);
-        seen.points.push(state);
+    let mut seen = find(instance.is_angle(crossing.state))?;
+    if !crossing.is_one_value(instance, &seen)? {
+        seen = find(false)?;
     }
-    if seen.points.len() < kept {
+    if seen.points.len() < transient + kept {
         return Err(Failure::Undefined);
+    }
+    for crossed in [transient + kept..seen.points.len(), 0..transient] {
+        seen.points.drain(crossed.clone());
+        seen.times.drain(crossed);
     }
     Ok(seen)
 }
 
-/// A system with the section as one more switching surface, and what was found there.
+/// Returns all crossings until enough are found or the time is over; of every turn, or of the value alone.
+fn followed(
+    instance: &Instance<'_>,
+    (crossing, in_every_turn): (&Crossing, bool),
+    wanted: (usize, usize),
+    until: f64,
+    settings: &Settings,
+) -> Result<Seen, Failure> {
+    let (evaluator, inputs) = (RefCell::new(instance.evaluator()?), instance.no_inputs());
+    let watched = Watched {
+        system: instance.driven(&evaluator, &inputs)?,
+        surface: Surface {
+            crossing,
+            turn: in_every_turn.then(Cell::default),
+        },
+        found: RefCell::default(),
+    };
+    let (initial, _) = instance.consistent(instance.initial(), 0.0, &inputs)?;
+    let between = watched.follow(&initial, until, wanted, settings)?;
+    let (times, points) = watched.found.into_inner().into_iter().unzip();
+    Ok(Seen {
+        times,
+        points,
+        between,
+    })
+}
+
+/// The switching surface of a section: the value, or that value in every turn.
+struct Surface<'c> {
+    crossing: &'c Crossing,
+    /// The number of the turn that the motion is in, if every turn has a section. Held from crossing to
+    /// crossing, so that a step over several turns still ends at the first.
+    turn: Option<Cell<f64>>,
+}
+
+impl Surface<'_> {
+    /// Returns the values that bound a turn, which begins at the section.
+    fn bounds(&self, turn: f64) -> (f64, f64) {
+        let start = |turn: f64| self.crossing.value + TAU * turn;
+        (start(turn), start(turn + 1.0))
+    }
+
+    /// Sets the turn to that of a state.
+    fn enter(&self, y: &[f64]) {
+        let Some(turn) = &self.turn else { return };
+        let value = y[self.crossing.state];
+        let rounded = ((value - self.crossing.value) / TAU).floor();
+        let (from, to) = self.bounds(rounded);
+        turn.set(match (value < from, value > to) {
+            (true, _) => rounded - 1.0,
+            (_, true) => rounded + 1.0,
+            _ => rounded,
+        });
+    }
+
+    /// Returns the switching function. Its sign alternates from turn to turn, so that it does not jump
+    /// when the motion enters the next one.
+    fn guard(&self, y: &[f64]) -> f64 {
+        let value = y[self.crossing.state];
+        let Some(turn) = &self.turn else {
+            return value - self.crossing.value;
+        };
+        let (from, to) = self.bounds(turn.get());
+        let inside = (value - from).min(to - value);
+        if turn.get().rem_euclid(2.0) == 0.0 {
+            inside
+        } else {
+            -inside
+        }
+    }
+
+    /// Returns the value that the motion goes through next in the direction of the section.
+    fn next(&self) -> f64 {
+        let Some(turn) = &self.turn else {
+            return self.crossing.value;
+        };
+        let (from, to) = self.bounds(turn.get());
+        if self.crossing.is_upwards { to } else { from }
+    }
+}
+
+/// A system with the section as one more switching surface, and the crossings found.
 struct Watched<'c, S> {
     system: S,
-    crossing: &'c Crossing,
+    surface: Surface<'c>,
     found: RefCell<Vec<(f64, Vec<f64>)>>,
 }
 
@@ -154,6 +247,7 @@ impl<S: System> Watched<'_, S> {
                     _ => time(look as f64 / LOOKS as f64),
                 })
                 .collect();
+            self.surface.enter(&state);
             let motion = simulate(self, &state, span, &samples, &settings, &mut |_| {})?;
             let work = motion.work;
             let steps = work.steps + work.rejected + work.trials;
@@ -193,7 +287,7 @@ impl<S: System> System for Watched<'_, S> {
             Some(split) => split,
             None => return,
         };
-        *section = y[self.crossing.state] - self.crossing.value;
+        *section = self.surface.guard(y);
         self.system.guards(t, y, others);
     }
 
@@ -210,12 +304,14 @@ impl<S: System> System for Watched<'_, S> {
     }
 
     fn cross(&self, (before, start): (f64, &[f64]), t: f64, y: &mut [f64]) {
-        if let Some(part) = self.crossing.between(start, y) {
+        let value = self.surface.next();
+        if let Some(part) = self.surface.crossing.between(value, start, y) {
             let on = |from: f64, to: f64| from + part * (to - from);
             let state = start.iter().zip(&*y).map(|(from, to)| on(*from, *to));
             let point = (on(before, t), state.collect());
             self.found.borrow_mut().push(point);
         }
+        self.surface.enter(y);
         self.system.cross((before, start), t, y);
     }
 

@@ -50,6 +50,34 @@ pub fn without_drift(
     Ok(())
 }
 
+/// Returns true if a coordinate is an angle and the equations are the same after a turn of it, at all angles.
+pub fn turns_over(
+    instance: &Instance<'_>,
+    looks: &Looks<'_>,
+    place: usize,
+) -> Result<bool, Failure> {
+    if !instance.is_angle(place) {
+        return Ok(false);
+    }
+    // All looks may be at one angle.
+    let turned = |state: &[f64], part: usize| {
+        let mut state = state.to_vec();
+        state[place] += TAU * part as f64 / COMPARED as f64;
+        state
+    };
+    let step = (looks.states.len() / COMPARED).max(1);
+    let (mut times, mut states) = (Vec::new(), Vec::new());
+    for (t, state) in looks.times.iter().zip(looks.states).step_by(step) {
+        times.extend([*t; COMPARED]);
+        states.extend((0..COMPARED).map(|part| turned(state, part)));
+    }
+    let compared: Vec<(f64, &[f64])> = times
+        .into_iter()
+        .zip(states.iter().map(|s| &s[..]))
+        .collect();
+    Ok(is_cyclic(instance, looks, place)? || instance.repeats_with_a_turn(place, &compared)?)
+}
+
 /// Whether a cyclic direction moves a coordinate.
 fn is_cyclic(instance: &Instance<'_>, looks: &Looks<'_>, place: usize) -> Result<bool, Failure> {
     let Some((t, state)) = looks.times.iter().zip(looks.states).next_back() else {

@@ -1,0 +1,294 @@
+//! Derivatives on the flat side of a switch.
+//!
+//! `sqrt(max(x, 0))` is constant for x < 0. Its derivative there is 0, but the chain rule gives 1/sqrt(0) times 0.
+//! The activity of an expression is a node that is 0 on every open set where the expression is constant because of a
+//! switch, and positive elsewhere. A term of a derivative with a factor that may be infinite is 0 where
+//! the activity is 0. On the switching surface itself the activity is positive, so that a derivative without a limit
+//! there stays infinite or no number.
+
+use std::collections::HashMap;
+
+use eomgen_model_spec::model::Function;
+
+use crate::symbolic::differentiate::choice;
+use crate::symbolic::graph::{Graph, NodeId, Operation, Shape};
+
+/// A factor of a derivative, guarded on flat sides.
+#[derive(Clone, Copy)]
+pub(crate) struct FlatGuard {
+    activity: NodeId,
+    /// The factor elsewhere.
+    pub(super) inner: NodeId,
+    /// Whether a term keeps the guard although it holds no reciprocal of a root.
+    is_permanent: bool,
+}
+
+impl FlatGuard {
+    /// The same guard, which no term drops.
+    pub(super) fn permanent(self) -> Self {
+        Self {
+            is_permanent: true,
+            ..self
+        }
+    }
+}
+
+impl Graph {
+    /// The guard that a node is, if it is one.
+    pub(crate) fn flat_guard(&self, id: NodeId) -> Option<FlatGuard> {
+        self.flat_guards.get(&id).copied()
+    }
+
+    /// `inner` with a guard like `guard`, or without it if nothing in `inner` can be infinite.
+    pub(super) fn guard_flat(&mut self, guard: FlatGuard, inner: NodeId) -> NodeId {
+        if self.is_zero(inner) || !(guard.is_permanent || self.has_reciprocal_root(inner)) {
+            return inner;
+        }
+        let zero = self.zero();
+        let node = match *self.operation(guard.activity) {
+            Operation::Select {
+                a,
+                b,
+                then,
+                otherwise,
+            } if self.is_zero(then) && self.as_constant(otherwise).is_some() => {
+                self.select(a, b, zero, inner)
+            }
+            _ => self.select(guard.activity, zero, inner, zero),
+        };
+        let guard = FlatGuard { inner, ..guard };
+        self.flat_guards.insert(node, guard);
+        node
+    }
+
+    /// Removes the guards of a factor, which are added to `guards`, outermost first.
+    pub(super) fn without_flat_guards(
+        &mut self,
+        mut id: NodeId,
+        guards: &mut Vec<FlatGuard>,
+    ) -> NodeId {
+        loop {
+            if let Some(guard) = self.flat_guard(id) {
+                let activity = guard.activity;
+                if guards.iter().all(|known| known.activity != activity) {
+                    guards.push(guard);
+                }
+                id = guard.inner;
+            } else if let Operation::Sum(terms) = self.operation(id)
+                && let &[(factor, term)] = &**terms
+                && self.flat_guard(term).is_some()
+            {
+                let inner = self.without_flat_guards(term, guards);
+                return self.scale(factor.value(), inner);
+            } else {
+                return id;
+            }
+        }
+    }
+}
+
+/// `partial`, the derivative of a function at `argument`, guarded where `argument` is constant because of a switch.
+pub(super) fn guard_partial(
+    graph: &mut Graph,
+    partial: NodeId,
+    argument: NodeId,
+    moves: &mut dyn FnMut(&Graph, NodeId) -> bool,
+) -> NodeId {
+    if !graph.holds_switch(argument) {
+        return partial;
+    }
+    let activity = Activities::new(moves).activity(graph, argument);
+    if graph.as_constant(activity).is_some() {
+        return partial;
+    }
+    let guard = FlatGuard {
+        activity,
+        inner: partial,
+        is_permanent: !graph.has_reciprocal_root(partial),
+    };
+    graph.guard_flat(guard, partial)
+}
+
+/// Whether an operation switches between sides.
+pub(super) fn is_switch(operation: &Operation) -> bool {
+    match operation {
+        Operation::Select { .. } => true,
+        Operation::Call(function, _) => matches!(
+            function,
+            Function::Max
+                | Function::Min
+                | Function::Deadzone
+                | Function::Contact
+                | Function::Above
+        ),
+        _ => false,
+    }
+}
+
+/// Activities of nodes, and their supports: nodes that are 0 on every open set where a switch makes the node 0.
+struct Activities<'m> {
+    moves: &'m mut dyn FnMut(&Graph, NodeId) -> bool,
+    activities: HashMap<NodeId, NodeId>,
+    supports: HashMap<NodeId, NodeId>,
+}
+
+impl<'m> Activities<'m> {
+    fn new(moves: &'m mut dyn FnMut(&Graph, NodeId) -> bool) -> Self {
+        Self {
+            moves,
+            activities: HashMap::new(),
+            supports: HashMap::new(),
+        }
+    }
+
+    fn activity(&mut self, graph: &mut Graph, id: NodeId) -> NodeId {
+        if let Some(&known) = self.activities.get(&id) {
+            return known;
+        }
+        let activity = self.find_activity(graph, id);
+        self.activities.insert(id, activity);
+        activity
+    }
+
+    fn find_activity(&mut self, graph: &mut Graph, id: NodeId) -> NodeId {
+        if !(self.moves)(graph, id) {
+            return graph.zero();
+        }
+        let operation = graph.operation(id).clone();
+        let operands = graph.operands(&operation);
+        // The variable itself may be an expression.
+        let is_variable = !operands.iter().any(|operand| (self.moves)(graph, *operand));
+        if is_variable || !graph.holds_switch(id) {
+            return graph.one();
+        }
+        if let Some([a, b, then, otherwise]) = choice(graph, id) {
+            let branches = [then, otherwise].map(|branch| self.activity(graph, branch));
+            return strict_select(graph, a, b, branches);
+        }
+        match operation {
+            Operation::Sum(_) | Operation::Power(..) => self.any_activity(graph, &operands),
+            Operation::Product(_) => {
+                let activity = self.any_activity(graph, &operands);
+                match self.support(graph, id) {
+                    support if support == activity => activity,
+                    support => graph.multiply(activity, support),
+                }
+            }
+            Operation::Call(Function::Contact | Function::Above, _) => graph.zero(),
+            Operation::Call(Function::Deadzone, arguments) => {
+                outside_play(graph, arguments[0], arguments[1])
+            }
+            Operation::Call(..) => self.any_activity(graph, &operands),
+            Operation::Total(vector) => {
+                let activity = self.activity(graph, vector);
+                total(graph, vector, activity)
+            }
+            _ => graph.one(),
+        }
+    }
+
+    /// Positive where any of the operands is active.
+    fn any_activity(&mut self, graph: &mut Graph, operands: &[NodeId]) -> NodeId {
+        let found = operands
+            .iter()
+            .map(|operand| self.activity(graph, *operand));
+        let found: Vec<NodeId> = found.collect();
+        any(graph, &found)
+    }
+
+    fn support(&mut self, graph: &mut Graph, id: NodeId) -> NodeId {
+        if let Some(&known) = self.supports.get(&id) {
+            return known;
+        }
+        let support = self.find_support(graph, id);
+        self.supports.insert(id, support);
+        support
+    }
+
+    fn find_support(&mut self, graph: &mut Graph, id: NodeId) -> NodeId {
+        if graph.is_zero(id) {
+            return id;
+        }
+        if !graph.holds_switch(id) {
+            return graph.one();
+        }
+        if let Some([a, b, then, otherwise]) = choice(graph, id) {
+            let branches = [then, otherwise].map(|branch| self.support(graph, branch));
+            return strict_select(graph, a, b, branches);
+        }
+        match graph.operation(id).clone() {
+            Operation::Sum(terms) => {
+                let found = terms.iter().map(|(_, term)| self.support(graph, *term));
+                let found: Vec<NodeId> = found.collect();
+                any(graph, &found)
+            }
+            Operation::Product(factors) => {
+                let mut product = graph.one();
+                for &(factor, exponent) in &factors {
+                    if exponent > 0 {
+                        let support = self.support(graph, factor);
+                        product = graph.multiply(product, support);
+                    }
+                }
+                product
+            }
+            Operation::Call(Function::Deadzone | Function::Contact, arguments) => {
+                outside_play(graph, arguments[0], arguments[1])
+            }
+            Operation::Call(Function::Above, arguments) => {
+                let (zero, one) = (graph.zero(), graph.one());
+                graph.select(zero, arguments[0], zero, one)
+            }
+            Operation::Call(function, arguments) if vanishes_at_zero(function) => {
+                self.support(graph, arguments[0])
+            }
+            Operation::Total(vector) => {
+                let support = self.support(graph, vector);
+                total(graph, vector, support)
+            }
+            _ => graph.one(),
+        }
+    }
+}
+
+/// The first of the branches if a > b, the second if b > a; on the surface a branch that is not 0.
+fn strict_select(graph: &mut Graph, a: NodeId, b: NodeId, branches: [NodeId; 2]) -> NodeId {
+    let [then, otherwise] = branches;
+    if graph.is_zero(otherwise) {
+        return graph.select(b, a, otherwise, then);
+    }
+    graph.select(a, b, then, otherwise)
+}
+
+/// 0 if |p| < b, 1 elsewhere.
+fn outside_play(graph: &mut Graph, p: NodeId, b: NodeId) -> NodeId {
+    let magnitude = graph.call(Function::Abs, &[p]);
+    let (zero, one) = (graph.zero(), graph.one());
+    graph.select(b, magnitude, zero, one)
+}
+
+/// Positive where any of the nodes is, none of which is negative.
+fn any(graph: &mut Graph, nodes: &[NodeId]) -> NodeId {
+    let is_positive = |id: &NodeId| graph.as_constant(*id).is_some_and(|value| value > 0.0);
+    if nodes.iter().any(is_positive) {
+        return graph.one();
+    }
+    let terms: Vec<(f64, NodeId)> = nodes.iter().map(|id| (1.0, *id)).collect();
+    graph.combine(&terms)
+}
+
+/// The total of `summand` over the elements of `vector`.
+fn total(graph: &mut Graph, vector: NodeId, summand: NodeId) -> NodeId {
+    match graph.shape(vector) {
+        Shape::Vector(space) => graph.total_over(space, summand),
+        _ => summand,
+    }
+}
+
+fn vanishes_at_zero(function: Function) -> bool {
+    use Function::{Abs, Asin, Atan, Sign, Sin, Sinh, Sqrt, Tan, Tanh};
+    matches!(
+        function,
+        Abs | Asin | Atan | Sign | Sin | Sinh | Sqrt | Tan | Tanh
+    )
+}

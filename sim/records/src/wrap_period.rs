@@ -1,0 +1,176 @@
+//! The period of a wrapped column, estimated from its jumps. A jump is the period less the motion of one
+//! sample; the steps beside it give that motion, and the scatter of regular steps about the steps beside
+//! them gives the uncertainty.
+
+use crate::unwrapping::median;
+
+/// Number of steps on each side of a jump that give the motion of one sample there.
+const BESIDE: usize = 5;
+
+/// Number of standard errors within which the period lies.
+const STANDARD_ERRORS: f64 = 4.0;
+
+/// Number of standard deviations of one jump within which the period lies, however many jumps there are.
+/// The noise of a slow motion decides when it jumps, and that error does not average out.
+const DEVIATIONS: f64 = 2.0;
+
+/// The largest uncertainty, relative to the period, with which a usual period is named.
+const MOST_UNCERTAIN: f64 = 0.01;
+
+/// Changes of the steps below this part of the range are rounding, not the resolution of the sensor.
+const ROUNDING: f64 = 1e-5;
+
+/// Powers of two at which counters roll over.
+const BITS: std::ops::RangeInclusive<i32> = 3..=32;
+
+/// Leading digits of usual decimal periods, as of 1000, 2500 or 3600.
+const DECIMALS: [f64; 6] = [1.0, 2.0, 2.5, 3.6, 4.0, 5.0];
+
+/// Half a turn in degrees.
+const HALF_TURN_DEG: f64 = 180.0;
+
+/// The unit of a column.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ColumnUnit {
+    /// The unit, in that of the values.
+    pub size: f64,
+    /// A full turn, in the unit of the values, if the column holds an angle or a number.
+    pub turn: Option<f64>,
+}
+
+/// An estimated period, in the unit of the values.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Period {
+    /// A usual period exactly, if just one is within the uncertainty.
+    pub value: f64,
+    /// Half the width of the interval in which the jumps place it; none for a full turn, and for a usual one
+    /// that they give to the resolution of the sensor.
+    pub uncertainty: Option<f64>,
+    /// Whether it is a usual period.
+    pub is_usual: bool,
+    /// Whether it is a full turn.
+    pub is_turn: bool,
+}
+
+/// Estimates the period from the samples before the jumps, in ascending order.
+pub(crate) fn estimate_period(values: &[f64], jumps: &[usize], unit: ColumnUnit) -> Option<Period> {
+    let steps = Steps { values, jumps };
+    let sizes: Vec<f64> = jumps.iter().map(|jump| steps.excess(*jump).abs()).collect();
+    let seen = median(&sizes)?;
+    let deviation = steps.deviation();
+    let error = STANDARD_ERRORS * deviation / (jumps.len() as f64).sqrt();
+    let is_whole = values
+        .iter()
+        .all(|value| is_whole_number(value / unit.size));
+    let resolution = if is_whole {
+        unit.size
+    } else {
+        steps.resolution()
+    };
+    let uncertainty = error.max(DEVIATIONS * deviation).max(resolution);
+    let is_near = |usual: &f64| (usual - seen).abs() <= uncertainty;
+    if let Some(turn) = unit.turn.filter(is_near) {
+        return Some(Period {
+            value: turn,
+            uncertainty: None,
+            is_usual: true,
+            is_turn: true,
+        });
+    }
+    let near: Vec<f64> = usual_periods(seen, unit)
+        .into_iter()
+        .filter(is_near)
+        .collect();
+    let usual = match near[..] {
+        [usual] if uncertainty <= MOST_UNCERTAIN * seen => Some(usual),
+        _ => None,
+    };
+    let rounded = if is_whole {
+        unit.size * (seen / unit.size).round()
+    } else {
+        seen
+    };
+    Some(Period {
+        value: usual.unwrap_or(rounded),
+        uncertainty: Some(uncertainty)
+            .filter(|own| usual.is_none() || *own > DEVIATIONS * resolution),
+        is_usual: usual.is_some(),
+        is_turn: false,
+    })
+}
+
+/// Returns usual periods of the order of the one seen.
+fn usual_periods(seen: f64, unit: ColumnUnit) -> Vec<f64> {
+    let order = (seen / unit.size).log10().floor() as i32;
+    let decimals =
+        (order - 1..=order + 1).flat_map(|power| DECIMALS.map(|digits| digits * 10f64.powi(power)));
+    let numbers = BITS.map(|bits| 2f64.powi(bits)).chain(decimals);
+    let numbers = numbers.map(|number| number * unit.size);
+    let half_turns = unit
+        .turn
+        .map(|turn| [0.5 * turn, HALF_TURN_DEG * unit.size]);
+    let mut usual: Vec<f64> = numbers.chain(half_turns.into_iter().flatten()).collect();
+    usual.sort_by(f64::total_cmp);
+    usual.dedup_by(|a, b| (*a - *b).abs() < 1e-9 * *b);
+    usual
+}
+
+fn is_whole_number(value: f64) -> bool {
+    (value - value.round()).abs() <= 1e-9 * value.abs().max(1.0)
+}
+
+/// The steps from sample to sample of a column with jumps.
+struct Steps<'v> {
+    values: &'v [f64],
+    jumps: &'v [usize],
+}
+
+impl Steps<'_> {
+    fn step(&self, k: usize) -> f64 {
+        self.values[k + 1] - self.values[k]
+    }
+
+    fn is_regular(&self, k: usize) -> bool {
+        self.jumps.binary_search(&k).is_err()
+    }
+
+    /// Returns the steps near `k` and beside it.
+    fn near(&self, k: usize) -> impl Iterator<Item = usize> + '_ {
+        let near = k.saturating_sub(BESIDE)..(k + BESIDE + 1).min(self.values.len() - 1);
+        near.filter(move |other| *other != k && self.is_regular(*other))
+    }
+
+    /// Returns the step at `k` less the mean of the regular steps beside it.
+    fn excess(&self, k: usize) -> f64 {
+        let (sum, count) = self.near(k).fold((0.0, 0.0), |(sum, count), other| {
+            (sum + self.step(other), count + 1.0)
+        });
+        self.step(k) - sum / f64::max(count, 1.0)
+    }
+
+    /// Returns the standard deviation of the excess of one step, from the regular steps beside jumps.
+    fn deviation(&self) -> f64 {
+        let regular = self.jumps.iter().flat_map(|jump| self.near(*jump));
+        let (sum, count) = regular.fold((0.0, 0.0), |(sum, count), k| {
+            (sum + self.excess(k).powi(2), count + 1.0)
+        });
+        f64::sqrt(sum / f64::max(count, 1.0))
+    }
+
+    /// Returns the least change from one regular step to the next, 0 if there is none: the resolution of a
+    /// sensor whose values are multiples of it.
+    fn resolution(&self) -> f64 {
+        let low = self.values.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = self
+            .values
+            .iter()
+            .copied()
+            .fold(f64::NEG_INFINITY, f64::max);
+        let pairs = (0..self.values.len().saturating_sub(2))
+            .filter(|k| self.is_regular(*k) && self.is_regular(k + 1));
+        let changes = pairs.map(|k| (self.step(k + 1) - self.step(k)).abs());
+        let changes = changes.filter(|change| *change > ROUNDING * (high - low));
+        let least = changes.fold(f64::INFINITY, f64::min);
+        if least.is_finite() { least } else { 0.0 }
+    }
+}
