@@ -72,7 +72,7 @@ impl GivenMotion {
                 inputs[input.place] += change;
             }
             present = at(&inputs);
-            // Terms that nearly cancel leave what rounding makes of them. Second rates have different units.
+            // Terms that nearly cancel leave their rounding. Second rates have different units.
             let applied = self.required.iter().map(|input| inputs[input.place].abs());
             let applied = DVector::from_iterator(self.required.len(), applied);
             let sizes = wanted.abs() + left.abs() + matrix.abs() * applied;

@@ -117,8 +117,8 @@ fn with_other_halves(context: Context<'_>, tested: TestedPool) -> TestedPool {
 }
 
 /// The accepted hypothesis that is best, with what is indistinguishable from it among the others.
-/// Of those that cannot, one that contradicts no declared prior of a sensor is the answer before one that
-/// does, then the one with fewest unknowns, then the one whose declared parameter is least off.
+/// Hypotheses that the records cannot distinguish are ordered: first those that contradict no declared prior of
+/// a sensor, then by the number of unknowns, then by the deviation of a declared parameter.
 fn best(context: Context<'_>, tested: TestedPool) -> Option<Selected> {
     let TestedPool {
         candidates,

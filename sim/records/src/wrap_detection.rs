@@ -36,7 +36,7 @@ pub(crate) struct WrapPattern {
     /// Half the width of the interval in which the jumps place the period; none if they give it as closely
     /// as the sensor does.
     pub uncertainty: Option<f64>,
-    /// Whether the period is a usual one.
+    /// True if the period is a usual one.
     pub is_usual: bool,
     /// The time of the first.
     pub first: f64,

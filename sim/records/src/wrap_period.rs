@@ -7,10 +7,10 @@ use crate::unwrapping::median;
 /// Number of steps on each side of a jump that give the motion of one sample there.
 const BESIDE: usize = 5;
 
-/// Number of standard errors within which the period lies.
+/// Uncertainty of the period, in standard errors.
 const STANDARD_ERRORS: f64 = 4.0;
 
-/// Number of standard deviations of one jump within which the period lies, however many jumps there are.
+/// Least uncertainty of the period, in standard deviations of one jump.
 /// The noise of a slow motion decides when it jumps, and that error does not average out.
 const DEVIATIONS: f64 = 2.0;
 
@@ -46,9 +46,9 @@ pub(crate) struct Period {
     /// Half the width of the interval in which the jumps place it; none for a full turn, and for a usual one
     /// that they give to the resolution of the sensor.
     pub uncertainty: Option<f64>,
-    /// Whether it is a usual period.
+    /// True for a usual period.
     pub is_usual: bool,
-    /// Whether it is a full turn.
+    /// True for a full turn.
     pub is_turn: bool,
 }
 
@@ -134,13 +134,13 @@ impl Steps<'_> {
         self.jumps.binary_search(&k).is_err()
     }
 
-    /// Returns the steps near `k` and beside it.
+    /// Returns the steps near `k`, without the step at `k`.
     fn near(&self, k: usize) -> impl Iterator<Item = usize> + '_ {
         let near = k.saturating_sub(BESIDE)..(k + BESIDE + 1).min(self.values.len() - 1);
         near.filter(move |other| *other != k && self.is_regular(*other))
     }
 
-    /// Returns the step at `k` less the mean of the regular steps beside it.
+    /// Returns the step at `k` less the mean of the regular steps near it.
     fn excess(&self, k: usize) -> f64 {
         let (sum, count) = self.near(k).fold((0.0, 0.0), |(sum, count), other| {
             (sum + self.step(other), count + 1.0)
@@ -148,7 +148,7 @@ impl Steps<'_> {
         self.step(k) - sum / f64::max(count, 1.0)
     }
 
-    /// Returns the standard deviation of the excess of one step, from the regular steps beside jumps.
+    /// Returns the standard deviation of the excess of one step, from the regular steps near jumps.
     fn deviation(&self) -> f64 {
         let regular = self.jumps.iter().flat_map(|jump| self.near(*jump));
         let (sum, count) = regular.fold((0.0, 0.0), |(sum, count), k| {

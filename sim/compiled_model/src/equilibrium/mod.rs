@@ -46,9 +46,9 @@ pub struct Equilibrium {
 pub struct Departure {
     /// Rates that are not 0, except constant speeds along cyclic directions.
     pub moving: Vec<String>,
-    /// Rates whose accelerations are not 0 beside the terms they are made of.
+    /// Rates whose accelerations are not 0 compared with their terms.
     pub accelerating: Vec<String>,
-    /// States of first order whose rates are not 0 beside the terms they are made of.
+    /// States of first order whose rates are not 0 compared with their terms.
     pub changing: Vec<String>,
 }
 
@@ -234,7 +234,7 @@ impl Instance<'_> {
         }
     }
 
-    /// Returns the names of the rates that differ between two states, beside the largest of their kind.
+    /// Returns the names of the rates that differ between two states, compared with the largest of their kind.
     fn other_speeds(&self, one: &OperatingPoint, other: &OperatingPoint) -> Vec<String> {
         let model = self.model();
         let (units, names) = (

@@ -1,4 +1,4 @@
-//! Sections by an event: a coordinate or a rate that goes through a value in one direction. An angle with
+//! Sections by an event: a coordinate or a rate that crosses a value in one direction. An angle with
 //! which the equations repeat goes through it once per turn. The general solver locates the event as it
 //! locates switches.
 
@@ -65,7 +65,7 @@ impl Crossing {
         })
     }
 
-    /// Returns the part of the way at which the motion goes through `value` between two points, if it does
+    /// Returns the part of the way at which the motion crosses `value` between two points, if it does
     /// so in the direction of the section.
     fn between(&self, value: f64, before: &[f64], after: &[f64]) -> Option<f64> {
         let sign = if self.is_upwards { 1.0 } else { -1.0 };
@@ -135,7 +135,7 @@ pub fn crossings(
     Ok(seen)
 }
 
-/// Returns all crossings until enough are found or the time is over; of every turn, or of the value alone.
+/// Returns all crossings until enough are found or the time is over; of every turn, or of the value itself.
 fn followed(
     instance: &Instance<'_>,
     (crossing, in_every_turn): (&Crossing, bool),
@@ -206,7 +206,7 @@ impl Surface<'_> {
         }
     }
 
-    /// Returns the value that the motion goes through next in the direction of the section.
+    /// Returns the value that the motion crosses next in the direction of the section.
     fn next(&self) -> f64 {
         let Some(turn) = &self.turn else {
             return self.crossing.value;
