@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use eomgen_model_spec::model::Function;
 
 use crate::symbolic::arguments::Arguments;
+use crate::symbolic::branches::choice;
 use crate::symbolic::flat::guard_partial;
 use crate::symbolic::graph::{Graph, NodeId, Operation, Shape};
 use crate::symbolic::node_map::NodeMap;
@@ -193,27 +194,6 @@ pub fn by_scalar(graph: &mut Graph, id: NodeId, variable: NodeId) -> NodeId {
     let one = graph.one();
     direction.seed(variable, one);
     direction.derivative(graph, id)
-}
-
-/// For a node that is one of two others: a and b of the condition a > b, the node where it
-/// holds, the node elsewhere. A guarded power counts as the power.
-pub(crate) fn choice(graph: &Graph, id: NodeId) -> Option<[NodeId; 4]> {
-    match graph.operation(id) {
-        // Differentiated as the power it guards: what has no limit there has to show it.
-        _ if graph.guarded_power(id).is_some() => None,
-        &Operation::Select {
-            a,
-            b,
-            then,
-            otherwise,
-        } => Some([a, b, then, otherwise]),
-        Operation::Call(function, arguments) => match (function, &**arguments) {
-            (Function::Max, &[a, b]) => Some([a, b, a, b]),
-            (Function::Min, &[a, b]) => Some([b, a, a, b]),
-            _ => None,
-        },
-        _ => None,
-    }
 }
 
 /// The derivative of such a node. The derivatives are chosen between, not multiplied by 1

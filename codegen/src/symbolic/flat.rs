@@ -10,28 +10,9 @@ use std::collections::HashMap;
 
 use eomgen_model_spec::model::Function;
 
-use crate::symbolic::differentiate::choice;
+use crate::symbolic::branches::choice;
 use crate::symbolic::graph::{Graph, NodeId, Operation, Shape};
-
-/// A factor of a derivative, guarded on flat sides.
-#[derive(Clone, Copy)]
-pub(crate) struct FlatGuard {
-    activity: NodeId,
-    /// The factor elsewhere.
-    pub(super) inner: NodeId,
-    /// Whether a term keeps the guard although it holds no reciprocal of a root.
-    is_permanent: bool,
-}
-
-impl FlatGuard {
-    /// The same guard, which no term drops.
-    pub(super) fn permanent(self) -> Self {
-        Self {
-            is_permanent: true,
-            ..self
-        }
-    }
-}
+use crate::symbolic::switches::FlatGuard;
 
 impl Graph {
     /// The guard that a node is, if it is one.
@@ -107,22 +88,6 @@ pub(super) fn guard_partial(
         is_permanent: !graph.has_reciprocal_root(partial),
     };
     graph.guard_flat(guard, partial)
-}
-
-/// Whether an operation switches between sides.
-pub(super) fn is_switch(operation: &Operation) -> bool {
-    match operation {
-        Operation::Select { .. } => true,
-        Operation::Call(function, _) => matches!(
-            function,
-            Function::Max
-                | Function::Min
-                | Function::Deadzone
-                | Function::Contact
-                | Function::Above
-        ),
-        _ => false,
-    }
 }
 
 /// Activities of nodes, and their supports: nodes that are 0 on every open set where a switch makes the node 0.

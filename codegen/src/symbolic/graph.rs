@@ -12,12 +12,12 @@ use std::collections::{HashMap, HashSet};
 use eomgen_model_spec::ids::{FieldId, InputId};
 use eomgen_model_spec::model::Function;
 
-use crate::symbolic::flat::{FlatGuard, is_switch};
 use crate::symbolic::node_map::NodeMap;
 pub use crate::symbolic::operation::{
     Argument, Assembly, Bits, Dependence, NodeId, Operation, ScaledMatrix, Shape, Space, Variable,
 };
 use crate::symbolic::orders::Orders;
+use crate::symbolic::switches::{FlatGuard, is_switch};
 use crate::symbolic::tables::{Table, TableKind};
 
 struct Node {

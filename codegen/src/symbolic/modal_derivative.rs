@@ -1,7 +1,8 @@
 //! Derivatives by a field's modes: of a scalar a vector, its gradient, and of a vector a structured matrix
 //! (diagonal, outer products and tables).
 
-use crate::symbolic::differentiate::{Moving, choice, choose, partial_derivatives};
+use crate::symbolic::branches::choice;
+use crate::symbolic::differentiate::{Moving, choose, partial_derivatives};
 use crate::symbolic::graph::{Graph, NodeId, Operation, Shape, Space};
 use crate::symbolic::matrix::StructuredMatrix;
 use crate::symbolic::node_map::NodeMap;

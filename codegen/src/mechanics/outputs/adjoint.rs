@@ -8,7 +8,8 @@ use std::collections::HashMap;
 
 use super::matrix_derivatives::holds_matrix_of_parameters;
 use crate::mechanics::equations::Equations;
-use crate::symbolic::differentiate::{choice, partial_derivatives};
+use crate::symbolic::branches::choice;
+use crate::symbolic::differentiate::partial_derivatives;
 use crate::symbolic::graph::{
     Argument, Dependence, Graph, NodeId, Operation, Shape, Space, Variable,
 };

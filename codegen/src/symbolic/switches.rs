@@ -1,0 +1,42 @@
+//! Operations that switch between sides, and the guard of a derivative on flat sides.
+
+use eomgen_model_spec::model::Function;
+
+use crate::symbolic::operation::{NodeId, Operation};
+
+/// A factor of a derivative, guarded on flat sides.
+#[derive(Clone, Copy)]
+pub(crate) struct FlatGuard {
+    /// Node that is 0 on flat sides.
+    pub(super) activity: NodeId,
+    /// The factor elsewhere.
+    pub(super) inner: NodeId,
+    /// A term keeps the guard although it holds no reciprocal of a root.
+    pub(super) is_permanent: bool,
+}
+
+impl FlatGuard {
+    /// The same guard, which no term drops.
+    pub(super) fn permanent(self) -> Self {
+        Self {
+            is_permanent: true,
+            ..self
+        }
+    }
+}
+
+/// Returns true if an operation switches between sides.
+pub(super) fn is_switch(operation: &Operation) -> bool {
+    match operation {
+        Operation::Select { .. } => true,
+        Operation::Call(function, _) => matches!(
+            function,
+            Function::Max
+                | Function::Min
+                | Function::Deadzone
+                | Function::Contact
+                | Function::Above
+        ),
+        _ => false,
+    }
+}
