@@ -242,16 +242,9 @@ pub(crate) fn followed(
         let pairs = present.initial_states.iter().zip(windows);
         pairs
             .map(|(start, window)| {
-                let step = window
-                    .as_ref()
-                    .and_then(|w| w.initial_state_step(&change, damping, prior));
-                match step {
-                    Some(step) if shooting.ranges.is_some() => {
-                        let moved = start.iter().zip(step.iter()).map(|(x, d)| x + d);
-                        shooting.model.admissible(moved.collect())
-                    }
-                    _ => start.clone(),
-                }
+                let window = window.as_ref().filter(|_| shooting.ranges.is_some());
+                let step = window.and_then(|w| w.initial_state_step(&change, damping, prior));
+                moved_start(shooting, start, step)
             })
             .collect()
     };
@@ -303,33 +296,31 @@ pub(crate) fn with_states_corrected(
     }
     let held = DVector::zeros(shooting.unknowns.len());
     let mut best = estimate;
+    let mut residuals = shooting.residuals(&best.theta, &best.initial_states);
     for _ in 0..thresholds::CORRECTIONS {
-        let residuals = shooting.residuals(&best.theta, &best.initial_states);
-        let windows = WindowId::first(residuals.len()).zip(residuals).zip(near);
+        let windows = WindowId::first(residuals.len()).zip(&residuals).zip(near);
         let moved = windows.map(|((window, residual), near)| {
             let start = &best.initial_states[window];
-            let step = residual.zip(near.as_ref()).and_then(|(residual, near)| {
+            let step = residual.as_ref().zip(near.as_ref());
+            let step = step.and_then(|(residual, near)| {
                 let here = WindowDerivatives {
-                    residual: DVector::from_vec(residual.values),
+                    residual: DVector::from_column_slice(&residual.values),
                     ..near.clone()
                 };
                 reduced_block(&here, prior, window, start).initial_state_step(&held, 0.0, prior)
             });
-            match step {
-                Some(step) => {
-                    let moved = start.iter().zip(step.iter()).map(|(x, d)| x + d);
-                    shooting.model.admissible(moved.collect())
-                }
-                None => start.clone(),
-            }
+            moved_start(shooting, start, step)
         });
         let moved: Vec<Vec<f64>> = moved.collect();
-        let corrected = evaluated(shooting, prior, best.theta.clone(), moved);
+        let corrected = shooting.residuals(&best.theta, &moved);
         let before = best.cost;
-        for window in WindowId::first(best.squares.len()) {
-            if total(&corrected, prior, window) < total(&best, prior, window) {
-                best.squares[window] = corrected.squares[window];
-                best.initial_states[window].clone_from(&corrected.initial_states[window]);
+        let windows = WindowId::first(residuals.len()).zip(corrected).zip(moved);
+        for (((window, corrected), start), residual) in windows.zip(&mut residuals) {
+            let square = square(&corrected);
+            if square + prior.cost(window, &start) < total(&best, prior, window) {
+                best.squares[window] = square;
+                best.initial_states[window] = start;
+                *residual = corrected;
             }
         }
         let Estimate {
@@ -344,6 +335,15 @@ pub(crate) fn with_states_corrected(
         }
     }
     best
+}
+
+/// Returns an initial state moved by a step, if there is one, to where the model lives.
+fn moved_start(shooting: &Shooting<'_>, start: &[f64], step: Option<DVector<f64>>) -> Vec<f64> {
+    let Some(step) = step else {
+        return start.to_vec();
+    };
+    let moved = start.iter().zip(step.iter()).map(|(x, d)| x + d);
+    shooting.model.admissible(moved.collect())
 }
 
 fn total(estimate: &Estimate, prior: &InitialStatePrior, window: WindowId) -> f64 {

@@ -46,10 +46,7 @@ impl InitialStatePrior {
         let source = self.sources.get(window.index());
         match (&self.whitening, source) {
             (Some(rows), Some(Source::Measured)) => rows.clone(),
-            _ => {
-                let weights = self.sd_in(window).map(|sd| 1.0 / sd);
-                DMatrix::from_diagonal(&DVector::from_iterator(self.sd.len(), weights))
-            }
+            _ => reciprocals(self.sd_in(window)),
         }
     }
 
@@ -57,10 +54,7 @@ impl InitialStatePrior {
     pub fn damping_rows(&self) -> DMatrix<f64> {
         match &self.whitening {
             Some(rows) => rows / thresholds::INITIAL_STATE_PRIOR,
-            None => {
-                let weights = self.sd.iter().map(|sd| 1.0 / sd);
-                DMatrix::from_diagonal(&DVector::from_iterator(self.sd.len(), weights))
-            }
+            None => reciprocals(self.sd.iter().copied()),
         }
     }
 
@@ -86,6 +80,12 @@ impl InitialStatePrior {
         };
         self.sd.iter().map(move |sd| times * sd)
     }
+}
+
+/// The diagonal matrix of the reciprocals of standard deviations.
+fn reciprocals(sds: impl Iterator<Item = f64>) -> DMatrix<f64> {
+    let weights: Vec<f64> = sds.map(|sd| 1.0 / sd).collect();
+    DMatrix::from_diagonal(&DVector::from_vec(weights))
 }
 
 /// Initial states of windows, and what was known of them before.

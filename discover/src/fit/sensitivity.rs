@@ -71,7 +71,7 @@ impl<'a> SensitivityEvaluator<'a> {
         let values = shooting.values(theta);
         let mut base = shooting.model.simulation(&values).ok()?;
         let equations = shooting.model.evaluator(&values);
-        let is_differentiated = base.carries_tangents() && shooting.model.is_linear();
+        let is_differentiated = base.differentiates_exactly();
         if is_differentiated {
             base.differentiate_by(&values, moved_parameters(shooting, theta));
         }

@@ -76,11 +76,9 @@ pub(crate) fn settled(
     let (estimate, linear) = steps(shooting, prior, from, derivatives_at);
     let values = shooting.values(&estimate.theta);
     let simulation = shooting.model.simulation(&values);
-    let are_exact = simulation.is_ok_and(|simulation| simulation.carries_tangents());
-    if are_exact && shooting.model.is_linear() {
-        return (estimate, linear);
-    }
-    if !is_ill_conditioned(shooting, prior, &estimate.initial_states, &linear) {
+    if simulation.is_ok_and(|simulation| simulation.differentiates_exactly())
+        || !is_ill_conditioned(shooting, prior, &estimate.initial_states, &linear)
+    {
         return (estimate, linear);
     }
     let differences = |shooting: &Shooting<'_>, estimate: &Estimate| {

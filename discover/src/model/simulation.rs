@@ -174,6 +174,11 @@ impl<'m> Simulation<'m> {
         self.integrator.is_some() && self.linear_outputs.is_some()
     }
 
+    /// Returns true if derivatives by parameters are exact: the whole model is linear between switches.
+    pub(crate) fn differentiates_exactly(&self) -> bool {
+        self.carries_tangents() && self.remainder.is_none()
+    }
+
     /// The measured quantities, where they are linear in the state.
     pub fn linear_outputs(&self) -> Option<&LinearOutputs> {
         self.linear_outputs.as_ref()

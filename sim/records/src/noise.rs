@@ -1,5 +1,7 @@
 //! How much noise a column holds, from what differs from sample to sample.
 
+use crate::unwrapping::median;
+
 /// Orders of differences that are tried: what moves slowly leaves those of a high order, noise does
 /// not.
 const ORDERS: std::ops::RangeInclusive<usize> = 2..=8;
@@ -23,7 +25,7 @@ pub fn estimated(column: &[f64]) -> Option<f64> {
         let n = order as f64;
         variance *= 2.0 * (2.0 * n - 1.0) / n;
         if ORDERS.contains(&order)
-            && let Some(median) = median(&differences)
+            && let Some(median) = median_size(&differences)
         {
             least = least.min(median / MEDIAN / f64::sqrt(variance));
         }
@@ -33,14 +35,12 @@ pub fn estimated(column: &[f64]) -> Option<f64> {
 }
 
 /// The median of the absolute values that are known.
-fn median(differences: &[f64]) -> Option<f64> {
+fn median_size(differences: &[f64]) -> Option<f64> {
     let known = differences
         .iter()
         .map(|d| d.abs())
         .filter(|d| d.is_finite());
-    let mut sizes: Vec<f64> = known.collect();
-    sizes.sort_by(f64::total_cmp);
-    sizes.get(sizes.len() / 2).copied()
+    median(&known.collect::<Vec<f64>>())
 }
 
 /// The smallest step between values that a column takes.
