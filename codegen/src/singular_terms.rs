@@ -12,7 +12,7 @@ use crate::program::lowering::lower_with_outputs;
 use crate::symbolic::differentiate::Direction;
 use crate::symbolic::graph::{Dependence, Graph, NodeId};
 
-/// Where the terms stand whose derivatives at a point are infinite or no numbers; `parameters` are the values of
+/// Returns the places of terms whose derivatives at a point are not finite; `parameters` are the values of
 /// all parameters, SI.
 ///
 /// # Errors

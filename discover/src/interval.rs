@@ -25,7 +25,7 @@ impl Interval {
         self.low == self.high
     }
 
-    /// Whether it holds a value.
+    /// Returns true if it holds a value.
     pub fn contains(self, value: f64) -> bool {
         (self.low..=self.high).contains(&value)
     }

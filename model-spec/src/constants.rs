@@ -11,7 +11,7 @@ use crate::span::Span;
 pub struct NotFinite {
     /// What is wrong.
     pub message: String,
-    /// What would be right.
+    /// The values that the function takes.
     pub help: &'static str,
     /// Where it stands.
     pub span: Span,
@@ -169,7 +169,7 @@ fn is_periodic(function: Function) -> bool {
     matches!(function, Function::Sin | Function::Cos | Function::Tan)
 }
 
-/// Where a function has a finite value.
+/// Values for which a function is finite.
 fn domain(function: Function) -> &'static str {
     match function {
         Function::Sqrt => "the argument of `sqrt` is at least 0",

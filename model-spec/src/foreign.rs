@@ -104,7 +104,7 @@ pub fn operator_at(text: &str) -> Option<&str> {
     foreign.find(|start| written_here(start).is_some())
 }
 
-/// Whether a character can belong to an operator that the language does not have.
+/// Returns true if a character can belong to an operator that the language does not have.
 fn is_symbol(letter: char) -> bool {
     !letter.is_alphanumeric() && !letter.is_whitespace() && !"_.,()[]+-".contains(letter)
 }

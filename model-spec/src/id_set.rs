@@ -26,13 +26,13 @@ impl IdSet {
         }
     }
 
-    /// Whether a number is in it.
+    /// Returns true if a number is in it.
     pub fn contains(&self, number: usize) -> bool {
         let word = self.words.get(number / 64);
         word.is_some_and(|word| word & (1 << (number % 64)) != 0)
     }
 
-    /// Whether it holds no number.
+    /// Returns true if it holds no number.
     pub fn is_empty(&self) -> bool {
         self.words.is_empty()
     }

@@ -67,7 +67,7 @@ impl Model {
         self.observables.len() - 1
     }
 
-    /// Whether an expression holds a rate, itself or through definitions.
+    /// Returns true if an expression holds a rate, itself or through definitions.
     pub fn holds_rate(&self, expr: &Expr) -> bool {
         let mut holds = false;
         let mut definitions: Vec<DefinitionId> = Vec::new();

@@ -16,7 +16,7 @@ struct Examined {
     warnings: Diagnostics,
 }
 
-/// Runs the command. What cannot be derived is an error of the specification too.
+/// Runs the command. A failed derivation is an error of the specification too.
 pub fn run(options: &Check) -> Result {
     let examined = match examined(options) {
         Ok(found) => found,

@@ -15,7 +15,7 @@ use super::vectors::norm;
 /// others. Searches for a state end where about 1e-6 is left.
 const DEPENDENT: f64 = 1e-5;
 
-/// How much the scaled rows change from the initial state to the start of another search.
+/// Change of the scaled rows from the initial state to the start of another search.
 const CHANGE: f64 = 0.1;
 
 /// The least move of a coordinate in parts of its value, so that rounding does not hide what changes.

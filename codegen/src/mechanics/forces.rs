@@ -35,7 +35,7 @@ pub(crate) fn applied_forces(
 /// The value of a force and the expression that it works on.
 ///
 /// # Errors
-/// What cannot be derived, and a force on something that holds a rate.
+/// A failed derivation, and a force on an expression that holds a rate.
 pub(crate) fn translated(translator: &mut Translator, force: &Force) -> Derived<(NodeId, NodeId)> {
     let value = translator.node(&force.value)?;
     // A force may be called what means something else in a formula.

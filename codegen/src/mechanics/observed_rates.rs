@@ -55,7 +55,7 @@ pub(crate) fn observed(
     Ok(node)
 }
 
-/// Whether a node may jump as the motion goes on.
+/// Returns true if a node may jump as the motion goes on.
 fn jumps(graph: &Graph, node: NodeId) -> bool {
     let is_jump = |id: &NodeId| {
         if graph.dependence(*id).is_parameter_only() {

@@ -261,7 +261,7 @@ impl<'m> Translator<'m> {
         Ok(Direction::new(&tangent).derivative(&mut self.graph, node))
     }
 
-    /// Whether a node holds an input of which no rate is given.
+    /// Returns true if a node holds an input of which no rate is given.
     pub(crate) fn holds_input_without_rate(&self, node: NodeId) -> bool {
         self.graph.dependence(node).has(Dependence::INPUT)
             && self.graph.reachable(&[node]).into_iter().any(|leaf| {

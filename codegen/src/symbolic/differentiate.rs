@@ -358,7 +358,7 @@ fn function_derivatives(
     }
 }
 
-/// Whether the derivative of a function is infinite at a point where the function may be clipped.
+/// Returns true if the derivative of a function is infinite at a point where the function may be clipped.
 fn has_singular_slope(function: Function) -> bool {
     matches!(
         function,

@@ -130,12 +130,12 @@ impl Graph {
         self.nodes[id.0 as usize].critical_path
     }
 
-    /// Whether the reciprocal of a root stands in a node without a guard where the root is 0.
+    /// Returns true if the reciprocal of a root stands in a node without a guard where the root is 0.
     pub(crate) fn has_reciprocal_root(&self, id: NodeId) -> bool {
         self.nodes[id.0 as usize].has_reciprocal_root
     }
 
-    /// Whether a node is computed from a function that switches between sides.
+    /// Returns true if a node is computed from a function that switches between sides.
     pub(crate) fn holds_switch(&self, id: NodeId) -> bool {
         self.nodes[id.0 as usize].holds_switch
     }

@@ -69,7 +69,7 @@ impl Graph {
         }
     }
 
-    /// Whether an unguarded reciprocal of a root stands in an operation.
+    /// Returns true if an unguarded reciprocal of a root stands in an operation.
     pub(crate) fn holds_reciprocal_root(&self, operation: &Operation) -> bool {
         let held = |ids: &[NodeId]| ids.iter().any(|id| self.has_reciprocal_root(*id));
         let is_reciprocal = match operation {
@@ -346,7 +346,7 @@ impl Graph {
     }
 }
 
-/// Whether |function(x)| <= C |x| near 0.
+/// Returns true if |function(x)| <= C |x| near 0.
 fn vanishes_with_argument(function: Function) -> bool {
     matches!(
         function,

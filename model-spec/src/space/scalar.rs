@@ -56,7 +56,7 @@ pub fn call(function: &str, argument: Syntax) -> Syntax {
     Syntax { kind, span }
 }
 
-/// Whether an expression is a number, a name, a rate or minus one of them.
+/// Returns true if an expression is a number, a name, a rate or minus one of them.
 pub fn is_plain(value: &Syntax) -> bool {
     let plain = |syntax: &Syntax| match &syntax.kind {
         SyntaxKind::Number(_) | SyntaxKind::Name(_) => true,

@@ -14,7 +14,7 @@ const SWITCHES_AVERAGED: usize = 256;
 const SMALLEST_TIME: f64 = 1e-6;
 
 impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
-    /// Whether the next step would still move the time; if not, what the last trial ran
+    /// Returns true if the next step would still move the time; if not, what the last trial ran
     /// into says why.
     pub(super) fn check_step_size(&self) -> Result<(), SolveError> {
         let (t, step) = (self.stepper.here().t, self.stepper.step());
@@ -92,7 +92,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         work.steps + work.rejected + work.trials
     }
 
-    /// Whether there will be an end.
+    /// Returns true if there will be an end.
     pub(super) fn look_at_the_pace(&mut self, system: &S) -> Result<(), SolveError> {
         if !M::IS_EXPLICIT {
             return Ok(());

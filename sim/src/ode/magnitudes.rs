@@ -5,7 +5,7 @@ use super::settings::UNMOVED_PART;
 /// What rounding is, in units of the last place.
 const ROUNDING: f64 = 10.0;
 
-/// A step strays from what the motion keeps by so many times its allowed error at most.
+/// A step leaves an invariant by at most this number of its allowed errors.
 const MOST_STRAYED: f64 = 100.0;
 
 /// The same in units of the last place of the largest state.
@@ -78,7 +78,7 @@ impl Magnitudes {
         floors.collect()
     }
 
-    /// Whether changes of a state `y` are errors that a step may make, none larger than some times what
+    /// Returns true if changes of a state `y` are errors that a step may make, none larger than some times what
     /// is allowed. Where a state has not moved, rounding of the others is no error.
     pub fn allow(&self, changes: impl Iterator<Item = f64>, y: &[f64]) -> bool {
         let most = self.largest.iter().copied().fold(0.0, f64::max);

@@ -157,7 +157,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         rates
     }
 
-    /// Whether a point lies beyond a surface of the present regime.
+    /// Returns true if a point lies beyond a surface of the present regime.
     fn is_beyond(&self, point: &Point) -> bool {
         let guards = self.watched.guards_at(point.t, &point.y);
         (guards.iter().enumerate()).any(|(guard, value)| self.watched.is_beyond(guard, *value))

@@ -226,7 +226,7 @@ impl Stepper for Radau {
             let y = stages.end(&point.y);
             Some(Point { t, y })
         };
-        // What comes behind a surface is of no use to a trial.
+        // Values behind a surface are of no use to a trial.
         in_parts(start, length, step, || watched.crossed().is_some())
     }
 }

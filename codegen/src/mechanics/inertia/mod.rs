@@ -79,12 +79,12 @@ pub fn check_energy(
     Ok(Some(sweep))
 }
 
-/// What a kinetic energy with an inertia that changes depends on.
+/// Quantities on which a kinetic energy with a variable inertia depends.
 const MOVING_ENERGY: Dependence = Dependence::COORDINATE
     .join(Dependence::INPUT)
     .join(Dependence::TIME);
 
-/// What an inertia that changes depends on.
+/// Quantities on which a variable inertia depends.
 const MOVING: Dependence = MOVING_ENERGY.join(Dependence::RATE);
 
 impl Equations {

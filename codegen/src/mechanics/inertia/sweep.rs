@@ -12,10 +12,10 @@ use std::collections::BTreeMap;
 use super::lack::{ROUNDING, SparseRows};
 use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation};
 
-/// What a sweep over the velocities found.
+/// Result of a sweep over the velocities.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Sweep {
-    /// Whether every rate has inertia in every combination: the mass matrix is positive definite.
+    /// True if every rate has inertia in every combination: the mass matrix is positive definite.
     pub is_definite: bool,
     /// Number of entries of Hessians that were updated.
     pub updates: usize,

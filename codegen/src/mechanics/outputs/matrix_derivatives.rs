@@ -123,7 +123,7 @@ impl Direction<'_> {
     }
 }
 
-/// Whether `roots` hold the diagonal of a Gram matrix that moves with the state: those are
+/// Returns true if `roots` hold the diagonal of a Gram matrix that moves with the state: those are
 /// differentiated by parameters alone.
 pub(crate) fn holds_moving_diagonal(graph: &Graph, roots: &[NodeId]) -> bool {
     graph.reachable(roots).into_iter().any(|id| {

@@ -31,7 +31,7 @@ const EXACT_TOLERANCE: f64 = 1e-9;
 #[derive(Debug)]
 pub(crate) struct Auditor {
     tolerance: f64,
-    /// Whether steps have no error but rounding.
+    /// True if steps have no error but rounding.
     is_exact: bool,
     /// Why contacts are not judged, if they are not.
     driven_contacts: Option<String>,

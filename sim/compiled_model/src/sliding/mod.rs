@@ -70,7 +70,7 @@ impl Place {
 pub(crate) struct Sliding {
     sided: Sided,
     places: Vec<Place>,
-    /// Whether nothing jumped on a surface where the motion last came to it: its function decides.
+    /// True if nothing jumped on a surface where the motion last came to it: its function decides.
     is_jumpless: Vec<bool>,
     /// The largest that each function has been.
     sizes: Vec<f64>,

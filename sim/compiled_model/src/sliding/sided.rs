@@ -20,7 +20,7 @@ const PART: f64 = 1e-6;
 /// Rounding of a function, beside the sum of its terms.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// What jumps on a surface jumps by more than this part of what it does beside it.
+/// A jump on a surface exceeds this part of the jump near the surface.
 const JUMP: f64 = 0.5;
 
 /// A time and a state.
@@ -184,7 +184,7 @@ impl Sided {
         None
     }
 
-    /// Whether the rates jump on each of the surfaces `touching`, near which a state is, with these sides
+    /// Returns true if the rates jump on each of the surfaces `touching`, near which a state is, with these sides
     /// of all others. A jump that vanishes on its surface, as that of `sign(p)*sqrt(abs(p))` does, holds
     /// nothing there, though it may seem to beside the surface.
     pub(super) fn jumps_on(

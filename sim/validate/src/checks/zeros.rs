@@ -77,7 +77,7 @@ pub fn check(
     Ok(checks)
 }
 
-/// What states with zeros have shown.
+/// Results at states with zeros.
 #[derive(Default)]
 struct Findings {
     states: usize,
@@ -160,7 +160,7 @@ fn accelerations(oracle: &Oracle, sample: &Sample) -> Result<Option<Vec<f64>>, O
     Ok(found.filter(|found| found.iter().all(|number| number.is_finite())))
 }
 
-/// Whether the accelerations change as a linear function of the state does, better and better as steps fall.
+/// Returns true if the accelerations change as a linear function of the state does, better and better as steps fall.
 fn has_derivative(
     oracle: &Oracle,
     sample: &Sample,

@@ -67,7 +67,7 @@ fn called(function: Function, bounds: &[Interval], side: Option<Side>) -> Interv
     }
 }
 
-/// Whether the value on this side does not change with the arguments.
+/// Returns true if the value on this side does not change with the arguments.
 fn has_levels(function: Function, side: Side) -> bool {
     match function {
         Function::Sign | Function::Above | Function::Contact => true,

@@ -1,4 +1,4 @@
-//! What is asked of the motions of one machine: that they gain no energy, and that they agree.
+//! Checks of the motions of one machine: they gain no energy, and they agree.
 
 use eomgen_compiled_model::{CompiledModel, Instance, Orders, Request, Solver};
 
@@ -36,13 +36,13 @@ pub struct Verdict {
     pub failures: Vec<String>,
     /// Number of runs.
     pub runs: usize,
-    /// Whether the exact solver took the machine.
+    /// True if the exact solver took the machine.
     pub is_exact: bool,
     /// Switches of the reference.
     pub switches: usize,
-    /// Largest rise of the energy, as a part of what is allowed.
+    /// Largest rise of the energy, as a part of the allowed one.
     pub rise: f64,
-    /// Largest difference from the reference, as a part of what is allowed.
+    /// Largest difference from the reference, as a part of the allowed one.
     pub difference: f64,
 }
 

@@ -140,12 +140,12 @@ impl Machine {
         self.masses.len()
     }
 
-    /// Whether no law of the machine takes energy out of it.
+    /// Returns true if no law of the machine takes energy out of it.
     pub fn is_conservative(&self) -> bool {
         self.friction == 0.0 && !matches!(self.stop, Stop::DampedPlay | Stop::Impact)
     }
 
-    /// Whether the stop acts to both sides.
+    /// Returns true if the stop acts to both sides.
     pub fn is_two_sided(&self) -> bool {
         matches!(self.stop, Stop::Play | Stop::DampedPlay)
     }
