@@ -1,5 +1,5 @@
-//! Equations of motion in a build script, for those who like to see the emitted source and
-//! to keep procedural macros out.
+//! Derives equations of motion in a build script: the emitted source is a file that you can
+//! read, and no procedural macro is needed.
 //!
 //! ```toml
 //! [build-dependencies]
@@ -22,8 +22,8 @@
 //! use arm::{Coefficients, Inputs, Parameters, rates};
 //! ```
 //!
-//! The emitted items are those of `eomgen generate` and of the macro `eomgen::model!`; they
-//! need neither this crate nor another one.
+//! The emitted items are those of `eomgen generate` and of the macro `eomgen::model!`. They
+//! depend on no crate.
 
 use std::path::{Path, PathBuf};
 
@@ -33,8 +33,8 @@ use eomgen_codegen::variant::Variant;
 use eomgen_model_spec::Checked;
 use eomgen_model_spec::diagnostic::{Diagnostics, Record};
 
-/// Why nothing, or not everything, was generated. Its `Debug` is its message, so that
-/// `fn main() -> Result<(), eomgen_build::Error>` shows it as it is meant to be read.
+/// Error of the generation. `Debug` prints the message, so that `fn main() -> Result<(),
+/// eomgen_build::Error>` shows it with its line breaks.
 pub struct Error(String);
 
 impl std::fmt::Display for Error {
@@ -51,31 +51,31 @@ impl std::fmt::Debug for Error {
 
 impl std::error::Error for Error {}
 
-/// Emits a specification at each of `orders` into the folder `OUT_DIR`, and has cargo run the
-/// build script again when the specification changes. Relative paths are from the root of
-/// the crate. Gives the files' paths, in the order of `orders`:
+/// Emits a specification at each of `orders` into the folder `OUT_DIR`, and tells cargo to run
+/// the build script again when the specification changes. Relative paths start at the root of
+/// the crate. Returns the paths of the files, in the order of `orders`:
 ///
 /// | `orders` | file, for a model named `arm` |
 /// | --- | --- |
 /// | `&[4, 8]` | `arm_order_4.rs` and `arm_order_8.rs`, every field with 4 and with 8 modes |
 /// | `&[0]` | `arm_rigid.rs`, no modes |
-/// | `&[]` | `arm.rs`, as the specification says; also for models without a field |
+/// | `&[]` | `arm.rs`, at the orders of the specification; also for models without a field |
 ///
-/// What may not be as it was meant, such as a parameter that is never used, becomes a
-/// warning of cargo.
+/// Warnings, for example of an unused parameter, become warnings of cargo.
 ///
 /// # Errors
-/// All that is wrong with the specification, with file, line and column; an order that it
-/// cannot have; a file that cannot be written; a call outside a build script.
+/// All errors in the specification, with file, line and column; an order that the model cannot
+/// have; a file that cannot be written; a call outside a build script.
 pub fn generate(specification: impl AsRef<Path>, orders: &[usize]) -> Result<Vec<PathBuf>, Error> {
     generate_with(specification, orders, &[])
 }
 
-/// The same with further functions: `bias_forces`, `inverse_dynamics`, `guard_rates`,
-/// `jacobians`, `products`, `linearisation`, `regimes`, `lanes`.
+/// Emits a specification like [`generate`], with further functions: `bias_forces`,
+/// `inverse_dynamics`, `guard_rates`, `jacobians`, `products`, `linearisation`, `regimes`,
+/// `lanes`.
 ///
 /// # Errors
-/// The same; a name that is not known.
+/// Those of [`generate`]; an unknown name in `with`.
 pub fn generate_with(
     specification: impl AsRef<Path>,
     orders: &[usize],
@@ -88,7 +88,7 @@ pub fn generate_with(
         .map_err(|error| Error(error.to_string()))?;
     let folder = std::env::var_os("OUT_DIR").map(PathBuf::from);
     let Some(folder) = folder else {
-        let message = "OUT_DIR is not set: eomgen_build::generate is called from a build script";
+        let message = "OUT_DIR is not set: call eomgen_build::generate from a build script";
         return Err(Error(message.to_owned()));
     };
     let root = std::env::var_os("CARGO_MANIFEST_DIR").map_or_else(PathBuf::new, PathBuf::from);
@@ -155,7 +155,7 @@ fn variant(
     Ok(path.to_owned())
 }
 
-/// Writes beside the place and moves there what is whole.
+/// Writes to a temporary name and renames, so that no partial file remains.
 fn write(path: &Path, text: &str) -> std::io::Result<()> {
     let beside = path.with_extension("rs.new");
     std::fs::write(&beside, text)?;
@@ -164,12 +164,12 @@ fn write(path: &Path, text: &str) -> std::io::Result<()> {
 
 fn refused(found: &Diagnostics) -> Error {
     Error(format!(
-        "the specification is refused\n\n{}",
+        "the specification has errors\n\n{}",
         found.render(false)
     ))
 }
 
-/// A finding on one line, which is what cargo shows of a warning.
+/// Formats a finding on one line: cargo prints one line per warning.
 fn line(finding: &Record) -> String {
     let place = match (finding.line, finding.column) {
         (Some(line), Some(column)) => format!("{}:{line}:{column}", finding.file),
@@ -210,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn each_order_has_its_file() {
+    fn each_order_gives_one_file() {
         let folder = tempfile::tempdir().expect("a folder");
         let paths = variants(&arm(), &[0, 2], &[], folder.path()).expect("generated");
         assert_eq!(
@@ -219,13 +219,12 @@ mod tests {
         );
         let text = std::fs::read_to_string(&paths[1]).expect("readable");
         assert!(text.contains("ORDERS: [usize; 1] = [2]"), "{text}");
-        // Nothing half written and nothing else is left.
         let left = std::fs::read_dir(folder.path()).expect("readable").count();
         assert_eq!(left, 2);
     }
 
     #[test]
-    fn without_orders_the_specification_decides() {
+    fn empty_orders_use_those_of_the_specification() {
         let folder = tempfile::tempdir().expect("a folder");
         let paths = variants(&checked(PENDULUM), &[], &[], folder.path()).expect("generated");
         assert_eq!(names(&paths), ["p.rs"]);
@@ -235,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_requested_is_emitted_besides() {
+    fn requested_functions_are_emitted() {
         let folder = tempfile::tempdir().expect("a folder");
         let outputs = [Output::Products, Output::GuardRates];
         let paths = variants(&arm(), &[2], &outputs, folder.path()).expect("generated");
@@ -252,7 +251,7 @@ mod tests {
     }
 
     #[test]
-    fn a_request_that_is_not_known_is_refused() {
+    fn unknown_function_name_is_rejected() {
         let refused = generate_with("p.toml", &[], &["jacobian"]).expect_err("refused");
         let message = refused.to_string();
         assert!(
@@ -263,7 +262,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_had_is_said() {
+    fn impossible_orders_and_folders_are_reported() {
         let folder = tempfile::tempdir().expect("a folder");
         let no_field = variants(&checked(PENDULUM), &[3], &[], folder.path()).expect_err("refused");
         assert!(
@@ -279,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn warnings_take_one_line() {
+    fn warnings_are_printed_on_one_line() {
         let text = format!("{PENDULUM}[inputs]\nu = {{ unit = \"N\" }}\n");
         let warnings = checked(&text).warnings.records();
         let shown = line(&warnings[0]);

@@ -1,5 +1,6 @@
 //! Equations of motion from energies, at compile time: [`model!`] derives them from a
-//! specification and expands to fast Rust that needs neither the standard library nor this crate.
+//! specification. It expands to fast Rust that needs neither the standard library nor this
+//! crate.
 //!
 //! ```
 //! mod pendulum {
@@ -25,10 +26,10 @@
 //! ```
 #![no_std]
 
-/// The equations of motion of a specification, as items of the module around it.
+/// Expands to the equations of motion of a specification, as items of the surrounding module.
 ///
-/// From a file, `spec` being its path from the root of the crate, and `order` the number
-/// of modes of every field, as the file says if it is left out:
+/// From a file: `spec` is a path relative to the root of the crate. `order` is the number of
+/// modes of every field; the default is the order in the file.
 ///
 /// ```
 /// mod arm {
@@ -40,7 +41,8 @@
 /// assert!(Coefficients::prepare(&Parameters::default()).positive_definite);
 /// ```
 ///
-/// In place, the sections of a file with braces around, commas between and no quotes:
+/// Inline: the sections of a file, with braces around them, commas between entries and no
+/// quotes.
 ///
 /// ```
 /// mod slider {
@@ -60,7 +62,7 @@
 /// assert_eq!(rates, [1.0, 2.0]);
 /// ```
 ///
-/// `with = [...]` asks for more, beside `spec` or before the sections: `bias_forces`,
+/// `with = [...]`, next to `spec` or before the sections, adds functions: `bias_forces`,
 /// `inverse_dynamics`, `guard_rates`, `jacobians`, `products`, `linearisation`, `regimes`,
 /// `lanes`.
 ///
@@ -82,23 +84,23 @@
 /// assert_eq!(rates_by_inputs(0.0, &[0.0; 2], &Inputs { u: 8.0 }, &coefficients), [0.25]);
 /// ```
 ///
-/// The items are those of a file that `eomgen generate` writes, among them:
+/// The items are those that `eomgen generate` writes, among them:
 ///
-/// | item | what it is |
+/// | item | meaning |
 /// | --- | --- |
-/// | `Parameters` | numbers in SI; `Default` gives those of the specification |
-/// | `Coefficients` | what depends on them alone: `prepare` once, use in every call |
+/// | `Parameters` | values in SI units; `Default` gives those of the specification |
+/// | `Coefficients` | quantities that depend only on the parameters: call `prepare` once, use in every call |
 /// | `Inputs` | signals at run time; `Default` gives zeros |
-/// | `rates(t, &state, &inputs, &coefficients)` | the rates of the state, `[f64; STATES]`; in any type with the trait `Scalar` |
-/// | `observables`, `energy`, `power`, `guards`, `mass_matrix` | of the same arguments |
+/// | `rates(t, &state, &inputs, &coefficients)` | rates of the state, `[f64; STATES]`; generic over the trait `Scalar` |
+/// | `observables`, `energy`, `power`, `guards`, `mass_matrix` | functions of the same arguments |
 /// | `STATES`, `STATE_NAMES`, `ORDERS`, `OBSERVABLE_NAMES` | constants |
-/// | `SPECIFICATION` | in place only: the specification as the text of a file |
+/// | `SPECIFICATION` | inline sections only: the specification as TOML text |
 ///
-/// Helpers such as the emitted sine stay in an inner module. Two models cannot share a
-/// module.
+/// Helper functions, for example the emitted sine, are in an inner module. Each model needs its
+/// own module.
 ///
-/// What is wrong with the specification is an error at its token, or at the path with the
-/// file's line in the message:
+/// An error in inline sections is reported at its token. An error in a file is reported at the
+/// path, with file, line and column in the message:
 ///
 /// ```compile_fail
 /// eomgen::model! {
@@ -110,7 +112,7 @@
 /// ```
 pub use eomgen_macros::model;
 
-/// Compiled models that are run, with the feature `library`.
+/// Simulation and discovery at run time, with the feature `library`.
 ///
 /// ```
 /// use eomgen::library::{CompiledModel, Orders, Solver};

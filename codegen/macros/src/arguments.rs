@@ -1,5 +1,4 @@
-//! What stands in the brackets of the macro: a file and an order, or sections. What the
-//! sections hold is the business of `tables`.
+//! Arguments of the macro: a file and an order, or sections.
 
 use eomgen_codegen::mechanics::outputs::Output;
 use proc_macro2::{Span, TokenStream};
@@ -9,21 +8,21 @@ use syn::{Error, Ident, LitInt, LitStr, Token, bracketed};
 
 /// The arguments of the macro.
 pub enum Arguments {
-    /// `spec = "..."`, and `order = ...` and `with = [...]` if they are given.
+    /// `spec = "..."`, with the optional `order = ...` and `with = [...]`.
     File(LitStr, Option<Order>, Vec<Output>),
-    /// `section { ... } ...`, not looked at yet, after `with = [...]` if it is given.
+    /// `section { ... } ...`, not parsed yet, after the optional `with = [...]`.
     Sections(TokenStream, Vec<Output>),
 }
 
-/// A modal truncation order.
+/// Modal truncation order.
 pub struct Order {
-    /// The number.
+    /// The number of modes.
     pub value: usize,
-    /// Where it stands.
+    /// Token of the number.
     pub span: Span,
 }
 
-/// What the macro takes, for a message.
+/// The two forms of the call, for messages.
 const FORMS: &str = "write model! { spec = \"models/arm.toml\", order = 4 }, \
                      or sections such as model! { model { name: arm } kinetic { ... } }";
 
@@ -46,7 +45,7 @@ impl Parse for Arguments {
     }
 }
 
-/// `spec = "...", order = ..., with = [...]` in any order; sections may follow the last.
+/// Parses `spec = "...", order = ..., with = [...]` in any order. Sections may follow `with`.
 fn file(input: ParseStream<'_>) -> syn::Result<Arguments> {
     let begin = input.span();
     let (mut path, mut order, mut with) = (None, None, None);
@@ -62,8 +61,8 @@ fn file(input: ParseStream<'_>) -> syn::Result<Arguments> {
             return Err(Error::new(
                 key.span(),
                 format!(
-                    "expected `spec = ...` or `order = ...`\nhelp: sections stand in the file, or \
-                     in place and without `spec` and `order`: {FORMS}"
+                    "expected `spec = ...` or `order = ...`\nhelp: write the sections in the file, or \
+                     here without `spec` and `order`: {FORMS}"
                 ),
             ));
         }
@@ -73,8 +72,9 @@ fn file(input: ParseStream<'_>) -> syn::Result<Arguments> {
             "order" => order.replace(order_after(&key, input)?).is_some(),
             "with" => with.replace(outputs(input)?).is_some(),
             _ => {
-                let message =
-                    format!("unknown argument `{key}`\nhelp: known are spec, order and with");
+                let message = format!(
+                    "unknown argument `{key}`\nhelp: the arguments are spec, order and with"
+                );
                 return Err(Error::new(key.span(), message));
             }
         };
@@ -91,13 +91,13 @@ fn file(input: ParseStream<'_>) -> syn::Result<Arguments> {
         Some(path) => Ok(Arguments::File(path, order, with.unwrap_or_default())),
         None => Err(Error::new(
             begin,
-            "an order without a file\nhelp: give spec = \"models/arm.toml\"; in sections, the \
-             order stands with the field: fields { w: { order: 4, ... } }",
+            "`spec` is missing\nhelp: give spec = \"models/arm.toml\"; with sections here, set the \
+             order in the field: fields { w: { order: 4, ... } }",
         )),
     }
 }
 
-/// `[jacobians, products]`
+/// Parses `[jacobians, products]`.
 fn outputs(input: ParseStream<'_>) -> syn::Result<Vec<Output>> {
     let list;
     bracketed!(list in input);
@@ -138,7 +138,7 @@ fn order_after(key: &Ident, input: ParseStream<'_>) -> syn::Result<Order> {
     }
 }
 
-/// Where the value of a key stands; the key if there is none.
+/// Returns the token after a key, or the key if there is none.
 fn place(key: &Ident, input: ParseStream<'_>) -> Span {
     if input.is_empty() {
         key.span()

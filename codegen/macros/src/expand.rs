@@ -1,4 +1,4 @@
-//! From the macro's arguments to the items of a model, through `model-spec` and `codegen`.
+//! Expands the macro's arguments to the items of a model, through `model-spec` and `codegen`.
 
 use std::path::{Path, PathBuf};
 
@@ -16,11 +16,11 @@ use crate::findings::{at_tokens, in_file, warnings_at_tokens, warnings_in_file};
 use crate::tables::sections;
 use crate::write::specification;
 
-/// What findings call a specification written in place.
+/// File name of an inline specification in findings.
 const IN_PLACE: &str = "model!";
 
-/// The items of a model; paths are from `root`. What is wrong becomes errors of the
-/// compiler.
+/// Returns the items of a model, or `compile_error!` for each error. Paths are relative to
+/// `root`.
 pub fn model(input: TokenStream, root: Option<&Path>) -> TokenStream {
     items(input, root).unwrap_or_else(Error::into_compile_error)
 }
@@ -40,8 +40,8 @@ fn file(
 ) -> syn::Result<TokenStream> {
     let place = path.span();
     let root = root.ok_or_else(|| {
-        let message = "CARGO_MANIFEST_DIR is not set, so the path leads nowhere\n\
-                       help: compile with cargo, or write the sections in place";
+        let message = "CARGO_MANIFEST_DIR is not set, so the path cannot be resolved\n\
+                       help: compile with cargo, or write the sections inside the macro";
         Error::new(place, message)
     })?;
     let written = path.value();
@@ -70,7 +70,7 @@ fn file(
     Ok(quote! {
         #items
         #warnings
-        // The compiler looks at the files again when they have changed.
+        // Registers the files as dependencies: the compiler expands again when one changes.
         #(const _: &[u8] = ::core::include_bytes!(#paths);)*
     })
 }
@@ -80,7 +80,7 @@ fn refused(found: &Diagnostics, path: &Path, place: Span) -> Error {
         Some(unreadable) if !path.is_file() => Error::new(
             place,
             format!(
-                "{}\nhelp: the path is from the root of the crate, the folder of its Cargo.toml",
+                "{}\nhelp: the path is relative to the root of the crate, the folder of its Cargo.toml",
                 unreadable.message
             ),
         ),
@@ -104,7 +104,7 @@ fn in_place(stream: TokenStream, outputs: &[Output]) -> syn::Result<TokenStream>
     Ok(quote! {
         #items
         #warnings
-        #[doc = " The specification as a file says it: written to one, every command of the program `eomgen` takes it."]
+        #[doc = " Text of the specification, as TOML. Saved to a file, every command of `eomgen` accepts it."]
         pub const SPECIFICATION: &'static str = #text;
     })
 }

@@ -1,5 +1,4 @@
-//! What is wrong with a specification as errors and warnings of the compiler. What is
-//! wrong is decided elsewhere.
+//! Reports the findings of `model-spec` as errors and warnings of the compiler.
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, Label};
 use proc_macro2::{Ident, Span, TokenStream};
@@ -8,12 +7,12 @@ use syn::Error;
 
 use crate::places::Placed;
 
-/// Findings on a specification written in place, each at its tokens.
+/// Converts findings on inline sections to errors at their tokens.
 pub fn at_tokens(found: &Diagnostics, placed: &Placed) -> Error {
     let mut errors = found.list().iter().map(|finding| {
         let text = message(finding, placed);
         match token_range(finding, placed) {
-            // Only the first and the last token count.
+            // `new_spanned` joins the first and the last token.
             Some((first, last)) => {
                 let (first, last) = (Ident::new("_a", first), Ident::new("_b", last));
                 Error::new_spanned(quote!(#first #last), text)
@@ -21,7 +20,7 @@ pub fn at_tokens(found: &Diagnostics, placed: &Placed) -> Error {
             None => Error::new(Span::call_site(), text),
         }
     });
-    let nothing = || Error::new(Span::call_site(), "the specification is not sound");
+    let nothing = || Error::new(Span::call_site(), "the specification has errors");
     let mut error = errors.next().unwrap_or_else(nothing);
     error.extend(errors);
     if found.omitted() > 0 {
@@ -31,13 +30,13 @@ pub fn at_tokens(found: &Diagnostics, placed: &Placed) -> Error {
     error
 }
 
-/// Findings on a file, with its lines, at the place that names it.
+/// Converts findings on a file to one error at `place`, with the lines of the file.
 pub fn in_file(found: &Diagnostics, place: Span) -> Error {
-    let text = format!("the specification is refused\n\n{}", found.render(false));
+    let text = format!("the specification has errors\n\n{}", found.render(false));
     Error::new(place, text)
 }
 
-/// Statements that make the compiler warn of what was found in place.
+/// Returns statements that produce a compiler warning for each finding on inline sections.
 pub fn warnings_at_tokens(found: &Diagnostics, placed: &Placed) -> TokenStream {
     let warnings = found.list().iter().map(|finding| {
         let (place, _) =
@@ -47,14 +46,14 @@ pub fn warnings_at_tokens(found: &Diagnostics, placed: &Placed) -> TokenStream {
     quote!(#(#warnings)*)
 }
 
-/// Statements that make the compiler warn of what was found in a file.
+/// Returns statements that produce a compiler warning for the findings on a file.
 pub fn warnings_in_file(found: &Diagnostics, place: Span) -> TokenStream {
     let texts = (!found.is_empty()).then(|| found.render(false));
     let warnings = texts.iter().map(|text| warning(text, place));
     quote!(#(#warnings)*)
 }
 
-/// A macro cannot warn. The use of something deprecated does.
+/// Returns the use of a deprecated constant: a procedural macro cannot emit a warning itself.
 fn warning(text: &str, place: Span) -> TokenStream {
     let name = Ident::new("WARNING", place.resolved_at(Span::mixed_site()));
     let used = quote_spanned!(place=> #name);
@@ -72,7 +71,7 @@ fn token_range(finding: &Diagnostic, placed: &Placed) -> Option<(Span, Span)> {
     placed.tokens(primary.span)
 }
 
-/// The whole finding: the compiler underlines its place and no other.
+/// Joins message, labels and help of a finding: the compiler underlines only the primary place.
 fn message(finding: &Diagnostic, placed: &Placed) -> String {
     let mut text = finding.message.clone();
     let primary = finding.primary.iter().filter(|label| label.text != "here");

@@ -1,11 +1,11 @@
-//! The macro `eomgen::model!`: a specification, in a file or written in place, becomes the
-//! items that `eomgen generate` would emit.
+//! The macro `eomgen::model!`: compiles a specification, in a file or in the macro's braces,
+//! into the items that `eomgen generate` emits.
 //!
-//! The pipeline, one file each: `arguments` (which of the two forms), `tables` and `write` (the
-//! sections in place to the text of a specification, `places` keeping the token that each
-//! part of it came from), `expand` (through `model-spec` and `codegen` to items), `findings`
-//! (what is wrong, at its token). No grammar of expressions and no list of sections is
-//! here: sections in place are read by what reads a file.
+//! Pipeline, one file per step: `arguments` (form of the call), `tables` and `write` (inline
+//! sections to the text of a specification, with the token of every part kept in `places`),
+//! `expand` (through `model-spec` and `codegen` to items), `findings` (errors and warnings at
+//! their tokens). Expressions and sections have no grammar here: `model-spec` reads inline
+//! sections as well.
 
 mod arguments;
 mod expand;
@@ -18,7 +18,7 @@ mod write;
 
 use proc_macro::TokenStream;
 
-/// The items of a model. Documented where users meet it, in the crate `eomgen`.
+/// Expands to the items of a model. The documentation for users is in the crate `eomgen`.
 #[proc_macro]
 pub fn model(input: TokenStream) -> TokenStream {
     let root = std::env::var_os("CARGO_MANIFEST_DIR").map(std::path::PathBuf::from);

@@ -1,41 +1,40 @@
-//! A text made from tokens that knows which token each part of it came from. What the text
-//! says is not looked at.
+//! Text built from tokens, with the token of each part.
 
 use std::ops::Range;
 
 use eomgen_model_spec::span::Span as Bytes;
 use proc_macro2::Span;
 
-/// A text and the origins of its parts.
+/// Text and the tokens of its parts.
 #[derive(Default)]
 pub struct Placed {
     /// The text.
     pub text: String,
-    /// Parts in the order of the text, without overlap.
+    /// Byte ranges in ascending order, without overlap.
     marks: Vec<(Range<usize>, Span)>,
 }
 
 impl Placed {
-    /// Goes on with text of nobody's.
+    /// Appends text that belongs to no token.
     pub fn add(&mut self, text: &str) {
         self.text.push_str(text);
     }
 
-    /// Goes on with the text of a token.
+    /// Appends the text of a token.
     pub fn mark(&mut self, text: &str, span: Span) {
         let start = self.text.len();
         self.text.push_str(text);
         self.marks.push((start..self.text.len(), span));
     }
 
-    /// The first and last token of a range of the text; where no token is, the last one
-    /// before it, else the first of all. None if the text has no token.
+    /// Returns the first and the last token of a byte range. Without a token in the range, both are
+    /// the last token before it, else the first token of the text. `None` if the text has no token.
     pub fn tokens(&self, bytes: Bytes) -> Option<(Span, Span)> {
         let (first, last) = self.found(bytes)?;
         Some((self.marks[first].1, self.marks[last].1))
     }
 
-    /// The text of these tokens.
+    /// Returns the text of the tokens of a byte range.
     pub fn shown(&self, bytes: Bytes) -> Option<&str> {
         let (first, last) = self.found(bytes)?;
         self.text
@@ -43,7 +42,7 @@ impl Placed {
     }
 
     fn found(&self, bytes: Bytes) -> Option<(usize, usize)> {
-        // An empty range is the place of what follows it.
+        // An empty range counts as its next byte.
         let (start, end) = (bytes.start, bytes.end.max(bytes.start + 1));
         let first = self.marks.partition_point(|(range, _)| range.end <= start);
         let after = self.marks.partition_point(|(range, _)| range.start < end);

@@ -1,45 +1,44 @@
-//! From tokens to the tables they spell: `name { entry, ... }` and within it
-//! `name: value` or `name = value`. Which names there are, and what a value says, is not
-//! looked at; a specification in place has the sections and keys of one in a file.
+//! Parses tokens as tables: `name { entry, ... }`, and within it `name: value`
+//! or `name = value`. The names and the values are checked later, by `model-spec`.
 
 use proc_macro2::{Delimiter, Group, Ident, Spacing, Span, TokenStream, TokenTree};
 use syn::{Error, LitStr};
 
-/// The deepest nesting of braces and brackets; what comes after walks it recursively.
+/// Deepest nesting of braces and brackets; the next steps recurse over it.
 pub const MAX_DEPTH: usize = 200;
 
-/// A name and what it stands for.
+/// A name and its value.
 pub struct Entry {
     /// The name.
     pub key: Ident,
-    /// Its value.
+    /// The value.
     pub value: Value,
 }
 
-/// A value.
+/// Value of an entry.
 pub enum Value {
     /// `{ entry, ... }`
     Table(Table),
     /// A string literal.
     Text(LitStr),
-    /// Anything else, one token at least.
+    /// Anything else, at least one token.
     Tokens(Vec<TokenTree>),
 }
 
-/// The entries between two braces.
+/// Entries between two braces.
 pub struct Table {
-    /// Where it opens.
+    /// The opening brace.
     pub open: Span,
-    /// What it holds.
+    /// The entries, in the order of the tokens.
     pub entries: Vec<Entry>,
-    /// Where it closes.
+    /// The closing brace.
     pub close: Span,
 }
 
-/// The sections of a specification.
+/// Parses the sections of a specification.
 ///
 /// # Errors
-/// The first token that is not where the grammar has it.
+/// The first token that does not fit the grammar.
 pub fn sections(stream: TokenStream) -> syn::Result<Vec<Entry>> {
     let mut tokens = flat(stream).into_iter().peekable();
     let mut sections = Vec::new();
@@ -47,11 +46,11 @@ pub fn sections(stream: TokenStream) -> syn::Result<Vec<Entry>> {
         let key = match token {
             TokenTree::Ident(key) => key,
             TokenTree::Punct(mark) if matches!(mark.as_char(), ',' | ';') => {
-                let message = "nothing stands between sections\nhelp: leave this out";
+                let message = "unexpected separator between sections\nhelp: remove it";
                 return Err(Error::new(mark.span(), message));
             }
             other => {
-                let message = "expected a section\nhelp: such as kinetic { ... }";
+                let message = "expected a section\nhelp: for example kinetic { ... }";
                 return Err(Error::new(other.span(), message));
             }
         };
@@ -70,7 +69,7 @@ pub fn sections(stream: TokenStream) -> syn::Result<Vec<Entry>> {
     Ok(sections)
 }
 
-/// Tokens without the invisible groups that a macro puts around what it was given.
+/// Removes the invisible groups that an outer macro puts around its arguments.
 fn flat(stream: TokenStream) -> Vec<TokenTree> {
     let mut tokens = Vec::new();
     for token in stream {
@@ -110,7 +109,7 @@ fn is(wanted: char) -> impl Fn(&TokenTree) -> bool {
     move |token| matches!(token, TokenTree::Punct(mark) if mark.as_char() == wanted)
 }
 
-/// The key at the front and what stands behind its colon.
+/// Splits an entry into its key and the tokens after the colon.
 fn key(tokens: &[TokenTree]) -> syn::Result<(Ident, &[TokenTree])> {
     match tokens {
         [TokenTree::Ident(key), colon, rest @ ..] if is(':')(colon) || is('=')(colon) => {
@@ -154,7 +153,7 @@ fn value(key: &Ident, tokens: &[TokenTree], depth: usize) -> syn::Result<Value> 
     }
 }
 
-/// A further `name:` inside a value is the next entry.
+/// Rejects a value that contains `name:`, the start of the next entry.
 fn refuse_two_entries(tokens: &[TokenTree]) -> syn::Result<()> {
     for (index, token) in tokens.iter().enumerate().skip(1) {
         let TokenTree::Punct(mark) = token else {

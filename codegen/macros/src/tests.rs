@@ -1,4 +1,4 @@
-//! Specifications in place against specifications in files, and where findings point.
+//! Inline specifications against files, and the tokens that findings point at.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -25,7 +25,7 @@ fn refused(text: &str) -> (Diagnostics, Placed) {
     (found, placed)
 }
 
-/// The first finding and the text of the tokens it points at.
+/// Returns the first message and the text of the tokens it points at.
 fn pointed(text: &str) -> (String, String) {
     let (found, placed) = refused(text);
     let first = &found.list()[0];
@@ -42,7 +42,7 @@ fn grammar_error(text: &str) -> String {
 }
 
 #[test]
-fn the_text_is_a_specification_whatever_the_spacing() {
+fn inline_text_is_independent_of_token_spacing() {
     let text = "model { name: one, title : \"A \\\"mass\\\"\" }
         parameters { m: { value: 2.5e-3, unit: kg m^2, min: -1 }, k = { value = - 4.0 }, }
         kinetic { a: 1/2 * m*dot( x )^2, }
@@ -55,15 +55,15 @@ fn the_text_is_a_specification_whatever_the_spacing() {
 }
 
 #[test]
-fn a_range_is_written_with_its_two_ends() {
+fn range_keeps_its_two_ends() {
     let text = "coordinates { x: { unit: m, range: [ -0.005, 2*b ] } } inputs { u: { range: [min(a, b),3,] } }";
     let expected = "[coordinates]\nx = { unit = \"m\", range = [-0.005, \"2*b\"] }\n\
         \n[inputs]\nu = { range = [\"min(a, b)\", 3] }\n";
     assert_eq!(placed(text).expect("sections").text, expected);
 }
 
-/// A specification of a file as one writes it in place: prose in quotes, and the text `1`,
-/// which would be a number; nothing else.
+/// Writes a specification of a file in the inline form. Quotes remain for prose, and for the
+/// string `1`, which would become a number.
 fn in_place(table: &dyn TableLike) -> String {
     let mut text = String::new();
     for (key, item) in table.iter() {
@@ -98,7 +98,7 @@ fn shipped() -> Vec<PathBuf> {
     paths
 }
 
-/// The emitted items without the lines that name the specification's hash.
+/// Returns the emitted items without the specification's hash.
 fn emitted(source: Source) -> String {
     let hash = source.hash();
     let model = eomgen_model_spec::check(source).expect("sound").model;
@@ -109,7 +109,7 @@ fn emitted(source: Source) -> String {
 }
 
 #[test]
-fn every_shipped_specification_can_be_written_in_place() {
+fn shipped_specifications_give_the_same_items_inline() {
     for path in shipped() {
         let text = std::fs::read_to_string(&path).expect("readable");
         let document: DocumentMut = text.parse().expect("TOML");
@@ -197,14 +197,14 @@ fn findings_point_at_their_tokens() {
 }
 
 #[test]
-fn what_is_no_grammar_is_refused() {
+fn grammar_errors_are_rejected() {
     for (text, message) in [
         ("kinetic: { a: 1 }", "expected braces after `kinetic`"),
         ("kinetic", "expected braces after `kinetic`"),
         ("[kinetic] a = 1", "expected a section"),
         (
             "kinetic { a: 1 }, potential { b: 1 }",
-            "nothing stands between sections",
+            "unexpected separator between sections",
         ),
         (
             "kinetic { a: 1 } kinetic { b: 1 }",
@@ -224,7 +224,7 @@ fn what_is_no_grammar_is_refused() {
 }
 
 #[test]
-fn deep_nesting_is_refused() {
+fn deep_nesting_is_rejected() {
     let nested = |open: &str, close: &str| {
         let (open, close) = (open.repeat(300), close.repeat(300));
         grammar_error(&format!("kinetic {{ a: {open} x {close} }}"))
@@ -233,7 +233,7 @@ fn deep_nesting_is_refused() {
     assert!(nested("{ a: ", "}").contains("nested more than 200 deep"));
 }
 
-/// The first message of an expansion that is an error.
+/// Returns the first error message of an expansion, else all its tokens.
 fn expanded(text: &str) -> String {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../model-spec");
     let tokens = model(text.parse().expect("tokens"), Some(&root)).to_string();
@@ -244,7 +244,7 @@ fn expanded(text: &str) -> String {
 }
 
 #[test]
-fn arguments_are_refused_with_what_would_be_right() {
+fn wrong_arguments_are_rejected() {
     let arm = "spec = \"models/planetary_arm.toml\"";
     for (text, message) in [
         ("", "expected a specification"),
@@ -259,7 +259,7 @@ fn arguments_are_refused_with_what_would_be_right() {
             "the specification cannot be read",
         ),
         ("spec = \"models\"", "the specification is not a file"),
-        ("order = 4", "an order without a file"),
+        ("order = 4", "`spec` is missing"),
         (
             &format!("{arm}, order = 129"),
             "the order 129 is above the limit",
@@ -294,7 +294,7 @@ fn arguments_are_refused_with_what_would_be_right() {
 }
 
 #[test]
-fn a_file_is_watched_and_sections_leave_their_text() {
+fn file_is_a_dependency_and_inline_text_is_a_constant() {
     let file = expanded("spec = \"models/pendulum.toml\"");
     assert!(
         file.contains("include_bytes") && file.contains("models/pendulum.toml"),
@@ -308,14 +308,14 @@ fn a_file_is_watched_and_sections_leave_their_text() {
 }
 
 #[test]
-fn without_cargo_a_path_is_refused() {
+fn path_without_cargo_is_rejected() {
     let stream = "spec = \"models/pendulum.toml\"".parse().expect("tokens");
     let tokens = model(stream, None).to_string();
     assert!(tokens.contains("CARGO_MANIFEST_DIR is not set"), "{tokens}");
 }
 
 #[test]
-fn what_is_not_used_is_a_warning() {
+fn unused_input_gives_a_warning() {
     let text = format!("{SOUND} inputs {{ u: {{ unit: N }} }}");
     let tokens = expanded(&text);
     assert!(
@@ -331,8 +331,8 @@ const PENDULUM: &str = "model { name : pendulum } parameters { m : { value : 1 ,
     definitions { y : - l * cos ( theta ) } kinetic { bob : 1 / 2 * m * ( l * dot ( theta ) ) ^ 2 } \
     potential { gravity : m * g * y } forces { motor : { on : theta , value : \"-0\" } }";
 
-/// Every text that is `words` with one word left out, doubled, changed for the next one or
-/// for something foreign.
+/// Returns every text made from `words` with one word removed, doubled, or replaced by the next
+/// word or by a foreign token.
 fn slips(words: &[&str]) -> Vec<String> {
     let slip = |index: usize, with: &[&str]| {
         let behind = &words[index + 1..];
@@ -361,11 +361,11 @@ fn slips(words: &[&str]) -> Vec<String> {
 }
 
 #[test]
-fn every_slip_gives_items_or_errors() {
+fn every_mutation_gives_items_or_errors() {
     let words: Vec<&str> = PENDULUM.split_whitespace().collect();
     let (mut errors, mut items) = (0, 0);
     for text in slips(&words) {
-        // What is no Rust never reaches a macro.
+        // Text that is not Rust never reaches a macro.
         let Ok(stream) = text.parse() else { continue };
         let tokens = model(stream, None).to_string();
         let refused = tokens.contains("compile_error !");

@@ -1,5 +1,5 @@
-//! From the tables of a macro to the text of a specification. The text is the same however
-//! the tokens were spaced, and so is its hash.
+//! Writes the tables of a macro as the text of a specification. The text, and so its hash, does
+//! not depend on the spacing of the tokens.
 
 use proc_macro2::{Delimiter, Group, Ident, Span, TokenTree};
 use syn::Error;
@@ -7,10 +7,10 @@ use syn::Error;
 use crate::places::Placed;
 use crate::tables::{Entry, MAX_DEPTH, Table, Value};
 
-/// The specification of these sections.
+/// Writes these sections as a specification.
 ///
 /// # Errors
-/// An expression whose brackets are nested too deep.
+/// An expression with brackets nested deeper than [`MAX_DEPTH`].
 pub fn specification(sections: &[Entry]) -> syn::Result<Placed> {
     let mut placed = Placed::default();
     for (index, section) in sections.iter().enumerate() {
@@ -48,19 +48,19 @@ fn is_comma(token: &TokenTree) -> bool {
     matches!(token, TokenTree::Punct(mark) if mark.as_char() == ',')
 }
 
-/// Whether brackets hold several values. With one alone they are part of an expression,
-/// which says what is wrong with them.
+/// Returns true if brackets contain a comma. Otherwise they are part of an expression, and the
+/// parser of expressions reports errors in them.
 fn is_array(group: &Group) -> bool {
     let several = || group.stream().into_iter().any(|token| is_comma(&token));
     group.delimiter() == Delimiter::Bracket && several()
 }
 
-/// Values between brackets, such as the ends of a range.
+/// Writes values between brackets, for example the ends of a range.
 fn array(placed: &mut Placed, group: &Group) -> syn::Result<()> {
     placed.mark("[", group.span_open());
     let tokens: Vec<TokenTree> = group.stream().into_iter().collect();
     let mut elements: Vec<&[TokenTree]> = tokens.split(is_comma).collect();
-    // The last comma may have nothing behind it.
+    // A trailing comma leaves an empty element.
     if elements.last().is_some_and(|element| element.is_empty()) {
         elements.pop();
     }
@@ -83,7 +83,7 @@ fn table(placed: &mut Placed, table: &Table) -> syn::Result<()> {
     Ok(())
 }
 
-/// A name, in quotes where TOML takes no other letters bare.
+/// Writes a name, quoted if TOML does not allow its letters in a bare key.
 fn key(placed: &mut Placed, key: &Ident) {
     let name = key.to_string();
     let bare = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'_';
@@ -94,7 +94,7 @@ fn key(placed: &mut Placed, key: &Ident) {
     }
 }
 
-/// A number as it is, anything else in quotes.
+/// Writes a number as it is, any other expression in quotes.
 fn expression(placed: &mut Placed, tokens: &[TokenTree]) -> syn::Result<()> {
     let mut pieces = Vec::new();
     for token in tokens {
@@ -106,7 +106,7 @@ fn expression(placed: &mut Placed, tokens: &[TokenTree]) -> syn::Result<()> {
         let apart = index > 0 && pieces[index - 1].word && (piece.word || piece.text == ".");
         placed.add(if apart { " " } else { "" });
         placed.mark(&escaped(&piece.text), piece.span);
-        // No space after the last comma, if a person left one there.
+        // A trailing comma of the user gets no space.
         let goes_on = index + 1 < pieces.len();
         placed.add(if goes_on && piece.text == "," {
             " "
@@ -114,15 +114,15 @@ fn expression(placed: &mut Placed, tokens: &[TokenTree]) -> syn::Result<()> {
             ""
         });
     }
-    // Of nobody's: what is missing at the end of an expression is missed by its last token.
+    // The quote has no token: a finding at the end of the expression points at the last token.
     placed.add(quote);
     Ok(())
 }
 
-/// A token of Rust, a bracket being one.
+/// Token of Rust, with each bracket as a token.
 struct Piece {
     text: String,
-    /// Whether it is a name or a literal, which must not touch the next.
+    /// True for a name or a literal, which needs a space before the next one.
     word: bool,
     span: Span,
 }
@@ -162,8 +162,8 @@ fn take_apart(token: &TokenTree, depth: usize, pieces: &mut Vec<Piece>) -> syn::
     Ok(())
 }
 
-/// Whether the pieces are a number as TOML writes it: a sign, digits, then perhaps a
-/// fraction and an exponent. `2.` and `.5` are numbers of expressions alone.
+/// Returns true if the pieces are a number of TOML: a sign, digits, an optional fraction and an
+/// optional exponent. TOML has no `2.` and no `.5`; expressions do.
 fn is_number(pieces: &[Piece]) -> bool {
     let literal = match pieces {
         [literal] => literal,
@@ -187,7 +187,7 @@ fn is_number(pieces: &[Piece]) -> bool {
         && exponent.is_none_or(unsigned)
 }
 
-/// Text between the quotes of a TOML string.
+/// Escapes text for a TOML string.
 fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for letter in text.chars() {
