@@ -119,7 +119,7 @@ fn a_model_without_a_domain_fails_and_says_so() {
     assert!(
         domain
             .detail
-            .contains("no state of the model's domain was found")
+            .contains("no state in the model's domain was found")
     );
 }
 

@@ -1,52 +1,51 @@
-//! The certificate of a variant: what was checked, which checks it went through and how it
-//! fared. Only the record; the checks are in `checks`.
+//! Certificate of a variant: results of its checks.
 
 use serde::{Serialize, Serializer};
 
 pub use crate::coverage::Coverage;
 
-/// The version of the certificate's form.
+/// Version of the certificate format.
 pub const SCHEMA: u32 = 1;
 
-/// The result of all checks of one model at one order.
+/// Results of all checks of one model at one order.
 #[derive(Clone, Debug, Serialize)]
 pub struct Certificate {
-    /// Version of this form.
+    /// Version of the format, [`SCHEMA`].
     pub schema: u32,
-    /// The model's name.
+    /// Name of the model.
     pub model: String,
-    /// The order.
+    /// Order of the variant.
     pub order: usize,
-    /// What derived and emitted it, with its version.
+    /// Name and version of the generator.
     pub generator: String,
     /// SHA-256 of the specification's text, 64 lower-case hexadecimal digits.
     pub specification_sha256: String,
-    /// SHA-256 of the emitted source; none (null) if nothing was emitted.
+    /// SHA-256 of the emitted source; `None` if no source was emitted.
     pub source_sha256: Option<String>,
-    /// What was asked for beside the rates, by the names of `--with`.
+    /// Requested outputs, by their names in `--with`.
     pub with: Vec<String>,
-    /// The values of all parameters, in SI, in the order of the specification.
+    /// Values of all parameters, in SI, in the order of the specification.
     #[serde(serialize_with = "by_name")]
     pub parameters: Vec<(String, f64)>,
-    /// The result of all checks.
+    /// Result of all checks together.
     pub verdict: Verdict,
-    /// Whether the verdict is [`Verdict::Passed`].
+    /// True if the verdict is [`Verdict::Passed`].
     pub passed: bool,
-    /// Regimes in which states were tried; none (null) if no check was made.
+    /// Regimes covered by the sampled states; `None` if no check was run.
     pub coverage: Option<Coverage>,
-    /// The checks in the order they were made.
+    /// Checks in the order in which they were run.
     pub checks: Vec<Check>,
 }
 
-/// The result of all checks.
+/// Result of all checks together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// Every check that applies was run and passed.
+    /// All applicable checks were run and passed.
     Passed,
-    /// No check failed, but one that applies was not run, or not for all regimes.
+    /// No check failed, but an applicable check was not run or did not cover all regimes.
     Partial,
-    /// A check failed, or none was run.
+    /// A check failed, or no check was run.
     Failed,
 }
 
@@ -66,7 +65,7 @@ impl Verdict {
         }
     }
 
-    /// The word in JSON.
+    /// Returns the verdict's name in JSON.
     pub fn word(self) -> &'static str {
         match self {
             Self::Passed => "passed",
@@ -76,63 +75,62 @@ impl Verdict {
     }
 }
 
-/// Why a check was skipped.
+/// Reason for skipping a check.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Skip {
-    /// Whether there was anything to check.
+    /// Kind of reason: not applicable or not run.
     pub kind: SkipKind,
-    /// The reason.
+    /// Text of the reason.
     pub reason: String,
 }
 
-/// Whether a skipped check applies to the model.
+/// Kind of reason for skipping a check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SkipKind {
-    /// The model has nothing that this check compares.
+    /// The model has nothing to compare.
     NotApplicable,
-    /// The check applies and could not be run.
+    /// The check applies but could not be run.
     NotRun,
 }
 
-/// One check.
+/// Result of one check.
 #[derive(Clone, Debug, Serialize)]
 pub struct Check {
-    /// What was checked.
+    /// Name of the check.
     pub name: String,
-    /// The worst deviation found; none (null) if the check was skipped, or if a deviation
-    /// is no finite number.
+    /// Largest deviation; `None` if the check was skipped or a deviation is not finite.
     pub value: Option<f64>,
-    /// The largest deviation that passes.
+    /// Largest deviation that passes.
     pub tolerance: f64,
-    /// Whether it was made and the deviation is within the tolerance.
+    /// True if the check was run and the deviation is within the tolerance.
     pub passed: bool,
-    /// Why it was skipped; none (`false` in JSON) if it was made.
+    /// Reason for skipping the check; `None` (`false` in JSON) if it was run.
     #[serde(serialize_with = "or_false")]
     pub skipped: Option<Skip>,
-    /// How many states were used, where the worst was found, why it was skipped.
+    /// Number of states compared and place of the largest deviation, or the reason for skipping.
     pub detail: String,
 }
 
-/// What a certificate is about.
+/// Subject of a certificate.
 #[derive(Clone, Debug, Default)]
 pub struct Certified {
-    /// The model's name.
+    /// Name of the model.
     pub model: String,
-    /// The order.
+    /// Order of the variant.
     pub order: usize,
     /// SHA-256 of the specification's text.
     pub specification_sha256: String,
-    /// SHA-256 of the emitted source, if there is one.
+    /// SHA-256 of the emitted source, if any.
     pub source_sha256: Option<String>,
-    /// What was asked for, by name.
+    /// Names of the requested outputs.
     pub with: Vec<String>,
     /// Names and values of all parameters, in SI.
     pub parameters: Vec<(String, f64)>,
 }
 
 impl Certificate {
-    /// The certificate of `about` with `checks`; an empty one does not pass.
+    /// Creates the certificate of `about`. A certificate without checks does not pass.
     pub fn new(about: Certified, coverage: Option<Coverage>, checks: Vec<Check>) -> Self {
         let verdict = Verdict::of(&checks);
         Self {
@@ -151,7 +149,7 @@ impl Certificate {
         }
     }
 
-    /// The checks that were made and did not pass.
+    /// Returns the checks that were run and failed.
     pub fn failures(&self) -> impl Iterator<Item = &Check> {
         self.checks
             .iter()
@@ -159,7 +157,7 @@ impl Certificate {
     }
 }
 
-/// What there is, or `false`.
+/// Serialises `None` as `false`.
 fn or_false<S: Serializer>(skip: &Option<Skip>, serializer: S) -> Result<S::Ok, S::Error> {
     match skip {
         Some(skip) => skip.serialize(serializer),
@@ -167,13 +165,13 @@ fn or_false<S: Serializer>(skip: &Option<Skip>, serializer: S) -> Result<S::Ok, 
     }
 }
 
-/// Pairs as one JSON object, in their order.
+/// Serialises pairs as one JSON object and keeps their order.
 fn by_name<S: Serializer>(pairs: &[(String, f64)], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_map(pairs.iter().map(|(name, value)| (name, value)))
 }
 
 impl Check {
-    /// A check that found `worst` as its largest deviation.
+    /// Creates a check that was run, with `worst` as its largest deviation.
     pub fn made(name: impl Into<String>, worst: Worst, tolerance: f64) -> Self {
         Self {
             name: name.into(),
@@ -185,7 +183,7 @@ impl Check {
         }
     }
 
-    /// A check that has nothing to compare in this model.
+    /// Creates a skipped check: the model has nothing to compare.
     pub fn not_applicable(
         name: impl Into<String>,
         tolerance: f64,
@@ -199,12 +197,12 @@ impl Check {
         )
     }
 
-    /// A check that applies to this model and could not be run.
+    /// Creates a skipped check that applies but could not be run.
     pub fn not_run(name: impl Into<String>, tolerance: f64, reason: impl Into<String>) -> Self {
         Self::skipped(name.into(), tolerance, SkipKind::NotRun, reason.into())
     }
 
-    /// A check that was not made.
+    /// Creates a skipped check.
     pub fn skipped(name: String, tolerance: f64, kind: SkipKind, reason: String) -> Self {
         Self {
             name,
@@ -217,8 +215,8 @@ impl Check {
     }
 }
 
-/// The largest deviation so far, and where it was found. What is not a number counts as
-/// infinite, and nothing examined at all as infinite too.
+/// Largest deviation so far and its place. NaN counts as infinity. Without any deviation the value
+/// is infinity too.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Worst {
     value: f64,
@@ -229,13 +227,13 @@ impl Default for Worst {
     fn default() -> Self {
         Self {
             value: f64::INFINITY,
-            detail: "nothing was examined".to_owned(),
+            detail: "no state was compared".to_owned(),
         }
     }
 }
 
 impl Worst {
-    /// A deviation with what there is to say about it.
+    /// Creates a deviation with a description of its place. NaN becomes infinity.
     pub fn of(value: f64, detail: impl Into<String>) -> Self {
         Self {
             value: if value.is_nan() { f64::INFINITY } else { value },
@@ -243,7 +241,6 @@ impl Worst {
         }
     }
 
-    /// Keeps the larger of two deviations.
     pub fn include(&mut self, other: Self) {
         let untouched = *self == Self::default();
         if untouched || other.value > self.value {
@@ -251,7 +248,7 @@ impl Worst {
         }
     }
 
-    /// Says of how many the largest was kept.
+    /// Prefixes the description with the number of compared items; `what` is their plural noun.
     pub fn among(self, count: usize, what: &str) -> Self {
         Self {
             detail: format!("{count} {what}, worst: {}", self.detail),
@@ -259,7 +256,7 @@ impl Worst {
         }
     }
 
-    /// The largest deviation.
+    /// Returns the largest deviation.
     pub fn value(&self) -> f64 {
         self.value
     }
@@ -281,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn a_certificate_has_the_agreed_fields() {
+    fn certificate_has_documented_json_fields() {
         let checks = vec![
             Check::made("made", Worst::of(1e-15, "200 states"), 1e-12),
             Check::not_applicable("skipped", 0.0, "no field"),
@@ -310,7 +307,7 @@ mod tests {
     }
 
     #[test]
-    fn one_failure_one_nan_or_nothing_at_all_fails() {
+    fn failed_nan_or_missing_check_fails_certificate() {
         let good = Check::made("good", Worst::of(0.0, ""), 0.0);
         for bad in [
             Worst::of(1.0, ""),
@@ -326,7 +323,7 @@ mod tests {
     }
 
     #[test]
-    fn checks_not_run_make_it_partial_and_those_not_applicable_do_not() {
+    fn only_checks_not_run_make_certificate_partial() {
         let good = Check::made("good", Worst::of(0.0, ""), 0.0);
         let absent = Check::not_applicable("a", 0.0, "no field");
         let missed = Check::not_run("b", 0.0, "no compiler");

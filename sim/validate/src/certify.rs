@@ -1,4 +1,4 @@
-//! Runs every check that applies to a model at one order and writes the certificate.
+//! Runs all checks of a model at one order and writes the certificate.
 
 use super::certificate::{Certificate, Certified, Check, Coverage, SkipKind, Worst};
 use super::checks::outputs::Judged;
@@ -16,42 +16,42 @@ pub use super::checks::exact::{Derivative, Sized};
 pub use super::checks::linked::{Emitted, EmittedFunction};
 pub use super::checks::states::Reference;
 
-/// What was written by hand for a model.
+/// Hand-written equations of a model.
 #[derive(Default)]
 pub struct ReferenceEquations {
-    /// The equations.
+    /// Equations to compare with.
     pub references: Vec<Reference>,
-    /// A line for each that does not apply, with the reason.
+    /// Skipped checks of hand-written equations that do not apply, with the reason.
     pub absent: Vec<Check>,
 }
 
-/// What is to be judged.
+/// Model, variant and emitted source to validate.
 pub struct Subject<'s> {
-    /// The checked model.
+    /// Checked model.
     pub model: &'s Model,
-    /// The order.
+    /// Order of the variant.
     pub order: usize,
     /// Parameters in SI, in the order of the model.
     pub parameters: &'s [f64],
-    /// Makes the variant of an order, with these parameters.
+    /// Function that creates the variant of an order with these parameters.
     pub variants: &'s dyn Fn(usize) -> Result<Box<dyn Variant>, String>,
-    /// Equations written by hand for this model.
+    /// Hand-written equations of this model.
     pub references: &'s [Reference],
-    /// Lines for equations written by hand that do not apply to it, with the reason.
+    /// Skipped checks of hand-written equations that do not apply, with the reason.
     pub absent: &'s [Check],
-    /// Makes what was asked for of this order, with these parameters; none if nothing was.
+    /// Function that creates the requested outputs of this order; `None` if none were requested.
     pub outputs: Option<&'s dyn Fn() -> Result<Box<dyn Outputs>, String>>,
-    /// The emitted source with the specification's own parameters, or why there is none.
+    /// Emitted source with the parameters of the specification, or the reason for its absence.
     pub emitted: Result<Emitted, String>,
-    /// The emitted source with kernels of regimes, or why there is none; its functions are not
+    /// Emitted source with kernels of regimes, or the reason for its absence. Its functions are not
     /// compared.
     pub regimes: Result<Emitted, String>,
-    /// The derivative that the exact solver integrates, or why there is none.
+    /// State derivative of the exact solver, or the reason for its absence.
     pub exact: Result<&'s Derivative<'s>, String>,
 }
 
-/// The certificate of `subject`. What keeps a check from being made at all, such as a
-/// variant that cannot be derived, is a failed check.
+/// Runs all checks and returns the certificate of `subject`. An error that prevents the checks, for
+/// example in the derivation of the variant, is reported as a failed check.
 pub fn certify(subject: &Subject<'_>) -> Certificate {
     let (checks, coverage) = all_checks(subject).unwrap_or_else(|message| {
         let worst = Worst::of(f64::INFINITY, message);
@@ -63,7 +63,7 @@ pub fn certify(subject: &Subject<'_>) -> Certificate {
     Certificate::new(about, Some(coverage), checks)
 }
 
-/// What the certificate of a model at an order, with parameters in SI, is about.
+/// Returns the header of the certificate; `parameters` are in SI.
 pub fn about(
     model: &Model,
     order: usize,
@@ -129,10 +129,10 @@ fn oracle(subject: &Subject<'_>, order: usize) -> Result<Oracle, String> {
 }
 
 fn text(error: OracleError) -> String {
-    format!("the oracle cannot judge this model: {error}")
+    format!("the oracle cannot evaluate this model: {error}")
 }
 
-/// This order inside the next; at the highest order, the one before inside this.
+/// Compares this order with the next one, or with the previous one at the highest order.
 fn nested(
     subject: &Subject<'_>,
     oracle: &Oracle,
@@ -153,25 +153,25 @@ fn nested(
     Ok(found.map_err(text)?.into())
 }
 
-/// The rigid model inside this one.
+/// Compares the rigid model (order 0) with this one.
 fn rigid(subject: &Subject<'_>, variant: &mut dyn Variant) -> Result<Vec<Check>, String> {
     const NAME: &str = "rigid_limit";
     if subject.model.fields.is_empty() {
         return Ok(skipped(NAME, "the model has no field"));
     }
     if subject.order == 0 {
-        return Ok(skipped(NAME, "this is the rigid model"));
+        return Ok(skipped(NAME, "order 0 is the rigid model itself"));
     }
     let oracle = oracle(subject, 0)?;
     if oracle.size() == 0 {
-        return Ok(skipped(NAME, "nothing is left without the field"));
+        return Ok(skipped(NAME, "the rigid model has no coordinate"));
     }
     let mut rigid = (subject.variants)(0)?;
     let found = nesting::check(NAME, &oracle, rigid.as_mut(), variant).map_err(text)?;
     Ok(found.into())
 }
 
-/// The three checks of a nesting, skipped.
+/// Returns the three checks of a nesting as not applicable.
 fn skipped(name: &str, reason: &str) -> Vec<Check> {
     [
         ("mass", MASS_TOLERANCE),

@@ -1,4 +1,4 @@
-//! Finds a Rust compiler and runs it, and what it made, within a time limit.
+//! Finds a Rust compiler and runs it and the compiled programs within a time limit.
 
 use std::ffi::OsStr;
 use std::io::{Read, Write};
@@ -7,52 +7,53 @@ use std::process::{Child, Command, Stdio};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// The longest any one process may take.
+/// Time limit of one process.
 const LIMIT: Duration = Duration::from_secs(240);
-/// How often a running process is looked at.
+/// Polling interval of a running process.
 const INTERVAL: Duration = Duration::from_millis(5);
 
-/// A compiler that accepts this edition.
+/// Rust compiler that accepts edition 2024.
 #[derive(Clone, Debug)]
 pub struct Compiler {
     program: std::ffi::OsString,
 }
 
-/// How far emitted source is optimised before it is run.
+/// Optimisation level of the emitted source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Optimization {
-    /// As in a release build, where a compiler's rewriting could change a number.
+    /// Full, as in a release build: optimisation could change a number.
     Full,
-    /// Not at all: a sixth of the time, for functions that come in many instances and are
-    /// each called a few times.
+    /// No optimisation: compiles in a sixth of the time. For functions with many instances and few
+    /// calls.
     None,
 }
 
-/// What a process left.
+/// Output of a finished process.
 #[derive(Debug)]
 pub struct Output {
-    /// Whether it ended well.
+    /// True if the process exited with status 0.
     pub success: bool,
-    /// Its standard output.
+    /// Standard output.
     pub stdout: String,
-    /// Its standard error.
+    /// Standard error.
     pub stderr: String,
 }
 
 impl Compiler {
-    /// The compiler the environment variable `RUSTC` names, else `rustc` on the path.
+    /// Finds the compiler of the environment variable `RUSTC`, or `rustc` on the path, and tests it
+    /// in `folder`.
     ///
     /// # Errors
-    /// Why none can be used.
+    /// A message if the compiler cannot be run.
     pub fn find(folder: &Path) -> Result<Self, String> {
         let program = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
         Self::named(program, folder)
     }
 
-    /// The compiler `program`, tried out in `folder`.
+    /// Tests the compiler `program` in `folder`.
     ///
     /// # Errors
-    /// Why it cannot be used.
+    /// A message if the compiler cannot be run.
     pub fn named(program: std::ffi::OsString, folder: &Path) -> Result<Self, String> {
         let compiler = Self { program };
         let probe = folder.join("probe.rs");
@@ -64,21 +65,21 @@ impl Compiler {
                 Optimization::None,
                 &["--crate-type", "rlib"],
             )
-            .map_err(|message| format!("no rustc was found: {message}"))?;
+            .map_err(|message| format!("cannot run rustc; set RUSTC to its path: {message}"))?;
         if output.success {
             Ok(compiler)
         } else {
             Err(format!(
-                "rustc cannot be used: {}",
+                "rustc failed to compile a test file: {}",
                 first_line(&output.stderr)
             ))
         }
     }
 
-    /// Compiles `source` to `target`.
+    /// Compiles `source` to `target` with the further arguments `more`.
     ///
     /// # Errors
-    /// Why the compiler could not be run to its end.
+    /// A message if the compiler could not be started or exceeded the time limit.
     pub fn compile(
         &self,
         source: &Path,
@@ -103,10 +104,10 @@ impl Compiler {
     }
 }
 
-/// Runs `program` on `input`.
+/// Runs `program` with `input` on its standard input.
 ///
 /// # Errors
-/// Why it could not be run to its end.
+/// A message if the program could not be started or exceeded the time limit.
 pub fn execute(program: &Path, input: &str) -> Result<Output, String> {
     run(&mut Command::new(program), input)
 }
@@ -114,12 +115,12 @@ pub fn execute(program: &Path, input: &str) -> Result<Output, String> {
 /// Writes a file.
 ///
 /// # Errors
-/// Why it could not be written.
+/// The path and the system's message.
 pub fn write(path: &Path, text: &str) -> Result<(), String> {
     std::fs::write(path, text).map_err(|error| format!("{}: {error}", path.display()))
 }
 
-/// The first line of a compiler's message.
+/// Returns the first non-empty line of a compiler's message.
 pub fn first_line(text: &str) -> &str {
     text.lines()
         .find(|line| !line.trim().is_empty())
@@ -139,7 +140,7 @@ fn run(command: &mut Command, input: &str) -> Result<Output, String> {
     let stderr = child.stderr.take().map(collect);
     let writer = child.stdin.take().map(|mut stdin| {
         let input = input.to_owned();
-        // A process that stops reading early is judged by how it ends.
+        // A write error is ignored: the exit status decides.
         std::thread::spawn(move || drop(stdin.write_all(input.as_bytes())))
     });
     let success = wait(&mut child, &name);
@@ -159,7 +160,7 @@ fn run(command: &mut Command, input: &str) -> Result<Output, String> {
     })
 }
 
-/// Reads a pipe on a thread of its own, so that neither side waits for the other.
+/// Reads a pipe in a separate thread, so that full pipes cannot block the process.
 fn collect(mut pipe: impl Read + Send + 'static) -> JoinHandle<String> {
     std::thread::spawn(move || {
         let mut bytes = Vec::new();
@@ -168,7 +169,7 @@ fn collect(mut pipe: impl Read + Send + 'static) -> JoinHandle<String> {
     })
 }
 
-/// Waits for the end of a process, or ends it at the time limit.
+/// Waits for a process and stops it at the time limit.
 fn wait(child: &mut Child, name: &OsStr) -> Result<bool, String> {
     let start = Instant::now();
     loop {
@@ -179,7 +180,10 @@ fn wait(child: &mut Child, name: &OsStr) -> Result<bool, String> {
                 drop(child.kill());
                 drop(child.wait());
                 let seconds = LIMIT.as_secs();
-                return Err(format!("{} took longer than {seconds} s", name.display()));
+                return Err(format!(
+                    "{} did not finish within {seconds} s",
+                    name.display()
+                ));
             }
             Err(error) => return Err(format!("{}: {error}", name.display())),
         }

@@ -1,20 +1,20 @@
-//! The regimes that a certificate's states are in.
+//! Coverage of a model's regimes by the sampled states.
 
 use serde::Serialize;
 
-/// How many regimes of the piecewise functions were tried.
+/// Numbers of regimes of the piecewise functions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Coverage {
-    /// Combinations of sides that may have a state: all but the unreachable ones.
+    /// Combinations of sides that are not proven unreachable.
     pub regimes: u64,
-    /// Those in which enough states were tried.
+    /// Regimes with enough sampled states.
     pub sampled: u64,
-    /// Combinations of sides that bounds prove to have no state.
+    /// Combinations of sides that interval bounds prove to have no state.
     pub unreachable: u64,
 }
 
 impl Coverage {
-    /// A sentence on the regimes tried.
+    /// Returns the coverage as a sentence.
     pub fn sentence(&self) -> String {
         let Self {
             regimes,

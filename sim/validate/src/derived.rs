@@ -1,18 +1,17 @@
-//! A derived model seen by the certificate: the evaluator of its program behind its trait. No
-//! equation is written here.
+//! Adapter from the evaluator of a derived program to [`Variant`].
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_sim::ode::NOT_POSITIVE;
 
 use crate::variant::Variant;
 
-/// A derived variant with fixed parameters.
+/// Derived variant with fixed parameters.
 pub struct Derived {
     evaluator: Evaluator,
 }
 
 impl Derived {
-    /// Takes an evaluator, prepared with the parameters to be used.
+    /// Creates the adapter of an evaluator that was prepared with the parameters to use.
     pub fn new(evaluator: Evaluator) -> Self {
         Self { evaluator }
     }
@@ -89,7 +88,7 @@ impl Variant for Derived {
         Ok(values)
     }
 
-    /// `energy` and `power` stand last.
+    /// Returns the observables, with `energy` and `power` last.
     fn observables(
         &mut self,
         time: f64,

@@ -1,5 +1,4 @@
-//! What was asked for of a derived model, seen by the certificate: the evaluator of its
-//! program behind the trait. Nothing is derived here.
+//! Adapter from the evaluator of a derived program to [`Outputs`].
 
 use eomgen_codegen::program::BlockPlace;
 use eomgen_codegen::program::Jacobian;
@@ -9,13 +8,13 @@ use nalgebra::DMatrix;
 use crate::outputs::Outputs;
 use crate::sampler::Sample;
 
-/// The output functions of a derived variant with fixed parameters.
+/// Output functions of a derived variant with fixed parameters.
 pub struct DerivedOutputs {
     evaluator: Evaluator,
 }
 
 impl DerivedOutputs {
-    /// Takes an evaluator, prepared with the parameters to be used.
+    /// Creates the adapter of an evaluator that was prepared with the parameters to use.
     pub fn new(evaluator: Evaluator) -> Self {
         Self { evaluator }
     }
@@ -118,7 +117,7 @@ impl Outputs for DerivedOutputs {
     }
 }
 
-/// A Jacobian with its zeros.
+/// Returns a Jacobian as a dense matrix.
 fn dense<N>(jacobian: &Jacobian<N>, nonzeros: &[f64]) -> DMatrix<f64> {
     let mut matrix = DMatrix::zeros(jacobian.rows, jacobian.columns);
     for (entry, BlockPlace { start, width }) in jacobian.entries.iter().zip(jacobian.places()) {

@@ -1,6 +1,6 @@
-//! How the oracle's equations and observables change along a direction of states, inputs and
-//! parameters, by central differences of eighth order. What is differentiated are the rows
-//! of the equations at held accelerations, so that no solution of a system comes in between.
+//! Directional derivatives of the oracle's equations and observables by states, inputs and
+//! parameters, by central differences of eighth order. The rows of the equations are differentiated
+//! at constant accelerations, so that no linear solve adds its error.
 
 use super::oracle::{Oracle, Side};
 use super::sampler::Sample;
@@ -10,29 +10,27 @@ use eomgen_model_spec::model::{Model, ParameterValue};
 /// formulas on arbitrarily spaced grids", Math. Comp. 51, 1988, table 1).
 const WEIGHTS: [f64; 4] = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
 
-/// A number with the largest of what was added up for it.
+/// Number with the scale of its rounding error.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Slope {
-    /// The derivative along the direction.
+    /// Derivative along the direction.
     pub value: f64,
-    /// The largest addend of the quantity itself: over one length of the direction a
-    /// quantity changes by no more than a few of these.
+    /// Largest addend of the quantity itself. Over a step of length 1 the quantity changes by at
+    /// most a few of these.
     pub scale: f64,
 }
 
-/// Where to: what a step of length 1 adds.
+/// Change of all variables over a step of length 1.
 #[derive(Clone, Debug)]
 pub(super) struct Direction {
-    /// To the state.
     pub state: Vec<f64>,
-    /// To the inputs.
     pub inputs: Vec<f64>,
-    /// To the independent parameters, in the order of the model's parameters.
+    /// Changes of the independent parameters, in the order of the model's parameters.
     pub parameters: Vec<f64>,
 }
 
 impl Direction {
-    /// Nowhere.
+    /// Creates the direction zero.
     pub fn still(states: usize, inputs: usize, parameters: usize) -> Self {
         Self {
             state: vec![0.0; states],
@@ -46,8 +44,7 @@ impl Direction {
     }
 }
 
-/// The derivatives by eighth-order central differences of quantities known as value and
-/// scale; none where one of the values is missing or not finite.
+/// Returns central differences of eighth order; `None` if a value is missing or not finite.
 pub(super) fn slopes(
     step: f64,
     mut at: impl FnMut(f64) -> Option<Vec<Slope>>,
@@ -69,25 +66,21 @@ pub(super) fn slopes(
     Some(found)
 }
 
-/// The oracle about one state of one regime.
+/// Oracle and state at which to differentiate.
 pub(super) struct Surroundings<'s> {
-    /// The oracle.
     pub oracle: &'s Oracle,
-    /// The model it was made of.
     pub model: &'s Model,
-    /// The order.
     pub order: usize,
-    /// All parameters in SI.
+    /// All parameters, in SI.
     pub parameters: &'s [f64],
-    /// The state.
     pub sample: &'s Sample,
-    /// The accelerations and the rates of states of first order there, held.
+    /// Accelerations and rates of first-order states at the sample, held constant.
     pub unknowns: Vec<f64>,
 }
 
 impl Surroundings<'_> {
-    /// How every row of the equations, then every observable, changes along `direction`; none
-    /// if the regime or the domain of a function ends within four steps.
+    /// Returns the derivatives of all rows, then of all observables, along `direction`. Returns
+    /// `None` if the regime or the domain of a function ends within four steps.
     pub fn slopes(&self, direction: &Direction, step: f64) -> Option<Vec<Slope>> {
         let here = sides(self.oracle, self.sample)?;
         slopes(step, |length| {
@@ -113,7 +106,7 @@ impl Surroundings<'_> {
         }
     }
 
-    /// All parameters after a move of the independent ones.
+    /// Returns all parameters after a change of the independent ones.
     fn moved_parameters(&self, direction: &Direction, length: f64) -> Option<Vec<f64>> {
         let mut model = self.model.clone();
         let known = self.parameters.iter().zip(&direction.parameters);
@@ -152,7 +145,6 @@ impl Surroundings<'_> {
     }
 }
 
-/// On which sides of its switches a state is.
 fn sides(oracle: &Oracle, sample: &Sample) -> Option<Vec<Side>> {
     let values = oracle.switch_values(sample.time, &sample.state, &sample.inputs);
     Some(values.ok()?.iter().map(|value| value.side()).collect())
@@ -163,7 +155,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn differences_of_eighth_order_take_a_sine_to_rounding() {
+    fn differences_of_sine_converge_with_order_eight() {
         let sine = |x: f64| {
             Some(vec![Slope {
                 value: (0.7 + x).sin(),
@@ -172,14 +164,14 @@ mod tests {
         };
         let slope = slopes(1.0 / 16.0, sine).expect("a slope")[0];
         assert!((slope.value - 0.7_f64.cos()).abs() < 1e-12, "{slope:?}");
-        // The error goes with the eighth power of the step.
+        // The error is proportional to the eighth power of the step size.
         let error = |step| (slopes(step, sine).expect("a slope")[0].value - 0.7_f64.cos()).abs();
         let order = (error(0.5) / error(0.25)).log2();
         assert!((order - 8.0).abs() < 0.2, "{order}");
     }
 
     #[test]
-    fn a_neighbour_that_is_missing_leaves_no_slope() {
+    fn missing_neighbour_gives_no_slope() {
         let edge = |x: f64| (x < 0.2).then(|| vec![Slope::default()]);
         assert!(slopes(0.1, edge).is_none());
         assert!(slopes(0.01, edge).is_some());

@@ -1,20 +1,19 @@
-//! Linear inequalities: whether any point satisfies them, and the nearest point that does.
-//! Both are nonnegative least squares (Lawson and Hanson, Solving Least Squares Problems, 1974,
-//! chapter 23).
+//! Feasibility of linear inequalities and the nearest feasible point, by nonnegative least squares
+//! (Lawson and Hanson, Solving Least Squares Problems, 1974, chapter 23).
 
 use nalgebra::{DMatrix, DVector};
 
-/// Residual, for rows of length 1, below which inequalities contradict each other.
+/// Residual below which inequalities contradict each other, for rows of length 1.
 const CONTRADICTION: f64 = 1e-12;
-/// Corrections per unknown before the solution counts as found.
+/// Maximum number of corrections per unknown.
 const ROUNDS: usize = 10;
-/// Rounds after which rows and columns have like sizes: each halves what is left of the logarithms.
+/// Scaling rounds. Each round halves the remaining differences of the logarithms.
 const SCALING_ROUNDS: usize = 20;
-/// Iterations of a singular value decomposition before it is given up.
+/// Maximum number of iterations of a singular value decomposition.
 const SVD_ITERATIONS: usize = 10_000;
 
-/// Whether no point z has a positive product with every row (Gordan: a combination of rows with
-/// weights that are not negative is then 0). Rows of zeros are left out.
+/// Returns true if no point z has a positive product with every row. By Gordan's theorem, a
+/// combination of rows with nonnegative weights is then 0. Rows of zeros are ignored.
 pub(crate) fn cone_is_empty(rows: &[Vec<f64>]) -> bool {
     let rows: Vec<DVector<f64>> = equilibrated(rows)
         .into_iter()
@@ -30,9 +29,9 @@ pub(crate) fn cone_is_empty(rows: &[Vec<f64>]) -> bool {
     residual.norm() <= CONTRADICTION
 }
 
-/// Scales rows and columns to similar sizes: each by the geometric mean of its largest and its least entry.
-/// The length of a row and the unit of an unknown do not change the answer. Without the scaling, a constant
-/// that is small compared with that of another unknown would be taken for rounding.
+/// Divides each row and column by the geometric mean of its largest and its smallest entry. This
+/// changes no answer, but a constant that is much smaller than another one would otherwise be
+/// treated as rounding error.
 fn equilibrated(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let mut rows = rows.to_vec();
     let columns = rows.first().map_or(0, Vec::len);
@@ -49,7 +48,7 @@ fn equilibrated(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
     rows
 }
 
-/// The geometric mean of the largest and the least magnitude other than 0; 1 if there is none.
+/// Returns the geometric mean of the largest and the smallest nonzero magnitude; 1 if all are 0.
 fn middle_size(entries: impl Iterator<Item = f64>) -> f64 {
     let sizes = entries
         .map(f64::abs)
@@ -64,7 +63,7 @@ fn middle_size(entries: impl Iterator<Item = f64>) -> f64 {
     }
 }
 
-/// The shortest x with `row * x >= bound` for every row and bound; `None` if there is none.
+/// Returns the shortest x with `row * x >= bound` for every row and bound; `None` if infeasible.
 pub(crate) fn nearest_point(rows: &[(Vec<f64>, f64)]) -> Option<Vec<f64>> {
     let mut columns = Vec::new();
     for (row, bound) in rows {
@@ -101,7 +100,8 @@ pub(crate) fn nearest_point(rows: &[(Vec<f64>, f64)]) -> Option<Vec<f64>> {
     )
 }
 
-/// What is left of (0, 1) by the best combination of the rows, each with a 1 behind it.
+/// Returns the residual of the least-squares problem that combines the rows, each extended by 1, to
+/// (0, 1).
 fn residual(rows: &[DVector<f64>]) -> Option<DVector<f64>> {
     let size = rows.first()?.len();
     let columns: Vec<DVector<f64>> = rows.iter().map(|row| row.clone().push(1.0)).collect();
@@ -111,7 +111,7 @@ fn residual(rows: &[DVector<f64>]) -> Option<DVector<f64>> {
     Some(&matrix * nonnegative_least_squares(&matrix, &target) - target)
 }
 
-/// The y with no negative entry that makes |A y - b| least.
+/// Returns the y >= 0 that minimises |A y - b|.
 fn nonnegative_least_squares(matrix: &DMatrix<f64>, target: &DVector<f64>) -> DVector<f64> {
     let count = matrix.ncols();
     let mut solution = DVector::zeros(count);
@@ -154,7 +154,7 @@ fn nonnegative_least_squares(matrix: &DMatrix<f64>, target: &DVector<f64>) -> DV
     solution
 }
 
-/// The longest share of the way to `trial` on which no entry turns negative, at most 1.
+/// Returns the largest step towards `trial`, at most 1, that keeps all entries nonnegative.
 fn longest_step(solution: &DVector<f64>, trial: &DVector<f64>, active: &[usize]) -> f64 {
     let shares = active.iter().zip(trial.iter()).map(|(place, value)| {
         if *value > 0.0 {
@@ -166,7 +166,7 @@ fn longest_step(solution: &DVector<f64>, trial: &DVector<f64>, active: &[usize])
     shares.fold(1.0, f64::min)
 }
 
-/// The least squares solution with the columns at `active` alone.
+/// Returns the least-squares solution with only the columns `active`.
 fn least_squares(
     matrix: &DMatrix<f64>,
     target: &DVector<f64>,
@@ -182,7 +182,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn opposite_half_spaces_leave_nothing() {
+    fn cone_of_opposite_half_spaces_is_empty() {
         // x > b and -x > b.
         for b in [0.0, 1e-6, 1.0, 1e5] {
             let cone = [vec![1.0, -b], vec![-1.0, -b], vec![0.0, 1.0]];
@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn a_small_gap_beside_a_large_constant_is_no_contradiction() {
+    fn cone_with_small_gap_and_large_constant_is_not_empty() {
         // -0.2 < u < 0.2 and 1e5 < p < 3e12.
         let mut cone = vec![
             vec![1.0, 0.0, 0.2],
@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn three_half_planes_of_a_triangle_turned_outside_leave_nothing() {
+    fn cone_outside_all_triangle_sides_is_empty() {
         let triangle = |sign: f64| {
             vec![
                 vec![-sign, 0.0, -1.0],
@@ -232,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn the_nearest_point_is_the_foot_of_the_normal() {
+    fn nearest_point_is_foot_of_normal() {
         let x = nearest_point(&[(vec![3.0, 4.0], 10.0)]).unwrap();
         assert!((x[0] - 1.2).abs() < 1e-12 && (x[1] - 1.6).abs() < 1e-12);
         assert_eq!(nearest_point(&[(vec![1.0], 1.0), (vec![-1.0], 1.0)]), None);

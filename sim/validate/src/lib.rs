@@ -1,13 +1,12 @@
 //! Validation of derived equations of motion.
 //!
-//! [`oracle`] forms the equations a second time, from the checked model by automatic
-//! differentiation; [`sampler`] draws states in every regime with [`random`] numbers; a
-//! [`variant::Variant`] with [`outputs::Outputs`] is what is judged; [`checks`] compare, with a [`compiler`] for
-//! emitted source; [`certify`](certify::certify) runs them and writes the
-//! [`certificate`]. Nothing here knows how the equations under test were derived or
-//! evaluated.
+//! The [`oracle`] forms the equations of motion a second time, from the checked model by automatic
+//! differentiation. It shares no code with the derivation under test. The [`sampler`] draws
+//! [`random`] states in every regime. The [`checks`] compare a [`variant::Variant`] and its
+//! [`outputs::Outputs`] with the oracle, and a [`compiler`] builds the emitted source.
+//! [`certify`](certify::certify) runs all checks and writes the [`certificate`].
 //!
-//! The oracle by itself says what a right model's rows are at a state:
+//! Example: residuals of the oracle's own accelerations of a pendulum.
 //!
 //! ```
 //! use eomgen_validate::oracle::Oracle;
@@ -17,7 +16,7 @@
 //! let oracle = Oracle::new(&model, 0, &values)?;
 //! let equations = oracle.equations(0.0, &[0.3, 0.0], &[])?;
 //! let accelerations = equations.accelerations().ok_or("no inertia")?;
-//! // Of M q'' + c - f nothing is left but rounding.
+//! // The residual M q'' + c - f is zero to rounding.
 //! for row in equations.residuals(accelerations.as_slice()) {
 //!     assert!(row.value.abs() <= 1e-14 * row.scale);
 //! }

@@ -1,5 +1,4 @@
-//! The certificate of a model at one order: its derivation and its emitted source go
-//! before the checks, with what its caller knows to have been written by hand for it.
+//! Certificate of a checked model: derivation, emitted source and checks.
 
 use std::cell::RefCell;
 
@@ -24,11 +23,11 @@ use crate::variant::Variant;
 use eomgen_compiled_model::{CompiledModel, Orders};
 use eomgen_sim::piecewise_linear::Propagator;
 
-/// The certificate of `model` with every field at `order`; `emitted` is the source of
-/// that variant with `outputs`, as a file by itself.
+/// Derives `model` with every field at `order` and returns its certificate. `emitted` is the source
+/// of that variant with `outputs`, as a single file.
 ///
 /// # Errors
-/// If the parameters have no finite values.
+/// [`ModelError`] if a parameter has no finite value.
 pub fn certificate(
     model: &Model,
     order: usize,
@@ -62,11 +61,10 @@ pub fn certificate(
     }))
 }
 
-/// The same without its checks, so that it has not passed: what a certificate has to say
-/// that it is about.
+/// Returns the certificate without running its checks. Its verdict is "failed".
 ///
 /// # Errors
-/// As [`certificate`].
+/// Same as [`certificate`].
 pub fn unchecked(
     model: &Model,
     order: usize,
@@ -79,7 +77,6 @@ pub fn unchecked(
     Ok(Certificate::new(about, None, Vec::new()))
 }
 
-/// The emitted source with what is to be compared of it.
 fn source(model: &Model, outputs: &[Output], source: String) -> Emitted {
     let inputs = model.inputs.iter();
     let names = outputs.iter().map(|output| output.name().to_owned());
@@ -98,7 +95,7 @@ fn source(model: &Model, outputs: &[Output], source: String) -> Emitted {
     }
 }
 
-/// The source of a variant with kernels of its regimes, or why there is none.
+/// Returns the source of a variant with kernels of its regimes, or the reason for its absence.
 fn kernels(
     model: &Model,
     order: usize,
@@ -118,7 +115,7 @@ fn kernels(
     })
 }
 
-/// What propagates a model exactly, or why nothing does.
+/// Returns the exact propagator of a model, or the reason for its absence.
 fn exact(model: &Model, order: usize) -> Result<Propagator, String> {
     let orders = vec![order; model.fields.len()];
     let compiled = CompiledModel::derive_unjudged(model.clone(), Orders::Each(&orders));
@@ -127,7 +124,6 @@ fn exact(model: &Model, order: usize) -> Result<Propagator, String> {
     instance.propagator().map_err(|error| error.to_string())
 }
 
-/// The rates as a propagator has them.
 fn rates(
     propagator: &mut Propagator,
     time: f64,
@@ -142,13 +138,12 @@ fn rates(
     })
 }
 
-/// The variant of a model with every field at `order`, at parameter values in SI.
+/// Creates the variant of a model with every field at `order`; `parameters` are in SI.
 fn variant(model: &Model, order: usize, parameters: &[f64]) -> Result<Box<dyn Variant>, String> {
     let evaluator = Evaluator::new(program(model, order, parameters, &[])?);
     Ok(Box::new(Derived::new(evaluator)))
 }
 
-/// What was asked for of that variant.
 fn output_functions(
     model: &Model,
     order: usize,
@@ -159,7 +154,6 @@ fn output_functions(
     Ok(Box::new(DerivedOutputs::new(evaluator)))
 }
 
-/// The program of that variant with what is asked for.
 fn program(
     model: &Model,
     order: usize,

@@ -1,10 +1,10 @@
-//! What was asked for beside the rates, seen only through the numbers it gives.
+//! Interface to the requested outputs under test.
 
 use super::sampler::Sample;
 use nalgebra::DMatrix;
 
-/// The names of the Jacobians: of the rates and of the observables, by state, inputs and
-/// independent parameters.
+/// Names of the Jacobians: of the rates and of the observables, by state, inputs and independent
+/// parameters.
 pub const JACOBIANS: [&str; 6] = [
     "rates_by_state",
     "rates_by_inputs",
@@ -14,28 +14,28 @@ pub const JACOBIANS: [&str; 6] = [
     "observables_by_parameters",
 ];
 
-/// The output functions of one variant. None (`None`) of those that were not asked for.
-/// Observables are those of the specification with `energy` and `power` last.
+/// Output functions of one variant. A function returns `None` if it was not requested. Observables
+/// are those of the specification, then `energy` and `power`.
 pub trait Outputs {
-    /// What was asked for, by the names of `--with`.
+    /// Returns the names of the requested outputs, as in `--with`.
     fn names(&self) -> Vec<String>;
 
-    /// Names of the independent parameters, in the order of columns by parameters.
+    /// Returns the names of the independent parameters, in the order of the columns by parameters.
     fn parameter_names(&self) -> Vec<String>;
 
-    /// c - f of M q'' + c = f.
+    /// Returns the bias forces c - f of M q'' + c = f.
     fn bias_forces(&mut self, at: &Sample) -> Option<Vec<f64>>;
 
-    /// M a + c - f for the accelerations a.
+    /// Returns M a + c - f for the accelerations a.
     fn inverse_dynamics(&mut self, at: &Sample, accelerations: &[f64]) -> Option<Vec<f64>>;
 
-    /// The rates of the switching functions along the motion, the inputs held.
+    /// Returns the time derivatives of the guards along the motion with constant inputs.
     fn guard_rates(&mut self, at: &Sample) -> Option<Vec<f64>>;
 
-    /// The Jacobian of this name among [`JACOBIANS`].
+    /// Returns the Jacobian with this name, one of [`JACOBIANS`].
     fn jacobian(&mut self, name: &str, at: &Sample) -> Option<DMatrix<f64>>;
 
-    /// The product of the rates' Jacobian with a direction of the state and one of the inputs.
+    /// Returns the product of the rates' Jacobian with a direction of the state and of the inputs.
     fn jacobian_vector_product(
         &mut self,
         at: &Sample,
@@ -43,14 +43,14 @@ pub trait Outputs {
         inputs: &[f64],
     ) -> Option<Vec<f64>>;
 
-    /// The products of weights with the rates' Jacobian by state and by inputs.
+    /// Returns the products of weights with the rates' Jacobians by state and by inputs.
     fn vector_jacobian_product(
         &mut self,
         at: &Sample,
         weights: &[f64],
     ) -> Option<(Vec<f64>, Vec<f64>)>;
 
-    /// The product of weights with the rates' Jacobian by parameters.
+    /// Returns the product of weights with the rates' Jacobian by parameters.
     fn vector_jacobian_product_by_parameters(
         &mut self,
         at: &Sample,

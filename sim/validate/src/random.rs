@@ -1,37 +1,36 @@
-//! The pseudo-random numbers of the validation, SplitMix64 (Steele, Lea and Flood 2014), so that
-//! a certificate is the same on every machine. For tests of equations, not for statistics or
-//! secrets.
+//! Pseudo-random numbers of the validation: SplitMix64 (Steele, Lea and Flood 2014). The same seed
+//! gives the same certificate on every machine.
 
 use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
-/// A deterministic sequence.
+/// Deterministic pseudo-random sequence.
 #[derive(Clone, Debug)]
 pub struct Random(SplitMix64);
 
 impl Random {
-    /// The sequence of `seed`.
+    /// Creates the sequence of `seed`.
     pub fn new(seed: u64) -> Self {
         Self(SplitMix64::seed_from_u64(seed))
     }
 
-    /// Uniform in [0, 1).
+    /// Returns a number that is uniform in [0, 1).
     pub fn unit(&mut self) -> f64 {
         (self.0.next_u64() >> 11) as f64 * (0.5_f64).powi(53)
     }
 
-    /// Uniform in [-1, 1).
+    /// Returns a number that is uniform in [-1, 1).
     pub fn symmetric(&mut self) -> f64 {
         2.0 * self.unit() - 1.0
     }
 
-    /// Either sign, the magnitude uniform in [1/4, 1).
+    /// Returns a number with a random sign and a magnitude that is uniform in [1/4, 1).
     pub fn away_from_zero(&mut self) -> f64 {
         let signed = self.symmetric();
         signed.signum() * (0.25 + 0.75 * signed.abs())
     }
 
-    /// One of `choices`, none if there is none.
+    /// Returns a random element of `choices`; `None` if it is empty.
     pub fn pick<'c, T>(&mut self, choices: &'c [T]) -> Option<&'c T> {
         choices.get((self.unit() * choices.len() as f64) as usize)
     }
@@ -42,7 +41,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_first_number_is_the_published_one() {
+    fn first_number_matches_published_value() {
         assert_eq!(
             Random::new(1_234_567).0.next_u64(),
             6_457_827_717_110_365_317
@@ -50,7 +49,7 @@ mod tests {
     }
 
     #[test]
-    fn the_mean_is_in_the_middle() {
+    fn mean_of_symmetric_numbers_is_zero() {
         let mut random = Random::new(1);
         let sum: f64 = (0..10_000).map(|_| random.symmetric()).sum();
         // Standard deviation of the mean: 1/sqrt(3 * 10^4) = 6e-3.

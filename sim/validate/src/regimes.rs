@@ -1,20 +1,20 @@
-//! The regimes of a model: combinations of sides of its switches.
+//! Regimes of a model: combinations of sides of its switches.
 
 use super::oracle::{Oracle, OracleError, Side, SwitchValue};
 use super::sample::Sample;
 
-/// The most regimes that are listed.
+/// Maximum number of regimes to list.
 const MAX_REGIMES: usize = 810;
 
 /// One side for every switch of the model.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Regime {
-    /// The sides, in the order of [`Oracle::switches`].
+    /// Sides in the order of [`Oracle::switches`].
     pub sides: Vec<Side>,
 }
 
 impl Regime {
-    /// The regime a state is in.
+    /// Returns the regime of a state.
     ///
     /// # Errors
     /// [`OracleError`] as from [`Oracle::switch_values`].
@@ -24,7 +24,7 @@ impl Regime {
         Ok(Self { sides })
     }
 
-    /// Names and sides, as `x_sp+ x_pr0`; empty for a model without switches.
+    /// Returns names and sides, for example `x_sp+ x_pr0`; empty for a model without switches.
     pub fn label(&self, oracle: &Oracle) -> String {
         let parts: Vec<String> = oracle
             .switches()
@@ -36,14 +36,14 @@ impl Regime {
     }
 }
 
-/// Combinations of sides of all switches of a model.
+/// Returns the number of combinations of sides.
 pub(super) fn combinations(oracle: &Oracle) -> u64 {
     let sides = oracle.switches().iter().map(|switch| switch.sides().len());
     sides.fold(1, |count: u64, sides| count.saturating_mul(sides as u64))
 }
 
-/// Every combination of sides that bounds do not prove empty; `None` if they are too many.
-/// `sizes` and `input_sizes` as for [`Oracle::is_empty`].
+/// Lists the combinations of sides that interval bounds do not prove empty; `None` if there are
+/// more than `MAX_REGIMES`. See [`Oracle::is_empty`] for `sizes` and `input_sizes`.
 pub(super) fn possible_regimes(
     oracle: &Oracle,
     sizes: &[f64],

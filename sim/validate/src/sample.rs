@@ -1,11 +1,11 @@
-//! A state at a time.
+//! Sampled state.
 
-/// A state with its time and inputs.
+/// State with its time and inputs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sample {
     /// Time, in s.
     pub time: f64,
-    /// Coordinates, their rates, states of first order.
+    /// Coordinates, their rates, first-order states.
     pub state: Vec<f64>,
     /// Inputs in the order of the model.
     pub inputs: Vec<f64>,

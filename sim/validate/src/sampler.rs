@@ -1,11 +1,10 @@
-//! Random states in every regime of a model, as large as `sizes` says, within the ranges it
-//! states. Nothing here knows the equations under test.
+//! Random states in every regime of a model, within the ranges of the specification.
 //!
-//! States outside the model's domain (a root of something negative, an inductance below 0)
-//! are drawn again and counted; where most are, they are drawn nearer to the initial state.
+//! States outside the model's domain (for example a root of a negative number) are drawn again and
+//! counted. After several misses, states are drawn nearer to the initial state.
 //!
-//! No entry is drawn smaller than a quarter of its size: a row all of whose terms happen
-//! to be small measures the rounding of the others.
+//! The magnitude of an entry is at least a quarter of its size. If all terms of a row were small,
+//! the check would measure only the rounding of other rows.
 
 use super::oracle::{Equations, Oracle, OracleError, Side, SwitchValue};
 use super::random::Random;
@@ -15,60 +14,57 @@ pub use super::sample::Sample;
 use super::seek::{Sizes, seek};
 use super::sizes;
 
-/// The most regimes that are visited if all of them are too many to be listed.
+/// Maximum number of regimes to visit if a model has too many regimes to list.
 const DRAWN_REGIMES: usize = 81;
-/// States drawn before a regime counts as out of reach.
+/// Draws after which a regime is treated as unreachable.
 const ATTEMPTS: usize = 60;
 /// Corrections of one drawn state.
 const SWEEPS: usize = 6;
-/// States outside the domain, one after another, after which they are drawn nearer to the
-/// initial state.
+/// Consecutive states outside the domain after which states are drawn nearer to the initial state.
 const MISSES: usize = 8;
-/// How much larger than its size an entry may become when it is moved into a regime.
+/// Largest ratio of an entry to its size after a move into a regime.
 const LARGEST: f64 = 1e6;
 
-/// A state of the model's domain with the equations of motion there.
+/// State in the model's domain with the equations of motion at that state.
 #[derive(Clone, Debug)]
 pub struct Drawn {
-    /// The state.
+    /// Sampled state.
     pub sample: Sample,
-    /// The oracle's equations.
+    /// Equations of the oracle.
     pub equations: Equations,
 }
 
-/// The regimes of a model that are visited, of all combinations of sides.
+/// Regimes to visit and counts of all combinations of sides.
 #[derive(Clone, Debug)]
 pub struct Regimes {
-    /// Combinations of sides.
+    /// Number of combinations of sides.
     pub combinations: u64,
-    /// Combinations that bounds prove empty.
+    /// Number of combinations that interval bounds prove to be empty.
     pub unreachable: u64,
-    /// Regimes to draw states in. If there are too many to be listed, those that random states
-    /// are in.
+    /// Regimes in which to draw states. If there are too many to list, the regimes of random
+    /// states.
     pub visited: Vec<Regime>,
 }
 
-/// Draws states of one variant.
+/// Random states of one variant.
 #[derive(Debug)]
 pub struct Sampler<'o> {
     oracle: &'o Oracle,
     random: Random,
-    /// Size of every entry of the state.
     sizes: Vec<f64>,
-    /// Size of every input.
     input_sizes: Vec<f64>,
-    /// The last regime that single changes did not reach.
+    /// Last regime that changes of single entries did not reach.
     remote: Option<Regime>,
-    /// How much of the way from the initial state to a drawn one is gone, 1 at first.
+    /// Fraction of the distance from the initial state to a drawn state, initially 1.
     reach: f64,
-    /// States outside the domain, one after another.
+    /// Consecutive states outside the domain.
     missed: usize,
-    /// States outside the domain in all.
+    /// Number of all states outside the domain.
     redrawn: usize,
 }
 
 impl<'o> Sampler<'o> {
-    /// A sampler of `oracle`'s states.
+    /// Creates a sampler for the states of `oracle`.
     ///
     /// # Errors
     /// [`OracleError`] as from [`Oracle::equations`].
@@ -85,17 +81,17 @@ impl<'o> Sampler<'o> {
         })
     }
 
-    /// How many states were drawn again because they lie outside the model's domain.
+    /// Returns the number of states that were drawn again because they are outside the domain.
     pub fn redrawn(&self) -> usize {
         self.redrawn
     }
 
-    /// How large the entries of a state are.
+    /// Returns the typical size of each entry of the state, in SI.
     pub fn sizes(&self) -> &[f64] {
         &self.sizes
     }
 
-    /// The highest frequency of a coordinate by itself with every dead zone closed, in
+    /// Returns the highest uncoupled frequency of a coordinate with all dead zones closed, in
     /// rad/s, at least 1.
     pub fn highest_frequency(&self) -> f64 {
         let (positions, rest) = self.sizes.split_at(self.oracle.size());
@@ -106,7 +102,7 @@ impl<'o> Sampler<'o> {
         frequencies.fold(1.0, f64::max)
     }
 
-    /// The regimes to visit.
+    /// Returns the regimes to visit.
     ///
     /// # Errors
     /// [`OracleError`] as from [`Oracle::equations`].
@@ -134,7 +130,7 @@ impl<'o> Sampler<'o> {
         })
     }
 
-    /// A random state, whatever its regime, in the model's domain or not.
+    /// Draws a state in any regime, inside or outside the domain.
     pub fn draw(&mut self) -> Sample {
         let (random, reach, ranges) = (&mut self.random, self.reach, self.oracle.ranges());
         let time = random.unit();
@@ -162,7 +158,7 @@ impl<'o> Sampler<'o> {
         }
     }
 
-    /// A random state of the model's domain, whatever its regime; none if none was found.
+    /// Draws a state of the domain in any regime; `None` if the search failed.
     ///
     /// # Errors
     /// [`OracleError`] as from [`Oracle::equations`].
@@ -176,8 +172,8 @@ impl<'o> Sampler<'o> {
         Ok(None)
     }
 
-    /// A random state in `regime`; none if it was not reached, which for combinations
-    /// that contradict each other is the right answer.
+    /// Draws a state in `regime`; `None` if the search failed. Regimes with contradictory sides
+    /// have no state.
     ///
     /// # Errors
     /// [`OracleError`] as from [`Oracle::equations`].
@@ -201,12 +197,12 @@ impl<'o> Sampler<'o> {
                 return Ok(Some(drawn));
             }
         }
-        // A regime outside the domain says nothing of the others.
+        // The reach found for one regime does not apply to the others.
         self.reach = reach;
         Ok(None)
     }
 
-    /// A random state in `regime` by changes of single entries.
+    /// Draws a state in `regime` by changes of single entries.
     fn draw_near(&mut self, regime: &Regime) -> Result<Option<Drawn>, OracleError> {
         for _ in 0..ATTEMPTS {
             let mut sample = self.draw();
@@ -222,7 +218,7 @@ impl<'o> Sampler<'o> {
         Ok(None)
     }
 
-    /// The state with its equations if it lies in the model's domain; counts it if not.
+    /// Returns the state with its equations if it is in the domain; otherwise counts a miss.
     fn admit(&mut self, sample: Sample) -> Result<Option<Drawn>, OracleError> {
         if !self.is_within(&sample) {
             return Ok(None);
@@ -242,8 +238,8 @@ impl<'o> Sampler<'o> {
         Ok(None)
     }
 
-    /// Whether every coordinate is where it lives, and no entry is out of all proportion:
-    /// moved into its regime, it may be anywhere.
+    /// Returns true if all entries are within their ranges and within `LARGEST` times their sizes.
+    /// A move into a regime can violate both.
     fn is_within(&self, sample: &Sample) -> bool {
         let ranges = self.oracle.ranges();
         let states = ranges.state.iter().zip(&sample.state);
@@ -256,8 +252,8 @@ impl<'o> Sampler<'o> {
         ranged && sized.all(|sized| sized)
     }
 
-    /// Moves one entry of the state for every switch on the wrong side, by the linear
-    /// change that puts it on the right one; true if none was on the wrong side.
+    /// Changes one state entry per switch on the wrong side, by the linear change to the right
+    /// side. Returns true if no switch was on the wrong side.
     fn correct(&mut self, sample: &mut Sample, regime: &Regime) -> Result<bool, OracleError> {
         let Sample {
             time,
@@ -276,7 +272,8 @@ impl<'o> Sampler<'o> {
                 continue;
             };
             if resting {
-                // Others lead there: moved along its own slope it would only pass zero.
+                // Other switches move the quantity to zero. A change along its own slope would only
+                // cross zero.
                 let slopes = self.oracle.switch_slopes(index, *time, state, inputs)?;
                 right &= value.side() == *side && slopes.iter().all(|slope| *slope == 0.0);
                 continue;
@@ -299,7 +296,7 @@ impl<'o> Sampler<'o> {
         Ok(right)
     }
 
-    /// Where the quantity of a switch shall be.
+    /// Returns the value to set for the quantity of a switch.
     fn target(&mut self, value: &SwitchValue, side: Side) -> f64 {
         let (width, distance) = (value.half_width, value.quantity.abs());
         match side {

@@ -1,5 +1,5 @@
-//! Moves a state into a regime by the shortest change that puts every switch, to first order, on
-//! its side.
+//! Moves a state into a regime by the shortest change that puts every switch on its side, to first
+//! order.
 
 use super::feasibility::nearest_point;
 use super::oracle::{Oracle, OracleError, Side, SwitchValue};
@@ -7,22 +7,20 @@ use super::random::Random;
 use super::regimes::Regime;
 use super::sample::Sample;
 
-/// Corrections of one state. Each halves the distance from the surfaces that is asked for, so
-/// that narrow regimes are reached too.
+/// Maximum number of corrections of one state. Each correction halves the required distance from
+/// the switching surfaces, so that narrow regimes are reached too.
 const CORRECTIONS: i32 = 24;
 
-/// Sizes of the entries of the state and of the inputs.
+/// Typical sizes of the entries of the state and of the inputs, in SI.
 pub(super) struct Sizes<'s> {
-    /// Of the state.
     pub state: &'s [f64],
-    /// Of the inputs.
     pub inputs: &'s [f64],
 }
 
-/// An inequality `row * change >= bound` of a change in sizes.
+/// Inequality `row * change >= bound`; the change is in units of the sizes.
 type Inequality = (Vec<f64>, f64);
 
-/// Moves `sample` into `regime`; false if that failed.
+/// Moves `sample` into `regime`; returns false if that failed.
 ///
 /// # Errors
 /// [`OracleError`] as from [`Oracle::switch_values`].
@@ -39,7 +37,7 @@ pub(super) fn seek(
         }
         let margin = 0.5_f64.powi(correction) * random.unit();
         let rows = inequalities(oracle, sample, regime, sizes, margin)?;
-        // Too large a margin may contradict; the next one is smaller.
+        // A margin that is too large makes the inequalities infeasible. The next one is smaller.
         if let Some(change) = nearest_point(&rows) {
             shift(sample, &change, sizes);
         }
@@ -47,7 +45,8 @@ pub(super) fn seek(
     is_inside(oracle, sample, regime)
 }
 
-/// Whether a state is in `regime`, and not only on a surface where a quantity passes 0.
+/// Returns true if a state is in `regime` and a quantity at rest has no slope. A state that only
+/// crosses zero is not in the regime.
 fn is_inside(oracle: &Oracle, sample: &Sample, regime: &Regime) -> Result<bool, OracleError> {
     if Regime::of(oracle, sample)? != *regime {
         return Ok(false);
@@ -65,7 +64,7 @@ fn is_inside(oracle: &Oracle, sample: &Sample, regime: &Regime) -> Result<bool, 
     Ok(true)
 }
 
-/// The sides of `regime` and the ranges as inequalities of a change, to first order.
+/// Returns the sides of `regime` and the ranges as linear inequalities of a change of the sample.
 fn inequalities(
     oracle: &Oracle,
     sample: &Sample,
@@ -83,12 +82,12 @@ fn inequalities(
     let mut rows = Vec::new();
     let sides = oracle.switches().iter().zip(&regime.sides);
     for (index, (value, (switch, side))) in values.iter().zip(sides).enumerate() {
-        // The sides of other switches lead to where a quantity rests at 0.
+        // Other switches move this quantity to zero.
         if *side == Side::Free && switch.rests_at_zero() {
             continue;
         }
         let gradient = oracle.switch_gradient(index, *time, state, inputs)?;
-        // The time counts in s.
+        // The last unknown is the change of time, in s.
         let scaled = |slopes: &[f64]| -> Vec<f64> {
             let scales = scales.iter().chain([&1.0]);
             slopes
@@ -120,8 +119,8 @@ fn inequalities(
     Ok(rows)
 }
 
-/// The inequalities of one switch whose slopes, in sizes, are those of the quantity and of the
-/// half-width. What is satisfied stays so.
+/// Returns the inequalities of one switch. The slopes are those of the quantity and of the
+/// half-width, in units of the sizes. Inequalities that are satisfied remain satisfied.
 fn side_inequalities(
     value: &SwitchValue,
     (quantity, half_width): &(Vec<f64>, Vec<f64>),

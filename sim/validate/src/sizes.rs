@@ -1,21 +1,22 @@
-//! How large the entries of a random state are, taken from the model: a coordinate with a
-//! range half of that, one in a dead zone twice the dead zone, others 1 in SI, the first mode of a field a
-//! twentieth of its length, rates by the stiffness and the inertia of each coordinate.
+//! Typical sizes of the entries of a state and of the inputs, in SI.
 //!
-//! Amplitudes of modes fall like 1/beta^3, between equal elastic energies (1/beta^2) and
-//! equal elastic forces (1/beta^4). Steeper, and the first mode's share of the 64th row's
-//! elastic force, zero but for 1e-17 in the quadrature, is 1e-12 of that row; flatter,
-//! and the same is true of the 64th mode's share of the first row's inertia.
+//! A coordinate with a range has half of that range as its size, a coordinate in a dead zone twice
+//! the half-width, and any other coordinate 1. The first mode of a field has a twentieth of the
+//! field's length. Rates follow from stiffness and inertia of each coordinate.
+//!
+//! Amplitudes of modes decrease as 1/beta^3, between equal elastic energies (1/beta^2) and equal
+//! elastic forces (1/beta^4). With a faster decrease, the contribution of the first mode to the
+//! elastic force of row 64 (1e-17 from quadrature instead of zero) would be 1e-12 of that row. With
+//! a slower decrease, the same would be true of mode 64 in the inertia of row 1.
 
 use super::oracle::{Oracle, OracleError};
 
-/// The size of every entry of the state.
 pub(super) fn of_state(oracle: &Oracle) -> Result<Vec<f64>, OracleError> {
     let inputs = oracle.typical_inputs().to_vec();
     let mut sizes = of_coordinates(oracle, &inputs)?;
     let mut state = sizes.clone();
     state.resize(oracle.state_length(), 0.0);
-    // Where the sizes are no state of the model's domain, the initial state is one.
+    // If the state of all sizes is outside the model's domain, use the initial state.
     if oracle.equations_inside(0.0, &state, &inputs)?.is_none() {
         state = oracle.initial().to_vec();
     }
@@ -38,8 +39,8 @@ pub(super) fn of_state(oracle: &Oracle) -> Result<Vec<f64>, OracleError> {
     Ok(sizes)
 }
 
-/// The sizes of the inputs: half of the range, or the geometric mean of the parameters of the
-/// same dimension, or 1 in SI.
+/// Returns the sizes of the inputs: half of the range, or the geometric mean of the parameters of
+/// the same dimension, or 1 in SI.
 pub(super) fn of_inputs(oracle: &Oracle) -> Vec<f64> {
     let ranges = oracle.ranges();
     let inputs = ranges.inputs.iter().zip(&ranges.input_scales);
@@ -51,7 +52,7 @@ pub(super) fn of_inputs(oracle: &Oracle) -> Vec<f64> {
         .collect()
 }
 
-/// The geometric mean of positive numbers, 1 of none.
+/// Returns the geometric mean of positive numbers; 1 for an empty list.
 fn geometric_mean(sizes: impl Iterator<Item = f64>) -> f64 {
     let (sum, count) = sizes.fold((0.0, 0.0), |(sum, count), size| {
         (sum + size.ln(), count + 1.0)
@@ -63,10 +64,13 @@ fn geometric_mean(sizes: impl Iterator<Item = f64>) -> f64 {
     }
 }
 
-/// The sizes of states of first order. The first of these that is known: half of the range; the
-/// value at which a decaying state rests while the others are 0 and coordinates and rates as large
-/// as their sizes; the geometric mean of the initial value and of the parameters of the same
-/// dimension; 1 in SI.
+/// Returns the sizes of first-order states. The first known value of this list applies:
+///
+/// - half of the range;
+/// - the steady state of a decaying state, if other first-order states are 0 and coordinates and
+///   rates have their sizes;
+/// - the geometric mean of the initial value and of the parameters of the same dimension;
+/// - 1 in SI.
 fn of_states(oracle: &Oracle, sizes: &[f64], inputs: &[f64]) -> Result<Vec<f64>, OracleError> {
     let mut state = sizes.to_vec();
     state.resize(oracle.state_length(), 0.0);
@@ -94,8 +98,8 @@ fn of_states(oracle: &Oracle, sizes: &[f64], inputs: &[f64]) -> Result<Vec<f64>,
         .collect())
 }
 
-/// The sizes of the coordinates, 0 for modes. A coordinate is in a dead zone if it alone
-/// is what the dead zone is about.
+/// Returns the sizes of the coordinates; 0 for modes. A coordinate is in a dead zone if the dead
+/// zone depends on no other coordinate.
 fn of_coordinates(oracle: &Oracle, inputs: &[f64]) -> Result<Vec<f64>, OracleError> {
     let mut sizes = vec![1.0; oracle.size()];
     for row in oracle.modes().flatten() {
@@ -126,7 +130,7 @@ fn of_coordinates(oracle: &Oracle, inputs: &[f64]) -> Result<Vec<f64>, OracleErr
     Ok(sizes)
 }
 
-/// Amplitudes of modes relative to the first one: stiffness goes like beta^4.
+/// Returns amplitudes of modes relative to the first one; the stiffness is proportional to beta^4.
 fn shares(stiffness: &[f64]) -> impl Iterator<Item = f64> {
     let first = stiffness.first().copied().unwrap_or(0.0);
     stiffness.iter().map(move |stiffness| {
@@ -139,7 +143,7 @@ fn shares(stiffness: &[f64]) -> impl Iterator<Item = f64> {
     })
 }
 
-/// The frequency of a coordinate by itself, at least 1 rad/s.
+/// Returns the uncoupled frequency of a coordinate, at least 1 rad/s.
 fn frequency(square: f64) -> f64 {
     if square.is_finite() {
         square.abs().sqrt().max(1.0)

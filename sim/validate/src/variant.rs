@@ -1,16 +1,18 @@
-//! What a certificate judges: equations of motion that someone else derived, seen only
-//! through the numbers they give.
+//! Interface to the equations of motion under test.
 
-/// Equations of motion of one model at one order. States are coordinates, then rates, then states of
-/// first order, in SI and in the order of the specification; parameters are fixed beforehand.
+/// Equations of motion of one model at one order, with fixed parameters.
+///
+/// The state contains coordinates, then rates, then first-order states, in SI and in the order of
+/// the specification. With n coordinates, the equations are M q'' + c = f.
+///
+/// # Errors
+/// Methods return a message if they cannot be evaluated, for example if a pivot is not positive or
+/// a length does not match.
 pub trait Variant {
-    /// Names of the generalised coordinates in the order of the state.
+    /// Returns the names of the generalised coordinates in the order of the state.
     fn coordinate_names(&self) -> Vec<String>;
 
-    /// The time derivative of the state into `rates`, of the state's length.
-    ///
-    /// # Errors
-    /// What went wrong (a pivot that is not positive, a length that does not fit).
+    /// Writes the time derivative of the state to `rates`, which has the length of the state.
     fn rates(
         &mut self,
         time: f64,
@@ -19,10 +21,7 @@ pub trait Variant {
         rates: &mut [f64],
     ) -> Result<(), String>;
 
-    /// The n by n mass matrix, row by row, into `mass`.
-    ///
-    /// # Errors
-    /// As [`Variant::rates`].
+    /// Writes the n by n mass matrix to `mass`, row by row.
     fn mass_matrix(
         &mut self,
         time: f64,
@@ -31,10 +30,7 @@ pub trait Variant {
         mass: &mut [f64],
     ) -> Result<(), String>;
 
-    /// Velocity terms c and generalised forces f of M q'' + c = f, n numbers each.
-    ///
-    /// # Errors
-    /// As [`Variant::rates`].
+    /// Writes the velocity terms c and the generalised forces f, n numbers each.
     fn bias_and_forces(
         &mut self,
         time: f64,
@@ -44,28 +40,16 @@ pub trait Variant {
         forces: &mut [f64],
     ) -> Result<(), String>;
 
-    /// T + V, in J.
-    ///
-    /// # Errors
-    /// As [`Variant::rates`].
+    /// Returns the energy T + V, in J.
     fn energy(&mut self, time: f64, state: &[f64], inputs: &[f64]) -> Result<f64, String>;
 
-    /// The power of all non-conservative forces, in W.
-    ///
-    /// # Errors
-    /// As [`Variant::rates`].
+    /// Returns the power of all non-conservative forces, in W.
     fn power(&mut self, time: f64, state: &[f64], inputs: &[f64]) -> Result<f64, String>;
 
-    /// The switching functions: each changes sign where a piecewise function switches.
-    ///
-    /// # Errors
-    /// As [`Variant::rates`].
+    /// Returns the guards. A guard changes sign at the switching surface of a piecewise function.
     fn guards(&mut self, time: f64, state: &[f64], inputs: &[f64]) -> Result<Vec<f64>, String>;
 
-    /// The observables of the specification in its order.
-    ///
-    /// # Errors
-    /// As [`Variant::rates`].
+    /// Returns the observables in the order of the specification.
     fn observables(&mut self, time: f64, state: &[f64], inputs: &[f64])
     -> Result<Vec<f64>, String>;
 }

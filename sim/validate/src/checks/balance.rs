@@ -1,7 +1,6 @@
-//! The power balance d(T + V)/dt = power along trajectories of the subject. At every step
-//! the change of the energies along the subject's own motion is formed by automatic
-//! differentiation, explicit time included, so the balance holds to rounding and does not
-//! depend on how well the trajectory was integrated.
+//! Power balance d(T + V)/dt = power along trajectories of the variant. At every step the rate of
+//! the energy along the variant's own motion is computed by automatic differentiation, with
+//! explicit time. The balance therefore holds to rounding, independent of the integration error.
 
 use super::super::certificate::{Check, Worst};
 use super::super::oracle::{Conditioned, Equations, Oracle, OracleError};
@@ -9,26 +8,25 @@ use super::super::sampler::{Sample, Sampler};
 use super::super::variant::Variant;
 use super::{ROW_TOLERANCE, unknowns};
 
-/// Name of the check.
 const NAME: &str = "power_balance";
-/// Steps looked at, along as many trajectories as they take.
+/// Number of steps to check, on all trajectories together.
 const STEPS: usize = 200;
-/// The most trajectories. One ends where the motion leaves the model's domain or has come
-/// to rest.
+/// Maximum number of trajectories. A trajectory ends if the motion leaves the model's domain or
+/// comes to rest.
 const TRAJECTORIES: usize = 20;
-/// How often a step is halved until it is accepted; a jump of the rates never is otherwise.
+/// Maximum number of halvings of a step. A jump of the rates would never be accepted.
 const HALVINGS: usize = 10;
-/// How far two half steps may end from a whole one, relative to the state and its size.
+/// Largest difference between two half steps and one whole step, relative to the state and its
+/// size.
 const ACCURACY: f64 = 1e-3;
-/// Below this magnitude, in W, products of terms are subnormal and their rounding is no
-/// longer relative.
+/// Magnitude in W below which products of terms are subnormal, so that their rounding error is not
+/// relative.
 const REST: f64 = 1e-280;
-/// The seed of the initial states.
 const SEED: u64 = 0xba1a_4ce5;
 
-/// The power balance along trajectories from random states, with classical Runge-Kutta
-/// steps of at most a twelfth of the shortest period a coordinate has by itself. Shorter ones are
-/// taken where coupled modes are faster; how the energy grows or falls is the model's.
+/// Checks the power balance along trajectories from random states. Classical Runge-Kutta steps are
+/// at most a twelfth of the shortest uncoupled period of a coordinate, and shorter if coupled modes
+/// are faster.
 ///
 /// # Errors
 /// [`OracleError`] as from [`Oracle::equations`].
@@ -53,19 +51,19 @@ pub fn check(oracle: &Oracle, variant: &mut dyn Variant) -> Result<Check, Oracle
     Ok(Check::made(NAME, worst, ROW_TOLERANCE))
 }
 
-/// What trajectories have shown.
+/// State of the check over all trajectories.
 struct Motion {
-    /// How large the entries of a state are.
+    /// Sizes of the entries of a state.
     sizes: Vec<f64>,
-    /// The longest step, in s.
+    /// Largest step size, in s.
     longest: f64,
-    /// Steps looked at.
+    /// Number of steps checked.
     looked: usize,
     worst: Worst,
 }
 
 impl Motion {
-    /// Looks at a trajectory step by step until it ends or enough was seen.
+    /// Checks a trajectory until it ends or enough steps were checked.
     fn follow(
         &mut self,
         oracle: &Oracle,
@@ -106,8 +104,8 @@ impl Motion {
         Ok(())
     }
 
-    /// The state after a step, or after the half of it that is short enough. The next one is
-    /// twice as long.
+    /// Returns the state after an accepted step. Halves the step size until two half steps agree
+    /// with the whole step, and doubles it for the next step.
     fn advance(
         &self,
         variant: &mut dyn Variant,
@@ -136,11 +134,11 @@ impl Motion {
     }
 }
 
-/// |d(T + V)/dt - power| relative to the terms of both, and the magnitude of these.
+/// Returns |d(T + V)/dt - power| relative to the terms of both, and the magnitude of these.
 ///
-/// The difference is the power of what is left of the rows at the variant's accelerations. These
-/// hold a row to a share of its largest term, in which inertias of other coordinates may cancel,
-/// so a row's term times the row's rate is a term here too.
+/// The difference is the power of the residuals at the variant's accelerations. A residual is only
+/// small relative to the largest term of its row, and inertias of other coordinates can cancel in
+/// the row. The scale therefore includes each row's term times the row's rate.
 fn imbalance(
     oracle: &Oracle,
     equations: &Equations,
@@ -174,7 +172,7 @@ fn imbalance(
     Ok(Ok((rate.deviation(power), rate.magnitude)))
 }
 
-/// One classical Runge-Kutta step.
+/// Takes one classical Runge-Kutta step.
 fn moved(variant: &mut dyn Variant, sample: &Sample, step: f64) -> Result<Sample, String> {
     let start = &sample.state;
     let mut slope = vec![0.0; start.len()];

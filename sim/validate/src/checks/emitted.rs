@@ -1,7 +1,5 @@
-//! The emitted Rust, compiled by a compiler found on this machine, against the variant
-//! it was emitted from: the same bits at every state. Without a compiler the check is
-//! skipped and says so; source that does not compile fails it. What goes beyond rates of
-//! plain numbers is in `kinds`.
+//! Bit-for-bit comparison of the compiled emitted source with the variant that it was emitted from.
+//! The check is skipped without a compiler and fails if the source does not compile.
 
 use super::super::certificate::{Check, SkipKind, Worst};
 use super::super::compiler::{Compiler, Optimization};
@@ -12,15 +10,13 @@ use super::kinds::{self, BorrowedOutputs};
 use super::linked::{Emitted, EmittedFunction, differences, line, run};
 use std::fmt::Write as _;
 
-/// Name of the check.
 const NAME: &str = "emitted_rust";
-/// States compared.
+/// Number of states to compare.
 const STATES: usize = 100;
-/// The seed of the states.
 const SEED: u64 = 0x0e31_77ed;
 
-/// Compiles `emitted` and compares it with `variant` and `functions` at random states. The
-/// value of the first check is the number of numbers whose bits differ.
+/// Compiles `emitted` and compares it with `variant` and `functions` at random states. The value of
+/// the first check is the count of numbers with different bits.
 ///
 /// # Errors
 /// [`OracleError`] as from [`Oracle::equations`].
@@ -38,14 +34,15 @@ pub fn check(
         samples.push(drawn.sample);
     }
     if samples.is_empty() {
-        let reason = "no state of the model's domain was found";
+        let reason = "no state in the model's domain was found";
         return Ok(skipped(
             emitted.outputs.as_deref(),
             SkipKind::NotRun,
             reason,
         ));
     }
-    let found = tempfile::tempdir().map_err(|error| format!("no temporary folder: {error}"));
+    let found =
+        tempfile::tempdir().map_err(|error| format!("cannot create a temporary folder: {error}"));
     let (folder, compiler) = match found.and_then(|folder| {
         let compiler = Compiler::find(folder.path())?;
         Ok((folder, compiler))
@@ -75,7 +72,7 @@ pub fn check(
     Ok(checks)
 }
 
-/// The checks of emitted source with `outputs`, none of which can be made.
+/// Returns the checks of emitted source with `outputs` as skipped.
 pub fn skipped(outputs: Option<&[String]>, kind: SkipKind, reason: &str) -> Vec<Check> {
     let check = Check::skipped(NAME.to_owned(), 0.0, kind, reason.to_owned());
     let mut checks = vec![check];
@@ -83,12 +80,10 @@ pub fn skipped(outputs: Option<&[String]>, kind: SkipKind, reason: &str) -> Vec<
     checks
 }
 
-/// The text that calls these functions.
 fn calls(functions: &[EmittedFunction]) -> String {
     let mut calls = String::new();
     for function in functions {
         let name = function.name();
-        // Writing to a string cannot fail.
         let _ = writeln!(
             calls,
             "        model::{name}(t, &state, &inputs, &coefficients).print();"
@@ -97,7 +92,7 @@ fn calls(functions: &[EmittedFunction]) -> String {
     calls
 }
 
-/// Counts the numbers of `lines` whose bits are not the variant's.
+/// Counts the numbers of `lines` with bits that differ from the variant's.
 fn compare(
     variant: &mut dyn Variant,
     emitted: &Emitted,
@@ -111,7 +106,9 @@ fn compare(
         for function in &emitted.functions {
             let numbers = function.expected(variant, sample)?;
             let expected = line(&numbers);
-            let found = lines.next().ok_or("the compiled model stopped early")?;
+            let found = lines
+                .next()
+                .ok_or("the compiled model printed fewer lines than expected")?;
             compared += numbers.len();
             let wrong = differences(found, &expected);
             differing.extend(std::iter::repeat_n((function.name(), count), wrong));

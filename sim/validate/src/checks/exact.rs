@@ -1,31 +1,29 @@
-//! The derivative that the exact solver integrates against the variant's rates, at states in
-//! every regime, some of them where a switching function rests at zero.
+//! Comparison of the exact solver's state derivative with the variant's rates, at states in every
+//! regime. Some states have a guard at rest at zero.
 
 use super::super::certificate::{Check, Worst};
 use super::super::oracle::{Oracle, OracleError};
 use super::super::variant::Variant;
 use super::inside::samples;
 
-/// Name of the check.
 const NAME: &str = "exact_derivative";
-/// Deviation that passes, relative to the sum of the magnitudes that a rate is made of there:
-/// the coefficients of linear equations are other sums of the same terms.
+/// Tolerance, relative to the sum of the magnitudes of a rate's terms. The linear equations sum the
+/// same terms in another order.
 const TOLERANCE: f64 = 1e-11;
-/// States compared in every regime.
+/// Number of states to compare in every regime.
 const STATES_PER_REGIME: usize = 20;
-/// The seed of the states.
 const SEED: u64 = 0x0e4a_c7d5;
 
-/// A derivative and the sizes of what each of its entries is made of.
+/// State derivative with the scale of its rounding error.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sized {
-    /// The rates of the state.
+    /// Rates of the state.
     pub rates: Vec<f64>,
-    /// For each the sum of the magnitudes of its terms.
+    /// Sum of the magnitudes of each rate's terms.
     pub sizes: Vec<f64>,
 }
 
-/// The derivative at a time, a state and inputs, or what went wrong.
+/// Function that returns the derivative at a time, a state and inputs, or an error message.
 pub type Derivative<'d> = dyn Fn(f64, &[f64], &[f64]) -> Result<Sized, String> + 'd;
 
 /// Compares `derivative` with the rates of `variant`.
@@ -54,12 +52,12 @@ pub fn check(
     Ok(Check::made(NAME, worst, TOLERANCE))
 }
 
-/// The check of a model that the exact solver does not know.
+/// Returns the check as not applicable, for models without an exact solution.
 pub fn skipped(reason: impl Into<String>) -> Check {
     Check::not_applicable(NAME, TOLERANCE, reason)
 }
 
-/// The largest deviation relative to the sizes; what is no number is infinitely far away.
+/// Returns the largest deviation relative to the sizes; NaN counts as infinity.
 fn deviation(found: &Sized, expected: &[f64]) -> f64 {
     if found.rates.len() != expected.len() || found.sizes.len() != expected.len() {
         return f64::INFINITY;

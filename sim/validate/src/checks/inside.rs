@@ -1,18 +1,18 @@
-//! States inside regimes: none on a surface, where either side is right.
+//! Sampled states inside regimes. States on a switching surface are excluded, because both sides
+//! are correct there.
 
 use super::super::oracle::{Oracle, OracleError};
 use super::super::sampler::{Sample, Sampler};
 use super::super::variant::Variant;
 
-/// How far a state is moved to see whether a switching function rests there, in sizes of its
-/// entries.
+/// Displacement for the test of a guard at rest, relative to the sizes of the entries.
 const NEARBY: f64 = 1e-6;
 
-/// Up to so many states in every regime, and as many that are drawn whatever their regime.
+/// Draws up to `per_regime` states in every regime and as many in any regime.
 ///
 /// # Errors
-/// [`OracleError`] as from [`Oracle::equations`]; within, what the variant says, or that there
-/// is no such state, so that a comparison over nothing never passes.
+/// [`OracleError`] as from [`Oracle::equations`]. The inner error is the variant's message or a
+/// message that no state was found.
 pub fn samples(
     oracle: &Oracle,
     variant: &mut dyn Variant,
@@ -45,12 +45,14 @@ pub fn samples(
         }
     }
     if inside.is_empty() {
-        return Ok(Err("no state was found inside any regime".to_owned()));
+        return Ok(Err(
+            "every sampled state is on a switching surface or outside the model's domain"
+                .to_owned(),
+        ));
     }
     Ok(Ok(inside))
 }
 
-/// A sample moved a little in the direction of another one.
 fn nearby(sample: &Sample, other: &Sample) -> Sample {
     let pairs = sample.state.iter().zip(&other.state);
     Sample {
@@ -59,7 +61,7 @@ fn nearby(sample: &Sample, other: &Sample) -> Sample {
     }
 }
 
-/// Whether every switching function that is 0 at a state is so nearby.
+/// Returns true if every guard that is 0 at a state is also 0 nearby.
 fn is_inside(variant: &mut dyn Variant, sample: &Sample, nearby: &Sample) -> Result<bool, String> {
     let here = variant.guards(sample.time, &sample.state, &sample.inputs)?;
     if here.iter().all(|guard| *guard != 0.0) {

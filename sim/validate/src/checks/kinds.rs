@@ -1,7 +1,8 @@
-//! The emitted source beyond rates of plain `f64`, compiled once more: output functions
-//! against their evaluation here, bit for bit; eight states at once against each alone, bit
-//! for bit; single precision against a bound of what it rounds away, found by running the
-//! same source with numbers that carry such a bound.
+//! Comparison of emitted source with other number types:
+//!
+//! - requested outputs and 8-wide SIMD: bit for bit with the evaluator;
+//! - single precision: within an error bound from running the same source with numbers that carry
+//!   the bound.
 
 use super::super::certificate::{Check, SkipKind, Worst};
 use super::super::compiler::{Compiler, Optimization};
@@ -12,20 +13,19 @@ use super::super::variant::Variant;
 use super::linked::{Emitted, differences, line, run_linked};
 use std::path::Path;
 
-/// Deviation of single precision that passes, in bounds. Both sides are evaluated in double
-/// precision beside what single precision rounds; a millionth is more than that may add.
+/// Tolerance of single precision, in error bounds. Number and bound are computed in double
+/// precision, which adds much less than 1e-6.
 const SINGLE_TOLERANCE: f64 = 1.0 + 1e-6;
-/// States compared, in groups of eight for lanes.
+/// Maximum number of states, compared in groups of eight for SIMD.
 const STATES: usize = 48;
-/// The lanes of a group.
+/// States in a SIMD group.
 const LANES: usize = 8;
-/// The seed of directions, weights and accelerations.
 const SEED: u64 = 0x51de_5eed;
 
-/// What was asked for, borrowed from where it is kept.
+/// Mutable reference to the requested outputs.
 pub type BorrowedOutputs<'r> = &'r mut (dyn Outputs + 'static);
 
-/// Everything an output function is called with.
+/// Arguments of all output functions at one state.
 struct Arguments {
     sample: Sample,
     accelerations: Vec<f64>,
@@ -62,7 +62,7 @@ impl Arguments {
     }
 }
 
-/// The names of the checks that belong to `outputs`.
+/// Returns the names of the checks for `outputs`.
 fn names(outputs: &[String]) -> Vec<&'static str> {
     let has = |name: &str| outputs.iter().any(|known| known == name);
     let mut found = Vec::new();
@@ -85,7 +85,7 @@ fn tolerance(name: &str) -> f64 {
     if name == "f32" { SINGLE_TOLERANCE } else { 0.0 }
 }
 
-/// The checks of `outputs`, none of which can be made.
+/// Returns the checks of `outputs` as skipped.
 pub fn skipped(outputs: &[String], kind: SkipKind, reason: &str) -> Vec<Check> {
     let names = names(outputs).into_iter();
     names
@@ -93,7 +93,7 @@ pub fn skipped(outputs: &[String], kind: SkipKind, reason: &str) -> Vec<Check> {
         .collect()
 }
 
-/// Compiles what calls `emitted`, whose library stands in `folder`, and compares.
+/// Compiles a program that calls the library of `emitted` in `folder` and compares its output.
 pub fn check(
     compiler: &Compiler,
     folder: &Path,
@@ -141,16 +141,16 @@ pub fn check(
     }
 }
 
-/// A function of the emitted source, called at every state.
+/// Call of an emitted function at every state.
 struct Call {
-    /// The check that it belongs to.
+    /// Name of the check.
     row: &'static str,
     name: &'static str,
-    /// Statements that print one line for each list of numbers.
+    /// Statements that print one line per list of numbers.
     text: String,
 }
 
-/// The calls of everything in `outputs` that gives numbers of its own.
+/// Returns the calls of all functions in `outputs`.
 fn calls(outputs: &[String]) -> Vec<Call> {
     let has = |name: &str| outputs.iter().any(|known| known == name);
     let at = "t, &state, &inputs, &coefficients";
@@ -207,7 +207,7 @@ fn calls(outputs: &[String]) -> Vec<Call> {
     calls
 }
 
-/// The names of a Jacobian's extents.
+/// Returns the names of the constants for a Jacobian's rows and columns.
 fn extents(name: &str) -> (&'static str, &'static str) {
     let rows = if name.starts_with("rates") {
         "STATES"
@@ -233,7 +233,7 @@ fn harness_source(emitted: &Emitted, calls: &[Call], outputs: &[String]) -> Stri
     let mut source = include_str!("harness/kinds.rs")
         .replace("        //CALLS\n", &statements)
         .replace("//INPUTS\n", &inputs_of(&emitted.input_fields));
-    // Coefficients of a model that has none are of no kind of numbers.
+    // `Coefficients` without fields is not generic, so it needs no cast.
     let has_coefficients = emitted.source.contains("pub struct Coefficients<");
     for kind in ["f32", "Rounded"] {
         let conversion = if has_coefficients {
@@ -251,7 +251,7 @@ fn harness_source(emitted: &Emitted, calls: &[Call], outputs: &[String]) -> Stri
     source
 }
 
-/// What compares every group of states.
+/// Statements that compare a group of states.
 const GROUPS: &str = "        if group.len() == 8 {
             let found = compare_lanes(&group, &coefficients);
             lanes = [lanes[0] + found[0], lanes[1] + found[1]];
@@ -259,7 +259,7 @@ const GROUPS: &str = "        if group.len() == 8 {
         }
 ";
 
-/// How many inputs there are, and a function that makes them of as many numbers.
+/// Returns the constant `INPUTS` and a function that creates the inputs from an array.
 fn inputs_of(fields: &[String]) -> String {
     let count = format!("const INPUTS: usize = {};\n\n", fields.len());
     if fields.is_empty() {
@@ -275,7 +275,7 @@ fn inputs_of(fields: &[String]) -> String {
     format!("{count}{head}\n    model::Inputs {{ {given} }}\n}}\n")
 }
 
-/// What the compiled program printed, being compared.
+/// Output of the compiled program and the functions to compare it with.
 struct Reading<'l, 'r> {
     lines: std::str::Lines<'l>,
     variant: &'r mut dyn Variant,
@@ -285,7 +285,9 @@ struct Reading<'l, 'r> {
 impl Reading<'_, '_> {
     fn next(&mut self) -> Result<String, String> {
         let line = self.lines.next();
-        Ok(line.ok_or("the compiled model stopped early")?.to_owned())
+        Ok(line
+            .ok_or("the compiled model printed fewer lines than expected")?
+            .to_owned())
     }
 
     fn worst(
@@ -326,7 +328,7 @@ impl Reading<'_, '_> {
                 _ => of_bits(&rows, name),
             };
             checks.push(if name == "f32" && at(&single, 1) == 0.0 {
-                let reason = "single precision holds none of its numbers";
+                let reason = "no result is in the range of single precision";
                 Check::not_applicable(name, SINGLE_TOLERANCE, reason)
             } else {
                 Check::made(name, worst, tolerance(name))
@@ -335,10 +337,10 @@ impl Reading<'_, '_> {
         Ok(checks)
     }
 
-    /// What a call prints.
+    /// Returns the numbers to expect from a call.
     fn expected(&mut self, name: &str, at: &Arguments) -> Result<Vec<Vec<f64>>, String> {
         let sample = &at.sample;
-        let missing = || format!("{name} is not there");
+        let missing = || format!("the variant has no function {name}");
         let functions = self.functions.as_deref_mut().ok_or_else(missing)?;
         let found = match name {
             "bias_forces" => functions.bias_forces(sample).map(|rows| vec![rows]),
@@ -362,7 +364,7 @@ impl Reading<'_, '_> {
         found.ok_or_else(missing)
     }
 
-    /// Rates and observables, then A, B, C and D as the Jacobians say.
+    /// Returns rates, observables, and A, B, C, D from the Jacobians.
     fn linearised(&mut self, sample: &Sample) -> Result<Vec<Vec<f64>>, String> {
         let Sample {
             time,
@@ -381,13 +383,13 @@ impl Reading<'_, '_> {
         ] {
             let functions = self.functions.as_deref_mut();
             let rows = functions.and_then(|functions| row_by_row(functions, name, sample));
-            found.push(rows.ok_or_else(|| format!("{name} is not there"))?);
+            found.push(rows.ok_or_else(|| format!("the variant has no function {name}"))?);
         }
         Ok(found)
     }
 }
 
-/// A Jacobian's numbers, row by row.
+/// Returns the entries of a Jacobian, row by row.
 fn row_by_row(functions: &mut dyn Outputs, name: &str, sample: &Sample) -> Option<Vec<f64>> {
     let jacobian = functions.jacobian(name, sample)?;
     Some(jacobian.transpose().as_slice().to_vec())
@@ -407,7 +409,7 @@ fn of_bits(rows: &[BitRow], name: &str) -> Worst {
 
 fn of_single(found: &[f64]) -> Worst {
     let detail = format!(
-        "of the bound of rounding; {} numbers, {} of them known to two digits",
+        "as a fraction of the rounding bound; {} numbers, {} of them with a bound below 1 %",
         at(found, 1),
         at(found, 2)
     );
@@ -418,12 +420,16 @@ fn at(numbers: &[f64], place: usize) -> f64 {
     numbers.get(place).copied().unwrap_or(f64::NAN)
 }
 
-/// The numbers of a line of bits.
+/// Parses a line of hexadecimal bits.
 fn numbers(line: &str) -> Result<Vec<f64>, String> {
     let words = line.split(' ');
     let number = |word: &str| u64::from_str_radix(word, 16).map(f64::from_bits);
     words
-        .map(|word| number(word).map_err(|_| format!("the compiled model printed {word:?}")))
+        .map(|word| {
+            number(word).map_err(|_| {
+                format!("the compiled model printed {word:?}, expected 16 hexadecimal digits")
+            })
+        })
         .collect()
 }
 
@@ -431,7 +437,6 @@ fn numbers(line: &str) -> Result<Vec<f64>, String> {
 mod tests {
     use super::*;
 
-    /// What is compiled for these inputs and outputs, of source with or without coefficients.
     fn harness(inputs: &[&str], outputs: &[&str], source: &str) -> String {
         let owned = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
         let outputs: Vec<String> = owned(outputs);
@@ -445,7 +450,7 @@ mod tests {
     }
 
     #[test]
-    fn every_place_of_the_harness_is_filled() {
+    fn harness_has_no_placeholder_left() {
         let all = [
             "bias_forces",
             "inverse_dynamics",
@@ -467,7 +472,7 @@ mod tests {
     }
 
     #[test]
-    fn a_model_without_inputs_and_coefficients_has_none_of_any_kind() {
+    fn harness_without_inputs_and_coefficients_needs_no_cast() {
         let text = harness(&[], &[], "pub struct Coefficients {");
         assert!(text.contains("const INPUTS: usize = 0;"));
         assert!(text.contains("(coefficients, coefficients)"));

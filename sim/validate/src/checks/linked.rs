@@ -1,5 +1,5 @@
-//! Emitted source as a program: compiled to a library, linked with a harness that reads states
-//! as bits and prints what the functions give as bits.
+//! Compiles emitted source to a library and links it with a harness. The harness reads states and
+//! prints results as bits.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -8,25 +8,25 @@ use crate::compiler::{self, Compiler, Optimization};
 use crate::sampler::Sample;
 use crate::variant::Variant;
 
-/// Source text of a variant: a crate on its own with `Parameters`, `Coefficients` and
-/// `Inputs`, and functions of `(t, &state, &inputs, &coefficients)`.
+/// Source text of a variant: a crate with `Parameters`, `Coefficients`, `Inputs` and functions of
+/// `(t, &state, &inputs, &coefficients)`.
 #[derive(Clone, Debug)]
 pub struct Emitted {
-    /// The text of the crate's root.
+    /// Text of the crate root.
     pub source: String,
-    /// The fields of its `Inputs`, in the order of the model.
+    /// Fields of its `Inputs`, in the order of the model.
     pub input_fields: Vec<String>,
-    /// The functions to compare.
+    /// Functions to compare.
     pub functions: Vec<EmittedFunction>,
-    /// What was asked for besides, by the names of `--with`, of source that computes with
-    /// any number of its trait `Scalar`; none of plain functions of `f64`.
+    /// Requested outputs, by their names in `--with`, if the source is generic over its trait
+    /// `Scalar`; `None` if its functions use only `f64`.
     pub outputs: Option<Vec<String>>,
 }
 
-/// A function of an emitted crate.
+/// Function of an emitted crate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EmittedFunction {
-    /// `rates`, an array of the state's length.
+    /// `rates`, an array with the state's length.
     Rates,
     /// `observables`, an array.
     Observables,
@@ -41,7 +41,7 @@ pub enum EmittedFunction {
 }
 
 impl EmittedFunction {
-    /// Its name in the emitted source.
+    /// Returns its name in the emitted source.
     pub fn name(self) -> &'static str {
         match self {
             Self::Rates => "rates",
@@ -53,10 +53,10 @@ impl EmittedFunction {
         }
     }
 
-    /// What the variant itself gives at a state.
+    /// Returns the variant's value at a state.
     ///
     /// # Errors
-    /// What the variant says.
+    /// The variant's message.
     pub fn expected(self, variant: &mut dyn Variant, sample: &Sample) -> Result<Vec<f64>, String> {
         let Sample {
             time,
@@ -83,7 +83,6 @@ impl EmittedFunction {
     }
 }
 
-/// Compiles the source to a library in `folder`.
 fn build(
     compiler: &Compiler,
     folder: &Path,
@@ -98,7 +97,7 @@ fn build(
     succeed("the emitted source", output).map(drop)
 }
 
-/// What the compiled source prints for `samples` by a program that makes these calls.
+/// Compiles the source, calls it with `calls` at every sample and returns the printed lines.
 pub fn run(
     compiler: &Compiler,
     folder: &Path,
@@ -111,7 +110,7 @@ pub fn run(
     run_linked(compiler, folder, harness, optimization, &table(samples))
 }
 
-/// What a program that calls the library in `folder` prints for `input`.
+/// Compiles a program that calls the library in `folder` and returns its output for `input`.
 pub fn run_linked(
     compiler: &Compiler,
     folder: &Path,
@@ -139,7 +138,7 @@ fn succeed(what: &str, output: compiler::Output) -> Result<String, String> {
     }
 }
 
-/// One line of bits for each state: time, state, inputs.
+/// Returns one line of bits per state: time, state, inputs.
 fn table(samples: &[Sample]) -> String {
     let mut table = String::new();
     for sample in samples {
@@ -150,7 +149,7 @@ fn table(samples: &[Sample]) -> String {
     table
 }
 
-/// Numbers as the harness reads them: their bits in hexadecimal digits.
+/// Returns numbers as hexadecimal bits, separated by spaces.
 pub fn line(numbers: &[f64]) -> String {
     let words: Vec<String> = numbers
         .iter()
@@ -159,11 +158,10 @@ pub fn line(numbers: &[f64]) -> String {
     words.join(" ")
 }
 
-/// A program that reads such lines and prints one line for each function and state.
+/// Returns a program that reads such lines and prints one line per function and state.
 fn harness_source(emitted: &Emitted, calls: &str) -> String {
     let mut inputs = String::new();
     for field in &emitted.input_fields {
-        // Writing to a string cannot fail.
         let _ = writeln!(inputs, "        inputs.{field} = numbers.next().unwrap();");
     }
     HARNESS
@@ -215,7 +213,7 @@ fn main() {
 }
 "#;
 
-/// How many numbers of a line, given by their bits, are not these; 0 is -0.
+/// Counts the numbers of a line of bits that differ from `expected`; 0 equals -0.
 pub fn differing_numbers(line: &str, expected: &[f64]) -> usize {
     let number = |word: &str| u64::from_str_radix(word, 16).ok().map(f64::from_bits);
     let mut words = line.split(' ').map(number);
@@ -223,8 +221,8 @@ pub fn differing_numbers(line: &str, expected: &[f64]) -> usize {
     expected.iter().filter(differs).count()
 }
 
-/// How many words of two lines differ; a missing word differs. A NaN is a NaN, whatever
-/// its sign and payload, which no rule of arithmetic gives.
+/// Counts the words that differ between two lines; a missing word differs. NaNs are equal, because
+/// arithmetic does not define their sign and payload.
 pub fn differences(found: &str, expected: &str) -> usize {
     let (found, expected): (Vec<_>, Vec<_>) =
         (found.split(' ').collect(), expected.split(' ').collect());

@@ -1,11 +1,16 @@
-//! The checks of a certificate, one file each: [`states`] at random states in every
-//! regime, [`zeros`] where entries of the state are 0, [`balance`] along a trajectory, [`nesting`] between orders, [`outputs`] for
-//! output functions, [`emitted`] for source text, with `kinds` for other kinds of
-//! numbers, [`regimes`] for its kernels of regimes, [`exact`] for what the exact solver
-//! integrates. `certify` runs them all.
+//! Checks of a certificate:
 //!
-//! Tolerances: 1e-12 of the largest term summed in a row is what the project promises;
-//! the oracle itself is good to 1e-14 there (S = 128), so the margin is the subject's.
+//! - [`states`]: random states in every regime;
+//! - [`zeros`]: states with entries equal to 0;
+//! - [`balance`]: power balance along trajectories;
+//! - [`nesting`]: agreement between orders;
+//! - [`outputs`]: requested outputs;
+//! - [`emitted`]: emitted source, with `kinds` for single precision, SIMD and requested outputs;
+//! - [`regimes`]: emitted kernels of regimes;
+//! - [`exact`]: state derivative of the exact solver.
+//!
+//! The oracle is accurate to 1e-14 of the largest term of a row (at order 128). The tolerance of
+//! 1e-12 is therefore available to the variant under test.
 
 pub mod balance;
 pub mod emitted;
@@ -23,19 +28,19 @@ use super::oracle::Equations;
 use super::variant::Variant;
 use nalgebra::DMatrix;
 
-/// Deviation from the oracle that passes, relative to the largest term summed in a row,
-/// before anything cancels in it.
+/// Tolerance of rows, relative to the largest addend of the row before cancellation.
 pub const ROW_TOLERANCE: f64 = 1e-12;
-/// Deviation of entries of the mass matrix that passes, relative to the geometric mean
-/// of the two diagonal entries or to the terms that cancel in the entry: a thousand
-/// roundings.
+/// Tolerance of entries of the mass matrix: about a thousand roundings. It is relative to the
+/// geometric mean of the two diagonal entries or to the terms that cancel in the entry.
 pub const MASS_TOLERANCE: f64 = 2e-13;
-/// Asymmetry of the mass matrix that passes, relative as above: an entry is a product of
-/// a few factors, which may be formed in another order on the other side.
+/// Tolerance of the mass matrix's asymmetry, relative as above. An entry is a product of a few
+/// factors, possibly in another order in its mirror entry.
 pub const SYMMETRY_TOLERANCE: f64 = 1e-15;
 
-/// The accelerations a variant gives, then the rates of states of first order; the rates of the
-/// coordinates, which come first, must be those of the state, bit for bit.
+/// Returns the accelerations of a variant, then the rates of first-order states.
+///
+/// # Errors
+/// A message if the rates of the coordinates differ from those in the state by a bit.
 fn unknowns(
     variant: &mut dyn Variant,
     time: f64,
@@ -46,12 +51,11 @@ fn unknowns(
     variant.rates(time, state, inputs, &mut rates)?;
     let size = variant.coordinate_names().len();
     if rates.get(..size) != state.get(size..2 * size) {
-        return Err("the rates of the coordinates are not those of the state".to_owned());
+        return Err("the rates of the coordinates differ from those in the state".to_owned());
     }
     Ok(rates.split_off(size))
 }
 
-/// The mass matrix a variant gives.
 fn mass_matrix(
     variant: &mut dyn Variant,
     time: f64,
@@ -64,7 +68,7 @@ fn mass_matrix(
     Ok(DMatrix::from_row_slice(size, size, &mass))
 }
 
-/// The largest |first - second| relative to the scale of each entry.
+/// Returns the largest |first - second| relative to the scale of each entry.
 fn matrix_distance(first: &DMatrix<f64>, second: &DMatrix<f64>, scale: &Equations) -> f64 {
     let mut worst: f64 = 0.0;
     for row in 0..first.nrows() {

@@ -1,6 +1,6 @@
-//! Nesting: what a variant says with its last modes held at zero is what the variant
-//! without these modes says. Held means zero amplitude and rate; the forces that would
-//! be needed are in the rows left out. With all modes held it is the rigid limit.
+//! Comparison of two orders: with the added modes at zero amplitude and rate, the larger variant
+//! must have the rows of the smaller one. The rows of the added modes are ignored. With all modes
+//! at zero this is the rigid limit.
 
 use super::super::certificate::{Check, Worst};
 use super::super::oracle::{Oracle, OracleError, Residual};
@@ -9,14 +9,13 @@ use super::super::variant::Variant;
 use super::{MASS_TOLERANCE, ROW_TOLERANCE, mass_matrix, matrix_distance, unknowns};
 use nalgebra::DMatrix;
 
-/// States compared.
+/// Number of states to compare.
 const STATES: usize = 50;
-/// The seed of the states.
 const SEED: u64 = 0x0e57_ed00;
 
-/// Compares mass matrices, velocity terms and forces of two orders of one model.
-/// `oracle` belongs to the smaller order and gives the scale of each row. The checks are
-/// called `name` with `_mass`, `_bias` and `_forces`.
+/// Compares mass matrices, velocity terms and forces of two orders of one model. `oracle` belongs
+/// to the smaller order and provides the scale of each row. The names of the checks are `name`
+/// followed by `_mass`, `_bias` and `_forces`.
 ///
 /// # Errors
 /// [`OracleError`] as from [`Oracle::equations`].
@@ -50,13 +49,13 @@ pub fn check(
     ])
 }
 
-/// Where each coordinate of the smaller variant stands in the larger one.
+/// Returns the index of each coordinate of the smaller variant in the larger one.
 fn kept_rows(small: &[String], large: &[String]) -> Vec<Option<usize>> {
     let place = |name| large.iter().position(|other| other == name);
     small.iter().map(place).collect()
 }
 
-/// How far mass matrices, velocity terms and forces are apart at one state.
+/// Returns the deviations of mass matrix, velocity terms and forces at one state.
 fn compare(
     Drawn { sample, equations }: &Drawn,
     small: &mut dyn Variant,
@@ -64,7 +63,7 @@ fn compare(
     kept: &[Option<usize>],
 ) -> Result<[f64; 3], String> {
     let kept: Option<Vec<usize>> = kept.iter().copied().collect();
-    let kept = kept.ok_or("a coordinate of the smaller order is missing")?;
+    let kept = kept.ok_or("a coordinate of the smaller order is missing in the larger order")?;
     let embedded = Sample {
         state: embed(&sample.state, &kept, large.coordinate_names().len()),
         ..sample.clone()
@@ -88,7 +87,7 @@ fn compare(
     ])
 }
 
-/// The state of the larger variant with the added modes at zero.
+/// Returns the state of the larger variant with the added modes at zero.
 fn embed(state: &[f64], kept: &[usize], size: usize) -> Vec<f64> {
     let mut embedded = vec![0.0; 2 * size];
     let (positions, rest) = state.split_at(kept.len());
@@ -109,7 +108,7 @@ struct Sides {
 }
 
 impl Sides {
-    /// The rows, and columns, at `kept`.
+    /// Returns the rows and columns `kept`.
     fn restricted(&self, kept: &[usize]) -> Self {
         let rows = |all: &[f64]| kept.iter().map(|row| all[*row]).collect();
         Self {

@@ -1,5 +1,5 @@
-//! The emitted kernels of regimes, compiled, against the variant's rates: the same numbers at
-//! states in every regime, some of them where a switching function rests at zero.
+//! Comparison of the compiled kernels of regimes with the variant's rates, at states in every
+//! regime. Some states have a guard at rest at zero.
 
 use super::super::certificate::{Check, Worst};
 use super::super::compiler::{Compiler, Optimization};
@@ -11,19 +11,17 @@ use super::linked::{Emitted, differing_numbers, run};
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-/// Name of the check.
 const NAME: &str = "regime_kernels";
-/// States compared in every regime.
+/// Number of states to compare in every regime.
 const STATES_PER_REGIME: usize = 10;
-/// The most kernels that are compiled.
+/// Maximum number of kernels to compile.
 const MOST_KERNELS: usize = 100;
-/// How many surfaces the number of a regime has room for.
+/// Maximum number of switching surfaces in the number of a regime.
 const SURFACES: usize = u32::BITS as usize;
-/// The seed of the states.
 const SEED: u64 = 0x2e61_3e5a;
 
-/// Compiles the kernels in `emitted` and compares them with `variant`. The value is how many
-/// numbers differ.
+/// Compiles the kernels in `emitted` and compares them with `variant`. The value of the check is
+/// the count of different numbers.
 ///
 /// # Errors
 /// [`OracleError`] as from [`Oracle::equations`].
@@ -36,7 +34,7 @@ pub fn check(
     let folder = match tempfile::tempdir() {
         Ok(folder) => folder,
         Err(error) => {
-            let reason = format!("no temporary folder: {error}");
+            let reason = format!("cannot create a temporary folder: {error}");
             return Ok(Check::not_run(NAME, 0.0, reason));
         }
     };
@@ -60,12 +58,12 @@ pub fn check(
     Ok(Check::made(NAME, worst, 0.0))
 }
 
-/// The check of a variant of which there are no kernels, or that has no regimes.
+/// Returns the check as not applicable, for variants without kernels or regimes.
 pub fn skipped(reason: impl Into<String>) -> Check {
     Check::not_applicable(NAME, 0.0, reason)
 }
 
-/// The samples with the numbers of their regimes, as many of these as are compiled.
+/// Returns the samples in regimes with a compiled kernel and the numbers of these regimes.
 fn in_regimes(
     variant: &mut dyn Variant,
     samples: Vec<Sample>,
@@ -86,11 +84,10 @@ fn in_regimes(
     Ok((kept, numbers))
 }
 
-/// The text that calls the kernel of the regime that a state is in.
+/// Returns statements that call the kernel of a state's regime.
 fn calls(numbers: &BTreeSet<u32>) -> String {
     let arguments = "(t, &state, &inputs, &coefficients";
     let mut text = "        let mut rates = [f64::NAN; model::STATES];\n".to_owned();
-    // Writing to a string cannot fail.
     let _ = writeln!(text, "        match model::regime{arguments}) {{");
     for number in numbers {
         let kernel = format!("model::rates_in_regime_into::<{number}, _>");
@@ -113,7 +110,9 @@ fn compare(
     for (count, sample) in samples.iter().enumerate() {
         let mut expected = vec![f64::NAN; sample.state.len()];
         variant.rates(sample.time, &sample.state, &sample.inputs, &mut expected)?;
-        let found = lines.next().ok_or("the compiled kernels stopped early")?;
+        let found = lines
+            .next()
+            .ok_or("the compiled kernels printed fewer lines than expected")?;
         let wrong = differing_numbers(found, &expected);
         if wrong > 0 && first.is_none() {
             first = Some(format!("first at state {}", count + 1));

@@ -1,5 +1,5 @@
-//! Checks at random states in every regime: accelerations, mass matrix, energy, power
-//! and switching functions against the oracle, accelerations against references.
+//! Comparison with the oracle at random states in every regime: accelerations, mass matrix, energy,
+//! power and guards. Accelerations are also compared with hand-written references.
 
 use super::super::certificate::{Check, Coverage, Worst};
 use super::super::oracle::{Conditioned, Equations, Oracle, OracleError};
@@ -11,28 +11,27 @@ use super::{
 use nalgebra::{Cholesky, DMatrix};
 use std::collections::HashMap;
 
-/// States drawn in every regime, fewer if there are many regimes.
+/// Maximum number of states in every regime.
 const STATES_PER_REGIME: usize = 200;
-/// States drawn in all regimes together.
+/// Maximum number of states in all regimes together.
 const STATES: usize = 81 * STATES_PER_REGIME;
-/// The fewest states of a regime that say anything about it.
+/// Minimum number of states for a regime to count as sampled.
 const FEWEST: usize = 20;
-/// Draws without a state after which no more of a regime are looked for.
+/// Failed draws after which the search in a regime ends.
 const FRUITLESS: usize = 5;
-/// The seed of the states.
 const SEED: u64 = 0x0dd5_eed5;
 
-/// Equations written by hand, to compare accelerations with.
+/// Hand-written equations to compare accelerations with.
 pub struct Reference {
-    /// What it is, as it stands in the certificate.
+    /// Name in the certificate.
     pub name: String,
-    /// The deviation of accelerations from the reference at (time, state, inputs),
-    /// relative to the largest term summed in each row of the reference.
+    /// Returns the deviation of accelerations from the reference at (time, state, inputs), relative
+    /// to the largest term of each row of the reference.
     #[expect(clippy::type_complexity, reason = "a plain function of four arguments")]
     pub deviation: Box<dyn Fn(f64, &[f64], &[f64], &[f64]) -> f64>,
 }
 
-/// What the states have shown.
+/// Results at the states so far.
 struct Findings<'f> {
     oracle: &'f Oracle,
     references: &'f [Reference],
@@ -45,9 +44,9 @@ struct Findings<'f> {
     power: Worst,
     by_reference: Vec<Worst>,
     guards: Guards,
-    /// Whether the power is that of the forces alone.
+    /// True if no energy depends explicitly on time.
     scleronomic: bool,
-    /// States that were compared, in all regimes.
+    /// States compared in all regimes.
     examined: usize,
     /// Regimes with enough states.
     sampled: u64,
@@ -55,7 +54,7 @@ struct Findings<'f> {
     per_regime: usize,
 }
 
-/// All checks at random states, and the regimes these are in.
+/// Runs all checks at random states and returns them with the coverage of regimes.
 ///
 /// # Errors
 /// [`OracleError`] as from [`Oracle::equations`].
@@ -97,8 +96,8 @@ pub fn check(
     if findings.examined == 0 {
         let redrawn = sampler.redrawn();
         let message = format!(
-            "no state of the model's domain was found: at {redrawn} states a term is no number \
-             or the mass matrix is not positive definite; a `range` may say where it lives"
+            "no state in the model's domain was found: at {redrawn} states a term is NaN or the mass \
+             matrix is not positive definite; give coordinates, states and inputs a `range`"
         );
         let worst = Worst::of(f64::INFINITY, message);
         findings
@@ -111,21 +110,21 @@ pub fn check(
     Ok((findings.into_checks(), coverage))
 }
 
-/// The check that there are states in every regime.
+/// Returns the check that every regime was sampled.
 fn every_regime(coverage: &Coverage) -> Check {
     const NAME: &str = "coverage";
     if coverage.sampled >= coverage.regimes {
         return Check::made(NAME, Worst::of(0.0, coverage.sentence()), 0.0);
     }
     let reason = format!(
-        "{}; give coordinates, states and inputs a `range` that leads to the others or excludes them",
+        "{}; give coordinates, states and inputs a `range` that includes or excludes the other regimes",
         coverage.sentence()
     );
     Check::not_run(NAME, 0.0, reason)
 }
 
-/// Whether the forces alone change T + V at every one of a few states. At one state a term
-/// that is linear in the rates may be too small to be noticed, and its rate large enough.
+/// Returns true if T + V does not depend explicitly on time at several states. At a single state, a
+/// term that is linear in the rates can be too small to detect.
 fn is_scleronomic(oracle: &Oracle) -> Result<bool, OracleError> {
     let mut sampler = Sampler::new(oracle, SEED)?;
     for _ in 0..FEWEST {
@@ -144,21 +143,21 @@ fn is_scleronomic(oracle: &Oracle) -> Result<bool, OracleError> {
     Ok(true)
 }
 
-/// Whether the state means the same to both.
+/// Compares the names of the coordinates.
 fn names(oracle: &Oracle, variant: &dyn Variant) -> Check {
     let found = variant.coordinate_names();
     let same = found == oracle.names();
     let detail = if same {
         format!("{} coordinates", found.len())
     } else {
-        format!("{found:?} instead of {:?}", oracle.names())
+        format!("found {found:?}, expected {:?}", oracle.names())
     };
     let worst = Worst::of(if same { 0.0 } else { 1.0 }, detail);
     Check::made("coordinate_names", worst, 0.0)
 }
 
 impl Findings<'_> {
-    /// All states of one regime, or of whatever regimes they happen to be in.
+    /// Compares at states of one regime, or of any regime if `regime` is `None`.
     fn visit(
         &mut self,
         sampler: &mut Sampler<'_>,
@@ -200,13 +199,15 @@ impl Findings<'_> {
         self.sampled += u64::from(regime.is_some() && examined >= FEWEST);
         let redrawn = sampler.redrawn() - before;
         self.checks.push(match (examined, redrawn) {
-            (0, 0) => Check::not_run(name, ROW_TOLERANCE, "no state of this regime was found"),
+            (0, 0) => Check::not_run(name, ROW_TOLERANCE, "no state was found in this regime"),
             (0, _) => {
-                let reason = "no state of this regime was found in the model's domain";
+                let reason = "no state in this regime was in the model's domain";
                 Check::not_run(name, ROW_TOLERANCE, reason)
             }
             (1..FEWEST, _) if worst.value() <= ROW_TOLERANCE => {
-                let reason = format!("too few states of this regime were found: {examined}");
+                let reason = format!(
+                    "only {examined} of at least {FEWEST} states were found in this regime"
+                );
                 Check::not_run(name, ROW_TOLERANCE, reason)
             }
             (_, 0) => Check::made(name, worst.among(examined, "states"), ROW_TOLERANCE),
@@ -218,7 +219,7 @@ impl Findings<'_> {
         Ok(())
     }
 
-    /// One state; the relative residual of the subject's accelerations.
+    /// Compares at one state and returns the relative residual of the variant's accelerations.
     fn compare(
         &mut self,
         variant: &mut dyn Variant,
@@ -249,9 +250,9 @@ impl Findings<'_> {
         })())
     }
 
-    /// What the power is to be: the rate of T + V. Where no energy depends on time, neither
-    /// at the few states that were asked nor at this one, this is the power of the forces, elsewhere the rate is taken along the motion with these
-    /// accelerations, which are judged by themselves.
+    /// Returns the expected power, the rate of T + V. If no energy depends explicitly on time, this
+    /// is the power of the forces. Otherwise the rate is computed along the motion with these
+    /// accelerations.
     fn power(&self, sample: &Sample, accelerations: &[f64]) -> Result<Conditioned, OracleError> {
         let Sample {
             time,
@@ -312,7 +313,7 @@ impl Findings<'_> {
     }
 }
 
-/// Rows and columns scaled to a unit diagonal, so that units do not decide.
+/// Scales rows and columns to a unit diagonal, so that the result does not depend on units.
 fn scaled(mass: &DMatrix<f64>) -> DMatrix<f64> {
     let scale = mass.diagonal().map(|entry| entry.sqrt().recip());
     DMatrix::from_fn(mass.nrows(), mass.ncols(), |row, column| {
@@ -320,9 +321,8 @@ fn scaled(mass: &DMatrix<f64>) -> DMatrix<f64> {
     })
 }
 
-/// Whether the signs of the subject's switching functions tell the regime: no pattern of
-/// signs may occur in two regimes whose equations differ. Where a switch drops out of the
-/// equations, nothing needs to tell its sides.
+/// Check that the signs of the guards identify the regime: two regimes with different equations
+/// must differ in a sign. A switch without influence on the equations needs no guard.
 #[derive(Default)]
 struct Guards {
     regimes: HashMap<Vec<bool>, Regime>,
@@ -349,10 +349,13 @@ impl Guards {
         let known = self.regimes.entry(signs).or_insert_with(|| regime.clone());
         let told = *known == regime || is_same(oracle, drawn, known)?;
         self.worst.include(if told {
-            Worst::of(0.0, "every pattern of signs belongs to one regime")
+            Worst::of(0.0, "the signs of the guards identify the regime")
         } else {
             let (known, label) = (known.label(oracle), regime.label(oracle));
-            Worst::of(1.0, format!("the same signs in {known} and {label}"))
+            Worst::of(
+                1.0,
+                format!("the guards have the same signs in {known} and {label}"),
+            )
         });
         Ok(())
     }
@@ -365,7 +368,7 @@ impl Guards {
     }
 }
 
-/// Whether the equations at a state are also those of another regime.
+/// Returns true if the equations at a state are equal to those of another regime.
 fn is_same(oracle: &Oracle, drawn: &Drawn, regime: &Regime) -> Result<bool, OracleError> {
     let Drawn { sample, equations } = drawn;
     let (state, inputs) = (&sample.state, &sample.inputs);

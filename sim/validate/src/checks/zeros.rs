@@ -1,5 +1,5 @@
-//! Rates and Jacobians where coordinates and rates are exactly 0, as at the start of most searches: roots and
-//! quotients vanish there, and what is infinite or not a number at no other state shows.
+//! Rates and Jacobians at states with coordinates or rates equal to 0, for example at rest. Roots
+//! and quotients can be infinite or NaN there and nowhere else.
 
 use super::unknowns;
 use crate::certificate::{Check, Worst};
@@ -9,22 +9,22 @@ use crate::random::Random;
 use crate::sampler::{Sample, Sampler};
 use crate::variant::Variant;
 
-/// The seed of the other entries of the states.
 const SEED: u64 = 0x2e20_0f0f;
 
-/// Steps, in sizes of the entries, between which a deviation from a linear function has to fall.
+/// Two steps, in sizes of the entries, for a test of differentiability.
 const STEPS: [f64; 2] = [1e-3, 1e-5];
 
-/// By how much, where there is a derivative.
+/// Largest ratio of the deviations from linearity at the two steps if a derivative exists.
 const FALL: f64 = 0.2;
 
-/// Deviations of this size beside the largest slope are rounding.
+/// Largest deviation from linearity, relative to the largest slope, that counts as rounding.
 const ROUNDING: f64 = 1e-6;
 
 const RATES: &str = "rates_at_zeros";
 const JACOBIANS_THERE: &str = "jacobians_at_zeros";
 
-/// The checks of both. A state at which the oracle gives no number either, or no derivative, has a reason.
+/// Checks that rates and Jacobians are finite. A state at which the oracle has no finite value or
+/// no derivative is excluded and reported.
 ///
 /// # Errors
 /// [`OracleError`] as from [`Oracle::equations`].
@@ -35,7 +35,7 @@ pub fn check(
 ) -> Result<Vec<Check>, OracleError> {
     let mut sampler = Sampler::new(oracle, SEED)?;
     let Some(drawn) = sampler.draw_inside()? else {
-        let reason = "no state of the model's domain was found";
+        let reason = "no state in the model's domain was found";
         let jacobians = outputs.is_some().then_some(JACOBIANS_THERE);
         let names = [RATES].into_iter().chain(jacobians);
         return Ok(names
@@ -46,7 +46,7 @@ pub fn check(
     let (mut rates, mut jacobians) = (Findings::default(), Findings::default());
     for (place, sample) in zeros(oracle, &drawn.sample) {
         let Some(accelerations) = accelerations(oracle, &sample)? else {
-            rates.explained(format!("no number of the oracle at {place}"));
+            rates.explained(format!("the oracle is not finite at {place}"));
             continue;
         };
         let found = unknowns(variant, sample.time, &sample.state, &sample.inputs);
@@ -61,12 +61,12 @@ pub fn check(
             };
             let is_finite = jacobian.iter().all(|entry| entry.is_finite());
             let place = format!("{name}, {place}");
-            // The oracle knows the accelerations alone.
+            // The oracle provides only accelerations, so only this Jacobian can be excluded.
             let is_judged = name == "rates_by_state";
             if is_finite || is_judged && has_derivative(oracle, &sample, &accelerations, &sizes)? {
                 jacobians.examined(is_finite, &place);
             } else {
-                jacobians.explained(format!("no limit of {place}"));
+                jacobians.explained(format!("no derivative for {place}"));
             }
         }
     }
@@ -77,7 +77,6 @@ pub fn check(
     Ok(checks)
 }
 
-/// Results at states with zeros.
 #[derive(Default)]
 struct Findings {
     states: usize,
@@ -90,7 +89,7 @@ impl Findings {
         self.states += 1;
         self.worst.include(match is_finite {
             true => Worst::of(0.0, "all numbers are finite"),
-            false => Worst::of(f64::INFINITY, format!("infinite or no number at {place}")),
+            false => Worst::of(f64::INFINITY, format!("infinite or NaN at {place}")),
         });
     }
 
@@ -105,7 +104,7 @@ impl Findings {
             [first, others @ ..] => format!(" ({first}, and {} others)", others.len()),
         };
         if self.states == 0 {
-            return Check::not_applicable(name, 0.0, format!("no state was compared{left}"));
+            return Check::not_applicable(name, 0.0, format!("every state was excluded{left}"));
         }
         let worst = self
             .worst
@@ -114,14 +113,15 @@ impl Findings {
     }
 }
 
-/// A state with each entry at 0 in turn, with all rates, and with all entries, where they may be 0.
+/// Returns copies of a sample: with each entry set to 0, with all rates set to 0 and with all
+/// entries set to 0. Entries with a range that excludes 0 do not change.
 fn zeros(oracle: &Oracle, sample: &Sample) -> Vec<(String, Sample)> {
     let size = oracle.size();
     let names = oracle.names();
     let name = |entry: usize| match entry {
         entry if entry < size => format!("{} = 0", names[entry]),
         entry if entry < 2 * size => format!("{}_dot = 0", names[entry - size]),
-        entry => format!("state {} of first order = 0", entry - 2 * size + 1),
+        entry => format!("first-order state {} = 0", entry - 2 * size + 1),
     };
     let ranges = &oracle.ranges().state;
     let may_be_0 = |entry: usize| {
@@ -148,7 +148,8 @@ fn zeros(oracle: &Oracle, sample: &Sample) -> Vec<(String, Sample)> {
     found
 }
 
-/// The oracle's accelerations, then the rates of states of first order, if all are numbers.
+/// Returns the oracle's accelerations, then the rates of first-order states; `None` if one is not
+/// finite.
 fn accelerations(oracle: &Oracle, sample: &Sample) -> Result<Option<Vec<f64>>, OracleError> {
     let Sample {
         time,
@@ -160,7 +161,8 @@ fn accelerations(oracle: &Oracle, sample: &Sample) -> Result<Option<Vec<f64>>, O
     Ok(found.filter(|found| found.iter().all(|number| number.is_finite())))
 }
 
-/// Returns true if the accelerations change as a linear function of the state does, better and better as steps fall.
+/// Returns true if the accelerations are differentiable: their deviation from a linear function of
+/// the state decreases with the step, or is rounding.
 fn has_derivative(
     oracle: &Oracle,
     sample: &Sample,

@@ -1,5 +1,5 @@
-// What the emitted source is compiled with to be judged as other kinds of numbers. Its crate
-// is `model`; what stands in capitals in a comment is written by the check.
+// Harness that compiles the emitted source, crate `model`, with other number types. The check
+// replaces the comments in capitals.
 #![allow(unused, non_snake_case, clippy::all)]
 
 use model::{Function, FunctionOfTwo, Real, Scalar};
@@ -26,21 +26,21 @@ impl<const N: usize, const M: usize> Print for [[f64; N]; M] {
     }
 }
 
-/// A number in double precision and a bound of the error that single precision leaves in it:
-/// running error analysis (N. J. Higham, Accuracy and Stability of Numerical Algorithms,
-/// section 3.3), to all orders.
+/// Number in double precision with a bound of its error in single precision, by running error
+/// analysis to all orders (N. J. Higham, Accuracy and Stability of Numerical Algorithms, section
+/// 3.3).
 #[derive(Clone, Copy, Debug)]
 struct Rounded {
     number: f64,
     error: f64,
 }
 
-/// Half a unit in the last place of 1 in single precision, and half its smallest number.
+/// Half a unit in the last place of 1 in single precision, and half the smallest subnormal number.
 const UNIT: f64 = 1.0 / (1_u64 << 24) as f64;
 const SMALLEST: f64 = 1.0 / ((1_u128 << 100) as f64 * (1_u64 << 50) as f64);
 
 impl Rounded {
-    /// A result whose operands left it this error.
+    /// Adds the rounding of the result to the error from its operands.
     fn result(number: f64, error: f64) -> Self {
         let error = error + UNIT * number.abs() + SMALLEST;
         let beyond = number.abs() + error > f64::from(f32::MAX) || error.is_nan();
@@ -97,7 +97,7 @@ impl Scalar for Rounded {
     fn number(value: f64) -> Self {
         Self::result(value, 0.0)
     }
-    /// Where the order is not certain, single precision may choose the other.
+    /// Includes the other branch in the bound if single precision could select it.
     fn select_greater(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
         let (chosen, other) = if a.number > b.number { (then, otherwise) } else { (otherwise, then) };
         if (a.number - b.number).abs() > a.error + b.error {
@@ -134,18 +134,18 @@ impl Scalar for Rounded {
     }
 }
 
-/// The larger of two errors; no number is larger than any.
+/// Returns the larger of two errors; NaN counts as infinity.
 fn worse(first: f64, second: f64) -> f64 {
     if first.is_nan() || second.is_nan() { f64::INFINITY } else { first.max(second) }
 }
 
-/// How single precision fared.
+/// Deviation of single precision.
 #[derive(Default)]
 struct Single {
-    /// The largest error, in bounds.
+    /// Largest error, in units of its bound.
     worst: f64,
     compared: usize,
-    /// Those known to two digits.
+    /// Results with a bound below 1 %.
     known: usize,
 }
 

@@ -1,4 +1,4 @@
-/// Eight numbers, each of which goes its own way.
+/// Eight numbers with elementwise operations.
 #[derive(Clone, Copy)]
 struct Eight([f64; 8]);
 
@@ -97,7 +97,8 @@ impl model::Coefficient<Eight> for f64 {
 
 type State = (f64, [f64; model::STATES], [f64; INPUTS]);
 
-/// How many numbers of eight states at once are not those of each alone, and of how many.
+/// Returns the number of results of eight states at once that differ from single states, and the
+/// number of all results.
 fn compare_lanes(states: &[State], coefficients: &model::Coefficients) -> [usize; 2] {
     let t = Eight(std::array::from_fn(|k| states[k].0));
     let state: [Eight; model::STATES] =

@@ -1,4 +1,4 @@
-//! Jacobians and their products against differences of the oracle's rows along directions.
+//! Comparison of Jacobians and their products with directional differences of the oracle's rows.
 
 use super::directions::Moved;
 use super::judged::Judged;
@@ -11,19 +11,17 @@ use crate::sampler::Sample;
 use eomgen_model_spec::model::Model;
 use nalgebra::{DMatrix, DVector};
 
-/// What is compared along every direction from one state.
+/// Values under test at one state.
 pub(super) struct Known {
-    /// The oracle's mass matrix.
     mass: DMatrix<f64>,
-    /// Jacobians by name.
     jacobians: Vec<(&'static str, DMatrix<f64>)>,
-    /// One number per row of the equations.
+    /// Multipliers mu, one per row of the equations.
     multipliers: DVector<f64>,
-    /// The weights of the rates that belong to these.
+    /// Weights of the rates that correspond to the multipliers.
     weights: Vec<f64>,
     by_state_and_inputs: Option<(Vec<f64>, Vec<f64>)>,
     by_parameters: Option<Vec<f64>>,
-    /// Places of the independent parameters among all.
+    /// Indices of the independent parameters among all.
     independent: Vec<usize>,
 }
 
@@ -37,7 +35,7 @@ impl Known {
     ) -> Self {
         let mass = equations.mass.clone();
         let scales = equations.residuals(&[]);
-        // Weights M mu of the accelerations: mu times the rows says what their sum is.
+        // With weights M mu of the accelerations, the weighted rates equal mu times the rows.
         let multipliers = DVector::from_iterator(
             scales.len(),
             scales.iter().map(|row| {
@@ -68,7 +66,7 @@ impl Known {
     }
 }
 
-/// Places of these names among a model's parameters.
+/// Returns the indices of `names` among a model's parameters.
 pub(super) fn places(model: &Model, names: &[String]) -> Vec<usize> {
     let place = |name: &String| {
         model
@@ -79,7 +77,7 @@ pub(super) fn places(model: &Model, names: &[String]) -> Vec<usize> {
     names.iter().filter_map(place).collect()
 }
 
-/// Everything that is known along one direction.
+/// Compares all values along one direction. Of several step sizes the smallest deviation counts.
 pub(super) fn along(
     rows: &mut Rows,
     surroundings: &Surroundings<'_>,
@@ -122,7 +120,7 @@ pub(super) fn along(
 }
 
 impl Known {
-    /// How far everything is from what the slopes along a direction say, row by row.
+    /// Returns the deviations from the slopes along a direction, row by row.
     fn deviations(
         &self,
         moved: Moved,
@@ -174,13 +172,14 @@ impl Known {
         found
     }
 
-    /// What a direction does to the independent parameters alone.
+    /// Returns the direction's entries for the independent parameters.
     fn of_independent(&self, direction: &Direction) -> Vec<f64> {
         let places = self.independent.iter();
         places.map(|place| direction.parameters[*place]).collect()
     }
 
-    /// Changes of the rates: those of the accelerations must undo the change of the rows.
+    /// Returns the deviations of the rates. The change of the accelerations must cancel the change
+    /// of the rows.
     fn of_rates(&self, change: &[f64], direction: &Direction, slopes: &[Slope]) -> Vec<f64> {
         let size = self.mass.nrows();
         let count = size + self.multipliers.len();
@@ -205,7 +204,7 @@ impl Known {
         found
     }
 
-    /// The change of the weighted rates against that of the weighted rows.
+    /// Returns the deviation between the changes of the weighted rates and of the weighted rows.
     fn of_weights(
         &self,
         weighted: &[f64],
@@ -234,7 +233,7 @@ impl Known {
     }
 }
 
-/// A matrix times a vector; not a number for every row if they do not fit.
+/// Returns the product of a matrix and a vector; NaN in every row if the sizes do not match.
 pub(super) fn times(matrix: &DMatrix<f64>, vector: &[f64]) -> Vec<f64> {
     if matrix.ncols() != vector.len() {
         return vec![f64::NAN; matrix.nrows()];

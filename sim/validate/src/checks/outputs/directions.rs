@@ -1,4 +1,4 @@
-//! Directions in which equations are differentiated: of the state, of inputs, of parameters.
+//! Directions of differentiation: by state, inputs and parameters.
 
 use super::judged::Judged;
 use crate::differences::Direction;
@@ -7,12 +7,13 @@ use crate::random::Random;
 use crate::sizes;
 use eomgen_model_spec::model::ParameterValue;
 
-/// The most directions at a state; of more variables, this many are drawn.
+/// Maximum number of directions at a state. With more variables, random directions are used.
 const DIRECTIONS: usize = 40;
-/// The most coordinates with which all those are tried, and directions with more.
+/// Maximum number of coordinates for which all variables are used, and bound on the number of
+/// directions for larger models.
 const SMALL: (usize, usize) = (12, 8);
 
-/// Which variables a direction moves.
+/// Kind of the variables in a direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Moved {
     State,
@@ -20,8 +21,8 @@ pub(super) enum Moved {
     Parameters,
 }
 
-/// Directions in which to differentiate, each in one kind of variables: one variable after
-/// the other, of many a few and sums of all.
+/// Returns directions, each in one kind of variable. Small models use every variable in turn,
+/// larger ones some variables and sums of all.
 pub(super) fn directions(
     judged: &Judged<'_>,
     names: &[String],
@@ -64,8 +65,8 @@ pub(super) fn directions(
     Ok(found)
 }
 
-/// The sizes of independent parameters, 0 for derived ones and for those that are 0, which
-/// have no size.
+/// Returns the sizes of independent parameters. Derived parameters and parameters equal to 0 have
+/// size 0.
 pub(super) fn independent(judged: &Judged<'_>) -> Vec<f64> {
     let parameters = judged.model.parameters.iter().zip(judged.parameters);
     parameters
@@ -76,7 +77,7 @@ pub(super) fn independent(judged: &Judged<'_>) -> Vec<f64> {
         .collect()
 }
 
-/// Vectors of these sizes: each entry by itself if there are few.
+/// Returns vectors of these sizes, with one nonzero entry each if there are few entries.
 pub(super) fn drawn(sizes: &[f64], small: bool, random: &mut Random) -> Vec<Vec<f64>> {
     let alone = |index: usize| {
         let entries = sizes.iter().enumerate();

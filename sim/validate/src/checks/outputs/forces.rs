@@ -1,4 +1,4 @@
-//! Bias forces and inverse dynamics against the oracle's mass matrix and forces.
+//! Comparison of bias forces and inverse dynamics with the oracle's mass matrix and forces.
 
 use super::rows::{Rows, relative, worst};
 use crate::checks::ROW_TOLERANCE;
@@ -7,7 +7,7 @@ use crate::outputs::Outputs;
 use crate::random::Random;
 use crate::sampler::Sample;
 
-/// Bias forces, and inverse dynamics at random accelerations.
+/// Compares bias forces, and inverse dynamics at random accelerations.
 pub(super) fn forces(
     rows: &mut Rows,
     equations: &Equations,
@@ -28,7 +28,7 @@ pub(super) fn forces(
     };
     let still = vec![0.0; equations.size()];
     compare("bias_forces", &still, outputs.bias_forces(sample));
-    // As large as those of the motion, so that no row is inertia alone.
+    // Accelerations similar to those of the motion, so that inertia does not dominate any row.
     let accelerations: Vec<f64> = match equations.accelerations() {
         Some(own) => own.iter().map(|a| a * random.away_from_zero()).collect(),
         None => still.iter().map(|_| random.away_from_zero()).collect(),

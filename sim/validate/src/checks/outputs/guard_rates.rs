@@ -1,4 +1,4 @@
-//! The guards' rates against differences of the guards along the oracle's motion.
+//! Comparison of guard rates with differences of the guards along the oracle's motion.
 
 use super::rows::{DIFFERENCE_TOLERANCE, Rows, STEPS, relative, worst};
 use crate::differences::{Slope, slopes};
@@ -8,7 +8,6 @@ use crate::sampler::Sample;
 use crate::sizes;
 use crate::variant::Variant;
 
-/// The guards' rates against differences of the guards along the oracle's motion.
 pub(super) fn guard_rates(
     rows: &mut Rows,
     oracle: &Oracle,
@@ -35,7 +34,7 @@ pub(super) fn guard_rates(
         .iter()
         .zip(&sizes)
         .map(|(rate, size)| (rate / size).abs());
-    // The time in which no entry of the state moves by more than its size.
+    // Time in which no entry of the state changes by more than its size.
     let time = fastest.fold(1.0, f64::max).recip();
     let mut best = vec![f64::INFINITY; found.len()];
     for step in STEPS {

@@ -1,6 +1,8 @@
-//! What was asked for beside the rates, against the oracle: inverse dynamics and bias forces
-//! by its mass matrix and forces, Jacobians and their products by differences of its rows
-//! along directions, the guards' rates by differences of the guards along its motion.
+//! Comparison of the requested outputs with the oracle:
+//!
+//! - inverse dynamics and bias forces: by its mass matrix and forces;
+//! - Jacobians and their products: by directional differences of its rows;
+//! - guard rates: by differences of the guards along its motion.
 
 mod derivatives;
 mod directions;
@@ -25,12 +27,11 @@ pub(crate) use judged::Judged;
 pub use rows::DIFFERENCE_TOLERANCE;
 use rows::Rows;
 
-/// The most states, each of a regime of its own; with fewer regimes, the fewest.
+/// Maximum and minimum number of states, each in another regime if there are enough.
 const STATES: (usize, usize) = (9, 4);
-/// The seed of states and directions.
 const SEED: u64 = 0x4e0b_1a75;
 
-/// The checks of everything that was asked for.
+/// Runs the checks of all requested outputs.
 ///
 /// # Errors
 /// [`OracleError`] as from [`Oracle::equations`].
@@ -76,7 +77,6 @@ pub(crate) fn check(
     Ok(rows.into_checks(judged, &names, samples.len()))
 }
 
-/// Random states in several regimes.
 fn samples(oracle: &Oracle) -> Result<Vec<Sample>, OracleError> {
     let mut sampler = Sampler::new(oracle, SEED)?;
     let (most, fewest) = STATES;

@@ -1,15 +1,15 @@
-//! How far rows are from what they should be, and the checks that come of it.
+//! Deviations of rows and the checks that report them.
 
 use super::judged::Judged;
 use crate::certificate::{Check, SkipKind, Worst};
 use crate::outputs::JACOBIANS;
 
-/// Deviation from a difference that passes, relative to the largest term of the row for a
-/// change of the variable by its own size. The rows are known to 1e-14 of that; the longest
-/// step that is tried divides it by 1/16, the shortest by 1/65536.
+/// Tolerance of differences, relative to the largest term of the row, for a change of the variable
+/// by its size. The rows are accurate to 1e-14 of that. The division by the step size increases
+/// this error, by a factor of 16 for the longest step and 65536 for the shortest.
 pub const DIFFERENCE_TOLERANCE: f64 = 1e-9;
-/// The steps, in sizes of the variables: a long one for what is smooth, short ones for what
-/// is not smooth as far.
+/// Step sizes, in sizes of the variables: a long one for smooth rows, short ones for rows with
+/// large higher derivatives.
 pub(super) const STEPS: [f64; 5] = [
     1.0 / 16.0,
     1.0 / 128.0,
@@ -18,7 +18,7 @@ pub(super) const STEPS: [f64; 5] = [
     1.0 / 65536.0,
 ];
 
-/// |difference|/scale, 0 for no difference at all; no number is infinitely far.
+/// Returns |difference|/scale; 0 for no difference, infinity for NaN.
 pub(super) fn relative(difference: f64, scale: f64) -> f64 {
     let ratio = (difference / scale).abs();
     if difference == 0.0 {
@@ -34,7 +34,7 @@ pub(super) fn worst(deviations: impl IntoIterator<Item = f64>) -> f64 {
     deviations.into_iter().fold(0.0, f64::max)
 }
 
-/// The worst deviation of each check so far, in the order in which they first came.
+/// Largest deviation of each check so far, in the order of the first occurrences.
 #[derive(Default)]
 pub(super) struct Rows {
     found: Vec<(&'static str, f64, Worst)>,
@@ -49,7 +49,7 @@ impl Rows {
         }
     }
 
-    /// The checks, with a line for each that could not be made.
+    /// Returns the checks, including those that could not be run.
     pub fn into_checks(self, judged: &Judged<'_>, names: &[String], states: usize) -> Vec<Check> {
         let mut checks = Vec::new();
         for name in expected(names) {
@@ -73,7 +73,7 @@ impl Rows {
     }
 }
 
-/// The checks that belong to what was asked for.
+/// Returns the names of the checks for the requested outputs.
 pub(super) fn expected(names: &[String]) -> Vec<&'static str> {
     let has = |name: &str| names.iter().any(|known| known == name);
     let mut found = Vec::new();
@@ -95,7 +95,7 @@ pub(super) fn expected(names: &[String]) -> Vec<&'static str> {
     found
 }
 
-/// Why a check that belongs to what was asked for was not made.
+/// Returns the reason why a check was not run.
 pub(super) fn reason(judged: &Judged<'_>, name: &str) -> (SkipKind, &'static str) {
     if name.ends_with("_by_inputs") && judged.oracle.input_count() == 0 {
         (SkipKind::NotApplicable, "the model has no input")
@@ -103,7 +103,8 @@ pub(super) fn reason(judged: &Judged<'_>, name: &str) -> (SkipKind, &'static str
         let reason = "the model has no piecewise function";
         (SkipKind::NotApplicable, reason)
     } else {
-        let reason = "no state was found whose neighbours are in its regime";
+        let reason =
+            "every sampled state is too close to a switching surface or to the edge of the domain";
         (SkipKind::NotRun, reason)
     }
 }
