@@ -1,51 +1,51 @@
-//! The syntax tree of one expression, before any name is looked up. Names, units and
-//! meaning are given by `resolve`, which turns this tree into [`crate::model::Expr`].
+//! Syntax tree of one expression, before names are resolved. `resolve` turns it into
+//! [`crate::model::Expr`].
 
 use crate::span::Span;
 
-/// An expression as written, with the place of every part.
+/// Expression as written, with the position of every part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Syntax {
-    /// What stands here.
+    /// Form of the expression.
     pub kind: SyntaxKind,
-    /// Where it stands.
+    /// Position of the expression.
     pub span: Span,
 }
 
-/// The forms of an expression as written.
+/// Forms of an expression.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SyntaxKind {
-    /// A numeric literal.
+    /// Numeric literal.
     Number(f64),
-    /// A name on its own.
+    /// Name.
     Name(String),
-    /// `name[index]`, an element of a field's modes inside a sum.
+    /// `name[index]`, an element of a field's modes in a sum.
     Element {
-        /// The indexed name (a field's mode coordinates, or `phi`).
+        /// The indexed name: mode coordinates of a field, or `phi`.
         name: String,
-        /// The sum's index.
+        /// The index of the sum.
         index: String,
-        /// Where the index stands.
+        /// Position of the index.
         index_span: Span,
     },
     /// `function(arguments)`.
     Call {
-        /// The function's name.
+        /// Name of the function.
         function: String,
-        /// Where the function's name stands.
+        /// Position of the name.
         function_span: Span,
-        /// The arguments in order.
+        /// Arguments in order.
         arguments: Vec<Syntax>,
     },
-    /// `[a, b, c]`, a vector by its components.
+    /// `[a, b, c]`, a vector from its components.
     Vector(Vec<Syntax>),
-    /// `of.member`: a component of a vector, or what a frame has.
+    /// `of.member`, a component of a vector or a member of a frame.
     Member {
-        /// What has the member.
+        /// The vector or the frame.
         of: Box<Syntax>,
-        /// The member's name.
+        /// Name of the member.
         member: String,
-        /// Where the member's name stands.
+        /// Position of the name.
         member_span: Span,
     },
     /// `-operand`.
@@ -55,7 +55,7 @@ pub enum SyntaxKind {
 }
 
 impl Syntax {
-    /// Sees this expression and all that it is made of.
+    /// Calls `see` with this expression and all its parts.
     pub fn visit(&self, see: &mut impl FnMut(&Syntax)) {
         see(self);
         match &self.kind {
@@ -77,7 +77,8 @@ impl Syntax {
     }
 }
 
-/// The binary operators; `^` binds tightest and to the right, above unary minus.
+/// Binary operators. `^` has the highest precedence and is right-associative, above unary
+/// minus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum BinaryOperator {
     /// `+`

@@ -1,6 +1,5 @@
-//! What is wrong with a specification, as data, and how it is shown: to people with the
-//! text underlined, to programs as one record for each finding. Which findings there are
-//! is decided elsewhere.
+//! Findings on a specification: rendered for people with the text underlined, or as records for
+//! programs.
 
 use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
 use serde::Serialize;
@@ -9,47 +8,46 @@ use crate::source::{Source, character_start};
 use crate::span::Span;
 use crate::visible::visible;
 
-/// The most findings listed; one bad file can hold thousands.
+/// Largest number of findings listed; one bad file can have thousands.
 pub const MAX_LISTED: usize = 20;
 
-/// How bad a finding is.
+/// Severity of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
     /// The specification cannot be used.
     Error,
-    /// It can be used, and is perhaps not what was meant.
+    /// The specification is valid, but possibly not as intended.
     Warning,
 }
 
-/// A remark on a part of the text.
+/// Remark on a part of the text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Label {
     /// The part.
     pub span: Span,
-    /// The remark, may be empty.
+    /// The remark; may be empty.
     pub text: String,
 }
 
 /// One finding.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
-    /// How bad it is.
+    /// Severity.
     pub severity: Severity,
-    /// What is wrong, in one line.
+    /// The cause, in one line.
     pub message: String,
-    /// Where it is wrong; None where it is the file as a whole.
+    /// The place; `None` for the file as a whole.
     pub primary: Option<Label>,
     /// Other places that explain it.
     pub secondary: Vec<Label>,
-    /// What would be right, if known.
+    /// The cure, if known.
     pub help: Option<String>,
-    /// For the name of something declared that nothing refers to: what it is. People read all
-    /// of a kind in one line.
+    /// Kind of an unused declaration. `render` prints all unused names of a kind in one line.
     pub unused: Option<Declared>,
 }
 
-/// What can be declared and not used.
+/// Kind of a declaration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Declared {
     /// A parameter.
@@ -71,7 +69,7 @@ impl Declared {
 }
 
 impl Diagnostic {
-    /// An error, so far without a place.
+    /// Creates an error without a place.
     pub fn error(message: impl Into<String>) -> Self {
         Self {
             severity: Severity::Error,
@@ -83,7 +81,7 @@ impl Diagnostic {
         }
     }
 
-    /// A warning of something declared that nothing refers to.
+    /// Creates a warning about a declared name that nothing refers to.
     pub fn unused(kind: Declared, name: &str, span: Span) -> Self {
         Self {
             unused: Some(kind),
@@ -93,7 +91,7 @@ impl Diagnostic {
         .help("remove it, or use it where it was meant")
     }
 
-    /// A warning, so far without a place.
+    /// Creates a warning without a place.
     pub fn warning(message: impl Into<String>) -> Self {
         Self {
             severity: Severity::Warning,
@@ -101,7 +99,7 @@ impl Diagnostic {
         }
     }
 
-    /// The same finding, placed here.
+    /// Sets the place.
     pub fn at(mut self, span: Span, label: impl Into<String>) -> Self {
         self.primary = Some(Label {
             span,
@@ -110,7 +108,7 @@ impl Diagnostic {
         self
     }
 
-    /// The same finding with a further place.
+    /// Adds a related place.
     pub fn also(mut self, span: Span, label: impl Into<String>) -> Self {
         self.secondary.push(Label {
             span,
@@ -119,13 +117,13 @@ impl Diagnostic {
         self
     }
 
-    /// The same finding with what would be right.
+    /// Sets the cure.
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
     }
 
-    /// The same finding with what would be right, if that is known.
+    /// Sets the cure, if there is one.
     pub fn help_if(mut self, help: Option<String>) -> Self {
         self.help = help.or(self.help);
         self
@@ -140,29 +138,29 @@ pub struct Diagnostics {
     omitted: usize,
 }
 
-/// A finding as programs read it.
+/// A finding as written for programs.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Record {
     /// The file.
     pub file: String,
-    /// Line from 1, if there is a place.
+    /// Line, from 1, if there is a place.
     pub line: Option<usize>,
-    /// Column in characters from 1, if there is a place.
+    /// Column in characters, from 1, if there is a place.
     pub column: Option<usize>,
     /// Line of the first character after the place.
     pub end_line: Option<usize>,
     /// Column of the first character after the place.
     pub end_column: Option<usize>,
-    /// How bad it is.
+    /// Severity.
     pub severity: Severity,
-    /// What is wrong.
+    /// The cause.
     pub message: String,
-    /// What would be right, if known.
+    /// The cure, if known.
     pub help: Option<String>,
 }
 
 impl Diagnostics {
-    /// No findings yet.
+    /// Returns an empty list for a source.
     pub fn new(source: Source) -> Self {
         Self {
             source,
@@ -171,24 +169,24 @@ impl Diagnostics {
         }
     }
 
-    /// One finding.
+    /// Returns a list of one finding.
     pub fn one(source: Source, diagnostic: Diagnostic) -> Self {
         let mut diagnostics = Self::new(source);
         diagnostics.push(diagnostic);
         diagnostics
     }
 
-    /// Adds a finding; beyond [`MAX_LISTED`] it is only counted.
+    /// Adds a finding, or only counts it beyond [`MAX_LISTED`].
     pub fn push(&mut self, diagnostic: Diagnostic) {
         if self.is_full() {
             self.omitted += 1;
-        // What is wrong with a vector is wrong with each of its components.
+        // Each component of a vector repeats the same finding.
         } else if !self.list.contains(&diagnostic) {
             self.list.push(diagnostic);
         }
     }
 
-    /// Adds a finding that is costly to make; beyond [`MAX_LISTED`] it is not made.
+    /// Adds a finding that is costly to build; beyond [`MAX_LISTED`] it is counted and not built.
     pub fn push_with(&mut self, make: impl FnOnce() -> Diagnostic) {
         if self.is_full() {
             self.omitted += 1;
@@ -197,39 +195,38 @@ impl Diagnostics {
         }
     }
 
-    /// Adds the error, if it is one, and passes on what is not.
+    /// Adds the error, or returns the value.
     pub fn keep<T>(&mut self, result: Result<T, Diagnostic>) -> Option<T> {
         result.map_err(|diagnostic| self.push(diagnostic)).ok()
     }
 
-    /// Whether further findings are only counted.
+    /// Returns true if further findings are only counted.
     pub fn is_full(&self) -> bool {
         self.list.len() >= MAX_LISTED
     }
 
-    /// Whether there is nothing to say.
+    /// Returns true if there are no findings.
     pub fn is_empty(&self) -> bool {
         self.list.is_empty()
     }
 
-    /// The findings, in the order in which they were made.
+    /// Returns the findings, in the order in which they were added.
     pub fn list(&self) -> &[Diagnostic] {
         &self.list
     }
 
-    /// How many findings are only counted.
+    /// Returns the number of findings that are only counted.
     pub fn omitted(&self) -> usize {
         self.omitted
     }
 
-    /// The text they are about.
+    /// Returns the source of the findings.
     pub fn source(&self) -> &Source {
         &self.source
     }
 
-    /// All findings for people: file, line and column, the text underlined, what is wrong
-    /// and what would be right; what is not used in one line. With `colour`, with terminal
-    /// escapes.
+    /// Renders all findings for people: file, line and column, underlined text, cause and cure.
+    /// Unused names take one line per kind. `colour` adds terminal escapes.
     pub fn render(&self, colour: bool) -> String {
         let renderer = if colour {
             Renderer::styled()
@@ -253,14 +250,14 @@ impl Diagnostics {
             parts.push(format!("and {} more", self.omitted));
         }
         let text = parts.join("\n\n");
-        // With colour the renderer escapes what it is given, and adds escapes of its own.
+        // With colour, the renderer escapes the text itself and adds its own escapes.
         match colour {
             true => text,
             false => visible(&text).into_owned(),
         }
     }
 
-    /// For each kind of thing of which any is not used, their names and places.
+    /// Returns one line for each kind of declaration with unused names.
     fn unused_lines(&self) -> Vec<String> {
         let kinds = [Declared::Parameter, Declared::Input, Declared::Definition];
         let kinds = kinds.into_iter();
@@ -292,7 +289,7 @@ impl Diagnostics {
         ))
     }
 
-    /// All findings for programs.
+    /// Returns all findings for programs.
     pub fn records(&self) -> Vec<Record> {
         self.list.iter().map(|d| self.record(d)).collect()
     }
@@ -354,8 +351,8 @@ impl Diagnostics {
             .annotations(others)
     }
 
-    /// The lines that hold all labels, and the number of the first: rendering takes time
-    /// for every line it is given.
+    /// Returns the lines that contain all labels, and the number of the first line. Rendering time
+    /// grows with the lines given.
     fn excerpt(&self, primary: &Label, others: &[Label]) -> (std::ops::Range<usize>, usize) {
         let span = |whole: Span, label: &Label| whole.join(label.span);
         let whole = self.inside(others.iter().fold(primary.span, span));
@@ -369,7 +366,7 @@ impl Diagnostics {
         (start..end, self.source.place(start).line)
     }
 
-    /// The span as byte offsets of whole characters within the text.
+    /// Clamps a span to whole characters of the text.
     fn inside(&self, span: Span) -> std::ops::Range<usize> {
         let text = &self.source.text;
         let start = character_start(text, span.start);
@@ -386,8 +383,8 @@ impl std::fmt::Display for Diagnostics {
 
 impl std::error::Error for Diagnostics {}
 
-/// A piece of somebody's text for use in a message: at most 48 characters, control
-/// characters replaced, in backquotes.
+/// Quotes user text for a message: at most 48 characters in backquotes, control characters
+/// replaced by spaces.
 pub fn quoted(text: &str) -> String {
     let clean = |letter: char| if letter.is_control() { ' ' } else { letter };
     let mut shown: String = text.chars().take(48).map(clean).collect();
@@ -402,7 +399,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_finding_shows_place_text_and_advice() {
+    fn finding_shows_place_text_and_help() {
         let source = Source::new("arm.toml", "[a]\nb = \"k_s*x\"\n");
         let diagnostic = Diagnostic::error("unknown name `k_s`")
             .at(Span::new(9, 12), "not declared")
@@ -439,7 +436,7 @@ mod tests {
     }
 
     #[test]
-    fn thousands_of_findings_are_counted_not_listed() {
+    fn findings_beyond_the_limit_are_counted() {
         let mut diagnostics = Diagnostics::new(Source::new("arm.toml", "a"));
         for number in 0..1000 {
             let message = format!("wrong {number}");
@@ -450,7 +447,7 @@ mod tests {
     }
 
     #[test]
-    fn the_same_finding_is_said_once() {
+    fn repeated_finding_is_listed_once() {
         let mut diagnostics = Diagnostics::new(Source::new("arm.toml", "a"));
         for place in [0, 1, 0] {
             diagnostics.push(Diagnostic::error("wrong").at(Span::new(place, 1), ""));

@@ -1,6 +1,5 @@
-//! From TOML to raw entries: which sections a specification has and which it needs. The
-//! entries of a section are the business of `entries`; names are not looked up and
-//! expressions not parsed here.
+//! Reads the sections of a specification from TOML to raw entries. `entries` reads one entry;
+//! names and expressions are not resolved here.
 
 use toml_edit::Document as Toml;
 
@@ -17,13 +16,13 @@ use crate::suggest::did_you_mean;
 use crate::table::{Entry, Name, Quantity, entries};
 use crate::toml_file::grammar_error;
 
-/// The most named things a specification may hold.
+/// Largest number of entries in a section.
 pub const MAX_ENTRIES: usize = 2000;
 
 /// Reads the sections of a specification.
 ///
 /// # Errors
-/// All that is wrong with its grammar, sections and keys.
+/// All errors of TOML grammar, sections and keys.
 pub fn read(source: &Source) -> Result<Document, Diagnostics> {
     let text: &str = &source.text;
     let toml = Toml::parse(text)
@@ -45,7 +44,7 @@ pub fn read(source: &Source) -> Result<Document, Diagnostics> {
 fn empty() -> Diagnostic {
     Diagnostic::error("the specification is empty")
         .at(Span::new(0, 0), "expected sections")
-        .help("needed are [model] with a name, [coordinates] (or [fields.NAME]) and [kinetic]")
+        .help("write [model] with a name, [coordinates] (or [fields.NAME]) and [kinetic]")
 }
 
 struct Reader<'d> {
@@ -118,7 +117,7 @@ impl<'d> Reader<'d> {
             let missing = missing.join(" and ");
             self.found.push(
                 Diagnostic::error(format!("a model needs {missing} with at least one entry"))
-                    .at(document.name.span, "this model has none")
+                    .at(document.name.span, "the model has none")
                     .help(
                         "for example [coordinates] theta = { unit = \"rad\" } and \
                            [kinetic] arm = \"1/2*J*dot(theta)^2\"",
@@ -127,7 +126,6 @@ impl<'d> Reader<'d> {
         }
     }
 
-    /// The model's name and title.
     fn model(&mut self) -> Option<(Name, String)> {
         let Some(entry) = self.section("model").cloned() else {
             let help = "begin with [model] and name = \"my_machine\"";
@@ -150,18 +148,18 @@ impl<'d> Reader<'d> {
         Some((name, title))
     }
 
-    /// The model's gravity, if it has one.
+    /// Reads the gravity of the model, if it has one.
     fn gravity(&mut self) -> Option<Vec<Quantity>> {
         let model = self.section("model")?.table("{ }").ok()?;
         let entry = model
             .into_iter()
             .find(|entry| entry.name.text == "gravity")?;
-        // A model without any energy lacks more than bodies.
+        // A model without any energy gets a more general finding.
         if self.section("bodies").is_none() && self.section("kinetic").is_some() {
             self.found.push(
-                Diagnostic::error("`gravity` pulls at nothing: there are no [bodies]")
-                    .at(entry.name.span, "it acts on bodies alone")
-                    .help("other weights are energies: write m*g*height in [potential]"),
+                Diagnostic::error("`gravity` has no effect: the model has no [bodies]")
+                    .at(entry.name.span, "it acts only on bodies")
+                    .help("without bodies, write the energy m*g*height in [potential]"),
             );
             return None;
         }
@@ -169,7 +167,7 @@ impl<'d> Reader<'d> {
         self.found.keep(components)
     }
 
-    /// All entries of a section.
+    /// Reads all entries of a section.
     fn collect<T>(
         &mut self,
         section: &str,
@@ -181,7 +179,7 @@ impl<'d> Reader<'d> {
         }
     }
 
-    /// Points and lines, if there is a drawing.
+    /// Reads the points and lines of `[drawing]`, if there is one.
     fn drawing(&mut self) -> Option<RawDrawing> {
         let entry = self.section("drawing").cloned()?;
         let example = "{ } or [drawing.points]";
@@ -199,7 +197,7 @@ impl<'d> Reader<'d> {
         Some(drawing)
     }
 
-    /// All entries of the table of a section.
+    /// Reads all entries of a table.
     fn entries<T>(
         &mut self,
         table: &Entry<'d>,
@@ -233,10 +231,10 @@ fn unknown_section(name: &Name) -> Diagnostic {
 
 fn misplaced_order(name: &Name, has_fields: bool) -> Diagnostic {
     let diagnostic = if has_fields {
-        Diagnostic::error("`order` does not belong here").help("it stands under [fields.NAME]")
+        Diagnostic::error("`order` does not belong here").help("move it to [fields.NAME]")
     } else {
         Diagnostic::error("`order` is given, but the model has no field")
-            .help("leave it out: only a field has a modal truncation order")
+            .help("remove it: only a field has a modal truncation order")
     };
-    diagnostic.at(name.span, "the order of what?")
+    diagnostic.at(name.span, "not part of a field")
 }

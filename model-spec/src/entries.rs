@@ -1,5 +1,4 @@
-//! Reading one entry of each section: which of its keys it needs, and of which kind their
-//! values are.
+//! Reads one entry of each section: the required keys and the kinds of their values.
 
 use crate::diagnostic::{Diagnostic, Diagnostics, quoted};
 use crate::keys;
@@ -24,7 +23,7 @@ const BODY_EXAMPLE: &str = "{ frame = \"link_1\", mass = \"m_1\" }";
 const FIELD_EXAMPLE: &str = "{ along = \"x\", from = 0, to = \"l\", basis = \"clamped_free\", \
                              coordinates = \"q\", order = 4, unit = \"m\" }";
 
-/// A string that is used as a name.
+/// Converts a string to a name.
 pub fn name_of(written: Written) -> Name {
     Name {
         text: written.text,
@@ -32,7 +31,7 @@ pub fn name_of(written: Written) -> Name {
     }
 }
 
-/// An entry of `[parameters]`.
+/// Reads an entry of `[parameters]`.
 pub fn parameter(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawParameter> {
     let record = entry.record(&keys::PARAMETER, PARAMETER_EXAMPLE, found)?;
     let help = "give a number in the declared unit, or an expression of other parameters";
@@ -49,7 +48,7 @@ pub fn parameter(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawParame
     })
 }
 
-/// The `uncertainty` of a parameter, if it has one.
+/// Reads the `uncertainty` of a parameter, if it has one.
 fn uncertainty(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawUncertainty> {
     let entry = record.get("uncertainty")?;
     let record = entry.record(&keys::UNCERTAINTY, UNCERTAINTY_EXAMPLE, found)?;
@@ -58,7 +57,7 @@ fn uncertainty(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawUncert
         .filter_map(|key| record.get(key))
         .collect();
     let [one] = given[..] else {
-        let message = format!("an uncertainty is said in one way, not in {}", given.len());
+        let message = format!("an uncertainty has one key, not {}", given.len());
         found.push(
             Diagnostic::error(message)
                 .at(entry.span(), "expected one of relative, sd, between")
@@ -73,15 +72,17 @@ fn uncertainty(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawUncert
             (Quantity::Number(low), Quantity::Number(high)) => {
                 Ok(RawUncertainty::Between([low, high]))
             }
-            _ => Err(Diagnostic::error("the ends of an uncertainty are numbers")
-                .at(one.span(), "no expression stands here")
-                .help("write them in the parameter's unit, as { between = [1, 2] }")),
+            _ => Err(
+                Diagnostic::error("the ends of an uncertainty must be numbers")
+                    .at(one.span(), "expected two numbers")
+                    .help("write them in the parameter's unit, for example { between = [1, 2] }"),
+            ),
         }),
     };
     found.keep(raw)
 }
 
-/// An entry of `[coordinates]`.
+/// Reads an entry of `[coordinates]`.
 pub fn coordinate(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawCoordinate> {
     let record = entry.record(&keys::COORDINATE, COORDINATE_EXAMPLE, found)?;
     Some(RawCoordinate {
@@ -103,12 +104,12 @@ fn range(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawRange> {
 }
 
 fn required_unit(record: &Record<'_>, found: &mut Diagnostics) -> Option<Written> {
-    let help = "give the SI unit, such as unit = \"m\" or unit = \"rad\"";
+    let help = "give the SI unit, for example unit = \"m\" or unit = \"rad\"";
     let unit = record.require("unit", help, found)?.written();
     found.keep(unit)
 }
 
-/// An entry of `[inputs]`.
+/// Reads an entry of `[inputs]`.
 pub fn input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawInput> {
     let record = entry.record(&keys::INPUT, "{ unit = \"N m\" }", found)?;
     Some(RawInput {
@@ -121,7 +122,7 @@ pub fn input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawInput> {
     })
 }
 
-/// How many rates of an input are given: none, or both that an energy needs.
+/// Reads the number of given rates of an input: 0 or 2, because an energy needs both.
 fn rates(record: &Record<'_>, found: &mut Diagnostics) -> u8 {
     let Some((number, span)) = record
         .get("rates")
@@ -130,23 +131,20 @@ fn rates(record: &Record<'_>, found: &mut Diagnostics) -> u8 {
         return 0;
     };
     if number != 2 {
-        let diagnostic =
-            Diagnostic::error(format!("{number} rates of an input are not known here"))
-                .at(span, "expected 2")
-                .help(
-                    "rates = 2: the rate and the second rate are inputs too, `s_dot` and `s_ddot`",
-                );
+        let diagnostic = Diagnostic::error(format!("an input cannot have {number} given rates"))
+            .at(span, "expected 2")
+            .help("with rates = 2 the first and second rate are inputs too: `s_dot` and `s_ddot`");
         found.push(diagnostic);
         return 0;
     }
     2
 }
 
-/// An entry of `[states]`.
+/// Reads an entry of `[states]`.
 pub fn state(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawState> {
     let record = entry.record(&keys::STATE, STATE_EXAMPLE, found)?;
     let unit = required_unit(&record, found);
-    let help = "give its derivative by the time: rate = \"(k*x - z)/tau\"";
+    let help = "give its time derivative: rate = \"(k*x - z)/tau\"";
     let rate = record.require("rate", help, found)?.quantity();
     Some(RawState {
         name: entry.name.clone(),
@@ -158,7 +156,7 @@ pub fn state(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawState> {
     })
 }
 
-/// An entry of `[constraints]`.
+/// Reads an entry of `[constraints]`.
 pub fn constraint(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawTerm> {
     let record = entry.record(&keys::CONSTRAINT, CONSTRAINT_EXAMPLE, found)?;
     let help = "give the expression that stays zero: zero = \"x^2 + y^2 - l^2\"";
@@ -171,12 +169,12 @@ pub fn constraint(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawTerm>
     })
 }
 
-/// An entry of `[impacts]` and its restitution.
+/// Reads an entry of `[impacts]` and its restitution.
 pub fn impact(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<(RawTerm, Quantity)> {
     let record = entry.record(&keys::IMPACT, IMPACT_EXAMPLE, found)?;
-    let help = "give the distance that falls through zero: when = \"y\"";
+    let help = "give the distance that crosses zero at the impact: when = \"y\"";
     let when = record.require("when", help, found).map(Entry::quantity);
-    let help = "say what part of the speed comes back, from 0 to 1: restitution = 0.8";
+    let help = "give the coefficient of restitution, from 0 to 1: restitution = 0.8";
     let restitution = record.require("restitution", help, found);
     let restitution = restitution.map(Entry::quantity);
     let term = RawTerm {
@@ -188,7 +186,7 @@ pub fn impact(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<(RawTerm, Qu
     Some((term, found.keep(restitution?)?))
 }
 
-/// A `[fields.NAME]`.
+/// Reads a section `[fields.NAME]`.
 pub fn field(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawField> {
     let record = entry.record(&keys::FIELD, FIELD_EXAMPLE, found)?;
     let along = record
@@ -200,12 +198,12 @@ pub fn field(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawField> {
     let to = record
         .require("to", "give the end of the domain: to = \"l\"", found)
         .cloned();
-    let help = "the mode shapes: basis = \"clamped_free\"";
+    let help = "give the mode shapes: basis = \"clamped_free\"";
     let basis = record.require("basis", help, found).cloned();
     let help = "name the mode coordinates: coordinates = \"q\"";
     let coordinates = record.require("coordinates", help, found).cloned();
     let order = record
-        .require("order", "how many modes: order = 4", found)
+        .require("order", "give the number of modes: order = 4", found)
         .cloned();
     Some(RawField {
         name: entry.name.clone(),
@@ -220,7 +218,7 @@ pub fn field(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawField> {
     })
 }
 
-/// What `basis` and `table` say together.
+/// Reads `basis` and `table`.
 fn basis_of(record: &Record<'_>, basis: &Entry<'_>, found: &mut Diagnostics) -> Option<RawBasis> {
     let written = found.keep(basis.written())?;
     let table = record.get("table");
@@ -232,9 +230,9 @@ fn basis_of(record: &Record<'_>, basis: &Entry<'_>, found: &mut Diagnostics) -> 
     let named = found.keep(basis_named(&written))?;
     if let Some(table) = table {
         found.push(
-            Diagnostic::error("a table of shapes beside a basis that has its own")
-                .at(table.name.span, "not read")
-                .help("write basis = \"table\", or leave the table out"),
+            Diagnostic::error("`table` is given, but the basis is not \"table\"")
+                .at(table.name.span, "this file is not read")
+                .help("write basis = \"table\", or remove `table`"),
         );
         return None;
     }
@@ -251,23 +249,23 @@ fn basis_named(written: &Written) -> Result<Basis, Diagnostic> {
             .map(|(name, _)| *name)
             .chain([keys::TABLE]);
         unknown.help(did_you_mean(&written.text, names).unwrap_or_else(|| {
-            "a beam has an end at `from` and one at `to`, each clamped, pinned, free or guided, as \
-             pinned_clamped; others are rod_fixed_free, rod_fixed_fixed, rod_free_free, string, \
-             table (shapes of a file) and clamped_free_printed"
+            "a beam is named by its ends at `from` and `to`: clamped, pinned, free or guided, as \
+             pinned_clamped; the others are rod_fixed_free, rod_fixed_fixed, rod_free_free, string, \
+             table (shapes from a file) and clamped_free_printed"
                 .to_owned()
         }))
     })
 }
 
-/// How the value of a term is read.
+/// Reader of a term's value.
 type Read<'d> = fn(&Entry<'d>) -> Result<Quantity, Diagnostic>;
 
-/// An entry of an energy or of the dissipation.
+/// Reads an entry of an energy or of the dissipation.
 pub fn term(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawTerm> {
     named_expression(entry, Entry::quantity, found)
 }
 
-/// An entry of `[definitions]`.
+/// Reads an entry of `[definitions]`.
 pub fn definition(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawTerm> {
     named_expression(entry, Entry::scalar_or_vector, found)
 }
@@ -289,7 +287,7 @@ fn named_expression<'d>(
     term_of(&record, read, found)
 }
 
-/// The named expression of a table with at least `value`.
+/// Reads a named expression from a table with at least `value`.
 fn term_of<'d>(record: &Record<'d>, read: Read<'d>, found: &mut Diagnostics) -> Option<RawTerm> {
     let help = "give an expression: value = \"...\"";
     let value = read(record.require("value", help, found)?);
@@ -301,10 +299,10 @@ fn term_of<'d>(record: &Record<'d>, read: Read<'d>, found: &mut Diagnostics) -> 
     })
 }
 
-/// An entry of `[forces]` and what it works on.
+/// Reads an entry of `[forces]` and the quantity it acts on.
 pub fn force(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<(RawTerm, Quantity)> {
     let record = entry.record(&keys::FORCE, FORCE_EXAMPLE, found)?;
-    let help = "say what the force does work on: on = \"theta\"";
+    let help = "give the coordinate or displacement the force acts on: on = \"theta\"";
     let on = record
         .require("on", help, found)
         .map(Entry::scalar_or_vector);
@@ -312,7 +310,7 @@ pub fn force(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<(RawTerm, Qua
     Some((term?, found.keep(on?)?))
 }
 
-/// An entry of `[observables]` and its declared unit.
+/// Reads an entry of `[observables]` and its declared unit.
 pub fn observable(
     entry: &Entry<'_>,
     found: &mut Diagnostics,
@@ -325,7 +323,7 @@ pub fn observable(
     Some((term_of(&record, Entry::scalar_or_vector, found)?, unit))
 }
 
-/// A `[frames.NAME]`.
+/// Reads a section `[frames.NAME]`.
 pub fn frame(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawFrame> {
     let record = entry.record(&keys::FRAME, FRAME_EXAMPLE, found)?;
     let origin = record.get("origin");
@@ -339,7 +337,7 @@ pub fn frame(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawFrame> {
     })
 }
 
-/// A `[bodies.NAME]`.
+/// Reads a section `[bodies.NAME]`.
 pub fn body(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawBody> {
     let record = entry.record(&keys::BODY, BODY_EXAMPLE, found)?;
     let mut list = |key: &str, counts: &[usize], example: &str| {
@@ -358,7 +356,7 @@ pub fn body(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawBody> {
             let name = quoted(&entry.name.text);
             found.push(
                 Diagnostic::error(format!("the body {name} has no `mass` and no `inertia`"))
-                    .at(entry.name.span, "it has no energy")
+                    .at(entry.name.span, "its energy would be zero")
                     .help("give its mass: mass = \"m\""),
             );
             return None;
@@ -377,7 +375,7 @@ pub fn body(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawBody> {
     })
 }
 
-/// An entry of `[coefficients]`.
+/// Reads an entry of `[coefficients]`.
 pub fn coefficient(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawCoefficient> {
     let name = entry.name.clone();
     if !entry.is_table() {
@@ -404,12 +402,15 @@ fn coefficient_kind(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawC
         let others = ["of", "by", "times"];
         if let Some(other) = others.iter().find_map(|key| record.get(key)) {
             let known = ["value", "each", "doc"];
-            found.push(unknown_key(&other.name, &known).help("give either value, or of and by"));
+            found.push(
+                unknown_key(&other.name, &known).help("give either `value`, or `of` and `by`"),
+            );
             return None;
         }
         return found.keep(value.quantity()).map(RawCoefficientKind::Value);
     }
-    let help = "give `of` (whose acceleration) and `by` (the quantity multiplied), or `value`";
+    let help =
+        "give `of` (the coordinate of the equation) and `by` (the quantity multiplied), or `value`";
     let of = record.require("of", help, found)?.quantity();
     let by = record.require("by", help, found)?.quantity();
     let times = record.quantity("times", found);
@@ -420,7 +421,7 @@ fn coefficient_kind(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawC
     ))
 }
 
-/// A `[sensors.CHANNEL]`.
+/// Reads a section `[sensors.CHANNEL]`.
 pub fn sensor(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawSensor> {
     let record = entry.record(&keys::SENSOR, "{ gain = 1, bias = 0 }", found)?;
     let observable = record.written("observable", found);
@@ -434,10 +435,10 @@ pub fn sensor(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawSensor> {
     })
 }
 
-/// An entry of `[drawing.points]`.
+/// Reads an entry of `[drawing.points]`.
 pub fn point(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawPoint> {
     let record = entry.record(&keys::POINT, "{ x = \"tip_x\", y = \"tip_y\" }", found)?;
-    let help = "a number in m, or the name of an observable or a coordinate that is a length";
+    let help = "give a number in m, or the name of an observable or a coordinate in m";
     let x = record.require("x", help, found).map(Entry::quantity);
     let y = record.require("y", help, found).map(Entry::quantity);
     let (x, y) = (x.and_then(|x| found.keep(x)), y.and_then(|y| found.keep(y)));
@@ -448,7 +449,7 @@ pub fn point(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawPoint> {
     })
 }
 
-/// An entry of `[drawing.lines]`.
+/// Reads an entry of `[drawing.lines]`.
 pub fn line(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawLine> {
     let points = found.keep(entry.list("[\"origin\", \"tip\"]"))?;
     let count = points.len();
@@ -459,8 +460,8 @@ pub fn line(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawLine> {
     if count < 2 {
         let name = quoted(&entry.name.text);
         found.push(
-            Diagnostic::error(format!("the line {name} goes nowhere"))
-                .at(entry.span(), "a line joins two points or more")
+            Diagnostic::error(format!("the line {name} has fewer than two points"))
+                .at(entry.span(), "a line joins at least two points")
                 .help("for example [\"origin\", \"tip\"]"),
         );
     }

@@ -1,19 +1,18 @@
-//! Text files beside a specification: in its folder or below, no larger than a limit.
+//! Reads text files in the folder of a specification or below it, up to a size limit.
 
 use std::io::Read;
 use std::path::{Component, Path, PathBuf};
 
-/// The largest file read, in bytes.
+/// Largest file read, in bytes.
 const MAX_SIZE: u64 = 8 << 20;
 
-/// What is wrong with a file, as the rest of a sentence that begins with its name, and what would
-/// be right.
+/// Cause, as the rest of a sentence that begins with the file's name, and cure.
 pub struct Refused(pub String, pub &'static str);
 
-/// The text of the file of that name.
+/// Reads the file of that name.
 ///
 /// # Errors
-/// A name that leads out of the folder, a file that cannot be read, is too large or is not UTF-8.
+/// A name outside the folder; a file that cannot be read, is too large or is not UTF-8.
 pub fn read(folder: &Path, name: &str) -> Result<String, Refused> {
     let bytes = bytes(&beside(folder, name)?)?;
     match text(&bytes) {
@@ -25,7 +24,7 @@ pub fn read(folder: &Path, name: &str) -> Result<String, Refused> {
     }
 }
 
-/// Links are followed: where they lead counts.
+/// Resolves a name, following symbolic links before the check.
 fn beside(folder: &Path, name: &str) -> Result<PathBuf, Refused> {
     let relative = Path::new(name);
     let inside = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
@@ -34,22 +33,22 @@ fn beside(folder: &Path, name: &str) -> Result<PathBuf, Refused> {
         false => folder,
     };
     let place = folder.join(relative);
-    // What is not there is said by whoever reads it.
+    // A missing file is reported by the caller.
     let leads_out = match (place.canonicalize(), folder.canonicalize()) {
         (Ok(place), Ok(folder)) => !place.starts_with(folder),
         _ => false,
     };
     if name.is_empty() || leads_out || !relative.components().all(inside) {
         return Err(Refused(
-            "lies outside the specification's folder".to_owned(),
-            "give the name of a file beside the specification or below",
+            "is outside the specification's folder".to_owned(),
+            "move the file into the folder of the specification or below",
         ));
     }
     Ok(place)
 }
 
 fn bytes(path: &Path) -> Result<Vec<u8>, Refused> {
-    let help = "give the name of a file beside the specification or below";
+    let help = "give the path of a file, relative to the specification";
     let unreadable = |error: std::io::Error| Refused(format!("cannot be read: {error}"), help);
     let too_large = || {
         let limit = MAX_SIZE >> 20;
@@ -64,7 +63,7 @@ fn bytes(path: &Path) -> Result<Vec<u8>, Refused> {
     }
     let mut bytes = Vec::new();
     let file = std::fs::File::open(path).map_err(unreadable)?;
-    // The file may have grown since.
+    // The file may have grown since `metadata`.
     let read = file.take(MAX_SIZE + 1).read_to_end(&mut bytes);
     read.map_err(unreadable)?;
     if bytes.len() as u64 > MAX_SIZE {
@@ -73,8 +72,8 @@ fn bytes(path: &Path) -> Result<Vec<u8>, Refused> {
     Ok(bytes)
 }
 
-/// A text in UTF-8, or the line of the first byte that is part of none. A zero byte is one: the
-/// letters of UTF-16 have them.
+/// Returns the text, or the line of the first byte that is not UTF-8. A zero byte counts as an
+/// error: it indicates UTF-16.
 fn text(bytes: &[u8]) -> Result<&str, usize> {
     let line = |valid: &[u8]| valid.iter().filter(|byte| **byte == b'\n').count() + 1;
     let text = std::str::from_utf8(bytes).map_err(|error| line(&bytes[..error.valid_up_to()]))?;

@@ -1,9 +1,8 @@
-//! Operators, words and functions of other languages, and how each is written here.
+//! Operators, words and functions of other languages, with their equivalents here.
 
-/// Spellings of other languages, and the way to write the same here.
+/// Spellings in other languages, and the equivalent here.
 type Foreign = (&'static [&'static str], &'static str);
 
-/// Operators.
 const OPERATORS: [Foreign; 12] = [
     (
         &[">"],
@@ -41,7 +40,7 @@ const OPERATORS: [Foreign; 12] = [
     (&["**", "^^"], POWER),
 ];
 
-/// Words between operands or before them.
+/// Words between or before operands.
 const WORDS: [Foreign; 4] = [
     (&["and"], AND),
     (&["or"], OR),
@@ -54,7 +53,6 @@ const WORDS: [Foreign; 4] = [
     ),
 ];
 
-/// Functions.
 const FUNCTIONS: [Foreign; 9] = [
     (&["ifelse", "select", "piecewise", "Piecewise"], IF),
     (
@@ -70,22 +68,21 @@ const FUNCTIONS: [Foreign; 9] = [
     (&["ddt", "der", "derivative"], "a rate is written dot(x)"),
 ];
 
-const AND: &str = "both conditions hold where their product is 1: `above(x - a)*above(b - x)`";
-const OR: &str =
-    "one of two conditions holds where the larger is 1: `max(above(x - a), above(b - x))`";
+const AND: &str = "for both conditions write the product: `above(x - a)*above(b - x)`";
+const OR: &str = "for one of two conditions write the larger: `max(above(x - a), above(b - x))`";
 const NOT: &str = "write `1 - above(x - a)` for 1 if x <= a, else 0";
 const IF: &str = "write `above(x - a)*A + (1 - above(x - a))*B` for A if x > a, else B; `min` and `max` \
                   choose the smaller and the larger of two";
 const POWER: &str = "a power is written x^2";
 const REMAINDER: &str =
-    "there is no remainder: `atan2(sin(x), cos(x))` is the angle x between -pi and pi";
+    "there is no remainder function: `atan2(sin(x), cos(x))` is the angle x between -pi and pi";
 
-/// How an operator or a function of another language is written here.
+/// Returns the equivalent of an operator, a word or a function of another language.
 pub fn written_here(foreign: &str) -> Option<&'static str> {
     help(OPERATORS.iter().chain(&WORDS).chain(&FUNCTIONS), foreign)
 }
 
-/// How a word that stands between operands or before them is written here.
+/// Returns the equivalent of a word between or before operands.
 pub fn word_here(word: &str) -> Option<&'static str> {
     help(WORDS.iter(), word)
 }
@@ -95,7 +92,7 @@ fn help<'t>(mut table: impl Iterator<Item = &'t Foreign>, foreign: &str) -> Opti
     entry.map(|(_, help)| *help)
 }
 
-/// The operator of another language that a text begins with.
+/// Returns the operator of another language at the start of a text.
 pub fn operator_at(text: &str) -> Option<&str> {
     let run = text.chars().take(3).take_while(|letter| is_symbol(*letter));
     let length = run.map(char::len_utf8).sum();
@@ -104,7 +101,7 @@ pub fn operator_at(text: &str) -> Option<&str> {
     foreign.find(|start| written_here(start).is_some())
 }
 
-/// Returns true if a character can belong to an operator that the language does not have.
+/// Returns true if a character can be part of a foreign operator.
 fn is_symbol(letter: char) -> bool {
     !letter.is_alphanumeric() && !letter.is_whitespace() && !"_.,()[]+-".contains(letter)
 }
@@ -114,7 +111,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_longest_operator_is_found() {
+    fn longest_operator_is_found() {
         for (text, operator) in [
             (">= a", ">="),
             ("> a", ">"),

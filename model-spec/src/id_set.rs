@@ -1,13 +1,12 @@
-//! Sets of small numbers as bits: the union of two takes a word for 64 of them.
+//! Sets of small numbers as bits: a union costs one operation per 64 numbers.
 
-/// A set of small numbers.
+/// Set of small numbers.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct IdSet {
     words: Vec<u64>,
 }
 
 impl IdSet {
-    /// Adds a number.
     pub fn insert(&mut self, number: usize) {
         let word = number / 64;
         if self.words.len() <= word {
@@ -26,18 +25,16 @@ impl IdSet {
         }
     }
 
-    /// Returns true if a number is in it.
     pub fn contains(&self, number: usize) -> bool {
         let word = self.words.get(number / 64);
         word.is_some_and(|word| word & (1 << (number % 64)) != 0)
     }
 
-    /// Returns true if it holds no number.
     pub fn is_empty(&self) -> bool {
         self.words.is_empty()
     }
 
-    /// Its numbers, the smallest first.
+    /// Returns the numbers in ascending order.
     pub fn iter(&self) -> impl Iterator<Item = usize> {
         (0..64 * self.words.len()).filter(|number| self.contains(*number))
     }
@@ -48,7 +45,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_union_holds_the_numbers_of_both() {
+    fn union_contains_the_numbers_of_both() {
         let (mut one, mut other) = (IdSet::default(), IdSet::default());
         assert!(one.is_empty());
         one.insert(3);

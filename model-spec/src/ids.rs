@@ -1,7 +1,6 @@
-//! Which one of a model's lists is meant: an index with a type of its own for every list, so
-//! that none is taken for another.
+//! Typed indices into the lists of a model: the compiler rejects an index into the wrong list.
 
-/// Defines ids: indices from 0, each into lists of one kind of thing.
+/// Defines id types: indices from 0, one type for each kind of list.
 ///
 /// ```
 /// eomgen_model_spec::ids! {
@@ -21,17 +20,17 @@ macro_rules! ids {
         pub struct $id(usize);
 
         impl $id {
-            /// The one that stands there, from 0.
+            /// Creates an id from an index, from 0.
             pub const fn new(index: usize) -> Self {
                 Self(index)
             }
 
-            /// Where it stands, from 0.
+            /// Returns the index, from 0.
             pub const fn index(self) -> usize {
                 self.0
             }
 
-            /// So many, in order.
+            /// Returns the ids `0..count`, in order.
             pub fn first(count: usize) -> impl DoubleEndedIterator<Item = Self> + Clone {
                 (0..count).map(Self)
             }
@@ -68,26 +67,26 @@ macro_rules! ids {
 }
 
 ids! {
-    /// One of [`Model::parameters`](crate::model::Model::parameters).
+    /// Index into [`Model::parameters`](crate::model::Model::parameters).
     ParameterId;
-    /// One of [`Model::coordinates`](crate::model::Model::coordinates).
+    /// Index into [`Model::coordinates`](crate::model::Model::coordinates).
     CoordinateId;
-    /// One of [`Model::inputs`](crate::model::Model::inputs).
+    /// Index into [`Model::inputs`](crate::model::Model::inputs).
     InputId;
-    /// One of [`Model::states`](crate::model::Model::states).
+    /// Index into [`Model::states`](crate::model::Model::states).
     StateId;
-    /// One of [`Model::constraints`](crate::model::Model::constraints).
+    /// Index into [`Model::constraints`](crate::model::Model::constraints).
     ConstraintId;
-    /// One of [`Model::fields`](crate::model::Model::fields).
+    /// Index into [`Model::fields`](crate::model::Model::fields).
     FieldId;
-    /// One of [`Model::observables`](crate::model::Model::observables).
+    /// Index into [`Model::observables`](crate::model::Model::observables).
     ObservableId;
-    /// One of [`Drawing::points`](crate::model::Drawing::points).
+    /// Index into [`Drawing::points`](crate::model::Drawing::points).
     PointId;
-    /// One of [`Model::definitions`](crate::model::Model::definitions).
+    /// Index into [`Model::definitions`](crate::model::Model::definitions).
     DefinitionId;
-    /// One of [`Model::coefficients`](crate::model::Model::coefficients).
+    /// Index into [`Model::coefficients`](crate::model::Model::coefficients).
     CoefficientId;
-    /// One of [`RigidTree::frames`](crate::rigid_tree::RigidTree::frames).
+    /// Index into [`RigidTree::frames`](crate::rigid_tree::RigidTree::frames).
     FrameId;
 }

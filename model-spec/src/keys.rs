@@ -1,5 +1,5 @@
-//! The sections of a specification and the keys of their entries: what the reader takes, and
-//! what the schema has to list.
+//! Sections of a specification and the keys of their entries, for the reader and for the JSON
+//! schema.
 
 use crate::model::{Basis, End};
 
@@ -15,7 +15,7 @@ pub const PARAMETER: [&str; 7] = [
     "max",
     "uncertainty",
 ];
-/// Keys of the `uncertainty` of a parameter, of which it has one.
+/// Keys of the `uncertainty` of a parameter; an entry has one of them.
 pub const UNCERTAINTY: [&str; 3] = ["relative", "sd", "between"];
 /// Keys of an entry of `[coordinates]`.
 pub const COORDINATE: [&str; 5] = ["unit", "doc", "initial", "initial_rate", "range"];
@@ -23,7 +23,7 @@ pub const COORDINATE: [&str; 5] = ["unit", "doc", "initial", "initial_rate", "ra
 pub const INPUT: [&str; 4] = ["unit", "rates", "doc", "range"];
 /// Keys of an entry of `[states]`.
 pub const STATE: [&str; 5] = ["unit", "rate", "initial", "range", "doc"];
-/// Keys of a `[fields.NAME]`.
+/// Keys of a section `[fields.NAME]`.
 pub const FIELD: [&str; 9] = [
     "along",
     "from",
@@ -35,11 +35,11 @@ pub const FIELD: [&str; 9] = [
     "unit",
     "doc",
 ];
-/// Keys of a `[frames.NAME]`.
+/// Keys of a section `[frames.NAME]`.
 pub const FRAME: [&str; 4] = ["in", "origin", "rotation", "doc"];
-/// Keys of a `[bodies.NAME]`.
+/// Keys of a section `[bodies.NAME]`.
 pub const BODY: [&str; 6] = ["frame", "mass", "centre", "inertia", "doc", "source"];
-/// Keys of a definition, of a term of an energy or of the dissipation.
+/// Keys of a definition, an energy term or a dissipation term.
 pub const TERM: [&str; 3] = ["value", "doc", "source"];
 /// Keys of an entry of `[forces]`.
 pub const FORCE: [&str; 4] = ["on", "value", "doc", "source"];
@@ -51,7 +51,7 @@ pub const IMPACT: [&str; 4] = ["when", "restitution", "doc", "source"];
 pub const OBSERVABLE: [&str; 4] = ["value", "unit", "doc", "source"];
 /// Keys of an entry of `[coefficients]`.
 pub const COEFFICIENT: [&str; 6] = ["value", "of", "by", "times", "each", "doc"];
-/// Keys of a `[sensors.CHANNEL]`.
+/// Keys of a section `[sensors.CHANNEL]`.
 pub const SENSOR: [&str; 4] = ["observable", "gain", "bias", "delay"];
 
 /// Keys of `[drawing]`.
@@ -59,7 +59,8 @@ pub const DRAWING: [&str; 2] = ["points", "lines"];
 /// Keys of an entry of `[drawing.points]`.
 pub const POINT: [&str; 2] = ["x", "y"];
 
-/// The sections, each with the keys of its entries; of `[model]` and `[drawing]` their own.
+/// Sections with the keys of their entries; for `[model]` and `[drawing]`, the keys of the
+/// section.
 pub const SECTIONS: [(&str, &[&str]); 19] = [
     ("model", &MODEL),
     ("parameters", &PARAMETER),
@@ -82,15 +83,15 @@ pub const SECTIONS: [(&str, &[&str]); 19] = [
     ("drawing", &DRAWING),
 ];
 
-/// The names of the sections.
+/// Returns the names of the sections.
 pub fn sections() -> impl Iterator<Item = &'static str> {
     SECTIONS.iter().map(|(name, _)| *name)
 }
 
-/// The basis whose shapes are in a file.
+/// Name of the basis with shapes from a file.
 pub const TABLE: &str = "table";
 
-/// The other bases of a field. Rods and strings share the sines and cosines of pinned and guided beams.
+/// All other bases. Rods and strings share the sines and cosines of pinned and guided beams.
 pub static BASES: [(&str, Basis); 21] = [
     ("clamped_free", beam(End::Clamped, End::Free)),
     ("clamped_free_printed", Basis::ClampedFreePrinted),

@@ -1,20 +1,19 @@
-//! From the text of an expression to tokens. Positions are opaque to everything behind this
-//! module.
+//! Splits the text of an expression into tokens.
 
 use crate::diagnostic::{Diagnostic, quoted};
 use crate::foreign::{operator_at, written_here};
 use crate::span::Span;
 
-/// A smallest part of an expression.
+/// Token of an expression.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Token {
-    /// What it is.
+    /// Kind of the token.
     pub kind: TokenKind,
-    /// Where it stands.
+    /// Position of the token.
     pub span: Span,
 }
 
-/// The kinds of tokens.
+/// Kinds of tokens.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TokenKind {
     /// A finite number, not negative.
@@ -41,12 +40,12 @@ pub enum TokenKind {
     CloseIndex,
     /// `,`
     Comma,
-    /// `.` with no digit behind it
+    /// `.` without a digit after it
     Point,
 }
 
 impl TokenKind {
-    /// The token as a person would name it.
+    /// Returns the token for a message, in backquotes.
     pub fn shown(&self) -> String {
         match self {
             Self::Number(value) => format!("`{value}`"),
@@ -66,11 +65,11 @@ impl TokenKind {
     }
 }
 
-/// The tokens of an expression. `place` turns a range of byte offsets in `text` into a
-/// place in the source.
+/// Splits an expression into tokens. `place` maps a byte range of `text` to a range of the
+/// source.
 ///
 /// # Errors
-/// Says which character or number is not part of the language.
+/// The first character or number that is not part of the language.
 pub fn tokens(text: &str, place: impl Fn(usize, usize) -> Span) -> Result<Vec<Token>, Diagnostic> {
     let mut found = Vec::new();
     let mut start = 0;
@@ -116,7 +115,7 @@ fn token(text: &str, first: char, span: Span) -> Result<TokenKind, Diagnostic> {
     })
 }
 
-/// The finding that an operator belongs to another language.
+/// Reports an operator of another language.
 fn foreign(operator: &str, span: Span) -> Diagnostic {
     let help = written_here(operator).map(str::to_owned);
     Diagnostic::error(format!("{} is not an operator", quoted(operator)))
@@ -131,8 +130,10 @@ fn stray(letter: char, span: Span) -> Diagnostic {
         '{' | '}' => "group with ( and )".to_owned(),
         '·' | '×' => "a product is written with `*`".to_owned(),
         '−' | '–' => "this is not the minus sign `-` of the keyboard".to_owned(),
-        _ if letter.is_alphabetic() => "names are of letters a-z, digits and `_`".to_owned(),
-        _ => "an expression is made of numbers, names and + - * / ^ ( ) , [ ]".to_owned(),
+        _ if letter.is_alphabetic() => {
+            "names consist of the letters a-z and A-Z, digits and `_`".to_owned()
+        }
+        _ => "an expression consists of numbers, names and + - * / ^ ( ) , [ ]".to_owned(),
     };
     let shown = quoted(letter.encode_utf8(&mut [0; 4]));
     Diagnostic::error(format!("{shown} is not part of an expression"))
@@ -151,7 +152,7 @@ fn name_length(text: &str) -> usize {
     text.bytes().take_while(|&byte| part(byte)).count()
 }
 
-/// Digits, an optional point, an optional exponent if digits follow it.
+/// Returns the length of digits, an optional point, and an exponent if it has digits.
 fn number_length(text: &str) -> usize {
     let digits = |from: usize| {
         let rest = text.as_bytes().get(from..).unwrap_or_default();
@@ -205,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_are_read_in_every_form() {
+    fn every_number_format_is_read() {
         for (text, value) in [
             ("1", 1.0),
             (".5", 0.5),
@@ -228,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn a_point_between_names_belongs_to_no_number() {
+    fn point_between_names_is_a_token() {
         let name = |text: &str| TokenKind::Name(text.to_owned());
         assert_eq!(kinds("r.x"), [name("r"), TokenKind::Point, name("x")]);
         assert_eq!(
@@ -242,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn places_are_byte_ranges() {
+    fn token_spans_are_byte_ranges() {
         let spans: Vec<_> = tokens("a_1 *\t(b", Span::new)
             .unwrap()
             .iter()
@@ -252,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn foreign_characters_are_refused_with_advice() {
+    fn foreign_operators_are_rejected_with_help() {
         for (text, help) in [
             ("x'", "dot(x)"),
             ("x**2", "x^2"),

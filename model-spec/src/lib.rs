@@ -23,14 +23,19 @@
 //! # Ok::<(), eomgen_model_spec::diagnostic::Diagnostics>(())
 //! ```
 //!
-//! The pipeline, one file each: `source` (text and places), [`lexer`], [`parser`] (tokens
-//! to [`ast`]), `document` (TOML tables to raw entries), `names`, `expression` and `resolve` (names),
-//! `rate_order` (rates of states that lead to no circle), `motion` (what may stand where), `units_check` and `infer` (units of every expression), `checks`, `uncertainty` (how values are spread),
-//! [`model`] (the result; [`mod@ids`] say which entry of its lists is meant, [`rigid_tree`] has its frames and bodies). [`load()`] and [`check`] go all the way. What is wrong is said by
-//! [`diagnostic`]; [`shape_table`] reads mode shapes from a file beside it; [`edit`] changes a specification and keeps its comments; [`variant`] sets numbers, which [`assignment`] reads from options; [`interval`] bounds them.
-//! [`toml_file`] and [`mod@table`] read other files of TOML with their places as well. [`models`] are
-//! the specifications shipped. Nothing here knows how
-//! equations are derived.
+//! Pipeline, one file per step: `source` (text and positions), [`lexer`], [`parser`] (tokens to
+//! [`ast`]), `document` (TOML tables to raw entries), `names`, `expression` and `resolve`
+//! (names), `rate_order` (cycles among the rates of states), `motion` (quantities allowed in
+//! each section), `units_check` and `infer` (units of every expression), `checks`,
+//! `uncertainty` (spread of the parameters), [`model`] (the result). [`load()`] and [`check`]
+//! run all steps; [`diagnostic`] reports the findings.
+//!
+//! Further modules: [`mod@ids`] (indices into the lists of a model), [`rigid_tree`] (frames and
+//! bodies), [`shape_table`] (mode shapes from a file), [`edit`] (changes that keep the comments
+//! of a file), [`variant`] (changed numbers), [`assignment`] (numbers from options),
+//! [`interval`] (bounds of expressions), [`toml_file`] and [`mod@table`] (other TOML files,
+//! with positions), [`models`] (shipped specifications). The derivation of equations is in the
+//! crate `codegen`.
 
 pub mod assignment;
 pub mod ast;

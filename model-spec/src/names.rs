@@ -1,5 +1,5 @@
-//! Which names a specification declares, that they are fit to be identifiers, and that no
-//! two things, written or generated (`q_1`, `theta_dot`), share one.
+//! Declares the names of a specification. Checks that they are valid identifiers and unique,
+//! including generated names (`q_1`, `theta_dot`).
 
 use std::collections::{HashMap, HashSet};
 
@@ -13,40 +13,34 @@ use crate::raw::Document;
 use crate::span::Span;
 use crate::table::Name;
 
-/// The longest name accepted.
+/// Longest name accepted, in characters.
 pub const MAX_NAME: usize = 64;
 
-/// What a name in an expression stands for.
+/// Meaning of a name in an expression.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Symbol {
-    /// A parameter.
     Parameter(ParameterId),
-    /// A coordinate.
     Coordinate(CoordinateId),
-    /// An input.
     Input(InputId),
-    /// A state of first order.
+    /// State of first order.
     State(StateId),
-    /// A field.
     Field(FieldId),
-    /// The mode coordinates of a field.
+    /// Mode coordinates of a field.
     Modes(FieldId),
-    /// The position along one or more fields.
+    /// Position along one or more fields.
     Position,
-    /// A definition.
     Definition(DefinitionId),
-    /// A definition whose components are definitions.
+    /// Vector, with components that are definitions.
     Vector,
-    /// A coefficient.
     Coefficient(CoefficientId),
-    /// The multiplier of a constraint.
+    /// Multiplier of a constraint.
     Multiplier(ConstraintId),
-    /// The residual of a constraint.
+    /// Residual of a constraint.
     Residual(ConstraintId),
 }
 
 impl Symbol {
-    /// The kind of thing, for a message.
+    /// Returns the kind of symbol, for a message.
     pub fn kind(self) -> &'static str {
         match self {
             Self::Parameter(_) => "a parameter",
@@ -65,28 +59,26 @@ impl Symbol {
     }
 }
 
-/// The names an expression may use.
+/// Names that an expression may use.
 pub struct Names {
     symbols: HashMap<String, (Symbol, Span)>,
     observables: HashSet<String>,
-    /// For each input the one that is its rate, if that is given.
+    /// For each input, the input that is its rate, if given.
     input_rates: Vec<Option<InputId>>,
-    /// Name, position and mode coordinates of each field.
     pub fields: Vec<FieldNames>,
 }
 
-/// The names that belong to one field.
+/// Names that belong to one field.
 pub struct FieldNames {
-    /// The field.
     pub field: String,
-    /// The position along it.
+    /// Position along the field.
     pub along: String,
-    /// Its mode coordinates.
+    /// Mode coordinates.
     pub modes: String,
 }
 
 impl Names {
-    /// Declares all names of a specification and reports those that are unfit.
+    /// Declares all names of a specification and reports the invalid ones.
     pub fn declare(document: &Document, found: &mut Diagnostics) -> Self {
         found.keep(identifier(&document.name));
         let mut names = Self {
@@ -135,22 +127,20 @@ impl Names {
         names
     }
 
-    /// What a name stands for.
+    /// Returns the meaning of a name.
     pub fn get(&self, name: &str) -> Option<Symbol> {
         self.symbols.get(name).map(|(symbol, _)| *symbol)
     }
 
-    /// The input that is the rate of an input, if that is given.
+    /// Returns the input that is the rate of an input, if given.
     pub fn input_rate(&self, input: InputId) -> Option<InputId> {
         self.input_rates.get(input.index()).copied().flatten()
     }
 
-    /// Whether this is the name of an observable.
     pub fn is_observable(&self, name: &str) -> bool {
         self.observables.contains(name)
     }
 
-    /// All names.
     pub fn known(&self) -> impl Iterator<Item = &str> {
         self.symbols.keys().map(String::as_str)
     }
@@ -203,25 +193,25 @@ impl Names {
             && let Some((symbol, span)) = self.symbols.get("phi")
         {
             found.push(
-                Diagnostic::error("`phi` is the name of the mode shapes")
-                    .at(*span, format!("here it is {}", symbol.kind()))
-                    .help("a model with a field needs another name here"),
+                Diagnostic::error("`phi` is reserved for mode shapes in a model with a field")
+                    .at(*span, format!("declared as {}", symbol.kind()))
+                    .help("choose another name"),
             );
         }
     }
 
     fn add(&mut self, name: &Name, symbol: Symbol, found: &mut Diagnostics) {
-        // A name that is unfit is known nevertheless: one mistake, one finding.
+        // An invalid name is declared nevertheless, so that one mistake gives one finding.
         found.keep(identifier(name));
         if let Some((other, place)) = self.symbols.get(&name.text) {
-            found.push(taken(name, &format!("{} has it", other.kind())).also(*place, "here"));
+            found.push(taken(name, &format!("used by {}", other.kind())).also(*place, "here"));
             return;
         }
         self.symbols.insert(name.text.clone(), (symbol, name.span));
     }
 
-    /// Terms, forces and what is drawn have names of their own that no expression uses: any word
-    /// will do.
+    /// Checks the names of terms, forces and drawings. No expression uses them, so reserved words
+    /// are valid.
     fn check_terms(&self, document: &Document, found: &mut Diagnostics) {
         let terms = document.kinetic.iter();
         let terms = terms
@@ -240,7 +230,8 @@ impl Names {
         }
     }
 
-    /// An observable may report the definition of the same name; it shares no other name.
+    /// Checks the observables. An observable may share the name of the definition or coefficient
+    /// that it reports.
     fn check_observables(&mut self, document: &Document, found: &mut Diagnostics) {
         for (observable, _) in &document.observables {
             let name = &observable.name;
@@ -250,14 +241,14 @@ impl Names {
                 None
                 | Some((Symbol::Definition(_) | Symbol::Vector | Symbol::Coefficient(_), _)) => {}
                 Some((other, place)) => {
-                    let owner = format!("{} has it", other.kind());
+                    let owner = format!("used by {}", other.kind());
                     found.push(taken(name, &owner).also(*place, "here"));
                 }
             }
         }
     }
 
-    /// No declared name may be one the program makes: `q_3`, `theta_dot`, `q_3_dot`.
+    /// Rejects declared names that the program generates: `q_3`, `theta_dot`, `q_3_dot`.
     fn check_generated(&self, document: &Document, found: &mut Diagnostics) {
         let mut declared: Vec<(&str, Span)> = self
             .symbols
@@ -278,7 +269,7 @@ impl Names {
         }
     }
 
-    /// What a generated name means.
+    /// Returns the meaning of a generated name.
     fn generated(&self, name: &str) -> Option<String> {
         let (stem, what) = match name.strip_suffix("_dot") {
             Some(stem) => (stem, "the rate of"),
@@ -306,7 +297,7 @@ fn taken(name: &Name, owner: &str) -> Diagnostic {
         .help("choose another name")
 }
 
-/// Checks that a name is an identifier in every language that code is emitted in.
+/// Checks that a name is an identifier in every target language.
 fn identifier(name: &Name) -> Result<(), Diagnostic> {
     word(name)?;
     let text = name.text.as_str();
@@ -321,14 +312,14 @@ fn unfit(name: &Name, message: String) -> Diagnostic {
     Diagnostic::error(message).at(name.span, "this name")
 }
 
-/// Checks that a name is made of letters, digits and underscores, whatever it means elsewhere.
+/// Checks that a name consists of letters, digits and underscores.
 fn word(name: &Name) -> Result<(), Diagnostic> {
     let text = name.text.as_str();
     let fit = text.starts_with(|first: char| first.is_ascii_alphabetic())
         && text.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_');
     if !fit {
         return Err(unfit(name, format!("{} cannot be a name", quoted(text)))
-            .help("a name is a letter a-z or A-Z, then letters, digits and `_`"));
+            .help("a name starts with a letter a-z or A-Z, followed by letters, digits and `_`"));
     }
     if text.len() > MAX_NAME {
         let message = format!("the name {} is too long", quoted(text));

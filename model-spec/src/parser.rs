@@ -1,6 +1,6 @@
-//! From tokens to a syntax tree: operator precedence as in mathematics. `^` binds tightest
-//! and to the right, above unary minus, so -x^2 is -(x^2); 2^-1 is allowed. The depth of
-//! the tree is bounded, because everything behind this module walks it recursively.
+//! Parses tokens to a syntax tree, with the precedence of mathematics. `^` has the highest
+//! precedence and is right-associative, above unary minus: -x^2 is -(x^2), and 2^-1 is valid.
+//! The depth of the tree is bounded because the later steps recurse over it.
 
 use crate::ast::{BinaryOperator, Syntax, SyntaxKind};
 use crate::diagnostic::Diagnostic;
@@ -8,19 +8,19 @@ use crate::foreign::word_here;
 use crate::lexer::{Token, TokenKind};
 use crate::span::Span;
 
-/// The deepest tree accepted; a sum of 200 terms is as deep.
+/// Deepest tree accepted. A sum of 200 terms has this depth.
 pub const MAX_DEPTH: usize = 200;
 
-/// How tightly the operators bind.
+/// Precedence of the operators.
 const ADDITIVE: u8 = 1;
 const MULTIPLICATIVE: u8 = 2;
 const UNARY: u8 = 3;
 const POWER: u8 = 4;
 
-/// The syntax tree of a whole expression; `end` is the place behind its last token.
+/// Parses a whole expression; `end` is the position after its last token.
 ///
 /// # Errors
-/// Says which token is unexpected or missing.
+/// The first unexpected or missing token.
 pub fn parse(tokens: &[Token], end: Span) -> Result<Syntax, Diagnostic> {
     let mut parser = Parser {
         tokens,
@@ -42,7 +42,6 @@ struct Parser<'t> {
     nesting: usize,
 }
 
-/// A tree and its depth.
 struct Tree {
     syntax: Syntax,
     depth: usize,
@@ -61,7 +60,7 @@ impl<'t> Parser<'t> {
         Some(token)
     }
 
-    /// An expression of operators that bind at least this tightly.
+    /// Parses operators of at least this precedence.
     fn expression(&mut self, tightest: u8) -> Parsed {
         self.nesting += 1;
         if self.nesting > MAX_DEPTH {
@@ -84,11 +83,11 @@ impl<'t> Parser<'t> {
         Ok(left)
     }
 
-    /// An operand with its members: `r`, `r.x`, `arm.origin.x`.
+    /// Parses an operand with its members: `r`, `r.x`, `arm.origin.x`.
     fn operand(&mut self) -> Parsed {
         let minus = self.peek().is_some_and(|t| t.kind == TokenKind::Minus);
         let mut tree = self.atom()?;
-        // What belongs to the operand of a minus is taken with it.
+        // The operand of a minus has parsed its members already.
         while !minus && self.peek().is_some_and(|t| t.kind == TokenKind::Point) {
             self.next += 1;
             tree = self.member(tree)?;
@@ -104,8 +103,8 @@ impl<'t> Parser<'t> {
             }) => (member.clone(), *span),
             other => {
                 let place = other.map_or(self.end, |token| token.span);
-                return Err(Diagnostic::error("a name is missing behind the `.`")
-                    .at(place, "expected a component, as x in r.x"));
+                return Err(Diagnostic::error("a name is missing after the `.`")
+                    .at(place, "expected a component, for example r.x"));
             }
         };
         let span = of.syntax.span.join(member_span);
@@ -153,7 +152,7 @@ impl<'t> Parser<'t> {
         }
     }
 
-    /// `-operand`: all that binds at least as tightly as a power belongs to the operand.
+    /// Parses `-operand`; the operand includes powers.
     fn negated(&mut self, minus: Span) -> Parsed {
         let operand = self.expression(UNARY)?;
         let span = minus.join(operand.syntax.span);
@@ -182,7 +181,8 @@ impl<'t> Parser<'t> {
         deeper(Syntax { kind, span }, depth)
     }
 
-    /// Expressions between commas up to a closing bracket, and the depth of the deepest.
+    /// Parses expressions between commas up to a closing bracket. Returns them and the largest
+    /// depth.
     fn list(&mut self, close: &TokenKind) -> Result<(Vec<Syntax>, usize), Diagnostic> {
         let (mut list, mut depth) = (Vec::new(), 0);
         if self.peek().is_some_and(|token| token.kind == *close) {
@@ -208,7 +208,7 @@ impl<'t> Parser<'t> {
             }) => (index.clone(), *span),
             other => {
                 let place = other.map_or(self.end, |token| token.span);
-                return Err(Diagnostic::error("the index of a mode is a name")
+                return Err(Diagnostic::error("the index of a mode must be a name")
                     .at(place, "expected a name")
                     .help(
                         "modes appear inside a sum: sum(i, w, q[i]^2); components are written r.x",
@@ -278,10 +278,10 @@ fn deeper(syntax: Syntax, below: usize) -> Parsed {
 
 fn too_deep(place: Span) -> Diagnostic {
     Diagnostic::error(format!(
-        "the expression is nested more than {MAX_DEPTH} deep, or a sum or product has more parts"
+        "the expression is nested more than {MAX_DEPTH} deep; a sum or product counts one level per term"
     ))
     .at(place, "too deep from here on")
-    .help("name parts of it in [definitions]")
+    .help("move parts of it to [definitions]")
 }
 
 fn left_over(token: &Token, before: &Syntax) -> Diagnostic {
@@ -307,7 +307,7 @@ fn left_over(token: &Token, before: &Syntax) -> Diagnostic {
     diagnostic.help_if(word.or_else(|| missing_operator(&token.kind)))
 }
 
-/// What an operand that follows another may have been meant for.
+/// Returns help for an operand that follows another operand.
 fn missing_operator(found: &TokenKind) -> Option<String> {
     if let TokenKind::Name(word) = found
         && let Some(help) = word_here(word)
@@ -331,7 +331,7 @@ mod tests {
         parse(&tokens(text, Span::new)?, end)
     }
 
-    /// The tree with every operation in brackets.
+    /// Writes the tree with every operation in brackets.
     fn bracketed(syntax: &Syntax) -> String {
         match &syntax.kind {
             SyntaxKind::Number(value) => value.to_string(),
@@ -365,7 +365,7 @@ mod tests {
     }
 
     #[test]
-    fn operators_bind_as_in_mathematics() {
+    fn precedence_follows_mathematics() {
         for (text, expected) in [
             ("-x^2", "(-(x^2))"),
             ("2^-1", "(2^(-1))"),
@@ -394,7 +394,7 @@ mod tests {
     }
 
     #[test]
-    fn words_of_other_languages_are_refused_with_advice() {
+    fn foreign_words_are_rejected_with_help() {
         for (text, help) in [
             ("above(x) and above(y)", "product"),
             ("(a or b)", "max("),
@@ -409,7 +409,7 @@ mod tests {
     }
 
     #[test]
-    fn mistakes_are_placed() {
+    fn syntax_errors_have_positions() {
         for (text, message, place) in [
             ("", "is empty", 0),
             ("a+", "is not finished", 2),
@@ -459,7 +459,7 @@ mod tests {
     }
 
     #[test]
-    fn brackets_belong_to_the_place_of_what_they_hold() {
+    fn span_includes_the_brackets() {
         let tree = parsed("2*(a + b)").unwrap();
         assert_eq!(tree.span, Span::new(0, 9));
     }

@@ -1,63 +1,46 @@
-//! A specification as its file says it: names, numbers and expressions with their places,
-//! nothing looked up and nothing parsed. Made by `document` and `entries`, read by
-//! `resolve`.
+//! Specification as read from TOML: names, numbers and expressions with positions, nothing
+//! resolved and nothing parsed. Written by `document` and `entries`, read by `resolve`.
 
 use crate::model::{Basis, STABILISATION_RATE};
 use crate::span::Span;
 use crate::table::{Name, Number, Quantity, Written};
 
-/// A specification as written.
+/// Specification as read.
 #[derive(Debug)]
 pub struct Document {
-    /// `name` of `[model]`, with its quotes' place.
+    /// `name` of `[model]`; the span includes its quotes.
     pub name: Name,
-    /// `title` of `[model]`.
     pub title: String,
-    /// `gravity` of `[model]`: the acceleration of free fall, along the fixed axes.
+    /// Acceleration of free fall, along the fixed axes.
     pub gravity: Option<Vec<Quantity>>,
-    /// `[parameters]`
     pub parameters: Vec<RawParameter>,
-    /// `[coordinates]`
     pub coordinates: Vec<RawCoordinate>,
-    /// `[inputs]`
     pub inputs: Vec<RawInput>,
-    /// `[states]`
     pub states: Vec<RawState>,
-    /// `[fields.NAME]`
     pub fields: Vec<RawField>,
-    /// `[definitions]`
     pub definitions: Vec<RawTerm>,
-    /// Those of `[definitions]` that are vectors; their components are among the definitions.
+    /// Names of the vectors in `[definitions]`; their components are among the definitions.
     pub vectors: Vec<Name>,
-    /// `[frames.NAME]`
     pub frames: Vec<RawFrame>,
-    /// `[bodies.NAME]`
     pub bodies: Vec<RawBody>,
-    /// `[kinetic]`
     pub kinetic: Vec<RawTerm>,
-    /// `[potential]`
     pub potential: Vec<RawTerm>,
-    /// `[dissipation]`
     pub dissipation: Vec<RawTerm>,
-    /// `[forces]`: each with what it works on.
+    /// Each force with the quantity it acts on.
     pub forces: Vec<(RawTerm, Quantity)>,
-    /// `[constraints]`
     pub constraints: Vec<RawTerm>,
-    /// `[impacts]`: each with its restitution.
+    /// Each impact with its restitution.
     pub impacts: Vec<(RawTerm, Quantity)>,
-    /// `[observables]`: each with its declared unit.
+    /// Each observable with its declared unit.
     pub observables: Vec<(RawTerm, Option<Written>)>,
-    /// `[coefficients]`
     pub coefficients: Vec<RawCoefficient>,
-    /// `[sensors.CHANNEL]`
     pub sensors: Vec<RawSensor>,
-    /// `[drawing]`
     pub drawing: Option<RawDrawing>,
 }
 
 impl Document {
-    /// Where there are constraints, how fast emitted equations bring them back to zero is a
-    /// parameter: 0 unless the specification declares it.
+    /// Adds the parameter for the decay rate of constraint residuals, 0, if the specification has
+    /// constraints and does not declare it.
     pub fn declare_stabilisation_rate(&mut self) {
         let Some(first) = self.constraints.first() else {
             return;
@@ -83,114 +66,85 @@ impl Document {
     }
 }
 
-/// A `[drawing]`.
+/// The section `[drawing]`.
 #[derive(Debug)]
 pub struct RawDrawing {
-    /// `[drawing.points]`
     pub points: Vec<RawPoint>,
-    /// `[drawing.lines]`
     pub lines: Vec<RawLine>,
 }
 
-/// An entry of `[drawing.points]`.
+/// Entry of `[drawing.points]`.
 #[derive(Debug)]
 pub struct RawPoint {
-    /// Its key.
     pub name: Name,
-    /// `x`
     pub x: Quantity,
-    /// `y`
     pub y: Quantity,
 }
 
-/// An entry of `[drawing.lines]`.
+/// Entry of `[drawing.lines]`.
 #[derive(Debug)]
 pub struct RawLine {
-    /// Its key.
     pub name: Name,
-    /// The names of its points.
     pub points: Vec<Written>,
 }
 
-/// An entry of `[parameters]`.
+/// Entry of `[parameters]`.
 #[derive(Debug)]
 pub struct RawParameter {
-    /// Its key.
     pub name: Name,
-    /// `value`
     pub value: Quantity,
-    /// `unit`
     pub unit: Option<Written>,
-    /// `doc`
     pub doc: String,
     /// `source`
     pub origin: String,
-    /// `min`
     pub min: Option<Number>,
-    /// `max`
     pub max: Option<Number>,
-    /// `uncertainty`
     pub uncertainty: Option<RawUncertainty>,
 }
 
 /// The `uncertainty` of a parameter.
 #[derive(Debug)]
 pub enum RawUncertainty {
-    /// `relative`
     Relative(Number),
-    /// `sd`
     StandardDeviation(Number),
-    /// `between`
     Between([Number; 2]),
 }
 
-/// An entry of `[coordinates]`.
+/// Entry of `[coordinates]`.
 #[derive(Debug)]
 pub struct RawCoordinate {
-    /// Its key.
     pub name: Name,
-    /// `unit`
     pub unit: Option<Written>,
-    /// `doc`
     pub doc: String,
-    /// `initial`
     pub initial: Option<Quantity>,
-    /// `initial_rate`
     pub initial_rate: Option<Quantity>,
-    /// `range`
     pub range: Option<RawRange>,
 }
 
-/// A `range` of a coordinate, an input or a state.
+/// The `range` of a coordinate, an input or a state.
 #[derive(Debug)]
 pub struct RawRange {
-    /// The lower end.
     pub low: Quantity,
-    /// The upper end.
     pub high: Quantity,
-    /// Where both stand.
+    /// Position of the array.
     pub span: Span,
 }
 
-/// An entry of `[inputs]`.
+/// Entry of `[inputs]`.
 #[derive(Debug)]
 pub struct RawInput {
-    /// Its key.
     pub name: Name,
-    /// `unit`
     pub unit: Option<Written>,
-    /// `doc`
     pub doc: String,
-    /// `range`
     pub range: Option<RawRange>,
-    /// Which rate of the input that the entry names it is: 0 for the input itself.
+    /// Order of the rate: 0 for the input itself, 1 for `s_dot`, 2 for `s_ddot`.
     pub rate_order: u8,
-    /// How many rates follow it.
+    /// Number of given rates above this one.
     pub rates: u8,
 }
 
 impl RawInput {
-    /// The input, then the rates that are given with it: `s`, `s_dot`, `s_ddot`.
+    /// Returns the input and its given rates: `s`, `s_dot`, `s_ddot`.
     pub fn with_rates(self) -> Vec<Self> {
         let rate = |order: u8, suffix: &str| Self {
             name: Name {
@@ -214,135 +168,108 @@ impl RawInput {
     }
 }
 
-/// The mode shapes that a field asks for.
+/// Mode shapes of a field.
 #[derive(Debug)]
 pub enum RawBasis {
-    /// Those of a formula.
+    /// Shapes of a formula.
     Named(Basis),
-    /// Those of the file `table`.
+    /// Shapes of a file.
     Table(Written),
 }
 
-/// An entry of `[states]`.
+/// Entry of `[states]`.
 #[derive(Debug)]
 pub struct RawState {
-    /// Its key.
     pub name: Name,
-    /// `unit`
     pub unit: Option<Written>,
-    /// `rate`
     pub rate: Quantity,
-    /// `initial`
     pub initial: Option<Quantity>,
-    /// `range`
     pub range: Option<RawRange>,
-    /// `doc`
     pub doc: String,
 }
 
-/// A `[fields.NAME]`.
+/// A section `[fields.NAME]`.
 #[derive(Debug)]
 pub struct RawField {
-    /// Its key.
     pub name: Name,
-    /// `along`
     pub along: Name,
-    /// `from`
     pub from: Quantity,
-    /// `to`
     pub to: Quantity,
-    /// `basis`
     pub basis: RawBasis,
-    /// `coordinates`
     pub coordinates: Name,
-    /// `order` and its place.
+    /// `order` and its position.
     pub order: (i64, Span),
-    /// `unit`
     pub unit: Option<Written>,
-    /// `doc`
     pub doc: String,
 }
 
-/// A named expression.
+/// Named expression.
 #[derive(Debug)]
 pub struct RawTerm {
-    /// Its key.
     pub name: Name,
-    /// The expression.
     pub value: Quantity,
-    /// `doc`
     pub doc: String,
     /// `source`
     pub origin: String,
 }
 
-/// A `[frames.NAME]`.
+/// A section `[frames.NAME]`.
 #[derive(Debug)]
 pub struct RawFrame {
-    /// Its key.
     pub name: Name,
-    /// `in`: the frame it is placed in; the fixed axes if absent.
+    /// Frame of reference; the fixed axes if absent.
     pub parent: Option<Written>,
-    /// `origin`: a vector along the parent's axes.
+    /// Position, along the axes of the parent.
     pub origin: Option<Quantity>,
-    /// `rotation`: from its own axes to the parent's.
+    /// Rotation from the frame's axes to the parent's.
     pub rotation: Option<Written>,
-    /// `doc`
     pub doc: String,
 }
 
-/// A `[bodies.NAME]`.
+/// A section `[bodies.NAME]`.
 #[derive(Debug)]
 pub struct RawBody {
-    /// Its key.
     pub name: Name,
-    /// `frame`
     pub frame: Written,
-    /// `mass`; a body without one has inertia only.
+    /// A body without a mass has only inertia.
     pub mass: Option<Quantity>,
-    /// `centre`: a vector along the frame's axes.
+    /// Centre of mass, along the axes of the frame.
     pub centre: Option<Quantity>,
-    /// `inertia`: three principal moments or six elements, about the centre of mass.
+    /// Three principal moments or six elements, about the centre of mass.
     pub inertia: Option<Vec<Quantity>>,
-    /// `doc`
     pub doc: String,
     /// `source`
     pub origin: String,
 }
 
-/// An entry of `[coefficients]`.
+/// Entry of `[coefficients]`.
 #[derive(Debug)]
 pub struct RawCoefficient {
-    /// Its key.
     pub name: Name,
-    /// What it names.
     pub kind: RawCoefficientKind,
-    /// `each`: the field and index it is given for, as `w[i]`.
+    /// Field and index of a family of coefficients, as `w[i]`.
     pub each: Option<Written>,
-    /// `doc`
     pub doc: String,
 }
 
-/// What an entry of `[coefficients]` names.
+/// Form of an entry of `[coefficients]`.
 #[derive(Debug)]
 pub enum RawCoefficientKind {
-    /// `value`
     Value(Quantity),
-    /// `of`, `by` and `times`
+    /// The keys `of`, `by` and `times`.
     Factor(Quantity, Quantity, Option<Quantity>),
 }
 
-/// A `[sensors.CHANNEL]`.
+/// A section `[sensors.CHANNEL]`.
 #[derive(Debug)]
 pub struct RawSensor {
-    /// The channel.
     pub channel: Name,
-    /// What it measures, where that is not its name.
+    /// Observable that the sensor measures; the channel's name if absent.
     pub observable: Option<Written>,
-    /// `gain`, 1 if absent.
+    /// Gain; 1 if absent.
     pub gain: f64,
-    /// `bias` in the channel's unit, 0 if absent.
+    /// Bias in the channel's unit; 0 if absent.
     pub bias: f64,
-    /// `delay` in s, negative where it is early; 0 if absent.
+    /// Delay in s, negative for an early signal; 0 if absent.
     pub delay: f64,
 }

@@ -1,5 +1,4 @@
-//! The text of a specification and the places in it. Nothing here knows what the text
-//! means.
+//! Text of a specification, and positions in it.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -7,28 +6,28 @@ use std::sync::Arc;
 
 use sha2::{Digest, Sha256};
 
-/// A named text.
+/// Named text.
 #[derive(Clone, Debug)]
 pub struct Source {
-    /// Where the text was read from, as it is to be shown to people.
+    /// Path of the file, as shown in messages.
     pub path: String,
     /// The whole text.
     pub text: Arc<str>,
-    /// The folder of the file, where the tables that the text names lie; none for a text alone.
+    /// Folder of the file and of the tables that it names; `None` for a text without a file.
     pub folder: Option<Arc<Path>>,
 }
 
-/// A place in a text, both counted from 1.
+/// Position in a text; line and column start at 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place {
     /// Number of the line.
     pub line: usize,
-    /// Number of the character within the line.
+    /// Number of the character in the line.
     pub column: usize,
 }
 
 impl Source {
-    /// A text with the path to show for it.
+    /// Creates a source from a text and the path to show for it.
     pub fn new(path: impl Into<String>, text: impl Into<Arc<str>>) -> Self {
         Self {
             path: path.into(),
@@ -37,14 +36,14 @@ impl Source {
         }
     }
 
-    /// The same, read from a file in this folder.
+    /// Returns the source with the folder of its file.
     #[must_use]
     pub fn in_folder(mut self, folder: &Path) -> Self {
         self.folder = Some(folder.into());
         self
     }
 
-    /// Another text in the place of this one.
+    /// Returns the source with another text, and the same path and folder.
     #[must_use]
     pub fn edited(&self, text: impl Into<Arc<str>>) -> Self {
         Self {
@@ -54,13 +53,13 @@ impl Source {
         }
     }
 
-    /// SHA-256 of the text, 64 lower-case hexadecimal digits.
+    /// Returns the SHA-256 of the text as 64 lower-case hexadecimal digits.
     pub fn hash(&self) -> String {
         sha256(&*self.text)
     }
 
-    /// The line and column of a byte offset; an offset past the end is the end, one
-    /// inside a character is that character's.
+    /// Returns the line and column of a byte offset. An offset past the end is the end of the text;
+    /// an offset inside a character is the position of that character.
     pub fn place(&self, offset: usize) -> Place {
         let offset = character_start(&self.text, offset);
         let before = &self.text[..offset];
@@ -72,8 +71,8 @@ impl Source {
     }
 }
 
-/// Where the character begins that holds this byte; the end of the text for what lies past it. As
-/// `str::floor_char_boundary`, which the oldest compiler supported does not have.
+/// Returns the start of the character that contains a byte offset, at most the end of the text.
+/// Equals `str::floor_char_boundary`, which the oldest supported compiler lacks.
 pub fn character_start(text: &str, offset: usize) -> usize {
     let mut start = offset.min(text.len());
     while !text.is_char_boundary(start) {
@@ -82,7 +81,7 @@ pub fn character_start(text: &str, offset: usize) -> usize {
     start
 }
 
-/// SHA-256 of the bytes of a text or a file, 64 lower-case hexadecimal digits.
+/// Returns the SHA-256 of a text or a file as 64 lower-case hexadecimal digits.
 pub fn sha256(content: impl AsRef<[u8]>) -> String {
     let digest = Sha256::digest(content);
     let mut digits = String::with_capacity(64);

@@ -1,9 +1,9 @@
-//! Positions in a source: byte offsets in its text. The text may be a file's or one that a
-//! macro wrote down from its tokens; nothing here knows which.
+//! Positions in a source, as byte offsets in its text. The source is a file, or the text that a
+//! macro writes from its tokens.
 
 use serde::Serialize;
 
-/// A half-open range `start..end` of positions in one source.
+/// Half-open range `start..end` of byte offsets in one source.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
 pub struct Span {
     /// First position of the range.
@@ -13,12 +13,12 @@ pub struct Span {
 }
 
 impl Span {
-    /// The range `start..end`.
+    /// Returns the range `start..end`.
     pub fn new(start: usize, end: usize) -> Self {
         Self { start, end }
     }
 
-    /// The smallest range that holds both.
+    /// Returns the smallest range that contains both.
     pub fn join(self, other: Self) -> Self {
         Self::new(self.start.min(other.start), self.end.max(other.end))
     }

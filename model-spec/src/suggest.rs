@@ -1,8 +1,8 @@
-//! The nearest known name to one that is not known.
+//! Suggests the nearest known name for an unknown one.
 
-/// The nearest of the known names, if one is near enough to have been meant.
+/// Returns the nearest known name, if its edit distance is within the limit for its length.
 pub fn nearest<'k>(wrong: &str, known: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
-    // Nobody means a name of 64 letters by a text of hundreds.
+    // Names have at most 64 letters; a longer text is no misspelling.
     if wrong.len() > 128 {
         return None;
     }
@@ -20,7 +20,7 @@ pub fn nearest<'k>(wrong: &str, known: impl IntoIterator<Item = &'k str>) -> Opt
         .map(|(_, name)| name)
 }
 
-/// "did you mean ...?", if a known name is near enough.
+/// Returns "did you mean ...?", if a known name is near enough.
 pub fn did_you_mean<'k>(wrong: &str, known: impl IntoIterator<Item = &'k str>) -> Option<String> {
     nearest(wrong, known).map(|name| format!("did you mean `{name}`?"))
 }
@@ -33,7 +33,7 @@ fn count_comparison() {
     tests::COMPARED.with(|compared| compared.set(compared.get() + 1));
 }
 
-/// How many letters two names have in common from their beginning.
+/// Returns the length of the common prefix.
 fn common(one: &str, other: &str) -> usize {
     one.chars()
         .zip(other.chars())
@@ -41,7 +41,7 @@ fn common(one: &str, other: &str) -> usize {
         .count()
 }
 
-/// How many letters may differ in a name of this length.
+/// Returns the largest edit distance for a name of this length.
 fn allowed(length: usize) -> usize {
     match length {
         0 | 1 => 0,
@@ -62,7 +62,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn misspelt_names_are_found_and_distant_ones_are_not() {
+    fn only_near_names_are_suggested() {
         let known = ["theta_s", "theta_c", "k_sp", "coordinates"];
         assert_eq!(nearest("thetas", known), Some("theta_s"));
         assert_eq!(nearest("K_sp", known), Some("k_sp"));

@@ -1,4 +1,4 @@
-//! Files of TOML beside specifications: their text, and their tables with all places.
+//! Reads TOML files: their text, and their tables with positions.
 
 use std::path::Path;
 
@@ -9,10 +9,10 @@ use crate::source::Source;
 use crate::span::Span;
 use crate::table::{Entry, entries};
 
-/// Reads a TOML file with `of`, which is given the entries of its first level.
+/// Reads a TOML file with `of`, which receives the entries of the top level.
 ///
 /// # Errors
-/// What is wrong with the file's grammar, or all that `of` finds.
+/// The first error of the TOML grammar, or all findings of `of`.
 pub fn read<T>(
     source: &Source,
     of: impl FnOnce(&[Entry<'_>], &mut Diagnostics) -> Option<T>,
@@ -27,10 +27,10 @@ pub fn read<T>(
     }
 }
 
-/// The text of a file of at most so many bytes, UTF-8.
+/// Reads a UTF-8 file of at most `limit` bytes.
 ///
 /// # Errors
-/// Why it cannot be read.
+/// A file that is missing, too large, unreadable or not UTF-8.
 pub fn source(path: &Path, limit: u64) -> Result<Source, Diagnostics> {
     let shown = path.display().to_string();
     let wrong = |message: String| {
@@ -51,7 +51,7 @@ pub fn source(path: &Path, limit: u64) -> Result<Source, Diagnostics> {
     Ok(Source::new(shown.clone(), text))
 }
 
-/// What is wrong with the grammar of a file.
+/// Converts an error of the TOML parser to a finding.
 pub(crate) fn grammar_error(text: &str, error: &toml_edit::TomlError) -> Diagnostic {
     let range = error.span().unwrap_or(text.len()..text.len());
     let mut lines = error.message().lines();
@@ -63,7 +63,7 @@ pub(crate) fn grammar_error(text: &str, error: &toml_edit::TomlError) -> Diagnos
     let behind_quotes = text[..range.start.min(text.len())].ends_with(['"', '\'']);
     let operator = text[range.start.min(text.len())..].starts_with(['^', '*', '/', '+', '-']);
     let help = if message == "duplicate key" {
-        Some("each name is given once in a section".to_owned())
+        Some("give each name once in a section".to_owned())
     } else if behind_quotes && operator {
         Some("quotes enclose the whole expression: \"a^2\", not \"a\"^2".to_owned())
     } else {

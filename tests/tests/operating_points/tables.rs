@@ -260,11 +260,11 @@ fn names_that_lead_elsewhere_are_refused() {
     #[cfg(unix)]
     std::os::unix::fs::symlink(&absolute, inner.join("link.csv")).expect("a link");
     for (name, said) in [
-        ("../modes.csv", "lies outside the specification's folder"),
-        (&*absolute, "lies outside the specification's folder"),
+        ("../modes.csv", "is outside the specification's folder"),
+        (&*absolute, "is outside the specification's folder"),
         #[cfg(unix)]
-        ("link.csv", "lies outside the specification's folder"),
-        ("", "lies outside the specification's folder"),
+        ("link.csv", "is outside the specification's folder"),
+        ("", "is outside the specification's folder"),
         ("none.csv", "cannot be read"),
         (".", "is not a file"),
     ] {
@@ -281,7 +281,7 @@ fn names_that_lead_elsewhere_are_refused() {
         (
             "\"table\"",
             "\"string\"",
-            "a table of shapes beside a basis that has its own",
+            "`table` is given, but the basis is not \"table\"",
         ),
         ("diff(w, x, 2)^2", "diff(w, x, 3)^2*l^2", "two derivatives"),
         (

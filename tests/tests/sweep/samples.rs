@@ -258,10 +258,10 @@ fn wrong_requests_are_refused() {
         ("{ between = [4, 2] }", "4 to 2 N"),
         (
             "{ between = [\"F\", 5] }",
-            "the ends of an uncertainty are numbers",
+            "the ends of an uncertainty must be numbers",
         ),
-        ("{ sd = 0.1, relative = 0.1 }", "not in 2"),
-        ("{ }", "not in 0"),
+        ("{ sd = 0.1, relative = 0.1 }", "not 2"),
+        ("{ }", "not 0"),
         ("{ sigma = 0.1 }", "sigma"),
         ("0.1", "relative"),
     ] {
