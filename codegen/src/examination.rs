@@ -1,5 +1,5 @@
-//! Refusals of a model that need no equations of motion: expressions that cannot be translated, coordinates
-//! without inertia, and constraints that never hold or depend on each other.
+//! Checks of a model that need no equations of motion: expressions that cannot be translated, coordinates
+//! without inertia, and constraints that depend on each other or that no state satisfies.
 
 use eomgen_model_spec::diagnostic::Diagnostic;
 use eomgen_model_spec::model::Model;
@@ -12,21 +12,21 @@ use crate::mechanics::translate::DeriveError;
 use crate::mechanics::unsolved::Unsolved;
 use crate::symbolic::graph::NodeId;
 
-/// Counted work of an examination.
+/// Size of the work of an examination.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Examination {
-    /// Number of nodes of the graph.
+    /// Number of graph nodes.
     pub nodes: usize,
-    /// Number of entries of Hessians that were updated.
+    /// Number of updated Hessian entries.
     pub updates: usize,
 }
 
-/// Examines a model. Returns None for a model with fields and for a kinetic energy with functions of
-/// velocities: derive their equations instead.
+/// Checks a model. Returns None if the model has fields, or if its kinetic energy contains functions of
+/// velocities: only the derived equations show the errors of such a model.
 ///
 /// # Errors
-/// Expressions that cannot be derived, constraints that never hold or depend on each other, and coordinates
-/// without inertia at the initial state.
+/// Expressions that cannot be derived, constraints that depend on each other or that no state satisfies, and
+/// coordinates without inertia at the initial state.
 pub fn examine(model: &Model) -> Result<Option<Examination>, Diagnostic> {
     if !model.fields.is_empty() {
         return Ok(None);

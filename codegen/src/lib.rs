@@ -1,4 +1,4 @@
-//! From a checked model to equations of motion, and from these to programs and source.
+//! Derivation of equations of motion from a checked model, and their output as programs and source code.
 //!
 //! ```
 //! use eomgen_codegen::program::evaluator::{Evaluator, Point};
@@ -27,7 +27,7 @@
 //! "#;
 //! let model = eomgen_model_spec::check(Source::new("pendulum.toml", text))?.model;
 //!
-//! // Derived for fields of these orders: a pendulum has none.
+// One order for each field of the model; a pendulum has no fields.
 //! let variant = Variant::derive(&model, &[])?;
 //!
 //! // The rates of the state (theta, theta_dot), in rad/s and rad/s^2.
@@ -37,26 +37,27 @@
 //! assert_eq!(rates[0], 0.0);
 //! assert!((rates[1] + 9.81 / 0.3 * 0.5_f64.sin()).abs() < 1e-12);
 //!
-//! // The same as a source file that depends on nothing.
+// The same equations as a source file without dependencies.
 //! let file = emit(&variant.program, Packaging::Crate)?;
 //! assert!(file.contains("pub fn rates<T: Scalar>("));
 //! # Ok(())
 //! # }
 //! ```
 //!
-//! Five stages, one folder each; a stage reads those above it and no other:
+//! Five stages, one folder each. A stage uses only the stages above it:
 //!
 //! 1. [`symbolic`]: expressions as nodes of one hash-consed graph, their simplification,
 //!    derivatives and formulas;
-//! 2. [`mechanics`]: from a model to its equations of motion, [`mechanics::equations::derive`];
-//! 3. [`program`]: from equations to a list of values in static single assignment,
-//!    [`program::lowering::lower`], and its evaluation;
-//! 4. [`statements`]: from a program to the statements of its functions, with loops and names;
-//! 5. [`rust`] and [`c`] (the emitted source), [`wasm`] (a module for browsers) and [`report`]
-//!    (equations for people).
+//! 2. [`mechanics`]: equations of motion of a model, [`mechanics::equations::derive`];
+//! 3. [`program`]: the equations as a list of values in static single assignment,
+//!    [`program::lowering::lower`], and their evaluation;
+//! 4. [`statements`]: the statements of each emitted function, with loops and names;
+//! 5. [`rust`] and [`c`] (emitted source), [`wasm`] (a module for browsers) and [`report`] (equations as text
+//!    and LaTeX).
 //!
-//! [`variant`] goes from a model to its program in one call, and refuses constraints that are not
-//! independent ([`independence`]). [`examination`] finds most mistakes without equations. [`singular_terms`] finds terms without a derivative at a point.
+//! [`variant`] derives the program of a model in one call and rejects dependent constraints
+//! ([`independence`]). [`examination`] finds most errors of a model without its equations. [`singular_terms`]
+//! finds terms without a derivative at a point.
 
 pub mod c;
 pub mod examination;

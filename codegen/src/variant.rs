@@ -1,6 +1,4 @@
-//! The whole way from a checked model to its program, for those who come with a
-//! specification and want what is emitted: what goes wrong on it is a finding on the
-//! specification. Nothing is derived here.
+//! Derivation of a checked model into equations and a program, with errors located in the specification.
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::model::Model;
@@ -22,26 +20,27 @@ use crate::program::{Program, Quantity};
 
 /// A model derived at one order for each of its fields.
 pub struct Variant {
-    /// Its equations.
+    /// Equations of motion.
     pub equations: Equations,
-    /// Its program, with the model's parameter values as defaults.
+    /// Program whose parameter defaults are the values of the model.
     pub program: Program,
 }
 
 impl Variant {
-    /// Derives `model` with its fields at `orders`, one for each field.
+    /// Derives `model`; `orders` has one truncation order for each field.
     ///
     /// # Errors
-    /// Parameter values that are not admissible, what cannot be derived, constraints that never hold or depend
-    /// on each other, and coordinates without inertia at the initial state, each at its place in the specification.
+    /// Inadmissible parameter values, expressions that cannot be derived, constraints that depend on each
+    /// other or that no state satisfies, and coordinates without inertia at the initial state, each with its
+    /// place in the specification.
     pub fn derive(model: &Model, orders: &[usize]) -> Result<Self, Diagnostics> {
         Self::derive_with(model, orders, &[])
     }
 
-    /// The same, with outputs beside the rates.
+    /// Derives `model` with outputs in addition to the rates.
     ///
     /// # Errors
-    /// The same, and what cannot be differentiated.
+    /// The errors of [`Variant::derive`], and terms that cannot be differentiated.
     pub fn derive_with(
         model: &Model,
         orders: &[usize],
@@ -53,11 +52,11 @@ impl Variant {
         Ok(variant)
     }
 
-    /// The same for readers: equations of a machine in which something has no inertia at the
-    /// initial state say what is missing. Their accelerations may be no numbers.
+    /// Derives `model` for a report, even if a coordinate has no inertia at the initial state. The
+    /// accelerations of such a model may be NaN.
     ///
     /// # Errors
-    /// The same but those about inertia.
+    /// The errors of [`Variant::derive_with`], without those about inertia.
     pub fn derive_to_read(
         model: &Model,
         orders: &[usize],
@@ -88,11 +87,11 @@ impl Variant {
     }
 }
 
-/// Refuses what [`Variant::derive`] refuses. Where equations of motion are not needed for that, the work
-/// grows as the specification does.
+/// Applies the checks of [`Variant::derive`]. The work grows linearly with the specification if no equations
+/// of motion are needed.
 ///
 /// # Errors
-/// As [`Variant::derive`].
+/// The errors of [`Variant::derive`].
 pub fn examine(model: &Model, orders: &[usize]) -> Result<(), Diagnostics> {
     match examination::examine(model) {
         Ok(Some(_)) => Ok(()),
@@ -101,8 +100,8 @@ pub fn examine(model: &Model, orders: &[usize]) -> Result<(), Diagnostics> {
     }
 }
 
-/// The same by the equations of motion, without the changes of rates by impacts: they grow with the square of
-/// their number and refuse nothing.
+/// Checks the model by its equations of motion, without impacts: the rate changes by impacts grow with the
+/// square of their number and cause no error.
 fn examine_by_equations(model: &Model, orders: &[usize]) -> Result<(), Diagnostics> {
     let translated = translate_impacts(&mut Translator::new(model, orders));
     let found = |error: DeriveError| Diagnostics::one(model.source.clone(), error.diagnostic());
@@ -125,11 +124,11 @@ fn check_inertia(model: &Model, orders: &[usize], variant: &Variant) -> Result<(
     inertia::check(model, orders, equations, &mass)
 }
 
-/// The program of a model in which the sides of surfaces that may hold the motion are inputs, behind
-/// those of the model; see [`sliding`](crate::mechanics::sliding). Nothing where no surface may.
+/// Derives the program in which the sides of surfaces that can hold the motion are additional inputs, after
+/// those of the model; see [`sliding`](crate::mechanics::sliding). Returns None if there is no such surface.
 ///
 /// # Errors
-/// What cannot be derived.
+/// Expressions that cannot be derived.
 pub fn derive_sliding(model: &Model, orders: &[usize]) -> Result<Option<Program>, Diagnostics> {
     let found = |diagnostic| Diagnostics::one(model.source.clone(), diagnostic);
     let values = model
@@ -143,7 +142,7 @@ pub fn derive_sliding(model: &Model, orders: &[usize]) -> Result<Option<Program>
     let sides = (0..sliding.len()).map(|side| Quantity {
         name: format!("side_{side}"),
         unit: "1".to_owned(),
-        doc: "0 to 1, between where the surface holds the motion".to_owned(),
+        doc: "0 to 1; between them while the surface holds the motion".to_owned(),
     });
     let outputs = Outputs {
         sliding,
@@ -154,7 +153,7 @@ pub fn derive_sliding(model: &Model, orders: &[usize]) -> Result<Option<Program>
     Ok(Some(program))
 }
 
-/// The mass matrix at the initial state and the declared parameters, row by row.
+/// Returns the mass matrix at the initial state and the declared parameters, row by row.
 fn initial_mass_matrix(
     model: &Model,
     orders: &[usize],

@@ -1,4 +1,4 @@
-//! Refusal of constraints that no state fulfils, by bounds of their expressions over all states.
+//! Rejection of constraints that no state satisfies, by interval bounds of their expressions.
 
 use eomgen_model_spec::diagnostic::Diagnostic;
 use eomgen_model_spec::interval::Interval;
@@ -6,11 +6,11 @@ use eomgen_model_spec::model::{Constraint, Model};
 
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 
-/// Refuses a constraint whose expression has one sign at all states, times and inputs; `residuals` are the
-/// expressions, `parameters` all parameters of the model, SI.
+/// Rejects a constraint whose expression has one sign at all states, times and inputs. `residuals` are the
+/// expressions; `parameters` are all parameters of the model in SI units.
 ///
 /// # Errors
-/// The first such constraint, with the number that its expression does not pass.
+/// The first such constraint, with the bound of its expression.
 pub(crate) fn check_signs(
     model: &Model,
     graph: &Graph,
@@ -37,10 +37,10 @@ fn never_zero(constraint: &Constraint, end: &str, bound: f64) -> Diagnostic {
             constraint.zero.span,
             format!("is at {end} {bound:.3e} {unit} at any state"),
         )
-        .help("correct its expression, for example a sign: a motion keeps a constraint at zero")
+        .help("correct its expression, for example a sign: the expression of a constraint must be able to reach zero")
 }
 
-/// Bounds of these nodes, which come after their operands, by their places in the graph.
+/// Returns the bounds of `nodes` (operands first), indexed by node.
 fn bounds(graph: &Graph, nodes: &[NodeId], parameters: &[f64]) -> Vec<Interval> {
     let size = nodes.last().map_or(0, |last| last.0 as usize + 1);
     let mut known = vec![Interval::ALL; size];

@@ -1,6 +1,6 @@
-//! Refuses a model whose constraints depend on each other wherever they hold: accelerations follow, but not
-//! the multipliers, and what rounding leaves of a pivot is divided by. Several states that keep the constraints
-//! are looked at, so that a singular position at the start alone is none.
+//! Rejection of constraints that depend on each other at every state that satisfies them. The accelerations
+//! of such a model are determined, its multipliers are not, and the solution divides by the rounding error of
+//! a pivot. Several states are tested, because a singular initial position is no error.
 
 use eomgen_model_spec::diagnostic::Diagnostic;
 use eomgen_model_spec::model::{Constraint, Model};
@@ -11,37 +11,38 @@ use super::projection::{Place, project};
 use super::rows::{ConstraintGeometry, positive};
 use super::vectors::norm;
 
-/// Rows in parts of their largest lengths depend on each other if no more than this is left of one beside the
-/// others. Searches for a state end where about 1e-6 is left.
+/// Largest remainder of a dependent row, relative to the row's largest length. The projection reaches a state
+/// to about 1e-6.
 const DEPENDENT: f64 = 1e-5;
 
-/// Change of the scaled rows from the initial state to the start of another search.
+/// Smallest change of the scaled rows from the initial state to the start of another projection.
 const CHANGE: f64 = 0.1;
 
-/// The least move of a coordinate in parts of its value, so that rounding does not hide what changes.
+/// Smallest relative change of a coordinate; smaller ones are hidden by rounding.
 const LEAST_MOVE: f64 = 1e-2;
 
-/// States that are looked at beside the initial one.
+/// Number of states tested in addition to the initial one.
 const OTHER_STATES: u64 = 4;
 
-/// Factors of the moves from the initial state, in the metric of the inertias: each four times the last.
+/// First distance from the initial state, in the metric of the inertias; each next one is four times larger.
 const FIRST_MOVE: f64 = 1e-12;
 const MOVES: i32 = 40;
 
-/// Constraints that take part in a combination by less than this beside the largest are not named.
+/// Smallest factor of a named constraint, relative to the largest factor.
 const TAKES_PART: f64 = 1e-3;
 
-/// Constraints contradict each other if their combination leaves this much of the largest residual.
+/// Constraints contradict each other if the residual of their combination exceeds this fraction of the
+/// largest residual.
 const CONTRADICTION: f64 = 0.1;
 
-/// Residuals of this size beside those that the searches began with are rounding.
+/// Residuals below this fraction of the initial ones are rounding errors.
 const KEPT: f64 = 1e-6;
 
-/// Refuses constraints that depend on each other wherever they hold, or that never hold, near the initial
-/// state of a model with fields of these orders.
+/// Rejects constraints that depend on each other at every tested state near the initial one, or that no state
+/// satisfies. `orders` are the truncation orders of the fields.
 ///
 /// # Errors
-/// A constraint that depends on others, at its place with those, and initial values that are not finite.
+/// The last constraint of a dependent set, with the places of the others; initial values that are not finite.
 pub(crate) fn check_independence(
     model: &Model,
     orders: &[usize],
@@ -76,23 +77,23 @@ struct Search<'s> {
     rows: &'s mut dyn ConstraintGeometry,
     inputs: &'s [f64],
     holonomic: Vec<usize>,
-    /// The longest that each row was so far.
+    /// Largest length of each row so far.
     scales: Vec<f64>,
-    /// The largest residual that a search began with.
+    /// Largest initial residual of each constraint so far.
     largest: Vec<f64>,
 }
 
-/// A combination of constraints without a derivative, at a state that keeps them as well as can be.
+/// Combination of constraints whose derivative is zero at the nearest state that satisfies them.
 struct Dependence {
-    /// The factor of each constraint in parts of the length of its row.
+    /// Factors of the scaled rows.
     parts: Vec<f64>,
-    /// The factor of each constraint.
+    /// Factors of the constraints.
     factors: Vec<f64>,
     residuals: Vec<f64>,
 }
 
 impl Search<'_> {
-    /// The combination of constraints that has no derivative near a state, if there is one.
+    /// Returns the dependent combination of constraints near `from`, or None if they are independent.
     fn dependence(&mut self, from: &[f64]) -> Option<Dependence> {
         let inputs = self.inputs;
         let at = |state| Place { state, inputs };
@@ -115,7 +116,7 @@ impl Search<'_> {
         })
     }
 
-    /// The rows at a state in parts of their largest lengths.
+    /// Returns the rows at `state`, divided by their largest lengths so far.
     fn scaled_rows(&mut self, state: &[f64]) -> Vec<Vec<f64>> {
         let inputs = self.inputs;
         let mut rows = self.rows.rows(Place { state, inputs }.point());
@@ -126,8 +127,8 @@ impl Search<'_> {
         rows
     }
 
-    /// A state so far from this one, in a direction by `seed`, that the rows change; the state itself if none
-    /// ever does.
+    /// Returns a state at which the rows differ from those at `state`, in a direction given by `seed`;
+    /// `state` itself if the rows are constant.
     fn moved(&mut self, state: &[f64], seed: u64) -> Vec<f64> {
         let inputs = self.inputs;
         let inertia = self.rows.inertia(Place { state, inputs }.point());
@@ -154,7 +155,7 @@ impl Search<'_> {
     }
 }
 
-/// A number between -1 and 1 that differs for every pair (splitmix64).
+/// Returns a pseudorandom number between -1 and 1 (splitmix64).
 fn symmetric(seed: u64, place: u64) -> f64 {
     let mut bits = (seed << 32 | place)
         .wrapping_add(1)
@@ -166,7 +167,7 @@ fn symmetric(seed: u64, place: u64) -> f64 {
 }
 
 impl Dependence {
-    /// `began` are the largest residuals that searches began with.
+    /// `began` are the largest initial residuals.
     fn diagnostic(&self, model: &Model, began: &[f64]) -> Diagnostic {
         let last = self
             .parts
@@ -195,8 +196,8 @@ impl Dependence {
         })
     }
 
-    /// The residual of the combination in the unit of the constraint `last`, if the constraints contradict each
-    /// other: it is then not made of residuals that vanish.
+    /// Returns the residual of the combination in the unit of the constraint `last` if the constraints
+    /// contradict each other, that is, if the residual is no sum of vanishing residuals.
     fn apart(&self, last: usize, began: &[f64]) -> Option<f64> {
         let part = |k: usize, residual: f64| self.factors[k] / self.factors[last] * residual;
         let all = 0..=last;
@@ -210,7 +211,6 @@ impl Dependence {
     }
 }
 
-/// Message, label and help.
 fn words(
     own: &Constraint,
     others: &str,
@@ -219,33 +219,33 @@ fn words(
     let (name, unit) = (&own.name, &own.unit);
     match (others.is_empty(), apart) {
         (true, Some(residual)) => (
-            format!("the constraint `{name}` stays at {residual:.3e} {unit}"),
+            format!("the residual of the constraint `{name}` stays at {residual:.3e} {unit}"),
             "is never zero near the initial state",
-            "correct it, or start nearer to where it holds",
+            "correct its expression, or choose an initial state that satisfies it more closely",
         ),
         (true, None) => (
             format!(
-                "the constraint `{name}` holds nothing: its derivatives are all 0 where it holds"
+                "the constraint `{name}` has no effect: all its derivatives are 0 at the states that satisfy it"
             ),
-            "does not change its sign",
-            "write it so that it changes its sign where it holds, or leave it out",
+            "does not change sign",
+            "write an expression that changes sign at its zeros, or remove the constraint",
         ),
         (false, Some(residual)) => (
             format!(
-                "the constraint `{name}` contradicts {others}: it holds what they hold, and asks for {:.3e} \
-                 {unit} more",
+                "the constraint `{name}` contradicts {others}: they restrict the same motion, and a residual of \
+                 {:.3e} {unit} remains",
                 residual.abs()
             ),
             "contradicts the others",
-            "leave one of them out, or correct it",
+            "remove one of them, or correct its expression",
         ),
         (false, None) => (
             format!(
-                "the constraint `{name}` is redundant: wherever the constraints hold, its derivative is a \
-                 combination of the derivatives of {others}"
+                "the constraint `{name}` is redundant: at every state that satisfies the constraints, its derivative \
+                 is a linear combination of the derivatives of {others}"
             ),
-            "holds nothing that the others do not hold",
-            "leave one of them out; how they share a force does not follow from the equations",
+            "adds no restriction to the others",
+            "remove one of them: the equations do not determine the force of each",
         ),
     }
 }

@@ -1,12 +1,12 @@
-//! Which of several vectors depends on the others: Gram-Schmidt, the longest rest first.
+//! Linear dependence among vectors by Gram-Schmidt orthogonalisation with pivoting on the longest remainder.
 
 use super::vectors::{dot, norm};
 
-/// A vector with its part in the combination of vectors that it is.
+/// Remainder of a vector, with the factors of the combination that produces it.
 struct Rest {
     vector: Vec<f64>,
     parts: Vec<f64>,
-    /// The length of the vector.
+    /// Length of the remainder.
     size: f64,
 }
 
@@ -20,8 +20,8 @@ impl Rest {
     }
 }
 
-/// Returns the factors of a combination of `rows` that is no longer than `tolerance`; `None` if all rows are
-/// independent. Rows have lengths of about 1, and so has the factor of one row.
+/// Returns the factors of a combination of `rows` no longer than `tolerance`, or `None` if the rows are
+/// independent. Rows must have lengths of about 1; one row of the combination has a factor of about 1.
 pub fn dependent_combination(rows: &[Vec<f64>], tolerance: f64) -> Option<Vec<f64>> {
     let unit = |place: usize| {
         (0..rows.len())
@@ -55,11 +55,11 @@ pub fn dependent_combination(rows: &[Vec<f64>], tolerance: f64) -> Option<Vec<f6
         for entry in chosen.vector.iter_mut().chain(&mut chosen.parts) {
             *entry /= size;
         }
-        // Twice, as the first leaves what rounding adds.
+        // A second pass removes the rounding errors of the first.
         for _ in 0..2 {
             for (_, rest) in &mut rests {
                 let along = dot(&rest.vector, &chosen.vector);
-                // Constraints of different bodies have nothing in common.
+                // Constraints of different bodies share no coordinate.
                 if along != 0.0 {
                     rest.take_away(along, &chosen);
                 }
@@ -74,7 +74,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_combination_of_dependent_rows_is_found_up_to_a_factor() {
+    fn dependent_rows_yield_their_combination_up_to_a_factor() {
         let rows = [
             vec![1.0, 0.0, 0.0],
             vec![0.6, 0.8, 0.0],
@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn a_row_of_zeros_depends_on_no_other() {
+    fn zero_row_is_dependent() {
         let rows = [vec![1.0, 0.0], vec![0.0, 0.0]];
         assert_eq!(dependent_combination(&rows, 1e-9), Some(vec![0.0, 1.0]));
     }

@@ -1,9 +1,8 @@
-//! Refusal of constraints that depend on each other or never hold.
+//! Rejection of constraints that depend on each other or that no state satisfies.
 //!
-//! `rows` (their derivatives at a state, in a scale without units, by a program) and `nodes` (the same by
-//! nodes), `vectors` (products and sizes),
-//! `dependence` (which of them depend on others), `projection` (states that keep them), `check`
-//! (refuses dependent constraints), `bounds` (refuses constraints that are never zero).
+//! `rows` evaluates the constraint derivatives with a program, `nodes` with graph nodes, both scaled to one
+//! unit. `dependence` finds dependent rows, `projection` finds states that satisfy the constraints, `check`
+//! rejects dependent constraints, and `bounds` rejects constraints that are never zero.
 
 pub(crate) mod bounds;
 mod check;

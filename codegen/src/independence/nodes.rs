@@ -1,5 +1,5 @@
-//! Derivatives and residuals of constraints from the nodes of a model without fields. They need no equations
-//! of motion.
+//! Derivatives and residuals of the constraints of a model without fields, computed from graph nodes. No
+//! equations of motion are needed.
 
 use crate::independence::rows::{ConstraintGeometry, positive};
 use crate::mechanics::inertia::point::Point as NodePoint;
@@ -8,19 +8,19 @@ use crate::mechanics::unsolved::Unsolved;
 use crate::program::evaluator::Point;
 use crate::symbolic::graph::NodeId;
 
-/// Computes derivatives and residuals of constraints from nodes.
+/// Constraint derivatives and residuals, computed from graph nodes.
 pub(crate) struct NodeGeometry<'u> {
     model: &'u Unsolved,
     parameters: Vec<f64>,
     coordinates: usize,
-    /// Nodes of derivatives and residuals, operands first.
+    /// Derivatives and residuals, operands first.
     constraints: Vec<NodeId>,
-    /// Nodes of the kinetic energy, operands first.
+    /// Kinetic energy, operands first.
     energy: Vec<NodeId>,
 }
 
 impl<'u> NodeGeometry<'u> {
-    /// Those of a model with so many coordinates, at these parameters, SI.
+    /// `coordinates` is the number of coordinates; `parameters` are in SI units.
     pub(crate) fn new(model: &'u Unsolved, coordinates: usize, parameters: Vec<f64>) -> Self {
         let all = model.constraints.iter();
         let roots: Vec<NodeId> = all
@@ -36,7 +36,7 @@ impl<'u> NodeGeometry<'u> {
         }
     }
 
-    /// The numbers of these nodes by their places in the graph.
+    /// Returns the values of `nodes`, indexed by node; all NaN if a value is missing.
     fn values(&self, nodes: &[NodeId], point: Point<'_>) -> Vec<f64> {
         let at = NodePoint {
             parameters: &self.parameters,

@@ -1,17 +1,17 @@
-//! States near a given one that keep the holonomic constraints, by Newton's method with the inertias of the
-//! coordinates as its metric. Where constraints depend on each other their directions are damped out.
+//! Projection of a state onto the holonomic constraints by Newton's method, in the metric of the coordinates'
+//! inertias. Damping suppresses the directions in which constraints depend on each other.
 
 use super::rows::ConstraintGeometry;
 use super::vectors::dot;
 use crate::program::evaluator::Point;
 
-/// Steps before the search is given up: where rows depend on each other a step halves the residuals.
+/// Largest number of Newton steps. If rows depend on each other, a step only halves the residuals.
 const MOST_STEPS: usize = 60;
 
-/// Directions in which the scaled rows are shorter than the root of this are left alone.
+/// Added to the diagonal of R R^T: directions with scaled rows shorter than its square root do not move.
 const DAMPING: f64 = 1e-12;
 
-/// Time, state and inputs at which constraints are looked at.
+/// State and inputs at which constraints are evaluated.
 #[derive(Clone, Copy)]
 pub(super) struct Place<'p> {
     pub state: &'p [f64],
@@ -28,8 +28,8 @@ impl<'p> Place<'p> {
     }
 }
 
-/// The state in which the residuals of the constraints at `holonomic` are as small as they get; `scales` are the
-/// lengths of their rows.
+/// Returns the state near `place` with the smallest residuals of the constraints at `holonomic`; `scales` are
+/// the lengths of their rows.
 pub(super) fn project(
     rows: &mut dyn ConstraintGeometry,
     place: Place<'_>,
@@ -70,7 +70,7 @@ pub(super) fn project(
     state
 }
 
-/// (R R^T + damping) y = right by Cholesky's factorisation; nothing if a number is not finite.
+/// Solves (R R^T + damping) y = right by Cholesky factorisation. Returns None if a number is not finite.
 fn solve(rows: &[Vec<f64>], mut right: Vec<f64>) -> Option<Vec<f64>> {
     let count = rows.len();
     let mut lower = vec![vec![0.0; count]; count];
@@ -83,7 +83,7 @@ fn solve(rows: &[Vec<f64>], mut right: Vec<f64>) -> Option<Vec<f64>> {
                 return None;
             }
             lower[row][column] = match row == column {
-                // Rounding may leave less than the damping.
+                // Rounding can make the pivot smaller than the damping.
                 true => rest.max(DAMPING).sqrt(),
                 false => rest / lower[column][column],
             };

@@ -1,8 +1,7 @@
-//! The derivatives A of constraints, with M a + c = f + A^T lambda, and their residuals at a state, by the
-//! program of a model.
+//! Constraint derivatives A, with M a + c = f + A^T lambda, and constraint residuals, computed by the program
+//! of a model.
 //!
-//! Each coordinate is measured by its own inertia: column k of A is divided by sqrt(M_kk), so that all
-//! entries of a row have one unit.
+//! Column k of A is divided by sqrt(M_kk), so that all entries of a row have one unit.
 
 use eomgen_model_spec::ids::FieldId;
 use eomgen_model_spec::model::{Constraint, Model, RESIDUAL};
@@ -14,25 +13,25 @@ use crate::program::evaluator::{Evaluator, Point};
 use crate::program::lowering::lower_with_outputs;
 use crate::symbolic::graph::{NodeId, Space};
 
-/// Derivatives and residuals of constraints at any state.
+/// Derivatives and residuals of constraints at a state.
 pub(crate) trait ConstraintGeometry {
-    /// The rows of A, each entry divided by the square root of its coordinate's inertia.
+    /// Returns the rows of A, each entry divided by the square root of its coordinate's inertia.
     fn rows(&mut self, point: Point<'_>) -> Vec<Vec<f64>>;
-    /// The diagonal of the mass matrix; 1 for a coordinate without inertia.
+    /// Returns the diagonal of the mass matrix, with 1 for a coordinate without inertia.
     fn inertia(&mut self, point: Point<'_>) -> Vec<f64>;
-    /// The residuals of the constraints, SI.
+    /// Returns the residuals of the constraints in SI units.
     fn residuals(&mut self, point: Point<'_>) -> Vec<f64>;
 }
 
-/// Computes derivatives and residuals of constraints.
+/// Evaluator of constraint derivatives and residuals.
 pub struct ConstraintRows {
     evaluator: Evaluator,
-    /// The places of the residuals among the observables.
+    /// Indices of the residuals among the observables.
     residuals: Vec<usize>,
 }
 
-/// The program of a model with the derivatives of its constraints as a Jacobian; nothing without constraints.
-/// `parameters` are those of the specification, SI.
+/// Returns the program whose Jacobian holds the constraint derivatives, or None for a model without
+/// constraints. `parameters` are those of the specification, in SI units.
 pub fn constraint_program(
     model: &Model,
     equations: &Equations,
@@ -78,7 +77,7 @@ pub fn constraint_program(
 }
 
 impl ConstraintRows {
-    /// Takes the program of [`constraint_program`], at its own parameters.
+    /// Builds the evaluator from the program of [`constraint_program`] with its default parameters.
     pub fn new(model: &Model, program: Program) -> Self {
         let place = |constraint: &Constraint| {
             let name = format!("{RESIDUAL}{}", constraint.name);
@@ -92,17 +91,17 @@ impl ConstraintRows {
         }
     }
 
-    /// Computes from now on with these independent parameters, SI.
+    /// Sets the independent parameters, in SI units, for the evaluations that follow.
     pub fn prepare(&mut self, parameters: &[f64]) {
         self.evaluator.prepare(parameters);
     }
 
-    /// Number of coordinates and modes: the columns of A.
+    /// Returns the number of coordinates and modes: the columns of A.
     pub fn degrees_of_freedom(&self) -> usize {
         self.evaluator.program().degrees_of_freedom()
     }
 
-    /// The rows of A, each entry divided by the square root of its coordinate's inertia.
+    /// Returns the rows of A, each entry divided by the square root of its coordinate's inertia.
     pub fn rows(&mut self, point: Point<'_>) -> Vec<Vec<f64>> {
         let degrees = self.degrees_of_freedom();
         let mut rows = vec![vec![0.0; degrees]; self.residuals.len()];
@@ -129,7 +128,7 @@ impl ConstraintRows {
         diagonal.map(positive).collect()
     }
 
-    /// The residuals of the constraints, SI.
+    /// Returns the residuals of the constraints in SI units.
     pub fn residuals(&mut self, point: Point<'_>) -> Vec<f64> {
         let mut observables = vec![0.0; self.evaluator.program().observables.len()];
         self.evaluator.observables(point, &mut observables);
@@ -152,7 +151,7 @@ impl ConstraintGeometry for ConstraintRows {
     }
 }
 
-/// 1 for a length or an inertia that is not positive.
+/// Returns `size`, or 1 if it is not positive.
 pub(super) fn positive(size: f64) -> f64 {
     if size > 0.0 { size } else { 1.0 }
 }

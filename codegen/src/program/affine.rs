@@ -1,4 +1,4 @@
-//! The numbers of a piecewise-linear model: matrices for given parameters and sides.
+//! Matrices of a piecewise-linear model for given parameters and sides.
 
 use eomgen_model_spec::ids::FieldId;
 use eomgen_model_spec::model::Function;
@@ -6,7 +6,7 @@ use eomgen_model_spec::model::Function;
 use crate::program::evaluator::Evaluator;
 use crate::program::{Extent, Program, ValueId};
 
-/// Where the coefficients of one row stand in a program.
+/// Values of the coefficients of one row.
 #[derive(Clone)]
 pub(crate) struct AffineRowValues {
     pub coordinates: Vec<ValueId>,
@@ -20,14 +20,14 @@ pub(crate) struct AffineRowValues {
     pub constant: ValueId,
 }
 
-/// The program that computes the coefficients of a piecewise-linear model.
+/// Program that computes the coefficients of a piecewise-linear model.
 #[derive(Clone)]
 pub struct AffineProgram {
     pub(crate) program: Program,
     pub(crate) layout: AffineLayout,
 }
 
-/// Where the coefficients stand in a program.
+/// Values of the coefficients in a program.
 #[derive(Clone)]
 pub(crate) struct AffineLayout {
     pub(crate) scalars: Vec<AffineRowValues>,
@@ -42,41 +42,39 @@ pub(crate) struct AffineLayout {
     pub(crate) inputs: usize,
 }
 
-/// Coefficients of linear functions of the state, the inputs and sinusoids of time: `rows`
-/// of them, every block row by row.
+/// Coefficients of linear functions of the state, the inputs and sinusoids of time, row by row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AffineRows {
-    /// How many functions.
+    /// Number of functions.
     pub rows: usize,
-    /// rows x states.
+    /// Factors of the state, rows x states.
     pub state: Vec<f64>,
-    /// rows x inputs.
+    /// Factors of the inputs, rows x inputs.
     pub inputs: Vec<f64>,
-    /// rows x phases: factors of the sines.
+    /// Factors of the sines, rows x phases.
     pub sines: Vec<f64>,
-    /// rows x phases: factors of the cosines.
+    /// Factors of the cosines, rows x phases.
     pub cosines: Vec<f64>,
-    /// One per row.
+    /// Constant of each row.
     pub constant: Vec<f64>,
 }
 
-/// y' = A y + B u + S sin + C cos + c, and the switching functions, with given sides.
+/// System y' = A y + B u + S sin + C cos + c and its switching functions, for given sides.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AffineSystem {
-    /// Numbers in the state.
+    /// Number of states.
     pub states: usize,
-    /// Degrees of freedom: positions come first in the state, then as many rates, then states of
-    /// first order.
+    /// Degrees of freedom. The state holds the positions, then as many rates, then the states of first order.
     pub degrees: usize,
-    /// The rates of the state: as many rows as states.
+    /// Rates of the state, one row for each state.
     pub rates: AffineRows,
-    /// The switching functions.
+    /// Switching functions.
     pub guards: AffineRows,
-    /// Rate (rad/s) and offset (rad) of every phase.
+    /// Rate (rad/s) and offset (rad) of each phase.
     pub phases: Vec<[f64; 2]>,
 }
 
-/// Computes the matrices of a piecewise-linear model.
+/// Evaluator of the matrices of a piecewise-linear model.
 pub struct AffineEvaluator {
     evaluator: Evaluator,
     layout: AffineLayout,
@@ -84,7 +82,7 @@ pub struct AffineEvaluator {
 }
 
 impl AffineEvaluator {
-    /// Takes a program; the parameters are those of the specification.
+    /// Prepares a program with the parameters of the specification.
     pub fn new(program: AffineProgram) -> Self {
         let parameters = program.program.default_parameters();
         Self {
@@ -94,43 +92,43 @@ impl AffineEvaluator {
         }
     }
 
-    /// The number of switching surfaces.
+    /// Returns the number of switching surfaces.
     pub fn guard_count(&self) -> usize {
         self.layout.guards.len()
     }
 
-    /// What switches at each surface.
+    /// Returns the function that switches at each surface.
     pub fn guard_functions(&self) -> &[Function] {
         &self.layout.guard_functions
     }
 
-    /// For each switching function the first one that differs from it by parameters alone.
+    /// Returns, for each switching function, the first one that differs from it only by parameters.
     pub fn guard_groups(&self) -> &[usize] {
         &self.layout.guard_groups
     }
 
-    /// For each switching function whether it may have one value throughout a regime: it feels
-    /// the sides of other surfaces, or is of inputs alone.
+    /// Returns, for each switching function, true if it can be constant throughout a regime: if it depends on
+    /// the sides of other surfaces or only on inputs.
     pub fn guards_rest(&self) -> &[bool] {
         &self.layout.guards_rest
     }
 
-    /// Numbers in the state.
+    /// Returns the number of states.
     pub fn states(&self) -> usize {
         self.evaluator.program().states()
     }
 
-    /// Degrees of freedom.
+    /// Returns the number of degrees of freedom.
     pub fn degrees_of_freedom(&self) -> usize {
         self.evaluator.program().degrees_of_freedom()
     }
 
-    /// The number of inputs.
+    /// Returns the number of inputs.
     pub fn inputs(&self) -> usize {
         self.layout.inputs
     }
 
-    /// Sets the independent parameters: SI, in the order of the model's program.
+    /// Sets the independent parameters in SI units, in the order of the model's program.
     pub fn set_parameters(&mut self, values: &[f64]) {
         let sides = self.guard_count();
         let own = self.parameters.len() - sides;
@@ -139,8 +137,8 @@ impl AffineEvaluator {
         }
     }
 
-    /// The matrices with these sides, one per switching surface: 1 on its positive side, 0
-    /// on the other, between them on the surface itself.
+    /// Computes the matrices for these sides, one for each switching surface: 1 on the positive side, 0 on
+    /// the other, values between them on the surface.
     pub fn system(&mut self, sides: &[f64]) -> AffineSystem {
         let own = self.parameters.len() - self.guard_count();
         for (slot, side) in self.parameters[own..].iter_mut().zip(sides) {
@@ -162,12 +160,12 @@ impl AffineEvaluator {
         }
     }
 
-    /// Whether every pivot of the mass matrix was positive when last computed.
+    /// Returns true if every pivot of the mass matrix was positive in the last computation.
     pub fn pivots_are_positive(&self) -> bool {
         self.evaluator.pivots_are_positive()
     }
 
-    /// Whether no half-width of a dead zone was negative when last computed.
+    /// Returns true if no half-width of a dead zone was negative in the last computation.
     pub fn half_widths_are_right(&self) -> bool {
         let mut widths = self.layout.half_widths.iter();
         widths.all(|id| self.evaluator.slice(*id)[0] >= 0.0)
@@ -216,7 +214,6 @@ impl AffineEvaluator {
         }
     }
 
-    /// Writes element `element` of a row's coefficients.
     fn fill(&self, rows: &mut AffineRows, row: usize, values: &AffineRowValues, element: usize) {
         let program = self.evaluator.program();
         let degrees = program.degrees_of_freedom();
@@ -255,7 +252,7 @@ impl AffineEvaluator {
         rows.constant[row] = self.element(values.constant, element);
     }
 
-    /// Element `index` of a vector; a scalar stands for every element.
+    /// Returns element `index` of a vector; a scalar is repeated.
     fn element(&self, id: ValueId, index: usize) -> f64 {
         match self.evaluator.program().value(id).extent {
             Extent::Scalar => self.evaluator.slice(id)[0],
@@ -263,8 +260,8 @@ impl AffineEvaluator {
         }
     }
 
-    /// The factor of mode `column` in element `row` of what a matrix or, for a scalar row, a
-    /// vector holds.
+    /// Returns the factor of mode `column` in element `row` of a matrix; a scalar row has a vector of
+    /// factors.
     fn pair(&self, id: ValueId, row: usize, column: usize) -> f64 {
         match self.evaluator.program().value(id).extent {
             Extent::Scalar => self.evaluator.slice(id)[0],

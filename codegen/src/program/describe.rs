@@ -1,12 +1,11 @@
-//! Values of a program as formulas for the documentation of emitted code, in terms of the
-//! names the specification gives.
+//! Formulas of program values for the documentation of emitted code, in terms of named quantities.
 
 use crate::program::{Op, Program, ValueId};
 
-/// Formulas longer than this are cut.
+/// Largest length of a formula in characters; longer ones are cut.
 const LONGEST: usize = 160;
 
-/// One line on what a value is: its name's formula in named quantities.
+/// Returns the formula of a value on one line.
 pub fn describe_value(program: &Program, id: ValueId) -> String {
     let text = formula(program, id, true, 0);
     if text.len() <= LONGEST {
@@ -16,8 +15,8 @@ pub fn describe_value(program: &Program, id: ValueId) -> String {
     format!("`{cut}...`")
 }
 
-/// Nested deeper than this, a part is left out: sharing makes trees exponentially larger
-/// than their graph.
+/// Largest depth of a formula; deeper parts are omitted, because shared nodes make a tree exponentially
+/// larger than its graph.
 const DEEPEST: usize = 8;
 
 fn formula(program: &Program, id: ValueId, root: bool, depth: usize) -> String {
@@ -65,7 +64,7 @@ fn formula(program: &Program, id: ValueId, root: bool, depth: usize) -> String {
     }
 }
 
-/// A factor: products need no parentheses inside a product.
+/// Returns a factor of a product; products inside products need no parentheses.
 fn factor(program: &Program, id: ValueId, depth: usize) -> String {
     let text = formula(program, id, false, depth + 1);
     let compound = program.value(id).name.is_none()

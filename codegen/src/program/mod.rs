@@ -1,16 +1,14 @@
-//! The intermediate program of one variant: a list of values in static single assignment,
-//! each computed from values before it, and which of them answer which question. Backends
-//! read nothing else.
+//! Intermediate program of one variant: a list of values in static single assignment, and the values of each
+//! output. Backends use nothing else.
 //!
-//! Values that depend on parameters alone are prepared once; the rest is computed per
-//! call. A value is a number, a vector or a matrix of fixed extent; a scalar operand
-//! stands for every element. Every operation has one defined result in IEEE double
-//! arithmetic, every sum has its order, and nothing is contracted, so that all backends give
-//! the same bits.
+//! Values that depend only on parameters are prepared once; the others are computed in each call. A value is
+//! a number, a vector or a matrix of fixed size; a scalar operand is repeated for every element. Every
+//! operation has one defined result in IEEE double arithmetic, every sum has a fixed order, and nothing is
+//! contracted, so that all backends compute the same bits.
 //!
-//! `value` and `types` (what a program is made of), `lowering` (from the equations of motion to it),
-//! `evaluator` (runs it), `affine` (the matrices of a piecewise-linear model), `describe` (what a
-//! prepared value is), `operation_count` (what a call costs).
+//! `value` and `types` define programs, `lowering` builds them from the equations of motion, `evaluator` runs
+//! them, `affine` computes the matrices of a piecewise-linear model, `describe` writes formulas of prepared
+//! values, and `operation_count` estimates the cost of a call.
 
 pub mod affine;
 pub mod describe;

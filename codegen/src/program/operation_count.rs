@@ -1,12 +1,11 @@
-//! How many operations a program takes per call: what the cost of a variant is judged by
-//! where no clock is to be asked.
+//! Number of operations in a call, an estimate of its cost that is independent of the machine.
 
 use crate::program::{Extent, Op, Program, ValueId};
 
 impl Program {
-    /// Additions, subtractions, multiplications, divisions, changes of sign and choices per
-    /// call that `roots` need, element by element. A function counts as one; a sum of n
-    /// elements as n - 1.
+    /// Counts the additions, subtractions, multiplications, divisions, sign changes and selections per call
+    /// that `roots` need, element by element. A function counts as one operation, a sum of n elements as n -
+    /// 1.
     pub fn operations(&self, roots: &[ValueId]) -> usize {
         self.per_call(roots)
             .into_iter()
@@ -37,7 +36,7 @@ impl Program {
             | Op::Power(..)
             | Op::Call(..)
             | Op::Select { .. } => value.extent.length(),
-            // A choice and a division.
+            // A selection and a division.
             Op::PivotReciprocal(_) => 2 * value.extent.length(),
             Op::Total(vector) => length(*vector).saturating_sub(1),
             Op::Apply { matrix, .. } => 2 * length(*matrix),
@@ -64,7 +63,7 @@ impl Program {
     }
 }
 
-/// n^3/3 for a matrix of n rows.
+/// Returns n^3/3 for a matrix of n rows.
 fn cube_third(extent: Extent) -> usize {
     match extent {
         Extent::Matrix(rows, _) => rows.pow(3).div_ceil(3),

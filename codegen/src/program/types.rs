@@ -1,4 +1,4 @@
-//! The program: its values, quantities, rows and blocks.
+//! Program, quantities, rows and blocks.
 
 use super::value::{Extent, Op, Value, ValueId};
 use crate::mechanics::impacts::Impact;
@@ -6,84 +6,83 @@ use crate::mechanics::outputs::{Outputs, Products};
 use crate::symbolic::graph::Variable;
 use eomgen_model_spec::ids::FieldId;
 
-/// A named quantity with its unit.
+/// Named quantity with its unit.
 #[derive(Clone, Debug)]
 pub struct Quantity {
     /// ASCII name.
     pub name: String,
-    /// Its SI unit, for people.
+    /// SI unit, as text.
     pub unit: String,
-    /// What it is.
+    /// Description.
     pub doc: String,
 }
 
-/// An independent parameter.
+/// Independent parameter.
 #[derive(Clone, Debug)]
 pub struct ProgramParameter {
     /// Name, unit and meaning.
     pub quantity: Quantity,
-    /// Where the value comes from.
+    /// Source of the value.
     pub origin: String,
-    /// The specification's value, in SI.
+    /// Value of the specification in SI units.
     pub value: f64,
 }
 
-/// A field of the variant.
+/// Field of the variant.
 #[derive(Clone, Debug)]
 pub struct ProgramField {
     /// Name of the mode coordinates.
     pub coordinates: String,
     /// Unit of the mode coordinates.
     pub unit: String,
-    /// The variant's order.
+    /// Truncation order.
     pub order: usize,
 }
 
-/// A switching surface.
+/// Switching surface.
 #[derive(Clone, Debug)]
 pub struct ProgramGuard {
-    /// What changes sign, as a formula for people.
+    /// Formula of the function that changes sign, as text.
     pub formula: String,
-    /// Its value.
+    /// Value of the function.
     pub value: ValueId,
 }
 
-/// The blocks of the mass matrix.
+/// Blocks of the mass matrix.
 #[derive(Clone, Debug, Default)]
 pub struct MassBlocks {
-    /// coordinates x coordinates
+    /// Block of the coordinates.
     pub scalars: Vec<Vec<ValueId>>,
-    /// For each coordinate and field the vector over the modes (or a scalar for equal
-    /// entries).
+    /// Vector over the modes for each coordinate and field; a scalar if all entries are equal.
     pub coupling: Vec<Vec<ValueId>>,
-    /// For each pair of fields the matrix over their modes; `None` where it is 0.
+    /// Matrix over the modes for each pair of fields; `None` if it is 0.
     pub modal: Vec<Vec<Option<ValueId>>>,
 }
 
-/// Values by row: coordinates, then each field's modes.
+/// Values by row: coordinates, then the modes of each field.
 #[derive(Clone, Debug, Default)]
 pub struct RowValues {
-    /// One per coordinate.
+    /// One for each coordinate.
     pub scalars: Vec<ValueId>,
-    /// One per field: a vector, or a scalar for equal entries.
+    /// One for each field: a vector, or a scalar if all entries are equal.
     pub modal: Vec<ValueId>,
 }
 
 impl RowValues {
-    /// All values.
+    /// Returns all values.
     pub fn all(&self) -> Vec<ValueId> {
         self.scalars.iter().chain(&self.modal).copied().collect()
     }
 }
 
-/// The program of one variant.
+/// Program of one variant.
 #[derive(Clone, Debug)]
 pub struct Program {
-    /// The model's name.
+    /// Name of the model.
     pub name: String,
-    /// The model's title.
+    /// Title of the model.
     pub title: String,
-    /// SHA-256 of the specification, in hexadecimal.
+    /// SHA-256 of the specification in hexadecimal.
     pub spec_hash: String,
     /// Independent parameters, in the order of the specification.
     pub parameters: Vec<ProgramParameter>,
@@ -97,15 +96,15 @@ pub struct Program {
     pub inputs: Vec<Quantity>,
     /// Observables; the last two are `energy` and `power`.
     pub observables: Vec<Quantity>,
-    /// Tables of constants, each with what it holds.
+    /// Tables of constants.
     pub tables: Vec<ProgramTable>,
-    /// The values, operands first.
+    /// Values, operands first.
     pub values: Vec<Value>,
     /// Accelerations.
     pub accelerations: RowValues,
-    /// The rates of the states of first order.
+    /// Rates of the states of first order.
     pub first_order_rates: Vec<ValueId>,
-    /// The mass matrix.
+    /// Mass matrix.
     pub mass: MassBlocks,
     /// Velocity terms c of M q'' + c = f.
     pub velocity_terms: RowValues,
@@ -119,27 +118,27 @@ pub struct Program {
     pub impacts: Vec<Impact<ValueId, RowValues>>,
     /// Prepared pivots, which must be positive for the accelerations to exist.
     pub pivots: Vec<ValueId>,
-    /// Values of the coefficients the specification names.
+    /// Values of the named coefficients of the specification.
     pub coefficient_values: Vec<ValueId>,
-    /// The outputs on request beside all this.
+    /// Requested outputs.
     pub outputs: Outputs<ValueId, RowValues>,
 }
 
-/// A table of constants.
+/// Table of constants.
 #[derive(Clone, Debug)]
 pub struct ProgramTable {
-    /// What it holds, for people.
+    /// Description.
     pub doc: String,
-    /// A short name.
+    /// Short name.
     pub name: String,
-    /// Its extent.
+    /// Extent.
     pub extent: Extent,
-    /// Its numbers, row by row.
+    /// Numbers, row by row.
     pub values: Vec<f64>,
 }
 
 impl Products<ValueId, RowValues> {
-    /// What the product with a direction is computed from.
+    /// Returns the values of the product with a direction.
     pub(crate) fn forward_roots(&self) -> Vec<ValueId> {
         let mut roots = self.forward.all();
         roots.extend(&self.forward_first_order);
@@ -148,27 +147,27 @@ impl Products<ValueId, RowValues> {
 }
 
 impl Program {
-    /// A value.
+    /// Returns a value.
     pub fn value(&self, id: ValueId) -> &Value {
         &self.values[id.0]
     }
 
-    /// Every value, operands first.
+    /// Returns every value, operands first.
     pub fn ids(&self) -> impl Iterator<Item = ValueId> + use<> {
         (0..self.values.len()).map(ValueId)
     }
 
-    /// Degrees of freedom: coordinates and modes.
+    /// Returns the number of coordinates and modes.
     pub fn degrees_of_freedom(&self) -> usize {
         self.coordinates.len() + self.fields.iter().map(|f| f.order).sum::<usize>()
     }
 
-    /// Numbers in the state: coordinates, modes, the rates of both, and states of first order.
+    /// Returns the number of states: coordinates, modes, the rates of both, and states of first order.
     pub fn states(&self) -> usize {
         2 * self.degrees_of_freedom() + self.first_order.len()
     }
 
-    /// Names of the state in its order; a rate's is its coordinate's with `_dot`.
+    /// Returns the names of the states in their order; a rate has the name of its coordinate with `_dot`.
     pub fn state_names(&self) -> Vec<String> {
         let mut names: Vec<String> = self.coordinates.iter().map(|c| c.name.clone()).collect();
         for field in &self.fields {
@@ -180,12 +179,12 @@ impl Program {
         names
     }
 
-    /// The specification's values of the independent parameters, in SI.
+    /// Returns the independent parameters of the specification in SI units.
     pub fn default_parameters(&self) -> Vec<f64> {
         self.parameters.iter().map(|p| p.value).collect()
     }
 
-    /// Place in the state of a field's first mode coordinate.
+    /// Returns the index in the state of a field's first mode coordinate.
     pub fn mode_offset(&self, field: FieldId) -> usize {
         self.coordinates.len()
             + self.fields[..field.index()]
@@ -194,12 +193,12 @@ impl Program {
                 .sum::<usize>()
     }
 
-    /// How many numbers a point has: time, state, inputs and independent parameters.
+    /// Returns the number of components of time, state, inputs and independent parameters.
     pub fn point_length(&self) -> usize {
         1 + self.states() + self.inputs.len() + self.parameters.len()
     }
 
-    /// Place of a variable, or of the first of a field's, in a point.
+    /// Returns the index of a variable in a point; for a field, that of its first mode.
     pub fn point_place(&self, variable: Variable) -> usize {
         let before = match variable {
             Variable::Time => 0,
@@ -210,8 +209,8 @@ impl Program {
         before + self.variable_place(variable)
     }
 
-    /// Place of a variable, or of the first of a field's, in the state, among the inputs, or
-    /// among the independent parameters.
+    /// Returns the index of a variable in the state, among the inputs, or among the independent parameters;
+    /// for a field, that of its first mode.
     pub fn variable_place(&self, variable: Variable) -> usize {
         match variable {
             Variable::Coordinate(index) => index.index(),
@@ -225,15 +224,14 @@ impl Program {
         }
     }
 
-    /// What the rates of the state are computed from: accelerations and the rates of the states
-    /// of first order.
+    /// Returns the values of the accelerations and of the rates of the states of first order.
     pub fn rate_roots(&self) -> Vec<ValueId> {
         let mut roots = self.accelerations.all();
         roots.extend(&self.first_order_rates);
         roots
     }
 
-    /// Every value that `roots` are computed from, in the order of the program.
+    /// Returns every value that `roots` depend on, in the order of the program.
     pub fn reachable(&self, roots: &[ValueId]) -> Vec<ValueId> {
         let mut needed = vec![false; self.values.len()];
         for root in roots {
@@ -252,15 +250,15 @@ impl Program {
             .collect()
     }
 
-    /// Whether the mass matrix may lose its definiteness as the state moves: where it does, a
-    /// pivot that is computed per call makes the accelerations NaN.
+    /// Returns true if the mass matrix can become indefinite as the state changes. A pivot computed per call
+    /// then makes the accelerations NaN.
     pub fn may_lose_definiteness(&self) -> bool {
         let is_pivot = |op: &Op| matches!(op, Op::PivotReciprocal(_) | Op::Cholesky(_));
         let accelerations = self.per_call(&self.rate_roots());
         accelerations.iter().any(|id| is_pivot(&self.value(*id).op))
     }
 
-    /// The values a stage computes per call: what `roots` need and is not prepared.
+    /// Returns the values that `roots` depend on, without the prepared ones.
     pub fn per_call(&self, roots: &[ValueId]) -> Vec<ValueId> {
         self.reachable(roots)
             .into_iter()

@@ -1,4 +1,4 @@
-//! The values of a program: what each holds, how it is computed, and from which.
+//! Values of a program and their operations.
 
 use eomgen_model_spec::ids::{CoordinateId, FieldId, InputId, StateId};
 use eomgen_model_spec::model::Function;
@@ -6,30 +6,30 @@ use eomgen_model_spec::model::Function;
 use crate::symbolic::arguments::Arguments;
 use crate::symbolic::graph::{Argument, Variable};
 
-/// A value of a [`Program`](super::Program).
+/// Index of a value of a [`Program`](super::Program).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct ValueId(pub(crate) usize);
 
 impl ValueId {
-    /// The value's place in the program's list.
+    /// Returns the index in the program's list.
     pub fn index(self) -> usize {
         self.0
     }
 }
 
-/// How many numbers a value holds.
+/// Size of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Extent {
-    /// One.
+    /// One number.
     Scalar,
-    /// One per index.
+    /// One number for each index.
     Vector(usize),
     /// Rows times columns, row by row.
     Matrix(usize, usize),
 }
 
 impl Extent {
-    /// How many numbers.
+    /// Returns the count of numbers.
     pub fn length(self) -> usize {
         match self {
             Self::Scalar => 1,
@@ -38,7 +38,7 @@ impl Extent {
         }
     }
 
-    /// How many numbers stand in a row: one, but for a matrix.
+    /// Returns the length of a row: 1 except for a matrix.
     pub fn columns(self) -> usize {
         match self {
             Self::Scalar | Self::Vector(_) => 1,
@@ -47,34 +47,34 @@ impl Extent {
     }
 }
 
-/// How many partial sums a long sum has: enough that an addition need not wait for the one
-/// before it, and for the widest vectors.
+/// Number of partial sums of a long sum: enough to hide the latency of an addition and to fill the widest
+/// SIMD vectors.
 pub const PARTIAL_SUMS: usize = 8;
 
-/// How a value is computed.
+/// Operation that computes a value.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Op {
-    /// A number.
+    /// Number.
     Constant(f64),
-    /// A table of numbers, by its place in [`Program::tables`](super::Program::tables).
+    /// Table of numbers, by its index in [`Program::tables`](super::Program::tables).
     Table(usize),
-    /// An independent parameter, by its place in [`Program::parameters`](super::Program::parameters).
+    /// Independent parameter, by its index in [`Program::parameters`](super::Program::parameters).
     Parameter(usize),
-    /// A coordinate of the state.
+    /// Coordinate of the state.
     Coordinate(CoordinateId),
-    /// The rate of a coordinate.
+    /// Rate of a coordinate.
     Rate(CoordinateId),
-    /// A field's mode coordinates.
+    /// Mode coordinates of a field.
     ModeCoordinates(FieldId),
-    /// The rates of a field's mode coordinates.
+    /// Rates of a field's mode coordinates.
     ModeRates(FieldId),
-    /// A state of first order.
+    /// State of first order.
     State(StateId),
-    /// An input.
+    /// Input.
     Input(InputId),
-    /// The time.
+    /// Time.
     Time,
-    /// What an argument holds for a variable.
+    /// Component of an argument for a variable.
     Argument(Argument, Variable),
     /// -a
     Negate(ValueId),
@@ -88,34 +88,32 @@ pub enum Op {
     Divide(ValueId, ValueId),
     /// a^b
     Power(ValueId, ValueId),
-    /// A function of one or two arguments.
+    /// Function of one or two arguments.
     Call(Function, Arguments<ValueId>),
     /// `if a > b { then } else { otherwise }`
     Select {
-        /// Compared.
+        /// Left side of the comparison.
         a: ValueId,
-        /// Compared with.
+        /// Right side of the comparison.
         b: ValueId,
-        /// Value where a > b.
+        /// Result if a > b.
         then: ValueId,
-        /// Value elsewhere, also where a or b is NaN.
+        /// Result otherwise, also if a or b is NaN.
         otherwise: ValueId,
     },
-    /// 1/a where a > 0, NaN elsewhere.
+    /// 1/a if a > 0, else NaN.
     PivotReciprocal(ValueId),
-    /// The sum of the elements, 0 of none. The first [`PARTIAL_SUMS`] of them each begin a
-    /// partial sum, to which every eighth element from there on is added in order. Then
-    /// neighbours are added in pairs until one number is left; of an odd count the last
-    /// passes on to the next round.
+    /// Sum of the elements, 0 for none. Each of the first [`PARTIAL_SUMS`] elements begins a partial sum, to
+    /// which every eighth element after it is added in order. Then neighbours are added in pairs until one
+    /// number remains; an odd last number moves on to the next round.
     Total(ValueId),
-    /// Matrix (or its transpose) times vector; each element from 0 and the first product to
-    /// the last.
+    /// Matrix, or its transpose, times a vector. Each element is summed from 0 in the order of the products.
     Apply {
-        /// The matrix.
+        /// Matrix.
         matrix: ValueId,
-        /// Whether its transpose is meant.
+        /// True to use the transpose.
         transposed: bool,
-        /// The vector.
+        /// Vector.
         vector: ValueId,
     },
     /// left^T diag(weight) right: element (r, c) sums (left_gr * weight_g) * right_gc.
@@ -127,7 +125,7 @@ pub enum Op {
         /// Matrix nodes x columns.
         right: ValueId,
     },
-    /// The diagonal of the same.
+    /// Diagonal of left^T diag(weight) right.
     GramDiagonal {
         /// Matrix nodes x modes.
         left: ValueId,
@@ -136,18 +134,17 @@ pub enum Op {
         /// Matrix nodes x modes.
         right: ValueId,
     },
-    /// Element (r, c): the diagonal, then each outer product u_r v_c, then each
-    /// (row_r * matrix_rc) * column_c, added in this order to 0.
+    /// Matrix with element (r, c) = 0 + diagonal + each outer product u_r v_c + each (row_r * matrix_rc) *
+    /// column_c, added in this order.
     Assemble {
-        /// The diagonal.
+        /// Diagonal.
         diagonal: Option<ValueId>,
         /// Outer products.
         outer: Vec<(ValueId, ValueId)>,
         /// Scaled matrices.
         matrices: Vec<ScaledValue>,
     },
-    /// Lower Cholesky factor, row by row; the upper part is 0. A pivot that is not
-    /// positive gives NaN.
+    /// Lower Cholesky factor, row by row; the upper part is 0. A pivot that is not positive gives NaN.
     Cholesky(ValueId),
     /// Forward, then backward substitution with a Cholesky factor, column by column.
     CholeskySolve(ValueId, ValueId),
@@ -156,18 +153,18 @@ pub enum Op {
 /// diag(row) matrix diag(column)
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScaledValue {
-    /// Scales the rows.
+    /// Factors of the rows.
     pub row: ValueId,
-    /// The matrix.
+    /// Matrix.
     pub matrix: ValueId,
-    /// Whether its transpose is meant.
+    /// True to use the transpose.
     pub transposed: bool,
-    /// Scales the columns.
+    /// Factors of the columns.
     pub column: ValueId,
 }
 
 impl Op {
-    /// The values it reads.
+    /// Returns the operands.
     pub fn operands(&self) -> Vec<ValueId> {
         match self {
             Self::Constant(_)
@@ -222,16 +219,16 @@ impl Op {
     }
 }
 
-/// One value.
+/// Value of a program.
 #[derive(Clone, Debug)]
 pub struct Value {
-    /// How it is computed.
+    /// Operation.
     pub op: Op,
-    /// How many numbers it holds.
+    /// Extent.
     pub extent: Extent,
-    /// Whether it depends on parameters and constants alone: it belongs to the stage that is
-    /// computed once for a set of parameters.
+    /// True if it depends only on parameters and constants, so that it is prepared once for a set of
+    /// parameters.
     pub parameter_only: bool,
-    /// The specification's name for it, if it has one.
+    /// Name in the specification, if there is one.
     pub name: Option<String>,
 }

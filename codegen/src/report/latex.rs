@@ -1,4 +1,4 @@
-//! The report as a LaTeX document: every formula a paragraph, so that TeX breaks its lines.
+//! Report as a LaTeX document. Every formula is a paragraph, so that TeX breaks its lines.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -8,7 +8,7 @@ use eomgen_model_spec::model::Function;
 use super::types::{Line, Report};
 use crate::symbolic::formula::{Formula, prose};
 
-/// What stands before the document. Lines of a formula after its first are set in.
+/// Preamble. The second and following lines of a formula are indented.
 const HEAD: &str = "\
 % Needs the package amsmath and nothing else; compiles as it is, with pdflatex for example.
 \\documentclass{article}
@@ -23,7 +23,7 @@ const HEAD: &str = "\
 ";
 
 impl Report {
-    /// As a LaTeX document.
+    /// Returns the report as a LaTeX document.
     pub fn latex(&self) -> String {
         let mut text = String::new();
         // Writing to a string cannot fail.
@@ -42,11 +42,7 @@ impl Report {
         let energies = [("T", &self.kinetic), ("V", &self.potential)];
         let energies = energies.map(|(name, of)| equation(name, of));
         section(out, "Energies", &energies)?;
-        section(
-            out,
-            "Shared subexpressions, by names of their own",
-            &lines(&self.shared),
-        )?;
+        section(out, "Shared subexpressions", &lines(&self.shared))?;
         section(
             out,
             "Mass matrix $M$, by entries (symmetric)",
@@ -63,7 +59,7 @@ impl Report {
         section(out, "Rates of states of first order", &state_rates)?;
         section(
             out,
-            "Constraints, which stay zero",
+            "Constraints, which are zero",
             &lines(&self.constraints),
         )?;
         section(
@@ -110,7 +106,7 @@ impl Report {
         )
     }
 
-    /// What the piecewise functions are that any formula holds.
+    /// Returns the definitions of the piecewise functions in all formulas.
     fn piecewise_functions(&self) -> Vec<String> {
         let mut found = BTreeMap::new();
         self.for_each_formula(&mut |formula| {
@@ -150,7 +146,7 @@ impl Report {
     }
 }
 
-/// A piecewise function by its cases.
+/// Returns the cases of a piecewise function.
 fn definition(function: Function) -> Option<&'static str> {
     match function {
         Function::Deadzone => Some(
@@ -180,7 +176,6 @@ fn lines(lines: &[Line]) -> Vec<String> {
         .collect()
 }
 
-/// Lines of rows: a letter with the row below it.
 fn rows(letter: &str, lines: &[Line]) -> Vec<String> {
     let lines = lines.iter();
     lines

@@ -1,9 +1,8 @@
-//! The equations of one variant as a person wants to read them: energies, the rows of
-//! M q'' + c = f, the named coefficients with their values, the switching surfaces, and
-//! how the accelerations are solved for. As text, LaTeX or JSON.
+//! Report on the equations of one variant: energies, the rows of M q'' + c = f, named coefficients with their
+//! values, switching surfaces, and the solution for the accelerations. Formats: text, LaTeX and JSON.
 //!
-//! `outline` (which nodes are shown), `writer` (their formulas), `types` (what is written), `text`
-//! and `latex` (as documents).
+//! `outline` selects the nodes, `writer` writes their formulas, `types` defines the report, `text` and
+//! `latex` print it.
 
 mod latex;
 mod outline;
@@ -21,7 +20,7 @@ pub use types::{CoefficientLine, Line, MassMatrixEntry, Report, Sentence, Soluti
 use writer::Writer;
 
 impl Report {
-    /// The report of a variant. `evaluator` runs the variant's program.
+    /// Builds the report of a variant; `evaluator` holds the program of the variant.
     pub fn new(model: &Model, equations: &Equations, evaluator: &Evaluator) -> Self {
         let graph = &equations.graph;
         let outline = Outline::new(model, equations);

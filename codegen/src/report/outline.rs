@@ -1,5 +1,5 @@
-//! Which nodes the report shows, under which names: what is chosen before any formula is
-//! written, because formulas share lines.
+//! Selection of the nodes of a report and their names. It precedes all formulas, because formulas share
+//! lines.
 
 use eomgen_model_spec::ids::{CoordinateId, FieldId};
 use eomgen_model_spec::model::{MULTIPLIER, Model, Term};
@@ -11,30 +11,25 @@ use crate::mechanics::rows::RowNodes;
 use crate::symbolic::formula::{Formula, Index, Symbol};
 use crate::symbolic::graph::{Graph, NodeId, Space};
 
-/// A node with the name it is shown under.
+/// Name and node of a line.
 pub(super) type Shown = (Formula, NodeId);
 
-/// The nodes of a report, part by part.
+/// Nodes of a report by section.
 pub(super) struct Outline<'a> {
     model: &'a Model,
     equations: &'a Equations,
-    /// The specification's definitions that anything uses.
+    /// Definitions of the specification with a use.
     pub definitions: Vec<Shown>,
-    /// The terms of the specification, each under its own name.
+    /// Named terms of the specification.
     pub terms: Vec<Shown>,
     /// Nonzero entries of the mass matrix: row, column, node.
     pub mass_matrix: Vec<(Formula, Formula, NodeId)>,
-    /// Nonzero velocity terms.
     pub velocity_terms: Vec<Shown>,
-    /// Nonzero generalised forces.
     pub forces: Vec<Shown>,
-    /// The rates of states of first order.
+    /// Rates of states of first order.
     pub state_rates: Vec<Shown>,
-    /// What stays zero.
     pub constraints: Vec<Shown>,
-    /// The multipliers of the constraints.
     pub multipliers: Vec<Shown>,
-    /// What kind of model it is.
     pub linearity: Linearity,
 }
 
@@ -64,7 +59,7 @@ impl<'a> Outline<'a> {
         outline
     }
 
-    /// All nodes whose formulas are written.
+    /// Returns all nodes that have formulas in the report.
     pub fn nodes(&self) -> Vec<NodeId> {
         let equations = self.equations;
         let shown = [
@@ -88,7 +83,7 @@ impl<'a> Outline<'a> {
         nodes
     }
 
-    /// The symbol of a row: its coordinate, or its field's mode coordinates.
+    /// Returns the symbol of a row: its coordinate, or its field's mode coordinates.
     pub fn row_symbol(&self, row: EquationRow) -> Symbol {
         match row {
             EquationRow::Coordinate(index) => Symbol::plain(&self.model.coordinates[index].name),
@@ -98,7 +93,7 @@ impl<'a> Outline<'a> {
         }
     }
 
-    /// Whether a row has any element at these orders.
+    /// Returns true if the row has an element at these truncation orders.
     pub fn is_present(&self, row: EquationRow) -> bool {
         match row {
             EquationRow::Coordinate(_) => true,

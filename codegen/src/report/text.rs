@@ -1,11 +1,11 @@
-//! The report as plain text.
+//! Report as plain text.
 
 use std::fmt::Write;
 
 use super::types::{Line, Report};
 
 impl Report {
-    /// As plain text.
+    /// Returns the report as plain text.
     pub fn text(&self) -> String {
         let mut text = String::new();
         // Writing to a string cannot fail.
@@ -27,11 +27,7 @@ impl Report {
             "\nEnergies\n  T = {}\n  V = {}",
             self.kinetic, self.potential
         )?;
-        section(
-            out,
-            "Shared subexpressions, by names of their own",
-            &self.shared,
-        )?;
+        section(out, "Shared subexpressions", &self.shared)?;
         writeln!(out, "\nMass matrix M, by entries (symmetric)")?;
         for entry in &self.mass_matrix {
             writeln!(
@@ -48,7 +44,7 @@ impl Report {
             &self.forces,
         )?;
         section(out, "Rates of states of first order", &self.state_rates)?;
-        section(out, "Constraints, which stay zero", &self.constraints)?;
+        section(out, "Constraints, which are zero", &self.constraints)?;
         section(
             out,
             "Multipliers lambda, with M q'' + c = f + A^T lambda, A the derivatives of the constraints",
@@ -90,7 +86,7 @@ impl Report {
         };
         let order: Vec<String> = solution.order.iter().map(ToString::to_string).collect();
         format!(
-            "Solved without pivoting: {modes}{interfaces}{} ({} operations a call; {} in the dearest order).",
+            "Solved without pivoting: {modes}{interfaces}{} ({} operations per call; {} in the most expensive order).",
             order.join(", "),
             solution.operations,
             solution.dearest
@@ -109,7 +105,6 @@ fn section(out: &mut String, title: &str, lines: &[Line]) -> std::fmt::Result {
     Ok(())
 }
 
-/// At most eight numbers.
 fn values_text(values: &[f64]) -> String {
     let shown: Vec<String> = values.iter().take(8).map(|v| format!("{v:.10e}")).collect();
     let rest = if values.len() > 8 {

@@ -1,75 +1,74 @@
-//! What a report holds.
+//! Content of a report.
 
 use serde::{Serialize, Serializer};
 
 use crate::symbolic::formula::Formula;
 
-/// The equations of one variant. In JSON formulas and names are plain text.
+/// Equations of one variant. In JSON, formulas and names are plain text.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// Version of this form.
+    /// Version of this schema.
     pub schema: u32,
-    /// The model's name.
+    /// Name of the model.
     pub model: String,
-    /// One line for people.
+    /// Title of the model.
     pub title: String,
-    /// Order of each field.
+    /// Truncation order of each field.
     pub orders: Vec<usize>,
-    /// Names of the state in its order.
+    /// Names of the states in their order.
     pub state: Vec<String>,
-    /// The specification's definitions.
+    /// Definitions of the specification.
     pub definitions: Vec<Line>,
-    /// The named terms of the energies and of the dissipation, and the forces.
+    /// Named terms of the energies and of the dissipation, and the forces.
     pub terms: Vec<Line>,
-    /// T
+    /// Kinetic energy T.
     pub kinetic: Formula,
-    /// V
+    /// Potential energy V.
     pub potential: Formula,
-    /// What several formulas share and is too long to be repeated, under names of their own;
-    /// a line needs none but those before it. Empty where everything is written out.
+    /// Long subexpressions with several uses. A line refers only to those before it.
     pub shared: Vec<Line>,
     /// Nonzero entries of the mass matrix on and above the diagonal.
     pub mass_matrix: Vec<MassMatrixEntry>,
-    /// The pivots of the factorisation.
+    /// Pivots of the factorisation.
     pub pivots: Vec<Line>,
     /// Nonzero velocity terms c.
     pub velocity_terms: Vec<Line>,
     /// Generalised forces f.
     pub forces: Vec<Line>,
-    /// The rates of states of first order.
+    /// Rates of states of first order.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub state_rates: Vec<Line>,
-    /// The constraints, each with the expression that stays zero.
+    /// Constraints, each with the expression that is zero.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub constraints: Vec<Line>,
-    /// Their multipliers.
+    /// Multipliers of the constraints.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub multipliers: Vec<Line>,
-    /// The coefficients the specification names.
+    /// Named coefficients of the specification.
     pub coefficients: Vec<CoefficientLine>,
-    /// The accelerations in terms of these.
+    /// Accelerations in terms of the coefficients.
     pub accelerations: Vec<Line>,
-    /// Switching surfaces: formulas that change sign.
+    /// Formulas that change sign at the switching surfaces.
     pub guards: Vec<Formula>,
-    /// What kind of model it is between its switching surfaces.
+    /// Linearity of the model between its switching surfaces.
     pub linearity: Sentence,
-    /// How the accelerations are solved for.
+    /// Solution for the accelerations.
     pub solution: Solution,
 }
 
-/// A name and its formula.
+/// Name with its formula.
 #[derive(Clone, Debug, Serialize)]
 pub struct Line {
-    /// What is given.
+    /// Name.
     pub name: Formula,
-    /// Its formula.
+    /// Formula.
     pub formula: Formula,
 }
 
-/// An entry of the mass matrix.
+/// Entry of the mass matrix.
 #[derive(Clone, Debug, Serialize)]
 pub struct MassMatrixEntry {
-    /// EquationRow.
+    /// Row.
     pub row: Formula,
     /// Column.
     pub column: Formula,
@@ -77,24 +76,24 @@ pub struct MassMatrixEntry {
     pub formula: Formula,
 }
 
-/// A named coefficient.
+/// Named coefficient.
 #[derive(Clone, Debug, Serialize)]
 pub struct CoefficientLine {
-    /// Its name.
+    /// Name.
     pub name: Formula,
-    /// Its formula.
+    /// Formula.
     pub formula: Formula,
-    /// Its value, or one per mode (a matrix row by row), at the specification's
-    /// parameters in SI; empty if it depends on time or state.
+    /// Value, or one value for each mode (a matrix row by row), at the specification's parameters in SI
+    /// units; empty if it depends on time or state.
     pub values: Vec<f64>,
 }
 
-/// A statement, on a formula if it is about one.
+/// Statement, with the formula that it is about.
 #[derive(Clone, Debug)]
 pub struct Sentence {
-    /// What is said, without a full stop.
+    /// Text without a full stop.
     pub text: &'static str,
-    /// What it is said of.
+    /// Formula, if there is one.
     pub formula: Option<Formula>,
 }
 
@@ -107,24 +106,24 @@ impl std::fmt::Display for Sentence {
     }
 }
 
-/// Programs read sentences as plain text.
+/// Writes the statement as plain text.
 impl Serialize for Sentence {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(self)
     }
 }
 
-/// How the accelerations are solved for.
+/// Solution for the accelerations.
 #[derive(Clone, Debug, Serialize)]
 pub struct Solution {
-    /// Whether the modal block of the mass matrix is dense.
+    /// True if the modal block of the mass matrix is dense.
     pub dense_modes: bool,
     /// Coordinates in the order of their elimination, after the modes.
     pub order: Vec<Formula>,
-    /// Interface scalars carried as extra unknowns.
+    /// Number of interface scalars, which are additional unknowns.
     pub interfaces: usize,
-    /// Operations per call of the chosen order.
+    /// Operations per call in the chosen order.
     pub operations: usize,
-    /// Operations per call of the dearest order of the coordinates.
+    /// Operations per call in the most expensive order of the coordinates.
     pub dearest: usize,
 }

@@ -1,4 +1,4 @@
-//! The parts of the report, written from the equations.
+//! Sections of the report, written from the equations.
 
 use eomgen_model_spec::model::Term;
 
@@ -11,7 +11,7 @@ use crate::program::evaluator::Evaluator;
 use crate::symbolic::formula::{Formula, Index, Reader};
 use crate::symbolic::graph::{NodeId, Shape};
 
-/// What the parts are written from.
+/// Sources of the sections.
 pub(super) struct Writer<'a> {
     pub equations: &'a Equations,
     pub outline: &'a Outline<'a>,
@@ -29,7 +29,7 @@ impl Writer<'_> {
             .collect()
     }
 
-    /// The lines of what other formulas share.
+    /// Returns the lines of shared subexpressions.
     pub fn shared(&self) -> Vec<Line> {
         let lines = self.reader.lines();
         lines
@@ -37,7 +37,7 @@ impl Writer<'_> {
             .collect()
     }
 
-    /// What kind of model it is between its switching surfaces.
+    /// Returns the statement about the linearity of the model between its switching surfaces.
     pub fn linearity(&self) -> Sentence {
         let (text, formula) = match self.outline.linearity {
             Linearity::Linear => ("The model is linear", None),
@@ -46,7 +46,7 @@ impl Writer<'_> {
             }
             Linearity::Constrained => ("The model has constraints", None),
             Linearity::Impacts => (
-                "The model has impacts, between which this is how it moves",
+                "The model has impacts; these equations hold between them",
                 None,
             ),
             Linearity::Nonlinear(node) => {
@@ -56,13 +56,13 @@ impl Writer<'_> {
         Sentence { text, formula }
     }
 
-    /// An energy as the sum of its terms, by their names.
+    /// Returns an energy as the sum of the names of its terms.
     pub fn sum_of_terms(&self, symbol: &str, terms: &[Term]) -> Formula {
         let names = terms.iter().map(|term| format!("{symbol}_{}", term.name));
         Formula::sum(names.map(|name| Formula::named(&name)).collect())
     }
 
-    /// The nodes that have names, with their formulas.
+    /// Returns the nodes that have names, with their formulas.
     pub fn named(&self, nodes: &[NodeId]) -> Vec<Line> {
         let mut lines: Vec<Line> = Vec::new();
         for &node in nodes {
@@ -108,7 +108,7 @@ impl Writer<'_> {
             .collect()
     }
 
-    /// Each row whose factors the specification names, as the sum of these.
+    /// Returns each row with named factors as their sum.
     pub fn accelerations(&self) -> Vec<Line> {
         let mut rows: Vec<(EquationRow, Formula, Vec<Formula>)> = Vec::new();
         for coefficient in &self.equations.coefficients {
@@ -139,7 +139,7 @@ impl Writer<'_> {
         lines.collect()
     }
 
-    /// A named factor times what it multiplies.
+    /// Returns a named factor times its operand.
     fn named_term(&self, name: &str, value: NodeId, by: NodeId) -> Formula {
         let graph = &self.equations.graph;
         let multiplied = self.reader.expression(by);

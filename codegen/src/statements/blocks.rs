@@ -1,5 +1,5 @@
-//! Statements for matrices: products, Gram matrices, assembled blocks and Cholesky factors,
-//! as loops in the order that the program defines.
+//! Statements for matrices: products, Gram matrices, assembled blocks and Cholesky factors, as loops in the
+//! order that the program defines.
 
 use super::body::Body;
 use super::emit_error::{EmitError, Emitted};
@@ -9,8 +9,8 @@ use super::statement::{Place, Statement};
 use crate::program::{Extent, Op, ValueId};
 
 impl Body<'_> {
-    /// The loop that sums an element of a matrix-vector product or of the diagonal of a Gram
-    /// matrix, and the name of the vector.
+    /// Returns the loop that sums an element of a matrix-vector product or of a Gram matrix's diagonal, and
+    /// the name of the vector.
     pub(super) fn summed_element(&mut self, id: ValueId) -> Emitted<(Statement, String)> {
         let name = self.names.of(self.program, id, "s")?;
         let (summand, length) = match self.program.value(id).op.clone() {
@@ -43,7 +43,7 @@ impl Body<'_> {
                 let weighted = Expression::multiply(&left, &weight);
                 (Expression::multiply(&weighted, &right), nodes)
             }
-            _ => return Err(EmitError::misplaced(id, "is no sum of products")),
+            _ => return Err(EmitError::misplaced(id, "is not a sum of products")),
         };
         let added = Statement::add_to(Place::new(&*name, [Index::Variable("i")]), &summand);
         Ok((Statement::looped("k", length, vec![added]), name))
@@ -113,7 +113,7 @@ impl Body<'_> {
         Ok(())
     }
 
-    /// Loops that add the parts of an assembled matrix to what stands at `place(i, j)`.
+    /// Returns loops that add the parts of an assembled matrix to the elements at `place(i, j)`.
     pub fn block_loops(
         &mut self,
         block: &Op,
@@ -127,7 +127,7 @@ impl Body<'_> {
         } = block
         else {
             return Err(EmitError::Value(format!(
-                "{block:?} is no block of a matrix"
+                "{block:?} is not a block of a matrix"
             )));
         };
         let mut statements = Vec::new();

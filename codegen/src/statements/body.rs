@@ -1,8 +1,7 @@
-//! The statements of one stage: which values get a name, which stand inside the
-//! expressions that use them (`operands`), and which become loops over modes.
+//! Statements of one stage: values with a name, values written inside the expressions that use them
+//! (`operands`), and loops over modes.
 //!
-//! Expressions keep the operations and operands of the program as they are, so nesting
-//! them changes no bit.
+//! Expressions keep the operations and operands of the program, so nesting does not change any bit.
 
 use std::collections::{HashMap, HashSet};
 
@@ -15,18 +14,18 @@ use super::sides::Switches;
 use super::statement::{Place, Statement};
 use crate::program::{Extent, Op, PARTIAL_SUMS, Program, ValueId};
 
-/// The most operations in one emitted expression.
+/// Largest number of operations in one emitted expression.
 const EXPRESSION_SIZE: usize = 8;
 
-/// Where a stage finds what was prepared.
+/// Source of the coefficients of a stage.
 pub enum Access<'a> {
-    /// It prepares the coefficients itself, from `parameters`.
+    /// The stage computes the coefficients from `parameters`.
     Prepare,
-    /// In these fields of `coefficients`.
+    /// The stage reads the coefficients from these fields of `coefficients`.
     Coefficients(&'a HashMap<ValueId, String>),
 }
 
-/// Writes one stage.
+/// Writer of the statements of one stage.
 pub struct Body<'a> {
     pub program: &'a Program,
     pub(super) access: Access<'a>,
@@ -35,20 +34,18 @@ pub struct Body<'a> {
     in_loops: HashMap<ValueId, bool>,
     pub(super) bound: HashMap<ValueId, String>,
     statements: Vec<Statement>,
-    /// The functions that the statements call.
     pub needed: &'a mut Needed,
     /// Vectors that the caller reads as arrays.
     arrays: HashSet<ValueId>,
-    /// What is decided by the regime that the stage is for.
     pub(super) switches: Switches,
 }
 
 impl<'a> Body<'a> {
-    /// A stage that computes `roots`, whose names keep to `words` and in which a regime decides
-    /// about some values; what several need is bound.
+    /// Starts a stage that computes `roots`, with names according to `words`. A regime decides the branches
+    /// of the values in `switches`. A value with several uses is bound to a name.
     ///
     /// # Errors
-    /// If a name is none in the language of `words`.
+    /// A name that is not an identifier in the language of `words`.
     pub fn new(
         program: &'a Program,
         words: &'static Words,
@@ -80,7 +77,7 @@ impl<'a> Body<'a> {
         Ok(body)
     }
 
-    /// The values this stage computes, operands first.
+    /// Returns the values of this stage, operands first.
     fn steps(&self, roots: &[ValueId]) -> Vec<ValueId> {
         let prepare = matches!(self.access, Access::Prepare);
         self.program
@@ -104,33 +101,31 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// The statements since they were taken last.
+    /// Returns the statements added since the last call.
     pub fn take(&mut self) -> Vec<Statement> {
         std::mem::take(&mut self.statements)
     }
 
-    /// Adds a statement of the caller's.
+    /// Adds a statement.
     pub fn push(&mut self, statement: Statement) {
         self.statements.push(statement);
     }
 
-    /// Puts a value where the caller wants it.
+    /// Adds an assignment.
     pub fn assign(&mut self, place: Place, value: Expression) {
         self.push(Statement::Assign(place, value));
     }
 
-    /// Puts elements i of a vector where the caller wants them.
+    /// Adds a loop that assigns elements i of a vector.
     pub fn assign_each(&mut self, length: usize, place: Place, element: Expression) {
         self.push(Statement::each(length, Statement::Assign(place, element)));
     }
 
-    /// Adds a vector filled element by element.
     fn push_filled(&mut self, name: &str, length: usize, statement: Statement) {
         self.push(Statement::Zeros(name.to_owned(), vec![length]));
         self.push(Statement::each(length, statement));
     }
 
-    /// Prefers a name for a value of this stage.
     fn bind(&mut self, id: ValueId, expression: Expression) -> Emitted<()> {
         let name = self.names.of(self.program, id, "s")?;
         self.push(Statement::Let(name.clone(), expression));
@@ -255,7 +250,7 @@ impl<'a> Body<'a> {
         Ok(())
     }
 
-    /// Matrix operations read their vectors as arrays.
+    /// Returns true if a matrix operation reads the vector `id`, which then must be an array.
     fn is_operand_of_matrix(&self, id: ValueId) -> bool {
         self.program.values.iter().any(|value| {
             !is_elementwise(&value.op)
@@ -264,7 +259,7 @@ impl<'a> Body<'a> {
         })
     }
 
-    /// A vector as a whole array, copied where it is none; a scalar stands for every element.
+    /// Returns a vector as an array, copied if necessary; a scalar fills every element.
     fn vector_array(&mut self, id: ValueId, length: usize) -> Emitted<Array> {
         if self.program.value(id).extent == Extent::Scalar {
             return Ok(Array::Filled(Box::new(self.scalar(id)?), length));
@@ -280,7 +275,7 @@ impl<'a> Body<'a> {
     }
 }
 
-/// Whether each element depends on the operands' elements of the same index alone.
+/// Returns true if each element depends only on the operands' elements with the same index.
 fn is_elementwise(op: &Op) -> bool {
     !matches!(
         op,

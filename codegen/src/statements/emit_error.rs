@@ -1,25 +1,25 @@
-//! What keeps a program from being emitted.
+//! Errors of the emission of a program.
 
 use crate::program::ValueId;
 
-/// Why a program could not be emitted.
+/// Reason why a program cannot be emitted.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum EmitError {
-    /// A name is no identifier in the language of the emitted source.
+    /// Name that is not an identifier in the language of the emitted source.
     Name {
         /// The name.
         name: String,
         /// The language.
         language: &'static str,
     },
-    /// A value does not stand where a stage needs it: a defect of the generator.
+    /// Value without source in its stage: a defect of the generator.
     Value(String),
 }
 
 impl EmitError {
-    /// A value that stands where a value of its kind has no source.
+    /// Returns the error for a value of the wrong kind.
     pub(super) fn misplaced(id: ValueId, kind: &str) -> Self {
-        Self::Value(format!("value {} {kind} where it stands", id.index()))
+        Self::Value(format!("value {} {kind}", id.index()))
     }
 }
 
@@ -28,14 +28,19 @@ impl std::fmt::Display for EmitError {
         match self {
             Self::Name { name, language } => write!(
                 f,
-                "`{name}` is no {language} identifier: the specification has to call it otherwise"
+                "`{name}` is not a valid {language} identifier: rename it in the specification"
             ),
-            Self::Value(message) => write!(f, "the program cannot be emitted: {message}"),
+            Self::Value(message) => {
+                write!(
+                    f,
+                    "internal error: the program cannot be emitted: {message}"
+                )
+            }
         }
     }
 }
 
 impl std::error::Error for EmitError {}
 
-/// What comes of writing a part of the file.
+/// Result of the emission of a part of a file.
 pub(crate) type Emitted<T> = Result<T, EmitError>;

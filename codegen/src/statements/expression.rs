@@ -1,10 +1,10 @@
-//! Expressions of the statements: trees over what was given, prepared or computed before, whose
-//! operations each have one IEEE result. A backend prints them.
+//! Expressions of the statements: trees over given, prepared and computed values. Each operation has one IEEE
+//! result.
 
 use super::index::Index;
 use crate::program::Extent;
 
-/// An operator between two numbers.
+/// Binary operator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Operator {
     /// a + b
@@ -17,79 +17,79 @@ pub enum Operator {
     Divide,
 }
 
-/// What a stage is given as named numbers.
+/// Structure with named numbers that a stage reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Structure {
-    /// What was prepared.
+    /// Prepared coefficients.
     Coefficients,
-    /// What is prepared from.
+    /// Parameters from which the coefficients are prepared.
     Parameters,
-    /// Signals at the time of the call.
+    /// Inputs at the time of the call.
     Inputs,
-    /// A direction of the inputs.
+    /// Direction of the inputs.
     InputDirection,
 }
 
-/// Several numbers under one name.
+/// Array that an expression reads.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Array {
-    /// Given to the stage or computed in it.
+    /// Array given to the stage or computed in it.
     Local(String),
-    /// Prepared.
+    /// Prepared coefficient.
     Coefficient(String, Extent),
-    /// A table of constants.
+    /// Table of constants.
     Table(String, Extent),
-    /// The same number this many times.
+    /// One number, repeated.
     Filled(Box<Expression>, usize),
 }
 
 impl Array {
-    /// What has this name in the stage.
+    /// Refers to an array of the stage by its name.
     pub fn local(name: impl Into<String>) -> Self {
         Self::Local(name.into())
     }
 }
 
-/// An expression.
+/// Expression of one number or condition.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Expression {
-    /// A number.
+    /// Number.
     Number(f64),
-    /// What has this name in the stage.
+    /// Named number of the stage.
     Name(String),
-    /// An element of an array.
+    /// Element of an array.
     Element(Array, Vec<Index>),
-    /// A number of a structure.
+    /// Field of a structure.
     Field(Structure, String),
-    /// A coefficient that lanes share.
+    /// Coefficient that SIMD lanes share.
     Shared(Box<Self>),
-    /// An operator between two numbers.
+    /// Binary operation.
     Binary(Operator, Box<Self>, Box<Self>),
     /// -a
     Negate(Box<Self>),
-    /// A function of the emitted file.
+    /// Call of a function of the emitted file.
     Call(&'static str, Vec<Self>),
-    /// `then` where a > b, `otherwise` elsewhere.
+    /// `[a, b, then, otherwise]`: `then` if a > b, else `otherwise`.
     Select(Box<[Self; 4]>),
-    /// What acts on the bits of a number: an operation of the elementary functions.
+    /// Operation on the bits of a number, used by the elementary functions.
     Primitive(&'static str, Vec<Self>),
-    /// Whether a guard, by its place, is positive in the regime of the stage.
+    /// True if the guard with this index is positive in the regime of the stage.
     Positive(usize),
-    /// Whether a > b, in all lanes.
+    /// True if a > b in all lanes.
     Greater(Box<[Self; 2]>),
-    /// Whether both hold.
+    /// True if both are.
     And(Box<[Self; 2]>),
-    /// What holds always.
+    /// Constant true.
     True,
 }
 
 impl Expression {
-    /// What has this name in the stage.
+    /// Refers to a named number of the stage.
     pub fn name(name: impl Into<String>) -> Self {
         Self::Name(name.into())
     }
 
-    /// Element of what has this name in the stage.
+    /// Refers to an element of an array of the stage.
     pub fn element(array: impl Into<String>, indices: impl Into<Vec<Index>>) -> Self {
         Self::Element(Array::local(array), indices.into())
     }
@@ -133,7 +133,7 @@ impl Expression {
         Self::Negate(Box::new(a.clone()))
     }
 
-    /// How many operations stand in it.
+    /// Returns the number of operations.
     pub fn size(&self) -> usize {
         let of = |parts: &[Self]| 1 + parts.iter().map(Self::size).sum::<usize>();
         match self {

@@ -1,4 +1,4 @@
-//! What the stages of a file are written from.
+//! Program, names and coefficients that the stages of a file share.
 
 use std::collections::HashMap;
 
@@ -10,23 +10,23 @@ use super::roots::coefficient_values;
 use super::sides::Switches;
 use crate::program::{Program, ValueId};
 
-/// What the stages of a file are written from.
+/// Program, names and coefficients that the stages of a file share.
 pub struct File<'p> {
-    /// The program.
+    /// Program of the file.
     pub program: &'p Program,
-    /// Names that the language of the file leaves to the model.
+    /// Rules for names in the language of the file.
     pub words: &'static Words,
     /// Prepared values that the stages read, in the order of the program.
     pub fields: Vec<ValueId>,
-    /// Their names.
+    /// Names of the prepared values.
     pub field_names: HashMap<ValueId, String>,
 }
 
 impl<'p> File<'p> {
-    /// A file of this program.
+    /// Names the prepared values of `program`.
     ///
     /// # Errors
-    /// If a name is none in the language of `words`.
+    /// A name that is not an identifier in the language of `words`.
     pub fn new(program: &'p Program, words: &'static Words) -> Emitted<Self> {
         let mut names = Names::new(program, words);
         let fields = coefficient_values(program);
@@ -42,7 +42,7 @@ impl<'p> File<'p> {
         })
     }
 
-    /// How many numbers the guards are.
+    /// Returns the number of guards, counted by element.
     pub fn guard_count(&self) -> usize {
         self.program
             .guards
@@ -51,7 +51,7 @@ impl<'p> File<'p> {
             .sum()
     }
 
-    /// A stage that reads coefficients and computes `roots`.
+    /// Starts a stage that reads coefficients and computes `roots`.
     pub(super) fn body<'b>(
         &'b self,
         roots: &[ValueId],
@@ -60,7 +60,7 @@ impl<'p> File<'p> {
         self.body_in_regime(roots, needed, Switches::new())
     }
 
-    /// The same where a regime decides about these values.
+    /// Starts a stage in which a regime decides the branches of the values in `switches`.
     pub(super) fn body_in_regime<'b>(
         &'b self,
         roots: &[ValueId],
@@ -72,7 +72,7 @@ impl<'p> File<'p> {
     }
 }
 
-/// Meaning, unit and origin of a quantity.
+/// Joins meaning, unit and origin of a quantity.
 pub fn quantity_line(text: &str, unit: &str, origin: &str) -> String {
     let mut line = if text.is_empty() {
         String::new()

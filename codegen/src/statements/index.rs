@@ -1,30 +1,30 @@
-//! Places in arrays: numbers, variables of loops, and sums and products of these.
+//! Array indices: numbers, loop variables, and their sums and products.
 
-/// One index of an element.
+/// Index of an array element.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Index {
-    /// A number.
+    /// Constant.
     Number(usize),
-    /// The variable of a loop.
+    /// Variable of a loop.
     Variable(&'static str),
-    /// The sum of two.
+    /// Sum of two indices.
     Sum(Box<Self>, Box<Self>),
-    /// The product of two.
+    /// Product of two indices.
     Product(Box<Self>, Box<Self>),
 }
 
 impl Index {
-    /// This many places after another.
+    /// Returns `first + rest`.
     pub fn after(first: usize, rest: impl Into<Self>) -> Self {
         Self::Number(first).plus(rest)
     }
 
-    /// The sum of this and another.
+    /// Returns `self + other`.
     pub fn plus(self, other: impl Into<Self>) -> Self {
         Self::Sum(Box::new(self), Box::new(other.into()))
     }
 
-    /// This many times another.
+    /// Returns `count * other`.
     pub fn times(count: usize, other: impl Into<Self>) -> Self {
         Self::Product(Box::new(Self::Number(count)), Box::new(other.into()))
     }

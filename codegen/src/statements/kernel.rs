@@ -1,10 +1,10 @@
-//! The elementary functions as statements: their kernels, operation by operation.
+//! Statements of the elementary functions: one for each operation of their kernels.
 
 use super::expression::Expression;
 use super::statement::Statement;
 use eomgen_elementary::{Function as Elementary, Kernel, Operation, sin_cos_kernel};
 
-/// What an elementary function is, for people.
+/// Returns the description of an elementary function.
 pub fn describe_elementary(function: Elementary) -> &'static str {
     match function {
         Elementary::Abs => "Absolute value.",
@@ -29,25 +29,24 @@ pub fn describe_elementary(function: Elementary) -> &'static str {
     }
 }
 
-/// The most operations in one emitted expression of a kernel.
+/// Largest number of operations in one emitted expression of a kernel.
 const EXPRESSION_SIZE: usize = 6;
 
-/// The statements of a kernel, and its value. Operations used once stand inside the expression
-/// that uses them, up to a size, the others get a name.
+/// Statements and results of a kernel. An operation with one use becomes part of the expression that uses it,
+/// up to a size limit; the others get a name.
 pub struct KernelStatements {
-    /// The named operations.
+    /// Named operations.
     pub computed: Vec<Statement>,
-    /// The values.
     values: Vec<Expression>,
 }
 
 impl KernelStatements {
-    /// Of a function with these names for its arguments.
+    /// Writes the kernel of `function` with these argument names.
     pub fn new(function: Elementary, arguments: &[&str]) -> Self {
         Self::of(&function.kernel(), arguments)
     }
 
-    /// Of the sine and the cosine of an argument of this name, in this order.
+    /// Writes the kernel of the sine and the cosine, in this order.
     pub fn sine_and_cosine(argument: &str) -> Self {
         Self::of(&sin_cos_kernel(), &[argument])
     }
@@ -74,12 +73,12 @@ impl KernelStatements {
         }
     }
 
-    /// The value, of a function that has one.
+    /// Returns the first result.
     pub fn value(&self) -> Option<&Expression> {
         self.values.first()
     }
 
-    /// The values, one for each result.
+    /// Returns all results.
     pub fn values(&self) -> &[Expression] {
         &self.values
     }

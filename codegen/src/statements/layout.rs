@@ -1,57 +1,53 @@
-//! Lines of emitted source from marked text: where an expression is too long for its line
-//! it is broken at its groups, outermost first, as formatters of Rust do it (Oppen, "Prettyprinting",
-//! 1980; widths and rules are those of `prettyplease`, which tests compare with).
+//! Layout of emitted source. Lines that are too long are broken at their groups, outermost first (Oppen,
+//! "Prettyprinting", 1980), with the widths and rules of `prettyplease`, which tests compare with.
 //!
-//! Marked text is source with control characters in it that open and close groups and say
-//! where a line may end. Lines that need no decision hold none and pass through as they are.
+//! Marked text is source with control characters that open and close groups and mark possible line ends.
+//! Lines without marks are copied.
 
-/// The width lines are kept to where they can be.
+/// Target width of a line.
 const WIDTH: isize = 89;
 
-/// The least width a deeply indented line is given.
+/// Smallest width available to a deeply indented line.
 const LEAST_WIDTH: isize = 60;
 
-/// One level of indentation.
 const INDENT: isize = 4;
 
-/// Opens a group that breaks only where its line is full; its further lines are indented.
+/// Opens a group that breaks only at full lines; its further lines are indented.
 pub const FLOW: char = '\u{1}';
-/// The same, with the indentation of the group around it taken back.
+/// [`FLOW`] that removes the indentation of the enclosing group.
 pub const FLOW_OUT: char = '\u{2}';
-/// The same, at the indentation of the group around it.
+/// [`FLOW`] at the indentation of the enclosing group.
 pub const FLOW_EVEN: char = '\u{3}';
-/// Opens a group that breaks everywhere or nowhere; its further lines are indented.
+/// Opens a group that breaks at all its marks or at none; its further lines are indented.
 pub const BLOCK: char = '\u{4}';
-/// The same, with the indentation of the group around it taken back.
+/// [`BLOCK`] that removes the indentation of the enclosing group.
 pub const BLOCK_OUT: char = '\u{5}';
-/// The same, at the indentation of the group around it.
+/// [`BLOCK`] at the indentation of the enclosing group.
 pub const BLOCK_EVEN: char = '\u{6}';
 /// Closes a group.
 pub const CLOSE: char = '\u{7}';
-/// A space, or the end of a line.
+/// A space, or a line end.
 pub const SPACE: char = '\u{8}';
-/// A space, or the end of a line after which the group's indentation ends.
+/// A space, or a line end that also ends the group's indentation.
 pub const SPACE_OUT: char = '\u{11}';
-/// Nothing, or the end of a line after which the group's indentation ends.
+/// Nothing, or a line end that also ends the group's indentation.
 pub const ZERO_OUT: char = '\u{16}';
-/// Nothing, or the end of a line.
+/// Nothing, or a line end.
 pub const ZERO: char = '\u{12}';
-/// Nothing, or a comma and the end of a line after which the group's indentation ends.
+/// Nothing, or a comma and a line end that also ends the group's indentation.
 pub const COMMA_OUT: char = '\u{e}';
-/// Nothing, or an opening brace and the end of a line.
+/// Nothing, or an opening brace and a line end.
 pub const BRACE: char = '\u{14}';
-/// Nothing, or the end of a line after which the group's indentation ends and a closing
-/// brace.
+/// Nothing, or a line end that also ends the group's indentation, and a closing brace.
 pub const BRACE_OUT: char = '\u{15}';
-/// Nothing, and no end of a line; what stands before is laid out without regard to what
-/// follows.
+/// No line end; the text before it is laid out independently of the text after it.
 pub const FIRM: char = '\u{13}';
-/// At the start of a line: this line and those after it stand one level deeper.
+/// At the start of a line: indents this line and those after it by one more level.
 pub const DEEPER: char = '\u{f}';
-/// At the start of a line: this line and those after it stand one level less deep.
+/// At the start of a line: indents this line and those after it by one level less.
 pub const SHALLOWER: char = '\u{10}';
 
-/// Lines one level deeper, between a line that opens a block and one that closes it.
+/// Returns `lines`, one level deeper, between `opening` and `closing`.
 pub fn block(opening: &str, lines: &str, closing: &str) -> String {
     if lines.is_empty() {
         return format!("{opening}{closing}\n");
@@ -59,8 +55,7 @@ pub fn block(opening: &str, lines: &str, closing: &str) -> String {
     format!("{opening}\n{DEEPER}{lines}{SHALLOWER}{closing}\n")
 }
 
-/// The source that marked text stands for, with an empty line before every documented
-/// item, as a person would set it.
+/// Lays out marked text, with an empty line before every documented item.
 pub fn source(marked: &str) -> String {
     let mut printer = Printer::new(marked.len());
     let mut documented = true;
@@ -89,13 +84,12 @@ enum Token<'a> {
     Break {
         blank: isize,
         offset: isize,
-        /// What stands before and after the end of the line if it ends here.
+        /// Text before and after the line end, if the line ends here.
         around: [&'a str; 2],
     },
     Firm,
 }
 
-/// A group being printed.
 enum Frame {
     Fits,
     Broken { outer: isize, everywhere: bool },
@@ -106,7 +100,7 @@ struct Printer<'a> {
     level: isize,
     in_header: bool,
     tokens: Vec<Token<'a>>,
-    /// For each token its width up to the next place where the line may end outside of it.
+    /// Width of each token up to the next possible line end outside of it.
     widths: Vec<isize>,
     open: Vec<usize>,
     frames: Vec<Frame>,
@@ -125,7 +119,7 @@ impl<'a> Printer<'a> {
         }
     }
 
-    /// Follows the marks of indentation at the start of a line; what is left of it.
+    /// Applies the indentation marks at the start of a line and returns the rest of the line.
     fn indentation(&mut self, line: &'a str) -> &'a str {
         let rest = line.trim_start_matches([DEEPER, SHALLOWER]);
         for mark in line[..line.len() - rest.len()].chars() {
@@ -170,8 +164,8 @@ impl<'a> Printer<'a> {
         }
     }
 
-    /// The widths of groups and breaks: each is known at the next break that stands in no
-    /// group opened after it.
+    /// Computes the widths of groups and breaks. Each width is known at the next break outside the groups
+    /// opened after it.
     fn measure(&mut self) {
         self.widths.clear();
         let mut total = 0;
@@ -268,7 +262,7 @@ impl<'a> Printer<'a> {
     }
 }
 
-/// Whether a byte of marked text is a mark inside a line.
+/// Returns true for the marks inside a line.
 fn is_mark(byte: u8) -> bool {
     byte < 0x20
 }

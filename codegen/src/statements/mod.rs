@@ -1,11 +1,10 @@
-//! From a program to the statements of its functions: which values get a name, which stand
-//! inside the expressions that use them, which become loops over modes. Operations and operands
-//! stay as the program has them, so that every backend that prints statements gives its bits.
+//! Statements of the emitted functions: named values, nested expressions and loops over modes. Operations and
+//! operands are those of the program, so that every backend computes the same bits.
 //!
-//! `stages` and `requested` are the functions, `preparation` what comes before them, `file` what
-//! all of them are written from; `body` (with `operands`, and `blocks` for matrices, `rows`,
-//! `sides`) makes the `statement`s of one out of `expression`s; `kernel` those of an elementary
-//! function. What a language looks like is the backends' business.
+//! `stages` and `requested` build the functions, `preparation` the coefficients, from the shared data in
+//! `file`. `body` (with `operands`, `blocks`, `rows` and `sides`) builds the `statement`s of a function from
+//! `expression`s; `kernel` builds those of an elementary function. The backends contain the syntax of each
+//! language.
 
 mod blocks;
 mod body;

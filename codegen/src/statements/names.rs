@@ -1,29 +1,28 @@
-//! Names of emitted variables and fields: the specification's where it has one, numbered
-//! ones elsewhere, each used once.
+//! Unique names of emitted variables and fields: those of the specification if possible, else numbered ones.
 
 use std::collections::{HashMap, HashSet};
 
 use super::emit_error::EmitError;
 use crate::program::{Program, ValueId};
 
-/// Which names a language leaves to a model.
+/// Rules for names in an emitted language.
 #[derive(Debug)]
 pub struct Words {
-    /// The language, for messages.
+    /// Name of the language, for messages.
     pub language: &'static str,
-    /// Words that are no names.
+    /// Keywords of the language.
     pub keywords: &'static [&'static str],
-    /// Names that emitted functions use for themselves.
+    /// Names reserved by the emitted functions.
     pub taken: &'static [&'static str],
-    /// Whether the names of functions and constants begin with the model's and `_`.
+    /// True if the names of functions and constants begin with the model's name and `_`.
     pub prefixed: bool,
 }
 
 impl Words {
-    /// The name, if it is an identifier.
+    /// Returns `name` if it is an identifier.
     ///
     /// # Errors
-    /// If it is none.
+    /// A name that is not an identifier of the language.
     pub fn identifier<'n>(&self, name: &'n str) -> Result<&'n str, EmitError> {
         let mut letters = name.bytes();
         let starts = letters
@@ -43,7 +42,7 @@ impl Words {
     }
 }
 
-/// A supply of names, each handed out once.
+/// Names given to values; each is given once.
 pub struct Names {
     words: &'static Words,
     prefix: Option<String>,
@@ -53,8 +52,8 @@ pub struct Names {
 }
 
 impl Names {
-    /// A supply that avoids the names emitted functions use for themselves, those of the
-    /// tables and of the flags `positive_1` and so on, one per pivot.
+    /// Reserves the names used by emitted functions, by tables, by Jacobians, and by the flags `positive_1`
+    /// and so on, one for each pivot.
     pub fn new(program: &Program, words: &'static Words) -> Self {
         let tables = program.tables.iter().map(|table| table.name.clone());
         let flags = (1..=program.pivots.len()).map(|number| format!("positive_{number}"));
@@ -72,7 +71,7 @@ impl Names {
         }
     }
 
-    /// The name of a value: the preferred one if it is free, else numbered after `stem`.
+    /// Returns the name of a value: its preferred name if that is free, else `stem` with a number.
     pub fn of(
         &mut self,
         program: &Program,
@@ -93,7 +92,7 @@ impl Names {
         Ok(name)
     }
 
-    /// Gives a value this very name, or a numbered one if it is taken.
+    /// Gives `name` to a value, or `stem` with a number if `name` is taken.
     pub fn assign(
         &mut self,
         id: ValueId,
@@ -111,7 +110,7 @@ impl Names {
         Ok(name)
     }
 
-    /// The name, if it is an identifier in the language of the names.
+    /// Returns `name` if it is an identifier of the emitted language.
     pub fn identifier<'n>(&self, name: &'n str) -> Result<&'n str, EmitError> {
         self.words.identifier(name)
     }

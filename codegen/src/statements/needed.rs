@@ -1,36 +1,34 @@
-//! Which functions the statements of a file call.
+//! Functions called by the statements of a file.
 
 use std::collections::BTreeSet;
 
 use eomgen_elementary::Function as Elementary;
 
-/// What a file needs besides the operators.
+/// Functions that a file must define.
 #[derive(Clone, Debug, Default)]
 pub struct Needed {
-    /// Elementary functions.
     pub elementary: BTreeSet<Elementary>,
     /// f_k of Eq. (7).
     pub deadzone: bool,
-    /// The indicator of Eq. (8).
+    /// Indicator of Eq. (8).
     pub contact: bool,
-    /// The indicator of one side.
+    /// Indicator of one side.
     pub above: bool,
-    /// f_k where the side is known.
+    /// f_k on a given side.
     pub deadzone_on_side: bool,
-    /// Whether there is contact where the side is known.
+    /// Contact on a given side.
     pub touching: bool,
-    /// Whether a function is on either side of where it rests.
+    /// Indicator for a function on either side of its zero interval.
     pub either: bool,
-    /// One of two by what is known.
+    /// Selection by a given condition.
     pub chosen: bool,
-    /// Reciprocals of pivots.
     pub pivot_reciprocal: bool,
-    /// Cholesky factors and their solutions.
+    /// Cholesky factorisation and solution.
     pub cholesky: bool,
-    /// Solutions for the columns of a matrix.
+    /// Cholesky solution for the columns of a matrix.
     pub cholesky_of_matrix: bool,
     /// Sums of more elements than there are partial sums.
     pub sum: bool,
-    /// Sums of no more.
+    /// Sums of at most as many elements as there are partial sums.
     pub sum_of_few: bool,
 }

@@ -1,5 +1,5 @@
-//! How a stage reads a value: by the name that it has by now, as the expression that computes
-//! it, from what was given or prepared; by itself, by element or as a whole array.
+//! Operands of expressions: the name of a value, the expression that computes it, or its place in the given
+//! or prepared data.
 
 use super::body::{Access, Body};
 use super::emit_error::{EmitError, Emitted};
@@ -12,23 +12,23 @@ use eomgen_elementary::Function as Elementary;
 use eomgen_model_spec::model::Function;
 
 impl<'a> Body<'a> {
-    /// A scalar.
+    /// Returns a scalar.
     pub fn scalar(&mut self, id: ValueId) -> Emitted<Expression> {
         self.expression(id, None)
     }
 
-    /// Element i of a vector, or a scalar.
+    /// Returns element i of a vector, or a scalar.
     pub fn element(&mut self, id: ValueId) -> Emitted<Expression> {
         self.element_at(id, "i")
     }
 
-    /// Element `index` of a vector, or a scalar.
+    /// Returns element `index` of a vector, or a scalar.
     pub(super) fn element_at(&mut self, id: ValueId, index: &'static str) -> Emitted<Expression> {
         let scalar = self.program.value(id).extent == Extent::Scalar;
         self.expression(id, (!scalar).then_some(index))
     }
 
-    /// A scalar, or the element of a vector: by its name if it has one by now.
+    /// Returns a scalar or an element of a vector, by name if it has one.
     fn expression(&mut self, id: ValueId, index: Option<&'static str>) -> Emitted<Expression> {
         match (self.bound.get(&id), index) {
             (Some(name), Some(index)) => Ok(Expression::element(&**name, [index.into()])),
@@ -37,7 +37,7 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// The expression that computes a value.
+    /// Returns the expression that computes a value.
     pub(super) fn own_expression(
         &mut self,
         id: ValueId,
@@ -61,7 +61,6 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// An operation of scalars or elements.
     fn operation(&mut self, id: ValueId, op: &Op, operands: &[Expression]) -> Emitted<Expression> {
         Ok(match (op, operands) {
             (Op::Negate(_), [a]) => Expression::negate(a),
@@ -82,7 +81,7 @@ impl<'a> Body<'a> {
                 Expression::Select(Box::new(parts))
             }
             (Op::Call(function, _), _) => self.call(*function, operands),
-            _ => return Err(EmitError::misplaced(id, "is no operation of elements")),
+            _ => return Err(EmitError::misplaced(id, "is not an elementwise operation")),
         })
     }
 
@@ -108,7 +107,7 @@ impl<'a> Body<'a> {
         Expression::Call(name, arguments.to_vec())
     }
 
-    /// Constants, tables, state, and what was prepared before this stage.
+    /// Returns the expression of a constant, table, state or coefficient, or None for other values.
     fn leaf_or_coefficient(
         &self,
         id: ValueId,
@@ -140,7 +139,7 @@ impl<'a> Body<'a> {
                 Access::Coefficients(fields) if value.parameter_only => {
                     let Some(name) = fields.get(&id) else {
                         return Err(EmitError::Value(format!(
-                            "value {} was not prepared",
+                            "value {} is not prepared",
                             id.index()
                         )));
                     };
@@ -157,7 +156,7 @@ impl<'a> Body<'a> {
         }))
     }
 
-    /// A coefficient as a stage reads it; lanes share it.
+    /// Marks a coefficient as shared if the program is emitted for SIMD lanes.
     fn shared(&self, coefficient: Expression) -> Expression {
         if self.program.outputs.kinds.contains(&Output::Lanes) {
             Expression::Shared(Box::new(coefficient))
@@ -189,11 +188,11 @@ impl<'a> Body<'a> {
                 argument_name(argument),
                 argument_place(program, argument, variable),
             ),
-            _ => return Err(EmitError::misplaced(id, "is nothing that is given")),
+            _ => return Err(EmitError::misplaced(id, "is not an argument of the stage")),
         })
     }
 
-    /// An entry of a matrix or of a vector.
+    /// Returns an entry of a matrix or of a vector.
     pub fn entry<const N: usize>(
         &mut self,
         id: ValueId,
@@ -214,7 +213,6 @@ impl<'a> Body<'a> {
         Ok(Array::Table(name.to_owned(), table.extent))
     }
 
-    /// The name of a value among the coefficients that this stage reads.
     fn coefficient_name(&self, id: ValueId) -> Option<&'a str> {
         match self.access {
             Access::Coefficients(fields) => fields.get(&id).map(String::as_str),
@@ -222,7 +220,7 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// A vector or matrix as a whole.
+    /// Returns a vector or matrix as an array.
     pub fn numbers(&mut self, id: ValueId) -> Emitted<Array> {
         if let Some(name) = self.bound.get(&id) {
             return Ok(Array::local(name));
@@ -232,7 +230,7 @@ impl<'a> Body<'a> {
         }
         let Some(name) = self.coefficient_name(id) else {
             return Err(EmitError::Value(format!(
-                "value {} is no array",
+                "value {} is not an array",
                 id.index()
             )));
         };
@@ -243,7 +241,7 @@ impl<'a> Body<'a> {
     }
 }
 
-/// Where the number of a variable, or the first of a field's, stands in an argument.
+/// Returns the index of a variable in an argument; for a field, that of its first mode.
 fn argument_place(program: &Program, argument: Argument, variable: Variable) -> usize {
     match argument {
         Argument::PointDirection => program.point_place(variable),
@@ -251,7 +249,6 @@ fn argument_place(program: &Program, argument: Argument, variable: Variable) -> 
     }
 }
 
-/// The name under which a stage is given an argument.
 fn argument_name(argument: Argument) -> &'static str {
     match argument {
         Argument::Accelerations => "accelerations",

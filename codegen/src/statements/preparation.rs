@@ -1,4 +1,4 @@
-//! The preparation of the coefficients: what depends on the parameters alone.
+//! Preparation of the coefficients, which depend only on the parameters.
 
 use super::body::{Access, Body};
 use super::emit_error::Emitted;
@@ -10,27 +10,27 @@ use super::sides::Switches;
 use super::statement::{Place, Statement};
 use crate::program::{Extent, ValueId};
 
-/// A coefficient.
+/// Coefficient.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Prepared {
-    /// A number.
+    /// Scalar.
     Number(Expression),
-    /// A vector or a matrix.
+    /// Vector or matrix.
     Numbers(Array),
 }
 
-/// How the coefficients are prepared.
+/// Statements and results of the preparation.
 #[derive(Clone, Debug)]
 pub struct Preparation {
-    /// What is computed.
+    /// Statements that compute the coefficients.
     pub computed: Vec<Statement>,
-    /// The coefficients, in the order of [`File::fields`].
+    /// Coefficients, in the order of [`File::fields`].
     pub coefficients: Vec<Prepared>,
-    /// Whether all prepared pivots are positive and finite.
+    /// Condition that all prepared pivots are positive and finite.
     pub positive_definite: Expression,
 }
 
-/// How the coefficients of a file are prepared.
+/// Builds the preparation of the coefficients of a file.
 pub fn preparation(file: &File<'_>, needed: &mut Needed) -> Emitted<Preparation> {
     let roots = file.fields.iter().chain(&file.program.pivots);
     let roots: Vec<ValueId> = roots.copied().collect();
@@ -84,7 +84,7 @@ fn pivot_check(file: &File<'_>, body: &mut Body<'_>) -> Emitted<Expression> {
     Ok(check.unwrap_or(Expression::True))
 }
 
-/// Whether a pivot is positive and finite.
+/// Returns the conditions for a positive and finite pivot.
 fn is_positive(pivot: &Expression) -> [Expression; 2] {
     [
         Expression::greater(pivot.clone(), Expression::Number(0.0)),

@@ -1,5 +1,5 @@
-//! The stages on request: bias forces, inverse dynamics, rates of the guards, products with the
-//! Jacobian, Jacobians, the rates in a regime.
+//! Stages on request: bias forces, inverse dynamics, rates of the guards, products with the Jacobian,
+//! Jacobians and the rates in a regime.
 
 use super::body::Body;
 use super::emit_error::Emitted;
@@ -17,7 +17,7 @@ use crate::program::{
     Variable,
 };
 
-/// All but the Jacobians and what knows regimes.
+/// Builds the requested stages, except Jacobians and rates in a regime.
 pub fn requested(file: &File<'_>, needed: &mut Needed) -> Emitted<Vec<Stage>> {
     let outputs = &file.program.outputs;
     let mut stages = Vec::new();
@@ -50,7 +50,7 @@ pub fn requested(file: &File<'_>, needed: &mut Needed) -> Emitted<Vec<Stage>> {
     Ok(stages)
 }
 
-/// A number per degree of freedom.
+/// Builds a stage that returns one number for each degree of freedom.
 fn forces(
     file: &File<'_>,
     name: &'static str,
@@ -216,7 +216,7 @@ fn gradient_derivative(
     })
 }
 
-/// The structural nonzeros of a Jacobian, row by row.
+/// Builds the stage that writes the structural nonzeros of a Jacobian, row by row.
 pub fn nonzeros(
     file: &File<'_>,
     jacobian: &Jacobian<ValueId>,
@@ -246,8 +246,7 @@ pub fn nonzeros(
     })
 }
 
-/// The loop or statement of a block: `start` is the place of its first nonzero, `width` the
-/// distance from one row to the next.
+/// Writes a block whose first nonzero has index `start`; `width` is the distance from one row to the next.
 fn write_entry(
     body: &mut Body<'_>,
     entry: &JacobianBlock<ValueId>,
@@ -285,7 +284,7 @@ fn write_entry(
     Ok(())
 }
 
-/// The rates in a regime, if they are asked for.
+/// Builds the stage for the rates in a regime, if requested.
 pub fn rates_in_regime(file: &File<'_>, needed: &mut Needed) -> Emitted<Option<Stage>> {
     let Some(switches) = &file.program.outputs.regimes else {
         return Ok(None);

@@ -1,22 +1,22 @@
-//! The values that each part of the file is written from.
+//! Values from which each part of the file is written.
 
 use std::collections::BTreeSet;
 
 use crate::program::{Jacobian, Op, Program, RowValues, ValueId};
 
-/// The values that the mass matrix is written from.
+/// Returns the values from which the mass matrix is written.
 pub(super) fn mass_roots(program: &Program) -> Vec<ValueId> {
     let mass = &program.mass;
     let mut roots: Vec<ValueId> = mass.scalars.iter().flatten().copied().collect();
     roots.extend(mass.coupling.iter().flatten());
-    // Modal blocks are written from their parts: as a whole they would be prepared.
+    // Modal blocks are written from their parts; as whole matrices they would be prepared.
     for block in mass.modal.iter().flatten().flatten() {
         roots.extend(program.value(*block).op.operands());
     }
     roots
 }
 
-/// What the stages that are called with coefficients return.
+/// Returns the values from which all stages with coefficients are written.
 pub fn stage_roots(program: &Program) -> Vec<ValueId> {
     let mut roots = program.rate_roots();
     roots.extend(&program.observable_values);
@@ -26,7 +26,7 @@ pub fn stage_roots(program: &Program) -> Vec<ValueId> {
     roots
 }
 
-/// The prepared values that stages read directly, constants and tables aside.
+/// Returns the prepared values that stages read directly, without constants and tables.
 pub(super) fn coefficient_values(program: &Program) -> Vec<ValueId> {
     let roots = stage_roots(program);
     let mut read: BTreeSet<ValueId> = program
@@ -45,7 +45,6 @@ pub(super) fn coefficient_values(program: &Program) -> Vec<ValueId> {
         .collect()
 }
 
-/// The values that the outputs on request are written from.
 fn output_roots(program: &Program) -> Vec<ValueId> {
     let outputs = &program.outputs;
     let rows = [&outputs.bias_forces, &outputs.inverse_dynamics];
@@ -70,7 +69,7 @@ fn output_roots(program: &Program) -> Vec<ValueId> {
     roots
 }
 
-/// The values that a Jacobian is written from: assembled blocks are written from their parts.
+/// Returns the values from which a Jacobian is written; for assembled blocks, their parts.
 pub(super) fn entry_roots(program: &Program, jacobian: &Jacobian<ValueId>) -> Vec<ValueId> {
     let entries = jacobian.entries.iter();
     entries

@@ -1,4 +1,4 @@
-//! Values by row of the equations, written into an array.
+//! Assignment of one value for each row of the equations to an array.
 
 use super::body::Body;
 use super::emit_error::Emitted;
@@ -7,7 +7,7 @@ use super::statement::Place;
 use crate::program::RowValues;
 use eomgen_model_spec::ids::FieldId;
 
-/// Rows into `target` from a place on.
+/// Writes `rows` into `target`, beginning at index `first`.
 pub(super) fn write_row_values(
     body: &mut Body<'_>,
     target: &str,

@@ -1,4 +1,4 @@
-//! Values whose branch a regime decides, as expressions of its number.
+//! Values whose branch is decided by the number of a regime.
 
 use std::collections::HashMap;
 
@@ -11,7 +11,7 @@ use crate::program::{Decided, Op, Program, ValueId};
 /// Values whose branch a regime decides.
 pub(super) type Switches = HashMap<ValueId, Decided>;
 
-/// A value whose branch a regime decides, of these operands.
+/// Returns the expression of a value whose branch a regime decides; None for other values.
 pub(super) fn of_side(
     program: &Program,
     switches: &Switches,

@@ -1,75 +1,75 @@
-//! What a stage is beside its statements: its name, what it is called with and what comes of it.
+//! Name, arguments and result of a stage.
 
 use super::expression::Expression;
 use super::statement::Statement;
 
-/// What a stage is called with beside time, state, inputs and coefficients.
+/// Argument of a stage, in addition to time, state, inputs and coefficients.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Argument {
-    /// The number of a regime.
+    /// Number of a regime.
     Regime,
-    /// An acceleration for each degree of freedom.
+    /// Acceleration of each degree of freedom.
     Accelerations,
-    /// A direction of the state.
+    /// Direction of the state.
     Direction,
-    /// A direction of the inputs.
+    /// Direction of the inputs.
     InputDirection,
-    /// A direction of time, state, inputs and parameters.
+    /// Direction of time, state, inputs and parameters.
     PointDirection,
-    /// A weight for each rate.
+    /// Weight of each rate.
     Weights,
 }
 
-/// How many numbers come of a stage.
+/// Length of an array that a stage returns.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Size {
-    /// As many as the state has.
+    /// Number of states.
     States,
-    /// As many as there are degrees of freedom.
+    /// Number of degrees of freedom.
     DegreesOfFreedom,
-    /// As many as there are guards.
+    /// Number of guards.
     Guards,
-    /// As many as there are parameters.
+    /// Number of parameters.
     Parameters,
-    /// As many as time, state, inputs and parameters have.
+    /// Number of components of time, state, inputs and parameters together.
     Point,
-    /// As many as the Jacobian of this name has structural nonzeros.
+    /// Number of structural nonzeros of the Jacobian with this name.
     Nonzeros(&'static str),
 }
 
-/// What comes of a stage.
+/// Result of a stage.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
-    /// The rates of the state, of which every one is written.
+    /// Rates of the state, all assigned.
     Rates,
-    /// A number.
+    /// Number.
     Number(Expression),
-    /// The observables.
+    /// Observables.
     Observables(Vec<Expression>),
-    /// An array of zeros of this name, to which the last statements write.
+    /// Array of this name, filled with zeros before the last statements assign its elements.
     Array(&'static str, Size),
-    /// A square matrix of zeros, `values`, to which the last statements write.
+    /// Square matrix `values`, filled with zeros before the last statements assign its elements.
     MassMatrix,
-    /// An array of zeros, `product`, as long as the state, to which the last statements write,
-    /// and a number for each input by its name.
+    /// Array `product` with one element for each state, filled with zeros before the last statements assign
+    /// its elements, and one number for each input by name.
     ArrayAndInputs(Vec<(String, Expression)>),
 }
 
-/// A function that is called with prepared coefficients.
+/// Function called with prepared coefficients.
 #[derive(Clone, Debug)]
 pub struct Stage {
-    /// Its name.
+    /// Name.
     pub name: &'static str,
-    /// What it is, by lines, with links in brackets to other items by their names in Rust.
+    /// Documentation lines; names of other items in brackets are links, in their Rust form.
     pub doc: String,
-    /// What its numbers are, an item each: text of the specification.
+    /// Description of each number, from the specification.
     pub list: Vec<String>,
-    /// What it is called with.
+    /// Additional arguments.
     pub arguments: Vec<Argument>,
-    /// What comes of it.
+    /// Result.
     pub outcome: Outcome,
-    /// What is computed.
+    /// Statements that compute the values.
     pub computed: Vec<Statement>,
-    /// What is written to the outcome.
+    /// Statements that write the result.
     pub written: Vec<Statement>,
 }

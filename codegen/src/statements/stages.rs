@@ -1,4 +1,4 @@
-//! The stages that every file has: rates, observables, guards, mass matrix.
+//! Stages of every file: rates, observables, guards, mass matrix.
 
 use super::body::Body;
 use super::emit_error::Emitted;
@@ -13,23 +13,19 @@ use super::statement::{Place, Statement};
 use crate::program::{Extent, Op, Program, ValueId};
 use eomgen_model_spec::ids::FieldId;
 
-/// What arguments and results of the rates are.
 pub const ORDER: &str = "`t` in s; `state` and the rates in the order of [`STATE_NAMES`].";
 
-/// Of a mass matrix that varies with the state.
 const NOT_DEFINITE: &str = "\n\n\
     The mass matrix varies with the state. Where it is not positive definite, rates of velocities \
     are\nNaN, though [`Coefficients::positive_definite`], which knows the parameters alone, is true.";
 
-/// Of a model with impacts.
 const BETWEEN_IMPACTS: &str = "\n\n\
     These are the rates between the impacts of the specification: where bodies hit, and what rests on \
     what,\nis not known here.";
 
-/// The most numbers whose copy every compiler writes out: one cache line.
+/// Largest copy, in numbers, that every compiler unrolls: one cache line.
 const COPIED_AT_ONCE: usize = 8;
 
-/// The rates.
 pub fn rates(file: &File<'_>, needed: &mut Needed) -> Emitted<Stage> {
     let body = file.body(&file.program.rate_roots(), needed)?;
     rates_of(
@@ -42,7 +38,7 @@ pub fn rates(file: &File<'_>, needed: &mut Needed) -> Emitted<Stage> {
     )
 }
 
-/// What is said of rates where the mass matrix may lose its definiteness, and where they jump.
+/// Describes the limits of the rates: an indefinite mass matrix and impacts.
 pub fn where_they_end(file: &File<'_>) -> String {
     let mut said = String::new();
     if file.program.may_lose_definiteness() {
@@ -54,7 +50,7 @@ pub fn where_they_end(file: &File<'_>) -> String {
     said
 }
 
-/// A stage that writes the rates out of a body that has their values.
+/// Builds a stage that writes the rates from a body that has their values.
 pub(super) fn rates_of(mut body: Body<'_>, name: &'static str, doc: String) -> Emitted<Stage> {
     let degrees = body.program.degrees_of_freedom();
     let computed = body.take();
@@ -76,9 +72,8 @@ pub(super) fn rates_of(mut body: Body<'_>, name: &'static str, doc: String) -> E
     })
 }
 
-/// The first half of the rates stands in the state. Many numbers are copied two in a turn:
-/// one by one the compiler takes the loop for a copy of memory and calls a function for
-/// it, which costs more than the copy. For few it writes the copy out.
+/// Copies the first half of the rates from the state. More than [`COPIED_AT_ONCE`] numbers are copied in
+/// pairs: from a plain loop the compiler makes a call of `memcpy`, which costs more than the copy.
 fn write_rates_of_positions(body: &mut Body<'_>, degrees: usize) {
     let copy = |to: Index, from: Index| {
         let rate = Expression::element("state", [from]);
@@ -101,7 +96,7 @@ fn write_rates_of_positions(body: &mut Body<'_>, degrees: usize) {
     }
 }
 
-/// The observables, then energy and power by themselves.
+/// Builds the stages of the observables, of the energy and of the power.
 pub fn observables(file: &File<'_>, needed: &mut Needed) -> Emitted<Vec<Stage>> {
     let program = file.program;
     let ids = &program.observable_values;
@@ -151,14 +146,14 @@ fn number(
     })
 }
 
-/// The switching functions.
+/// Builds the stage of the switching functions.
 pub fn guards(file: &File<'_>, needed: &mut Needed) -> Emitted<Stage> {
     let ids: Vec<ValueId> = file.program.guards.iter().map(|g| g.value).collect();
     let line = "Switching surfaces: the equations change where one of these changes sign.";
     guard_values(file, "guards", line, &ids, needed)
 }
 
-/// A stage that gives a value for each guard.
+/// Builds a stage that writes a value for each guard.
 pub(super) fn guard_values(
     file: &File<'_>,
     name: &'static str,
@@ -198,7 +193,7 @@ pub(super) fn guard_values(
     })
 }
 
-/// The mass matrix.
+/// Builds the stage of the mass matrix.
 pub fn mass_matrix(file: &File<'_>, needed: &mut Needed) -> Emitted<Stage> {
     let program = file.program;
     let mut body = file.body(&mass_roots(program), needed)?;
@@ -228,7 +223,6 @@ pub fn mass_matrix(file: &File<'_>, needed: &mut Needed) -> Emitted<Stage> {
     })
 }
 
-/// An entry of the mass matrix.
 fn entry(row: impl Into<Index>, column: impl Into<Index>) -> Place {
     Place::new("values", [row.into(), column.into()])
 }
@@ -274,8 +268,8 @@ fn write_modal_blocks(file: &File<'_>, body: &mut Body<'_>) -> Emitted<()> {
     Ok(())
 }
 
-/// A description that calls coordinates and modes the first half of the state: states of first order
-/// make them less than that.
+/// Adapts a description that refers to the first half of the state: states of first order make the
+/// coordinates and modes less than half.
 pub(super) fn by_positions(program: &Program, doc: &str) -> String {
     match program.first_order.is_empty() {
         true => doc.to_owned(),

@@ -1,19 +1,19 @@
-//! Statements: what a stage does, one after the other. A backend prints them.
+//! Statements of a stage.
 
 use super::expression::{Array, Expression};
 use super::index::Index;
 
-/// Where a number is put.
+/// Target of an assignment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Place {
-    /// Name of an array of the stage, or of a flag.
+    /// Name of an array or of a flag of the stage.
     pub name: String,
-    /// None of a flag.
+    /// Indices of the element; empty for a flag.
     pub indices: Vec<Index>,
 }
 
 impl Place {
-    /// An element of an array of the stage.
+    /// Refers to an element of an array of the stage.
     pub fn new(name: impl Into<String>, indices: impl Into<Vec<Index>>) -> Self {
         Self {
             name: name.into(),
@@ -21,73 +21,72 @@ impl Place {
         }
     }
 
-    /// What stands there.
+    /// Returns the expression that reads the place.
     pub fn value(&self) -> Expression {
         Expression::element(&*self.name, &*self.indices)
     }
 }
 
-/// A statement.
+/// Statement of a stage.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Statement {
-    /// A named number.
+    /// Definition of a named number.
     Let(String, Expression),
-    /// An array of zeros, of one or two dimensions.
+    /// Definition of an array of zeros with one or two dimensions.
     Zeros(String, Vec<usize>),
-    /// A flag that holds so far.
+    /// Definition of a flag with the value true.
     Flag(String),
-    /// A number put where one stands.
+    /// Assignment to an existing element or flag.
     Assign(Place, Expression),
-    /// The lines for each value of a variable from 0 on.
+    /// Loop over the values of a variable from 0.
     Loop {
-        /// The variable.
+        /// Variable.
         index: &'static str,
-        /// How many values.
+        /// Number of values.
         length: usize,
-        /// What is done for each.
+        /// Statements for each value.
         lines: Vec<Self>,
     },
-    /// The named sum of elements i, in the order that [`Op::Total`](crate::program::Op::Total)
-    /// defines.
+    /// Sum of elements i, in the order that [`Op::Total`](crate::program::Op::Total) defines.
     Sum {
         /// Name of the sum.
         name: String,
-        /// How many.
+        /// Number of elements.
         length: usize,
         /// Element i.
         element: Expression,
     },
-    /// The named lower Cholesky factor of a matrix.
+    /// Lower Cholesky factor of a matrix.
     Cholesky {
         /// Name of the factor.
         name: String,
-        /// The matrix.
+        /// Matrix.
         matrix: Array,
-        /// Its rows.
+        /// Number of rows.
         rows: usize,
     },
-    /// The named solution with a Cholesky factor, of a vector or of the columns of a matrix.
+    /// Solution with a Cholesky factor for a vector or for the columns of a matrix.
     CholeskySolve {
         /// Name of the solution.
         name: String,
-        /// The factor.
+        /// Factor.
         factor: Array,
-        /// The right side.
+        /// Right-hand side.
         right: Array,
-        /// Rows of the factor.
+        /// Number of rows of the factor.
         rows: usize,
-        /// Columns of the right side if it is a matrix.
+        /// Number of columns if the right-hand side is a matrix.
         columns: Option<usize>,
     },
 }
 
 impl Statement {
-    /// A loop over i with one statement in it.
+    /// Builds a loop over i with one statement.
     pub fn each(length: usize, statement: Self) -> Self {
         Self::looped("i", length, vec![statement])
     }
 
-    /// A loop.
+    /// Builds a loop.
     pub fn looped(index: &'static str, length: usize, lines: Vec<Self>) -> Self {
         Self::Loop {
             index,
@@ -96,7 +95,7 @@ impl Statement {
         }
     }
 
-    /// An addition to what stands at a place.
+    /// Builds an addition to the value of a place.
     pub fn add_to(place: Place, summand: &Expression) -> Self {
         let sum = Expression::add(&place.value(), summand);
         Self::Assign(place, sum)

@@ -1,5 +1,4 @@
-//! Statements without those whose result nothing reads: a regime decides branches away, and
-//! what they alone read is left over.
+//! Removal of statements whose results are unused, for example after a regime has decided their branches.
 
 use std::collections::HashSet;
 
@@ -15,7 +14,7 @@ pub struct Used {
 }
 
 impl Used {
-    /// What an outcome reads, and the names that it is written to by.
+    /// Collects the names that an outcome reads and those of the arrays that it returns.
     pub fn by(outcome: &Outcome) -> Self {
         let mut used = Self::default();
         for name in ["rates", "values", "product"] {
@@ -32,7 +31,7 @@ impl Used {
         used
     }
 
-    /// What the coefficients read.
+    /// Collects the names that the coefficients read.
     pub fn by_preparation(prepared: &Preparation) -> Self {
         let mut used = Self::default();
         for coefficient in &prepared.coefficients {
@@ -45,12 +44,12 @@ impl Used {
         used
     }
 
-    /// Whether something of this name is read.
+    /// Returns true if the name is read.
     pub fn contains(&self, name: &str) -> bool {
         self.names.contains(name)
     }
 
-    /// The statements whose results are read, by what follows them or by each other.
+    /// Keeps the statements whose results are read by later statements or by the outcome.
     pub fn retain(&mut self, statements: Vec<Statement>) -> Vec<Statement> {
         let kept = statements.into_iter().rev();
         let mut kept: Vec<Statement> = kept.filter_map(|one| self.keep(one)).collect();

@@ -23,7 +23,7 @@ pub fn equations(report: &Report) -> Markup {
         (lines(&html! { "Definitions" }, &report.definitions, formula))
         (lines(&terms, &report.terms, formula))
         (energies(report))
-        (lines(&html! { "Shared subexpressions, by names of their own" }, &report.shared, formula))
+        (lines(&html! { "Shared subexpressions" }, &report.shared, formula))
         (mass_matrix(&report.mass_matrix))
         (lines(
             &html! { "Pivots of its factorisation, which must be positive" },
@@ -37,7 +37,7 @@ pub fn equations(report: &Report) -> Markup {
             indexed("f", &[name])
         }))
         (lines(&html! { "Rates of states of first order" }, &report.state_rates, formula))
-        (lines(&html! { "Constraints, which stay zero" }, &report.constraints, formula))
+        (lines(&html! { "Constraints, which are zero" }, &report.constraints, formula))
         (lines(&html! { "Multipliers of the constraints" }, &report.multipliers, formula))
         (coefficients(&report.coefficients))
         (lines(&html! { "Accelerations" }, &report.accelerations, formula))
@@ -191,9 +191,9 @@ fn solution(solution: &Solution, has_modes: bool) -> Markup {
     html! {
         h3 { "How the accelerations are solved for" }
         p {
-            "Without pivoting, in the order that costs least: " (modes) (interfaces)
+            "Without pivoting, in the cheapest order: " (modes) (interfaces)
             (separated(&solution.order, formula)) ". That takes " (solution.operations)
-            " operations a call, against " (solution.dearest) " in the dearest order."
+            " operations per call, against " (solution.dearest) " in the most expensive order."
         }
     }
 }

@@ -1,40 +1,40 @@
-//! Machine code of a program, as the evaluator calls it. How it is made is not known here.
+//! Interface of the machine code that the evaluator calls.
 
 use super::point::Point;
 use crate::program::{Impact, Products, Program, RowValues, SlidingSurface, ValueId};
 
-/// What is computed together in one call.
+/// Quantities that one call computes together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
-    /// The accelerations.
+    /// Accelerations.
     Rates,
-    /// The observables, `energy` and `power` last.
+    /// Observables, with `energy` and `power` last.
     Observables,
-    /// The switching surfaces.
+    /// Switching surfaces.
     Guards,
-    /// The distances of the impacts.
+    /// Distances of the impacts.
     Distances,
-    /// Everything of the impacts.
+    /// All quantities of the impacts.
     Impacts,
-    /// Everything of the surfaces that may hold the motion.
+    /// All quantities of the surfaces that can hold the motion.
     Sliding,
-    /// The blocks of the mass matrix.
+    /// Blocks of the mass matrix.
     Mass,
     /// Velocity terms and generalised forces.
     Forces,
-    /// c - f, if it is among the outputs; so for those that follow.
+    /// Bias forces c - f. This stage and the following ones are empty if the program lacks the output.
     BiasForces,
-    /// M a + c - f.
+    /// Inverse dynamics M a + c - f.
     InverseDynamics,
-    /// The rates of the guards.
+    /// Rates of the guards.
     GuardRates,
-    /// All Jacobians.
+    /// Jacobians.
     Jacobians,
-    /// The Jacobian of the rates times a direction.
+    /// Product of the Jacobian of the rates with a direction.
     ForwardProduct,
-    /// Weights times the Jacobian of the rates.
+    /// Product of weights with the Jacobian of the rates.
     ReverseProduct,
-    /// Weights times the Jacobian of the rates by parameters.
+    /// Product of weights with the Jacobian of the rates by the parameters.
     ParameterProduct,
 }
 
@@ -58,7 +58,7 @@ impl Stage {
         Self::ParameterProduct,
     ];
 
-    /// The values it answers with.
+    /// Returns the values that the stage computes.
     pub fn roots(self, program: &Program) -> Vec<ValueId> {
         match self {
             Self::Rates => program.rate_roots(),
@@ -99,7 +99,6 @@ impl Stage {
     }
 }
 
-/// The values of an impact.
 fn of_impact(impact: &Impact<ValueId, RowValues>) -> Vec<ValueId> {
     let mut values = vec![
         impact.distance,
@@ -112,7 +111,6 @@ fn of_impact(impact: &Impact<ValueId, RowValues>) -> Vec<ValueId> {
     values
 }
 
-/// The values of a surface that may hold the motion.
 fn of_surface(surface: &SlidingSurface<ValueId, RowValues>) -> Vec<ValueId> {
     let mut values = vec![surface.rate];
     values.extend(&surface.by_sides);
@@ -152,19 +150,19 @@ impl Stage {
     }
 }
 
-/// Machine code of every stage of a program. It works in the evaluator's memory: the
-/// program's values at their [places](super::Places), then room of its own.
+/// Machine code of every stage of a program. Its memory holds the program's values at their
+/// [places](super::Places), then its own data.
 pub trait MachineCode: Send + Sync {
-    /// What its own room holds at first.
+    /// Returns the initial content of its own data.
     fn room(&self) -> &[f64];
 
-    /// Computes what is prepared, parameters and tables being in their places.
+    /// Computes the prepared values from parameters and tables in their places.
     fn prepare(&self, memory: &mut [f64]);
 
-    /// Computes the roots of a stage into their places.
+    /// Computes the roots of a stage.
     fn compute(&self, stage: Stage, memory: &mut [f64], point: &Point<'_>);
 
-    /// The rates of the state into `out`, of the state's length; their places are not
-    /// written.
+    /// Writes the rates of the state to `out`, which has the length of the state. Their places in memory are
+    /// not written.
     fn rates(&self, memory: &mut [f64], point: &Point<'_>, out: &mut [f64]);
 }

@@ -1,27 +1,27 @@
-//! Functions of one or two numbers, as every backend defines them.
+//! Functions of one or two numbers, with the results that every backend must give.
 
 use eomgen_elementary::Function as Elementary;
 use eomgen_model_spec::model::Function;
 
-/// 1/a for a positive pivot, NaN elsewhere.
+/// Returns 1/a for a positive pivot, else NaN.
 pub(super) fn pivot_reciprocal(a: f64) -> f64 {
     if a > 0.0 { 1.0 / a } else { f64::NAN }
 }
 
-/// How a function of the expression language is computed.
+/// Definition of a function of the expression language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Law {
-    /// As the elementary function of the same name.
+    /// Elementary function of the same name.
     Elementary(Elementary),
     /// f_k of Eq. (7).
     Deadzone,
-    /// 1 where |p| > b, 0 elsewhere, Eq. (8).
+    /// Indicator of |p| > b, Eq. (8).
     Contact,
-    /// 1 where p > 0, 0 elsewhere.
+    /// Indicator of p > 0.
     Above,
 }
 
-/// A function of the expression language; `b` is read by those of two arguments.
+/// Computes a function of the expression language; functions of one argument ignore `b`.
 pub fn call(function: Function, a: f64, b: f64) -> f64 {
     match law(function) {
         Law::Elementary(elementary) => elementary.apply(&[a, b]),
@@ -31,23 +31,22 @@ pub fn call(function: Function, a: f64, b: f64) -> f64 {
     }
 }
 
-/// f_k of Eq. (7).
+/// Computes f_k of Eq. (7).
 fn deadzone(p: f64, b: f64) -> f64 {
     let held = if p > b { b } else { p };
     p - if -b > held { -b } else { held }
 }
 
-/// 1 where |p| > b, 0 elsewhere, Eq. (8).
+/// Computes the indicator of |p| > b, Eq. (8).
 fn contact(p: f64, b: f64) -> f64 {
     if p > b || p < -b { 1.0 } else { 0.0 }
 }
 
-/// 1 where p > 0, 0 elsewhere.
 fn above(p: f64) -> f64 {
     if p > 0.0 { 1.0 } else { 0.0 }
 }
 
-/// How a function is computed.
+/// Returns the definition of a function.
 pub fn law(function: Function) -> Law {
     Law::Elementary(match function {
         Function::Sin => Elementary::Sin,

@@ -1,27 +1,26 @@
-//! What the impacts of a program are at a point.
+//! Impacts of a program at a point.
 
 use super::{Evaluator, Point, Stage};
 
-/// An impact at a point, in SI; the quantities are those of
-/// [`Impact`](crate::mechanics::impacts::Impact).
+/// Impact at a point in SI units; see [`Impact`](crate::mechanics::impacts::Impact).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ImpactAt {
-    /// The distance.
+    /// Distance.
     pub distance: f64,
-    /// Its rate.
+    /// Rate of the distance.
     pub rate: f64,
-    /// Its second rate where no contact is closed.
+    /// Second rate of the distance if no contact is closed.
     pub acceleration: f64,
-    /// The part of the rate that comes back.
+    /// Coefficient of restitution.
     pub restitution: f64,
-    /// What an impulse of 1 adds to the rates, one number per degree of freedom.
+    /// Change of the rates by a unit impulse, one number for each degree of freedom.
     pub column: Vec<f64>,
-    /// What impulses of 1 at each of the impacts add to the rate of the distance.
+    /// Change of the distance's rate by a unit impulse at each of the impacts.
     pub delassus: Vec<f64>,
 }
 
 impl Evaluator {
-    /// The distances of the impacts; `out` has as many numbers.
+    /// Writes the distances of the impacts to `out`.
     pub fn distances(&mut self, point: Point<'_>, out: &mut [f64]) {
         self.compute(Stage::Distances, &point);
         for (slot, impact) in out.iter_mut().zip(&self.program.impacts) {
@@ -29,8 +28,8 @@ impl Evaluator {
         }
     }
 
-    /// All of the impacts, in the order of the specification. Nothing is allocated where `out` was
-    /// filled before.
+    /// Computes all impacts in the order of the specification. A call with an `out` of a previous call
+    /// allocates no memory.
     pub fn impacts(&mut self, point: Point<'_>, out: &mut Vec<ImpactAt>) {
         self.compute(Stage::Impacts, &point);
         let degrees = self.program.degrees_of_freedom();

@@ -1,12 +1,12 @@
-//! Matrix operations of the evaluator: products, Gram matrices, assembled blocks, Cholesky
-//! factors, in the order of summation that the program defines.
+//! Matrix operations of the evaluator: products, Gram matrices, assembled blocks and Cholesky factors, with
+//! the order of summation that the program defines.
 
 use eomgen_elementary::Function as Elementary;
 
 use super::operands::Operands;
 use crate::program::{ScaledValue, ValueId};
 
-/// left^T diag(weight) right.
+/// Computes left^T diag(weight) right.
 pub(super) fn gram(out: &mut [f64], operands: &Operands<'_>, [left, weight, right]: [ValueId; 3]) {
     let (left, nodes, rows) = operands.matrix(left);
     let (right, _, columns) = operands.matrix(right);
@@ -20,7 +20,7 @@ pub(super) fn gram(out: &mut [f64], operands: &Operands<'_>, [left, weight, righ
     }
 }
 
-/// The diagonal of the same.
+/// Computes the diagonal of left^T diag(weight) right.
 pub(super) fn gram_diagonal(
     out: &mut [f64],
     operands: &Operands<'_>,
@@ -36,7 +36,7 @@ pub(super) fn gram_diagonal(
     }
 }
 
-/// A matrix, or its transpose, times a vector.
+/// Multiplies a matrix, or its transpose, by a vector.
 pub(super) fn apply(
     out: &mut [f64],
     (matrix, rows, columns): (&[f64], usize, usize),
@@ -56,7 +56,7 @@ pub(super) fn apply(
     }
 }
 
-/// A matrix of so many columns from its diagonal, outer products and scaled matrices.
+/// Computes a matrix of `columns` columns from its diagonal, outer products and scaled matrices.
 pub(super) fn assemble(
     out: &mut [f64],
     columns: usize,
@@ -94,7 +94,7 @@ pub(super) fn assemble(
     }
 }
 
-/// Row by row, L L^T = matrix; the upper part of `out` becomes 0.
+/// Computes the factor L of L L^T = matrix, row by row; the upper part of `out` becomes 0.
 pub(super) fn cholesky(out: &mut [f64], matrix: &[f64], size: usize) {
     out.fill(0.0);
     for r in 0..size {
@@ -115,7 +115,7 @@ pub(super) fn cholesky(out: &mut [f64], matrix: &[f64], size: usize) {
     }
 }
 
-/// The right side of so many columns, possibly one number for all rows, solved into `out`.
+/// Solves for `columns` right-hand sides; with stride 0 all rows share one number.
 pub(super) fn cholesky_solve(
     out: &mut [f64],
     columns: usize,
@@ -128,8 +128,8 @@ pub(super) fn cholesky_solve(
     }
 }
 
-/// Column `column` of the right side, solved into the same column of `out`; both hold
-/// `columns` numbers in a row, the right side possibly one number for all rows.
+/// Solves for one column of the right-hand side. Both arrays hold `columns` numbers in a row; with stride 0
+/// all rows of the right-hand side share one number.
 fn solve_column(
     out: &mut [f64],
     (column, columns): (usize, usize),

@@ -1,6 +1,6 @@
-//! Runs a program at once, with no compiler: every value has a place in one block of
-//! memory, every stage is a list of steps over it. Slower than emitted code, the same bits.
-//! Where somebody supplies machine code for the stages, that runs instead.
+//! Evaluation of a program without a compiler: every value has a place in one block of memory, every stage is
+//! a list of steps. It is slower than emitted code and computes the same bits. Machine code for the stages
+//! can replace the steps.
 
 mod code;
 mod functions;
@@ -25,21 +25,21 @@ pub use point::Point;
 pub use sliding::SlidingAt;
 use step::step;
 
-/// A program with memory to run it in. Nothing is allocated after construction.
+/// Program with memory for its values. No memory is allocated after construction.
 pub struct Evaluator {
     program: Program,
     memory: Vec<f64>,
     places: Places,
-    /// The values that are parameters, each with its place among these.
+    /// Parameter values, each with its index among the independent parameters.
     parameters: Vec<(ValueId, usize)>,
     prepare: Vec<ValueId>,
-    /// The steps of each stage, in the order of [`Stage::ALL`].
+    /// Steps of each stage, in the order of [`Stage::ALL`].
     stages: [Vec<ValueId>; Stage::ALL.len()],
     code: Option<Arc<dyn MachineCode>>,
 }
 
 impl Evaluator {
-    /// Takes a program and prepares it with the specification's parameters.
+    /// Prepares a program with the parameters of the specification.
     pub fn new(program: Program) -> Self {
         let prepare = program
             .ids()
@@ -67,7 +67,7 @@ impl Evaluator {
         evaluator
     }
 
-    /// The same, computed by machine code made from this program.
+    /// Prepares a program that is computed by `code`, its own machine code.
     pub fn with_code(program: Program, code: Arc<dyn MachineCode>) -> Self {
         let mut evaluator = Self::new(program);
         evaluator.memory.extend_from_slice(code.room());
@@ -75,15 +75,13 @@ impl Evaluator {
         evaluator
     }
 
-    /// The program.
+    /// Returns the program.
     pub fn program(&self) -> &Program {
         &self.program
     }
 
-    /// Computes everything that depends on the parameters alone.
-    ///
-    /// `parameters`: the independent parameters in SI, in the order of the program, as many
-    /// as it has.
+    /// Computes all values that depend only on the parameters. `parameters` are the independent parameters in
+    /// SI units, in the order of the program.
     pub fn prepare(&mut self, parameters: &[f64]) {
         for (id, place) in &self.parameters {
             self.memory[self.places.offset(*id)] = parameters[*place];
@@ -102,8 +100,7 @@ impl Evaluator {
         }
     }
 
-    /// Whether every prepared pivot of the mass matrix is positive: otherwise the rates
-    /// are NaN.
+    /// Returns true if every prepared pivot of the mass matrix is positive; otherwise the rates are NaN.
     pub fn pivots_are_positive(&self) -> bool {
         self.program.pivots.iter().all(|id| {
             let matrix = matches!(self.program.value(*id).extent, Extent::Matrix(..));
@@ -113,7 +110,7 @@ impl Evaluator {
         })
     }
 
-    /// The rates of the state; `out` has as many numbers as the state.
+    /// Writes the rates of the state to `out`.
     #[inline]
     pub fn rates(&mut self, point: Point<'_>, out: &mut [f64]) {
         match &self.code {
@@ -122,7 +119,7 @@ impl Evaluator {
         }
     }
 
-    /// Apart from [`Evaluator::rates`], so that machine code is called without a detour.
+    // Separate from `rates`, so that the call of machine code stays short.
     #[inline(never)]
     fn interpreted_rates(&mut self, point: &Point<'_>, out: &mut [f64]) {
         self.compute(Stage::Rates, point);
@@ -140,7 +137,7 @@ impl Evaluator {
         );
     }
 
-    /// The observables, `energy` and `power` last.
+    /// Writes the observables to `out`, with `energy` and `power` last.
     pub fn observables(&mut self, point: Point<'_>, out: &mut [f64]) {
         self.compute(Stage::Observables, &point);
         for (value, id) in out.iter_mut().zip(&self.program.observable_values) {
@@ -148,7 +145,7 @@ impl Evaluator {
         }
     }
 
-    /// How many switching surfaces there are, those over modes one by one.
+    /// Returns the number of switching surfaces; a surface over modes counts once for each mode.
     pub fn guard_count(&self) -> usize {
         let extents = self
             .program
@@ -158,7 +155,7 @@ impl Evaluator {
         extents.map(Extent::length).sum()
     }
 
-    /// The values of the switching surfaces; `out` has [`Evaluator::guard_count`] numbers.
+    /// Writes the values of the switching surfaces to `out`, [`Evaluator::guard_count`] numbers.
     pub fn guards(&mut self, point: Point<'_>, out: &mut [f64]) {
         self.compute(Stage::Guards, &point);
         let mut place = 0;
@@ -169,7 +166,7 @@ impl Evaluator {
         }
     }
 
-    /// The mass matrix, row by row.
+    /// Writes the mass matrix to `out`, row by row.
     pub fn mass_matrix(&mut self, point: Point<'_>, out: &mut [f64]) {
         self.compute(Stage::Mass, &point);
         let size = self.program.degrees_of_freedom();
@@ -205,7 +202,7 @@ impl Evaluator {
         }
     }
 
-    /// Velocity terms c and generalised forces f of M q'' + c = f.
+    /// Computes the velocity terms c and generalised forces f of M q'' + c = f.
     pub fn bias_and_forces(&mut self, point: Point<'_>, bias: &mut [f64], forces: &mut [f64]) {
         self.compute(Stage::Forces, &point);
         self.copy_rows(
@@ -220,8 +217,8 @@ impl Evaluator {
         );
     }
 
-    /// The numbers of a value as last computed; machine code leaves those that are
-    /// prepared and the [roots](Stage::roots) of the last stage but the rates.
+    /// Returns the numbers of a value. Machine code keeps only prepared values and the [roots](Stage::roots)
+    /// of the last stage, except the rates.
     pub fn slice(&self, id: ValueId) -> &[f64] {
         let start = self.places.offset(id);
         &self.memory[start..start + self.program.values[id.0].extent.length()]

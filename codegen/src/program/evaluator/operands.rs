@@ -1,9 +1,9 @@
-//! The values an operation reads, which stand before its own.
+//! Operands of an operation.
 
 use super::places::Places;
 use crate::program::{Extent, Program, ValueId};
 
-/// Read access to operands while a value is computed: operands stand before it.
+/// Read access to the operands of a value, which precede it in memory.
 pub(super) struct Operands<'a> {
     pub(super) memory: &'a [f64],
     pub(super) places: &'a Places,
@@ -16,8 +16,8 @@ impl<'a> Operands<'a> {
         &self.memory[start..start + self.program.values[id.0].extent.length()]
     }
 
-    /// The operand's numbers and the distance from one element to the next: 0 for a
-    /// scalar, which stands for every element.
+    /// Returns the numbers of an operand and the distance between its elements: 0 for a scalar, which is
+    /// repeated.
     pub(super) fn strided(&self, id: ValueId) -> (&'a [f64], usize) {
         let scalar = self.program.values[id.0].extent == Extent::Scalar;
         (self.slice(id), usize::from(!scalar))

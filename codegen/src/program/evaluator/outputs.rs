@@ -1,12 +1,11 @@
-//! The outputs on request of a program, computed by its evaluator. Each function says whether the
-//! program has it.
+//! Requested outputs of a program. Each function returns false if the program lacks the output.
 
 use super::{Evaluator, Point, Stage};
 use crate::program::BlockPlace;
 use crate::program::{Argument, Extent, Jacobian, JacobianBlock, Op, RowValues, ValueId, Variable};
 
 impl Evaluator {
-    /// c - f; a number per degree of freedom.
+    /// Computes c - f, one number for each degree of freedom.
     pub fn bias_forces(&mut self, point: Point<'_>, out: &mut [f64]) -> bool {
         let Some(rows) = self.program.outputs.bias_forces.clone() else {
             return false;
@@ -16,7 +15,7 @@ impl Evaluator {
         true
     }
 
-    /// M a + c - f for these accelerations; a number per degree of freedom.
+    /// Computes M a + c - f for the given accelerations, one number for each degree of freedom.
     pub fn inverse_dynamics(
         &mut self,
         point: Point<'_>,
@@ -32,7 +31,7 @@ impl Evaluator {
         true
     }
 
-    /// The rates of the guards; as many numbers as [`Evaluator::guard_count`].
+    /// Computes the rates of the guards, [`Evaluator::guard_count`] numbers.
     pub fn guard_rates(&mut self, point: Point<'_>, out: &mut [f64]) -> bool {
         let Some(rates) = self.program.outputs.guard_rates.clone() else {
             return false;
@@ -49,7 +48,7 @@ impl Evaluator {
         true
     }
 
-    /// The structural nonzeros of a Jacobian of the program, by its place among them.
+    /// Computes the structural nonzeros of the Jacobian with index `place`.
     pub fn jacobian(&mut self, place: usize, point: Point<'_>, out: &mut [f64]) -> bool {
         let Some(jacobian) = self.program.outputs.jacobians.get(place).cloned() else {
             return false;
@@ -59,8 +58,8 @@ impl Evaluator {
         true
     }
 
-    /// The product of the Jacobian of the rates with a direction of the state and of the inputs;
-    /// as many numbers as the state.
+    /// Computes the product of the Jacobian of the rates with a direction of state and inputs, one number for
+    /// each state.
     pub fn jacobian_vector_product(
         &mut self,
         point: Point<'_>,
@@ -84,7 +83,7 @@ impl Evaluator {
         true
     }
 
-    /// The product of weights with the Jacobian of the rates by state and inputs.
+    /// Computes the product of weights with the Jacobian of the rates by state and inputs.
     pub fn vector_jacobian_product(
         &mut self,
         point: Point<'_>,
@@ -114,8 +113,7 @@ impl Evaluator {
         true
     }
 
-    /// The product of weights with the Jacobian of the rates by parameters; a number per
-    /// independent parameter.
+    /// Computes the product of weights with the Jacobian of the rates by the independent parameters.
     pub fn vector_jacobian_product_by_parameters(
         &mut self,
         point: Point<'_>,
@@ -143,7 +141,7 @@ impl Evaluator {
         }
     }
 
-    /// Puts an argument's numbers where the values that stand for them are.
+    /// Copies the numbers of an argument to the places of its values.
     fn set_argument(&mut self, argument: Argument, numbers: &[f64], inputs: &[f64]) {
         for id in self.program.ids() {
             let Op::Argument(of, variable) = self.program.value(id).op else {

@@ -1,8 +1,6 @@
-//! Where the values of a program stand in one block of memory.
-
 use crate::program::{Extent, Program, ValueId};
 
-/// Where the values of a program stand in one block of memory.
+/// Offsets of the values of a program in one block of memory.
 #[derive(Clone, Debug)]
 pub struct Places {
     offsets: Vec<usize>,
@@ -10,8 +8,8 @@ pub struct Places {
 }
 
 impl Places {
-    /// The places of a program's values, one after the other. Whatever holds several numbers
-    /// begins at an even place, so that two of its numbers lie in one line of a cache.
+    /// Arranges the values one after the other. Vectors and matrices begin at an even offset, so that a pair
+    /// of elements never crosses a cache line.
     pub fn of(program: &Program) -> Self {
         let mut offsets = Vec::with_capacity(program.values.len());
         let mut size = 0_usize;
@@ -25,12 +23,12 @@ impl Places {
         Self { offsets, size }
     }
 
-    /// The place of a value's first number.
+    /// Returns the offset of a value's first number.
     pub fn offset(&self, id: ValueId) -> usize {
         self.offsets[id.index()]
     }
 
-    /// How many numbers all values hold.
+    /// Returns the total count of numbers.
     pub fn size(&self) -> usize {
         self.size
     }

@@ -1,11 +1,9 @@
-//! What a program is called at.
-
-/// What a call is made at.
+/// Time, state and inputs of a call.
 #[derive(Clone, Copy, Debug)]
 pub struct Point<'a> {
-    /// Time, in s.
+    /// Time in s.
     pub t: f64,
-    /// State: coordinates, modes, and the rates of both.
+    /// State: coordinates, modes, the rates of both, states of first order.
     pub state: &'a [f64],
     /// Inputs in the order of the program.
     pub inputs: &'a [f64],

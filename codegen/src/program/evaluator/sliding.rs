@@ -1,23 +1,22 @@
-//! What the surfaces that may hold the motion are at a point.
+//! Surfaces that can hold the motion, at a point.
 
 use super::{Evaluator, Point, Stage};
 
-/// A surface at a point, in SI; the quantities are those of
-/// [`SlidingSurface`](crate::mechanics::outputs::SlidingSurface).
+/// Surface at a point in SI units; see [`SlidingSurface`](crate::mechanics::outputs::SlidingSurface).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SlidingAt {
-    /// The rate of its function.
+    /// Rate of the surface's function.
     pub rate: f64,
-    /// By how much each of the sides changes that.
+    /// Derivative of that rate by each side.
     pub by_sides: Vec<f64>,
-    /// By how much its own side changes the rates of the state: a number for each degree of freedom,
-    /// then for each state of first order.
+    /// Derivative of the state's rates by the surface's own side: one number for each degree of freedom, then
+    /// one for each state of first order.
     pub column: Vec<f64>,
 }
 
 impl Evaluator {
-    /// All surfaces that may hold the motion, in the order of the program. Nothing is allocated where
-    /// `out` was filled before.
+    /// Computes all surfaces that can hold the motion, in the order of the program. A call with an `out` of a
+    /// previous call allocates no memory.
     pub fn sliding(&mut self, point: Point<'_>, out: &mut Vec<SlidingAt>) {
         self.compute(Stage::Sliding, &point);
         let degrees = self.program.degrees_of_freedom();

@@ -1,4 +1,4 @@
-//! One value of a program, computed from those before it.
+//! Evaluation of one value of a program.
 
 use eomgen_elementary::Function as Elementary;
 
@@ -122,7 +122,7 @@ pub(super) fn step(
     }
 }
 
-/// The sum of the elements, in the order that `Op::Total` defines.
+/// Sums the elements in the order that `Op::Total` defines.
 fn total(elements: &[f64]) -> f64 {
     let (first, rest) = elements.split_at(elements.len().min(PARTIAL_SUMS));
     let mut partial = [0.0; PARTIAL_SUMS];

@@ -1,4 +1,4 @@
-//! The program of a piecewise-linear model's coefficients: prepared values only.
+//! Program of the coefficients of a piecewise-linear model; it has only prepared values.
 
 use eomgen_model_spec::model::Model;
 
@@ -10,7 +10,7 @@ use crate::program::{
     MassBlocks, Outputs, Program, ProgramField, ProgramParameter, Quantity, RowValues, ValueId,
 };
 
-/// The program of the coefficients of `equations`, which belong to `model`.
+/// Lowers the coefficients of `equations`, which belong to `model`.
 pub fn lower_affine(
     model: &Model,
     equations: &AffineEquations,
@@ -103,13 +103,13 @@ fn fields(model: &Model, orders: &[usize]) -> Vec<ProgramField> {
         .collect()
 }
 
-/// The parameter that says on which side of a surface the motion is.
+/// Returns the parameter for the side of a surface.
 fn side(guard: usize) -> ProgramParameter {
     ProgramParameter {
         quantity: Quantity {
             name: format!("side_{guard}"),
             unit: "1".to_owned(),
-            doc: "1 where the switching function is positive, 0 where it is not".to_owned(),
+            doc: "1 if the switching function is positive, else 0".to_owned(),
         },
         origin: String::new(),
         value: 0.0,

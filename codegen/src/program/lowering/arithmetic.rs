@@ -8,9 +8,9 @@ use crate::symbolic::association::Factor;
 use crate::symbolic::graph::{Bits, NodeId, Operation, Shape};
 
 impl Lowering<'_> {
-    /// Prepared terms first, as one value; then the others, those last that wait longest for
-    /// elementary functions, so that all else is summed in the meantime. Among equals
-    /// positive terms come before negative ones so that no negation is needed.
+    /// Adds the prepared terms first. The others follow by the number of elementary functions before them, so
+    /// that the sum does not wait for the slowest terms. Positive terms precede negative ones, which saves a
+    /// negation.
     pub(super) fn sum(&mut self, terms: &[(Bits, NodeId)]) -> ValueId {
         let graph = self.graph;
         let (parameter_only, mut live): (Vec<_>, Vec<_>) = terms
@@ -36,7 +36,7 @@ impl Lowering<'_> {
         self.add_all(&parts)
     }
 
-    /// The parts as one, subtracted if all of them are.
+    /// Combines the parts into one, which is subtracted if all parts are.
     fn joined(&mut self, parts: Vec<(bool, ValueId)>) -> Vec<(bool, ValueId)> {
         if parts.len() < 2 {
             return parts;
@@ -49,7 +49,7 @@ impl Lowering<'_> {
         vec![(true, self.add_all(&magnitudes))]
     }
 
-    /// The sum of values, each with whether it is subtracted.
+    /// Adds the values; the flag of a part is true if it is subtracted.
     fn add_all(&mut self, parts: &[(bool, ValueId)]) -> ValueId {
         let mut ordered: Vec<(bool, ValueId)> = parts.to_vec();
         ordered.sort_by_key(|(negative, _)| *negative);
@@ -65,7 +65,7 @@ impl Lowering<'_> {
         total
     }
 
-    /// -a; the sign goes into a prepared factor if there is one.
+    /// Returns -a, with the sign in a prepared factor if there is one.
     fn negated(&mut self, value: ValueId) -> ValueId {
         let extent = self.values[value.0].extent;
         if let Op::Multiply(factor, moving) = self.values[value.0].op
@@ -79,7 +79,7 @@ impl Lowering<'_> {
         self.emit(Op::Negate(value), extent)
     }
 
-    /// |c| times a node, and whether c is negative.
+    /// Returns |c| times a node, and true if c is negative.
     pub(super) fn term(&mut self, factor: f64, id: NodeId) -> (bool, ValueId) {
         let graph = self.graph;
         let (negative, magnitude) = (factor < 0.0, factor.abs());
@@ -112,7 +112,7 @@ impl Lowering<'_> {
         (negative, value)
     }
 
-    /// The product of factors, in their order, a prepared one last.
+    /// Multiplies the factors in their order, with a prepared factor last.
     fn associated(&mut self, factors: &[Factor]) -> ValueId {
         let mut product: Option<ValueId> = None;
         let (prepared, live): (Vec<Factor>, Vec<Factor>) = factors
@@ -151,9 +151,8 @@ impl Lowering<'_> {
         }
     }
 
-    /// A prepared factor times a sum over modes of prepared factors times others: the factor
-    /// goes into the prepared ones, if nothing else needs the sum without it. A factor that is a
-    /// vector stands outside the sum.
+    /// Moves a prepared factor of a sum over modes into its prepared factors, if no other value uses the sum
+    /// without it. A vector factor stays outside the sum.
     fn scaled_total(
         &mut self,
         number: f64,
@@ -187,8 +186,8 @@ impl Lowering<'_> {
         Some(self.emit(Op::Total(summand), Extent::Scalar))
     }
 
-    /// A product of powers; a contact among others chooses between them and 0, which waits
-    /// for no multiplication.
+    /// Multiplies powers. A contact factor selects between the product of the others and 0, which needs no
+    /// multiplication.
     fn where_in_contact(&mut self, factors: &[(NodeId, i32)]) -> Option<ValueId> {
         let graph = self.graph;
         let contact = |(id, _): &(NodeId, i32)| {
@@ -216,7 +215,7 @@ impl Lowering<'_> {
         Some(self.emit(op, extent))
     }
 
-    /// A number times a product of powers, scalars before vectors; `None` for a bare 1.
+    /// Multiplies a number and powers, scalars before vectors; returns `None` for a plain 1.
     fn powers(&mut self, number: f64, factors: &[(NodeId, i32)]) -> Option<ValueId> {
         let graph = self.graph;
         let mut ordered = factors.to_vec();
@@ -242,7 +241,7 @@ impl Lowering<'_> {
         }
     }
 
-    /// base^n by squaring.
+    /// Computes base^n by squaring.
     fn integer_power(&mut self, base: ValueId, exponent: u32) -> ValueId {
         let mut result: Option<ValueId> = None;
         let (mut square, mut rest) = (base, exponent);

@@ -1,8 +1,8 @@
-//! From the equations' graph to a program: sums and products become binary operations in
-//! a fixed order, what depends on parameters alone is split off and prepared once.
+//! Lowering of the equations' graph to a program. Sums and products become binary operations in a fixed
+//! order; values that depend only on parameters are prepared once.
 //!
-//! A term `c P X` of a sum, P of parameters and X of the state, becomes one prepared
-//! coefficient |c| P times X, added or subtracted by the sign of c.
+//! A term `c P X` of a sum, with P of parameters and X of the state, becomes a prepared coefficient |c| P
+//! times X, added or subtracted according to the sign of c.
 
 mod affine;
 mod arithmetic;
@@ -22,12 +22,12 @@ pub use affine::lower_affine;
 use quantities::{program_observables, program_parameters, quantity};
 use values::Lowering;
 
-/// The program of one variant.
+/// Lowers the equations to the program of one variant.
 pub fn lower(model: &Model, equations: &Equations, parameter_values: &[f64]) -> Program {
     lower_with_outputs(model, equations, parameter_values, &Outputs::default())
 }
 
-/// The program of one variant with its outputs on request, which leave the rest as it is.
+/// Lowers the equations with additional outputs, which do not change the other values.
 pub fn lower_with_outputs(
     model: &Model,
     equations: &Equations,
@@ -133,8 +133,8 @@ pub fn lower_with_outputs(
     }
 }
 
-/// What the functions of a program are computed from, each by itself, the rates first: what shares
-/// factors is multiplied so that it pays within a function.
+/// Returns the roots of each function of a program, the rates first. Shared factors are multiplied in the
+/// order that saves most within one function.
 fn functions(equations: &Equations, outputs: &Outputs<NodeId, RowNodes>) -> Vec<Vec<NodeId>> {
     let mass = &equations.mass;
     let scalars = mass.scalars.iter().flatten().copied().collect();

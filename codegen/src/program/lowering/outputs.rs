@@ -1,4 +1,4 @@
-//! The values of the outputs on request, node by node as it is structured.
+//! Values of the requested outputs.
 
 use super::values::Lowering;
 use crate::mechanics::outputs::SlidingSurface;

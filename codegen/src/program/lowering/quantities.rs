@@ -1,4 +1,4 @@
-//! Named quantities of a program, with their units in SI.
+//! Named quantities of a program, in SI units.
 
 use eomgen_model_spec::model::{Model, ParameterValue};
 use eomgen_model_spec::unit::Unit;
@@ -13,7 +13,7 @@ pub(super) fn quantity(name: &str, unit: &str, doc: &str) -> Quantity {
     }
 }
 
-/// A unit as it is written in the specification, or its SI equivalent.
+/// Returns the unit as written in the specification if it is coherent, else its SI equivalent.
 fn si_unit(unit: &Unit) -> String {
     if unit.is_coherent() {
         unit.text.clone()

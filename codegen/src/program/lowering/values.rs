@@ -1,4 +1,4 @@
-//! The values of a program, node by node, each once.
+//! Lowering of nodes to values, each once.
 
 use eomgen_model_spec::ids::ParameterId;
 use std::collections::HashMap;
@@ -12,7 +12,7 @@ use crate::program::{
 use crate::symbolic::association::Association;
 use crate::symbolic::graph::{Assembly, Graph, NodeId, Operation, Shape, Variable};
 
-/// An operation and its extent, to be found again: numbers are compared by their bits.
+/// Operation and extent of a value, as a key; constants are compared by their bits.
 struct Computation {
     op: Op,
     extent: Extent,
@@ -46,11 +46,11 @@ impl Hash for Computation {
     }
 }
 
-/// Values in the making.
+/// Program values under construction.
 pub(super) struct Lowering<'g> {
     pub(super) graph: &'g Graph,
     derived: &'g [Option<NodeId>],
-    /// Place among the independent parameters, for each parameter.
+    /// Index among the independent parameters, for each parameter.
     independent: Vec<usize>,
     parameter_names: Vec<String>,
     pub(super) values: Vec<Value>,
@@ -58,15 +58,15 @@ pub(super) struct Lowering<'g> {
     lowered: HashMap<NodeId, ValueId>,
     pub(super) tables: Vec<ProgramTable>,
     table_places: HashMap<usize, usize>,
-    /// How often the accelerations read each node, while these are lowered.
+    /// Number of uses of each node by the accelerations, while these are lowered.
     pub(super) uses: HashMap<NodeId, usize>,
-    /// In which order factors are multiplied.
+    /// Order in which factors are multiplied.
     pub(super) association: Association,
 }
 
 impl<'g> Lowering<'g> {
-    /// A lowering of nodes of `graph`, whose parameters have these names and, if they are
-    /// derived from others, these expressions.
+    /// Starts the lowering of `graph`. `names` are the names of its parameters; `derived` are the expressions
+    /// of those that depend on others.
     pub(super) fn new(graph: &'g Graph, derived: &'g [Option<NodeId>], names: &[String]) -> Self {
         let mut next = 0;
         let independent = derived
@@ -147,7 +147,7 @@ impl<'g> Lowering<'g> {
         }
     }
 
-    /// Adds a value, or finds it if it stands there already.
+    /// Adds a value, or finds an equal one.
     pub(super) fn emit(&mut self, op: Op, extent: Extent) -> ValueId {
         let key = Computation { op, extent };
         if let Some(&known) = self.known.get(&key) {
@@ -201,7 +201,6 @@ impl<'g> Lowering<'g> {
         self.emit(Op::Constant(value), Extent::Scalar)
     }
 
-    /// The value of a node.
     pub(super) fn value(&mut self, id: NodeId) -> ValueId {
         if let Some(&known) = self.lowered.get(&id) {
             return known;

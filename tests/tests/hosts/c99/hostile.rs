@@ -89,9 +89,7 @@ fn words_of_c_are_no_names() {
         assert_eq!((name.as_str(), *language), (word, "C or C++"));
         assert_eq!(
             error.to_string(),
-            format!(
-                "`{word}` is no C or C++ identifier: the specification has to call it otherwise"
-            )
+            format!("`{word}` is not a valid C or C++ identifier: rename it in the specification")
         );
     }
 }
