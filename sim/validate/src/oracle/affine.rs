@@ -1,5 +1,5 @@
-//! Quantities of a model as affine forms in a regime: a constant plus multiples of the time, the
-//! state, the inputs and of atoms, which are the subexpressions that are not affine.
+//! Affine forms of expressions in one regime: a constant plus multiples of time, state entries,
+//! inputs and atoms. An atom is a subexpression that is not affine.
 
 use super::Oracle;
 use super::functions;
@@ -8,29 +8,26 @@ use super::tree::Tree;
 use eomgen_model_spec::ast::BinaryOperator;
 use eomgen_model_spec::interval::Interval;
 
-/// A variable of an affine form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Variable {
-    /// The time.
     Time,
-    /// An entry of the state.
+    /// Entry of the state.
     Entry(usize),
-    /// An input.
     Input(usize),
-    /// A subexpression that is not affine, by its place in [`Forms`].
+    /// Subexpression that is not affine, by its index in [`Forms`].
     Atom(usize),
 }
 
-/// `constant + sum of coefficient * variable`.
+/// Affine form `constant + sum of coefficient * variable`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Affine {
-    /// The constant, in SI.
+    /// Constant, in SI.
     pub constant: f64,
-    /// Variables with their coefficients, each variable once, no coefficient 0.
+    /// Variables with nonzero coefficients, each variable once.
     pub terms: Vec<(Variable, f64)>,
 }
 
-/// Coefficients below this share of what was added up for them are rounding.
+/// Relative size below which a coefficient after cancellation is rounding error.
 const CANCELLED: f64 = 1e-14;
 
 impl Affine {
@@ -48,7 +45,7 @@ impl Affine {
         }
     }
 
-    /// `self + factor * other`.
+    /// Returns `self + factor * other`.
     pub fn plus(mut self, factor: f64, other: &Self) -> Self {
         self.constant = sum(self.constant, factor * other.constant);
         for (variable, coefficient) in &other.terms {
@@ -62,7 +59,6 @@ impl Affine {
         self
     }
 
-    /// Whether it holds anything that is not affine.
     pub fn has_atoms(&self) -> bool {
         let mut variables = self.terms.iter().map(|(variable, _)| variable);
         variables.any(|variable| matches!(variable, Variable::Atom(_)))
@@ -73,7 +69,7 @@ impl Affine {
     }
 }
 
-/// The sum of two numbers, 0 if nothing but rounding is left.
+/// Returns the sum of two numbers; 0 if only rounding error remains.
 fn sum(first: f64, second: f64) -> f64 {
     let sum = first + second;
     if sum.abs() <= CANCELLED * first.abs().max(second.abs()) {
@@ -83,16 +79,15 @@ fn sum(first: f64, second: f64) -> f64 {
     }
 }
 
-/// Affine forms of one regime and their atoms.
 pub(super) struct Forms<'o> {
     oracle: &'o Oracle,
     imposed: Imposed<'o>,
-    /// Atoms with their bounds.
+    /// Atoms with their interval bounds.
     pub atoms: Vec<(Tree, Interval)>,
 }
 
 impl<'o> Forms<'o> {
-    /// Forms with piecewise functions on the sides that `imposed` gives.
+    /// Creates forms with piecewise functions on the sides of `imposed`.
     pub fn new(oracle: &'o Oracle, imposed: Imposed<'o>) -> Self {
         Self {
             oracle,
@@ -101,7 +96,7 @@ impl<'o> Forms<'o> {
         }
     }
 
-    /// The affine form of `tree`.
+    /// Returns the affine form of `tree`.
     pub fn of(&mut self, tree: &Tree) -> Affine {
         match tree {
             Tree::Constant(value) => Affine::constant(*value),
@@ -154,7 +149,7 @@ impl<'o> Forms<'o> {
         }
     }
 
-    /// A piecewise function on a side, linear in one of its arguments.
+    /// Returns the affine form of a piecewise function on a side, if it is linear in one argument.
     fn branch(
         &mut self,
         function: eomgen_model_spec::model::Function,
@@ -162,8 +157,8 @@ impl<'o> Forms<'o> {
         arguments: &[Tree],
     ) -> Option<Affine> {
         let arguments: Vec<Affine> = arguments.iter().map(|tree| self.of(tree)).collect();
-        // The value on a side is linear in the arguments: its coefficients are its values at
-        // unit arguments.
+        // The value on a side is linear in the arguments, so values at unit arguments are
+        // coefficients.
         let at = |numbers: &[f64]| functions::on_side(function, side, numbers);
         let constant = at(&vec![0.0; arguments.len()])?;
         let mut form = Affine::constant(constant);
@@ -184,7 +179,7 @@ impl<'o> Forms<'o> {
         })
     }
 
-    /// The time derivative of an affine form; an atom if it holds one.
+    /// Returns the time derivative of an affine form; an atom if the form contains one.
     fn rate(&mut self, tree: &Tree, operand: &Tree) -> Affine {
         let form = self.of(operand);
         let mut rate = Affine::default();

@@ -1,5 +1,4 @@
-//! Bounds of trees: of a quantity over all states within their ranges, in a regime of the piecewise
-//! functions.
+//! Interval bounds of expressions over all states within their ranges, in one regime.
 
 use super::switches::{Imposed, Side};
 use super::tree::Tree;
@@ -9,7 +8,7 @@ use eomgen_model_spec::interval::Interval;
 use eomgen_model_spec::model::Function;
 
 impl Oracle {
-    /// Bounds of `tree` in a regime; all numbers if nothing is known.
+    /// Returns bounds of `tree` in a regime, by default all numbers.
     pub(super) fn bounds(&self, tree: &Tree, imposed: Imposed<'_>) -> Interval {
         let of = |tree: &Tree| self.bounds(tree, imposed);
         let within = |range: Option<(f64, f64)>| {
@@ -67,7 +66,7 @@ fn called(function: Function, bounds: &[Interval], side: Option<Side>) -> Interv
     }
 }
 
-/// Returns true if the value on this side does not change with the arguments.
+/// Returns true if the value on this side is constant.
 fn has_levels(function: Function, side: Side) -> bool {
     match function {
         Function::Sign | Function::Above | Function::Contact => true,

@@ -1,11 +1,10 @@
-//! Numbers that remember the terms they were made of. Beside its value, each carries the
-//! magnitude of the largest term that went into it, multiplied the way an error of that
-//! term would be on its way to the result: a running error analysis (Wilkinson, Higham)
-//! in units of one rounding. Where nothing cancels, the magnitude is that of the value;
-//! where terms cancel, it tells how far the value can be known at all.
+//! Numbers with a scale of their rounding error. Each number carries the magnitude of the largest
+//! term that contributed to it, multiplied as an error of that term would be. This is a running
+//! error analysis (Wilkinson, Higham) in units of one rounding. Without cancellation the magnitude
+//! is that of the value. After cancellation it bounds the accuracy of the value.
 //!
-//! The values are those of plain `f64`, operation by operation. As the innermost numbers
-//! of dual numbers they give the magnitudes of derivatives too.
+//! The values are those of plain `f64`, operation by operation. As the real type of dual numbers,
+//! these numbers also provide the magnitudes of derivatives.
 
 use num_dual::{DualNum, DualStruct, Mappable};
 use num_traits::{FromPrimitive, Inv, Num, One, Signed, Zero};
@@ -16,17 +15,17 @@ use std::ops::{
     Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Rem, RemAssign, Sub, SubAssign,
 };
 
-/// A value with the magnitude of the terms it is made of.
+/// Value with the magnitude of its terms.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Conditioned {
     /// The value.
     pub value: f64,
-    /// The largest magnitude among the terms, at least that of the value.
+    /// Largest magnitude among the terms, at least that of the value.
     pub magnitude: f64,
 }
 
 impl Conditioned {
-    /// A value of these terms; the magnitude is at least the value's own.
+    /// Creates a number; the magnitude is at least that of the value.
     pub fn new(value: f64, magnitude: f64) -> Self {
         Self {
             value,
@@ -34,13 +33,12 @@ impl Conditioned {
         }
     }
 
-    /// Whether value and magnitude are numbers.
+    /// Returns true if value and magnitude are finite.
     pub fn is_finite(self) -> bool {
         self.value.is_finite() && self.magnitude.is_finite()
     }
 
-    /// How far `found` is from the value, relative to the magnitude; infinite for what is
-    /// not a number.
+    /// Returns the deviation of `found` relative to the magnitude; infinity for NaN.
     pub fn deviation(self, found: f64) -> f64 {
         let difference = (found - self.value).abs();
         let relative = difference / self.magnitude;
@@ -53,12 +51,12 @@ impl Conditioned {
         }
     }
 
-    /// A function's value whose derivative by `self` is `slope`.
+    /// Returns the value of a function with the derivative `slope` by `self`.
     fn mapped(self, value: f64, slope: f64) -> Self {
         Self::new(value, slope.abs() * self.magnitude)
     }
 
-    /// A function's value whose derivatives by `self` and `other` are these.
+    /// Returns the value of a function with the derivatives `slopes` by `self` and `other`.
     fn joined(self, other: Self, value: f64, slopes: (f64, f64)) -> Self {
         let own = slopes.0.abs() * self.magnitude;
         Self::new(value, own.max(slopes.1.abs() * other.magnitude))
@@ -88,7 +86,7 @@ impl Conditioned {
     }
 }
 
-/// An operator for all the forms that the trait of dual numbers asks for.
+/// Implements an operator in all forms that dual numbers require.
 macro_rules! operator {
     ($operator:ident, $method:ident, $assign:ident, $assign_method:ident, $own:ident) => {
         impl $operator for Conditioned {
@@ -456,7 +454,7 @@ mod tests {
     use num_dual::HyperDual;
 
     #[test]
-    fn where_nothing_cancels_the_magnitude_is_that_of_the_value() {
+    fn magnitude_equals_value_without_cancellation() {
         let (x, y) = (Conditioned::from(0.5), Conditioned::from(0.75));
         for number in [x + y, x * y, y / x, x.exp(), x.powi(3), x.sqrt()] {
             let excess = number.magnitude / number.value;
@@ -465,19 +463,19 @@ mod tests {
     }
 
     #[test]
-    fn what_cancels_leaves_its_magnitude_behind() {
+    fn magnitude_of_cancelled_terms_remains() {
         let (large, small) = (Conditioned::from(1e8), Conditioned::from(1.0));
         let rest = (large + small) - large;
         assert_eq!((rest.value, rest.magnitude), (1.0, 1e8 + 1.0));
         assert_eq!((rest * 1e-3).magnitude, (1e8 + 1.0) * 1e-3);
-        // An angle known to 1e8 roundings has a sine known to as many.
+        // The sine of an angle with an error of 1e8 roundings has an error of similar size.
         assert!(rest.sin().magnitude > 0.5e8);
         assert!(rest.exp().magnitude > 1e8);
     }
 
     #[test]
-    fn the_magnitude_bounds_the_rounding_of_a_badly_conditioned_sum() {
-        // (1 - cos x)/x^2 for small x, once as written and once in a stable form.
+    fn magnitude_bounds_rounding_of_ill_conditioned_sum() {
+        // (1 - cos x)/x^2 for small x, as written and in a stable form.
         for exponent in 1..7 {
             let x = 10.0_f64.powi(-exponent) * 1.2345;
             let number = Conditioned::from(x);
@@ -490,8 +488,8 @@ mod tests {
     }
 
     #[test]
-    fn derivatives_have_magnitudes_too() {
-        // d/dx (sin^2 + cos^2) is two terms that cancel.
+    fn derivatives_have_magnitudes() {
+        // The two terms of d/dx (sin^2 + cos^2) cancel.
         let x = HyperDual::new(0.7.into(), 1.0.into(), 0.0.into(), 0.0.into());
         let sum: HyperDual<Conditioned> = x.sin() * x.sin() + x.cos() * x.cos();
         assert!(sum.eps1.value.abs() < 1e-16);
@@ -499,7 +497,7 @@ mod tests {
     }
 
     #[test]
-    fn values_are_those_of_plain_numbers() {
+    fn values_equal_plain_f64() {
         let plain = |x: f64| (x.sin() * x + 2.0).ln() / x.powi(3) - x.tanh();
         for x in [0.3, 1.7, 2.9] {
             let number = Conditioned::from(x);

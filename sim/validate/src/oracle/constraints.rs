@@ -1,5 +1,5 @@
-//! Constraints at one state: their derivatives by dual numbers, and what the accelerations have to
-//! make of them. Multipliers are the business of `equations`.
+//! Constraints at one state: derivatives by dual numbers, and right-hand sides for the
+//! accelerations. `equations` computes the multipliers.
 
 use super::Oracle;
 use super::OracleError;
@@ -11,17 +11,15 @@ use super::scene::{Direction, Scene};
 use super::tree::{Dependence, Tree};
 use eomgen_model_spec::model::{Model, STABILISATION_RATE};
 
-/// What stays zero.
 #[derive(Debug)]
 pub(super) struct LoweredConstraint {
     zero: Tree,
-    /// Its time derivative.
+    /// Time derivative of `zero`.
     rate: Tree,
     dependence: Dependence,
     is_nonholonomic: bool,
 }
 
-/// The constraints of a model.
 pub(super) fn lower_constraints(
     lowering: &mut Lowering<'_>,
     model: &Model,
@@ -40,7 +38,7 @@ pub(super) fn lower_constraints(
     Ok(constraints)
 }
 
-/// The rate at which residuals decay, 1/s.
+/// Returns the decay rate of constraint residuals, in 1/s.
 pub(super) fn stabilisation_rate(model: &Model, parameters: &[f64]) -> f64 {
     let mut known = model.parameters.iter().zip(parameters);
     let rate = known.find(|(parameter, _)| parameter.name == STABILISATION_RATE);
@@ -78,7 +76,7 @@ impl LoweredConstraint {
 }
 
 impl Oracle {
-    /// The multipliers of the constraints at a state.
+    /// Returns the multipliers of the constraints at a state.
     pub(super) fn multipliers(&self, scene: &Scene<'_>) -> Vec<Conditioned> {
         if self.constraints.is_empty() {
             return Vec::new();
@@ -89,7 +87,7 @@ impl Oracle {
             .unwrap_or_else(unknown)
     }
 
-    /// The power of the forces of the constraints: of what moves them, and of residuals.
+    /// Returns the power of the constraint forces, from prescribed motion and from residuals.
     pub(super) fn reaction_power(&self, scene: &Scene<'_>, rates: &[f64]) -> Conditioned {
         let multipliers = self.multipliers(scene);
         let mut total = Conditioned::default();

@@ -1,19 +1,18 @@
-//! Numbers of about 32 digits as the unevaluated sum of two `f64`: just the operations
-//! that the Gauss-Legendre rule and the phase of a mode shape need, no general type.
+//! Double-double numbers of about 32 digits, with only the operations of the Gauss-Legendre rule
+//! and of the phase of a mode shape.
 
 use std::ops::{Add, Mul, Sub};
 
-/// `high + low` with `|low|` at most half a unit in the last place of `high`.
+/// Sum `high + low` with `|low|` at most half a unit in the last place of `high`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct DoubleDouble {
-    /// The number rounded to `f64`.
+    /// Number rounded to `f64`.
     pub high: f64,
-    /// What the rounding left.
+    /// Rounding error of `high`.
     pub low: f64,
 }
 
 impl DoubleDouble {
-    /// An `f64`, exactly.
     pub fn new(value: f64) -> Self {
         Self {
             high: value,
@@ -21,7 +20,7 @@ impl DoubleDouble {
         }
     }
 
-    /// The exact product of two `f64`.
+    /// Returns the exact product of two `f64`.
     pub fn product(left: f64, right: f64) -> Self {
         let high = left * right;
         Self {
@@ -30,7 +29,7 @@ impl DoubleDouble {
         }
     }
 
-    /// The exact sum of two `f64` with `|large| >= |small|` (Dekker).
+    /// Returns the exact sum of two `f64` with `|large| >= |small|` (Dekker).
     fn ordered_sum(large: f64, small: f64) -> Self {
         let high = large + small;
         Self {
@@ -39,7 +38,7 @@ impl DoubleDouble {
         }
     }
 
-    /// The exact sum of two `f64` (Knuth).
+    /// Returns the exact sum of two `f64` (Knuth).
     fn sum(left: f64, right: f64) -> Self {
         let high = left + right;
         let shadow = high - left;
@@ -49,7 +48,7 @@ impl DoubleDouble {
         }
     }
 
-    /// The quotient to double-double accuracy: one correction of the `f64` quotient.
+    /// Returns the quotient to double-double accuracy, by one correction of the `f64` quotient.
     pub fn quotient(self, divisor: Self) -> Self {
         let first = self.high / divisor.high;
         let rest = self - divisor * Self::new(first);
@@ -92,7 +91,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_third_times_three_is_one_to_thirty_digits() {
+    fn third_times_three_is_one_to_thirty_digits() {
         let third = DoubleDouble::new(1.0).quotient(DoubleDouble::new(3.0));
         let rest = third * DoubleDouble::new(3.0) - DoubleDouble::new(1.0);
         assert!(third.low != 0.0);
@@ -100,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sum_keeps_what_an_f64_would_lose() {
+    fn sum_keeps_digits_beyond_f64() {
         let sum = DoubleDouble::new(1.0) + DoubleDouble::new(1e-25);
         let rest = sum - DoubleDouble::new(1.0);
         assert_eq!(rest.high, 1e-25);

@@ -1,5 +1,5 @@
-//! Proofs that no state has a combination of sides: the guards' affine forms, the ranges and the
-//! bounds of what is not affine contradict each other.
+//! Proofs that no state has a given combination of sides. In an empty regime the affine forms of
+//! the switches, the ranges and the bounds of atoms contradict each other.
 
 use super::affine::{Affine, Forms, Variable};
 use super::switches::{Imposed, Side, is_piecewise_function};
@@ -9,10 +9,11 @@ use crate::feasibility::cone_is_empty;
 use eomgen_model_spec::interval::Interval;
 use eomgen_model_spec::model::Function;
 
-/// Relative widening of bounds, so that a range of rounding width is no contradiction.
+/// Relative widening of bounds, so that a range with the width of a rounding error is not a
+/// contradiction.
 const SLACK: f64 = 1e-9;
 
-/// Whether an inequality excludes equality.
+/// Kind of an inequality: > 0 or >= 0.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Relation {
     Positive,
@@ -20,11 +21,11 @@ enum Relation {
 }
 
 impl Oracle {
-    /// Whether bounds prove that no state has these sides of the first switches, in the order of
-    /// [`Oracle::switches`]. `sizes` are those of the state, `input_sizes` of the inputs; they
-    /// scale the inequalities and decide nothing else.
+    /// Returns true if bounds prove that no state has these sides of the first switches, in the
+    /// order of [`Oracle::switches`]. `sizes` and `input_sizes` are typical sizes of the state and
+    /// the inputs. They only scale the inequalities.
     ///
-    /// A state on a boundary of a range or of a function's domain does not count.
+    /// States on the boundary of a range or of a function's domain are ignored.
     pub fn is_empty(&self, sides: &[Side], sizes: &[f64], input_sizes: &[f64]) -> bool {
         let switches = self.switches.get(..sides.len()).unwrap_or_default();
         let imposed = Imposed { switches, sides };
@@ -51,8 +52,8 @@ impl Oracle {
         cone_is_empty(&self.homogeneous(&rows, &forms, sizes, input_sizes))
     }
 
-    /// The rows with those of the variables' bounds, over the variables in units of their sizes
-    /// and a last one that is 1.
+    /// Returns the rows and the bounds of their variables as a homogeneous system. Variables are in
+    /// units of their sizes; the last variable is 1.
     fn homogeneous(
         &self,
         rows: &[Affine],
@@ -112,7 +113,7 @@ impl Oracle {
         range.map_or(Interval::ALL, |(low, high)| Interval { low, high })
     }
 
-    /// Arguments of roots and logarithms that stand in every motion: below 0 a term is no number.
+    /// Returns the arguments of roots and logarithms in all terms. Below 0 they make a term NaN.
     fn domain_arguments(&self) -> Vec<&Tree> {
         let mut found = Vec::new();
         let mut visited = vec![false; self.system.definitions.len()];
@@ -136,9 +137,9 @@ impl Oracle {
         found: &mut Vec<&'t Tree>,
     ) {
         match tree {
-            // A piecewise function may drop an argument that is no number.
+            // A piecewise function can ignore a NaN argument.
             Tree::Call(function, _) if is_piecewise_function(*function) => return,
-            // Each place or mode has an argument of its own.
+            // The argument differs between places or modes.
             Tree::Places { .. } | Tree::Sum { .. } => return,
             Tree::Call(Function::Sqrt | Function::Ln, arguments) => found.extend(arguments),
             Tree::Power(base, exponent) if exponent.fract() != 0.0 => found.push(base),
@@ -160,7 +161,7 @@ impl Oracle {
     }
 }
 
-/// The inequalities that a side of a switch means.
+/// Returns the inequalities of a switch on a side.
 fn side_rows(forms: &mut Forms<'_>, switch: &Switch, side: Side) -> Vec<(Affine, Relation)> {
     let quantity = forms.of(switch.quantity());
     let width = switch.half_width().map(|width| forms.of(width));
@@ -169,9 +170,9 @@ fn side_rows(forms: &mut Forms<'_>, switch: &Switch, side: Side) -> Vec<(Affine,
         (Side::Free, Some(width)) => [1.0, -1.0]
             .map(|sign| (signed(sign).plus(1.0, &width), Relation::NotNegative))
             .into(),
-        // Whether an atom rests at 0 is not known.
+        // It is unknown if an atom is at rest at 0.
         (Side::Free, None) if quantity.has_atoms() => Vec::new(),
-        // A region where the quantity rests at 0: no state has both signs.
+        // The quantity is at rest at 0, so neither sign is possible.
         (Side::Free, None) => [1.0, -1.0]
             .map(|sign| (signed(sign), Relation::NotNegative))
             .into(),
@@ -182,7 +183,7 @@ fn side_rows(forms: &mut Forms<'_>, switch: &Switch, side: Side) -> Vec<(Affine,
     }
 }
 
-/// A size of what lies in an interval.
+/// Returns a typical size of the numbers in an interval.
 fn extent(bounds: Interval) -> f64 {
     let ends = [bounds.low, bounds.high];
     let sizes = ends.into_iter().map(f64::abs);

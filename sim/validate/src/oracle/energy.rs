@@ -1,5 +1,5 @@
-//! Energies, their change along a motion, and powers, each with the magnitude of what it is
-//! made of, so that a balance can be judged.
+//! Energies, their rates and powers, each with the magnitude of its terms as the scale of a
+//! balance.
 
 use super::conditioned::Conditioned;
 use super::equations::RowTermKind;
@@ -8,10 +8,10 @@ use super::scene::Direction;
 use super::{Oracle, OracleError, expect_length};
 
 impl Oracle {
-    /// T + V at a state, in J.
+    /// Returns the energy T + V at a state, in J.
     ///
     /// # Errors
-    /// [`OracleError::Length`] if the state or the inputs do not fit.
+    /// [`OracleError::Length`] if a length does not match.
     pub fn energy(
         &self,
         time: f64,
@@ -24,10 +24,10 @@ impl Oracle {
         Ok(terms.map(|term| pass.value(&term.tree).re).sum())
     }
 
-    /// d(T + V)/dt along the motion with given accelerations, in W.
+    /// Returns d(T + V)/dt along the motion with given accelerations, in W.
     ///
     /// # Errors
-    /// [`OracleError::Length`] if the state, the accelerations or the inputs do not fit.
+    /// [`OracleError::Length`] if a length does not match.
     pub fn energy_rate(
         &self,
         time: f64,
@@ -42,10 +42,10 @@ impl Oracle {
         Ok(terms.map(|term| along.value(&term.tree).eps1).sum())
     }
 
-    /// The power of all non-conservative forces at a state, in W.
+    /// Returns the power of all non-conservative forces at a state, in W.
     ///
     /// # Errors
-    /// [`OracleError::Length`] if the state or the inputs do not fit.
+    /// [`OracleError::Length`] if a length does not match.
     pub fn power(
         &self,
         time: f64,
@@ -69,12 +69,12 @@ impl Oracle {
         Ok(total)
     }
 
-    /// Whether T + V is what the power of the forces changes: the kinetic energy a
-    /// quadratic form of the rates (2 T = sum of q_j' dT/dq_j' at the given state, to
-    /// 1e-10) and no energy explicitly dependent on time or inputs.
+    /// Returns true if the power of the forces is the rate of T + V. In that case the kinetic
+    /// energy is a quadratic form of the rates (2 T = sum of q_j' dT/dq_j' at the given state, to
+    /// 1e-10) and no energy depends explicitly on time or inputs.
     ///
     /// # Errors
-    /// [`OracleError::Length`] if the state or the inputs do not fit.
+    /// [`OracleError::Length`] if a length does not match.
     pub fn is_scleronomic(
         &self,
         time: f64,

@@ -1,45 +1,45 @@
-//! The equations of motion at one state, term by term: what the oracle answers.
+//! Equations of motion at one state, term by term.
 
 use super::conditioned::Conditioned;
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-/// The equations of motion at one state: for every row j
+/// Equations of motion at one state. For every row j, in the unit of the force on coordinate j:
 ///
 /// ```text
 /// sum over k of mass[j, k] q_k'' + sum over terms of term[j] = 0
 /// ```
 ///
-/// in the unit of the force on coordinate j; and for every state of first order its rate.
+/// First-order states have one rate each.
 #[derive(Clone, Debug)]
 pub struct Equations {
-    /// The mass matrix, n by n.
+    /// Mass matrix, n by n.
     pub mass: DMatrix<f64>,
-    /// The magnitudes of what its entries are made of, before anything cancels.
+    /// Magnitudes of the terms of its entries, before cancellation.
     pub mass_magnitude: DMatrix<f64>,
-    /// All that does not hold an acceleration, sums within a term addend by addend.
+    /// All terms without accelerations, addend by addend.
     pub terms: Vec<RowTerm>,
-    /// For every state of first order the addends of its rate, in its unit per s.
+    /// Addends of each first-order state's rate, in its unit per s.
     pub state_rates: Vec<Vec<Conditioned>>,
-    /// The constraints, of whose multipliers the rows hold the forces.
+    /// Constraints. Their forces act in the rows.
     pub constraints: Vec<ConstraintRow>,
 }
 
-/// What one addend of a term of the specification adds to every row.
+/// Contribution of one addend of a term to every row.
 #[derive(Clone, Debug)]
 pub struct RowTerm {
-    /// The term's name in the specification; addends of one term share it.
+    /// Name of the term in the specification; its addends share it.
     pub name: String,
-    /// How it enters.
+    /// Kind of the term.
     pub kind: RowTermKind,
-    /// Its value in every row, on the side of the accelerations.
+    /// Value in every row, on the side of the accelerations.
     pub rows: DVector<f64>,
-    /// The magnitudes of what these are made of, before anything cancels.
+    /// Magnitudes of the values' terms, before cancellation.
     pub magnitudes: DVector<f64>,
 }
 
 impl RowTerm {
-    /// A term with its value in every row.
+    /// Creates a term from its value in every row.
     pub(super) fn new(name: &str, kind: RowTermKind, rows: Vec<Conditioned>) -> Self {
         let part = |part: fn(&Conditioned) -> f64| {
             DVector::from_iterator(rows.len(), rows.iter().map(part))
@@ -53,7 +53,7 @@ impl RowTerm {
     }
 }
 
-/// How a term of the specification enters the equations of motion.
+/// Kind of a term in the equations of motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RowTermKind {
     /// d/dt dT/dq_j' without the accelerations.
@@ -68,27 +68,27 @@ pub enum RowTermKind {
     Force,
 }
 
-/// A constraint: the sum over k of gradient[k] q_k'' is right.
+/// Constraint on the accelerations: sum over k of gradient[k] q_k'' = right.
 #[derive(Clone, Debug)]
 pub struct ConstraintRow {
-    /// The derivative of the constraint by every coordinate, or by every rate.
+    /// Derivatives of the constraint by every coordinate, or by every rate.
     pub gradient: Vec<Conditioned>,
-    /// What the accelerations have to make of it.
+    /// Right-hand side.
     pub right: Conditioned,
 }
 
-/// What is left of one row, and the size of the largest term summed in it.
+/// Residual of one row with the row's scale.
 #[derive(Clone, Copy, Debug)]
 pub struct Residual {
-    /// The sum of the row.
+    /// Sum of the row.
     pub value: f64,
-    /// The largest magnitude among `mass[j, k] q_k''` for every k and every term, and of
-    /// what these are made of before anything cancels.
+    /// Largest magnitude among the terms and `mass[j, k] q_k''` of the row, before cancellation
+    /// inside them.
     pub scale: f64,
 }
 
 impl Residual {
-    /// |value|/scale; 0 for an empty row, infinite for what is not a number.
+    /// Returns |value|/scale; 0 for an empty row, infinity for NaN.
     pub fn relative(&self) -> f64 {
         let relative = self.value.abs() / self.scale;
         if self.value == 0.0 {
@@ -101,12 +101,12 @@ impl Residual {
     }
 }
 
-/// The square of the smallest pivot that a mass matrix scaled to a unit diagonal may have;
-/// below, rounding decides whether it is positive definite.
+/// Minimum square of a pivot of the mass matrix, scaled to a unit diagonal. Below it, rounding
+/// decides if the matrix is positive definite.
 const SMALLEST_PIVOT: f64 = 1e-13;
 
 impl Equations {
-    /// Whether everything in them is a number.
+    /// Returns true if all numbers are finite.
     pub fn is_finite(&self) -> bool {
         let terms = self
             .terms
@@ -121,21 +121,21 @@ impl Equations {
             && rates.all(|rate| rate.value.is_finite() && rate.magnitude.is_finite())
     }
 
-    /// Whether the mass matrix is positive definite, and so that no constraint follows from
-    /// others, and not by rounding alone.
+    /// Returns true if the mass matrix is positive definite and the constraints are independent,
+    /// both with a margin over rounding.
     pub fn is_definite(&self) -> bool {
         has_pivots(&self.scaled_mass().1)
             && (self.compliance()).is_some_and(|compliance| has_pivots(&scaled(&compliance).1))
     }
 
-    /// The derivatives of the constraints, A.
+    /// Returns the derivatives of the constraints, A.
     fn gradients(&self) -> DMatrix<f64> {
         DMatrix::from_fn(self.constraints.len(), self.size(), |row, column| {
             self.constraints[row].gradient[column].value
         })
     }
 
-    /// A M^-1 A^T.
+    /// Returns A M^-1 A^T.
     fn compliance(&self) -> Option<DMatrix<f64>> {
         let gradients = self.gradients();
         let (scale, mass) = self.scaled_mass();
@@ -150,8 +150,8 @@ impl Equations {
         Some(gradients * solved)
     }
 
-    /// The multipliers of the constraints, each with the magnitude of what it is made of: lambda of
-    /// A M^-1 A^T lambda = b - A M^-1 (f - c). None if the accelerations cannot be solved for.
+    /// Returns the multipliers of the constraints with the magnitudes of their terms, from A M^-1
+    /// A^T lambda = b - A M^-1 (f - c). Returns `None` if the accelerations cannot be solved for.
     pub fn multipliers(&self) -> Option<Vec<Conditioned>> {
         if self.constraints.is_empty() {
             return Some(Vec::new());
@@ -178,7 +178,7 @@ impl Equations {
         Some((0..gaps.len()).map(row).collect())
     }
 
-    /// The accelerations without constraints, and the sizes of what each is made of.
+    /// Returns the accelerations without constraints and the sizes of their terms.
     fn free_accelerations(&self) -> Option<(DVector<f64>, Vec<f64>)> {
         let (scale, mass) = self.scaled_mass();
         let factor = Cholesky::new(mass)?;
@@ -199,7 +199,7 @@ impl Equations {
         Some((free, sizes))
     }
 
-    /// The forces of the constraints in every row, on the side of the accelerations.
+    /// Returns the constraint forces in every row, on the side of the accelerations.
     fn reactions(&self) -> Vec<Vec<Conditioned>> {
         let unknown = || vec![Conditioned::from(f64::NAN); self.constraints.len()];
         let multipliers = self.multipliers().unwrap_or_else(unknown);
@@ -217,25 +217,25 @@ impl Equations {
         (0..self.size()).map(row).collect()
     }
 
-    /// The factors that scale rows and columns of the mass matrix to a unit diagonal, and
-    /// the matrix so scaled.
+    /// Returns factors that scale rows and columns of the mass matrix to a unit diagonal, and the
+    /// scaled matrix.
     fn scaled_mass(&self) -> (DVector<f64>, DMatrix<f64>) {
         scaled(&self.mass)
     }
 
-    /// The size by which a deviation of an entry of the mass matrix is judged: the geometric
-    /// mean of the diagonal entries, or the magnitude of what the entry is made of.
+    /// Returns the scale of an entry of the mass matrix: the geometric mean of the two diagonal
+    /// entries, or the magnitude of the entry's terms.
     pub fn mass_scale(&self, row: usize, column: usize) -> f64 {
         let mean = (self.mass[(row, row)] * self.mass[(column, column)]).sqrt();
         mean.max(self.mass_magnitude[(row, column)])
     }
 
-    /// Number of degrees of freedom.
+    /// Returns the number of degrees of freedom.
     pub fn size(&self) -> usize {
         self.mass.nrows()
     }
 
-    /// Forces minus velocity terms: what `mass` times the accelerations must equal.
+    /// Returns the right-hand side f - c of M q'' = f - c.
     pub fn right_side(&self) -> DVector<f64> {
         let mut sum = DVector::zeros(self.size());
         for term in &self.terms {
@@ -244,8 +244,8 @@ impl Equations {
         sum
     }
 
-    /// The accelerations by a dense Cholesky factorisation with rows and columns scaled
-    /// to a unit diagonal; none if the mass matrix is not positive definite.
+    /// Returns the accelerations by a dense Cholesky factorisation of the scaled mass matrix;
+    /// `None` if it is not positive definite.
     pub fn accelerations(&self) -> Option<DVector<f64>> {
         let (scale, scaled) = self.scaled_mass();
         let mut right = self.right_side();
@@ -258,8 +258,7 @@ impl Equations {
         Some(Cholesky::new(scaled)?.solve(&right).component_mul(&scale))
     }
 
-    /// The accelerations as from [`Equations::accelerations`], then the rates of the states of
-    /// first order.
+    /// Returns [`Equations::accelerations`], then the rates of first-order states.
     pub fn unknowns(&self) -> Option<Vec<f64>> {
         let mut unknowns = self.accelerations()?.as_slice().to_vec();
         let rates = self.state_rates.iter();
@@ -267,13 +266,13 @@ impl Equations {
         Some(unknowns)
     }
 
-    /// How many numbers the rows are for: accelerations, then rates of states of first order.
+    /// Returns the number of unknowns: accelerations, then rates of first-order states.
     pub fn unknown_count(&self) -> usize {
         self.size() + self.state_rates.len()
     }
 
-    /// Every row's sum for given unknowns (accelerations, then rates of states of first order; 0
-    /// those that are left out), with the row's scale.
+    /// Returns the residual of every row for given unknowns (accelerations, then rates of
+    /// first-order states). Missing unknowns count as 0.
     pub fn residuals(&self, unknowns: &[f64]) -> Vec<Residual> {
         let rates = unknowns.get(self.size()..).unwrap_or_default();
         let rates = rates.iter().copied().chain(std::iter::repeat(0.0));
@@ -285,13 +284,13 @@ impl Equations {
         rows.into_iter().chain(of_states).collect()
     }
 
-    /// Every row's sum for given accelerations without the forces of constraints: what these and
-    /// forces that the specification does not know have to be.
+    /// Returns the residual of every row for given accelerations, without constraint forces. These
+    /// are the forces that the accelerations require in addition to those of the specification.
     pub fn missing_forces(&self, accelerations: &[f64]) -> Vec<Residual> {
         self.rows_of_degrees(accelerations, &vec![Vec::new(); self.size()])
     }
 
-    /// What is left of every constraint for given accelerations.
+    /// Returns the residuals of the constraints for given accelerations.
     fn rows_of_constraints(&self, accelerations: &[f64]) -> Vec<Residual> {
         let sizes = self
             .free_accelerations()
@@ -329,8 +328,8 @@ impl Equations {
             .collect()
     }
 
-    /// The largest relative residual; infinite if the number of unknowns is wrong
-    /// or one is not a number.
+    /// Returns the largest relative residual; infinity if the number of unknowns is wrong or one is
+    /// NaN.
     pub fn worst_residual(&self, unknowns: &[f64]) -> f64 {
         if unknowns.len() != self.unknown_count() {
             return f64::INFINITY;
@@ -342,9 +341,9 @@ impl Equations {
             .fold(0.0, f64::max)
     }
 
-    /// How far two sets of unknowns are apart: the largest over the rows of
-    /// |mass (first - second)|, or |first - second| for rates of states of first order, relative to
-    /// the row's scale at `first`.
+    /// Returns the largest distance of two sets of unknowns over all rows. The distance is |mass
+    /// (first - second)| relative to the row's scale at `first`, or |first - second| for rates of
+    /// first-order states.
     pub fn distance(&self, first: &[f64], second: &[f64]) -> f64 {
         if first.len() != self.unknown_count() || second.len() != self.unknown_count() {
             return f64::INFINITY;
@@ -374,8 +373,8 @@ impl Equations {
     }
 }
 
-/// The factors that scale rows and columns of a positive definite matrix to a unit diagonal, and
-/// the matrix so scaled.
+/// Returns factors that scale rows and columns of a positive definite matrix to a unit diagonal,
+/// and the scaled matrix.
 fn scaled(matrix: &DMatrix<f64>) -> (DVector<f64>, DMatrix<f64>) {
     let scale = matrix.diagonal().map(|entry| entry.sqrt().recip());
     let scaled = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |row, column| {
@@ -384,7 +383,7 @@ fn scaled(matrix: &DMatrix<f64>) -> (DVector<f64>, DMatrix<f64>) {
     (scale, scaled)
 }
 
-/// Whether the pivots of a matrix scaled to a unit diagonal are positive, and not by rounding alone.
+/// Returns true if the pivots of a scaled matrix are positive with a margin over rounding.
 fn has_pivots(scaled: &DMatrix<f64>) -> bool {
     Cholesky::new(scaled.clone()).is_some_and(|factor| {
         let pivots = factor.l_dirty().diagonal();
@@ -392,8 +391,8 @@ fn has_pivots(scaled: &DMatrix<f64>) -> bool {
     })
 }
 
-/// The sum of a row and its largest magnitude. The sum is compensated (Neumaier), so what
-/// is left is not the rounding of this summation.
+/// Returns the sum of a row and its largest magnitude. Compensated summation (Neumaier) avoids
+/// additional rounding error.
 fn residual(addends: impl Iterator<Item = Conditioned>) -> Residual {
     let (mut sum, mut rest, mut scale) = (0.0_f64, 0.0_f64, 0.0_f64);
     for Conditioned {
@@ -439,7 +438,7 @@ mod tests {
     }
 
     #[test]
-    fn the_dense_solution_leaves_no_residual() {
+    fn dense_solution_has_zero_residual() {
         let equations = equations();
         let solution = equations.accelerations().map(|a| a.as_slice().to_vec());
         let solution = solution.unwrap_or_default();
@@ -449,7 +448,7 @@ mod tests {
     }
 
     #[test]
-    fn a_row_is_measured_by_what_cancels_in_its_terms() {
+    fn row_scale_includes_cancelled_terms() {
         let mut equations = equations();
         equations.terms[0].magnitudes[1] = 1e4;
         let solution = equations.accelerations().map(|a| a.as_slice().to_vec());
@@ -460,7 +459,7 @@ mod tests {
     }
 
     #[test]
-    fn wrong_accelerations_and_no_numbers_are_seen() {
+    fn wrong_and_nan_accelerations_have_large_residuals() {
         let equations = equations();
         assert!(equations.worst_residual(&[1.0, 1.0]) > 0.1);
         assert_eq!(equations.worst_residual(&[f64::NAN, 1.0]), f64::INFINITY);

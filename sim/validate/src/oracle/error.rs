@@ -1,26 +1,26 @@
-//! Why the oracle cannot judge a model. None of these is a fault of the model: the
-//! oracle refuses what it would have to guess.
+//! Models that the oracle does not support. Such a model can be valid: the oracle only refuses to
+//! guess.
 
 use std::fmt;
 
-/// Why a model, or a state of it, cannot be evaluated by the oracle.
+/// Reason why the oracle cannot evaluate a model or a state.
 #[derive(Clone, Debug, PartialEq)]
 pub enum OracleError {
-    /// A time derivative of something that holds a time derivative: an acceleration.
+    /// Second time derivative in an expression.
     Acceleration(String),
-    /// The time derivative of an input, or a kinetic energy with an input in it.
+    /// Time derivative of an input without given rates, or kinetic energy that depends on one.
     InputRate(String),
-    /// A field, position, mode or shape outside the functions that give it a place.
+    /// Field, position, mode or shape outside of `at`, `integral` or `sum`.
     Misplaced(String),
-    /// Parameters, a domain or a position whose value is not a finite number.
+    /// Parameter, domain or position that is not finite.
     NotFinite(String),
-    /// A number of parameters, states or inputs that does not fit the model.
+    /// Number of parameters, states or inputs that does not match the model.
     Length {
-        /// What was counted.
+        /// Name of the counted items, in the plural.
         what: &'static str,
-        /// How many there must be.
+        /// Expected number.
         expected: usize,
-        /// How many there were.
+        /// Number in the call.
         found: usize,
     },
 }
@@ -28,18 +28,21 @@ pub enum OracleError {
 impl fmt::Display for OracleError {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Acceleration(place) => write!(formatter, "{place} holds an acceleration"),
-            Self::InputRate(place) => write!(formatter, "{place} needs the rate of an input"),
+            Self::Acceleration(place) => write!(formatter, "{place} contains an acceleration"),
+            Self::InputRate(place) => write!(
+                formatter,
+                "{place} needs the rate of an input; set `rates` of the input"
+            ),
             Self::Misplaced(place) => write!(
                 formatter,
-                "{place} uses a field, a position or a mode outside at, integral or sum"
+                "{place} uses a field, a position or a mode outside of `at`, `integral` or `sum`"
             ),
             Self::NotFinite(place) => write!(formatter, "{place} is not a finite number"),
             Self::Length {
                 what,
                 expected,
                 found,
-            } => write!(formatter, "{found} {what} instead of {expected}"),
+            } => write!(formatter, "found {found} {what}, expected {expected}"),
         }
     }
 }

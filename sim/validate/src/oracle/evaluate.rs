@@ -1,6 +1,6 @@
-//! Evaluates a tree at a scene with derivatives in two directions. A time derivative
-//! inside an expression is one more dual part along the motion; accelerations never
-//! appear, so one such part is enough and a second one is refused by `lower`.
+//! Evaluation of a tree at a scene with derivatives in two directions. A time derivative in an
+//! expression adds a dual part along the motion. One such part is enough, because `lower` rejects
+//! accelerations.
 
 use super::conditioned::Conditioned;
 use super::functions;
@@ -10,21 +10,21 @@ use eomgen_model_spec::ast::BinaryOperator;
 use num_dual::{Dual, DualNum, HyperDual};
 use std::cell::Cell;
 
-/// A value with its derivatives in two directions.
+/// Value with its derivatives in two directions.
 pub(super) type Number = HyperDual<Conditioned>;
 
-/// The two number types of an evaluation: a value with its derivatives in two
-/// directions, and the same with the time derivative beside it.
+/// Number type of an evaluation: a value with its derivatives in two directions, or the same with
+/// its time derivative.
 pub(super) trait Level: DualNum<Primitive = f64> + Copy {
-    /// What this level keeps of a moving quantity.
+    /// Converts a moving quantity.
     fn of(motion: Motion) -> Self;
-    /// The time derivative of `tree`.
+    /// Returns the time derivative of `tree`.
     fn dot(pass: &Pass<'_>, tree: &Tree, frame: &Frame<'_>) -> Self;
-    /// A state of first order.
+    /// Returns a first-order state.
     fn state(pass: &Pass<'_>, index: usize) -> Self;
-    /// Where values of definitions are kept.
+    /// Returns the cache of a definition's value.
     fn kept<'p>(pass: &'p Pass<'_>, definition: usize) -> Option<&'p Cell<Option<Self>>>;
-    /// The derivatives of integral `index`, where they are kept for all rows.
+    /// Returns integral `index` with the derivatives that are cached for all rows, if they are.
     fn integral(pass: &Pass<'_>, index: usize) -> Option<Self>;
 }
 
@@ -77,25 +77,22 @@ impl Level for Dual<Number> {
     }
 }
 
-/// What a place or an index stands for while a body is evaluated.
+/// Place or index of the enclosing sums during an evaluation.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Frame<'f> {
-    /// Outside every sum.
+    /// Outside of all sums.
     Outside,
-    /// At a position of the place set around the body.
+    /// At a position of the enclosing place set.
     At {
-        /// The position's number.
+        /// Index of the position.
         node: usize,
-        /// What surrounds it.
         outer: &'f Frame<'f>,
     },
     /// At a mode of a field's sum.
     Mode {
-        /// The field.
         field: usize,
-        /// The mode, from 0.
+        /// Index of the mode, from 0.
         mode: usize,
-        /// What surrounds it.
         outer: &'f Frame<'f>,
     },
 }
@@ -119,10 +116,10 @@ impl Frame<'_> {
     }
 }
 
-/// A definition's value, alone and with its rate, once formed.
+/// Cached value of a definition, without and with its rate.
 type KeptDefinition = (Cell<Option<Number>>, Cell<Option<Dual<Number>>>);
 
-/// One evaluation: a scene and two directions.
+/// Evaluation at a scene in two directions.
 #[derive(Debug)]
 pub(super) struct Pass<'s> {
     scene: &'s Scene<'s>,
@@ -131,7 +128,6 @@ pub(super) struct Pass<'s> {
 }
 
 impl<'s> Pass<'s> {
-    /// An evaluation with derivatives in two directions.
     pub fn new(scene: &'s Scene<'s>, first: Direction, second: Direction) -> Self {
         Self {
             scene,
@@ -140,12 +136,12 @@ impl<'s> Pass<'s> {
         }
     }
 
-    /// The value of `tree` outside every sum.
+    /// Returns the value of `tree` outside of all sums.
     pub fn value(&self, tree: &Tree) -> Number {
         self.evaluate(tree, &Frame::Outside)
     }
 
-    /// The real value of `tree` at one mode of a field's sum.
+    /// Returns the real value of `tree` at one mode of a field's sum.
     pub fn value_at_mode(&self, tree: &Tree, field: usize, mode: usize) -> f64 {
         let frame = Frame::Mode {
             field,
@@ -155,7 +151,7 @@ impl<'s> Pass<'s> {
         self.evaluate::<Number>(tree, &frame).re.value
     }
 
-    /// The value of `tree` where `frame` says.
+    /// Returns the value of `tree` at `frame`.
     pub fn evaluate<N: Level>(&self, tree: &Tree, frame: &Frame<'_>) -> N {
         match tree {
             Tree::Definition(index) => self.definition(*index),
@@ -203,7 +199,7 @@ impl<'s> Pass<'s> {
         }
     }
 
-    /// The rate of a state of first order.
+    /// Returns the rate of a first-order state.
     fn state_rate<N: Level>(&self, index: usize, frame: &Frame<'_>) -> N {
         let mut sum = N::from(0.0);
         for addend in self
@@ -219,7 +215,7 @@ impl<'s> Pass<'s> {
         sum
     }
 
-    /// What does not change with the state or the time.
+    /// Returns a value that does not depend on state or time.
     fn still(&self, tree: &Tree, frame: &Frame<'_>) -> f64 {
         let number = match tree {
             Tree::Constant(value) => Some(*value),
@@ -249,7 +245,8 @@ impl<'s> Pass<'s> {
         self.scene.coordinate(index, self.directions)
     }
 
-    /// A definition holds no free place or index, so its value serves the whole pass.
+    /// Returns the value of a definition. It contains no free place or index, so one value per pass
+    /// is enough.
     fn definition<N: Level>(&self, index: usize) -> N {
         let kept = N::kept(self, index);
         if let Some(value) = kept.and_then(Cell::get) {

@@ -1,10 +1,10 @@
-//! Operations on numbers alone become numbers, with the rules of `evaluate`.
+//! Constant folding with the rules of `evaluate`.
 
 use super::functions;
 use super::tree::Tree;
 use eomgen_model_spec::ast::BinaryOperator;
 
-/// `left operator right`, a power with a constant exponent in its own form.
+/// Creates `left operator right`, or a [`Tree::Power`] for a constant exponent.
 pub(super) fn binary(operator: BinaryOperator, left: Tree, right: Tree) -> Tree {
     match (operator, &right) {
         (BinaryOperator::Power, Tree::Constant(exponent)) => Tree::Power(left.into(), *exponent),
@@ -12,7 +12,7 @@ pub(super) fn binary(operator: BinaryOperator, left: Tree, right: Tree) -> Tree 
     }
 }
 
-/// A number in place of an operation on numbers.
+/// Replaces an operation on constants by its value.
 pub(super) fn folded(tree: Tree) -> Tree {
     let numbers: Option<Vec<f64>> = tree
         .children()

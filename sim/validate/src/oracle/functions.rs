@@ -1,13 +1,13 @@
-//! The functions of the expression language for any number type of automatic
-//! differentiation. Piecewise functions take the side of the real part and the
-//! derivative of that side; the derivative of a step is 0 and sign(0) = 0.
+//! Functions of the expression language for all number types of automatic differentiation. A
+//! piecewise function uses the side of the real part and the derivative on that side. The
+//! derivative of a step is 0, and sign(0) = 0.
 
 use super::switches::Side;
 use eomgen_model_spec::model::Function;
 use num_dual::DualNum;
 
-/// The value of `function` at `arguments`; NaN where an argument is missing, which the
-/// checked model rules out.
+/// Returns the value of `function` at `arguments`; NaN if an argument is missing, which a checked
+/// model excludes.
 pub(super) fn apply<N>(function: Function, arguments: &[N]) -> N
 where
     N: DualNum<Primitive = f64> + Copy,
@@ -19,8 +19,8 @@ where
     }
 }
 
-/// The value of a piecewise function on a given side of its switch, wherever its
-/// arguments stand; none for a function that has no sides.
+/// Returns the value of a piecewise function on a given side of its switch, independent of the
+/// arguments' actual side; `None` for a function without sides.
 pub(super) fn on_side<N>(function: Function, side: Side, arguments: &[N]) -> Option<N>
 where
     N: DualNum<Primitive = f64> + Copy,
@@ -106,7 +106,7 @@ where
     }
 }
 
-/// -1, 0 or 1; NaN stays.
+/// Returns -1, 0 or 1; NaN for NaN.
 pub(super) fn sign(x: f64) -> f64 {
     if x > 0.0 {
         1.0
@@ -117,7 +117,7 @@ pub(super) fn sign(x: f64) -> f64 {
     }
 }
 
-/// `base` to a constant power; whole exponents need no logarithm and allow any base.
+/// Returns `base` to a constant power. Integer exponents avoid the logarithm and allow any base.
 pub(super) fn constant_power<N>(base: N, exponent: f64) -> N
 where
     N: DualNum<Primitive = f64> + Copy,
@@ -129,10 +129,9 @@ where
     }
 }
 
-/// The hyperbolic tangent as the quotient of sinh and cosh. Where that would overflow, it
-/// has long been 1 with derivatives 0. Its derivative (cosh^2 - sinh^2)/cosh^2 cancels like
-/// the textbook's 1 - tanh^2, and so is judged like it: a force that is nothing but the
-/// last digits of this difference is known no better.
+/// Returns the hyperbolic tangent as sinh/cosh, or its limit with derivative 0 before cosh
+/// overflows. The derivative (cosh^2 - sinh^2)/cosh^2 cancels as 1 - tanh^2 does, and its magnitude
+/// includes this cancellation.
 fn tanh<N>(x: N) -> N
 where
     N: DualNum<Primitive = f64> + Copy,
@@ -150,10 +149,9 @@ mod tests {
     use super::*;
     use num_dual::{Dual64, HyperDual64};
 
-    /// Derivatives by num-dual against central differences: the library is trusted for
-    /// the chain rule, but not blindly for each function.
+    /// Central differences check every function, because the oracle relies on num-dual.
     #[test]
-    fn derivatives_agree_with_differences() {
+    fn derivatives_match_central_differences() {
         let smooth = [
             Function::Sin,
             Function::Cos,
@@ -181,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn the_angle_of_a_point_turns_with_it_in_every_quadrant() {
+    fn atan2_is_correct_in_every_quadrant() {
         for angle in [-3.0, -2.0, -0.5, 0.3, 1.2, 2.8] {
             let turning = Dual64::new(angle, 1.0);
             let found = binary(Function::Atan2, turning.sin() * 2.0, turning.cos() * 2.0);
@@ -191,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn piecewise_functions_take_the_derivative_of_their_side() {
+    fn piecewise_functions_use_derivative_of_their_side() {
         let p = |x| Dual64::new(x, 1.0);
         let b = Dual64::new(0.5, 0.0);
         let pair = |function, x| {
@@ -212,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn whole_powers_work_at_zero_and_below() {
+    fn integer_powers_allow_nonpositive_bases() {
         let cube = constant_power(HyperDual64::new(0.0, 1.0, 1.0, 0.0), 3.0);
         assert_eq!((cube.eps1, cube.eps1eps2), (0.0, 0.0));
         let square = constant_power(HyperDual64::new(-3.0, 1.0, 1.0, 0.0), 2.0);

@@ -1,11 +1,11 @@
-//! Derivatives of integrals, formed once per state for all rows. An integrand knows the
-//! modes only through field values at its own place, so its derivative by mode j is the
-//! derivative by each field value times phi_j there: a handful of evaluations per node
-//! and one product with the table of shapes, instead of one evaluation per node and row.
+//! Derivatives of integrals, computed once per state for all rows. An integrand depends on the
+//! modes only through field values at its place. Its derivative by mode j is therefore its
+//! derivative by each field value times phi_j. This needs a few evaluations per node and one
+//! product with the table of shapes, not one evaluation per node and row.
 //!
-//! The magnitude of an integral is that of its largest addend, weight and shape included.
-//! Of second derivatives by two modes it is the value's own: what cancels there by
-//! orthogonality is the rule's, not the model's.
+//! The magnitude of an integral is that of its largest addend, with weight and shape. The magnitude
+//! of second derivatives by two modes is that of the value: cancellation by orthogonality depends
+//! on the quadrature, not on the model.
 
 use super::conditioned::Conditioned;
 use super::evaluate::{Frame, Number, Pass};
@@ -15,7 +15,7 @@ use super::tree::Leaf;
 use nalgebra::{DMatrix, DVector};
 use std::cell::OnceCell;
 
-/// What is kept of one integral at one state.
+/// Cached values and derivatives of one integral at one state.
 #[derive(Debug, Default)]
 pub(super) struct IntegralTable {
     value: OnceCell<Conditioned>,
@@ -24,8 +24,7 @@ pub(super) struct IntegralTable {
     by_two_rates: OnceCell<Hessian>,
 }
 
-/// First derivatives by every generalised coordinate or rate, and their change along
-/// the motion.
+/// First derivatives by every coordinate or rate, and their rates along the motion.
 #[derive(Debug)]
 struct Rows {
     along_motion: Conditioned,
@@ -33,7 +32,7 @@ struct Rows {
     along_motion_by_row: Entries,
 }
 
-/// A number for each of many places or rows, with its magnitude.
+/// Values with their magnitudes, one per place or row.
 #[derive(Clone, Debug)]
 struct Entries {
     value: DVector<f64>,
@@ -48,7 +47,7 @@ impl Entries {
         }
     }
 
-    /// One derivative part of every addend.
+    /// Extracts one derivative part of every addend.
     fn part(addends: &[Number], part: impl Fn(&Number) -> Conditioned) -> Self {
         let parts: Vec<Conditioned> = addends.iter().map(part).collect();
         let entries = |entry: fn(&Conditioned) -> f64| {
@@ -65,7 +64,6 @@ impl Entries {
         Some(Conditioned::new(*value, *self.magnitude.get(row)?))
     }
 
-    /// The sum over all of them.
     fn total(&self) -> Conditioned {
         Conditioned::new(self.value.sum(), self.magnitude.max())
     }
@@ -106,7 +104,7 @@ impl Hessian {
     }
 }
 
-/// What an integrand can change with.
+/// Variable of an integrand.
 #[derive(Clone, Copy, Debug)]
 enum Channel {
     Coordinate(usize),
@@ -130,8 +128,8 @@ impl Channel {
 }
 
 impl Scene<'_> {
-    /// Integral `index` with its derivatives in two directions, or none if these are not
-    /// among those kept (two positions, a value of another field).
+    /// Returns integral `index` with its derivatives in two directions. Returns `None` if they are
+    /// not cached (two positions, a value of another field).
     pub fn integral(&self, index: usize, directions: [Direction; 2]) -> Option<Number> {
         let integral = self.system.integrals.get(index)?;
         let table = self.integrals.get(index)?;
@@ -142,7 +140,7 @@ impl Scene<'_> {
             (second, first)
         };
         let mixed = match (lesser, greater) {
-            // What is kept holds no state of first order.
+            // Cached integrals do not depend on first-order states.
             (Direction::Still | Direction::State(_), _) => Conditioned::default(),
             (Direction::Time, Direction::Position(row)) => self
                 .by_position(table, integral)
@@ -204,7 +202,7 @@ impl Scene<'_> {
         addends.iter().map(|addend| addend.re).sum()
     }
 
-    /// Weight times integrand at each place.
+    /// Returns weight times integrand at each place.
     fn addends(&self, integral: &Integral, pass: &Pass<'_>) -> Vec<Number> {
         let weights = self
             .system
@@ -241,7 +239,7 @@ impl Scene<'_> {
         rows
     }
 
-    /// Adds what a change of `channel` by place means for each row.
+    /// Adds the derivatives by `channel` at every place to the derivatives by every row.
     fn spread(
         &self,
         integral: &Integral,
@@ -292,7 +290,7 @@ impl Scene<'_> {
         hessian
     }
 
-    /// What the second derivative by two channels means for pairs of rows.
+    /// Adds the second derivatives by two channels to those by pairs of rows.
     fn block(
         &self,
         integral: &Integral,

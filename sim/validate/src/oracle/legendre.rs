@@ -1,27 +1,24 @@
-//! The Gauss-Legendre rule on the unit interval. Newton's method in double-double
-//! arithmetic: a node wrong by half a unit in the last place of an `f64` is a phase
-//! error of 200 times that at the 64th mode, which the first moment of that mode
-//! (5e-5 of its amplitude) would show at 1e-11.
+//! Gauss-Legendre rule on the unit interval, by Newton's method in double-double arithmetic. An
+//! error of half a unit in the last place of an `f64` node is a phase error of 200 times that at
+//! mode 64. The first moment of that mode (5e-5 of its amplitude) would then be wrong by 1e-11.
 
 use super::double_double::DoubleDouble;
 
-/// A node and its weight on [0, 1].
+/// Node and weight on [0, 1].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Node {
-    /// The node s, 0 < s < 1.
+    /// Position s, 0 < s < 1.
     pub position: DoubleDouble,
-    /// Its weight.
     pub weight: f64,
 }
 
-/// The rule with `count` nodes, exact for polynomials of degree `2 count - 1`;
-/// nodes in increasing order.
+/// Returns the rule with `count` nodes in increasing order, exact up to degree `2 count - 1`.
 pub(super) fn unit_rule(count: usize) -> Vec<Node> {
     (0..count).map(|index| unit_node(count, index)).collect()
 }
 
-/// Node `index` of `count`. The start value is Tricomi's; the `f64` Newton iteration
-/// brings it to rounding, two double-double steps square the error.
+/// Returns node `index` of `count`. Newton's method in `f64` starts from Tricomi's approximation
+/// and converges to rounding; two double-double steps square the error.
 fn unit_node(count: usize, index: usize) -> Node {
     let n = count as f64;
     let angle = std::f64::consts::PI * (index as f64 + 0.75) / (n + 0.5);
@@ -44,7 +41,7 @@ fn unit_node(count: usize, index: usize) -> Node {
     }
 }
 
-/// P_n and P_(n-1) at x by the three-term recurrence.
+/// Returns P_n and P_(n-1) at x by the three-term recurrence.
 fn legendre(count: usize, x: f64) -> (f64, f64) {
     let (mut previous, mut value) = (1.0, x);
     for k in 2..=count {
@@ -55,7 +52,7 @@ fn legendre(count: usize, x: f64) -> (f64, f64) {
     (value, previous)
 }
 
-/// P_n and its derivative at x, in double-double arithmetic.
+/// Returns P_n and its derivative at x, in double-double arithmetic.
 fn precise_legendre(count: usize, x: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
     let one = DoubleDouble::new(1.0);
     let (mut previous, mut value) = (one, x);
@@ -75,7 +72,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn powers_are_integrated_exactly_up_to_the_degree() {
+    fn rule_is_exact_up_to_its_degree() {
         for count in [2, 7, 40, 296] {
             let rule = unit_rule(count);
             for degree in [0, 1, 2, count, 2 * count - 1] {
@@ -84,18 +81,18 @@ mod tests {
                     .map(|node| node.weight * node.position.high.powi(degree as i32))
                     .sum();
                 let exact = 1.0 / (degree as f64 + 1.0);
-                // powi loses up to `degree` roundings of 1e-16.
+                // The rounding error of powi is up to `degree` times 1e-16.
                 let tolerance = 2e-16 * (degree as f64 + 4.0);
                 assert!(
                     (sum / exact - 1.0).abs() < tolerance,
-                    "{count} nodes, degree {degree}: {sum} instead of {exact}"
+                    "{count} nodes, degree {degree}: found {sum}, expected {exact}"
                 );
             }
         }
     }
 
     #[test]
-    fn one_degree_more_is_not_exact() {
+    fn rule_is_not_exact_above_its_degree() {
         let sum: f64 = unit_rule(2)
             .iter()
             .map(|node| node.weight * node.position.high.powi(4))

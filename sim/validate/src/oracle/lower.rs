@@ -1,6 +1,6 @@
-//! From the checked model's expressions to [`Tree`]: parameters become numbers, domains
-//! become places, constants are folded. All that `evaluate` cannot do is refused here,
-//! so that an evaluation needs no error path.
+//! Conversion of the checked model's expressions to [`Tree`]. Parameters become numbers, domains
+//! become places, and constants are folded. Unsupported expressions are rejected here, so that an
+//! evaluation cannot fail.
 
 use super::OracleError;
 use super::evaluate::Pass;
@@ -11,16 +11,16 @@ use super::system::{Integral, System};
 use super::tree::{Leaf, Tree};
 use eomgen_model_spec::model::{Expr, ExprKind, Field, Model};
 
-/// Turns expressions of one variant into trees.
+/// Converter of the expressions of one variant.
 pub(super) struct Lowering<'m> {
-    /// What has been built so far.
+    /// Result so far.
     pub system: System,
     parameters: &'m [f64],
-    /// For each input the one that is its rate, if that is given.
+    /// Index of each input's rate among the inputs, if given.
     input_rates: Vec<Option<usize>>,
-    /// The quadrature places of each field.
+    /// Indices of the fields' quadrature place sets.
     quadratures: Vec<usize>,
-    /// Name of what is being lowered, for errors.
+    /// Name of the current expression, for errors.
     subject: String,
 }
 
@@ -38,7 +38,8 @@ impl<'m> Lowering<'m> {
         }
     }
 
-    /// The fields' domains, the definitions and the rates of the states of `model` at `order`.
+    /// Creates the converter with the fields' domains, the definitions and the first-order states
+    /// of `model` at `order`.
     pub fn of_model(
         model: &Model,
         order: usize,
@@ -74,7 +75,7 @@ impl<'m> Lowering<'m> {
         Ok(lowering)
     }
 
-    /// An expression outside every sum; `name` stands in errors.
+    /// Converts an expression outside of all sums; `name` is its name in errors.
     pub fn term(&mut self, name: &str, expression: &Expr) -> Result<Tree, OracleError> {
         name.clone_into(&mut self.subject);
         let tree = self.lower(expression, None)?;
@@ -105,7 +106,7 @@ impl<'m> Lowering<'m> {
         Ok(())
     }
 
-    /// The value of an expression of parameters.
+    /// Returns the value of an expression of parameters.
     fn constant(&mut self, expression: &Expr) -> Result<f64, OracleError> {
         match self.lower(expression, None)? {
             Tree::Constant(value) if value.is_finite() => Ok(value),
@@ -117,7 +118,7 @@ impl<'m> Lowering<'m> {
         OracleError::Misplaced(self.subject.clone())
     }
 
-    /// `set`: the place set around the expression.
+    /// Converts an expression; `set` is the enclosing place set.
     fn lower(&mut self, expression: &Expr, set: Option<usize>) -> Result<Tree, OracleError> {
         Ok(match &expression.kind {
             ExprKind::Dot(operand) => self.dot(operand, set)?,
@@ -145,7 +146,7 @@ impl<'m> Lowering<'m> {
         })
     }
 
-    /// What has no parts.
+    /// Converts an expression without operands.
     fn name(&mut self, kind: &ExprKind, set: Option<usize>) -> Result<Tree, OracleError> {
         Ok(match kind {
             ExprKind::Number(number) => Tree::Constant(*number),
@@ -181,7 +182,7 @@ impl<'m> Lowering<'m> {
         })
     }
 
-    /// An input, with its rates if these are given.
+    /// Converts an input, with its rates if they are given.
     fn input(&self, input: usize) -> Tree {
         let rate_of = |input: usize| self.input_rates.get(input).copied().flatten();
         match rate_of(input) {
@@ -194,7 +195,7 @@ impl<'m> Lowering<'m> {
         }
     }
 
-    /// The place set around an expression, if it is one of `field`.
+    /// Returns the enclosing place set if it belongs to `field`.
     fn set_of(&self, field: usize, set: Option<usize>) -> Result<usize, OracleError> {
         set.filter(|set| {
             self.system
@@ -252,7 +253,7 @@ impl<'m> Lowering<'m> {
         })
     }
 
-    /// Derivatives by the position of a field, its rate, a shape, or such a derivative.
+    /// Converts derivatives by the position of a field, its rate, a shape, or such a derivative.
     fn diff(&mut self, operand: &Expr, times: u8, set: Option<usize>) -> Result<Tree, OracleError> {
         match &operand.kind {
             ExprKind::Field(field) => self.leaf(field.index(), times, set),
@@ -286,7 +287,7 @@ impl<'m> Lowering<'m> {
         Ok(self.placed(set, body, true))
     }
 
-    /// A sum over places, as a number (or one per mode) if nothing in it moves.
+    /// Creates a sum over places; a number, or one number per mode, if it is constant.
     fn placed(&mut self, set: usize, body: Tree, keep: bool) -> Tree {
         let dependence = self.system.dependence(&body);
         let mut tree = Tree::Places {
@@ -336,7 +337,7 @@ impl<'m> Lowering<'m> {
         Ok(tree)
     }
 
-    /// The values a constant takes as the index runs.
+    /// Evaluates a constant at every mode of a field.
     fn per_mode(&self, field: usize, tree: Tree) -> Tree {
         let modes = self.system.modes(field).len();
         let values = (0..modes).map(|mode| self.evaluate_at_mode(&tree, field, mode));
@@ -360,7 +361,7 @@ impl<'m> Lowering<'m> {
     }
 }
 
-/// For each input the place of the one that is its rate, if that is given.
+/// Returns the index of each input's rate among the inputs, if given.
 pub(super) fn input_rates(model: &Model) -> Vec<Option<usize>> {
     let rates = model.inputs.iter().map(|input| input.rate);
     rates.map(|rate| rate.map(|rate| rate.index())).collect()

@@ -1,24 +1,28 @@
-//! The independent oracle: Euler-Lagrange equations by automatic differentiation
-//! (num-dual) of the checked model's expressions, with fields integrated by Gauss
-//! quadrature of their mode shapes. It shares with the derivation only the checked
-//! model; what it answers is [`Equations`].
+//! Oracle: Euler-Lagrange equations of the checked model by automatic differentiation (num-dual) of
+//! its expressions. Fields are integrated by Gauss quadrature of their mode shapes. The oracle
+//! shares only the checked model with the derivation. Its results are [`Equations`].
 //!
-//! The pipeline, one file each: `lower` (expressions to `tree`, with `places` for fields
-//! on `legendre` nodes with `shapes`), `scene` (a state and directions in it),
-//! `evaluate` (any number type, with `functions`; [`Conditioned`] numbers tell how far they
-//! can be known), `integrals` (what all rows share),
-//! `terms` (rows of one named term), `constraints` (what stays zero), `rows` (all rows of an [`Oracle`]), `energy` (energies and powers), `observables`,
-//! `switches` (where piecewise functions change side).
+//! Modules in the order of the computation:
 //!
-//! The rows: with L = T - V, for every generalised coordinate j
+//! - `lower` converts expressions to a `tree`, with `places` for fields on `legendre` nodes with
+//!   `shapes`;
+//! - `scene` contains a state and directions of differentiation;
+//! - `evaluate` evaluates any number type, with `functions`; [`Conditioned`] numbers carry a scale
+//!   of their rounding error;
+//! - `integrals` caches results that all rows share;
+//! - `terms`, `constraints` and `rows` compute the rows of an [`Oracle`];
+//! - `energy` and `observables` compute energies, powers and observables;
+//! - `switches` finds the switching surfaces of piecewise functions.
+//!
+//! With L = T - V, the row of every generalised coordinate j is
 //!
 //! ```text
 //! d/dt dT/dq_j' - dT/dq_j + dV/dq_j + dR/dq_j' - sum of value * d(on)/dq_j = 0
 //! ```
 //!
-//! less A^T lambda of the constraints, for which A q'' = b, and for every state of first order
-//! z' - rate = 0, where d/dt dT/dq_j' = sum over k of M_jk q_k'' + (the derivative of dT/dq_j' along
-//! the motion with the rates held).
+//! minus A^T lambda of the constraints A q'' = b. Here d/dt dT/dq_j' = sum over k of M_jk q_k'' +
+//! (the derivative of dT/dq_j' along the motion with constant rates). The row of a first-order
+//! state is z' - rate = 0.
 
 mod affine;
 mod bounds;
@@ -66,7 +70,7 @@ use system::System;
 use terms::{Lowered, LoweredForce, lower_force, lower_terms};
 use tree::Tree;
 
-/// Evaluates the equations of motion of one variant at any state.
+/// Evaluator of the equations of motion of one variant at any state.
 #[derive(Debug)]
 pub struct Oracle {
     system: System,
@@ -87,11 +91,11 @@ pub struct Oracle {
 }
 
 impl Oracle {
-    /// The oracle of `model` at `order` with parameters in SI, in the order of the
-    /// model (see [`Model::parameter_values`]).
+    /// Creates the oracle of `model` at `order`. Parameters are in SI and in the order of the model
+    /// (see [`Model::parameter_values`]).
     ///
     /// # Errors
-    /// [`OracleError`] if the model holds something the oracle would have to guess.
+    /// [`OracleError`] if the model is not supported.
     pub fn new(model: &Model, order: usize, parameters: &[f64]) -> Result<Self, OracleError> {
         expect_length("parameters", model.parameters.len(), parameters.len())?;
         let mut lowering = Lowering::of_model(model, order, parameters)?;
@@ -130,64 +134,65 @@ impl Oracle {
         Ok(oracle)
     }
 
-    /// Number of generalised coordinates, modes included.
+    /// Returns the number of generalised coordinates, with modes.
     pub fn size(&self) -> usize {
         self.system.size
     }
 
-    /// Names of the generalised coordinates in the order of the state.
+    /// Returns the names of the generalised coordinates in the order of the state.
     pub fn names(&self) -> &[String] {
         &self.names
     }
 
-    /// Number of inputs.
+    /// Returns the number of inputs.
     pub fn input_count(&self) -> usize {
         self.input_rates.len()
     }
 
-    /// Inputs with which the machine has its inertia: 0 of those that are no prescribed motion.
+    /// Returns inputs with which the model has inertia; 0 for inputs that are not prescribed
+    /// motions.
     pub fn typical_inputs(&self) -> &[f64] {
         &self.typical_inputs
     }
 
-    /// How fast inputs move: those whose rates are given, at these; others are held.
+    /// Returns the rates of the inputs: the given rate, or 0 for an input without one.
     pub fn input_rates(&self, inputs: &[f64]) -> Vec<f64> {
         let at = |rate: usize| inputs.get(rate).copied().unwrap_or(f64::NAN);
         let rates = self.input_rates.iter();
         rates.map(|rate| rate.map_or(0.0, at)).collect()
     }
 
-    /// Number of states of first order.
+    /// Returns the number of first-order states.
     pub fn state_count(&self) -> usize {
         self.states
     }
 
-    /// Numbers in the state: coordinates, their rates, states of first order.
+    /// Returns the length of the state: coordinates, their rates, first-order states.
     pub fn state_length(&self) -> usize {
         2 * self.size() + self.states
     }
 
-    /// The initial state of the specification: coordinates, then rates, then states of first order.
+    /// Returns the initial state of the specification: coordinates, rates, first-order states.
     pub fn initial(&self) -> &[f64] {
         &self.initial
     }
 
-    /// Intervals and scales of the state and the inputs.
+    /// Returns intervals and scales of the state and the inputs.
     pub fn ranges(&self) -> &Ranges {
         &self.ranges
     }
 
-    /// The switching functions of all piecewise functions that act on the motion.
+    /// Returns the switches of all piecewise functions that act on the motion.
     pub fn switches(&self) -> &[Switch] {
         &self.switches
     }
 
-    /// Ranges of the generalised coordinates that hold a field's modes.
+    /// Returns the index ranges of the fields' modes among the generalised coordinates.
     pub fn modes(&self) -> impl Iterator<Item = std::ops::Range<usize>> {
         (0..self.system.domains.len()).map(|field| self.system.modes(field))
     }
 
-    /// Lengths of the fields' domains, as [`Oracle::modes`].
+    /// Returns the lengths of the fields' domains, in the order of [`Oracle::modes`].
     pub fn lengths(&self) -> impl Iterator<Item = f64> {
         self.system.domains.iter().map(|domain| domain.length)
     }
@@ -205,7 +210,7 @@ impl Oracle {
     }
 }
 
-/// Coordinates, modes at 0, then their rates, then states of first order.
+/// Returns the initial coordinates (0 for modes), rates and first-order states.
 fn initial_state(model: &Model, order: usize, parameters: &[f64]) -> Vec<f64> {
     let modes = vec![0.0; order * model.fields.len()];
     let given = |expr: &Option<Expr>| {
@@ -222,7 +227,7 @@ fn initial_state(model: &Model, order: usize, parameters: &[f64]) -> Vec<f64> {
     state
 }
 
-/// Coordinates in the order of the model, then each field's modes `q_1 ..`.
+/// Returns the coordinates in the order of the model, then each field's modes `q_1 ..`.
 fn coordinate_names(model: &Model, order: usize) -> Vec<String> {
     let mut names: Vec<String> = model
         .coordinates

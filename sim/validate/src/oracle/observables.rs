@@ -8,7 +8,7 @@ use super::tree::Tree;
 use super::{Oracle, OracleError};
 use eomgen_model_spec::model::Model;
 
-/// The tree of every observable; none of one that cannot be evaluated here.
+/// Converts every observable; `None` for an unsupported one.
 pub(super) fn lower_observables(lowering: &mut Lowering<'_>, model: &Model) -> Vec<Option<Tree>> {
     let observables = model.observables.iter();
     observables
@@ -17,11 +17,11 @@ pub(super) fn lower_observables(lowering: &mut Lowering<'_>, model: &Model) -> V
 }
 
 impl Oracle {
-    /// The observables at a state in the order of the specification, then T + V and its rate.
-    /// One that cannot be evaluated is 0 of infinite terms.
+    /// Returns the observables at a state in the order of the specification, then T + V and its
+    /// rate. An unsupported observable is 0 with infinite magnitude.
     ///
     /// # Errors
-    /// [`OracleError::Length`] if the state or the inputs do not fit.
+    /// [`OracleError::Length`] if a length does not match.
     pub fn observables(
         &self,
         time: f64,
@@ -41,11 +41,11 @@ impl Oracle {
         Ok(found)
     }
 
-    /// The rate of T + V along the motion: where no energy depends on time this is the power
-    /// of the forces, elsewhere it is taken along the oracle's own accelerations.
+    /// Returns the rate of T + V along the motion: the power of the forces if no energy depends
+    /// explicitly on time, otherwise the rate with the oracle's accelerations.
     ///
     /// # Errors
-    /// [`OracleError::Length`] if the state or the inputs do not fit.
+    /// [`OracleError::Length`] if a length does not match.
     pub fn rate_of_energy(
         &self,
         time: f64,

@@ -1,12 +1,11 @@
-//! Where fields are evaluated: the quadrature nodes of a field's domain and single
-//! positions, each with the mode shapes there. Depends on parameters alone.
+//! Places at which fields are evaluated: quadrature nodes of a domain and single positions, each
+//! with its mode shapes. They depend only on parameters.
 //!
-//! The number of nodes: phi_S has the phase pi S over the domain, so a product of two
-//! modes oscillates like cos(2 pi S s), a product of four (a quartic energy) like
-//! cos(4 pi S s). On [0, 1] a Gauss-Legendre rule with N nodes integrates cos(w s) to
-//! rounding once 2 N exceeds w/2 by a margin that grows like the cube root of w: 32 is
-//! enough up to S = 128. 4 S + 40 nodes keep 2 N = 8 S + 80 above 2 pi S + 32 for every
-//! S; the surplus serves coefficients that vary along the field.
+//! Number of nodes: phi_S has the phase pi S over the domain. A product of two modes oscillates as
+//! cos(2 pi S s), a product of four (a quartic energy) as cos(4 pi S s). On [0, 1] a Gauss-Legendre
+//! rule with N nodes integrates cos(w s) to rounding if 2 N exceeds w/2 by a margin that increases
+//! as the cube root of w. A margin of 32 is enough up to S = 128. With 4 S + 40 nodes, 2 N = 8 S +
+//! 80 exceeds 2 pi S + 32 for every S. The surplus covers coefficients that vary along the field.
 
 use super::double_double::DoubleDouble;
 use super::legendre::unit_rule;
@@ -15,24 +14,23 @@ use super::splines::{self, SplineShape};
 use eomgen_model_spec::model::Basis;
 use nalgebra::DMatrix;
 
-/// The highest derivative of a mode shape the language knows.
+/// Number of derivative orders of a mode shape, from 0.
 const DERIVATIVES: usize = 5;
 
-/// A field with its domain and mode shapes as numbers.
+/// Field with its domain and mode shapes.
 #[derive(Clone, Debug)]
 pub(super) struct Domain {
-    /// Where the domain starts.
+    /// Start of the domain.
     pub from: f64,
-    /// Its length.
     pub length: f64,
-    /// Place of the field's first mode among the generalised coordinates.
+    /// Index of the field's first mode among the generalised coordinates.
     pub offset: usize,
     /// Number of modes.
     pub order: usize,
     shapes: Shapes,
 }
 
-/// Mode shapes by a formula or through the values of a table, with the rule that integrates them.
+/// Mode shapes by a formula, or of a table with its quadrature rule.
 #[derive(Clone, Debug)]
 enum Shapes {
     Modes(Vec<Shape>),
@@ -40,7 +38,7 @@ enum Shapes {
 }
 
 impl Domain {
-    /// The domain `from..to` with the first `order` shapes of `basis`.
+    /// Creates the domain `from..to` with the first `order` shapes of `basis`.
     pub fn new(from: f64, to: f64, basis: &Basis, offset: usize, order: usize) -> Self {
         let numbers = 1..=order;
         let shapes = match basis {
@@ -61,7 +59,7 @@ impl Domain {
         }
     }
 
-    /// The places and weights on [0, 1] that integrate the shapes.
+    /// Returns the nodes and weights on [0, 1] that integrate the shapes.
     fn rule(&self) -> Vec<(DoubleDouble, f64)> {
         match &self.shapes {
             Shapes::Splines(_, rule) => rule.clone(),
@@ -72,7 +70,7 @@ impl Domain {
         }
     }
 
-    /// A derivative of the shape number `mode`, from 0, by s.
+    /// Returns a derivative by s of shape `mode`, from 0.
     fn shape(&self, mode: usize, derivative: u8, position: DoubleDouble) -> f64 {
         let value = match &self.shapes {
             Shapes::Modes(shapes) => shapes.get(mode).map(|s| s.derivative(derivative, position)),
@@ -87,19 +85,18 @@ impl Domain {
 /// Positions in a field's domain with weights.
 #[derive(Clone, Debug)]
 pub(super) struct PlaceSet {
-    /// The field.
     pub field: usize,
-    /// The positions x.
+    /// Positions x.
     pub positions: Vec<f64>,
-    /// The weights: dx of the rule, or 1 at a single position.
+    /// Weights: dx of the rule, or 1 for a single position.
     pub weights: Vec<f64>,
     relative: Vec<DoubleDouble>,
-    /// For each order of the derivative, once asked for: modes by positions.
+    /// Shapes by order of the derivative, modes by positions; `None` before the first use.
     shapes: [Option<DMatrix<f64>>; DERIVATIVES],
 }
 
 impl PlaceSet {
-    /// The quadrature nodes of a field.
+    /// Creates the quadrature nodes of a field.
     pub fn quadrature(field: usize, domain: &Domain) -> Self {
         let rule = domain.rule();
         Self {
@@ -117,7 +114,7 @@ impl PlaceSet {
         }
     }
 
-    /// The single position `x`.
+    /// Creates the single position `x`.
     pub fn single(field: usize, domain: &Domain, x: f64) -> Self {
         Self {
             field,
@@ -128,7 +125,7 @@ impl PlaceSet {
         }
     }
 
-    /// Makes the shapes' derivatives of one order available.
+    /// Computes the derivatives of one order of all shapes.
     pub fn require(&mut self, derivative: u8, domain: &Domain) {
         let scale = domain.length.powi(-i32::from(derivative));
         let relative = &self.relative;
@@ -147,12 +144,12 @@ impl PlaceSet {
         }
     }
 
-    /// The derivatives of one order of all shapes, modes by positions.
+    /// Returns the derivatives of one order of all shapes, modes by positions.
     pub fn shapes(&self, derivative: u8) -> Option<&DMatrix<f64>> {
         self.shapes.get(usize::from(derivative))?.as_ref()
     }
 
-    /// The orders of derivative available.
+    /// Returns the computed orders of derivatives.
     pub fn derivatives(&self) -> impl Iterator<Item = u8> {
         (0..DERIVATIVES as u8).filter(|derivative| self.shapes(*derivative).is_some())
     }

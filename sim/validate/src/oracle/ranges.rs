@@ -1,18 +1,18 @@
-//! Intervals and scales that a specification states for its variables.
+//! Ranges and scales of the variables in a specification.
 
 use eomgen_model_spec::dimension::Dimension;
 use eomgen_model_spec::model::{Model, Range};
 
-/// Intervals and scales of the state and of the inputs, in SI.
+/// Ranges and scales of the state and of the inputs, in SI.
 #[derive(Clone, Debug)]
 pub struct Ranges {
-    /// One per entry of the state; `None` for modes, rates and entries without a `range`.
+    /// Range of each state entry; `None` for modes, rates and entries without a `range`.
     pub state: Vec<Option<(f64, f64)>>,
-    /// One per input.
+    /// Range of each input.
     pub inputs: Vec<Option<(f64, f64)>>,
-    /// Magnitudes of the parameters of the dimension of each state of first order.
+    /// Magnitudes of the parameters with the dimension of each first-order state.
     pub first_order_scales: Vec<Vec<f64>>,
-    /// Magnitudes of the parameters of the dimension of each input.
+    /// Magnitudes of the parameters with the dimension of each input.
     pub input_scales: Vec<Vec<f64>>,
 }
 
@@ -33,8 +33,8 @@ impl Ranges {
     }
 }
 
-/// Magnitudes of the parameters of a dimension that are not 0. Pure numbers have none: they need
-/// not be of one kind.
+/// Returns the nonzero magnitudes of the parameters of a dimension. The list is empty for
+/// dimensionless quantities, which need not be of one kind.
 fn parameter_sizes(model: &Model, parameters: &[f64], dimension: Dimension) -> Vec<f64> {
     let known = model.parameters.iter().zip(parameters);
     let of_dimension = known.filter(|(parameter, _)| {

@@ -1,4 +1,4 @@
-//! All rows of the equations of motion at a state, and how some of them change with it.
+//! All rows of the equations of motion at a state, and some of their derivatives.
 
 use super::conditioned::Conditioned;
 use super::equations::{Equations, RowTermKind};
@@ -11,10 +11,10 @@ use super::{Oracle, expect_length};
 use nalgebra::DMatrix;
 
 impl Oracle {
-    /// The equations of motion at a state: coordinates, rates, states of first order, in SI.
+    /// Returns the equations of motion at a state (coordinates, rates, first-order states, in SI).
     ///
     /// # Errors
-    /// [`OracleError::Length`] if the state or the inputs do not fit.
+    /// [`OracleError::Length`] if a length does not match.
     pub fn equations(
         &self,
         time: f64,
@@ -24,11 +24,11 @@ impl Oracle {
         Ok(self.equations_of(&self.scene(time, state, None, inputs)?))
     }
 
-    /// The equations of motion with every piecewise function on the side that `sides` gives
-    /// its switch, in the order of [`Oracle::switches`], whatever the state says.
+    /// Returns the equations of motion with every piecewise function on the given side of its
+    /// switch, in the order of [`Oracle::switches`], independent of the state's actual sides.
     ///
     /// # Errors
-    /// [`OracleError::Length`] if the state, the inputs or the sides do not fit.
+    /// [`OracleError::Length`] if a length does not match.
     pub fn equations_on(
         &self,
         sides: &[Side],
@@ -45,11 +45,11 @@ impl Oracle {
         Ok(self.equations_of(&scene))
     }
 
-    /// The equations of motion at a state of the model's domain: every term and both
-    /// energies are numbers and the mass matrix is positive definite. None elsewhere.
+    /// Returns the equations of motion if the state is in the model's domain: every term and both
+    /// energies are finite, and the mass matrix is positive definite. Returns `None` otherwise.
     ///
     /// # Errors
-    /// [`OracleError::Length`] if the state or the inputs do not fit.
+    /// [`OracleError::Length`] if a length does not match.
     pub fn equations_inside(
         &self,
         time: f64,
@@ -92,7 +92,7 @@ impl Oracle {
         }
     }
 
-    /// The addends of the rates of states of first order.
+    /// Returns the addends of the rates of first-order states.
     fn state_rates(&self, scene: &Scene<'_>) -> Vec<Vec<Conditioned>> {
         let pass = Pass::new(scene, Direction::Still, Direction::Still);
         let rates = self.system.state_rates.iter();
@@ -101,10 +101,10 @@ impl Oracle {
             .collect()
     }
 
-    /// How the rate of each state of first order changes with itself alone, 1/s.
+    /// Returns the derivative of each first-order state's rate by that state, in 1/s.
     ///
     /// # Errors
-    /// [`OracleError::Length`] if the state or the inputs do not fit.
+    /// [`OracleError::Length`] if a length does not match.
     pub fn state_decays(
         &self,
         time: f64,
@@ -119,10 +119,10 @@ impl Oracle {
         Ok((0..self.states).map(decay).collect())
     }
 
-    /// Second derivatives of the potential energy by each generalised coordinate alone.
+    /// Returns the second derivatives of the potential energy by each generalised coordinate.
     ///
     /// # Errors
-    /// [`OracleError::Length`] if the state or the inputs do not fit.
+    /// [`OracleError::Length`] if a length does not match.
     pub fn stiffness_diagonal(
         &self,
         time: f64,
@@ -141,8 +141,8 @@ impl Oracle {
         Ok((0..self.size()).map(entry).collect())
     }
 
-    /// M_jk = d^2 T/dq_j' dq_k' and the magnitudes of its entries, the upper half computed
-    /// and mirrored.
+    /// Returns M_jk = d^2 T/dq_j' dq_k' and the magnitudes of its entries. The lower half is a
+    /// mirror image.
     fn mass(&self, scene: &Scene<'_>) -> (DMatrix<f64>, DMatrix<f64>) {
         let size = self.size();
         let mut mass = DMatrix::zeros(size, size);

@@ -1,6 +1,6 @@
-//! One state at which expressions are evaluated, and the directions in which they are
-//! differentiated there. Field values at all places are formed once per state: w is
-//! linear in the modes, so neither w nor its rate depends on the row under test.
+//! State and directions of differentiation for the evaluation of expressions. Field values at all
+//! places are computed once per state: w is linear in the modes, so w and its rate do not depend on
+//! the row.
 
 use super::conditioned::Conditioned;
 use super::evaluate::Number;
@@ -10,41 +10,38 @@ use super::system::System;
 use super::tree::Leaf;
 use nalgebra::{DVector, DVectorView};
 
-/// A direction of differentiation.
+/// Direction of differentiation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Direction {
-    /// None: the derivative part stays 0.
+    /// No direction: the derivative part is 0.
     Still,
-    /// Along the motion: coordinates move with the rates, rates with the accelerations.
+    /// Along the motion: coordinates change with the rates, rates with the accelerations.
     Time,
-    /// A generalised coordinate, its rate held.
+    /// Generalised coordinate with constant rate.
     Position(usize),
-    /// The rate of a generalised coordinate.
+    /// Rate of a generalised coordinate.
     Rate(usize),
-    /// A state of first order.
+    /// First-order state.
     State(usize),
-    /// An input, the others held.
+    /// Single input.
     Input(usize),
-    /// The time where an expression names it, everything else held.
+    /// Explicit time.
     Clock,
-    /// A field value at the current place, its rate held.
+    /// Field value at the current place, with constant rate.
     LeafPosition(Leaf),
-    /// The rate of a field value at the current place.
+    /// Rate of a field value at the current place.
     LeafRate(Leaf),
 }
 
-/// A quantity that moves: its value and its time derivative, each with derivative parts
-/// in two directions.
+/// Value and time derivative of a quantity, each with derivatives in two directions.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Motion {
-    /// The value.
     pub value: Number,
-    /// The time derivative.
     pub rate: Number,
 }
 
 impl Motion {
-    /// A value that changes in no direction.
+    /// Creates a constant.
     pub fn still(value: Conditioned) -> Self {
         let zero = Conditioned::default();
         Self {
@@ -53,7 +50,7 @@ impl Motion {
         }
     }
 
-    /// A value with its rate, and how fast each changes in two directions.
+    /// Creates a value with its rate and the derivatives of both in two directions.
     pub fn new((value, rate): (f64, f64), [first, second]: [(f64, f64); 2]) -> Self {
         let number = |re: f64, first: f64, second: f64| {
             Number::new(re.into(), first.into(), second.into(), 0.0.into())
@@ -65,7 +62,7 @@ impl Motion {
     }
 }
 
-/// Field values of one order of derivative at all positions of a place set.
+/// Field values of one derivative order at all positions of a place set.
 #[derive(Clone, Debug)]
 struct Values {
     derivative: u8,
@@ -74,31 +71,30 @@ struct Values {
     second: DVector<f64>,
 }
 
-/// A state with what can be formed once for all rows.
+/// State with results that all rows share.
 #[derive(Debug)]
 pub(super) struct Scene<'s> {
-    /// The variant.
     pub system: &'s System,
-    /// The time, in s.
+    /// Time, in s.
     pub time: f64,
-    /// Inputs in the order of the model.
     pub inputs: &'s [f64],
-    /// Derivatives of integrals, formed when first asked for.
+    /// Derivatives of integrals, computed on first use.
     pub integrals: Vec<IntegralTable>,
-    /// Multipliers of the constraints, where they are asked for.
+    /// Multipliers of the constraints, if an expression needs them.
     pub multipliers: Vec<Conditioned>,
-    /// Sides that piecewise functions take whatever the state says, if any.
+    /// Prescribed sides of piecewise functions, if any.
     pub imposed: Option<Imposed<'s>>,
     position: &'s [f64],
     rate: &'s [f64],
-    /// States of first order.
+    /// First-order states.
     first_order: &'s [f64],
     acceleration: Option<&'s [f64]>,
     values: Vec<Vec<Values>>,
 }
 
 impl<'s> Scene<'s> {
-    /// A state (coordinates, their rates, states of first order); without accelerations rates are constant.
+    /// Creates the scene of a state (coordinates, rates, first-order states). Without
+    /// accelerations, rates are constant.
     pub fn new(
         system: &'s System,
         time: f64,
@@ -130,7 +126,7 @@ impl<'s> Scene<'s> {
         scene
     }
 
-    /// The field's values at one place set.
+    /// Returns the values of a field at one place set.
     fn sample(&self, set: usize) -> Vec<Values> {
         let Some(places) = self.system.places.get(set) else {
             return Vec::new();
@@ -156,14 +152,14 @@ impl<'s> Scene<'s> {
             .collect()
     }
 
-    /// A generalised coordinate in two directions.
+    /// Returns a generalised coordinate in two directions.
     pub fn coordinate(&self, index: usize, directions: [Direction; 2]) -> Motion {
         let [first, second] = directions.map(|direction| self.seed(index, direction));
         let at = |values: &[f64]| values.get(index).copied().unwrap_or(f64::NAN);
         Motion::new((at(self.position), at(self.rate)), [first, second])
     }
 
-    /// How fast a coordinate and its rate change in a direction.
+    /// Returns the derivatives of a coordinate and its rate in a direction.
     fn seed(&self, index: usize, direction: Direction) -> (f64, f64) {
         let at = |values: &[f64]| values.get(index).copied().unwrap_or(f64::NAN);
         match direction {
@@ -174,7 +170,7 @@ impl<'s> Scene<'s> {
         }
     }
 
-    /// An input that moves at the rates given with it, in two directions.
+    /// Returns an input with given rates in two directions.
     pub fn prescribed(
         &self,
         input: usize,
@@ -183,7 +179,7 @@ impl<'s> Scene<'s> {
     ) -> Motion {
         let at = |place: usize| self.inputs.get(place).copied().unwrap_or(f64::NAN);
         let (value, rate) = (at(input), at(rate_input));
-        // What holds a rate without the next one is nowhere differentiated by the time.
+        // No expression with this rate is differentiated by time if the next rate is missing.
         let second = second.map_or(0.0, at);
         let seeds = directions.map(|direction| match direction {
             Direction::Time => (rate, second),
@@ -196,7 +192,7 @@ impl<'s> Scene<'s> {
         Motion::new((value, rate), seeds)
     }
 
-    /// An input that is held along the motion, in two directions.
+    /// Returns a constant input in two directions.
     pub fn held(&self, input: usize, directions: [Direction; 2]) -> Motion {
         let value = self.inputs.get(input).copied().unwrap_or(f64::NAN);
         let seeds = directions.map(|direction| match direction {
@@ -206,7 +202,7 @@ impl<'s> Scene<'s> {
         Motion::new((value, 0.0), seeds)
     }
 
-    /// A state of first order and how fast it changes in two directions, where it moves at `rate`.
+    /// Returns a first-order state with the time derivative `rate` in two directions.
     pub fn state(&self, index: usize, rate: f64, directions: [Direction; 2]) -> Number {
         let seeds = directions.map(|direction| match direction {
             Direction::State(row) if row == index => 1.0,
@@ -217,7 +213,7 @@ impl<'s> Scene<'s> {
         Motion::new((value, 0.0), seeds.map(|seed| (seed, 0.0))).value
     }
 
-    /// A field value at place `node` of `set` in two directions.
+    /// Returns a field value at place `node` of `set` in two directions.
     pub fn field(&self, leaf: Leaf, set: usize, node: usize, directions: [Direction; 2]) -> Motion {
         let values = self.values.get(set).and_then(|all| {
             all.iter()
@@ -245,8 +241,8 @@ impl<'s> Scene<'s> {
         Motion::new((value, rate), [first, second])
     }
 
-    /// The shape that multiplies generalised coordinate `row` in a field value: 0 unless
-    /// it is one of the field's modes.
+    /// Returns the factor of generalised coordinate `row` in a field value; 0 if it is not a mode
+    /// of the field.
     fn shape_of_row(&self, leaf: Leaf, set: usize, node: usize, row: usize) -> f64 {
         let modes = self.system.modes(leaf.field);
         if modes.contains(&row) {
@@ -256,7 +252,7 @@ impl<'s> Scene<'s> {
         }
     }
 
-    /// The shape of `mode` at place `node` of `set`.
+    /// Returns the shape of `mode` at place `node` of `set`.
     pub fn shape(&self, leaf: Leaf, set: usize, node: usize, mode: usize) -> f64 {
         self.system
             .places
@@ -267,7 +263,7 @@ impl<'s> Scene<'s> {
             .unwrap_or(f64::NAN)
     }
 
-    /// How fast the time changes in a direction.
+    /// Returns the derivative of the time in a direction.
     pub fn time_seed(direction: Direction) -> f64 {
         if matches!(direction, Direction::Time | Direction::Clock) {
             1.0

@@ -1,40 +1,39 @@
-//! Mode shapes of uniform beams by their boundary conditions alone: no formula of any kind of beam
-//! stands here. The derivation has such formulas, and the two must meet only in the result.
+//! Mode shapes of uniform beams from their boundary conditions. The derivation uses closed
+//! formulas; this module shares none of them.
 //!
-//! The four solutions of phi'''' = z^4 phi,
+//! The four solutions of phi'''' = z^4 phi have magnitudes of about 1:
 //!
 //! ```text
-//! sin u    cos u    exp(-u)    exp(-(z - u)),    u = z s, s = x/l,
+//! sin u    cos u    exp(-u)    exp(-(z - u)),    u = z s, s = x/l
 //! ```
 //!
-//! stay of size 1. Each end asks for two derivatives to vanish. The determinant of these four
-//! equations, bisected beside a multiple of pi/4, gives z; the vector they leave free is the shape.
-//! The phase is that multiple of s plus a small part, the first reduced exactly before it is
-//! multiplied by pi.
+//! At each end two derivatives are zero. The determinant of these four equations is bisected near a
+//! multiple of pi/4 to find z; the null vector is the shape. The phase is that multiple of s plus a
+//! small part. The multiple is reduced exactly before it is multiplied by pi.
 
 use super::double_double::DoubleDouble;
 use eomgen_model_spec::model::{Basis, End};
 use nalgebra::{Matrix4, SVD, Vector4};
 use std::f64::consts::PI;
 
-/// Iterations of a singular value decomposition before it is given up; ten are usual.
+/// Maximum number of iterations of a singular value decomposition; about ten are usual.
 const ITERATIONS: usize = 1000;
 
 /// Mode r of a beam of unit length.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shape {
-    /// The multiple of pi beside z, a whole number of quarters.
+    /// Multiple of pi near z, an integer number of quarters.
     half_waves: f64,
-    /// What z is beyond that multiple of pi.
+    /// Difference of z and that multiple of pi.
     delta: f64,
     /// z = beta_r l.
     root: f64,
-    /// The factors of the four solutions.
+    /// Factors of the four solutions.
     factors: Vector4<f64>,
 }
 
 impl Shape {
-    /// Mode `r`, counted from 1, of a `basis` with a formula.
+    /// Returns mode `r`, from 1, of a `basis` with a formula.
     pub fn new(basis: &Basis, r: usize) -> Self {
         match basis {
             Basis::Beam { from, to } => Self::of_beam(*from, *to, r),
@@ -42,8 +41,8 @@ impl Shape {
         }
     }
 
-    /// The wave of a beam long against its waves is reflected at each end with a phase of its own,
-    /// which says near which quarter of pi the roots lie; they are off by less than 1/2.
+    /// Returns mode `r` of a beam. For short waves each end adds a constant phase, which determines
+    /// the nearest quarter of pi. The roots differ from it by less than 1/2.
     fn of_beam(from: End, to: End, r: usize) -> Self {
         let phase = |end| match end {
             End::Clamped => 0.25,
@@ -51,13 +50,13 @@ impl Shape {
             End::Free => -0.75,
             End::Guided => -0.5,
         };
-        // Motions as a rigid body are the first of their sequence and are left out.
+        // The sequence starts with the rigid-body motions, which are not modes here.
         let rigid = f64::from(rigid_motions(from, to));
         let half_waves = r as f64 + rigid + phase(from) + phase(to);
         let determinant = |delta| conditions([from, to], half_waves, delta).determinant();
         let (mut low, mut high) = (-0.5, 0.5);
         let sign = determinant(low).signum();
-        // 2^-60 of the first interval.
+        // Reduces the interval by 2^-60.
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
             if determinant(middle) * sign > 0.0 {
@@ -68,7 +67,7 @@ impl Shape {
         }
         let delta = 0.5 * (low + high);
         let factors = null_vector(conditions([from, to], half_waves, delta));
-        // The sine counts 1, or the cosine where the start leaves no sine.
+        // Normalise the sine's factor to 1, or the cosine's if the start excludes the sine.
         let unit = if from == End::Guided {
             factors.y
         } else {
@@ -82,8 +81,8 @@ impl Shape {
         }
     }
 
-    /// Eq. (18): z = (r - 1/2) pi, so cos z = 0 and sin z = (-1)^(r+1); Eq. (19) with
-    /// its printed sign, so that (1 + xi)/2 tends to 1 and exp(u) stays.
+    /// Returns Eq. (18): z = (r - 1/2) pi, so cos z = 0 and sin z = (-1)^(r+1). Eq. (19) has its
+    /// printed sign, so (1 + xi)/2 tends to 1 and exp(u) remains.
     fn printed(r: usize) -> Self {
         let half_waves = r as f64 - 0.5;
         let sign = if r.is_multiple_of(2) { -1.0 } else { 1.0 };
@@ -98,7 +97,7 @@ impl Shape {
         }
     }
 
-    /// The derivative of order `derivative` of phi by s at `position` in [0, 1].
+    /// Returns the derivative of phi by s of order `derivative` at `position` in [0, 1].
     pub fn derivative(&self, derivative: u8, position: DoubleDouble) -> f64 {
         let s = position.high;
         let remaining = (1.0 - s) - position.low;
@@ -111,7 +110,7 @@ impl Shape {
     }
 }
 
-/// The translation and the rotation that the ends leave.
+/// Returns the number of rigid-body motions that the ends allow.
 fn rigid_motions(from: End, to: End) -> u8 {
     let translates = |end| matches!(end, End::Free | End::Guided);
     let rotates = |end| matches!(end, End::Free | End::Pinned);
@@ -120,8 +119,7 @@ fn rigid_motions(from: End, to: End) -> u8 {
     u8::from(translation) + u8::from(rotation)
 }
 
-/// The conditions at both ends for the factors of the solutions: an end makes two derivatives
-/// vanish.
+/// Returns the matrix of the boundary conditions. Each end sets two derivatives to zero.
 fn conditions(ends: [End; 2], half_waves: f64, delta: f64) -> Matrix4<f64> {
     let decay = (-(half_waves * PI + delta)).exp();
     let one = DoubleDouble::new(1.0);
@@ -138,7 +136,7 @@ fn conditions(ends: [End; 2], half_waves: f64, delta: f64) -> Matrix4<f64> {
     })
 }
 
-/// The derivatives of the four solutions by u.
+/// Returns the derivatives of the four solutions by u.
 fn solutions(derivative: u8, (sine, cosine): (f64, f64), exponentials: [f64; 2]) -> [f64; 4] {
     let (of_sine, of_cosine) = match derivative % 4 {
         0 => (sine, cosine),
@@ -155,8 +153,8 @@ fn solutions(derivative: u8, (sine, cosine): (f64, f64), exponentials: [f64; 2])
     [of_sine, of_cosine, parity * decaying, growing]
 }
 
-/// The vector that a singular matrix maps to nothing, to rounding: the right singular vector of
-/// the least singular value.
+/// Returns the null vector of a singular matrix: the right singular vector of the smallest singular
+/// value.
 fn null_vector(matrix: Matrix4<f64>) -> Vector4<f64> {
     let decomposed = SVD::try_new(matrix, false, true, 5.0 * f64::EPSILON, ITERATIONS);
     let Some(decomposition) = decomposed else {
@@ -168,8 +166,8 @@ fn null_vector(matrix: Matrix4<f64>) -> Vector4<f64> {
         .map_or_else(Vector4::zeros, |rows| rows.row(least).transpose())
 }
 
-/// sin and cos of z s: the turns are reduced exactly, the rest is a small angle, so the error does
-/// not grow with r.
+/// Returns sin and cos of z s. Full turns are reduced exactly and the remaining angle is small, so
+/// the error does not increase with r.
 fn sine_cosine(half_waves: f64, delta: f64, position: DoubleDouble) -> (f64, f64) {
     let half_turns = DoubleDouble::product(half_waves, position.high);
     let quarter_turns = (2.0 * half_turns.high).round();
@@ -195,7 +193,7 @@ mod tests {
     };
 
     #[test]
-    fn the_first_roots_are_the_textbook_ones() {
+    fn first_roots_match_textbook() {
         let roots = [
             1.875_104_068_711_961_2,
             4.694_091_132_974_175,
@@ -208,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn the_exact_shapes_satisfy_the_ends_and_the_printed_ones_do_not() {
+    fn only_exact_shapes_satisfy_boundary_conditions() {
         for r in [1, 2, 3, 12, 64, 128] {
             let shape = Shape::new(&Basis::CLAMPED_FREE, r);
             let clamp = DoubleDouble::new(0.0);
@@ -225,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn the_rule_finds_the_shapes_orthogonal_up_to_the_highest_order() {
+    fn shapes_are_orthogonal_up_to_highest_order() {
         let rule = unit_rule(4 * 64 + 40);
         for (r, k) in [(1, 2), (1, 64), (63, 64), (30, 41)] {
             let (left, right) = (
@@ -245,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_moment_is_right_to_thirteen_digits_at_every_mode() {
+    fn first_moment_has_thirteen_digits_at_every_mode() {
         // int_0^1 s phi ds = 2/z^2 in magnitude: phi'''' = z^4 phi integrated by parts.
         let rule = unit_rule(4 * 128 + 40);
         for r in [1, 8, 64, 128] {
@@ -255,7 +253,7 @@ mod tests {
                 .map(|node| node.weight * node.position.high * shape.derivative(0, node.position))
                 .sum();
             let exact = 2.0 * shape.factors.y / shape.root.powi(2);
-            // The addends are of size 1/552 and the moment of size 2/z^2.
+            // The addends are about 1/552 and the moment is 2/z^2.
             let tolerance = 1e-14_f64.max(2e-17 * shape.root.powi(2));
             assert!(
                 (moment / exact + 1.0).abs() < tolerance,

@@ -1,23 +1,23 @@
-//! Shapes of a table by the cubic spline through its values, written by its second derivatives at
-//! the knots, while the derivation writes slopes: the two must meet only in the result.
+//! Shapes of a table by cubic splines. The unknowns are second derivatives M_i at the knots,
+//! whereas the derivation uses slopes, so the two share no code.
 //!
-//! Between two knots the second derivative is linear; the slope is continuous where
+//! Between two knots the second derivative is linear. The slope is continuous if
 //!
 //! ```text
 //! h_i M_i + 2 (h_i + h_(i+1)) M_(i+1) + h_(i+1) M_(i+2) = 6 (chord_(i+1) - chord_i)
 //! ```
 //!
-//! and the third derivative is continuous at the first and the last inner knot.
+//! The third derivative is continuous at the first and the last inner knot.
 
 use super::double_double::DoubleDouble;
 use super::legendre::unit_rule;
 use eomgen_model_spec::shape_table::ShapeTable;
 
-/// The fewest Gauss-Legendre nodes in each piece: a product of two shapes is of degree 6, of four
-/// of degree 12; what is beyond serves coefficients that vary along the field.
+/// Minimum number of Gauss-Legendre nodes per piece. A product of two shapes has degree 6, of four
+/// degree 12. The surplus covers coefficients that vary along the field.
 const NODES: usize = 8;
 
-/// One shape of a table over s in [0, 1].
+/// Shape of a table over s in [0, 1].
 #[derive(Clone, Debug)]
 pub(super) struct SplineShape {
     knots: Vec<f64>,
@@ -26,7 +26,7 @@ pub(super) struct SplineShape {
 }
 
 impl SplineShape {
-    /// Shape `r`, counted from 1.
+    /// Returns shape `r`, from 1.
     pub fn new(table: &ShapeTable, r: usize) -> Self {
         let knots = relative(table);
         let values = table.shapes.get(r - 1).cloned().unwrap_or_default();
@@ -38,7 +38,7 @@ impl SplineShape {
         }
     }
 
-    /// The derivative of order `derivative` by s.
+    /// Returns the derivative by s of order `derivative`.
     pub fn derivative(&self, derivative: u8, s: f64) -> f64 {
         let inner = self.knots.iter().skip(1).take(self.knots.len() - 2);
         let piece = inner.take_while(|knot| **knot < s).count();
@@ -62,7 +62,7 @@ impl SplineShape {
     }
 }
 
-/// Positions and weights of a rule on [0, 1] that is exact for polynomials between knots.
+/// Returns nodes and weights of a rule on [0, 1] that is exact for polynomials between knots.
 pub(super) fn rule(table: &ShapeTable, order: usize) -> Vec<(DoubleDouble, f64)> {
     let pieces = table.positions.len().max(2) - 1;
     let rule = unit_rule((4 * order + 40).div_ceil(pieces).max(NODES));
@@ -78,7 +78,7 @@ pub(super) fn rule(table: &ShapeTable, order: usize) -> Vec<(DoubleDouble, f64)>
         .collect()
 }
 
-/// The knots over the length between the first and the last.
+/// Returns the knots scaled to [0, 1].
 fn relative(table: &ShapeTable) -> Vec<f64> {
     let first = table.positions.first().copied().unwrap_or(0.0);
     let length = table.positions.last().copied().unwrap_or(1.0) - first;
@@ -89,9 +89,8 @@ fn relative(table: &ShapeTable) -> Vec<f64> {
         .collect()
 }
 
-/// Second derivatives at the knots. The conditions at the ends,
-/// (M_1 - M_0)/h_0 = (M_2 - M_1)/h_1 and its mirror image, are put into the first and the last
-/// equation of the slopes.
+/// Returns the second derivatives at the knots. The end conditions (M_1 - M_0)/h_0 = (M_2 -
+/// M_1)/h_1 and their mirror image are eliminated into the first and the last equation.
 fn curvatures(knots: &[f64], values: &[f64]) -> Vec<f64> {
     let n = knots.len();
     if n < 4 || values.len() != n {

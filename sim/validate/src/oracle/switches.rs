@@ -1,6 +1,5 @@
-//! The switching functions of the model: the arguments at which its piecewise functions
-//! change side. Only those outside sums over places and modes: inside, every place has a
-//! side of its own and the state as a whole has none.
+//! Switches of the model: arguments at which its piecewise functions change side. Functions inside
+//! sums over places or modes are excluded, because each place has another side.
 
 use super::evaluate::Pass;
 use super::scene::Direction;
@@ -8,39 +7,39 @@ use super::tree::Tree;
 use super::{Oracle, OracleError};
 use eomgen_model_spec::model::{Function, Model};
 
-/// A quantity at whose zero, or at plus and minus a half-width, something switches.
+/// Quantity with a switching surface at zero, or at plus and minus a half-width.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Switch {
-    /// The quantity as the specification names it, or `switch_1 ..`.
+    /// Name of the quantity in the specification, or `switch_1 ..`.
     pub name: String,
     quantity: Tree,
     half_width: Option<Tree>,
-    /// Whether the quantity holds something piecewise itself: it may be zero on a whole region.
+    /// True if the quantity contains a piecewise function: it can be zero in a whole region.
     rests: bool,
 }
 
-/// A side of a switch.
+/// Side of a switch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Side {
     /// Below minus the half-width.
     Minus,
-    /// Within the half-width; at zero, only where the quantity may rest there.
+    /// Within the half-width; at zero, only if the quantity can be at rest there.
     Free,
     /// Above the half-width.
     Plus,
 }
 
-/// A switch at one state.
+/// Value of a switch at one state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SwitchValue {
-    /// The quantity.
+    /// Value of the quantity.
     pub quantity: f64,
-    /// The half-width, 0 for a switch at 0.
+    /// Half-width; 0 for a switch at 0.
     pub half_width: f64,
 }
 
 impl SwitchValue {
-    /// The side the state is on.
+    /// Returns the side of the state.
     pub fn side(&self) -> Side {
         if self.quantity > self.half_width {
             Side::Plus
@@ -52,12 +51,12 @@ impl SwitchValue {
     }
 }
 
-/// How a switch changes with the entries of the state, then with the inputs, then with the time.
+/// Derivatives of a switch by the entries of the state, the inputs and the time, in this order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SwitchGradient {
-    /// Of the quantity.
+    /// Derivatives of the quantity.
     pub quantity: Vec<f64>,
-    /// Of the half-width, 0 for a switch at 0.
+    /// Derivatives of the half-width; 0 for a switch at 0.
     pub half_width: Vec<f64>,
 }
 
@@ -70,13 +69,12 @@ impl Switch {
         self.half_width.as_ref()
     }
 
-    /// Whether the side between the others is a region of its own only where the quantity
-    /// rests at zero.
+    /// Returns true if the middle side is a region in which the quantity is at rest at zero.
     pub fn rests_at_zero(&self) -> bool {
         self.half_width.is_none() && self.rests
     }
 
-    /// The sides this switch has.
+    /// Returns the possible sides of this switch.
     pub fn sides(&self) -> &'static [Side] {
         if self.half_width.is_some() || self.rests {
             &[Side::Minus, Side::Free, Side::Plus]
@@ -86,17 +84,18 @@ impl Switch {
     }
 }
 
-/// Sides that piecewise functions are to take, whatever the state says.
+/// Prescribed sides of piecewise functions, independent of the state.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Imposed<'s> {
-    /// The switches of the model.
+    /// Switches of the model.
     pub switches: &'s [Switch],
-    /// A side for each.
+    /// One side per switch.
     pub sides: &'s [Side],
 }
 
 impl Imposed<'_> {
-    /// The side a function of these arguments is to take, if it is one of the switches.
+    /// Returns the prescribed side of a function with these arguments, if it is one of the
+    /// switches.
     pub fn side(&self, function: Function, arguments: &[Tree]) -> Option<Side> {
         let (quantity, half_width) = switched_by(function, arguments)?;
         let known =
@@ -106,8 +105,8 @@ impl Imposed<'_> {
     }
 }
 
-/// The quantity at whose zero, or at plus and minus the half-width beside it, a function
-/// switches; none for a smooth one.
+/// Returns the quantity of a piecewise function and its half-width, if any; `None` for a smooth
+/// function.
 fn switched_by(function: Function, arguments: &[Tree]) -> Option<(Tree, Option<Tree>)> {
     match (function, arguments) {
         (Function::Abs | Function::Sign | Function::Above, [argument]) => {
@@ -120,10 +119,10 @@ fn switched_by(function: Function, arguments: &[Tree]) -> Option<(Tree, Option<T
 }
 
 impl Oracle {
-    /// All switches at a state.
+    /// Returns all switches at a state.
     ///
     /// # Errors
-    /// [`OracleError::Length`] if the state or the inputs do not fit.
+    /// [`OracleError::Length`] if a length does not match.
     pub fn switch_values(
         &self,
         time: f64,
@@ -142,10 +141,10 @@ impl Oracle {
         Ok(self.switches.iter().map(value).collect())
     }
 
-    /// How the quantity of switch `index` changes with every entry of the state.
+    /// Returns the derivatives of the quantity of switch `index` by every entry of the state.
     ///
     /// # Errors
-    /// [`OracleError::Length`] if the state or the inputs do not fit.
+    /// [`OracleError::Length`] if a length does not match.
     pub fn switch_slopes(
         &self,
         index: usize,
@@ -168,11 +167,11 @@ impl Oracle {
 }
 
 impl Oracle {
-    /// How the quantity and the half-width of switch `index` change with every entry of the
+    /// Returns the derivatives of quantity and half-width of switch `index` by every entry of the
     /// state, every input and the time.
     ///
     /// # Errors
-    /// [`OracleError::Length`] if the state or the inputs do not fit.
+    /// [`OracleError::Length`] if a length does not match.
     pub fn switch_gradient(
         &self,
         index: usize,
@@ -200,7 +199,6 @@ impl Oracle {
         })
     }
 
-    /// Every entry of the state in its order.
     fn state_directions(&self) -> impl Iterator<Item = Direction> + use<> {
         let rows = 0..self.size();
         rows.clone()
@@ -210,7 +208,7 @@ impl Oracle {
     }
 }
 
-/// The switches in all terms of the motion, each once.
+/// Returns the switches in all terms of the motion, each once.
 pub(super) fn find(oracle: &Oracle, model: &Model) -> Vec<Switch> {
     let mut search = Search {
         oracle,
@@ -309,7 +307,7 @@ impl Search<'_> {
     }
 }
 
-/// Whether a function has sides.
+/// Returns true if a function has sides.
 pub(super) fn is_piecewise_function(function: Function) -> bool {
     matches!(
         function,
@@ -329,7 +327,7 @@ fn difference(left: &Tree, right: &Tree) -> Tree {
 }
 
 impl Side {
-    /// `-`, `0` or `+`.
+    /// Returns `-`, `0` or `+`.
     pub fn symbol(self) -> char {
         match self {
             Self::Minus => '-',
@@ -338,7 +336,7 @@ impl Side {
         }
     }
 
-    /// -1, 0 or 1.
+    /// Returns -1, 0 or 1.
     pub fn sign(self) -> f64 {
         match self {
             Self::Minus => -1.0,

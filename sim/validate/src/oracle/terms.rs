@@ -1,4 +1,4 @@
-//! One term of the specification as it enters every row of the equations.
+//! Contribution of one term of the specification to every row of the equations.
 
 use super::OracleError;
 use super::conditioned::Conditioned;
@@ -9,7 +9,7 @@ use super::scene::{Direction, Scene};
 use super::tree::{Dependence, Tree};
 use eomgen_model_spec::model::{Force, Term};
 
-/// An addend of a named term.
+/// Addend of a named term.
 #[derive(Debug)]
 pub(super) struct Lowered {
     pub name: String,
@@ -17,7 +17,7 @@ pub(super) struct Lowered {
     pub dependence: Dependence,
 }
 
-/// An addend of a named force.
+/// Addend of a named force.
 #[derive(Debug)]
 pub(super) struct LoweredForce {
     pub name: String,
@@ -65,7 +65,7 @@ impl Lowered {
 }
 
 impl LoweredForce {
-    /// -value * d(on)/dq_j.
+    /// Returns -value * d(on)/dq_j for every row.
     pub fn rows(&self, scene: &Scene<'_>) -> RowTerm {
         let value = Pass::new(scene, Direction::Still, Direction::Still)
             .value(&self.value)
@@ -83,8 +83,8 @@ impl LoweredForce {
     }
 }
 
-/// Terms, every addend of a sum by itself: a row's scale is its largest addend, and a
-/// term like `a - b` may be small because two large addends cancel.
+/// Converts terms, each addend separately. The scale of a row is its largest addend, and a term
+/// such as `a - b` can be small after cancellation.
 pub(super) fn lower_terms(
     lowering: &mut Lowering<'_>,
     terms: &[Term],
@@ -101,7 +101,7 @@ pub(super) fn lower_terms(
     Ok(lowered)
 }
 
-/// A force, every addend of its value by itself.
+/// Converts a force, each addend of its value separately.
 pub(super) fn lower_force(
     lowering: &mut Lowering<'_>,
     force: &Force,

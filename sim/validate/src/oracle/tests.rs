@@ -1,5 +1,4 @@
-//! The oracle against equations a textbook gives, and against itself where one thing can
-//! be written in two ways.
+//! Tests of the oracle against textbook equations, and against equivalent specifications.
 
 use super::super::sampler::Sampler;
 use super::super::test_models::{BEAM, DOUBLE_PENDULUM, SPRING, model};
@@ -31,7 +30,7 @@ fn assert_close(found: &[f64], expected: &[f64], tolerance: f64) {
 }
 
 #[test]
-fn a_spring_with_play_has_its_three_regimes() {
+fn spring_with_play_has_three_regimes() {
     let oracle = oracle(SPRING, 0);
     let found = |y, rate| accelerations(&oracle, 0.0, &[y, rate], &[4.0]);
     // m y'' = u - k f_k(y) - c f_c(y).
@@ -54,7 +53,7 @@ fn a_spring_with_play_has_its_three_regimes() {
     );
 }
 
-/// The double pendulum as in textbooks, solved by Cramer's rule.
+/// Returns the textbook accelerations of a double pendulum, by Cramer's rule.
 fn double_pendulum(state: &[f64]) -> Vec<f64> {
     let (m_1, m_2, l_1, l_2, g, c) = (1.3, 0.7, 0.9, 0.6, 9.81, 0.2);
     let (difference, rate) = (state[0] - state[1], state[3] - state[2]);
@@ -74,7 +73,7 @@ fn double_pendulum(state: &[f64]) -> Vec<f64> {
 }
 
 #[test]
-fn a_double_pendulum_moves_as_in_the_textbook() {
+fn double_pendulum_matches_textbook() {
     let oracle = oracle(DOUBLE_PENDULUM, 0);
     let mut sampler = Sampler::new(&oracle, 7).unwrap();
     for _ in 0..100 {
@@ -89,7 +88,7 @@ fn a_double_pendulum_moves_as_in_the_textbook() {
 }
 
 #[test]
-fn a_moved_support_accelerates_the_pendulum() {
+fn moved_support_accelerates_pendulum() {
     let text = r#"
 [model]
 name = "moved"
@@ -128,7 +127,7 @@ gravity = "m*g*up"
 }
 
 #[test]
-fn a_force_on_a_definition_does_virtual_work_and_has_its_power() {
+fn force_on_definition_does_virtual_work() {
     let text =
         DOUBLE_PENDULUM.to_owned() + "\n[forces]\nside = { on = \"x_2\", value = \"3*m_2*g\" }\n";
     let (with, without) = (oracle(&text, 0), oracle(DOUBLE_PENDULUM, 0));
@@ -148,7 +147,7 @@ fn a_force_on_a_definition_does_virtual_work_and_has_its_power() {
 }
 
 #[test]
-fn a_cantilever_has_its_frequencies_up_to_the_64th() {
+fn cantilever_frequencies_match_formula_up_to_mode_64() {
     let text = BEAM.replace(
         "hub = \"1/2*J*dot(theta)^2\"",
         "hub = \"1e9*J*dot(theta)^2\"",
@@ -169,16 +168,16 @@ fn a_cantilever_has_its_frequencies_up_to_the_64th() {
     }
 }
 
-/// The largest difference between two sets of equations, relative to each row's scale.
+/// Returns the largest difference of two sets of equations, relative to each row's scale.
 fn distance(left: &Equations, right: &Equations) -> f64 {
     let solution = left.accelerations().unwrap();
     right.worst_residual(solution.as_slice())
 }
 
 #[test]
-fn derivatives_kept_for_all_rows_are_those_of_the_plain_sum_over_places() {
+fn cached_derivatives_match_plain_sum_over_places() {
     let kept = oracle(BEAM, 5);
-    // A further sum inside keeps the integral from being kept; it adds nothing.
+    // A nested sum of value zero prevents the caching of the integral's derivatives.
     let nested = BEAM.replace(
         "x*dot(theta) + dot(w))^2",
         "x*dot(theta) + dot(w))^2 + 0*dot(tip)^2*rho*A",
@@ -197,7 +196,7 @@ fn derivatives_kept_for_all_rows_are_those_of_the_plain_sum_over_places() {
 }
 
 #[test]
-fn sums_over_modes_say_the_same_as_integrals_over_the_field() {
+fn sums_over_modes_match_integrals_over_field() {
     let integral = oracle(BEAM, 4);
     let sums = BEAM
         .replace(
@@ -224,7 +223,7 @@ fn sums_over_modes_say_the_same_as_integrals_over_the_field() {
 }
 
 #[test]
-fn energy_changes_by_the_power_of_the_forces() {
+fn energy_rate_equals_power_of_forces() {
     for (text, order) in [(SPRING, 0), (DOUBLE_PENDULUM, 0), (BEAM, 6)] {
         let oracle = oracle(text, order);
         let mut sampler = Sampler::new(&oracle, 11).unwrap();
@@ -243,7 +242,7 @@ fn energy_changes_by_the_power_of_the_forces() {
 }
 
 #[test]
-fn order_zero_keeps_the_rigid_beam() {
+fn order_zero_gives_rigid_beam() {
     let oracle = oracle(BEAM, 0);
     let mass = oracle.equations(0.0, &[0.1, 0.2], &[0.0]).unwrap().mass;
     let l: f64 = 1.25;
@@ -251,9 +250,9 @@ fn order_zero_keeps_the_rigid_beam() {
     assert_close(mass.as_slice(), &[expected], 1e-14);
 }
 
-/// A checked model never holds these; the oracle must not depend on that.
+/// A checked model excludes these expressions, but the oracle must not depend on that.
 #[test]
-fn what_would_have_to_be_guessed_is_refused() {
+fn unsupported_expressions_are_rejected() {
     let refuse = |expression: &Expr| {
         let mut model = model(SPRING);
         model.kinetic[0].value = expression.clone();
@@ -281,7 +280,7 @@ fn what_would_have_to_be_guessed_is_refused() {
 }
 
 #[test]
-fn lengths_must_fit() {
+fn wrong_lengths_are_rejected() {
     let model = model(SPRING);
     let short = Oracle::new(&model, 0, &[1.0]);
     assert!(matches!(short, Err(OracleError::Length { .. })));

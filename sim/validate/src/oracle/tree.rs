@@ -1,136 +1,120 @@
-//! The oracle's own form of an expression: parameters are numbers, positions are lists
-//! of nodes, constants are folded. Made by `lower`, evaluated by `evaluate`. Nothing is
-//! differentiated here.
+//! Expressions of the oracle. Parameters are numbers, positions are lists of nodes, constants are
+//! folded. `lower` creates trees and `evaluate` evaluates them.
 
 use eomgen_model_spec::ast::BinaryOperator;
 use eomgen_model_spec::model::Function;
 use std::collections::BTreeSet;
 
-/// An expression of the state, the time and the inputs.
+/// Expression of the state, the time and the inputs.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Tree {
-    /// A number: a literal, a parameter, or what is made of them alone.
+    /// Literal, parameter, or constant expression of these.
     Constant(f64),
-    /// A number for each mode of a field, taken at the index of the enclosing sum.
+    /// One number per mode of a field, at the index of the enclosing sum.
     PerMode {
-        /// The field whose sum is meant.
         field: usize,
-        /// One value per mode.
         values: Vec<f64>,
     },
-    /// The time.
     Time,
-    /// An input that is held, or of which no further rate is given.
+    /// Input that is constant, or without a further given rate.
     Input(usize),
-    /// An input whose rate is given.
+    /// Input with a given rate.
     PrescribedInput {
-        /// The input.
         input: usize,
-        /// The input that is its rate.
+        /// Index of the input that is its rate.
         rate: usize,
-        /// The input that is the rate of that, if it is given.
+        /// Index of the input that is its second rate, if given.
         second: Option<usize>,
     },
-    /// The position in the innermost enclosing place set, in m (or the field's unit of x).
+    /// Position in the innermost enclosing place set, in m (or the field's unit of x).
     Position {
-        /// The place set.
         set: usize,
     },
-    /// A coordinate that is no mode, by its place in the state.
+    /// Coordinate other than a mode, by its index in the state.
     Coordinate(usize),
-    /// A state of first order, by its place among them.
+    /// First-order state, by its index among these.
     State(usize),
-    /// The rate of a state of first order.
+    /// Rate of a first-order state.
     StateRate(usize),
-    /// The multiplier of a constraint.
+    /// Multiplier of a constraint.
     Multiplier(usize),
-    /// A definition.
     Definition(usize),
-    /// A field, or its derivative by the position, at the current place.
+    /// Field, or its derivative by the position, at the current place.
     Field {
-        /// Which leaf.
         leaf: Leaf,
-        /// The place set it is read from.
+        /// Index of the place set.
         set: usize,
     },
-    /// A mode coordinate at the index of the enclosing sum.
+    /// Mode coordinate at the index of the enclosing sum.
     Mode {
-        /// The field.
         field: usize,
     },
-    /// A mode shape, or its derivative, at the current place and index.
+    /// Mode shape, or its derivative, at the current place and index.
     Shape {
-        /// Field and order of the derivative.
         leaf: Leaf,
-        /// The place set it is read from.
+        /// Index of the place set.
         set: usize,
     },
-    /// The time derivative.
+    /// Time derivative.
     Dot(Box<Tree>),
-    /// The weighted sum of `body` over a place set: an integral, or a value at a point.
+    /// Weighted sum of `body` over a place set: an integral, or a value at a point.
     Places {
-        /// The place set.
+        /// Index of the place set.
         set: usize,
-        /// What is summed.
         body: Box<Tree>,
-        /// Where `integrals` keeps its derivatives, if it can.
+        /// Index of its cached derivatives in `integrals`, if any.
         integral: Option<usize>,
     },
-    /// The sum over a field's modes.
+    /// Sum over a field's modes.
     Sum {
-        /// The field.
         field: usize,
-        /// What is summed.
         body: Box<Tree>,
     },
-    /// `-operand`.
     Negate(Box<Tree>),
-    /// `left operator right`.
     Binary(BinaryOperator, Box<Tree>, Box<Tree>),
-    /// A power with a constant exponent.
+    /// Power with a constant exponent.
     Power(Box<Tree>, f64),
-    /// A function of one or two arguments.
+    /// Function of one or two arguments.
     Call(Function, Vec<Tree>),
 }
 
-/// The derivative of order `derivative` of a field by its position.
+/// Derivative of a field by its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Leaf {
-    /// The field.
     pub field: usize,
-    /// The order of the derivative, 0 for the field itself.
+    /// Order of the derivative; 0 for the field itself.
     pub derivative: u8,
 }
 
-/// What an expression depends on.
+/// Dependence of an expression on variables.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Dependence {
-    /// Coordinates that are no modes.
+    /// Coordinates other than modes.
     pub coordinates: BTreeSet<usize>,
     /// Fields, through their modes or their values.
     pub fields: BTreeSet<usize>,
-    /// States of first order, through their values or their rates.
+    /// First-order states, through their values or their rates.
     pub states: BTreeSet<usize>,
-    /// Field values at the place around the expression.
+    /// Field values at the enclosing place.
     pub leaves: BTreeSet<Leaf>,
-    /// Fields whose sum's index is used and not bound inside.
+    /// Fields with a free sum index.
     pub indices: BTreeSet<usize>,
-    /// The position around the expression.
+    /// True for the position of the enclosing place.
     pub position: bool,
-    /// The time, explicitly.
+    /// True for explicit time.
     pub time: bool,
-    /// An input whose rate is not given.
+    /// True for an input without a given rate.
     pub input: bool,
-    /// An input whose rate is given, or such a rate.
+    /// True for an input with a given rate, or such a rate.
     pub prescribed: bool,
-    /// A time derivative is taken inside.
+    /// True if the expression contains a time derivative.
     pub dot: bool,
-    /// It holds a sum over places or modes, itself or in a definition.
+    /// True if the expression contains a sum over places or modes, directly or in a definition.
     pub nested: bool,
 }
 
 impl Dependence {
-    /// Nothing that changes with the state, the time or the inputs.
+    /// Returns true if the expression does not depend on state, time or inputs.
     pub fn is_constant(&self) -> bool {
         let sets = self.coordinates.is_empty() && self.fields.is_empty() && self.states.is_empty();
         sets && !self.time && !self.input && !self.prescribed
@@ -152,7 +136,7 @@ impl Dependence {
 }
 
 impl Tree {
-    /// What this expression depends on; `definitions` in the order of the model.
+    /// Returns the dependence of this expression; `definitions` are in the order of the model.
     pub fn dependence(&self, definitions: &[Dependence]) -> Dependence {
         let mut found = Dependence::default();
         for child in self.children() {
@@ -162,11 +146,11 @@ impl Tree {
         found
     }
 
-    /// From what the parts depend on to what the whole depends on.
+    /// Completes the dependence of the operands to that of the whole expression.
     fn amend(&self, found: &mut Dependence, definitions: &[Dependence]) {
         match self {
             Self::PerMode { field, .. } => drop(found.indices.insert(*field)),
-            // It changes with all that moves.
+            // A multiplier depends on all of the motion.
             Self::Time | Self::Multiplier(_) => found.time = true,
             Self::Input(_) => found.input = true,
             Self::PrescribedInput { .. } => found.prescribed = true,
@@ -204,7 +188,7 @@ impl Tree {
         }
     }
 
-    /// The addends of a sum; anything else is its own only addend.
+    /// Splits a sum into its addends; other expressions are their only addend.
     pub fn addends(self) -> Vec<Tree> {
         match self {
             Self::Binary(BinaryOperator::Add, left, right) => {
@@ -221,7 +205,6 @@ impl Tree {
         }
     }
 
-    /// The operands.
     pub fn children(&self) -> Vec<&Tree> {
         match self {
             Self::Dot(operand) | Self::Negate(operand) | Self::Power(operand, _) => vec![operand],
