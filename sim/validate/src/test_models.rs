@@ -1,9 +1,9 @@
-//! Small models for the tests of the validation, each with equations a textbook gives.
+//! Small models with textbook equations for the tests of the validation.
 
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::Source;
 
-/// The model a specification describes.
+/// Parses and checks a specification.
 pub(super) fn model(text: &str) -> Model {
     match eomgen_model_spec::check(Source::new("test.toml", text)) {
         Ok(checked) => checked.model,
@@ -11,7 +11,7 @@ pub(super) fn model(text: &str) -> Model {
     }
 }
 
-/// A mass on a spring with play, driven through an input.
+/// Mass on a spring with play and an input force.
 pub(super) const SPRING: &str = r#"
 [model]
 name = "spring"
@@ -40,7 +40,7 @@ damping = { on = "y", value = "-c*contact(y, b)*dot(y)" }
 pull = { on = "y", value = "u" }
 "#;
 
-/// A mass between springs with preload, which act beyond their play.
+/// Mass between springs with preload and play.
 pub(super) const PRELOAD: &str = r#"
 [model]
 name = "preload"
@@ -97,7 +97,7 @@ gravity = "m_1*g*y_1 + m_2*g*y_2"
 joint = "1/2*c*(dot(theta_2) - dot(theta_1))^2"
 "#;
 
-/// A beam on a hub with a tip mass.
+/// Beam on a hub with a tip mass.
 pub(super) const BEAM: &str = r#"
 [model]
 name = "beam"
@@ -144,7 +144,7 @@ bearing = { on = "theta", value = "-d*dot(theta)" }
 torque = { on = "theta", value = "u" }
 "#;
 
-/// A free rotor written by its point: everything cancels in its only row.
+/// Free rotor in Cartesian coordinates of its point: all terms of its only row cancel.
 pub(super) const ROTOR: &str = r#"
 [model]
 name = "rotor"
@@ -164,7 +164,7 @@ y = "-l*cos(theta)"
 point = "1/2*m*(dot(x)^2 + dot(y)^2)"
 "#;
 
-/// A mass on a spring whose mass changes with time.
+/// Mass on a spring; the mass changes with time.
 pub(super) const TANK: &str = r#"
 [model]
 name = "tank"
@@ -184,7 +184,7 @@ tank = "1/2*m*dot(x)^2*(2 + sin(t/tau))"
 spring = "1/2*k*x^2"
 "#;
 
-/// A mass in a logarithmic potential, which has a value on one side only.
+/// Mass in a logarithmic potential, which is defined on one side only.
 pub(super) const LOGARITHM: &str = r#"
 [model]
 name = "logarithm"
@@ -204,7 +204,7 @@ mass = "1/2*m*dot(x)^2"
 well = "-e*ln(x/L) + e*x/L"
 "#;
 
-/// A mass on a spring with a term linear in its rate beyond where states are drawn.
+/// Mass on a spring with a term linear in its rate, far from most sampled states.
 pub(super) const FAR: &str = r#"
 [model]
 name = "far"

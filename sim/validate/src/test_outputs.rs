@@ -1,11 +1,10 @@
-//! What may be asked for of the spring of the certificate's tests, written out by hand, each
-//! with a fault of a thousandth in one number.
+//! Hand-written outputs of the tests' spring, with an optional error of 0.1 % in one number.
 
 use super::outputs::Outputs;
 use super::sampler::Sample;
 use nalgebra::DMatrix;
 
-/// The outputs of the spring; the function of this name has a fault.
+/// Outputs of the spring; the string is the name of the function with the fault.
 pub(super) struct SpringOutputs(pub &'static str);
 
 const M: f64 = 2.0;
@@ -13,7 +12,7 @@ const K: f64 = 300.0;
 const B: f64 = 0.01;
 const C: f64 = 5.0;
 
-/// Stretch, side of the play (0 within it), rate and pull.
+/// Returns stretch, side of the play (0 within it), rate and force.
 fn at(sample: &Sample) -> [f64; 4] {
     let (y, rate) = (sample.state[0], sample.state[1]);
     let side = if y.abs() > B { y.signum() } else { 0.0 };
@@ -26,7 +25,8 @@ fn force(sample: &Sample) -> f64 {
 }
 
 impl SpringOutputs {
-    /// The numbers, the last that is not 0 off by a thousandth if this one has the fault.
+    /// Returns the numbers. For the function with the fault, the last nonzero one is 0.1 % too
+    /// large.
     fn given(&self, name: &str, mut numbers: Vec<f64>) -> Vec<f64> {
         let last = numbers.iter_mut().rev().find(|number| **number != 0.0);
         if let (true, Some(number)) = (self.0 == name, last) {
@@ -57,7 +57,7 @@ impl SpringOutputs {
         }
     }
 
-    /// Of T + V and of the power.
+    /// Returns the derivatives of T + V and of the power.
     fn observables_by(&self, name: &str, at_: &Sample) -> DMatrix<f64> {
         let [stretch, side, rate, pull] = at(at_);
         let touching = side.abs();
@@ -81,7 +81,7 @@ impl SpringOutputs {
         DMatrix::from_row_slice(2, columns, &self.given(name, numbers))
     }
 
-    /// Weights times one of the Jacobians.
+    /// Returns weights times one of the Jacobians.
     fn weighted(&self, name: &str, at_: &Sample, weights: &[f64]) -> Vec<f64> {
         let jacobian = SpringOutputs("").rates_by(name, at_);
         let weights = DMatrix::from_row_slice(1, 2, weights);

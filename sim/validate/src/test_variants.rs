@@ -1,36 +1,35 @@
-//! Subjects for the tests of the certificate: equations as textbooks give them, each with
-//! the faults a derivation might have.
+//! Variants for the tests of the certificate: textbook equations with optional faults.
 
 use super::certify::Sized;
 use super::oracle::Oracle;
 use super::variant::Variant;
 use nalgebra::{DMatrix, DVector};
 
-/// What is wrong with a subject.
+/// Fault of a variant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Fault {
     None,
-    /// The velocity term of the second row has the wrong sign.
+    /// Wrong sign of the velocity term in the second row.
     VelocitySign,
-    /// The first row lacks its coupling to the second acceleration.
+    /// Missing coupling of the first row to the second acceleration.
     Coupling,
-    /// The mass matrix shown is not symmetric, by fifty times its rounding.
+    /// Asymmetry of the mass matrix, fifty times its rounding.
     Asymmetry,
-    /// The energy lacks its kinetic part.
+    /// Missing kinetic energy.
     Energy,
-    /// The power has the wrong sign.
+    /// Wrong sign of the power.
     Power,
-    /// The switching function on the negative side is missing.
+    /// Missing guard on the negative side.
     Guard,
-    /// The rates are not numbers.
+    /// NaN in the rates.
     NotANumber,
-    /// The rates of the coordinates are those of someone else.
+    /// Rate of another coordinate.
     Shifted,
-    /// The evaluation gives up.
+    /// Error in the evaluation.
     Refusal,
 }
 
-/// The double pendulum of the textbook.
+/// Textbook double pendulum.
 pub(super) struct DoublePendulum(pub Fault);
 
 const G: f64 = 9.81;
@@ -143,7 +142,7 @@ impl Variant for DoublePendulum {
     }
 }
 
-/// The mass on a spring with play.
+/// Mass on a spring with play.
 pub(super) struct Spring(pub Fault);
 
 impl Variant for Spring {
@@ -214,7 +213,7 @@ impl Variant for Spring {
     }
 }
 
-/// A model of one coordinate without inputs, by functions of time, coordinate and rate.
+/// Model with one coordinate and no inputs, as functions of time, coordinate and rate.
 pub(super) struct Single {
     pub name: &'static str,
     pub mass: fn(f64, f64, f64) -> f64,
@@ -223,7 +222,7 @@ pub(super) struct Single {
     pub power: fn(f64, f64, f64) -> f64,
 }
 
-/// The rotor of 2 kg at half a metre.
+/// Rotor of 2 kg at a radius of 0.5 m.
 pub(super) const FREE_ROTOR: Single = Single {
     name: "theta",
     mass: |_, _, _| 0.5,
@@ -232,7 +231,7 @@ pub(super) const FREE_ROTOR: Single = Single {
     power: |_, _, _| 0.0,
 };
 
-/// The tank of 2 kg and more on a spring of 30 N/m.
+/// Tank with a mass of 2 kg (2 + sin t) on a spring of 30 N/m.
 pub(super) const TIMED_TANK: Single = Single {
     name: "x",
     mass: |t, _, _| 2.0 * (2.0 + t.sin()),
@@ -241,7 +240,7 @@ pub(super) const TIMED_TANK: Single = Single {
     power: |t, _, rate| -rate * rate * t.cos(),
 };
 
-/// The mass of 2 kg in a logarithmic potential of 3 J.
+/// Mass of 2 kg in a logarithmic potential of 3 J.
 pub(super) const LOGARITHMIC: Single = Single {
     name: "x",
     mass: |_, _, _| 2.0,
@@ -250,7 +249,7 @@ pub(super) const LOGARITHMIC: Single = Single {
     power: |_, _, _| 0.0,
 };
 
-/// The mass of 2 kg on a spring of 30 N/m, with its term beyond 3 m.
+/// Mass of 2 kg on a spring of 30 N/m, with a term beyond 3 m.
 pub(super) const FAR_TERM: Single = Single {
     name: "x",
     mass: |_, _, _| 2.0,
@@ -283,7 +282,7 @@ impl Variant for Single {
         Ok(())
     }
 
-    /// No certificate of a model without a field asks.
+    /// Only certificates of models with fields call this method.
     fn bias_and_forces(
         &mut self,
         _: f64,
@@ -292,7 +291,7 @@ impl Variant for Single {
         _: &mut [f64],
         _: &mut [f64],
     ) -> Result<(), String> {
-        Err("not asked for".into())
+        Err("not supported".into())
     }
 
     fn energy(&mut self, t: f64, state: &[f64], _: &[f64]) -> Result<f64, String> {
@@ -312,7 +311,7 @@ impl Variant for Single {
     }
 }
 
-/// The mass between preloaded springs.
+/// Mass between preloaded springs.
 pub(super) struct Preload;
 
 impl Preload {
@@ -326,7 +325,7 @@ impl Preload {
         -7.0 * side - 300.0 * stretch
     }
 
-    /// The derivative of a solver that, if it is faulty, takes what is zero to be negative.
+    /// Returns the derivative of a solver; with `faulty` it treats zero as negative.
     pub fn derivative(faulty: bool) -> impl Fn(f64, &[f64], &[f64]) -> Result<Sized, String> {
         move |_, state: &[f64], _: &[f64]| {
             let inside = state[0].abs() <= 0.01;
@@ -395,8 +394,7 @@ impl Variant for Preload {
     }
 }
 
-/// The kernels of its regimes as emitted source might have them; where nothing acts, the force
-/// is `WITHIN`.
+/// Kernels of its regimes as emitted source. The force within the play is `WITHIN`.
 pub(super) const KERNELS: &str = r"#![no_std]
 pub const STATES: usize = 2;
 #[derive(Default)]
@@ -426,11 +424,10 @@ pub fn rates_in_regime_into<const REGIME: u32, T: Copy + Into<f64>>(
 }
 ";
 
-/// The beam by the oracle's own equations: no judge of the equations, but a subject for
-/// what compares two orders.
+/// Beam with the oracle's own equations, for the comparison of two orders.
 pub(super) struct Beam {
     pub oracle: Oracle,
-    /// Whether the hub feels the third mode.
+    /// True if the third mode is coupled to the hub.
     pub coupled: bool,
 }
 
@@ -514,7 +511,7 @@ impl Variant for Beam {
     }
 }
 
-/// The spring as emitted source might be, rates and energy only.
+/// Spring as emitted source, only rates and energy.
 pub(super) const EMITTED: &str = r"#![no_std]
 pub const STATES: usize = 2;
 #[derive(Default)]

@@ -1,5 +1,4 @@
-//! A certificate must pass what is right and fail what is wrong: textbook equations as
-//! subjects, each of their possible faults as a mutation, and the check that sees it.
+//! Mutation tests of the certificate: textbook equations pass, and every fault fails its check.
 
 use super::certificate::{Certificate, Check};
 use super::certify::{Emitted, EmittedFunction, Reference, Subject, certify};
@@ -16,7 +15,7 @@ use super::test_variants::{
 };
 use super::variant::Variant;
 
-/// The certificate of what `variants` makes of the model in `text`.
+/// Returns the certificate of the model in `text` for the variants that `variants` creates.
 fn certificate(
     text: &str,
     order: usize,
@@ -56,7 +55,7 @@ fn spring(fault: Fault, emitted: Result<Emitted, String>) -> Certificate {
     certificate(SPRING, 0, &variants, &[], emitted)
 }
 
-/// The certificate of a model of one coordinate; `make` makes the subject.
+/// Returns the certificate of a model with one coordinate; `make` creates the variant.
 fn single(text: &str, make: fn() -> Single) -> Certificate {
     let variants = move |_| Ok(Box::new(make()) as Box<dyn Variant>);
     certificate(text, 0, &variants, &[], Err("not emitted".into()))
@@ -72,7 +71,8 @@ fn beam(order: usize, coupled: bool) -> Certificate {
     certificate(BEAM, order, &variants, &[], Err("not emitted".into()))
 }
 
-/// The certificate of the preloaded mass with what a faulty backend makes of it within the play.
+/// Returns the certificate of the preloaded mass. `kernel` is the force of its kernel within the
+/// play; `derivative` adds a fault to the exact derivative.
 fn preload(kernel: &str, derivative: bool) -> Certificate {
     let model = model(PRELOAD);
     let derivative = Preload::derivative(derivative);
@@ -111,7 +111,7 @@ fn find<'c>(certificate: &'c Certificate, name: &str) -> &'c Check {
 }
 
 #[test]
-fn right_equations_pass() {
+fn correct_equations_pass() {
     let pendulum = pendulum(Fault::None);
     assert!(pendulum.passed, "{:?}", failures(&pendulum));
     assert!(find(&pendulum, "guards").skipped.is_some());
@@ -131,7 +131,7 @@ fn right_equations_pass() {
 }
 
 #[test]
-fn every_fault_fails_the_check_that_is_there_for_it() {
+fn every_fault_fails_its_check() {
     for (fault, check) in [
         (Fault::VelocitySign, "accelerations"),
         (Fault::Coupling, "accelerations"),
@@ -158,7 +158,7 @@ fn every_fault_fails_the_check_that_is_there_for_it() {
 }
 
 #[test]
-fn a_row_in_which_everything_cancels_still_judges() {
+fn faults_are_found_in_row_with_full_cancellation() {
     let good = single(ROTOR, || FREE_ROTOR);
     assert!(good.passed, "{:?}", failures(&good));
     let bad = single(ROTOR, || Single {
@@ -177,7 +177,7 @@ fn a_row_in_which_everything_cancels_still_judges() {
 }
 
 #[test]
-fn the_power_of_a_mass_that_changes_with_time_is_judged_twice() {
+fn wrong_power_of_variable_mass_fails_two_checks() {
     let good = single(TANK, || TIMED_TANK);
     assert!(good.passed, "{:?}", failures(&good));
     assert!(find(&good, "power_balance").passed);
@@ -196,7 +196,7 @@ fn the_power_of_a_mass_that_changes_with_time_is_judged_twice() {
 }
 
 #[test]
-fn a_term_linear_in_the_rate_counts_where_few_states_come() {
+fn term_linear_in_rate_counts_far_from_most_states() {
     let good = single(FAR, || FAR_TERM);
     assert!(find(&good, "accelerations switch_1+").passed);
     assert!(good.passed, "{:?}", failures(&good));
@@ -230,7 +230,7 @@ fn states_outside_the_domain_are_drawn_again_and_counted() {
 }
 
 #[test]
-fn where_no_state_is_in_the_domain_the_certificate_fails_and_says_so() {
+fn certificate_without_state_in_domain_fails() {
     let text = LOGARITHM.replace("ln(x/L)", "ln(-1 - (x/L)^2)");
     let nowhere = single(&text, || LOGARITHMIC);
     assert!(!nowhere.passed);
@@ -239,13 +239,13 @@ fn where_no_state_is_in_the_domain_the_certificate_fails_and_says_so() {
 }
 
 #[test]
-fn a_range_keeps_the_states_where_the_model_lives() {
+fn range_restricts_sampled_states() {
     let text = LOGARITHM.replace("initial = 0.5", "initial = 0.5, range = [0.2, \"2*L\"]");
     let good = single(&text, || LOGARITHMIC);
     assert!(good.passed, "{:?}", failures(&good));
     let detail = &find(&good, "accelerations").detail;
     assert!(detail.starts_with("200 states, "), "{detail}");
-    // What is wrong outside only is not the model's.
+    // An error outside of the range does not count.
     let outside = single(&text, || Single {
         acceleration: |_, x, _| if x < 0.2 { 9.0 } else { (3.0 / x - 3.0) / 2.0 },
         ..LOGARITHMIC
@@ -259,12 +259,12 @@ fn a_range_keeps_the_states_where_the_model_lives() {
 }
 
 #[test]
-fn what_is_taken_to_be_negative_where_it_rests_at_zero_is_found() {
+fn wrong_side_of_guard_at_rest_fails() {
     let right = preload("0.0", false);
     assert!(right.passed, "{:?}", failures(&right));
     assert!(find(&right, "regime_kernels").passed);
     assert!(find(&right, "exact_derivative").passed);
-    // Below, within and above the play; the other combinations of sides contradict each other.
+    // Below, within and above the play; other combinations of sides are contradictory.
     let regimes = right.checks.iter();
     let regimes = regimes.filter(|check| check.name.starts_with("accelerations") && check.passed);
     assert_eq!(regimes.count(), 3);
@@ -273,7 +273,7 @@ fn what_is_taken_to_be_negative_where_it_rests_at_zero_is_found() {
 }
 
 #[test]
-fn a_reference_is_compared_at_every_state() {
+fn reference_is_compared_at_every_state() {
     let reference = |factor: f64| Reference {
         name: "textbook".into(),
         deviation: Box::new(move |_, state: &[f64], _: &[f64], found: &[f64]| {
@@ -293,7 +293,7 @@ fn a_reference_is_compared_at_every_state() {
 }
 
 #[test]
-fn orders_must_nest() {
+fn decoupled_mode_fails_nesting() {
     let good = beam(3, true);
     assert!(good.passed, "{:?}", failures(&good));
     for name in [
@@ -310,7 +310,7 @@ fn orders_must_nest() {
 }
 
 #[test]
-fn a_variant_that_cannot_be_made_is_a_failure_that_says_why() {
+fn variant_error_is_reported_as_failed_check() {
     let variants = |_| Err("no such order".to_owned());
     let certificate = certificate(SPRING, 0, &variants, &[], Err("not emitted".into()));
     assert!(!certificate.passed);
@@ -355,13 +355,13 @@ fn emitted_source_is_compared_bit_for_bit() {
 }
 
 #[test]
-fn a_missing_compiler_is_a_reason() {
+fn missing_compiler_is_reported() {
     let folder = tempfile::tempdir().unwrap();
     let found = Compiler::named("no-such-rustc".into(), folder.path());
     assert!(found.unwrap_err().contains("no-such-rustc"));
 }
 
-/// The certificate of the right spring with outputs of which the one of this name is wrong.
+/// Returns the certificate of the correct spring with a fault in the output `wrong`.
 fn outputs_with_fault(wrong: &'static str) -> Certificate {
     let model = model(SPRING);
     let parameters = model.parameter_values().unwrap();
@@ -381,7 +381,7 @@ fn outputs_with_fault(wrong: &'static str) -> Certificate {
     })
 }
 
-/// The checks of everything that may be asked for.
+/// Checks of all outputs.
 const REQUESTED: [&str; 12] = [
     "bias_forces",
     "inverse_dynamics",
@@ -398,7 +398,7 @@ const REQUESTED: [&str; 12] = [
 ];
 
 #[test]
-fn an_output_passes_where_it_is_right_and_fails_by_a_thousandth() {
+fn output_with_error_of_one_thousandth_fails() {
     let right = outputs_with_fault("");
     assert!(right.passed, "{:?}", failures(&right));
     for name in REQUESTED {
@@ -409,9 +409,9 @@ fn an_output_passes_where_it_is_right_and_fails_by_a_thousandth() {
 }
 
 #[test]
-fn what_is_no_number_at_a_zero_of_the_state_alone_is_found() {
+fn nan_only_at_rest_is_found() {
     let rotor = single(ROTOR, || Single {
-        // 0, but at rest 0/0.
+        // 0, but 0/0 at rest.
         acceleration: |_, _, rate| rate / rate - 1.0,
         ..FREE_ROTOR
     });
@@ -427,7 +427,7 @@ fn what_is_no_number_at_a_zero_of_the_state_alone_is_found() {
 }
 
 #[test]
-fn a_certificate_names_the_texts_and_the_values_that_it_is_about() {
+fn certificate_contains_hashes_and_parameters() {
     let certificate = spring(Fault::None, Ok(emitted(EMITTED)));
     assert_eq!(
         certificate.specification_sha256,
