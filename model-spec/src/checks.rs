@@ -1,5 +1,5 @@
-//! Checks of a model as a whole that are neither about names nor about units: things that
-//! are never used, and channels that do not exist.
+//! Checks the model as a whole: unused names, channels of sensors, tables of shapes and the
+//! drawing.
 
 use crate::diagnostic::{Declared, Diagnostic, Diagnostics, quoted};
 use crate::dimension::Dimension;
@@ -33,11 +33,14 @@ pub fn check_sensors(model: &Model, found: &mut Diagnostics) {
     );
     channels.extend(rates.chain(accelerations));
     channels.extend(model.states.iter().map(|state| state.name.clone()));
-    // What a motion takes that a record gives.
+    // Inputs are channels too: the motion takes them from a record.
     channels.extend(model.inputs.iter().map(|input| input.name.clone()));
     for sensor in &model.sensors {
         if !channels.contains(&sensor.observable) {
-            let message = format!("no quantity {} to be measured", quoted(&sensor.observable));
+            let message = format!(
+                "the model has no quantity {} to measure",
+                quoted(&sensor.observable)
+            );
             let near = did_you_mean(&sensor.observable, channels.iter().map(String::as_str));
             let rule = "a channel is an observable or a coordinate, its rate (NAME_dot) or acceleration \
                         (NAME_ddot), a state, or an input";
@@ -50,7 +53,7 @@ pub fn check_sensors(model: &Model, found: &mut Diagnostics) {
     }
 }
 
-/// Reports tables that do not span their field's domain at the declared values.
+/// Reports tables of shapes that do not span the domain of their field, at the declared values.
 pub fn check_tables(model: &Model, found: &mut Diagnostics) {
     let Ok(parameters) = model.parameter_values() else {
         return;
@@ -63,16 +66,14 @@ pub fn check_tables(model: &Model, found: &mut Diagnostics) {
         if let Err(fault) = table.spans(from, to) {
             let (line, column) = (fault.line, fault.column);
             let message = format!("{}:{line}:{column}: {}", table.file, fault.message);
-            found.push(
-                Diagnostic::error(message)
-                    .at(*span, "this table")
-                    .help("the table's first x is `from` and its last x is `to`, in m"),
-            );
+            found.push(Diagnostic::error(message).at(*span, "this table").help(
+                "the first x of the table must equal `from`, and the last x must equal `to`, in m",
+            ));
         }
     }
 }
 
-/// Reports points of a drawing that are placed by what is no length.
+/// Reports points of a drawing with an ordinate that is not a length.
 pub fn check_drawing(model: &Model, found: &mut Diagnostics) {
     let points = model.drawing.iter().flat_map(|drawing| &drawing.points);
     let placed = points.flat_map(|point| {
@@ -94,15 +95,17 @@ pub fn check_drawing(model: &Model, found: &mut Diagnostics) {
         if unit.dimension != Dimension::LENGTH {
             let is = Words(unit.dimension);
             found.push(
-                Diagnostic::error(format!("`{name}` is {is}, but places a point, in m"))
-                    .at(span, is.to_string())
-                    .help("report the length that is meant in [observables]"),
+                Diagnostic::error(format!(
+                    "`{name}` is {is}, but the ordinate of a point is in m"
+                ))
+                .at(span, is.to_string())
+                .help("add the length to [observables] and use its name"),
             );
         }
     }
 }
 
-/// Warns of parameters, inputs and definitions that nothing refers to.
+/// Warns about parameters, inputs and definitions that nothing refers to.
 pub fn warn_unused(model: &Model, warnings: &mut Diagnostics) {
     let mut used = Used {
         parameters: vec![false; model.parameters.len()],
@@ -111,7 +114,7 @@ pub fn warn_unused(model: &Model, warnings: &mut Diagnostics) {
     };
     for_each_expression(model, &mut |expr| expr.visit(&mut |part| used.mark(part)));
     let parameters = model.parameters.iter().map(|p| (&p.name, p.span));
-    // Rates that are given with an input need not be used, and whoever uses one uses the input.
+    // Given rates of an input may be unused; a used rate counts as a use of the input.
     let used_with_rates = |input: InputId| {
         let rates = std::iter::successors(Some(input), |of| model.inputs[*of].rate);
         rates.into_iter().any(|of| used.inputs[of])
@@ -123,7 +126,7 @@ pub fn warn_unused(model: &Model, warnings: &mut Diagnostics) {
     let definitions = model.definitions.iter().map(|d| (&d.name, d.span));
     let mut warn = |kind, name: &str, span| warnings.push(Diagnostic::unused(kind, name, span));
     for ((name, span), used) in parameters.zip(used.parameters) {
-        // Stabilisation is part of every constraint.
+        // The stabilisation rate is part of every constraint.
         let stabilises = !model.constraints.is_empty() && name == STABILISATION_RATE;
         if !used && !stabilises {
             warn(Declared::Parameter, name, span);
@@ -133,7 +136,7 @@ pub fn warn_unused(model: &Model, warnings: &mut Diagnostics) {
         warn(Declared::Input, &input.name, input.span);
     }
     for ((name, span), used) in definitions.zip(used.definitions) {
-        // What a frame defines, at the frame's own name, is there for those who want it.
+        // Generated definitions of a frame, which have the frame's span, may be unused.
         let written = model.source.text.get(span.start..span.end);
         if !used && written.is_some_and(|written| written.contains(name.as_str())) {
             warn(Declared::Definition, name, span);
@@ -158,7 +161,7 @@ impl Used {
     }
 }
 
-/// Shows every expression of a model to `see`.
+/// Calls `see` with every expression of a model.
 pub fn for_each_expression(model: &Model, see: &mut impl FnMut(&Expr)) {
     for parameter in &model.parameters {
         if let ParameterValue::Expression(expr) = &parameter.value {

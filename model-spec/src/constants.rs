@@ -1,5 +1,5 @@
-//! Constant parts of expressions, made of numbers and parameters alone: each has a finite value and lies in the domain
-//! of the function that it is an argument of, and none that is 0 divides anything.
+//! Checks the constant parts of expressions, which contain only numbers and parameters: each is
+//! finite, inside the domain of its function, and no divisor is 0.
 
 use crate::ast::BinaryOperator;
 use crate::checks::for_each_expression;
@@ -7,23 +7,23 @@ use crate::evaluate::{binary, call};
 use crate::model::{CoefficientKind, Expr, ExprKind, Function, Model};
 use crate::span::Span;
 
-/// A constant that is infinite, not a number or outside the domain of a function.
+/// Constant that is infinite, not a number, or outside the domain of a function.
 pub struct NotFinite {
-    /// What is wrong.
+    /// The cause.
     pub message: String,
-    /// The values that the function takes.
+    /// The cure.
     pub help: &'static str,
-    /// Where it stands.
+    /// Position of the constant.
     pub span: Span,
 }
 
-/// The finite value of an expression, or None if it moves.
+/// Finite value of an expression; `None` if it is not constant.
 type Constant = Result<Option<f64>, NotFinite>;
 
-/// Checks the constant parts of all expressions at these values of the parameters, in SI.
+/// Checks the constant parts of all expressions, at these values of the parameters in SI.
 ///
 /// # Errors
-/// The first that is infinite or not a number, with its place.
+/// The first constant that is not finite, with its position.
 pub fn check(model: &Model, parameters: &[f64]) -> Result<(), NotFinite> {
     let mut known = Constants {
         parameters,
@@ -102,8 +102,8 @@ impl Constants<'_> {
         let (one, other) = (self.value(left)?, self.value(right)?);
         if operator == BinaryOperator::Divide && other == Some(0.0) {
             return Err(NotFinite {
-                message: "division by 0: this is 0".to_owned(),
-                help: "divide by a quantity that is not 0, or leave the term out",
+                message: "division by 0: this divisor is 0".to_owned(),
+                help: "divide by a quantity that is not 0, or remove the term",
                 span: right.span,
             });
         }
@@ -134,7 +134,7 @@ impl Constants<'_> {
         if is_periodic(function) && x.abs() > MAX_ANGLE {
             return Err(NotFinite {
                 message: format!("`{}` of {x} is outside its domain", function.name()),
-                help: "the angle is at most 1e9 rad, forward or backward",
+                help: "give an angle between -1e9 and 1e9 rad",
                 span: whole.span,
             });
         }
@@ -142,7 +142,7 @@ impl Constants<'_> {
             return Ok(Some(value));
         }
         Err(NotFinite {
-            message: format!("`{}` of {x} comes out as {value}", function.name()),
+            message: format!("`{}` of {x} evaluates to {value}", function.name()),
             help: domain(function),
             span: whole.span,
         })
@@ -151,30 +151,30 @@ impl Constants<'_> {
 
 fn not_finite(value: f64, expr: &Expr) -> NotFinite {
     NotFinite {
-        message: format!("this expression comes out as {value}"),
+        message: format!("this expression evaluates to {value}"),
         help: match value.is_nan() {
-            true => "a negative number has only powers with a whole exponent",
+            true => "give a negative number a whole exponent",
             false => {
-                "the value exceeds 1.8e308: look for a power of 0 or a number that is too large"
+                "the value exceeds 1.8e308: look for a negative power of 0, or for a number that is too large"
             }
         },
         span: expr.span,
     }
 }
 
-/// Largest angle of a sine, a cosine and a tangent, rad: the emitted functions are NaN beyond.
+/// Largest angle of a sine, cosine or tangent, rad; beyond it the emitted functions return NaN.
 const MAX_ANGLE: f64 = 1e9;
 
 fn is_periodic(function: Function) -> bool {
     matches!(function, Function::Sin | Function::Cos | Function::Tan)
 }
 
-/// Values for which a function is finite.
+/// Returns the condition for a finite value of a function.
 fn domain(function: Function) -> &'static str {
     match function {
-        Function::Sqrt => "the argument of `sqrt` is at least 0",
-        Function::Ln => "the argument of `ln` is greater than 0",
-        Function::Asin | Function::Acos => "the argument is between -1 and 1",
+        Function::Sqrt => "give `sqrt` an argument of at least 0",
+        Function::Ln => "give `ln` an argument greater than 0",
+        Function::Asin | Function::Acos => "give an argument between -1 and 1",
         _ => "the value exceeds 1.8e308: give a smaller argument",
     }
 }

@@ -1,17 +1,17 @@
-//! The dimension of a quantity: exponents of the seven SI base units, as fractions. Angles
-//! have none (rad counts as 1). Names and scales of units live in `unit`.
+//! Dimension of a quantity: rational exponents of the seven SI base units. Angles are
+//! dimensionless (rad = 1). `unit` has the names and scales of units.
 
 use num_rational::Ratio;
 use num_traits::{CheckedAdd, CheckedMul, CheckedSub, Zero};
 
-/// An exponent of a base unit.
+/// Exponent of a base unit.
 pub type Exponent = Ratio<i32>;
 
-/// The base units in the order of a dimension's exponents.
+/// Base units, in the order of the exponents.
 const BASE: [&str; 7] = ["kg", "m", "s", "A", "K", "mol", "cd"];
 
-/// Ways to write common dimensions, exponents of (kg, m, s, A). Engineers read N s/m, not
-/// kg/s; a torque is N m although it has the dimension of an energy.
+/// Symbols of common dimensions, by exponents of (kg, m, s, A). A torque and an energy have the
+/// same dimension, printed N m.
 const COMMON: [(&str, [i32; 4]); 24] = [
     ("N", [1, 1, -2, 0]),
     ("N m", [1, 2, -2, 0]),
@@ -46,7 +46,7 @@ pub struct Dimension {
 }
 
 impl Dimension {
-    /// A pure number.
+    /// Dimensionless.
     pub const NONE: Self = Self::of([0, 0, 0, 0]);
     /// m
     pub const LENGTH: Self = Self::of([0, 1, 0, 0]);
@@ -59,12 +59,12 @@ impl Dimension {
     /// W
     pub const POWER: Self = Self::of([1, 2, -3, 0]);
 
-    /// The dimension with these exponents of kg, m, s and A.
+    /// Returns the dimension with these exponents of kg, m, s and A.
     pub const fn of([kg, m, s, a]: [i32; 4]) -> Self {
         Self::base([kg, m, s, a, 0, 0, 0])
     }
 
-    /// The dimension with these exponents of kg, m, s, A, K, mol and cd.
+    /// Returns the dimension with these exponents of kg, m, s, A, K, mol and cd.
     pub const fn base(whole: [i32; 7]) -> Self {
         let mut exponents = [Ratio::new_raw(0, 1); 7];
         let mut index = 0;
@@ -75,27 +75,27 @@ impl Dimension {
         Self { exponents }
     }
 
-    /// The exponents of kg, m, s, A, K, mol and cd.
+    /// Returns the exponents of kg, m, s, A, K, mol and cd.
     pub fn exponents(self) -> [Exponent; 7] {
         self.exponents
     }
 
-    /// Whether this is a pure number's.
+    /// Returns true if the quantity is dimensionless.
     pub fn is_none(self) -> bool {
         self == Self::NONE
     }
 
-    /// The dimension of a product; None where an exponent leaves the range of i32.
+    /// Returns the dimension of a product; `None` if an exponent overflows i32.
     pub fn times(self, other: Self) -> Option<Self> {
         self.combined(other, |a, b| a.checked_add(&b))
     }
 
-    /// The dimension of a quotient; None where an exponent leaves the range of i32.
+    /// Returns the dimension of a quotient; `None` if an exponent overflows i32.
     pub fn over(self, other: Self) -> Option<Self> {
         self.combined(other, |a, b| a.checked_sub(&b))
     }
 
-    /// The dimension of a power; None where an exponent leaves the range of i32.
+    /// Returns the dimension of a power; `None` if an exponent overflows i32.
     pub fn power(self, exponent: Exponent) -> Option<Self> {
         let mut exponents = self.exponents;
         for own in &mut exponents {
@@ -116,7 +116,7 @@ impl Dimension {
         Some(Self { exponents })
     }
 
-    /// The product of base units, those with negative exponents behind one `/`.
+    /// Writes base units, with negative exponents after one `/`.
     fn in_base_units(self) -> String {
         let factor = |(unit, exponent): (&str, Exponent)| {
             if exponent == Ratio::new_raw(1, 1) {
@@ -150,7 +150,7 @@ impl Dimension {
 }
 
 impl std::fmt::Display for Dimension {
-    /// As a unit that [`crate::unit::Unit::parse`] reads back.
+    /// Writes a unit that [`crate::unit::Unit::parse`] can read.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let common = COMMON
             .iter()
@@ -167,7 +167,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn dimensions_read_as_engineers_write_them() {
+    fn common_dimensions_are_printed_with_their_symbols() {
         let shown = |exponents| Dimension::of(exponents).to_string();
         assert_eq!(shown([0, 0, 0, 0]), "1");
         assert_eq!(shown([1, 2, -2, 0]), "N m");
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn fractions_of_exponents_are_exact() {
+    fn fractional_exponents_are_exact() {
         let root = Dimension::LENGTH.power(Ratio::new(1, 2)).unwrap();
         assert_eq!(root.to_string(), "m^(1/2)");
         assert_eq!(root.times(root), Some(Dimension::LENGTH));
@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn exponents_out_of_range_are_refused() {
+    fn exponents_out_of_range_are_rejected() {
         let huge = Dimension::LENGTH
             .power(Ratio::from_integer(i32::MAX))
             .unwrap();

@@ -1,12 +1,11 @@
-//! The value of expressions that hold parameters only, in double precision with the
-//! standard library's functions. Everything that moves is evaluated elsewhere, by programs
-//! derived from the model.
+//! Evaluates expressions of parameters in double precision, with the functions of the standard
+//! library. Compiled models evaluate everything that depends on the motion.
 
 use crate::ast::BinaryOperator;
 use crate::model::{Expr, ExprKind, Function};
 
-/// The value of an expression of parameters, given their values in SI. NaN where it holds
-/// anything else, which a checked model's parameters do not.
+/// Evaluates an expression of parameters at their values in SI. Returns NaN if it contains
+/// anything else; expressions of parameters in a checked model do not.
 pub fn evaluate(expr: &Expr, parameters: &[f64]) -> f64 {
     match &expr.kind {
         ExprKind::Number(value) => *value,
@@ -28,7 +27,7 @@ pub fn evaluate(expr: &Expr, parameters: &[f64]) -> f64 {
     }
 }
 
-/// The value of an operation.
+/// Evaluates a binary operation.
 pub(crate) fn binary(operator: BinaryOperator, left: f64, right: f64) -> f64 {
     match operator {
         BinaryOperator::Add => left + right,
@@ -40,7 +39,7 @@ pub(crate) fn binary(operator: BinaryOperator, left: f64, right: f64) -> f64 {
     }
 }
 
-/// The value of a function of `x`, or of `x` and a `second` argument.
+/// Evaluates a function of `x`, or of `x` and `second`.
 pub fn call(function: Function, x: f64, second: f64) -> f64 {
     match function {
         Function::Sin => x.sin(),
@@ -62,7 +61,7 @@ pub fn call(function: Function, x: f64, second: f64) -> f64 {
         Function::Sign => x * 0.0,
         Function::Min => x.min(second),
         Function::Max => x.max(second),
-        // Eq. (7): 0 inside the dead band, the distance from its edge outside.
+        // Eq. (7): 0 in the dead band, else the distance from its edge.
         Function::Deadzone if x > second => x - second,
         Function::Deadzone if x < -second => x + second,
         Function::Deadzone => (x + second) * 0.0,
@@ -116,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn not_a_number_does_not_disappear() {
+    fn piecewise_functions_propagate_nan() {
         for function in [
             Function::Sign,
             Function::Deadzone,

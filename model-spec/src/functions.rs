@@ -1,9 +1,8 @@
-//! The names the language itself has: functions, special forms, constants, and the words
-//! that no model may use for its own things.
+//! Reserved words of the language: functions, special forms, constants and keywords.
 
 use crate::model::Function;
 
-/// The functions of scalar arguments, with how they are called.
+/// Functions of scalar arguments, with the names of their arguments.
 const FUNCTIONS: [(&str, Function, &[&str]); 20] = [
     ("sin", Function::Sin, &["x"]),
     ("cos", Function::Cos, &["x"]),
@@ -27,11 +26,11 @@ const FUNCTIONS: [(&str, Function, &[&str]); 20] = [
     ("above", Function::Above, &["p"]),
 ];
 
-/// The forms that are no functions of scalars.
+/// Forms that are not functions of scalars.
 pub const FORMS: [&str; 5] = ["dot", "diff", "at", "integral", "sum"];
 
-/// The functions of vectors and rotations, which become scalars before names are looked up: they take
-/// no name from anything else.
+/// Functions of vectors and rotations. They are expanded to scalars before names are resolved,
+/// so they reserve no name.
 pub const VECTOR_FUNCTIONS: [&str; 7] = [
     "cross",
     "norm",
@@ -42,10 +41,10 @@ pub const VECTOR_FUNCTIONS: [&str; 7] = [
     "transpose",
 ];
 
-/// Words with a meaning of their own that are not called.
+/// Constants and quantities of every model.
 const CONSTANTS: [&str; 4] = ["t", "pi", "energy", "power"];
 
-/// Keywords of Rust and C99: names end up as identifiers of emitted code.
+/// Keywords of Rust and C99: names become identifiers of emitted code.
 const KEYWORDS: [&str; 73] = [
     "abstract", "as", "async", "auto", "await", "become", "box", "break", "case", "char", "const",
     "continue", "crate", "default", "do", "double", "dyn", "else", "enum", "extern", "false",
@@ -58,23 +57,23 @@ const KEYWORDS: [&str; 73] = [
 ];
 
 impl Function {
-    /// The function of this name.
+    /// Returns the function of a name.
     pub fn named(name: &str) -> Option<Self> {
         let found = FUNCTIONS.iter().find(|(known, ..)| *known == name);
         found.map(|(_, function, _)| *function)
     }
 
-    /// Its name in a specification.
+    /// Returns the name in a specification.
     pub fn name(self) -> &'static str {
         self.entry().map_or("", |(name, ..)| name)
     }
 
-    /// What its arguments are called.
+    /// Returns the names of the arguments.
     pub fn arguments(self) -> &'static [&'static str] {
         self.entry().map_or(&[], |(_, _, arguments)| arguments)
     }
 
-    /// Whether it has a kink or a jump where an argument changes its sign or meets another.
+    /// Returns true if the function has a kink or a jump.
     pub fn switches(self) -> bool {
         matches!(
             self,
@@ -93,17 +92,17 @@ impl Function {
     }
 }
 
-/// The names of all functions and forms.
+/// Returns the names of all functions and forms.
 pub fn callable() -> impl Iterator<Item = &'static str> {
     FUNCTIONS.iter().map(|(name, ..)| *name).chain(FORMS)
 }
 
-/// What a word means already, so that it cannot be a name.
+/// Returns the reason that a word is reserved, as the rest of a sentence.
 pub fn reserved(word: &str) -> Option<&'static str> {
     if callable().any(|name| name == word) {
         Some("is a function of the language")
     } else if CONSTANTS.contains(&word) {
-        Some("has a meaning in every model")
+        Some("is a built-in quantity of every model")
     } else if KEYWORDS.contains(&word) {
         Some("is a keyword of Rust or C")
     } else {
@@ -116,7 +115,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_function_is_found_by_its_own_name() {
+    fn every_function_is_found_by_name() {
         for (name, function, arguments) in FUNCTIONS {
             assert_eq!(Function::named(name), Some(function));
             assert_eq!((function.name(), function.arguments()), (name, arguments));

@@ -1,6 +1,6 @@
-//! The unit of an expression. Literals carry none, and 0 fits any unit; a product with a factor 0 keeps
-//! the unit of its other factors. Summands and compared quantities have one unit, functions such as sin
-//! take pure numbers. This finds mistakes that proofreading misses.
+//! Infers the unit of an expression. Literals are dimensionless, and 0 fits any unit; a product
+//! with the factor 0 has the unit of the other factors. Summands and compared quantities need
+//! equal units, functions such as sin need pure numbers.
 
 use num_rational::Ratio;
 
@@ -10,21 +10,21 @@ use crate::dimension::{Dimension, Exponent};
 use crate::model::{Expr, ExprKind, Function, Model};
 use crate::span::Span;
 
-/// The unit of an expression; None for 0, which fits any.
+/// Unit of an expression; `None` for 0, which fits any unit.
 pub type Inferred = Option<Dimension>;
 
-/// What is known of units so far.
+/// Units known so far.
 pub struct Inference<'m> {
-    /// Declares the units of parameters, coordinates, inputs, states and fields.
+    /// Units of parameters, coordinates, inputs, states and fields.
     pub model: &'m Model,
-    /// The units of definitions; those that are referred to are filled in first.
+    /// Units of definitions, filled in dependency order.
     pub definitions: Vec<Inferred>,
-    /// The units of the coefficients so far.
+    /// Units of the coefficients so far.
     pub coefficients: Vec<Inferred>,
 }
 
 impl Inference<'_> {
-    /// The unit of a factor of the acceleration of `of`.
+    /// Returns the unit of the factor of `by` in the acceleration of `of`, times `times`.
     pub fn factor(
         &self,
         of: &Expr,
@@ -41,10 +41,10 @@ impl Inference<'_> {
         factor.map(Some).ok_or_else(|| out_of_range(by.span))
     }
 
-    /// The unit of an expression.
+    /// Infers the unit of an expression.
     ///
     /// # Errors
-    /// Where units within it do not fit together.
+    /// Units that do not match.
     pub fn infer(&self, expr: &Expr) -> Result<Inferred, Diagnostic> {
         let model = self.model;
         let out_of_range = || out_of_range(expr.span);
@@ -102,10 +102,10 @@ impl Inference<'_> {
         let place = self.infer(position)?;
         match place {
             Some(place) if place != Dimension::LENGTH => {
-                let message = format!("the place along a field is {}, expected m", Words(place));
+                let message = format!("the position along a field is {}, expected m", Words(place));
                 Err(Diagnostic::error(message)
                     .at(position.span, Words(place).to_string())
-                    .help("a length other than 0 is a parameter with a unit"))
+                    .help("declare the length as a parameter with a unit"))
             }
             _ => self.infer(value),
         }
@@ -125,7 +125,7 @@ impl Inference<'_> {
             BinaryOperator::Multiply => combined(inferred, self.infer(right)?, Dimension::times)
                 .ok_or_else(|| out_of_range(whole.span)),
             BinaryOperator::Divide => match self.infer(right)? {
-                // What is divided by 0 has no value, which is reported where values are known.
+                // `constants` reports the division by 0.
                 None => Ok(None),
                 by => {
                     combined(inferred, by, Dimension::over).ok_or_else(|| out_of_range(whole.span))
@@ -135,7 +135,7 @@ impl Inference<'_> {
         }
     }
 
-    /// Two expressions of one unit, which is given back.
+    /// Checks that two expressions have one unit, and returns it.
     fn same(
         &self,
         first: Inferred,
@@ -164,7 +164,7 @@ impl Inference<'_> {
             return Err(Diagnostic::error(format!(
                 "the exponent of a quantity in {dimension} must be written as a number"
             ))
-            .at(right.span, "its unit would depend on this value")
+            .at(right.span, "the unit would depend on this value")
             .also(left.span, format!("in {dimension}"))
             .help("write a number or a fraction such as ^2 or ^(1/2)"));
         };
@@ -227,7 +227,7 @@ impl Inference<'_> {
     }
 }
 
-/// A unit in a sentence: "in N m", "a pure number".
+/// Unit in a sentence: "in N m", "a pure number".
 pub struct Words(pub Dimension);
 
 impl std::fmt::Display for Words {
@@ -240,7 +240,7 @@ impl std::fmt::Display for Words {
     }
 }
 
-/// A quantity of this unit in a sentence.
+/// Describes a quantity of this unit in a sentence.
 fn quantity(dimension: Dimension) -> String {
     if dimension.is_none() {
         "a pure number".to_owned()
@@ -249,8 +249,8 @@ fn quantity(dimension: Dimension) -> String {
     }
 }
 
-/// The unit of a product or quotient, in which a literal 0 is a pure number; None where an exponent is
-/// out of range.
+/// Returns the unit of a product or quotient; the literal 0 counts as a pure number. `None` if
+/// an exponent overflows.
 fn combined(
     left: Inferred,
     right: Inferred,
@@ -263,7 +263,7 @@ fn combined(
     combine(left, right).map(Some)
 }
 
-/// The unit of an expression per or times another unit: of 0 any, as of 0 itself.
+/// Returns the unit multiplied or divided by another one. 0 still fits any unit.
 fn scaled(
     inferred: Inferred,
     by: Option<Dimension>,
@@ -275,7 +275,7 @@ fn scaled(
     }
 }
 
-/// An exponent written as a number or a fraction of whole numbers.
+/// Returns an exponent written as a number or a fraction of whole numbers.
 fn rational(expr: &Expr) -> Option<Exponent> {
     match &expr.kind {
         ExprKind::Number(value) => (1..=12).find_map(|denominator| {
@@ -292,13 +292,13 @@ fn rational(expr: &Expr) -> Option<Exponent> {
     }
 }
 
-/// By what a wrong unit differs from the right one.
+/// Suggests the missing factor between a wrong unit and the expected one.
 pub fn difference(inferred: Dimension, expected: Dimension) -> Option<String> {
     let missing = expected.over(inferred)?;
-    Some(format!("a factor in {missing} would make it right"))
+    Some(format!("a factor in {missing} would correct the unit"))
 }
 
 fn out_of_range(span: Span) -> Diagnostic {
-    Diagnostic::error("the unit of this expression is out of range")
-        .at(span, "an exponent of its unit is too large")
+    Diagnostic::error("an exponent in the unit of this expression overflows")
+        .at(span, "exponent too large")
 }

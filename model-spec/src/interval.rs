@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use crate::evaluate::call;
 use crate::model::Function;
 
-/// A closed interval; its ends may be infinite.
+/// Closed interval; the ends may be infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
     /// Lower end.
@@ -14,7 +14,7 @@ pub struct Interval {
     pub high: f64,
 }
 
-/// Relative widening of every result, a few roundings.
+/// Relative widening of every result: a few rounding errors.
 const ROUNDING: f64 = 1e-15;
 
 impl Interval {
@@ -24,7 +24,8 @@ impl Interval {
         high: f64::INFINITY,
     };
 
-    /// The interval between two ends, a few roundings wider; all numbers if an end is no number.
+    /// Returns the interval between two ends, widened by a few rounding errors. If an end is NaN,
+    /// returns [`Interval::ALL`].
     pub fn between(low: f64, high: f64) -> Self {
         if low.is_nan() || high.is_nan() {
             return Self::ALL;
@@ -35,12 +36,12 @@ impl Interval {
         }
     }
 
-    /// The sum of a number of each.
+    /// Returns the bounds of a sum.
     pub fn plus(self, other: Self) -> Self {
         Self::between(self.low + other.low, self.high + other.high)
     }
 
-    /// The opposite numbers.
+    /// Returns the bounds of the negated value.
     pub fn negated(self) -> Self {
         Self {
             low: -self.high,
@@ -48,7 +49,7 @@ impl Interval {
         }
     }
 
-    /// The product of a number of each.
+    /// Returns the bounds of a product.
     pub fn times(self, other: Self) -> Self {
         // 0 times an unbounded number is 0.
         let product = |a: f64, b: f64| if a == 0.0 || b == 0.0 { 0.0 } else { a * b };
@@ -63,7 +64,7 @@ impl Interval {
         Self::between(low, high)
     }
 
-    /// The reciprocal numbers; all numbers if 0 is one of them.
+    /// Returns the bounds of the reciprocal; all numbers if the interval contains 0.
     pub fn reciprocal(self) -> Self {
         if self.low > 0.0 || self.high < 0.0 {
             Self::between(1.0 / self.high, 1.0 / self.low)
@@ -72,7 +73,7 @@ impl Interval {
         }
     }
 
-    /// The smallest interval that holds both.
+    /// Returns the smallest interval that contains both.
     pub fn hull(self, other: Self) -> Self {
         Self {
             low: self.low.min(other.low),
@@ -80,7 +81,8 @@ impl Interval {
         }
     }
 
-    /// The defined powers of its numbers to a constant exponent.
+    /// Returns the bounds of the power with a constant exponent, over the values at which it is
+    /// defined.
     pub fn power(self, exponent: f64) -> Self {
         let raised = |x: f64| x.powf(exponent);
         if exponent < 0.0 {
@@ -89,12 +91,13 @@ impl Interval {
         match (exponent.fract() == 0.0, exponent % 2.0 == 0.0) {
             (true, true) => self.magnitude().rising((0.0, f64::INFINITY), raised),
             (true, false) => self.rising((f64::NEG_INFINITY, f64::INFINITY), raised),
-            // Not defined below 0.
+            // Undefined for negative numbers.
             (false, _) => self.rising((0.0, f64::INFINITY), raised),
         }
     }
 
-    /// The defined values of a function of one or two arguments.
+    /// Returns the bounds of a function of one or two arguments, over the values at which it is
+    /// defined.
     pub fn of_function(function: Function, arguments: &[Self]) -> Self {
         match arguments {
             [only] => only.of_one(function),
@@ -113,7 +116,7 @@ impl Interval {
         Self { low, high }
     }
 
-    /// The image under a function that does not fall, defined from `from` to `to`.
+    /// Returns the image under a non-decreasing function with the domain `from..=to`.
     fn rising(self, (from, to): (f64, f64), function: impl Fn(f64) -> f64) -> Self {
         let end = |x: f64| function(x.clamp(from, to));
         Self::between(end(self.low), end(self.high))
@@ -132,7 +135,7 @@ impl Interval {
             Function::Cosh => self.magnitude().rising((0.0, f64::INFINITY), value),
             Function::Ln | Function::Sqrt => self.rising((0.0, f64::INFINITY), value),
             Function::Abs => self.magnitude(),
-            // Their value at infinity is that of any large number.
+            // The value at infinity equals that of a large number.
             Function::Sign | Function::Above => self.rising((f64::MIN, f64::MAX), value),
             _ => Self::ALL,
         }
@@ -144,7 +147,7 @@ impl Interval {
             Function::Min => Self::between(x.low.min(y.low), x.high.min(y.high)),
             Function::Max => Self::between(x.low.max(y.low), x.high.max(y.high)),
             Function::Deadzone => {
-                // The half-width narrows the argument towards 0 and never past it.
+                // The half-width moves the argument towards 0, but not past it.
                 let width = y.low.max(0.0);
                 Self::between((x.low + width).min(0.0), (x.high - width).max(0.0))
             }
@@ -159,7 +162,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bounds_hold_values_at_ends_and_between() {
+    fn bounds_contain_values_at_the_ends_and_between() {
         let x = Interval::between(-2.0, 3.0);
         let images: [(Interval, &dyn Fn(f64) -> f64); 6] = [
             (x.power(2.0), &|x| x * x),
@@ -187,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn unbounded_numbers_have_the_bounds_of_functions() {
+    fn unbounded_arguments_keep_the_range_of_functions() {
         let square = Interval::ALL.power(2.0);
         assert_eq!((square.low, square.high), (0.0, f64::INFINITY));
         let sine = Interval::of_function(Function::Sin, &[Interval::ALL]);

@@ -1,4 +1,4 @@
-//! The way in: a file or a text to a checked model, or to all that is wrong with it.
+//! Reads a file or a text and returns a checked model, or all findings.
 
 use std::io::Read;
 use std::path::Path;
@@ -15,31 +15,30 @@ use crate::span::Span;
 use crate::units_check;
 use crate::variant::ModelError;
 
-/// The largest specification read, in bytes.
+/// Largest specification read, in bytes.
 pub const MAX_SIZE: u64 = 1 << 20;
 
-/// A model that passed all checks.
+/// Model that passed all checks.
 #[derive(Clone, Debug)]
 pub struct Checked {
     /// The model.
     pub model: Model,
-    /// What may not be as it was meant.
+    /// Possible mistakes, for example unused names.
     pub warnings: Diagnostics,
 }
 
 /// Reads and checks the specification in a file.
 ///
-/// # Errors
-/// A file that cannot be read, is larger than [`MAX_SIZE`] or is not UTF-8, and all that
-/// [`check`] finds.
+/// A file that cannot be read, is larger than [`MAX_SIZE`] or is not UTF-8, and all errors of
+/// [`check`].
 pub fn load(path: &Path) -> Result<Checked, Diagnostics> {
     load_from(Path::new(""), path)
 }
 
-/// Reads and checks the specification in a file below `root`; findings show `path` alone.
+/// Reads and checks the specification in a file below `root`; findings show only `path`.
 ///
 /// # Errors
-/// As [`load`].
+/// Those of [`load`].
 pub fn load_from(root: &Path, path: &Path) -> Result<Checked, Diagnostics> {
     let shown = path.display().to_string();
     let bytes = read(&root.join(path))
@@ -53,8 +52,8 @@ pub fn load_from(root: &Path, path: &Path) -> Result<Checked, Diagnostics> {
 /// Checks a specification.
 ///
 /// # Errors
-/// All that is wrong with it, found in stages: grammar and keys; names and expressions;
-/// what may stand where, inertia and units; values. A stage with errors is the last.
+/// All errors of a stage. The stages are: grammar and keys; names and expressions; quantities
+/// allowed in each section, inertia and units; values. A stage with errors is the last one.
 pub fn check(source: Source) -> Result<Checked, Diagnostics> {
     if source.text.len() as u64 > MAX_SIZE {
         let size = source.text.len() as u64;
@@ -109,7 +108,7 @@ fn read(path: &Path) -> Result<Vec<u8>, Diagnostic> {
         return Err(too_large(metadata.len()));
     }
     let mut bytes = Vec::new();
-    // The file may have grown since; reading never goes beyond what `check` refuses.
+    // The file may have grown since `metadata`; read at most one byte more than `check` accepts.
     let file = std::fs::File::open(path).map_err(unreadable)?;
     let read = file.take(MAX_SIZE + 1).read_to_end(&mut bytes);
     read.map_err(unreadable)?;
@@ -120,18 +119,15 @@ fn not_utf8(shown: String, error: &std::string::FromUtf8Error) -> Diagnostics {
     let valid = error.utf8_error().valid_up_to();
     let text = String::from_utf8_lossy(error.as_bytes()).into_owned();
     let diagnostic = Diagnostic::error("the specification is not UTF-8 text")
-        .at(
-            Span::new(valid, valid + 1),
-            "this byte is not part of a character",
-        )
+        .at(Span::new(valid, valid + 1), "invalid byte")
         .help("save the file as UTF-8");
     Diagnostics::one(Source::new(shown, text), diagnostic)
 }
 
 fn too_large(size: u64) -> Diagnostic {
     Diagnostic::error(format!("the specification is too large: {size} bytes"))
-        .at(Span::new(0, 0), "not read")
-        .help(format!("at most {MAX_SIZE} bytes (1 MiB) are read"))
+        .at(Span::new(0, 0), "too large")
+        .help(format!("reduce it to {MAX_SIZE} bytes (1 MiB)"))
 }
 
 #[cfg(test)]
@@ -143,7 +139,7 @@ mod tests {
     const HEAD: &str = "[model]\nname = \"a\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\n[coordinates]\n\
                         x = { unit = \"m\" }\n[kinetic]\nk = \"1/2*m*dot(x)^2\"\n";
 
-    /// As many lines as a specification may have behind its head.
+    /// Fills a section up to the size limit of a specification.
     fn filled(section: &str, most: usize, line: &dyn Fn(usize) -> String) -> String {
         let mut text = HEAD.to_owned() + section;
         for line in (0..most).map(line) {
@@ -155,11 +151,11 @@ mod tests {
         text
     }
 
-    /// Comparisons of names for one finding: no name has more than these to be compared with.
+    /// Largest number of names compared for one finding.
     const NAMES: usize = 2000;
 
     #[test]
-    fn the_work_for_mistakes_does_not_grow_with_their_number() {
+    fn work_for_findings_is_bounded() {
         let any = usize::MAX;
         for (section, most, line) in [
             (

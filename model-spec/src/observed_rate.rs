@@ -1,5 +1,6 @@
-//! Time derivatives of observables as further observables: rates and accelerations of points, which
-//! sensors measure. A specification does not write accelerations; they are derived where asked for.
+//! Time derivatives of observables as additional observables, for sensors that measure rates
+//! and accelerations of points. They are derived on request: a specification contains no
+//! accelerations.
 
 use crate::dimension::Dimension;
 use crate::ids::DefinitionId;
@@ -7,13 +8,13 @@ use crate::model::{Expr, ExprKind, Model, Observable, ObservedRate};
 use crate::unit::Unit;
 
 impl ObservedRate {
-    /// Its name: the observable's with `_dot` or `_ddot`.
+    /// Returns the name: that of the observable with `_dot` or `_ddot`.
     pub fn name(self, model: &Model) -> String {
         let ending = if self.times == 1 { "_dot" } else { "_ddot" };
         format!("{}{ending}", model.observables[self.observable].name)
     }
 
-    /// Its SI unit.
+    /// Returns the SI unit.
     pub fn unit(self, model: &Model) -> Unit {
         let unit = &model.observables[self.observable].unit;
         let over = if self.times == 1 { "s" } else { "s^2" };
@@ -26,7 +27,7 @@ impl ObservedRate {
         }
     }
 
-    /// The rate or acceleration of this name, if the rest of the name is an observable's.
+    /// Returns the rate or acceleration of this name, if the stem is an observable.
     pub fn named(model: &Model, name: &str) -> Option<Self> {
         let of = |name: &str| model.observables.iter().position(|o| o.name == name);
         let within =
@@ -41,7 +42,7 @@ impl ObservedRate {
 }
 
 impl Model {
-    /// Adds a time derivative of an observable to the observables, unless it is there; its place.
+    /// Adds a time derivative of an observable to the observables, if absent. Returns its index.
     pub fn observe_rate(&mut self, rate: ObservedRate) -> usize {
         let mut known = self.observables.iter();
         if let Some(place) = known.position(|known| known.rate_of == Some(rate)) {
@@ -67,7 +68,7 @@ impl Model {
         self.observables.len() - 1
     }
 
-    /// Returns true if an expression holds a rate, itself or through definitions.
+    /// Returns true if an expression contains a rate, directly or through definitions.
     pub fn holds_rate(&self, expr: &Expr) -> bool {
         let mut holds = false;
         let mut definitions: Vec<DefinitionId> = Vec::new();
@@ -76,7 +77,7 @@ impl Model {
             ExprKind::Definition(definition) => definitions.push(definition),
             _ => {}
         });
-        // Definitions lead to no circle.
+        // The recursion ends: definitions have no cycle.
         let mut inner = definitions.iter();
         holds || inner.any(|definition| self.holds_rate(&self.definitions[*definition].value))
     }

@@ -1,16 +1,16 @@
-//! In which order things that refer to each other can be worked out, and where they go
-//! round in a circle. Iterative: a chain may be as long as a specification.
+//! Sorts things by their references, or reports a cycle. Iterative: a chain can be as long as
+//! the specification.
 
 use crate::diagnostic::Diagnostic;
 use crate::span::Span;
 
-/// One reference: to which entry, and where it stands.
+/// Index of the target of a reference, and its position.
 pub type Reference = (usize, Span);
 
-/// Indices such that each comes after those it refers to.
+/// Returns indices such that each follows those it refers to.
 ///
 /// # Errors
-/// A circle: its entries in order, each with the place that refers to the next.
+/// A cycle: its entries in order, each with the place that refers to the next.
 pub fn order(references: &[Vec<Reference>]) -> Result<Vec<usize>, Vec<Reference>> {
     let mut state = vec![State::Untouched; references.len()];
     let mut sorted = Vec::with_capacity(references.len());
@@ -22,7 +22,7 @@ pub fn order(references: &[Vec<Reference>]) -> Result<Vec<usize>, Vec<Reference>
     Ok(sorted)
 }
 
-/// The finding that things of a kind refer to each other in a circle.
+/// Reports a cycle of references.
 pub fn circular<'n>(
     kind: &str,
     circle: &[Reference],
@@ -33,7 +33,7 @@ pub fn circular<'n>(
     };
     let mut chain: Vec<&str> = circle.iter().map(|(index, _)| named(*index)).collect();
     chain.push(named(first));
-    // A circle of hundreds is shown by its beginning.
+    // A long cycle is truncated.
     if chain.len() > 8 {
         chain.truncate(7);
         chain.push("...");
@@ -44,7 +44,7 @@ pub fn circular<'n>(
     for &(index, place) in rest.iter().take(4) {
         diagnostic = diagnostic.also(place, format!("in `{}`", named(index)));
     }
-    diagnostic.help("break the circle: one of them must be known without the others")
+    diagnostic.help("break the cycle: one of them must not depend on the others")
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -60,7 +60,7 @@ fn visit(
     state: &mut [State],
     sorted: &mut Vec<usize>,
 ) -> Result<(), Vec<Reference>> {
-    // Entries on the way from `start`, each with the number of its next reference.
+    // Entries on the path from `start`, each with the index of its next reference.
     let mut path = vec![(start, 0)];
     state[start] = State::Open;
     while let Some((entry, next)) = path.last_mut() {
@@ -104,13 +104,13 @@ mod tests {
     }
 
     #[test]
-    fn each_comes_after_what_it_refers_to() {
+    fn order_follows_the_references() {
         let references = [to(&[2]), to(&[]), to(&[1])];
         assert_eq!(order(&references), Ok(vec![1, 2, 0]));
     }
 
     #[test]
-    fn a_circle_is_given_without_the_way_into_it() {
+    fn cycle_excludes_the_path_into_it() {
         let references = [to(&[1]), to(&[2]), to(&[1])];
         let circle = order(&references).expect_err("1 and 2 refer to each other");
         let entries: Vec<usize> = circle.iter().map(|(entry, _)| *entry).collect();

@@ -1,6 +1,6 @@
-//! Reading TOML tables with the place of every key and value, and saying what is wrong
-//! with a value of the wrong kind. Which sections and keys a specification has is the
-//! business of `document`; other files are read by the same means.
+//! Reads TOML tables with the position of every key and value, and reports values of the wrong
+//! kind. `document` defines the sections and keys of a specification; other TOML files use this
+//! module too.
 
 use toml_edit::{Item, Table, TableLike, Value};
 
@@ -11,51 +11,51 @@ use crate::parser::parse;
 use crate::span::Span;
 use crate::suggest::did_you_mean;
 
-/// A key of the file.
+/// Key of the file.
 #[derive(Clone, Debug)]
 pub struct Name {
     /// The key.
     pub text: String,
-    /// Where it stands.
+    /// Position of the key.
     pub span: Span,
 }
 
-/// A string value of the file.
+/// String value of the file.
 #[derive(Clone, Debug)]
 pub struct Written {
-    /// What the string says.
+    /// The string, with escapes resolved.
     pub text: String,
-    /// Where it stands, with its quotes.
+    /// Position, including the quotes.
     pub span: Span,
-    /// Where its first character stands, if every byte of it stands in the file as it is
-    /// (there are no escapes).
+    /// Offset of the first character, if the string has no escapes: its bytes are then those of the
+    /// file.
     first: Option<usize>,
 }
 
-/// A finite number of the file.
+/// Finite number of the file.
 #[derive(Clone, Copy, Debug)]
 pub struct Number {
-    /// Its value.
+    /// The value.
     pub value: f64,
-    /// Where it stands.
+    /// Position of the number.
     pub span: Span,
 }
 
-/// A number or an expression.
+/// Number or expression.
 #[derive(Clone, Debug)]
 pub enum Quantity {
-    /// A TOML number.
+    /// TOML number.
     Number(Number),
-    /// A TOML string.
+    /// TOML string.
     Expression(Written),
-    /// A TOML array: a vector by its components.
+    /// TOML array: a vector from its components.
     Listed(Vec<Quantity>, Span),
-    /// What a short form stands for.
+    /// Expression that replaces a short form.
     Expansion(Box<Syntax>),
 }
 
 impl Written {
-    /// What stands for a string that the file does not write, with the place that asks for it.
+    /// Creates a string that the file does not contain; `span` is the place that needs it.
     pub fn inferred(text: &str, span: Span) -> Self {
         Self {
             text: text.to_owned(),
@@ -64,7 +64,7 @@ impl Written {
         }
     }
 
-    /// The place of the bytes `start..end` of the string; the whole string if it holds
+    /// Returns the position of the bytes `start..end` of the string, or the whole string if it has
     /// escapes.
     pub fn place(&self, start: usize, end: usize) -> Span {
         match self.first {
@@ -73,24 +73,24 @@ impl Written {
         }
     }
 
-    /// The expression the string holds.
+    /// Parses the string as an expression.
     ///
     /// # Errors
-    /// Underlines the very token inside the string.
+    /// The first syntax error, at its token.
     pub fn syntax(&self) -> Result<Syntax, Diagnostic> {
         let tokens = tokens(&self.text, |start, end| self.place(start, end))?;
         let written = self.text.trim_end().len();
-        // An empty place is invisible: what is missing is underlined one character wide.
+        // An empty span would be invisible: the end is underlined one character wide.
         let end = self.place(written, written + 1);
         parse(&tokens, end)
     }
 }
 
 impl Quantity {
-    /// The expression; a number is a literal.
+    /// Parses the expression; a number is a literal.
     ///
     /// # Errors
-    /// As [`Written::syntax`].
+    /// Those of [`Written::syntax`].
     pub fn syntax(&self) -> Result<Syntax, Diagnostic> {
         match self {
             Self::Number(number) => Ok(Syntax {
@@ -109,7 +109,7 @@ impl Quantity {
         }
     }
 
-    /// Where it stands.
+    /// Returns the position.
     pub fn span(&self) -> Span {
         match self {
             Self::Number(number) => number.span,
@@ -123,14 +123,14 @@ impl Quantity {
 /// One `key = value` of a table.
 #[derive(Clone)]
 pub struct Entry<'d> {
-    /// The key; that of the list where this stands in one.
+    /// The key; for an element of a list, the key of the list.
     pub name: Name,
     node: Node<'d>,
-    /// The whole text of the file.
+    /// Text of the whole file.
     text: &'d str,
 }
 
-/// What stands behind a key, or in a list.
+/// Value of a key, or element of a list.
 #[derive(Clone, Copy)]
 enum Node<'d> {
     Item(&'d Item),
@@ -138,13 +138,13 @@ enum Node<'d> {
     Table(&'d Table),
 }
 
-/// A table all of whose keys are known.
+/// Table without unknown keys.
 pub struct Record<'d> {
     owner: Name,
     entries: Vec<Entry<'d>>,
 }
 
-/// The entries of a table in the order of the file.
+/// Returns the entries of a table in the order of the file.
 pub fn entries<'d>(table: &'d dyn TableLike, text: &'d str) -> Vec<Entry<'d>> {
     let named = |(key, item): (&str, &'d Item)| {
         let span = table.key(key).and_then(|key| key.span());
@@ -161,7 +161,7 @@ pub fn entries<'d>(table: &'d dyn TableLike, text: &'d str) -> Vec<Entry<'d>> {
 }
 
 impl<'d> Entry<'d> {
-    /// Where the value stands; the key where the value has no place of its own.
+    /// Returns the position of the value, or of the key if the value has none.
     pub fn span(&self) -> Span {
         let range = match self.node {
             Node::Item(item) => item.span(),
@@ -171,10 +171,10 @@ impl<'d> Entry<'d> {
         range.map_or(self.name.span, |range| Span::new(range.start, range.end))
     }
 
-    /// The entries of the table that is this entry's value.
+    /// Returns the entries of a table.
     ///
     /// # Errors
-    /// If it is no table.
+    /// A value of another kind.
     pub fn table(&self, example: &str) -> Result<Vec<Entry<'d>>, Diagnostic> {
         match self.table_like() {
             Some(table) => Ok(entries(table, self.text)),
@@ -182,11 +182,10 @@ impl<'d> Entry<'d> {
         }
     }
 
-    /// The elements of the list that is this entry's value, each under the list's name at its own
-    /// place.
+    /// Returns the elements of a list, each with the key of the list and its own position.
     ///
     /// # Errors
-    /// If it is no list.
+    /// A value of another kind.
     pub fn list(&self, example: &str) -> Result<Vec<Entry<'d>>, Diagnostic> {
         let element = |node: Node<'d>| {
             let mut entry = Entry {
@@ -207,10 +206,10 @@ impl<'d> Entry<'d> {
         }
     }
 
-    /// What one of some words stands for.
+    /// Returns the meaning of one of the known words.
     ///
     /// # Errors
-    /// If it is none of them, with the nearest.
+    /// A value of another kind, or an unknown word, with the nearest known one.
     pub fn word<T: Copy>(&self, known: &[(&str, T)]) -> Result<T, Diagnostic> {
         let written = self.written()?;
         let meant = known.iter().find(|(word, _)| *word == written.text);
@@ -228,10 +227,10 @@ impl<'d> Entry<'d> {
         })
     }
 
-    /// The truth value that is this entry's value.
+    /// Returns a truth value.
     ///
     /// # Errors
-    /// If it is none.
+    /// A value of another kind.
     pub fn truth(&self) -> Result<bool, Diagnostic> {
         match self.value() {
             Some(Value::Boolean(truth)) => Ok(*truth.value()),
@@ -255,7 +254,7 @@ impl<'d> Entry<'d> {
         }
     }
 
-    /// The table that is this entry's value, reporting keys that are not `known`.
+    /// Returns a table as a record, and reports keys that are not `known`.
     pub fn record(
         &self,
         known: &[&str],
@@ -266,15 +265,15 @@ impl<'d> Entry<'d> {
         Some(Record::of(self.name.clone(), entries, known, found))
     }
 
-    /// Whether the value is a table.
+    /// Returns true if the value is a table.
     pub fn is_table(&self) -> bool {
         self.table_like().is_some()
     }
 
-    /// The string that is this entry's value.
+    /// Returns a string.
     ///
     /// # Errors
-    /// If it is no string.
+    /// A value of another kind.
     pub fn written(&self) -> Result<Written, Diagnostic> {
         let value = self.value();
         value
@@ -282,10 +281,10 @@ impl<'d> Entry<'d> {
             .ok_or_else(|| self.mismatch("a string", "\"...\""))
     }
 
-    /// The finite number that is this entry's value.
+    /// Returns a finite number.
     ///
     /// # Errors
-    /// If it is no number, or not finite.
+    /// A value of another kind, or a number that is not finite.
     pub fn number(&self) -> Result<Number, Diagnostic> {
         let value = self.value();
         value
@@ -293,10 +292,10 @@ impl<'d> Entry<'d> {
             .unwrap_or_else(|| Err(self.mismatch("a number", "0.5")))
     }
 
-    /// The number or expression that is this entry's value.
+    /// Returns a number or an expression.
     ///
     /// # Errors
-    /// If it is neither.
+    /// A value of another kind.
     pub fn quantity(&self) -> Result<Quantity, Diagnostic> {
         let value = self.value();
         value
@@ -306,11 +305,10 @@ impl<'d> Entry<'d> {
             })
     }
 
-    /// The scalar or the vector that is this entry's value: a number, an expression or an array of
-    /// components.
+    /// Returns a scalar or a vector: a number, an expression or an array of components.
     ///
     /// # Errors
-    /// If it is none of them.
+    /// A value of another kind.
     pub fn scalar_or_vector(&self) -> Result<Quantity, Diagnostic> {
         match self.value() {
             Some(Value::Array(_)) => {
@@ -325,10 +323,10 @@ impl<'d> Entry<'d> {
         }
     }
 
-    /// The vector that is this entry's value: an array of three components or an expression.
+    /// Returns a vector: an array of three components, or an expression.
     ///
     /// # Errors
-    /// If it is neither.
+    /// A value of another kind.
     pub fn vector(&self, example: &str) -> Result<Quantity, Diagnostic> {
         match self.written() {
             Ok(written) => Ok(Quantity::Expression(written)),
@@ -339,10 +337,10 @@ impl<'d> Entry<'d> {
         }
     }
 
-    /// The two numbers or expressions of the array that is this entry's value.
+    /// Returns the two numbers or expressions of an array, for example a range.
     ///
     /// # Errors
-    /// If it is no array of two numbers or expressions.
+    /// A value of another kind, or another number of elements.
     pub fn pair(&self) -> Result<[Quantity; 2], Diagnostic> {
         let example = "[-0.1, 0.1]";
         let Some(Value::Array(array)) = self.value() else {
@@ -351,14 +349,14 @@ impl<'d> Entry<'d> {
         let elements: Vec<&Value> = array.iter().collect();
         let [low, high] = elements[..] else {
             let name = &self.name.text;
-            let message = format!("{} has two ends, not {}", quoted(name), array.len());
+            let message = format!("{} needs two ends, not {}", quoted(name), array.len());
             return Err(Diagnostic::error(message)
-                .at(self.span(), "give the lower and the upper end")
+                .at(self.span(), "expected the lower and the upper end")
                 .help(format!("write {name} = {example}")));
         };
         let end = |value: &Value| {
             self.quantity_in(value).unwrap_or_else(|| {
-                let message = "an end is a number or an expression in quotes";
+                let message = "an end must be a number or an expression in quotes";
                 Err(Diagnostic::error(message)
                     .at(self.place(value), "this is neither")
                     .help(format!("write {} = {example}", self.name.text)))
@@ -367,18 +365,17 @@ impl<'d> Entry<'d> {
         Ok([end(low)?, end(high)?])
     }
 
-    /// The numbers or expressions of the array that is this entry's value, as many as one of
-    /// `counts`.
+    /// Returns the numbers or expressions of an array with one of the lengths in `counts`.
     ///
     /// # Errors
-    /// If it is no such array.
+    /// A value of another kind, or another number of elements.
     pub fn quantities(&self, counts: &[usize], example: &str) -> Result<Vec<Quantity>, Diagnostic> {
         let list = self.list(example)?;
         if !counts.contains(&list.len()) {
             let name = &self.name.text;
             let counts: Vec<String> = counts.iter().map(usize::to_string).collect();
             let (counts, given) = (counts.join(" or "), list.len());
-            let message = format!("{} has {counts} components, not {given}", quoted(name));
+            let message = format!("{} needs {counts} components, not {given}", quoted(name));
             return Err(Diagnostic::error(message)
                 .at(self.span(), format!("{given} given"))
                 .help(format!("write {name} = {example}")));
@@ -386,13 +383,13 @@ impl<'d> Entry<'d> {
         list.iter().map(Entry::quantity).collect()
     }
 
-    /// The place of a value of this entry; the entry's own where the value has none.
+    /// Returns the position of a value of this entry, or of the entry if the value has none.
     fn place(&self, value: &Value) -> Span {
         let range = value.span();
         range.map_or_else(|| self.span(), |range| Span::new(range.start, range.end))
     }
 
-    /// A string; none if it is none.
+    /// Returns a string, or `None` for a value of another kind.
     fn written_in(&self, value: &Value) -> Option<Written> {
         let Value::String(string) = value else {
             return None;
@@ -405,7 +402,7 @@ impl<'d> Entry<'d> {
         })
     }
 
-    /// A finite number; none if it is no number.
+    /// Returns a finite number, or `None` for a value of another kind.
     fn number_in(&self, value: &Value) -> Option<Result<Number, Diagnostic>> {
         let span = self.place(value);
         let value = match value {
@@ -423,7 +420,7 @@ impl<'d> Entry<'d> {
         ))
     }
 
-    /// A number or an expression; none if it is neither.
+    /// Returns a number or an expression, or `None` for a value of another kind.
     fn quantity_in(&self, value: &Value) -> Option<Result<Quantity, Diagnostic>> {
         match self.written_in(value) {
             Some(written) => Some(Ok(Quantity::Expression(written))),
@@ -431,10 +428,10 @@ impl<'d> Entry<'d> {
         }
     }
 
-    /// The whole number that is this entry's value.
+    /// Returns a whole number.
     ///
     /// # Errors
-    /// If it is no whole number.
+    /// A value of another kind.
     pub fn whole(&self) -> Result<(i64, Span), Diagnostic> {
         match self.value() {
             Some(Value::Integer(integer)) => Ok((*integer.value(), self.span())),
@@ -462,7 +459,7 @@ impl<'d> Entry<'d> {
 }
 
 impl<'d> Record<'d> {
-    /// The entries of a table, reporting keys that are not `known`.
+    /// Creates a record, and reports keys that are not `known`.
     pub fn of(
         owner: Name,
         entries: Vec<Entry<'d>>,
@@ -478,17 +475,17 @@ impl<'d> Record<'d> {
         Self { owner, entries }
     }
 
-    /// The table's own key.
+    /// Returns the key of the table.
     pub fn owner(&self) -> &Name {
         &self.owner
     }
 
-    /// The entry of this key, if it is there.
+    /// Returns the entry of a key, if present.
     pub fn get(&self, key: &str) -> Option<&Entry<'d>> {
         self.entries.iter().find(|entry| entry.name.text == key)
     }
 
-    /// The entry of this key, reporting that it is missing.
+    /// Returns the entry of a key, or reports that it is missing.
     pub fn require(&self, key: &str, help: &str, found: &mut Diagnostics) -> Option<&Entry<'d>> {
         let entry = self.get(key);
         if entry.is_none() {
@@ -502,37 +499,37 @@ impl<'d> Record<'d> {
         entry
     }
 
-    /// The string of this key; "" where it is absent.
+    /// Returns the string of a key, "" if absent.
     pub fn text(&self, key: &str, found: &mut Diagnostics) -> String {
         self.written(key, found)
             .map_or_else(String::new, |w| w.text)
     }
 
-    /// The string of this key, if it is there.
+    /// Returns the string of a key, if present.
     pub fn written(&self, key: &str, found: &mut Diagnostics) -> Option<Written> {
         found.keep(self.get(key)?.written())
     }
 
-    /// The number of this key, if it is there.
+    /// Returns the number of a key, if present.
     pub fn number(&self, key: &str, found: &mut Diagnostics) -> Option<Number> {
         found.keep(self.get(key)?.number())
     }
 
-    /// The number or expression of this key, if it is there.
+    /// Returns the number or expression of a key, if present.
     pub fn quantity(&self, key: &str, found: &mut Diagnostics) -> Option<Quantity> {
         found.keep(self.get(key)?.quantity())
     }
 }
 
-/// The finding that a key is none of the known ones.
+/// Reports an unknown key, with the nearest known one.
 pub fn unknown_key(name: &Name, known: &[&str]) -> Diagnostic {
-    let listed = format!("known here: {}", known.join(", "));
+    let listed = format!("the keys are {}", known.join(", "));
     Diagnostic::error(format!("unknown key {}", quoted(&name.text)))
-        .at(name.span, "not known here")
+        .at(name.span, "unknown here")
         .help(did_you_mean(&name.text, known.iter().copied()).unwrap_or(listed))
 }
 
-/// Where the first character of a string stands, if the string stands in the file as is.
+/// Returns the offset of the first character of a string, if it has no escapes.
 fn first_character(text: &str, span: Span, value: &str) -> Option<usize> {
     let raw = text.get(span.start..span.end)?;
     let opening = if raw.starts_with("\"\"\"") || raw.starts_with("'''") {

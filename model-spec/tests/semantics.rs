@@ -499,7 +499,7 @@ fn a_parameter_that_moves_a_range_off_the_beginning_is_refused() {
     assert!(error.span.is_some());
     let error = model.with_parameter("b", -5.0).expect_err("upside down");
     assert!(
-        error.message.contains("comes out as 0 to -0.005"),
+        error.message.contains("evaluates to 0 to -0.005"),
         "{error}"
     );
 }
@@ -562,13 +562,13 @@ fn constants_without_a_finite_value_are_refused_where_they_stand() {
         ("k*x/b", "division by 0", "b\""),
         ("x/(n*n)", "division by 0", "(n*n)"),
         ("min(x/b, 1/b*x)", "division by 0", "b, "),
-        ("1e308*10", "comes out as inf", "1e308*10"),
-        ("x*exp(1000)", "`exp` of 1000 comes out as inf", "exp(1000)"),
-        ("sqrt(n - 1)", "`sqrt` of -1 comes out as NaN", "sqrt"),
-        ("ln(n)", "`ln` of 0 comes out as -inf", "ln(n)"),
-        ("asin(2)*x", "`asin` of 2 comes out as NaN", "asin(2)"),
-        ("(n - 2)^0.5", "comes out as NaN", "(n - 2)^0.5"),
-        ("n^(0 - 1)", "comes out as inf", "n^"),
+        ("1e308*10", "evaluates to inf", "1e308*10"),
+        ("x*exp(1000)", "`exp` of 1000 evaluates to inf", "exp(1000)"),
+        ("sqrt(n - 1)", "`sqrt` of -1 evaluates to NaN", "sqrt"),
+        ("ln(n)", "`ln` of 0 evaluates to -inf", "ln(n)"),
+        ("asin(2)*x", "`asin` of 2 evaluates to NaN", "asin(2)"),
+        ("(n - 2)^0.5", "evaluates to NaN", "(n - 2)^0.5"),
+        ("n^(0 - 1)", "evaluates to inf", "n^"),
         ("atan(1/n)", "division by 0", "n)"),
     ] {
         let text = with_definition(value, "");

@@ -163,7 +163,7 @@ fn specifications_have_a_mebibyte() {
     };
     let most = MAX_SIZE as usize;
     hold(
-        "at most 1048576 bytes (1 MiB) are read",
+        "reduce it to 1048576 bytes (1 MiB)",
         &filled(most),
         20,
         &filled(most + 1),

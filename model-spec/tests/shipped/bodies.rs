@@ -264,7 +264,7 @@ fn mistakes_are_refused_where_they_stand() {
         ),
         (
             frame.to_owned() + "[bodies]\nb = { frame = \"f\", mass = \"m\", centre = [\"l\", 0] }",
-            "`centre` has 3 components, not 2",
+            "`centre` needs 3 components, not 2",
             "[\"l\", 0]",
         ),
         (

@@ -245,7 +245,7 @@ fn a_file_is_parted_by_its_times() {
             "nothing lies between 3600 and 3500",
         ),
         ("to = 2500", "to = -1", "its times are 0 to 3990 ms"),
-        ("to = 2500", "until = 2500", "known here: file, from, to"),
+        ("to = 2500", "until = 2500", "the keys are file, from, to"),
         ("to = 2500", "to = 100", "holds 10 samples; expected 50"),
     ] {
         write(folder.path(), "dataset.toml", &parted.replacen(from, to, 1));
