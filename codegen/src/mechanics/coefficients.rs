@@ -1,6 +1,6 @@
-//! The coefficients a specification names, as Eq. (22) names a_01 to a_78: the factors
-//! with which given quantities enter the accelerations. They are read off the derived
-//! accelerations by differentiation, so a name cannot say anything the equations do not.
+//! Named coefficients of a specification, for example a_01 to a_78 of Eq. (22): the factors of given
+//! quantities in the accelerations. They are derivatives of the derived accelerations and therefore agree
+//! with them.
 
 use std::collections::HashMap;
 
@@ -15,38 +15,38 @@ use crate::symbolic::matrix::StructuredMatrix;
 use crate::symbolic::modal_derivative::ModalDerivative;
 use crate::symbolic::substitute::substitute;
 
-/// A coefficient the specification names.
+/// Named coefficient of the specification.
 #[derive(Clone, Debug)]
 pub struct NamedCoefficient {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its value: a scalar, or a vector over the modes.
+    /// Value: a scalar, or a vector over the modes.
     pub value: NodeId,
-    /// For a factor: where it stands.
+    /// Place in the equations, for a factor.
     pub factor: Option<Factor>,
 }
 
-/// Where a named factor stands: `times` the acceleration of `row` holds it times `by`.
+/// Place of a named factor: `times` the acceleration of `row` contains the factor times `by`.
 #[derive(Clone, Copy, Debug)]
 pub struct Factor {
-    /// The row.
+    /// Row of the equations.
     pub row: EquationRow,
-    /// What it multiplies.
+    /// Quantity that the factor multiplies.
     pub by: NodeId,
-    /// What the row is multiplied with, if anything.
+    /// Multiplier of the row, if there is one.
     pub times: Option<NodeId>,
 }
 
-/// A row of the equations.
+/// Row of the equations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EquationRow {
-    /// A coordinate's.
+    /// Row of a coordinate.
     Coordinate(CoordinateId),
-    /// Every mode of a field.
+    /// Rows of all modes of a field.
     Modes(FieldId),
 }
 
-/// The named coefficients in the order of the specification.
+/// Derives the named coefficients in the order of the specification.
 pub fn named(
     translator: &mut Translator,
     accelerations: &Accelerations,
@@ -103,7 +103,7 @@ fn one(
     })
 }
 
-/// The row that `of` names.
+/// Returns the row that `of` names.
 pub(crate) fn row_of(of: &Expr) -> Derived<EquationRow> {
     match of.kind {
         ExprKind::Coordinate(index) => Ok(EquationRow::Coordinate(index)),
@@ -116,7 +116,7 @@ pub(crate) fn row_of(of: &Expr) -> Derived<EquationRow> {
     }
 }
 
-/// times * factor; a matrix factor is scaled row by row.
+/// Returns times * factor; a matrix is scaled row by row.
 fn scale_factor(graph: &mut Graph, times: NodeId, factor: NodeId) -> NodeId {
     match graph.operation(factor).clone() {
         Operation::Assemble(assembly) => {
@@ -135,9 +135,8 @@ fn scale_factor(graph: &mut Graph, times: NodeId, factor: NodeId) -> NodeId {
     }
 }
 
-/// The factor with which `by` enters a row: its derivative by every factor of `by`, with
-/// the motion and every other switching function at 0. For `by` = 1 what is left of the
-/// row there.
+/// Returns the factor of `by` in a row: its derivative by every factor of `by`, with the motion and all other
+/// switching functions at 0. For `by` = 1, returns the row under these conditions.
 fn factor_of(graph: &mut Graph, row: NodeId, by: NodeId) -> NodeId {
     if let Operation::ModeCoordinates(_) | Operation::ModeRates(_) = graph.operation(by) {
         let at_rest = at_rest_except(graph, row, &[by]);
@@ -155,7 +154,7 @@ fn factor_of(graph: &mut Graph, row: NodeId, by: NodeId) -> NodeId {
     at_rest_except(graph, result, &[])
 }
 
-/// A row's derivative by modes: a vector for a coordinate's row, a matrix for modes'.
+/// Differentiates a row by modes: a vector for a coordinate's row, a matrix for the rows of modes.
 fn by_modes(graph: &mut Graph, row: NodeId, variable: NodeId) -> NodeId {
     let Some(mut derivative) = ModalDerivative::new(graph, variable) else {
         return graph.zero();
@@ -169,7 +168,7 @@ fn by_modes(graph: &mut Graph, row: NodeId, variable: NodeId) -> NodeId {
     }
 }
 
-/// With every coordinate, rate and switching function 0, except those to be kept.
+/// Sets every coordinate, rate and switching function to 0, except those in `kept`.
 fn at_rest_except(graph: &mut Graph, id: NodeId, kept: &[NodeId]) -> NodeId {
     let replacement = |graph: &mut Graph, node: NodeId| {
         if kept.contains(&node) || graph.dependence(node).is_parameter_only() {

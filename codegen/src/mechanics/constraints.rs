@@ -1,16 +1,18 @@
-//! Constraints: what stays zero, differentiated until accelerations appear. With lambda the forces of
-//! the constraints are A^T lambda, and the accelerations obey
+//! Constraints, differentiated until accelerations appear. With the multipliers lambda the constraint forces
+//! are A^T lambda, and the accelerations satisfy
 //!
 //! ```text
 //! M a + c = f + A^T lambda,    A a = b
 //! ```
 //!
 //! Holonomic, g(q, t) = 0: A = dg/dq, b = -(g'' without accelerations) - 2 w g' - w^2 g.
-//! Nonholonomic, h(q, q', t) = 0 and linear in the rates: A = dh/dq',
-//! b = -(h' without accelerations) - 2 w h. Where the residuals are zero w changes nothing; elsewhere
-//! they decay at the rate w (J. Baumgarte, Stabilization of constraints and integrals of motion in
-//! dynamical systems, Comp. Meth. Appl. Mech. Eng. 1, 1972), which is the parameter
-//! `stabilisation_rate`. How the system is solved is the business of `solve`.
+//!
+//! Nonholonomic, h(q, q', t) = 0 and linear in the rates: A = dh/dq', b = -(h' without accelerations) - 2 w
+//! h.
+//!
+//! The terms with w vanish with the residuals; nonzero residuals decay at the rate w (J. Baumgarte,
+//! Stabilization of constraints and integrals of motion in dynamical systems, Comp. Meth. Appl. Mech. Eng. 1,
+//! 1972), the parameter `stabilisation_rate`. `solve` solves the system.
 
 use eomgen_model_spec::ids::{ConstraintId, ParameterId};
 use eomgen_model_spec::model::{Constraint, STABILISATION_RATE};
@@ -20,14 +22,14 @@ use crate::mechanics::rows::RowNodes;
 use crate::mechanics::translate::{DeriveError, Derived, Translator, along_motion};
 use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation};
 
-/// The rows A a = b.
+/// System A a = b of the constraints.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Constraints {
-    /// The rows of A.
+    /// Rows of A.
     pub rows: Vec<RowNodes>,
-    /// b.
+    /// Right-hand sides b.
     pub right: Vec<NodeId>,
-    /// What stays zero.
+    /// Residuals.
     pub residuals: Vec<NodeId>,
 }
 
@@ -97,11 +99,15 @@ pub(crate) fn not_linear(constraint: &Constraint) -> DeriveError {
             "the constraint `{}` is not linear in the rates",
             constraint.name
         ),
-        help: Some("virtual displacements are known for constraints that are".into()),
+        help: Some(
+            "write it as an expression of coordinates, or as one that is linear in the rates"
+                .into(),
+        ),
     }
 }
 
-/// The power of the constraints' forces, lambda A q': that of what moves them, and of residuals.
+/// Returns the power of the constraint forces, lambda A q'. It is 0 for exact constraints that do not depend
+/// on time.
 pub(crate) fn reaction_power(
     graph: &mut Graph,
     variables: &Variables,

@@ -1,6 +1,6 @@
-//! The equations of motion of one model at one order, by Lagrange's equations
-//! d/dt(dT/dq') - dT/dq + dV/dq + dR/dq' = Q, as nodes of one graph: mass matrix,
-//! generalised forces, accelerations, energy, power and guards.
+//! Equations of motion of one model at given truncation orders, by Lagrange's equations d/dt(dT/dq') - dT/dq
+//! + dV/dq + dR/dq' = Q: mass matrix, generalised forces, accelerations, energy, power and guards, as nodes
+//! of one graph.
 
 use eomgen_model_spec::ids::StateId;
 use eomgen_model_spec::model::{MULTIPLIER, Model, ParameterValue, Term};
@@ -21,64 +21,62 @@ use crate::mechanics::sweeps::Momenta;
 use crate::mechanics::translate::{Derived, Translator};
 use crate::symbolic::graph::{Graph, NodeId};
 
-/// The equations of motion of one model at one order.
+/// Equations of motion of one model.
 pub struct Equations {
-    /// The model's name.
+    /// Name of the model.
     pub name: String,
-    /// The graph all nodes below belong to.
+    /// Graph of all nodes below.
     pub graph: Graph,
     /// Names of the parameters.
     pub parameter_names: Vec<String>,
-    /// For each parameter, the node of its expression, if it is derived from others.
+    /// Expression of each parameter that depends on others.
     pub derived_parameters: Vec<Option<NodeId>>,
-    /// T, in J.
+    /// Kinetic energy T in J.
     pub kinetic: NodeId,
-    /// V, in J.
+    /// Potential energy V in J.
     pub potential: NodeId,
-    /// The mass matrix.
+    /// Mass matrix.
     pub mass: MassMatrix,
-    /// Velocity terms c of M q'' + c = f: what is quadratic in the rates and not a force.
+    /// Velocity terms c of M q'' + c = f.
     pub velocity_terms: RowNodes,
-    /// The momenta by a sweep over the velocities, where there are no fields.
+    /// Momenta from a sweep over the velocities, for models without fields.
     pub(crate) sweep: Option<Momenta>,
-    /// The rigid bodies, where there are no fields.
+    /// Rigid bodies, for models without fields.
     pub(crate) rigid_bodies: Option<RigidBodies>,
     /// Generalised forces f: -dV/dq - dR/dq' + Q.
     pub forces: RowNodes,
-    /// The accelerations and how they were solved for.
+    /// Accelerations and the report on their solution.
     pub accelerations: Accelerations,
-    /// The multipliers of the constraints, lambda of M q'' + c = f + A^T lambda.
+    /// Multipliers lambda of M q'' + c = f + A^T lambda.
     pub multipliers: Vec<NodeId>,
-    /// The expressions of the constraints.
+    /// Expressions of the constraints.
     pub residuals: Vec<NodeId>,
-    /// The derivatives A of the constraints by coordinates, or by rates.
+    /// Derivatives A of the constraints by coordinates, or by rates.
     pub(crate) constraint_rows: Vec<RowNodes>,
-    /// The impacts.
+    /// Impacts.
     pub impacts: Vec<Impact<NodeId, RowNodes>>,
-    /// The rates of the states of first order.
+    /// Rates of the states of first order.
     pub state_rates: Vec<NodeId>,
-    /// Power of all non-conservative forces, in W: d(T + V)/dt.
+    /// Power of all non-conservative forces in W: d(T + V)/dt.
     pub power: NodeId,
-    /// The switching surfaces: a node that changes sign, with what it means.
+    /// Switching surfaces.
     pub guards: Vec<Guard>,
-    /// The specification's observables.
+    /// Observables of the specification.
     pub observables: Vec<NodeId>,
-    /// The specification's named coefficients.
+    /// Named coefficients of the specification.
     pub coefficients: Vec<NamedCoefficient>,
-    /// The terms of the energies and of the dissipation and the forces, in the order of the
-    /// specification: kinetic, potential, dissipation, forces.
+    /// Terms in the order of the specification: kinetic, potential, dissipation, forces.
     pub terms: Vec<NodeId>,
-    /// Nodes of the definitions that anything uses.
+    /// Nodes of the definitions with a use.
     pub definitions: Vec<Option<NodeId>>,
-    /// How many inputs there are.
+    /// Number of inputs.
     pub inputs: usize,
-    /// The modal blocks of the mass matrix on and above the diagonal as nodes.
+    /// Modal blocks of the mass matrix on and above the diagonal.
     pub modal_blocks: Vec<ModalMassBlock>,
 }
 
 impl Equations {
-    /// What the rates of the state are computed from: accelerations and the rates of the states
-    /// of first order.
+    /// Returns the nodes of the accelerations and of the rates of the states of first order.
     pub(crate) fn rate_nodes(&self) -> Vec<NodeId> {
         let mut nodes = self.accelerations.rows.nodes();
         nodes.extend(&self.state_rates);
@@ -86,7 +84,7 @@ impl Equations {
     }
 }
 
-/// Derives the equations of motion for fields of these orders.
+/// Derives the equations of motion; `orders` are the truncation orders of the fields.
 pub fn derive(model: &Model, orders: &[usize]) -> Derived<Equations> {
     let mut translator = Translator::new(model, orders);
     let derived_parameters = derived_parameters(&mut translator)?;
@@ -156,7 +154,7 @@ pub fn derive(model: &Model, orders: &[usize]) -> Derived<Equations> {
     )?;
     let modal_blocks = mass.assembled_blocks(&mut translator.graph);
     let definitions = translator.definition_nodes();
-    // Last, so that no node of the equations stands elsewhere for it.
+    // Last, so that no other equation shares its nodes.
     let rigid_bodies = RigidBodies::of(&mut translator, &variables, &applied)?;
     Ok(Equations {
         name: model.name.clone(),
@@ -229,7 +227,7 @@ pub(crate) fn derived_parameters(translator: &mut Translator) -> Derived<Vec<Opt
         .collect()
 }
 
-/// The sum of named terms; each is named after `symbol` and itself.
+/// Returns the sum of terms; each term is named after `symbol` and itself.
 pub(crate) fn total_of(
     translator: &mut Translator,
     terms: &[Term],

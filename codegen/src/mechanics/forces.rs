@@ -1,5 +1,4 @@
-//! Forces by virtual work and from the dissipation, their power, and the surfaces at which
-//! they switch.
+//! Forces from the dissipation and by virtual work, their power, and the surfaces at which they switch.
 
 use eomgen_model_spec::model::{Force, Function};
 
@@ -11,7 +10,7 @@ use crate::mechanics::translate::{DeriveError, Derived, Translator, along_motion
 use crate::symbolic::differentiate::Direction;
 use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation};
 
-/// -dR/dq' and the forces by virtual work, Q_j = value d(on)/dq_j.
+/// Derives -dR/dq' and the forces by virtual work, Q_j = value d(on)/dq_j.
 pub(crate) fn applied_forces(
     translator: &mut Translator,
     variables: &Variables,
@@ -32,13 +31,13 @@ pub(crate) fn applied_forces(
     Ok(variables.combine(&mut translator.graph, &rows))
 }
 
-/// The value of a force and the expression that it works on.
+/// Returns the value of a force and the expression that it acts on.
 ///
 /// # Errors
-/// A failed derivation, and a force on an expression that holds a rate.
+/// A failed derivation, and an expression that contains a rate.
 pub(crate) fn translated(translator: &mut Translator, force: &Force) -> Derived<(NodeId, NodeId)> {
     let value = translator.node(&force.value)?;
-    // A force may be called what means something else in a formula.
+    // The name of a force can have another meaning in a formula.
     if eomgen_model_spec::reserved(&force.name).is_none() {
         translator.graph.suggest_name(value, &force.name);
     }
@@ -46,15 +45,15 @@ pub(crate) fn translated(translator: &mut Translator, force: &Force) -> Derived<
     if translator.graph.dependence(on).has(Dependence::RATE) {
         return Err(DeriveError {
             span: force.on.span,
-            message: "a force acts on something that holds a rate".into(),
-            help: Some("virtual work needs a coordinate or an expression of coordinates".into()),
+            message: "a force acts on an expression that contains a rate".into(),
+            help: Some("let it act on a coordinate or an expression of coordinates".into()),
         });
     }
     Ok((value, on))
 }
 
-/// d(T + V)/dt for the forces and explicit times: Q q' + dV/dt - dT/dt (partial derivatives by
-/// the time), and, if T is no quadratic form of the rates, d(2 T - p q')/dt on top.
+/// Returns d(T + V)/dt due to forces and explicit times: Q q' + dV/dt - dT/dt (partial derivatives by time),
+/// plus d(2 T - p q')/dt if T is no quadratic form of the rates.
 pub(crate) fn power(
     graph: &mut Graph,
     variables: &Variables,
@@ -83,8 +82,8 @@ pub(crate) fn power(
     graph.combine(&terms)
 }
 
-/// The distinct switching surfaces of everything the motion depends on, in the order in
-/// which the graph met them.
+/// Returns the distinct switching surfaces of everything that the motion depends on, in the order of the
+/// graph.
 pub(crate) fn guards(graph: &mut Graph, roots: &[NodeId]) -> Vec<Guard> {
     let mut found: Vec<Guard> = Vec::new();
     for id in graph.reachable(roots) {
@@ -93,7 +92,7 @@ pub(crate) fn guards(graph: &mut Graph, roots: &[NodeId]) -> Vec<Guard> {
         }
         let (function, arguments) = match graph.operation(id).clone() {
             Operation::Call(function, arguments) => (function, arguments.to_vec()),
-            // The slope of the smaller or larger of two; that of the smaller is turned round.
+            // Derivative of min or max. That of min has the opposite sign.
             Operation::Select { a, b, .. } => {
                 let turned = graph.subtract(b, a);
                 if found.iter().any(|guard| guard.value == turned) {
@@ -112,25 +111,24 @@ pub(crate) fn guards(graph: &mut Graph, roots: &[NodeId]) -> Vec<Guard> {
     found
 }
 
-/// Where a piecewise function switches: nodes that change sign there, and are positive where
-/// they say.
+/// Switching surfaces of a piecewise function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Surfaces {
-    /// Nowhere.
+    /// No surface.
     None,
-    /// Where p changes sign.
+    /// Surface p = 0, positive for p > 0.
     One(NodeId),
-    /// Where p changes sign: -p, which is positive where p is negative.
+    /// Surface p = 0 as the node -p, positive for p < 0.
     Turned(NodeId),
-    /// Where p passes b or -b: positive above the one, and above the other.
+    /// Surfaces p = b and p = -b, positive above each.
     Between {
         /// p - b.
         above: NodeId,
         /// p + b.
         beyond: NodeId,
     },
-    /// Where p leaves the rest between -b and b, on which it may stay through a whole region:
-    /// both are positive outside, and neither is where p is exactly b or -b.
+    /// Surfaces at the ends of -b <= p <= b, within which p can remain for a whole regime. Each is positive
+    /// on one outer side.
     Outside {
         /// p - b, or p.
         above: NodeId,
@@ -140,7 +138,6 @@ pub(crate) enum Surfaces {
 }
 
 impl Surfaces {
-    /// The nodes.
     pub fn all(self) -> impl Iterator<Item = NodeId> {
         let (first, second) = match self {
             Self::None => (None, None),
@@ -152,8 +149,8 @@ impl Surfaces {
     }
 }
 
-/// Where a piecewise function switches. What jumps by a switching function that may vanish on a
-/// whole region has a surface for either side of it, as it has a value of its own there.
+/// Returns the surfaces of a piecewise function. If the function jumps and p can be zero for a whole regime,
+/// each side has its own surface, because the function has a separate value there.
 pub(crate) fn surfaces(graph: &mut Graph, function: Function, arguments: &[NodeId]) -> Surfaces {
     match (function, arguments) {
         (Function::Contact, &[p, b]) if may_rest(graph, p) => {
@@ -180,8 +177,8 @@ pub(crate) fn surfaces(graph: &mut Graph, function: Function, arguments: &[NodeI
     }
 }
 
-/// Whether the first of a sum's terms that move is subtracted: the surface is then that of what
-/// others, such as min(p, 0), are written with.
+/// Returns true if the first moving term of a sum is subtracted. Its surface is then shared with functions
+/// such as min(p, 0).
 fn begins_with_minus(graph: &Graph, id: NodeId) -> bool {
     let Operation::Sum(terms) = graph.operation(id) else {
         return false;
@@ -194,8 +191,8 @@ fn begins_with_minus(graph: &Graph, id: NodeId) -> bool {
         .is_some_and(|(factor, _)| factor.value() < 0.0)
 }
 
-/// Whether a switching function may have one value on a whole region: it holds a piecewise
-/// function itself, or is of inputs alone, which may be held.
+/// Returns true if a switching function can be constant in a whole regime: if it contains a piecewise
+/// function, or depends only on inputs, which can be constant.
 pub(crate) fn may_rest(graph: &Graph, id: NodeId) -> bool {
     let moves = Dependence::COORDINATE
         .join(Dependence::RATE)

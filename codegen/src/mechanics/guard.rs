@@ -1,14 +1,12 @@
-//! A switching surface, as a node and the function that switches there.
-
 use eomgen_model_spec::model::Function;
 
 use crate::symbolic::graph::NodeId;
 
-/// A switching surface.
+/// Switching surface.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Guard {
-    /// Changes sign where the model switches.
+    /// Function that changes sign at the surface.
     pub value: NodeId,
-    /// The function that switches.
+    /// Function that switches.
     pub function: Function,
 }

@@ -1,10 +1,10 @@
-//! Impacts: how fast distances change, and what impulses there do to the rates.
+//! Impacts: rates of distances, and the effect of impulses on the rates.
 //!
-//! An impulse P at the distance g(q, t) changes the rates by D P with D = M^-1 A^T and A = dg/dq, and
-//! the rate of a distance g_i by A_i D_j P_j, which is Delassus' matrix (B. Brogliato, *Nonsmooth
-//! Mechanics*, chapter 5). A force at a contact that stays closed acts alike: a = a_0 + D lambda. The
-//! columns D are solved for as the accelerations are, so that a field costs O(S); with constraints an
-//! impulse moves along them. When bodies hit and what comes back is for those who follow the motion.
+//! An impulse P at the distance g(q, t) changes the rates by D P with D = M^-1 A^T and A = dg/dq, and the
+//! rate of a distance g_i by A_i D_j P_j; A_i D_j is Delassus' matrix (B. Brogliato, *Nonsmooth Mechanics*,
+//! chapter 5). A force at a closed contact acts alike: a = a_0 + D lambda. The columns D are solved for like
+//! the accelerations, so that a field costs O(S); with constraints an impulse acts along them. The simulator
+//! finds the times and the results of impacts.
 
 use eomgen_model_spec::ids::FieldId;
 use eomgen_model_spec::model::{self, Model};
@@ -17,24 +17,23 @@ use crate::mechanics::solve::solve;
 use crate::mechanics::translate::{DeriveError, Derived, Translator, along_motion};
 use crate::symbolic::graph::{Graph, NodeId, Space};
 
-/// An impact, of nodes `N` in the equations or values in the program, and rows `R` of them.
+/// Impact, with nodes or values `N` and rows `R` of them.
 #[derive(Clone, Debug)]
 pub struct Impact<N, R> {
-    /// g, the distance.
+    /// Distance g.
     pub distance: N,
-    /// g'.
+    /// Rate g'.
     pub rate: N,
-    /// g'' where no contact is closed.
+    /// Second rate g'' if no contact is closed.
     pub acceleration: N,
-    /// The part of g' that comes back.
+    /// Coefficient of restitution.
     pub restitution: N,
-    /// D, by which an impulse of 1 changes the rates.
+    /// Column D: change of the rates by a unit impulse.
     pub column: R,
-    /// A D of all impacts: by how much impulses of 1 at each of them change g'.
+    /// A D of all impacts: changes of g' by a unit impulse at each of them.
     pub delassus: Vec<N>,
 }
 
-/// The impacts of a model.
 pub(crate) fn impacts(
     translator: &mut Translator,
     variables: &Variables,
@@ -54,7 +53,7 @@ pub(crate) fn impacts(
         let restitution = translator.node(&impact.restitution)?;
         let graph = &mut translator.graph;
         let gradient = variables.gradient(graph, distance, GradientBy::Coordinates);
-        // A distance of a field has no modes to change it at order 0.
+        // At order 0 the distance of a field depends on no mode.
         let is_rigid = model.fields.is_empty();
         if is_rigid && gradient.nodes().iter().all(|entry| graph.is_zero(*entry)) {
             return Err(moves_nothing(impact));
@@ -84,7 +83,7 @@ pub(crate) fn impacts(
     Ok(found)
 }
 
-/// An impulse along nothing: the distance would never change by it.
+/// Returns the error for a distance that no coordinate changes.
 pub(crate) fn moves_nothing(impact: &model::Impact) -> DeriveError {
     DeriveError {
         span: impact.when.span,
@@ -93,12 +92,12 @@ pub(crate) fn moves_nothing(impact: &model::Impact) -> DeriveError {
             impact.name
         ),
         help: Some(
-            "an impact happens where an expression of coordinates falls through zero".into(),
+            "write `when` as an expression of coordinates; an impact occurs when it falls through zero".into(),
         ),
     }
 }
 
-/// The product of two rows.
+/// Returns the scalar product of two rows.
 fn product(graph: &mut Graph, a: &RowNodes, b: &RowNodes) -> NodeId {
     let mut terms = Vec::new();
     for (a, b) in a.scalars.iter().zip(&b.scalars) {

@@ -1,5 +1,4 @@
-//! The rows of a kinetic energy: mass matrix and velocity terms, in the form that takes fewest
-//! operations.
+//! Mass matrix and velocity terms of a kinetic energy, in the form with the fewest operations.
 
 use eomgen_model_spec::ids::CoordinateId;
 
@@ -13,21 +12,21 @@ use crate::symbolic::factor::cheaper;
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 use crate::symbolic::trigonometry::with_sums_of_angles;
 
-/// What Lagrange's equations take from a kinetic energy.
+/// Contributions of a kinetic energy to Lagrange's equations.
 pub(crate) struct KineticRows {
     /// dT/dq'.
     pub(crate) momenta: RowNodes,
     pub(crate) mass: MassMatrix,
     /// d/dt(dT/dq') without accelerations, minus dT/dq.
     pub(crate) velocity_terms: RowNodes,
-    /// The momenta by a sweep, where there are no fields.
+    /// Momenta from a sweep, for models without fields.
     pub(crate) sweep: Option<Momenta>,
 }
 
 impl KineticRows {
-    /// The rows of a kinetic energy. Without fields they come by sweeps as well, and both ways of
-    /// the quadratic form with sums of angles too; what takes fewest operations beside the slopes of
-    /// the potential is kept.
+    /// Returns the form with the fewest operations, counted together with the gradient of the potential.
+    /// Models with fields have one form. Others also have the form of a sweep, and both forms of the
+    /// quadratic form with sums of angles.
     pub(crate) fn cheapest(
         graph: &mut Graph,
         variables: &Variables,
@@ -106,7 +105,7 @@ impl KineticRows {
         })
     }
 
-    /// How many operations they take beside other nodes.
+    /// Counts the operations, without those shared with `beside`.
     fn operations(&self, graph: &Graph, beside: &[NodeId]) -> usize {
         let mut nodes = self.velocity_terms.nodes();
         nodes.extend(beside);
@@ -117,10 +116,10 @@ impl KineticRows {
     }
 }
 
-/// More coordinates are not multiplied out.
+/// Largest number of coordinates for which the quadratic form is expanded.
 const MOST_COORDINATES: usize = 4;
 
-/// 1/2 q' M q' with sums of angles in the entries of M; `None` of too many coordinates.
+/// Returns 1/2 q' M q' with sums of angles in the entries of M; `None` for too many coordinates.
 fn quadratic_form(graph: &mut Graph, mass: &[Vec<NodeId>]) -> Option<NodeId> {
     if mass.len() > MOST_COORDINATES {
         return None;

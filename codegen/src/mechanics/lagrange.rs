@@ -1,5 +1,4 @@
-//! The rows of Lagrange's equations: gradients by coordinates and rates, the mass matrix and
-//! the velocity terms of a kinetic energy.
+//! Rows of Lagrange's equations: gradients by coordinates and rates, mass matrix and velocity terms.
 
 use eomgen_model_spec::ids::{CoordinateId, FieldId};
 use eomgen_model_spec::model::Model;
@@ -16,14 +15,14 @@ use crate::symbolic::modal_derivative::ModalDerivative;
 use crate::symbolic::operation_count::count_operations;
 use crate::symbolic::trigonometry::with_sums_of_angles;
 
-/// What a gradient is taken by.
+/// Variables of a gradient.
 pub(crate) enum GradientBy {
     Coordinates,
     Rates,
 }
 
-/// Nonzero derivatives of a scalar by coordinates or by rates, with their places. The work grows with the
-/// number of nodes of the scalar.
+/// Returns the nonzero derivatives of a scalar by coordinates or by rates, with their indices. The work grows
+/// with the number of nodes of the scalar.
 pub(crate) fn nonzero_gradient(
     graph: &mut Graph,
     scalar: NodeId,
@@ -45,7 +44,7 @@ pub(crate) fn nonzero_gradient(
     found
 }
 
-/// Which variables there are.
+/// Numbers of coordinates and fields.
 pub(crate) struct Variables {
     pub(crate) coordinates: usize,
     pub(crate) fields: usize,
@@ -59,7 +58,7 @@ impl Variables {
         }
     }
 
-    /// The gradient of a scalar by coordinates or by rates.
+    /// Computes the gradient of a scalar by coordinates or by rates.
     pub(crate) fn gradient(&self, graph: &mut Graph, scalar: NodeId, kind: GradientBy) -> RowNodes {
         let scalars = CoordinateId::first(self.coordinates)
             .map(|index| {
@@ -96,7 +95,7 @@ impl Variables {
         let rates: Vec<NodeId> = CoordinateId::first(self.coordinates)
             .map(|index| graph.intern(Operation::Rate(index)))
             .collect();
-        // By symmetry an entry comes from the momentum of the smaller index.
+        // By symmetry, an entry is a derivative of the momentum with the smaller index.
         let mut scalars: Vec<Vec<NodeId>> = Vec::with_capacity(self.coordinates);
         for row in 0..self.coordinates {
             let mut entries: Vec<NodeId> = scalars.iter().map(|above| above[row]).collect();
@@ -128,7 +127,7 @@ impl Variables {
         }
     }
 
-    /// The rate of the momenta along the motion without accelerations, minus dT/dq.
+    /// Returns the rate of the momenta along the motion without accelerations, minus dT/dq.
     pub(crate) fn velocity_terms(
         &self,
         graph: &mut Graph,
@@ -191,7 +190,7 @@ impl Variables {
         RowNodes { scalars, modal }
     }
 
-    /// The sum over all rows of a row times its rate.
+    /// Returns the sum over all rows of a row times its rate.
     pub(crate) fn dot_rates(&self, graph: &mut Graph, rows: &RowNodes) -> NodeId {
         let mut terms = Vec::new();
         for (index, &row) in CoordinateId::first(rows.scalars.len()).zip(&rows.scalars) {
@@ -207,8 +206,8 @@ impl Variables {
     }
 }
 
-/// The slopes of a potential as they are, with common factors taken out, or multiplied out with
-/// terms collected: what takes fewest operations.
+/// Returns the gradient of a potential in the cheapest form: unchanged, with common factors, or expanded with
+/// collected terms.
 fn cheapest_slopes(graph: &mut Graph, slopes: Vec<NodeId>) -> Vec<NodeId> {
     let apart: Vec<NodeId> = slopes
         .iter()
@@ -222,9 +221,9 @@ fn cheapest_slopes(graph: &mut Graph, slopes: Vec<NodeId>) -> Vec<NodeId> {
     }
 }
 
-/// A node multiplied out where that is cheaper. Of a velocity term the rate of a momentum
-/// and the slope of the kinetic energy share terms that cancel, but often only inside
-/// products: d/dt(dv/dq') = dv/dq for the rate v of anything that depends on coordinates.
+/// Expands a node if that saves operations. In a velocity term, the rate of a momentum and the gradient of
+/// the kinetic energy share terms that cancel, often only inside products: d/dt(dv/dq') = dv/dq for the rate
+/// v of a function of coordinates.
 fn cheaper_expansion(graph: &mut Graph, term: NodeId) -> NodeId {
     let mut best = term;
     let mut operations = count_operations(graph, &[term]);

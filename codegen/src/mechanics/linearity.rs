@@ -1,9 +1,9 @@
-//! Whether a model is linear between its switching surfaces, read off the structure of its
-//! equations: such a model can be solved exactly from switch to switch.
+//! Structural test of linearity between switching surfaces. Such a model can be solved exactly from switch to
+//! switch.
 //!
-//! Linear means: a constant mass matrix, and forces of first degree in coordinates, rates,
-//! inputs and sines of time, with the sides of the switching surfaces taken as given. The
-//! test is sufficient, not necessary: what cancels only by an identity is not seen.
+//! A linear model has a constant mass matrix, and forces of first degree in coordinates, rates, inputs and
+//! sines of time, for given sides of the switching surfaces. The test is sufficient, not necessary: it does
+//! not use trigonometric identities.
 
 use std::collections::HashMap;
 
@@ -12,22 +12,22 @@ use eomgen_model_spec::model::Function;
 use crate::mechanics::equations::Equations;
 use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation, Shape};
 
-/// What kind of model it is between its switching surfaces.
+/// Linearity of a model between its switching surfaces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Linearity {
     /// Linear everywhere.
     Linear,
-    /// Linear between switching surfaces that are linear themselves.
+    /// Linear between surfaces that are linear themselves.
     PiecewiseLinear,
-    /// With constraints, whose multipliers are solved for with the accelerations: not read off here.
+    /// Model with constraints, whose multipliers are solved for with the accelerations. Not tested.
     Constrained,
-    /// With impacts, at which rates jump.
+    /// Model with impacts, at which rates jump.
     Impacts,
-    /// Not linear because of this node, the first that is found.
+    /// Nonlinear; the first nonlinear node.
     Nonlinear(NodeId),
 }
 
-/// The kind of model that the equations are.
+/// Returns the linearity of the equations.
 pub fn linearity(equations: &Equations) -> Linearity {
     let graph = &equations.graph;
     if !equations.multipliers.is_empty() {
@@ -71,14 +71,14 @@ pub fn linearity(equations: &Equations) -> Linearity {
     }
 }
 
-/// Degrees of nodes in what moves.
+/// Degrees of nodes in the moving quantities.
 struct Degrees<'g> {
     graph: &'g Graph,
     known: HashMap<NodeId, Result<u32, NodeId>>,
 }
 
 impl Degrees<'_> {
-    /// The degree of a node with the switching sides given, or the node in the way.
+    /// Returns the degree of a node for given sides, or the first nonlinear node.
     fn of(&mut self, id: NodeId) -> Result<u32, NodeId> {
         if self.graph.dependence(id).is_parameter_only() {
             return Ok(0);
@@ -156,7 +156,7 @@ impl Degrees<'_> {
             .try_fold(0, |highest, part| Ok(self.of(part)?.max(highest)))
     }
 
-    /// Whether a node is a phase omega t + phi.
+    /// Returns true for a phase omega t + phi.
     fn is_phase(&self, id: NodeId) -> bool {
         let moving = Dependence::COORDINATE
             .join(Dependence::RATE)

@@ -1,33 +1,31 @@
-//! The mass matrix by its blocks: coordinates, modes, and the coupling between them.
-
 use crate::symbolic::graph::{Graph, NodeId};
 use crate::symbolic::matrix::StructuredMatrix;
 use eomgen_model_spec::ids::FieldId;
 
-/// The mass matrix by blocks.
+/// Mass matrix by blocks.
 #[derive(Clone, Debug)]
 pub struct MassMatrix {
-    /// coordinates x coordinates
+    /// Block of the coordinates.
     pub scalars: Vec<Vec<NodeId>>,
-    /// For each coordinate and field the vector over the modes.
+    /// Vector over the modes for each coordinate and field.
     pub coupling: Vec<Vec<NodeId>>,
-    /// For each pair of fields the block over their modes.
+    /// Block over the modes for each pair of fields.
     pub modal: Vec<Vec<StructuredMatrix>>,
 }
 
-/// A block of the mass matrix over the modes of two fields, as one node.
+/// Block of the mass matrix over the modes of two fields.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ModalMassBlock {
-    /// The field of the rows.
+    /// Field of the rows.
     pub rows: FieldId,
-    /// The field of the columns.
+    /// Field of the columns.
     pub columns: FieldId,
-    /// Modes of the one times modes of the other.
+    /// Matrix, modes of the rows' field by modes of the columns' field.
     pub matrix: NodeId,
 }
 
 impl MassMatrix {
-    /// The blocks over modes on and above the diagonal that are not 0.
+    /// Returns the nonzero modal blocks on and above the diagonal.
     pub(crate) fn assembled_blocks(&self, graph: &mut Graph) -> Vec<ModalMassBlock> {
         let mut blocks = Vec::new();
         let fields = FieldId::first(self.modal.len());

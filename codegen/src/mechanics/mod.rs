@@ -1,12 +1,14 @@
-//! From a checked model to its equations of motion.
+//! Derivation of the equations of motion from a checked model.
 //!
-//! `translate` with `fields` (expressions to nodes), `lagrange`, `sweeps` and `forces` (the rows of
-//! Lagrange's equations, of `rows`, `mass_matrix` and `guard`s), `kinetic` (the cheapest form of
-//! those of a kinetic energy), `rigid_tree` (inverse dynamics from frame to frame), `constraints` (what stays zero),
-//! `solve` (the accelerations), `impacts` (what impulses do),
-//! `coefficients` (names as in Eq. (22)), `equations` (all of it), `outputs` (what is derived on
-//! request), `linearity` (whether a model is linear between its switches), `sides` (switching functions
-//! as polynomials), `affine` (the coefficients of a model that is linear between its switches), `sliding` (motion held on surfaces), `inertia` (whether all that moves has some), `unsolved` (a model without equations).
+//! - `translate` and `fields` translate expressions to nodes.
+//! - `lagrange`, `sweeps`, `forces` and `kinetic` derive the rows of Lagrange's equations.
+//! - `rigid_tree` derives inverse dynamics from frame to frame.
+//! - `constraints`, `impacts` and `sliding` derive their terms; `solve` derives the accelerations.
+//! - `coefficients` derives named coefficients as in Eq. (22).
+//! - `equations` combines these; `outputs` derives additional functions on request.
+//! - `linearity` tests linearity between switches; `sides` and `affine` derive the coefficients of such a
+//!   model.
+//! - `inertia` checks that every motion has inertia; `unsolved` translates a model without its equations.
 
 pub mod affine;
 pub mod coefficients;

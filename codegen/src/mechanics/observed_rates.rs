@@ -1,5 +1,4 @@
-//! Observables and their time derivatives along the motion. Rates of coordinates change with the
-//! accelerations that were solved for.
+//! Observables and their time derivatives along the motion, with the derived accelerations.
 
 use eomgen_model_spec::model::{Function, Observable};
 
@@ -7,7 +6,7 @@ use crate::mechanics::rows::RowNodes;
 use crate::mechanics::translate::{DeriveError, Derived, Translator};
 use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation};
 
-/// The node of an observable, or of the time derivative that it is.
+/// Returns the node of an observable, or of the time derivative that it denotes.
 pub(crate) fn observed(
     translator: &mut Translator,
     observable: &Observable,
@@ -28,26 +27,26 @@ pub(crate) fn observed(
     if rate.times > 1 && translator.graph.dependence(node).has(Dependence::RATE) {
         return refused(
             format!(
-                "`{name}` holds a rate, so that its second derivative needs the rate of an acceleration"
+                "`{name}` contains a rate: its second derivative needs the rate of an acceleration"
             ),
-            "measure its first derivative, or an observable of positions",
+            "use its first derivative, or an observable without rates",
         );
     }
     for _ in 0..rate.times {
         if jumps(&translator.graph, node) {
             return refused(
                 format!(
-                    "the time derivative of `{name}` is not defined where it jumps, or where its rate does"
+                    "the time derivative of `{name}` is not defined at jumps of `{name}` or of its rate"
                 ),
-                "measure an observable without sign, above, contact, and of a second derivative without abs, min, max and deadzone",
+                "use an observable without sign, above and contact; for a second derivative also without abs, min, max and deadzone",
             );
         }
         if translator.holds_input_without_rate(node) {
             return refused(
                 format!(
-                    "the time derivative of `{name}` needs the rate of an input, which is not known"
+                    "the time derivative of `{name}` needs the rate of an input, which is unknown"
                 ),
-                "`rates = 2` in the input's entry says that its rates are given as well",
+                "add `rates = 2` to the entry of the input to provide its rates",
             );
         }
         node = translator.rate_along_motion(node, accelerations)?;
@@ -55,7 +54,7 @@ pub(crate) fn observed(
     Ok(node)
 }
 
-/// Returns true if a node may jump as the motion goes on.
+/// Returns true if a node can jump during the motion.
 fn jumps(graph: &Graph, node: NodeId) -> bool {
     let is_jump = |id: &NodeId| {
         if graph.dependence(*id).is_parameter_only() {

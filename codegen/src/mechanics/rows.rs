@@ -1,18 +1,16 @@
-//! What a vector over all degrees of freedom is made of: a number per coordinate, a vector per field.
-
 use crate::symbolic::graph::NodeId;
 
-/// One entry per coordinate, then one vector per field.
+/// Vector over all degrees of freedom.
 #[derive(Clone, Debug)]
 pub struct RowNodes {
-    /// Scalars, one per coordinate.
+    /// Scalars, one for each coordinate.
     pub scalars: Vec<NodeId>,
-    /// Vectors over the modes, one per field.
+    /// Vectors over the modes, one for each field.
     pub modal: Vec<NodeId>,
 }
 
 impl RowNodes {
-    /// All nodes, coordinates first.
+    /// Returns all nodes, coordinates first.
     pub fn nodes(&self) -> Vec<NodeId> {
         self.scalars.iter().chain(&self.modal).copied().collect()
     }

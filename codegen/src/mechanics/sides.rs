@@ -1,5 +1,5 @@
-//! Switching functions as polynomials in the sides of their surfaces: 1 where a surface's function is
-//! positive, 0 where it is not, between them where a motion is held on the surface.
+//! Switching functions as polynomials in the sides of their surfaces. A side is 1 if the surface's function
+//! is positive, else 0; it is between 0 and 1 while the motion is held on the surface.
 
 use std::collections::HashMap;
 
@@ -10,17 +10,17 @@ use crate::mechanics::forces::{Surfaces, surfaces};
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 use crate::symbolic::substitute::substitute;
 
-/// Replacements for switching functions of a model.
+/// Replacements of the switching functions of a model.
 pub(crate) struct Sides {
-    /// A node to the one that stands for it.
+    /// Replacement of each node.
     pub known: HashMap<NodeId, NodeId>,
-    /// Half-widths of dead zones: what is written here holds for those that are not negative.
+    /// Half-widths of dead zones, which must not be negative.
     pub half_widths: Vec<NodeId>,
 }
 
 impl Sides {
-    /// Replaces what switches in these nodes by polynomials in the sides of its surfaces. `side` returns
-    /// the leaf of a guard's side, by the guard's place among them, if the surface has one.
+    /// Replaces the switching functions in `roots` by polynomials in sides. `side` returns the leaf for the
+    /// side of the guard with a given index, if it has one.
     pub fn of(
         equations: &mut Equations,
         roots: &[NodeId],
@@ -29,9 +29,9 @@ impl Sides {
         Self::replace(equations, roots, side, &|_| true)
     }
 
-    /// The same for functions that jump. One that is continuous has the same value on both sides of its
-    /// surface, and off it an argument of another function may not be what the wrong side makes of it:
-    /// `sqrt(abs(p))` has no value if the sign of p is not its own.
+    /// Replaces only functions that jump. A continuous function has one value at its surface; off the
+    /// surface, a wrong side can move the argument of another function out of its domain, for example in
+    /// `sqrt(abs(p))`.
     pub fn of_jumps(
         equations: &mut Equations,
         roots: &[NodeId],
@@ -58,7 +58,7 @@ impl Sides {
             known: HashMap::new(),
             half_widths: Vec::new(),
         };
-        // Operands come first: what stands inside of a switching function is replaced by then.
+        // Operands precede their uses, so inner switching functions are already replaced.
         for id in graph.reachable(roots) {
             let is_call_without =
                 matches!(graph.operation(id), Operation::Call(called, _) if !has_side(*called));
@@ -163,19 +163,19 @@ impl Sides {
     }
 }
 
-/// 1 - side.
+/// Returns 1 - side.
 fn opposite(graph: &mut Graph, side: NodeId) -> NodeId {
     let one = graph.one();
     graph.subtract(one, side)
 }
 
-/// 2 side - 1.
+/// Returns 2 side - 1.
 fn sign(graph: &mut Graph, side: NodeId) -> NodeId {
     let one = graph.one();
     graph.combine(&[(2.0, side), (-1.0, one)])
 }
 
-/// side a + (1 - side) b, so that a side of 0 or 1 leaves the other untouched.
+/// Returns side a + (1 - side) b, so that a side of 0 or 1 selects one term exactly.
 fn between(graph: &mut Graph, side: NodeId, a: NodeId, b: NodeId) -> NodeId {
     let other = opposite(graph, side);
     let (a, b) = (graph.multiply(side, a), graph.multiply(other, b));

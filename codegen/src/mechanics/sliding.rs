@@ -1,12 +1,12 @@
-//! Motion held on switching surfaces, as dry friction holds a machine at rest: the equations with the
-//! sides of such surfaces as inputs.
+//! Motion held on switching surfaces, for example by dry friction at rest: equations with the sides of such
+//! surfaces as inputs.
 //!
-//! On a surface g = 0 across which the rates jump, a motion goes on by a combination of both sides that
-//! keeps g' at zero, if there is one (A. F. Filippov, *Differential Equations with Discontinuous
-//! Righthand Sides*): sign(g), which is -1 or 1 beside the surface, is any number between them on
-//! it. With the side of the surface in its place, 0 to 1, every force follows from the side: the rates
-//! that hold, power and observables. A surface can hold the motion where g' feels its side, as that of a speed does and that of a place does
-//! not. Which of them hold, and when they let go, is for those who follow the motion.
+//! On a surface g = 0 across which the rates jump, the motion continues with a combination of both sides that
+//! keeps g' at zero, if there is one (A. F. Filippov, *Differential Equations with Discontinuous Righthand
+//! Sides*): sign(g), which is -1 or 1 off the surface, takes a value between them. All forces, the power and
+//! the observables follow from the side, a number from 0 to 1. A surface can hold the motion if g' depends on
+//! its side: a velocity's surface can, a position's cannot. The simulator decides which surfaces hold, and
+//! when they release.
 
 use std::collections::HashMap;
 
@@ -22,13 +22,13 @@ use crate::symbolic::differentiate::by_scalar;
 use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation, Shape};
 use crate::symbolic::substitute::substitute;
 
-/// Whether there are surfaces that may hold the motion, as far as can be told without derivatives.
+/// Returns true if there can be surfaces that hold the motion, judged without derivatives.
 pub fn may_hold(equations: &Equations) -> bool {
     !guards_with_sides(equations).is_empty()
 }
 
-/// Makes the sides of surfaces that may hold the motion inputs, which follow those of the
-/// model in the order of the surfaces. None where no surface may; the equations are of no use then.
+/// Makes the sides of surfaces that can hold the motion inputs, after those of the model, in the order of the
+/// surfaces. Returns an empty list if there is none; the equations are then unusable.
 pub(crate) fn with_sides(equations: &mut Equations) -> Vec<SlidingSurface<NodeId, RowNodes>> {
     let sliding = guards_with_sides(equations);
     let first = equations.inputs;
@@ -87,8 +87,8 @@ pub(crate) fn with_sides(equations: &mut Equations) -> Vec<SlidingSurface<NodeId
     found
 }
 
-/// The guards, with their places among the numbers of all, that are of rates or of states of first
-/// order, and have no value of their own throughout a region.
+/// Returns the guards that depend on rates or on states of first order and cannot be constant in a regime,
+/// each with its index among all guard values.
 fn guards_with_sides(equations: &Equations) -> Vec<(usize, usize)> {
     let graph = &equations.graph;
     let moves = Dependence::RATE.join(Dependence::STATE);
@@ -113,7 +113,7 @@ fn guards_with_sides(equations: &Equations) -> Vec<(usize, usize)> {
     found
 }
 
-/// What is computed where a motion is held.
+/// Returns the nodes that are evaluated while a motion is held.
 fn roots(equations: &Equations) -> Vec<NodeId> {
     let mut roots = equations.rate_nodes();
     roots.extend(equations.forces.nodes());
@@ -122,7 +122,7 @@ fn roots(equations: &Equations) -> Vec<NodeId> {
     roots
 }
 
-/// Puts the sides into all that [`roots`] names.
+/// Inserts the sides into all nodes of [`roots`].
 fn replace(equations: &mut Equations, known: &mut HashMap<NodeId, NodeId>) {
     let graph = &mut equations.graph;
     let rows = &mut equations.accelerations.rows;

@@ -1,17 +1,16 @@
-//! Lagrange's rows by sweeps over the rate-dependent part of a kinetic energy, for models without
-//! fields.
+//! Rows of Lagrange's equations by sweeps over the rate-dependent part of a kinetic energy, for models
+//! without fields.
 //!
-//! What of the kinetic energy depends on the rates is a graph of velocities, each of those before
-//! it. One sweep back over it gives the derivative of the energy by every velocity, the momenta
-//! among them, and the same momenta serve the energy's slope by the coordinates. Their rate is one
-//! tangent along the motion. With velocities from frame to frame this is the recursion of Newton
-//! and Euler, with the accelerations outward and forces inward (Luh, Walker and Paul, 1980: J. Dyn.
-//! Sys. Meas. Control 102, 69-76).
+//! The rate-dependent part of the kinetic energy is a graph of velocities. One backward sweep gives the
+//! derivative of the energy by every velocity, including the momenta, and with these the derivative by the
+//! coordinates. The rate of the momenta is one tangent along the motion. For velocities from frame to frame
+//! this is the recursion of Newton and Euler, with accelerations outward and forces inward (Luh, Walker and
+//! Paul, 1980: J. Dyn. Sys. Meas. Control 102, 69-76).
 //!
-//! The mass matrix is the Hessian by the rates, pushed back over the same graph from velocity to
-//! velocity (Gower and Mello, 2012: Optim. Methods Softw. 27, 251-269). What stands between the
-//! velocities of a frame on the way is the inertia of all that it carries: composite rigid bodies
-//! (Walker and Orin, 1982: J. Dyn. Sys. Meas. Control 104, 205-211).
+//! The mass matrix is the Hessian by the rates, propagated backward over the same graph (Gower and Mello,
+//! 2012: Optim. Methods Softw. 27, 251-269). The intermediate entries between the velocities of a frame are
+//! the inertia of everything that it carries: composite rigid bodies (Walker and Orin, 1982: J. Dyn. Sys.
+//! Meas. Control 104, 205-211).
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
@@ -21,26 +20,26 @@ use crate::mechanics::translate::along_motion;
 use crate::symbolic::differentiate::Direction;
 use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation};
 
-/// The velocities of a kinetic energy, and how each is made of those before it.
+/// Velocities of a kinetic energy, with their derivatives by the velocities before them.
 pub(crate) struct Velocities {
-    /// The energy first, each before those it is made of.
+    /// Energy first; each unit precedes its operands.
     units: Vec<Unit>,
-    /// What the rates have received of the energy's derivative.
+    /// Contributions to the energy's derivative by each rate.
     received: HashMap<NodeId, Vec<(f64, NodeId)>>,
 }
 
-/// A rate-dependent node with the products of its sum opened: its derivatives by what these hold.
+/// Rate-dependent node, with the factors of the products in its sum as operands.
 struct Unit {
     node: NodeId,
-    /// Rate-dependent nodes that it is made of.
+    /// Rate-dependent operands.
     operands: Vec<NodeId>,
-    /// The derivative by each of them.
+    /// Derivative of the node by each operand.
     partials: Vec<NodeId>,
-    /// The energy's derivative by the node.
+    /// Derivative of the energy by the node.
     adjoint: NodeId,
 }
 
-/// What a sweep back over the velocities gives.
+/// Result of a backward sweep over the velocities.
 #[derive(Clone, Debug)]
 pub(crate) struct Momenta {
     /// dT/dq' of every coordinate.
@@ -50,7 +49,7 @@ pub(crate) struct Momenta {
 }
 
 impl Momenta {
-    /// d/dt(dT/dq') - dT/dq with these accelerations.
+    /// Returns d/dt(dT/dq') - dT/dq for these accelerations.
     pub(crate) fn rates(
         &self,
         graph: &mut Graph,
@@ -74,7 +73,7 @@ impl Momenta {
 }
 
 impl Velocities {
-    /// The velocities of a kinetic energy; `None` if it does not depend on the rates.
+    /// Finds the velocities of a kinetic energy; `None` if it does not depend on the rates.
     pub(crate) fn of(graph: &mut Graph, kinetic: NodeId) -> Option<Self> {
         if !is_velocity(graph, kinetic) {
             return None;
@@ -84,7 +83,7 @@ impl Velocities {
             received: HashMap::from([(kinetic, vec![(1.0, graph.one())])]),
         };
         let mut waiting = BTreeSet::from([kinetic]);
-        // An operand is older than what is computed from it.
+        // An operand is older than its uses.
         while let Some(node) = waiting.pop_last() {
             let operands = rate_dependent_parts(graph, node);
             if operands.is_empty() {
@@ -96,7 +95,7 @@ impl Velocities {
         Some(velocities)
     }
 
-    /// Hands the energy's derivative by a node down to what it is made of.
+    /// Propagates the energy's derivative by a node to the operands of the node.
     fn push(&mut self, graph: &mut Graph, node: NodeId, operands: Vec<NodeId>) {
         let received = self.received.remove(&node).unwrap_or_default();
         let adjoint = graph.combine(&received);
@@ -115,7 +114,7 @@ impl Velocities {
         });
     }
 
-    /// The momenta and the slopes of the energy, of this many coordinates.
+    /// Returns the momenta and the derivatives of the energy by the coordinates.
     pub(crate) fn momenta(&self, graph: &mut Graph, coordinates: usize) -> Momenta {
         let mut slopes: Vec<Vec<(f64, NodeId)>> = vec![Vec::new(); coordinates];
         for unit in &self.units {
@@ -137,7 +136,7 @@ impl Velocities {
         }
     }
 
-    /// The Hessian by the rates of this many coordinates; `None` if it depends on the rates.
+    /// Returns the Hessian by the rates; `None` if it depends on the rates.
     pub(crate) fn mass_matrix(
         &self,
         graph: &mut Graph,
@@ -167,7 +166,7 @@ impl Velocities {
 }
 
 impl Unit {
-    /// The derivatives by coordinates, with what it is made of held.
+    /// Returns the derivatives by coordinates, with the operands held.
     fn slopes(&self, graph: &mut Graph, coordinates: usize) -> Vec<(usize, NodeId)> {
         let moving = self.leaves(graph, self.node);
         let mut found = Vec::new();
@@ -180,7 +179,7 @@ impl Unit {
         found
     }
 
-    /// Leaves of a node, the operands counted among them.
+    /// Returns the leaves of a node; operands of the unit count as leaves.
     fn leaves(&self, graph: &Graph, node: NodeId) -> BTreeSet<NodeId> {
         let mut found = BTreeSet::new();
         let mut seen = HashSet::new();
@@ -201,8 +200,7 @@ impl Unit {
         found
     }
 
-    /// Adds the second derivatives of the node itself times its adjoint; `None` if they depend on
-    /// the rates.
+    /// Adds the second derivatives of the node times its adjoint; `None` if they depend on the rates.
     fn add_curvature(&self, graph: &mut Graph, inertia: &mut Inertia) -> Option<()> {
         for (place, &first) in self.operands.iter().enumerate() {
             let slope = self.partials[place];
@@ -230,7 +228,7 @@ impl Unit {
     }
 }
 
-/// The Hessian between velocities that have not been taken apart yet: for each both ways.
+/// Hessian between unprocessed velocities; each entry is stored in both directions.
 #[derive(Default)]
 struct Inertia {
     terms: HashMap<NodeId, BTreeMap<NodeId, Vec<(f64, NodeId)>>>,
@@ -257,7 +255,7 @@ impl Inertia {
         }
     }
 
-    /// Takes a velocity apart: what is between it and others passes to what it is made of.
+    /// Eliminates a velocity: its entries are passed to its operands.
     fn push(&mut self, graph: &mut Graph, unit: &Unit) {
         let Some(row) = self.terms.remove(&unit.node) else {
             return;
@@ -296,8 +294,7 @@ fn is_velocity(graph: &Graph, node: NodeId) -> bool {
     graph.dependence(node).has(Dependence::RATE)
 }
 
-/// The rate-dependent nodes that a node is made of: operands, and factors of the products that it
-/// is a sum of.
+/// Returns the rate-dependent operands of a node; products in a sum count by their factors.
 fn rate_dependent_parts(graph: &Graph, node: NodeId) -> Vec<NodeId> {
     let mut parts = BTreeSet::new();
     for operand in graph.operands(graph.operation(node)) {
@@ -316,11 +313,11 @@ fn rate_dependent_parts(graph: &Graph, node: NodeId) -> Vec<NodeId> {
         .collect()
 }
 
-/// The derivative of a node by one of its parts, or by a coordinate, the other parts held.
+/// Returns the derivative of a node by one operand, or by a coordinate, with the other operands held.
 fn partial(graph: &mut Graph, node: NodeId, held: &[NodeId], by: NodeId) -> NodeId {
     let (zero, one) = (graph.zero(), graph.one());
     let mut direction = Direction::default();
-    // The derivatives of other parts are 0 without a seed.
+    // Without a seed, the derivatives of other operands are 0.
     let moving = held.iter().filter(|part| graph.may_depend_on(**part, by));
     for part in moving {
         direction.seed(*part, zero);

@@ -1,5 +1,5 @@
-//! From the checked model's expressions to graph nodes. Functions of the position along a
-//! field are handed to `field_function`; everything else maps node for node.
+//! Translation of the model's expressions to graph nodes. `field_function` translates functions of the
+//! position along a field.
 
 use std::collections::HashMap;
 
@@ -18,14 +18,14 @@ use crate::symbolic::arguments::Arguments;
 use crate::symbolic::differentiate::{Direction, KnownDerivatives};
 use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation, Space};
 
-/// Why a model could not be derived, and where in its source.
+/// Cause and place of a failed derivation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DeriveError {
-    /// Where the cause stands in the specification.
+    /// Place of the cause in the specification.
     pub span: Span,
-    /// What is wrong.
+    /// Cause.
     pub message: String,
-    /// What would be right, if known.
+    /// Cure, if known.
     pub help: Option<String>,
 }
 
@@ -38,7 +38,7 @@ impl std::fmt::Display for DeriveError {
 impl std::error::Error for DeriveError {}
 
 impl DeriveError {
-    /// The same as a finding on the model's source.
+    /// Returns the error as a diagnostic on the model's source.
     pub fn diagnostic(self) -> Diagnostic {
         Diagnostic::error(self.message)
             .at(self.span, "")
@@ -49,23 +49,23 @@ impl DeriveError {
 /// Result of a derivation step.
 pub type Derived<T> = Result<T, DeriveError>;
 
-/// Translates expressions of one model into one graph.
+/// Translator of the expressions of one model into one graph.
 pub struct Translator<'m> {
-    /// The model.
+    /// Model.
     pub model: &'m Model,
-    /// The graph that grows.
+    /// Graph that the translation extends.
     pub graph: Graph,
     definitions: HashMap<DefinitionId, NodeId>,
     state_rates: HashMap<StateId, NodeId>,
     coefficients: Vec<NodeId>,
     residuals: HashMap<ConstraintId, NodeId>,
     multipliers: Vec<NodeId>,
-    /// Rates along the motion while states of first order are held.
+    /// Rates along the motion for held states of first order.
     rates: KnownDerivatives,
 }
 
 impl<'m> Translator<'m> {
-    /// A translator for fields of these orders.
+    /// Starts a translation; `orders` are the truncation orders of the fields.
     pub fn new(model: &'m Model, orders: &[usize]) -> Self {
         let fields = model.fields.iter().zip(orders);
         let nodes: Vec<usize> = fields
@@ -93,12 +93,12 @@ impl<'m> Translator<'m> {
         }
     }
 
-    /// Records the nodes of the constraints' multipliers, so that observables may refer to them.
+    /// Records the nodes of the multipliers, which observables can contain.
     pub fn known_multipliers(&mut self, nodes: &[NodeId]) {
         self.multipliers = nodes.to_vec();
     }
 
-    /// What the expression of a constraint is.
+    /// Returns the node of a constraint's expression.
     pub fn residual(&mut self, index: ConstraintId) -> Derived<NodeId> {
         if let Some(&known) = self.residuals.get(&index) {
             return Ok(known);
@@ -109,19 +109,19 @@ impl<'m> Translator<'m> {
         Ok(node)
     }
 
-    /// Records the node of the next named coefficient, so that later ones may refer to it.
+    /// Records the node of the next named coefficient, which later ones can contain.
     pub fn push_coefficient(&mut self, node: NodeId) {
         self.coefficients.push(node);
     }
 
-    /// The node of each definition that was used so far.
+    /// Returns the node of each definition used so far.
     pub fn definition_nodes(&self) -> Vec<Option<NodeId>> {
         DefinitionId::first(self.model.definitions.len())
             .map(|index| self.definitions.get(&index).copied())
             .collect()
     }
 
-    /// The node of a scalar expression (a vector inside a sum over modes).
+    /// Translates a scalar expression, or a vector inside a sum over modes.
     pub fn node(&mut self, expr: &Expr) -> Derived<NodeId> {
         match &expr.kind {
             ExprKind::Number(value) => Ok(self.graph.constant(*value)),
@@ -134,7 +134,10 @@ impl<'m> Translator<'m> {
             ExprKind::Definition(index) => self.definition(*index),
             ExprKind::Coefficient(index) => match self.coefficients.get(index.index()) {
                 Some(&node) => Ok(node),
-                None => Err(error(expr, "this coefficient is not known yet")),
+                None => Err(error(
+                    expr,
+                    "this coefficient is used before its definition",
+                )),
             },
             ExprKind::ModeCoordinate(field) => {
                 Ok(self.graph.intern(Operation::ModeCoordinates(*field)))
@@ -142,7 +145,7 @@ impl<'m> Translator<'m> {
             ExprKind::Residual(index) => self.residual(*index),
             ExprKind::Multiplier(index) => match self.multipliers.get(index.index()) {
                 Some(&node) => Ok(node),
-                None => Err(error(expr, "this multiplier is not known yet")),
+                None => Err(error(expr, "this multiplier cannot be used here")),
             },
             ExprKind::Dot(operand) => self.dot(operand),
             ExprKind::Negate(operand) => {
@@ -173,7 +176,7 @@ impl<'m> Translator<'m> {
             | ExprKind::ModeShape(_)
             | ExprKind::Diff(..) => Err(error(
                 expr,
-                "a function of the position stands outside integral(...) and at(...)",
+                "a function of the position must be inside integral(...) or at(...)",
             )),
         }
     }
@@ -182,7 +185,7 @@ impl<'m> Translator<'m> {
         expressions.iter().map(|e| self.node(e)).collect()
     }
 
-    /// The node of a binary operation.
+    /// Returns the node of a binary operation.
     pub fn binary(&mut self, operator: BinaryOperator, left: NodeId, right: NodeId) -> NodeId {
         match operator {
             BinaryOperator::Add => self.graph.add(left, right),
@@ -204,7 +207,7 @@ impl<'m> Translator<'m> {
         Ok(node)
     }
 
-    /// The time derivative of a coordinate, definition or mode coordinate.
+    /// Returns the time derivative of a coordinate, definition or mode coordinate.
     fn dot(&mut self, operand: &Expr) -> Derived<NodeId> {
         match operand.kind {
             ExprKind::Coordinate(index) => Ok(self.graph.intern(Operation::Rate(index))),
@@ -215,12 +218,12 @@ impl<'m> Translator<'m> {
                 if self.graph.dependence(node).has(Dependence::RATE) {
                     return Err(DeriveError {
                         span: operand.span,
-                        message: "dot() of something that holds a rate is an acceleration".into(),
-                        help: Some("an energy, force or observable may hold rates, no more".into()),
+                        message: "dot() of an expression that contains a rate is an acceleration".into(),
+                        help: Some("energies, forces and observables can contain rates, but no accelerations".into()),
                     });
                 }
                 if self.holds_input_without_rate(node) {
-                    return Err(error(operand, "the rate of an input is not known"));
+                    return Err(error(operand, "the rate of an input is unknown"));
                 }
                 let rates = self.rates_within(node)?;
                 let rate = self.rate_along(node, &rates);
@@ -233,8 +236,8 @@ impl<'m> Translator<'m> {
         }
     }
 
-    /// The rate of a node. Without states of first order, whose rates differ from node to node, it
-    /// is made of the rates that are known.
+    /// Returns the rate of a node. Known rates are reused only without states of first order, whose rates
+    /// differ from node to node.
     fn rate_along(&mut self, node: NodeId, rates: &HashMap<StateId, NodeId>) -> NodeId {
         let tangent = |graph: &mut Graph, leaf: NodeId| rate_of_leaf(graph, leaf, rates);
         if !rates.is_empty() {
@@ -246,7 +249,7 @@ impl<'m> Translator<'m> {
         rate
     }
 
-    /// The time derivative of a node along the motion, where rates change with these accelerations.
+    /// Returns the time derivative of a node along the motion with these accelerations.
     pub(crate) fn rate_along_motion(
         &mut self,
         node: NodeId,
@@ -261,7 +264,7 @@ impl<'m> Translator<'m> {
         Ok(Direction::new(&tangent).derivative(&mut self.graph, node))
     }
 
-    /// Returns true if a node holds an input of which no rate is given.
+    /// Returns true if a node contains an input without a given rate.
     pub(crate) fn holds_input_without_rate(&self, node: NodeId) -> bool {
         self.graph.dependence(node).has(Dependence::INPUT)
             && self.graph.reachable(&[node]).into_iter().any(|leaf| {
@@ -270,7 +273,7 @@ impl<'m> Translator<'m> {
             })
     }
 
-    /// The rate of a state, as the specification gives it.
+    /// Returns the rate of a state from the specification.
     pub fn state_rate(&mut self, index: StateId) -> Derived<NodeId> {
         if let Some(&known) = self.state_rates.get(&index) {
             return Ok(known);
@@ -284,7 +287,7 @@ impl<'m> Translator<'m> {
         Ok(node)
     }
 
-    /// The rates of the states that a node depends on.
+    /// Returns the rates of the states that a node depends on.
     fn rates_within(&mut self, node: NodeId) -> Derived<HashMap<StateId, NodeId>> {
         if !self.graph.dependence(node).has(Dependence::STATE) {
             return Ok(HashMap::new());
@@ -315,7 +318,6 @@ impl<'m> Translator<'m> {
             .map_err(|m| error(integrand, m))
     }
 
-    /// The domain of a field.
     fn domain(&mut self, field: FieldId) -> Derived<Domain> {
         let spec = &self.model.fields[field];
         let from = self.node(&spec.from)?;
@@ -330,7 +332,7 @@ impl<'m> Translator<'m> {
         })
     }
 
-    /// An expression of a field's position.
+    /// Translates an expression of a field's position.
     fn field_function(&mut self, field: FieldId, expr: &Expr) -> Derived<FieldFunction> {
         match &expr.kind {
             ExprKind::Position(_) => {
@@ -373,7 +375,7 @@ impl<'m> Translator<'m> {
     }
 }
 
-/// `w`, `dot(w)`, `phi[i]` and their derivatives by the position.
+/// Returns the atom of `w`, `dot(w)`, `phi[i]` or a derivative of these by the position.
 fn field_atom(expr: &Expr) -> Option<Atom> {
     match &expr.kind {
         ExprKind::Field(_) => Some(Atom::Coordinates(0)),
@@ -387,15 +389,15 @@ fn field_atom(expr: &Expr) -> Option<Atom> {
     }
 }
 
-/// The time derivative of a node along the motion, without accelerations: coordinates and
-/// inputs whose rates are given move with their rates, time with 1, and other inputs are held.
+/// Returns the time derivative of a node along the motion, without accelerations. Coordinates and inputs with
+/// given rates change with these, time changes with 1, and other inputs are constant.
 pub fn along_motion(graph: &mut Graph, node: NodeId) -> NodeId {
     let still = HashMap::new();
     let tangent = |graph: &mut Graph, leaf: NodeId| rate_of_leaf(graph, leaf, &still);
     Direction::new(&tangent).derivative(graph, node)
 }
 
-/// The rate of a leaf that moves with its rate, states of first order with these; 0 of other leaves.
+/// Returns the rate of a leaf; states of first order have the rates in `rates`, unknown rates are 0.
 fn rate_of_leaf(graph: &mut Graph, leaf: NodeId, rates: &HashMap<StateId, NodeId>) -> NodeId {
     match *graph.operation(leaf) {
         Operation::Coordinate(index) => graph.intern(Operation::Rate(index)),
@@ -407,8 +409,7 @@ fn rate_of_leaf(graph: &mut Graph, leaf: NodeId, rates: &HashMap<StateId, NodeId
     }
 }
 
-/// How fast a node changes while the state is held: with the time, and with inputs whose rates are
-/// given.
+/// Returns the time derivative of a node at constant state: by time, and by inputs with given rates.
 pub fn explicit_rate(graph: &mut Graph, node: NodeId) -> NodeId {
     let moves = Dependence::TIME.join(Dependence::INPUT);
     if !graph.dependence(node).has(moves) {

@@ -1,6 +1,6 @@
-//! A model without fields as nodes, before its equations of motion are derived. Every expression is translated;
-//! constraints and distances of impacts are differentiated by the coordinates that they hold. The work is
-//! proportional to the size of the specification; that of equations grows with its square or faster.
+//! Nodes of a model without fields, without its equations of motion. Every expression is translated;
+//! constraints and distances of impacts are differentiated by their coordinates. The work is proportional to
+//! the size of the specification; that of the equations grows with its square or faster.
 
 use eomgen_model_spec::ids::{ConstraintId, StateId};
 use eomgen_model_spec::model::{CoefficientKind, Model};
@@ -14,20 +14,20 @@ use crate::mechanics::lagrange::{GradientBy, nonzero_gradient};
 use crate::mechanics::translate::{Derived, Translator, along_motion};
 use crate::symbolic::graph::{Argument, Dependence, Graph, NodeId, Operation, Variable};
 
-/// A translated model without accelerations.
+/// Translated model without accelerations.
 pub(crate) struct Unsolved {
     pub(crate) graph: Graph,
-    /// T, in J.
+    /// Kinetic energy T in J.
     pub(crate) kinetic: NodeId,
-    /// The constraints in the order of the model.
+    /// Constraints in the order of the model.
     pub(crate) constraints: Vec<ConstraintNodes>,
 }
 
-/// A constraint as nodes.
+/// Residual and derivatives of a constraint.
 pub(crate) struct ConstraintNodes {
-    /// The expression that a motion keeps at zero.
+    /// Expression that is zero for every motion.
     pub(crate) residual: NodeId,
-    /// Nonzero derivatives by coordinates, or by rates, with their places.
+    /// Nonzero derivatives by coordinates, or by rates, with their indices.
     pub(crate) derivatives: Vec<(usize, NodeId)>,
 }
 
@@ -62,7 +62,7 @@ impl Unsolved {
         })
     }
 
-    /// The expressions of the constraints.
+    /// Returns the expressions of the constraints.
     pub(crate) fn residuals(&self) -> impl Iterator<Item = NodeId> {
         self.constraints.iter().map(|one| one.residual)
     }
@@ -90,7 +90,7 @@ fn translate_constraints(translator: &mut Translator) -> Derived<Vec<ConstraintN
         });
         multipliers.push(multiplier);
     }
-    // Observables may hold multipliers. Placeholders depend on rates, as multipliers do.
+    // Observables can contain multipliers. Placeholders depend on rates, as multipliers do.
     translator.known_multipliers(&multipliers);
     Ok(found)
 }
@@ -105,7 +105,7 @@ fn translate_coefficients(translator: &mut Translator) -> Derived<()> {
                 if let Some(times) = times {
                     translator.node(times)?;
                 }
-                // A placeholder: the factor needs accelerations.
+                // Placeholder: the factor needs accelerations.
                 let unknown = Operation::Argument(Argument::Weights, Variable::Time);
                 translator.graph.intern(unknown)
             }
@@ -125,7 +125,7 @@ pub(crate) fn translate_impacts(translator: &mut Translator) -> Derived<()> {
         let distance = translator.node(&impact.when)?;
         translator.node(&impact.restitution)?;
         let graph = &mut translator.graph;
-        // The distance of a field may hold no modes at order 0.
+        // At order 0 the distance of a field can contain no modes.
         let is_rigid = model.fields.is_empty();
         if is_rigid && nonzero_gradient(graph, distance, &GradientBy::Coordinates).is_empty() {
             return Err(moves_nothing(impact));

@@ -54,7 +54,7 @@ fn inertia_that_is_missing_or_negative_is_refused_at_its_coordinate() {
         (
             "1/2*m*dot(x)^2 + 1/2*m*ln(y/l)*dot(y)^2",
             10,
-            "comes out as -inf",
+            "has the inertia -inf",
         ),
         (
             "1/2*m*dot(x)^2 + m*v*dot(y)",

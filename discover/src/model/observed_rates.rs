@@ -141,8 +141,8 @@ side = "sign(x)"
         let reasons = [
             ("velocity", 2, "needs the rate of an acceleration"),
             ("torque", 2, "needs the rate of an input"),
-            ("size", 2, "not defined where it jumps"),
-            ("side", 1, "not defined where it jumps"),
+            ("size", 2, "not defined at jumps"),
+            ("side", 1, "not defined at jumps"),
         ];
         for (name, times, reason) in reasons {
             let channel = [channel(name, times)];

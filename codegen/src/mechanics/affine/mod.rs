@@ -1,15 +1,10 @@
-//! The equations of a piecewise-linear model as y' = A y + B u + S sin + C cos + c: every
-//! coefficient a node of parameters alone, so that one program gives the matrices of any
-//! regime at any parameters.
+//! Equations of a piecewise-linear model, y' = A y + B u + S sin + C cos + c. Every coefficient depends only
+//! on parameters, so that one program computes the matrices of any regime at any parameters.
 //!
-//! A switching function becomes a polynomial in *sides*, one per switching surface: 1 where
-//! the surface's function is positive, 0 where it is not. With the sides as parameters,
-//! deadzone(p, b) is s(p - b) (p - b) + (1 - s(p + b)) (p + b), and what is left is linear in
-//! the motion. A side between 0 and 1 is a state held on the surface (dry friction that
-//! sticks): the convex combination of the motions on both sides.
-//!
-//! The files: [`mod@self`] (the coefficients as nodes), `rows` (an expression's coefficients).
-//! Switching functions become polynomials in `sides`; the numbers are the program's.
+//! A switching function becomes a polynomial in *sides*, one for each switching surface: 1 if the surface's
+//! function is positive, else 0. For example, deadzone(p, b) is s(p - b) (p - b) + (1 - s(p + b)) (p + b).
+//! With the sides as parameters, the equations are linear in the motion. A side between 0 and 1 describes a
+//! state held on the surface (sticking): the convex combination of the motions on both sides.
 
 mod rows;
 
@@ -29,43 +24,43 @@ use crate::symbolic::substitute::substitute;
 
 pub(crate) use rows::AffineRow;
 
-/// The equations of a model that is linear between its switching surfaces.
+/// Equations of a model that is linear between its switching surfaces.
 pub struct AffineEquations {
     pub(crate) graph: Graph,
     pub(crate) parameter_names: Vec<String>,
-    /// For each parameter the node of its expression; the sides follow, with none.
+    /// Expression of each dependent parameter; the sides follow, without expressions.
     pub(crate) derived_parameters: Vec<Option<NodeId>>,
-    /// One per coordinate.
+    /// One row for each coordinate.
     pub(crate) scalars: Vec<AffineRow>,
-    /// One per field: its coefficients hold a number or a row per mode.
+    /// One row for each field, with a number or a row of coefficients for each mode.
     pub(crate) modal: Vec<AffineRow>,
-    /// One per state of first order.
+    /// One row for each state of first order.
     pub(crate) first_order: Vec<AffineRow>,
     pub(crate) guards: Vec<AffineRow>,
     pub(crate) guard_functions: Vec<Function>,
-    /// For each guard the first one that differs from it by parameters alone.
+    /// For each guard, the first one that differs from it only by parameters.
     pub(crate) guard_groups: Vec<usize>,
-    /// For each guard whether it may have one value throughout a regime: it feels the sides of
-    /// other surfaces, or is of inputs alone.
+    /// For each guard, true if it can be constant throughout a regime: if it depends on the sides of other
+    /// surfaces or only on inputs.
     pub(crate) guards_rest: Vec<bool>,
-    /// What must not be negative: half-widths of dead zones.
+    /// Half-widths of dead zones, which must not be negative.
     pub(crate) half_widths: Vec<NodeId>,
     pub(crate) phases: Vec<PhaseNodes>,
     /// Pivots of the mass matrix.
     pub(crate) pivots: Vec<NodeId>,
 }
 
-/// A phase rate t + offset.
+/// Phase rate t + offset.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PhaseNodes {
     pub rate: NodeId,
     pub offset: NodeId,
 }
 
-/// The coefficients of a piecewise-linear model.
+/// Derives the coefficients of a piecewise-linear model.
 ///
 /// # Errors
-/// The node that is not linear between switching surfaces, if there is one.
+/// The first node that is not linear between switching surfaces.
 pub fn affine(mut equations: Equations) -> Result<AffineEquations, NodeId> {
     match linearity(&equations) {
         Linearity::Linear | Linearity::PiecewiseLinear => {}
@@ -170,7 +165,7 @@ fn at_time_zero(graph: &mut Graph, phase: NodeId, time: NodeId) -> NodeId {
     substitute(graph, phase, &zero, &mut HashMap::new())
 }
 
-/// For each surface the first one that it is parallel to, itself included.
+/// Returns, for each surface, the first one that it is parallel to (itself included).
 fn parallel(graph: &mut Graph, surfaces: &[NodeId]) -> Vec<usize> {
     let mut firsts = Vec::with_capacity(surfaces.len());
     for (index, &surface) in surfaces.iter().enumerate() {
@@ -183,7 +178,7 @@ fn parallel(graph: &mut Graph, surfaces: &[NodeId]) -> Vec<usize> {
     firsts
 }
 
-/// How many inputs there are, up to the last one used.
+/// Returns the number of inputs up to the last one with a use.
 fn input_count(graph: &Graph, nodes: &[NodeId]) -> usize {
     let inputs = graph
         .reachable(nodes)

@@ -1,5 +1,4 @@
-//! The coefficients of one expression that is of first degree in the motion: its
-//! derivatives, and what is left of it at rest.
+//! Coefficients of an expression of first degree in the motion: its derivatives, and its value at rest.
 
 use std::collections::HashMap;
 
@@ -12,8 +11,8 @@ use crate::symbolic::graph::{Graph, NodeId, Operation, Space};
 use crate::symbolic::modal_derivative::ModalDerivative;
 use crate::symbolic::substitute::substitute;
 
-/// The coefficients of an expression: of a scalar numbers, and vectors for the modes; of a
-/// vector over modes vectors, and matrices for the modes.
+/// Coefficients of an expression. A scalar has numbers, and vectors for the modes; a vector over modes has
+/// vectors, and matrices for the modes.
 #[derive(Clone, Debug)]
 pub(crate) struct AffineRow {
     pub coordinates: Vec<NodeId>,
@@ -28,7 +27,7 @@ pub(crate) struct AffineRow {
 }
 
 impl AffineRow {
-    /// All coefficients.
+    /// Returns all coefficients.
     pub fn nodes(&self) -> impl Iterator<Item = NodeId> + '_ {
         let blocks = [
             &self.coordinates,
@@ -45,16 +44,16 @@ impl AffineRow {
     }
 }
 
-/// The sines and cosines of time.
+/// Sines and cosines of time.
 pub(super) struct Sinusoids {
-    /// The distinct phases.
+    /// Distinct phases.
     pub phases: Vec<NodeId>,
-    /// For each phase its sine and its cosine.
+    /// Sine and cosine of each phase.
     calls: Vec<[NodeId; 2]>,
 }
 
 impl Sinusoids {
-    /// Those that `nodes` hold.
+    /// Finds the sinusoids in `nodes`.
     pub fn in_nodes(graph: &mut Graph, nodes: &[NodeId]) -> Self {
         let mut phases = Vec::new();
         for id in graph.reachable(nodes) {
@@ -78,7 +77,7 @@ impl Sinusoids {
     }
 }
 
-/// Reads coefficients off expressions.
+/// Derives coefficients of expressions.
 pub(super) struct Reader<'a> {
     sinusoids: &'a Sinusoids,
     coordinates: Vec<NodeId>,
@@ -91,7 +90,7 @@ pub(super) struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// A reader for a model whose accelerations have these rows, with so many states of first
+    /// Prepares the variables of a model whose accelerations have these rows, with `states` states of first
     /// order.
     pub fn new(
         graph: &mut Graph,
@@ -132,7 +131,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The coefficients of `id`, which stands for each element of `elements` if these are given.
+    /// Returns the coefficients of `id`; with `elements`, of each element over this space.
     pub fn row(&mut self, graph: &mut Graph, id: NodeId, elements: Option<Space>) -> AffineRow {
         let by = |graph: &mut Graph, variables: &[NodeId]| -> Vec<NodeId> {
             variables
@@ -161,7 +160,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// What is left where nothing moves, nothing is put in and every sinusoid is 0.
+    /// Returns the value at rest, with inputs and sinusoids at 0.
     fn constant(&mut self, graph: &mut Graph, id: NodeId) -> NodeId {
         let sinusoids = self.sinusoids;
         let replacement = |graph: &mut Graph, node: NodeId| {
@@ -180,7 +179,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// The derivative by each field's modes: a vector for a scalar, a matrix for elements.
+/// Differentiates by each field's modes: a vector for a scalar, a matrix for elements.
 fn by_modes(
     graph: &mut Graph,
     id: NodeId,

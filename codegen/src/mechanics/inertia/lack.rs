@@ -1,36 +1,34 @@
-//! What keeps a symmetric matrix from being positive definite, as a direction: by Cholesky
-//! factorisation of each connected block scaled to a unit diagonal, the largest pivot first.
+//! Test of positive definiteness with a direction of failure: Cholesky factorisation of each connected block,
+//! scaled to a unit diagonal, with the largest pivot first.
 
 use std::collections::BTreeMap;
 
-/// What is lost at most, relative to entries of 1, when a matrix of n rows is factorised: n
-/// times this.
+/// Rounding error of the factorisation, relative to unit entries and for each row of the matrix.
 pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// Parts of a direction smaller than this, relative to its largest, are rounding.
+/// Components of a direction below this fraction of the largest are rounding errors.
 const NEGLIGIBLE: f64 = 1e-6;
 
-/// What is wrong with a mass matrix.
+/// Defect of a mass matrix.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Lack {
-    /// A diagonal entry is not positive, or an entry of its row is no number.
+    /// A diagonal entry that is not positive, or an entry of its row that is not finite.
     Of(usize, f64),
-    /// Rates at which all others are 0 and whose kinetic energy is 0, or negative.
+    /// Rates with zero or negative kinetic energy.
     Along { rates: Vec<f64>, negative: bool },
 }
 
-/// A symmetric matrix by rows: the entries that are not 0 by structure, by their columns.
+/// Symmetric matrix by rows; structural zeros are absent.
 pub(super) type SparseRows = Vec<BTreeMap<usize, f64>>;
 
-/// The rows of a matrix of this size that is given row by row, without its zeros.
+/// Converts a full matrix, given row by row, and removes its zeros.
 pub(super) fn sparse(matrix: &[f64], size: usize) -> SparseRows {
     let rows = matrix.chunks(size.max(1));
     let entries = rows.map(|row| row.iter().copied().enumerate().filter(|(_, v)| *v != 0.0));
     entries.map(Iterator::collect).collect()
 }
 
-/// What keeps a symmetric matrix from being positive definite: in the first of its connected blocks
-/// that is not.
+/// Returns the defect of the first connected block that is not positive definite.
 pub(super) fn lack(rows: &SparseRows) -> Option<Lack> {
     for (place, row) in rows.iter().enumerate() {
         if let Some(bad) = row.values().find(|entry| !entry.is_finite()) {
@@ -46,7 +44,7 @@ pub(super) fn lack(rows: &SparseRows) -> Option<Lack> {
         .find_map(|block| lack_within(rows, block))
 }
 
-/// The places that entries connect with each other, block by block.
+/// Returns the connected sets of indices.
 fn blocks(rows: &SparseRows) -> Vec<Vec<usize>> {
     let mut is_seen = vec![false; rows.len()];
     let mut blocks = Vec::new();
@@ -94,15 +92,13 @@ fn lack_within(rows: &SparseRows, block: &[usize]) -> Option<Lack> {
     None
 }
 
-/// The Cholesky factor of a matrix with a unit diagonal, the largest rest eliminated first.
+/// Cholesky factor of a matrix with a unit diagonal, built with the largest remaining pivot first.
 struct Factor {
-    /// Rows of the factor, as long as elements are eliminated.
+    /// Rows of the factor, up to the eliminated columns.
     rows: Vec<Vec<f64>>,
-    /// The diagonal that is left.
+    /// Remaining diagonal.
     rest: Vec<f64>,
-    /// Elements in the order of their elimination.
     order: Vec<usize>,
-    /// Elements that are not eliminated.
     remaining: Vec<usize>,
 }
 
@@ -121,7 +117,7 @@ impl Factor {
         remaining.max_by(|a, b| self.rest[*a].total_cmp(&self.rest[*b]))
     }
 
-    /// The element with the smallest rest, and whether that is negative beyond rounding.
+    /// Returns the index of the smallest remaining pivot, and true if it is negative beyond rounding.
     fn smallest_rest(&self) -> (usize, bool) {
         let remaining = self.remaining.iter().copied();
         let smallest = remaining
@@ -145,7 +141,7 @@ impl Factor {
         }
     }
 
-    /// The direction in which the element moves and those eliminated follow freely.
+    /// Returns the direction of `place` with the eliminated elements free to follow.
     fn null_direction(&self, place: usize) -> Vec<f64> {
         let mut direction = vec![0.0; self.rest.len()];
         direction[place] = 1.0;
@@ -161,7 +157,7 @@ impl Factor {
     }
 }
 
-/// With 1 as the largest part, and without what is rounding.
+/// Scales the largest component to 1 and removes rounding errors.
 fn normalised(rates: Vec<f64>) -> Vec<f64> {
     let largest = rates.iter().fold(
         0.0_f64,
@@ -187,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn a_definite_matrix_lacks_nothing_however_its_units_differ() {
+    fn definite_matrices_of_any_units_pass() {
         assert_eq!(lack(&sparse(&[2.0, 1.0, 1.0, 2.0], 2)), None);
         assert_eq!(lack(&sparse(&[1e18, 1.0, 1.0, 1e-16], 2)), None);
         assert_eq!(lack(&sparse(&[1.0, 1.0, 1.0, 1.0 + 1e-10], 2)), None);
@@ -195,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn entries_of_the_diagonal_have_to_be_positive_numbers() {
+    fn diagonal_entries_must_be_positive_numbers() {
         assert_eq!(
             lack(&sparse(&[1.0, 0.0, 0.0, 0.0], 2)),
             Some(Lack::Of(1, 0.0))
@@ -207,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn a_motion_without_inertia_is_given_by_its_rates() {
+    fn direction_without_inertia_is_reported_by_its_rates() {
         let (rates, negative) = along(&[1.0, 1.0, 1.0, 1.0], 2);
         assert!(!negative && (rates[0] + rates[1]).abs() < 1e-12 && rates[0].abs() == 1.0);
         // (a + 1000 b)^2 + c^2

@@ -1,6 +1,5 @@
-//! Whether every coordinate has inertia where the motion begins: the mass matrix at the initial
-//! state and the declared parameters has to be positive definite. Where it is not, the
-//! coordinates are named that can move without inertia, or with a negative one.
+//! Check that the mass matrix at the initial state and the declared parameters is positive definite. If not,
+//! the error names the coordinates that can move without inertia, or with a negative one.
 
 mod lack;
 pub(crate) mod point;
@@ -18,12 +17,12 @@ use point::Point;
 pub use sweep::Sweep;
 use sweep::Velocities;
 
-/// Refuses a model with a motion from its initial state that no inertia opposes; `mass` is the
-/// mass matrix there, row by row, in kg, kg m^2 or whatever the coordinates make of it.
+/// Rejects a model with a motion that has no inertia at the initial state; `mass` is the mass matrix there,
+/// row by row in SI units.
 ///
 /// # Errors
-/// A coordinate whose inertia is not positive or no number there, or coordinates of which a
-/// combination has none.
+/// A coordinate with an inertia that is not positive or not finite, or a combination of coordinates without
+/// inertia.
 pub fn check(
     model: &Model,
     orders: &[usize],
@@ -40,11 +39,11 @@ pub fn check(
     machine.judge(&sparse(mass, size))
 }
 
-/// The same from the kinetic energy of a model without fields, with work that grows as the energy is
-/// written; None if it takes functions of velocities other than sums and products.
+/// Checks the kinetic energy of a model without fields; the work grows linearly with the energy's expression.
+/// Returns None if it contains functions of velocities other than sums and products.
 ///
 /// # Errors
-/// As [`check`], and initial values that are not finite.
+/// The errors of [`check`], and initial values that are not finite.
 pub fn check_energy(
     model: &Model,
     graph: &Graph,
@@ -88,7 +87,7 @@ const MOVING_ENERGY: Dependence = Dependence::COORDINATE
 const MOVING: Dependence = MOVING_ENERGY.join(Dependence::RATE);
 
 impl Equations {
-    /// Whether the mass matrix depends on more than parameters.
+    /// Returns true if the mass matrix depends on more than parameters.
     fn inertia_moves(&self) -> bool {
         let entries = self.mass.scalars.iter().chain(&self.mass.coupling);
         let mut nodes = entries.flatten().copied();
@@ -98,12 +97,12 @@ impl Equations {
     }
 }
 
-/// What the findings are said with.
+/// Model and names for the messages.
 struct Machine<'m> {
     model: &'m Model,
     orders: &'m [usize],
     names: Vec<String>,
-    /// Whether the inertia depends on where and when the machine is.
+    /// True if the inertia depends on state or time.
     moves: bool,
 }
 
@@ -126,7 +125,7 @@ impl Machine<'_> {
     fn of_one(&self, place: usize, value: f64) -> Diagnostic {
         let name = &self.names[place];
         let what = if !value.is_finite() {
-            format!("an inertia that comes out as {value}")
+            format!("the inertia {value}")
         } else if value < 0.0 {
             format!("the negative inertia {value:e}")
         } else {
@@ -165,7 +164,7 @@ impl Machine<'_> {
         let mut found = Diagnostic::error(message);
         if let Some(first) = places.next() {
             found = found.at(first, label);
-            // All modes of a field stand at one place.
+            // All modes of a field have one place.
             let mut others: Vec<Span> = places.filter(|place| *place != first).collect();
             others.dedup();
             for other in others {
@@ -180,9 +179,7 @@ impl Machine<'_> {
                         with its rate; look for a missing term, a wrong sign or a parameter that is 0"
             .to_owned();
         if self.moves {
-            help.push_str(
-                "; if inertia is missing at this place alone, give `initial` another value",
-            );
+            help.push_str("; if inertia is missing only at this state, change `initial`");
         }
         help
     }
@@ -195,7 +192,7 @@ impl Machine<'_> {
         }
     }
 
-    /// Where a coordinate, or the field of a mode, is declared.
+    /// Returns the place of the declaration of a coordinate, or of a mode's field.
     fn span(&self, place: usize) -> Span {
         let coordinates = &self.model.coordinates;
         if let Some(coordinate) = coordinates.get(place) {
@@ -213,7 +210,7 @@ impl Machine<'_> {
     }
 }
 
-/// A number for a message.
+/// Formats a number for a message.
 fn short(value: f64) -> String {
     let text = format!("{value:.4}");
     match text.trim_end_matches('0').trim_end_matches('.') {

@@ -1,24 +1,21 @@
-//! Numbers of scalar nodes at one point of the motion.
+//! Values of scalar nodes at one point.
 
 use eomgen_model_spec::evaluate::call;
 
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 
-/// Where a motion is, in SI.
+/// Parameters, state and inputs, in SI units.
 pub(crate) struct Point<'p> {
     /// All parameters, in the order of the model.
     pub(crate) parameters: &'p [f64],
     /// Coordinates, their rates, then the states of first order.
     pub(crate) state: &'p [f64],
-    /// The inputs.
     pub(crate) inputs: &'p [f64],
-    /// Number of coordinates.
     pub(crate) coordinates: usize,
 }
 
 impl Point<'_> {
-    /// The numbers of these nodes, which come after their operands, by their places in the graph;
-    /// None if one belongs to a field.
+    /// Computes the values of `nodes` (operands first), indexed by node; None if one belongs to a field.
     pub(crate) fn values(&self, graph: &Graph, nodes: &[NodeId]) -> Option<Vec<f64>> {
         let size = nodes.last().map_or(0, |last| last.0 as usize + 1);
         let mut values = vec![f64::NAN; size];

@@ -1,11 +1,10 @@
-//! The mass matrix at one point as the Hessian of the kinetic energy by the rates, in numbers, by one
-//! sweep back over the velocities that the energy is made of (Gower and Mello, 2012: Optim. Methods
-//! Softw. 27, 251-269).
+//! Numerical mass matrix at one point: the Hessian of the kinetic energy by the rates, from one backward
+//! sweep over the velocities of the energy (Gower and Mello, 2012: Optim. Methods Softw. 27, 251-269).
 //!
-//! A rate is eliminated as soon as no velocity that is left holds it, and stays between the velocities
-//! before it only. Along a chain of bodies that is the recursion of articulated-body inertias
-//! (Featherstone, 1983: Int. J. Robotics Research 2, 13-30), along a chain of masses the elimination of a
-//! band, and independent masses do not meet: the work grows with what is written.
+//! A rate is eliminated as soon as no remaining velocity contains it, so that the factorisation stays sparse.
+//! Along a chain of bodies this is the recursion of articulated-body inertias (Featherstone, 1983: Int. J.
+//! Robotics Research 2, 13-30), along a chain of masses a band elimination. The work is proportional to the
+//! expression.
 
 use std::collections::BTreeMap;
 
@@ -15,27 +14,28 @@ use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation};
 /// Result of a sweep over the velocities.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Sweep {
-    /// True if every rate has inertia in every combination: the mass matrix is positive definite.
+    /// True if the mass matrix is positive definite.
     pub is_definite: bool,
-    /// Number of entries of Hessians that were updated.
+    /// Number of updated Hessian entries.
     pub updates: usize,
 }
 
-/// The velocities of a kinetic energy, operands first, with the number of each node.
+/// Velocities of a kinetic energy, operands first, with the value of each node.
 pub(crate) struct Velocities<'g> {
     graph: &'g Graph,
     nodes: Vec<NodeId>,
     values: &'g [f64],
 }
 
-/// The derivatives of a velocity by what it is made of.
+/// Derivatives of a velocity by its operands.
 struct Local {
     slopes: Vec<(NodeId, f64)>,
     curvatures: Vec<(NodeId, NodeId, f64)>,
 }
 
 impl<'g> Velocities<'g> {
-    /// Those of the energy among `reachable`, what it is computed from; `values` has the number of each.
+    /// Selects the velocities among `reachable`, the nodes of the energy; `values` has the value of each
+    /// node.
     pub(crate) fn new(graph: &'g Graph, reachable: &[NodeId], values: &'g [f64]) -> Self {
         let moves = |node: &NodeId| graph.dependence(*node).has(Dependence::RATE);
         Self {
@@ -45,8 +45,7 @@ impl<'g> Velocities<'g> {
         }
     }
 
-    /// Eliminates the rates of so many coordinates; None if a function other than sums and products is
-    /// taken of a velocity.
+    /// Eliminates the rates; None if a function other than a sum or product has a velocity as its argument.
     pub(super) fn eliminate(&self, coordinates: usize) -> Option<Sweep> {
         let mut composite = Hessian::default();
         let mut articulated = Hessian::default();
@@ -71,8 +70,8 @@ impl<'g> Velocities<'g> {
         Some(found)
     }
 
-    /// The diagonal of the mass matrix of so many coordinates, as far as only sums and products are taken of
-    /// velocities.
+    /// Returns the diagonal of the mass matrix, with 0 for entries that functions other than sums and
+    /// products hide.
     pub(crate) fn diagonal(&self, coordinates: usize) -> Vec<f64> {
         let mut hessian = Hessian::default();
         let mut diagonal = vec![0.0; coordinates];
@@ -88,8 +87,7 @@ impl<'g> Velocities<'g> {
         diagonal
     }
 
-    /// The mass matrix of so many coordinates, its entries that are not 0 by structure; None as for
-    /// `eliminate`.
+    /// Returns the mass matrix without structural zeros; None under the condition of `eliminate`.
     pub(super) fn mass_matrix(&self, coordinates: usize) -> Option<SparseRows> {
         let mut hessian = Hessian::default();
         self.sweep(&mut |step| {
@@ -112,8 +110,8 @@ impl<'g> Velocities<'g> {
         Some(rows)
     }
 
-    /// Shows the velocities from the energy to the rates, and each rate when nothing is left that
-    /// holds it.
+    /// Visits the velocities from the energy to the rates, and each rate after the last velocity that
+    /// contains it.
     fn sweep(&self, see: &mut dyn FnMut(Step<'_>)) -> Option<()> {
         let mut uses = vec![0_usize; self.values.len()];
         let mut adjoints = vec![0.0; self.values.len()];
@@ -168,7 +166,7 @@ impl<'g> Velocities<'g> {
         }
     }
 
-    /// The derivatives of a product of powers by the factors that move.
+    /// Returns the derivatives of a product of powers by its moving factors.
     fn of_product(&self, factors: &[(NodeId, i32)]) -> Local {
         let product = |lowered: &[usize]| -> f64 {
             let mut value = 1.0;
@@ -202,15 +200,15 @@ impl<'g> Velocities<'g> {
     }
 }
 
-/// A step of the sweep.
+/// Step of the sweep.
 enum Step<'s> {
-    /// A velocity with its derivatives by what it is made of and the energy's derivative by it.
+    /// Velocity, its derivatives by its operands, and the energy's derivative by it.
     Velocity(NodeId, &'s Local, f64),
-    /// A rate that no velocity before it holds.
+    /// Rate that no remaining velocity contains.
     Complete(NodeId),
 }
 
-/// Second derivatives of the energy between nodes that are not taken apart yet: each both ways.
+/// Second derivatives of the energy between unprocessed nodes; each is stored in both directions.
 #[derive(Default)]
 struct Hessian {
     rows: BTreeMap<NodeId, BTreeMap<NodeId, f64>>,
@@ -226,7 +224,7 @@ impl Hessian {
         }
     }
 
-    /// Removes a node and gives its row.
+    /// Removes a node and returns its row.
     fn take(&mut self, node: NodeId) -> BTreeMap<NodeId, f64> {
         let row = self.rows.remove(&node).unwrap_or_default();
         for other in row.keys() {
@@ -237,7 +235,7 @@ impl Hessian {
         row
     }
 
-    /// Takes a velocity apart: what is between it and others passes to what it is made of.
+    /// Eliminates a velocity: its entries are passed to its operands.
     fn push(&mut self, node: NodeId, local: &Local, adjoint: f64) {
         for (other, value) in self.take(node) {
             if other == node {
@@ -258,7 +256,7 @@ impl Hessian {
         }
     }
 
-    /// Eliminates a rate, whose pivot it gives: the others follow it freely.
+    /// Eliminates a rate and returns its pivot.
     fn eliminate(&mut self, rate: NodeId) -> f64 {
         let mut row = self.take(rate);
         let pivot = row.remove(&rate).unwrap_or(0.0);

@@ -1,13 +1,12 @@
-//! Inertial parameters passed from link to link towards the fixed axes as far as the motion does
-//! not tell the difference. What stays are the base parameters (Gautier and Khalil, 1990: IEEE
-//! Trans. Robotics Automat. 6, 368-373), sums of parameters that are prepared; most of the others
-//! are 0, and take no operation.
+//! Regrouping of inertial parameters from link to link towards the fixed axes, as far as the motion does not
+//! depend on their distribution. The remaining base parameters (Gautier and Khalil, 1990: IEEE Trans.
+//! Robotics Automat. 6, 368-373) are prepared sums; most other parameters are 0 and cost no operation.
 
 use super::links::{Joint, Link};
 use super::mass_properties::MassProperties;
 use crate::symbolic::graph::Graph;
 
-/// Passes inertial parameters on, outermost links first.
+/// Regroups inertial parameters, outermost links first.
 pub(super) fn pass_on(graph: &mut Graph, links: &mut [Link]) {
     for place in (0..links.len()).rev() {
         let Link {
@@ -28,7 +27,7 @@ pub(super) fn pass_on(graph: &mut Graph, links: &mut [Link]) {
             Joint::Shift(_) => mass.parted_by_shift(graph),
         };
         links[place].mass = kept;
-        // What is passed to the fixed axes does no work.
+        // Parameters of the fixed axes do no work.
         if let Some(parent) = parent {
             links[parent].mass = links[parent].mass.plus(graph, &passed);
         }

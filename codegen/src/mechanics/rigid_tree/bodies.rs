@@ -1,4 +1,4 @@
-//! The rigid bodies of a model, and what of its energies and forces is not theirs.
+//! Rigid bodies of a model, and its remaining energies and forces.
 
 use eomgen_model_spec::ids::CoordinateId;
 use eomgen_model_spec::model::Term;
@@ -14,19 +14,19 @@ use crate::mechanics::sweeps::Velocities;
 use crate::mechanics::translate::{Derived, Translator};
 use crate::symbolic::graph::{Graph, NodeId};
 
-/// The rigid bodies of a model without fields.
+/// Rigid bodies of a model without fields.
 #[derive(Clone)]
 pub(crate) struct RigidBodies {
     tree: RigidTree<NodeId>,
-    /// Kinetic energy of what is no body.
+    /// Kinetic energy of the other terms.
     other_kinetic: NodeId,
-    /// Generalised forces but the bodies' weights.
+    /// Generalised forces without the bodies' weights.
     other_forces: RowNodes,
 }
 
 impl RigidBodies {
-    /// Those of a model with these forces beside its potential; `None` where there are no bodies,
-    /// where there are fields, or where gravity moves.
+    /// Collects the bodies of a model; `applied` are its forces without the potential. Returns `None` without
+    /// bodies, with fields, or with a gravity that is not constant.
     pub(crate) fn of(
         translator: &mut Translator,
         variables: &Variables,
@@ -57,8 +57,8 @@ impl RigidBodies {
         }))
     }
 
-    /// The rows of M a + c - f with these accelerations of so many coordinates: those of the bodies
-    /// by recursion, those of all else as Lagrange's. `None` if all else has no velocities.
+    /// Returns the rows of M a + c - f: those of the bodies by recursion, the others by Lagrange's equations.
+    /// `None` if the other kinetic energy has no velocities.
     pub(crate) fn inverse_dynamics(
         &self,
         graph: &mut Graph,

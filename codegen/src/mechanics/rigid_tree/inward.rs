@@ -1,4 +1,4 @@
-//! Inward: the forces and moments that the motion takes, and their work along the coordinates.
+//! Inward recursion: forces and moments of the links, and their work along the coordinates.
 
 use eomgen_model_spec::ids::CoordinateId;
 
@@ -9,14 +9,14 @@ use super::vector::{VectorTerms, cross, following, signed_sums, times, turned_ba
 use crate::symbolic::differentiate::by_scalar;
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 
-/// A force and its moment about the origin of a link's axes: terms of both.
+/// Terms of a force and of its moment about the origin of a link's axes.
 #[derive(Clone, Default)]
 struct Wrench {
     force: VectorTerms,
     moment: VectorTerms,
 }
 
-/// The generalised force along each of so many coordinates that this motion of the links takes.
+/// Returns the generalised force along each coordinate for this motion of the links.
 pub(super) fn generalised_forces(
     graph: &mut Graph,
     links: &[Link],
@@ -30,7 +30,7 @@ pub(super) fn generalised_forces(
         wrench.add_inertia(graph, &link.mass, &motions[place]);
         let force = signed_sums(graph, &wrench.force);
         let moment = signed_sums(graph, &wrench.moment);
-        // By virtual work: what does it, along what.
+        // Pairs of virtual work: effort and displacement.
         let pairs = match &link.joint {
             Joint::Turn(turn) => vec![(moment[turn.axis], turn.angle)],
             Joint::Shift(origin) => force.into_iter().zip(*origin).collect(),
@@ -65,8 +65,8 @@ pub(super) fn generalised_forces(
 }
 
 impl Wrench {
-    /// What the inertia of a link takes: m a + U h and h x a + the moment about the origin, with U
-    /// the gradient of the acceleration a, m the mass and h its first moments.
+    /// Adds the inertia forces of a link: m a + U h, and h x a + the moment about the origin, with the
+    /// acceleration a, its gradient U, the mass m and the first moments h.
     fn add_inertia(&mut self, graph: &mut Graph, mass: &MassProperties, motion: &Motion) {
         let carried = times(graph, &motion.gradient, &mass.first_moment);
         let lever = cross(graph, &mass.first_moment, &motion.acceleration);
@@ -81,9 +81,9 @@ impl Wrench {
     }
 }
 
-/// The terms of J alpha + omega x J omega along an axis i. Those of products of inertia are gathered
-/// to entries of the gradient, which forces need as well: with j and k that follow i,
-/// J_ij alpha_j - J_ij omega_i omega_k = -J_ij U_ki.
+/// Returns the terms of J alpha + omega x J omega along axis i. Products of inertia multiply entries of the
+/// gradient U, which forces need as well: with j and k the axes after i, J_ij alpha_j - J_ij omega_i omega_k
+/// = -J_ij U_ki.
 fn moment_of_rotation(
     graph: &mut Graph,
     mass: &MassProperties,

@@ -1,4 +1,4 @@
-//! A tree of frames as links, each a shift or a turn away from the one before it.
+//! Tree of frames as links, each a shift or a rotation relative to its parent.
 
 use eomgen_model_spec::rigid_tree::{AxisTurn, RigidTree};
 
@@ -6,27 +6,27 @@ use super::mass_properties::MassProperties;
 use super::vector::{Vector, turned_back};
 use crate::symbolic::graph::{Graph, NodeId};
 
-/// A set of axes, and what is fixed to them.
+/// Set of axes with the mass fixed to it.
 pub(super) struct Link {
-    /// The link before it; the fixed axes if there is none.
+    /// Parent link; `None` for the fixed axes.
     pub(super) parent: Option<usize>,
-    /// How it stands to that.
+    /// Position relative to the parent.
     pub(super) joint: Joint,
-    /// What is fixed to it.
+    /// Mass fixed to the link.
     pub(super) mass: MassProperties,
 }
 
-/// How the axes of a link stand to those before.
+/// Position of the axes of a link relative to its parent.
 #[derive(Clone)]
 pub(super) enum Joint {
-    /// With the origin elsewhere, along the axes.
+    /// Shift of the origin, along the axes.
     Shift(Vector),
-    /// Turned about one of them.
+    /// Rotation about one of the axes.
     Turn(AxisTurn<NodeId>),
 }
 
 impl Joint {
-    /// Whether it is of parameters alone.
+    /// Returns true if the joint depends only on parameters.
     pub(super) fn is_constant(&self, graph: &Graph) -> bool {
         let constant = |id: &NodeId| graph.dependence(*id).is_parameter_only();
         match self {
@@ -36,16 +36,16 @@ impl Joint {
     }
 }
 
-/// Where a frame is: at a link, its axes turned by constant angles.
+/// Position of a frame: a link, then constant rotations.
 #[derive(Clone, Default)]
 struct Placement {
     link: Option<usize>,
     fixed: Vec<AxisTurn<NodeId>>,
 }
 
-/// The links of a tree, each after the one before it. A constant turn becomes a link where a moving
-/// one follows: all that stands before that is put along the axes before the constant turn, in
-/// which velocities are known already.
+/// Returns the links of a tree, parents first. A constant rotation becomes a link only if a moving one
+/// follows; otherwise its content is expressed along the axes before it, along which velocities are known
+/// already.
 pub(super) fn links(graph: &mut Graph, tree: &RigidTree<NodeId>) -> Vec<Link> {
     let mut links: Vec<Link> = Vec::new();
     let mut placements: Vec<Placement> = Vec::with_capacity(tree.frames.len());
@@ -86,7 +86,7 @@ pub(super) fn links(graph: &mut Graph, tree: &RigidTree<NodeId>) -> Vec<Link> {
     links
 }
 
-/// Adds a link; its place.
+/// Adds a link and returns its index.
 fn push(
     graph: &mut Graph,
     links: &mut Vec<Link>,

@@ -1,25 +1,23 @@
-//! Mass, first moments and inertia of what is fixed to a frame: the forces that a motion takes are
-//! linear in them.
+//! Mass, first moments and inertia of the content of a frame. The forces of a motion are linear in them.
 
 use eomgen_model_spec::rigid_tree::{AxisTurn, RigidBody};
 
 use super::vector::{Matrix, Vector, following, turned_back};
 use crate::symbolic::graph::{Graph, NodeId};
 
-/// The inertial parameters of a body along the axes of a frame, about the frame's origin: nodes of
-/// parameters alone.
+/// Inertial parameters of a body along the axes of a frame, about the frame's origin; all depend only on
+/// parameters.
 #[derive(Clone, Debug)]
 pub(super) struct MassProperties {
-    /// The mass m, in kg.
+    /// Mass m in kg.
     pub(super) mass: NodeId,
-    /// m times the centre of mass, in kg m.
+    /// m times the centre of mass in kg m.
     pub(super) first_moment: Vector,
-    /// The inertia about the origin, in kg m^2.
+    /// Inertia about the origin in kg m^2.
     pub(super) inertia: Matrix,
 }
 
 impl MassProperties {
-    /// Those of nothing.
     pub(super) fn none(graph: &mut Graph) -> Self {
         let zero = graph.zero();
         Self {
@@ -29,7 +27,7 @@ impl MassProperties {
         }
     }
 
-    /// Those of a body along the axes of its frame.
+    /// Returns the parameters of a body along the axes of its frame.
     pub(super) fn of_body(graph: &mut Graph, body: &RigidBody<NodeId>) -> Self {
         let ([xx, yy, zz], [xy, yz, xz]) = (body.moments, body.products);
         let zero = graph.zero();
@@ -41,7 +39,7 @@ impl MassProperties {
         about_centre.shifted_back(graph, &body.centre)
     }
 
-    /// Those of both together.
+    /// Returns the sum of two sets of mass properties.
     pub(super) fn plus(&self, graph: &mut Graph, other: &Self) -> Self {
         let mut sum = |a: NodeId, b: NodeId| graph.combine_flat(&[(1.0, a), (1.0, b)]);
         Self {
@@ -52,10 +50,10 @@ impl MassProperties {
         }
     }
 
-    /// Those along turned axes, along the axes before.
+    /// Transforms the parameters from rotated axes to the axes before the rotation.
     pub(super) fn turned_back(&self, graph: &mut Graph, turn: &AxisTurn<NodeId>) -> Self {
         let rows = self.inertia.map(|row| turned_back(graph, turn, &row));
-        // Rows and columns are the same: it is symmetric.
+        // The inertia is symmetric: its rows are its columns.
         let columns = [0, 1, 2].map(|j| [0, 1, 2].map(|i| rows[i][j]));
         Self {
             mass: self.mass,
@@ -64,8 +62,8 @@ impl MassProperties {
         }
     }
 
-    /// Those about an origin, about the one that it lies `origin` from: the theorem of Huygens and
-    /// Steiner with first moments h, J + (2 h.o + m o.o) 1 - h o' - o h' - m o o'.
+    /// Transforms the parameters to an origin from which the present one has the offset `origin`.
+    /// Huygens-Steiner theorem with first moments h: J + (2 h.o + m o.o) 1 - h o' - o h' - m o o'.
     pub(super) fn shifted_back(&self, graph: &mut Graph, origin: &Vector) -> Self {
         let moved = origin.map(|component| graph.multiply(self.mass, component));
         let first_moment =
@@ -100,8 +98,8 @@ impl MassProperties {
         }
     }
 
-    /// Parted in those that a turn about an axis through the origin leaves as they are, and the
-    /// rest: mass, first moment along the axis, and the inertia of a thin rod along it.
+    /// Splits the parameters into those unaffected by a rotation about an axis through the origin, and the
+    /// rest. The first part has mass, first moment along the axis, and the inertia of a thin rod along it.
     pub(super) fn parted_by_turn(&self, graph: &mut Graph, axis: usize) -> (Self, Self) {
         let [i, j] = following(axis);
         let (mut symmetric, mut rest) = (Self::none(graph), self.clone());
@@ -119,7 +117,7 @@ impl MassProperties {
         (symmetric, rest)
     }
 
-    /// Parted in the inertia, which no shift changes where mass and first moment stay, and these.
+    /// Splits off the inertia, which a shift leaves unchanged if mass and first moment remain.
     pub(super) fn parted_by_shift(&self, graph: &mut Graph) -> (Self, Self) {
         let (mut passed, mut rest) = (Self::none(graph), self.clone());
         std::mem::swap(&mut passed.inertia, &mut rest.inertia);

@@ -1,4 +1,4 @@
-//! Outward: how every link moves, along its own axes.
+//! Outward recursion: motion of every link along its own axes.
 
 use eomgen_model_spec::ids::CoordinateId;
 
@@ -8,24 +8,23 @@ use crate::mechanics::translate::along_motion;
 use crate::symbolic::differentiate::Direction;
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 
-/// The acceleration of a coordinate.
+/// Acceleration of a coordinate.
 pub(crate) type Acceleration<'a> = dyn Fn(&mut Graph, CoordinateId) -> NodeId + 'a;
 
-/// How a link moves, along its own axes.
+/// Motion of a link along its own axes.
 #[derive(Clone)]
 pub(super) struct Motion {
-    /// Angular velocity, in 1/s.
+    /// Angular velocity in 1/s.
     pub(super) omega: Vector,
-    /// Angular acceleration, in 1/s^2.
+    /// Angular acceleration in 1/s^2.
     pub(super) alpha: Vector,
-    /// Acceleration of the origin less gravity, in m/s^2.
+    /// Acceleration of the origin minus gravity in m/s^2.
     pub(super) acceleration: Vector,
-    /// What the acceleration grows by from point to point: [alpha]x + [omega]x [omega]x, in 1/s^2.
+    /// Spatial gradient of the acceleration, [alpha]x + [omega]x [omega]x, in 1/s^2.
     pub(super) gradient: Matrix,
 }
 
-/// The motion of every link. The fixed axes accelerate against gravity, which stands for all
-/// weights.
+/// Returns the motion of every link. The fixed axes accelerate against gravity, which replaces all weights.
 pub(super) fn motions(
     graph: &mut Graph,
     links: &[Link],
@@ -66,7 +65,7 @@ pub(super) fn motions(
     motions
 }
 
-/// The motion of axes with their origin elsewhere, which may move along them.
+/// Returns the motion of axes with a shifted origin, which can move.
 fn shifted(
     graph: &mut Graph,
     mut motion: Motion,
@@ -90,7 +89,7 @@ fn shifted(
     motion
 }
 
-/// The motion with a turn about an axis added, along axes that are turned already.
+/// Adds the rotation about an axis to a motion along axes that are already rotated.
 fn spun(
     graph: &mut Graph,
     (mut omega, mut alpha, acceleration): (Vector, Vector, Vector),
@@ -112,7 +111,7 @@ fn spun(
     }
 }
 
-/// [alpha]x + [omega]x [omega]x.
+/// Returns [alpha]x + [omega]x [omega]x.
 fn gradient(graph: &mut Graph, omega: &Vector, alpha: &Vector) -> Matrix {
     let mut gradient = [*omega; 3];
     for axis in 0..3 {

@@ -13,18 +13,16 @@ pub(super) type Matrix = [Vector; 3];
 /// Terms of a sum for each component.
 pub(super) type VectorTerms = [Vec<(f64, NodeId)>; 3];
 
-/// 0.
 pub(super) fn zero(graph: &mut Graph) -> Vector {
     [graph.zero(); 3]
 }
 
-/// The axes that follow an axis, so that the first is cross(second, third).
+/// Returns the two axes (i, j) after an axis, so that axis = i x j.
 pub(super) fn following(axis: usize) -> [usize; 2] {
     [(axis + 1) % 3, (axis + 2) % 3]
 }
 
-/// A sum; one of negative terms alone as minus a sum, whose sign what is made of it takes for
-/// nothing.
+/// Returns a sum; a sum of only negative terms becomes minus a sum, because its uses absorb the sign.
 pub(super) fn signed_sum(graph: &mut Graph, terms: &[(f64, NodeId)]) -> NodeId {
     let sum = graph.combine(terms);
     let positive: Vec<(f64, NodeId)> = match graph.operation(sum) {
@@ -38,12 +36,11 @@ pub(super) fn signed_sum(graph: &mut Graph, terms: &[(f64, NodeId)]) -> NodeId {
     graph.negate(positive)
 }
 
-/// The sums of terms.
 pub(super) fn signed_sums(graph: &mut Graph, terms: &VectorTerms) -> Vector {
     terms.each_ref().map(|terms| signed_sum(graph, terms))
 }
 
-/// The terms of the vector product, one component after the other.
+/// Returns the terms of the vector product, by component.
 pub(super) fn cross(graph: &mut Graph, a: &Vector, b: &Vector) -> VectorTerms {
     [0, 1, 2].map(|axis| {
         let [i, j] = following(axis);
@@ -54,7 +51,7 @@ pub(super) fn cross(graph: &mut Graph, a: &Vector, b: &Vector) -> VectorTerms {
     })
 }
 
-/// The terms of a matrix times a vector.
+/// Returns the terms of a matrix times a vector.
 pub(super) fn times(graph: &mut Graph, matrix: &Matrix, vector: &Vector) -> VectorTerms {
     matrix.map(|row| {
         let products = row.iter().zip(vector);
@@ -64,12 +61,12 @@ pub(super) fn times(graph: &mut Graph, matrix: &Matrix, vector: &Vector) -> Vect
     })
 }
 
-/// The vector along the turned axes.
+/// Transforms a vector to the rotated axes.
 pub(super) fn turned(graph: &mut Graph, turn: &AxisTurn<NodeId>, vector: &Vector) -> Vector {
     by_angle(graph, turn, vector, 1.0)
 }
 
-/// A vector along the turned axes, along those before.
+/// Transforms a vector from the rotated axes back to the axes before.
 pub(super) fn turned_back(graph: &mut Graph, turn: &AxisTurn<NodeId>, vector: &Vector) -> Vector {
     by_angle(graph, turn, vector, -1.0)
 }

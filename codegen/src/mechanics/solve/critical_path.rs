@@ -1,14 +1,14 @@
-//! The critical path of an acceleration, shortened: an elementary function takes as long as a
-//! dozen additions in a row, so what needs it comes last. In c (a + k sin(x)) with c and k of
-//! parameters alone three operations follow the sine, in c a + (c k) sin(x) two, and all else is
-//! done by then. No operation is added; neither is one by opening c (a + k b) to c a + (c k) b.
+//! Shortening of the critical path of an acceleration. An elementary function takes as long as a dozen
+//! additions in a row, so terms that need it come last. With c and k of parameters, three operations follow
+//! the sine in c (a + k sin(x)) and two in c a + (c k) sin(x); the rest is computed before. No operation is
+//! added, also if c (a + k b) becomes c a + (c k) b.
 
 use std::collections::HashMap;
 
 use crate::mechanics::rows::RowNodes;
 use crate::symbolic::graph::{Graph, NodeId, Operation, Shape};
 
-/// The rows with the terms on the critical path of each coordinate's pulled out of its products.
+/// Pulls the terms on the critical path out of the products of each coordinate's row.
 pub(super) fn shorten_critical_path(graph: &mut Graph, rows: &RowNodes) -> RowNodes {
     let uses = graph.uses(&rows.nodes());
     let scalars = rows
@@ -32,14 +32,14 @@ pub(super) fn shorten_critical_path(graph: &mut Graph, rows: &RowNodes) -> RowNo
     }
 }
 
-/// factor scale node, the scale being of parameters alone.
+/// Term factor * scale * node, with a scale of parameters.
 struct ScaledTerm {
     factor: f64,
     scale: NodeId,
     node: NodeId,
 }
 
-/// Opens the sums of a product with the scale, down to what has the critical path of all of it.
+/// Expands the sums of a product with the scale, along the critical path.
 fn pull_out(
     graph: &mut Graph,
     uses: &HashMap<NodeId, usize>,
@@ -80,8 +80,8 @@ fn pull_out(
     }
 }
 
-/// The parts as terms of a sum: those on the critical path and those that take their scale for nothing each by
-/// itself, the others collected by their scale.
+/// Returns the parts as terms of a sum. Terms on the critical path and terms that absorb their scale stay
+/// separate; the others are collected by their scale.
 fn terms_by_scale(
     graph: &mut Graph,
     uses: &HashMap<NodeId, usize>,
@@ -115,7 +115,7 @@ fn terms_by_scale(
     terms
 }
 
-/// The terms, sums that nothing else needs replaced by theirs if all of these take a scale.
+/// Expands sums with one use if all their terms absorb a scale.
 fn opened(
     graph: &Graph,
     uses: &HashMap<NodeId, usize>,
@@ -136,8 +136,8 @@ fn opened(
     all
 }
 
-/// Whether a term can be scaled for nothing: it is of parameters alone, or has such a factor and is not
-/// needed as it is. So scaled it may be what another row has.
+/// Returns true if a term absorbs a scale without an operation: it depends only on parameters, or has such a
+/// factor and no other use. The scaled term can then equal a term of another row.
 fn takes_a_scale(graph: &Graph, uses: &HashMap<NodeId, usize>, node: NodeId) -> bool {
     let parameter_only = |id: NodeId| graph.dependence(id).is_parameter_only();
     let shared = uses.get(&node).is_some_and(|uses| *uses > 1);
@@ -148,7 +148,7 @@ fn takes_a_scale(graph: &Graph, uses: &HashMap<NodeId, usize>, node: NodeId) -> 
     parameter_only(node) || (has_a_factor && !shared)
 }
 
-/// The scaled sum of terms as one term, with the sign in front if all of them are negative.
+/// Returns the scaled sum of terms as one term; if all terms are negative, so is its factor.
 fn scaled_sum(graph: &mut Graph, scale: NodeId, terms: &[(f64, NodeId)]) -> (f64, NodeId) {
     let negative = terms.iter().all(|(c, _)| *c < 0.0);
     let sign = if negative { -1.0 } else { 1.0 };

@@ -1,12 +1,10 @@
-//! What the elimination of modes and that of coordinates share: reciprocals of pivots, and inner
-//! products over the modes of a field.
+//! Reciprocals of pivots and inner products over modes, for the elimination of modes and coordinates.
 
 use crate::symbolic::graph::{Graph, NodeId, Operation, Space};
 use eomgen_model_spec::ids::FieldId;
 
-/// The reciprocal of a pivot. One of parameters alone that is a plain product cancels
-/// against the row it divides (it is checked where the coefficients are prepared); any
-/// other is checked on the spot.
+/// Returns the reciprocal of a pivot. A plain product of parameters can cancel against the row that it
+/// divides; the preparation of the coefficients checks it. Any other pivot is checked when it is used.
 pub(super) fn pivot_reciprocal(graph: &mut Graph, pivot: NodeId) -> NodeId {
     let plain = match graph.operation(pivot) {
         Operation::Parameter(_) | Operation::Product(_) => true,
@@ -20,14 +18,14 @@ pub(super) fn pivot_reciprocal(graph: &mut Graph, pivot: NodeId) -> NodeId {
     }
 }
 
-/// a . b over the modes of a field.
+/// Returns a . b over the modes of a field.
 pub(super) fn inner_product(graph: &mut Graph, field: FieldId, a: NodeId, b: NodeId) -> NodeId {
     if graph.is_zero(a) || graph.is_zero(b) {
         return graph.zero();
     }
     let space = Space::Modes(field);
     match graph.operation(b).clone() {
-        // A sum's terms have prepared factors of their own: keep them apart.
+        // The terms of a sum have separate prepared factors: keep them separate.
         Operation::Sum(terms) if terms.len() > 1 => {
             let terms: Vec<(f64, NodeId)> = terms
                 .iter()

@@ -1,19 +1,18 @@
-//! The accelerations from M a = f, following the structure of the mass matrix.
+//! Solution of M a = f for the accelerations, based on the structure of the mass matrix.
 //!
-//! Modes are eliminated first: their block is diagonal plus outer products through a few
-//! interface scalars (the deflection at a tip mass, say), so that with
-//! D a_q + Phi (G Phi^T a_q + C^T a - b) + H^T a = f_q the modes cost O(S). The forces that
-//! act through the interfaces, p = G Phi^T a_q + C^T a - b, stand as extra unknowns beside
-//! the coordinates in a small system, solved by elimination without pivoting in the order
-//! that counts fewest operations. Forces and not the accelerations Phi^T a_q: of many modes
-//! the end is light, its acceleration large and nearly cancelled by that of what it carries,
-//! and p would be their difference. Coupling that turns with the state goes through
-//! interfaces (C), any other does not (H): only scalars turn (see
-//! `ModalBlock::couple_through_interfaces`). Where G is not diagonal or C not zero the
-//! interfaces are made orthogonal first, or a pivot could be negative although M is positive
-//! definite (see `ModalBlock::orthogonalise`). Where the basis is not orthogonal the modal
-//! block is dense and its Cholesky factor takes the place of D. Pivots must be positive: a
-//! reciprocal of one that is not is NaN.
+//! Modes are eliminated first. Their block is diagonal plus outer products through a few interface scalars
+//! (for example the deflection at a tip mass): D a_q + Phi (G Phi^T a_q + C^T a - b) + H^T a = f_q, so that
+//! the modes cost O(S). The interface forces p = G Phi^T a_q + C^T a - b are additional unknowns of a small
+//! system with the coordinates, solved without pivoting in the cheapest order.
+//!
+//! - Unknowns are the forces p, not the accelerations Phi^T a_q. With many modes the tip is light, its
+//!   acceleration is large and nearly cancels that of its load, and p would be their difference.
+//! - Coupling that depends on the state goes through interfaces (C), other coupling does not (H), so that
+//!   only scalars depend on the state (see `ModalBlock::couple_through_interfaces`).
+//! - If G is not diagonal or C is not zero, the interfaces are orthogonalised first; otherwise a pivot could
+//!   be negative although M is positive definite (see `ModalBlock::orthogonalise`).
+//! - If the basis is not orthogonal, the modal block is dense and its Cholesky factor replaces D.
+//! - Pivots must be positive; the reciprocal of any other pivot is NaN.
 
 mod critical_path;
 mod elimination;
@@ -29,36 +28,34 @@ use crate::symbolic::operation_count::count_operations;
 use modal::{ModalBlock, ModalInverse};
 use small::SmallSystem;
 
-/// The accelerations, and how they were found.
+/// Accelerations with their pivots.
 #[derive(Clone, Debug)]
 pub struct Accelerations {
-    /// The accelerations.
     pub rows: RowNodes,
-    /// All pivots of the factorisation, which must be positive: those of the coordinates in
-    /// the order of their elimination, then those of the interfaces, vectors over the
-    /// modes, and Cholesky factors (positive if they hold no NaN).
+    /// All pivots of the factorisation, which must be positive: those of the coordinates in the order of
+    /// their elimination, those of the interfaces, vectors over the modes, and Cholesky factors (positive if
+    /// not NaN).
     pub pivots: Vec<NodeId>,
-    /// What was chosen.
+    /// Report on the solution.
     pub report: SolveReport,
 }
 
-/// How the accelerations are solved for.
+/// Report on the solution for the accelerations.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SolveReport {
-    /// The unknowns in the order of their elimination after the modes: coordinates by
-    /// number.
+    /// Indices of the coordinates in the order of their elimination, after the modes.
     pub order: Vec<usize>,
-    /// How many interface scalars stand beside the coordinates.
+    /// Number of interface scalars.
     pub interfaces: usize,
-    /// Operations per call for the chosen order.
+    /// Operations per call in the chosen order.
     pub operations: usize,
-    /// Operations per call of the dearest order tried.
+    /// Operations per call in the most expensive order tried.
     pub dearest: usize,
-    /// Whether a field's modal block is dense.
+    /// True if a field's modal block is dense.
     pub dense_modes: bool,
 }
 
-/// Solves M a = f, or M a - A^T lambda = f and A a = b; the accelerations, and lambda.
+/// Solves M a = f, or M a - A^T lambda = f and A a = b, for the accelerations and lambda.
 pub(crate) fn solve(
     graph: &mut Graph,
     mass: &MassMatrix,
@@ -104,13 +101,13 @@ pub(crate) fn solve(
     (accelerations, lambda)
 }
 
-/// The symmetric system with the multipliers as further unknowns behind the coordinates,
+/// Returns the symmetric system with the multipliers as additional unknowns after the coordinates,
 /// ```text
 /// [ M  -A^T ] [ a      ]   [  f ]
 /// [ -A   0  ] [ lambda ] = [ -b ]
 /// ```
-/// in which a multiplier couples to the modes as a coordinate does, through interfaces where what
-/// couples them turns. Eliminated last, its pivot is minus one of A M^-1 A^T.
+/// A multiplier couples to the modes as a coordinate does, through interfaces if its coupling depends on the
+/// state. It is eliminated last, with minus a pivot of A M^-1 A^T.
 fn bordered(
     graph: &mut Graph,
     mass: &MassMatrix,
@@ -140,8 +137,8 @@ fn bordered(
     (mass, right)
 }
 
-/// The orders to try beside the natural one: all others for up to four coordinates, its
-/// reverse beyond.
+/// Returns the orders to try besides the natural one: all others for up to four coordinates, else its
+/// reverse.
 fn other_orders(count: usize) -> Vec<Vec<usize>> {
     if count > 4 {
         return vec![(0..count).rev().collect()];

@@ -1,5 +1,5 @@
-//! The modal block of the mass matrix: its inverse field by field, and the interface scalars
-//! through which outer products couple the modes.
+//! Modal block of the mass matrix: its inverse field by field, and the interface scalars of its outer
+//! products.
 
 use super::elimination::{inner_product, pivot_reciprocal};
 use super::separation::{SeparatedTerm, separate};
@@ -8,7 +8,7 @@ use crate::mechanics::rows::RowNodes;
 use crate::symbolic::graph::{Graph, NodeId, Operation, Space};
 use eomgen_model_spec::ids::FieldId;
 
-/// How the modes of one field are solved for.
+/// Solution for the modes of one field.
 pub(super) enum ModalInverse {
     /// Division by a diagonal.
     Diagonal {
@@ -22,7 +22,7 @@ pub(super) enum ModalInverse {
 impl ModalInverse {
     pub(super) fn new(graph: &mut Graph, mass: &MassMatrix, field: FieldId) -> Self {
         let block = &mass.modal[field][field];
-        // Without a diagonal, fewer outer products than modes make a singular block.
+        // Without a diagonal, a block with fewer outer products than modes is singular.
         let full_rank = block.outer.len() >= graph.size(Space::Modes(field));
         if block.matrices.is_empty() && (block.diagonal.is_some() || !full_rank) {
             let diagonal = block.diagonal.unwrap_or_else(|| graph.zero());
@@ -37,8 +37,7 @@ impl ModalInverse {
         Self::Dense { factor }
     }
 
-    /// A constant diagonal is divided into every term, where it cancels against the
-    /// stiffness of the same mode.
+    /// Divides every term by a constant diagonal, so that it cancels against the stiffness of the same mode.
     pub(super) fn apply(&self, graph: &mut Graph, vector: NodeId) -> NodeId {
         match *self {
             Self::Dense { factor } => graph.cholesky_solve(factor, vector),
@@ -67,33 +66,34 @@ impl ModalInverse {
     }
 }
 
-/// A vector over one field's modes through which outer products act.
+/// Vector over one field's modes in an outer product.
 pub(super) struct Interface {
     pub(super) field: FieldId,
     pub(super) shape: NodeId,
     /// D^-1 shape
     pub(super) solved: NodeId,
-    /// shape^T D^-1 shape, before the interfaces are made orthogonal
+    /// shape^T D^-1 shape, before orthogonalisation.
     pub(super) square: NodeId,
 }
 
-/// Of a combination of other interfaces rounding leaves about 1e-32 of the square.
+/// Smallest remaining square of an interface, as a fraction. A dependent interface leaves about 1e-32 by
+/// rounding.
 const LEAST_SHARE: f64 = 1e-20;
 
-/// The modal block: an inverse per field, and interfaces with their weights G.
+/// Modal block: an inverse for each field, and interfaces with their weights G.
 pub(super) struct ModalBlock {
     pub(super) inverses: Vec<Option<ModalInverse>>,
     pub(super) interfaces: Vec<Interface>,
     pub(super) weights: Vec<Vec<NodeId>>,
     /// C: coupling of each coordinate through the interfaces.
     pub(super) coupling: Vec<Vec<NodeId>>,
-    /// Coupling of each coordinate with each field past the interfaces.
+    /// H: other coupling of each coordinate with each field.
     pub(super) direct_coupling: Vec<Vec<NodeId>>,
-    /// b: the part of the modes' forces that acts through the interfaces.
+    /// b: modal forces through the interfaces.
     pub(super) forces: Vec<NodeId>,
-    /// The modes' forces past the interfaces, per field.
+    /// Other modal forces, for each field.
     pub(super) direct_forces: Vec<NodeId>,
-    /// Whether a field acts on coordinates through its interfaces alone.
+    /// True if a field couples to coordinates only through its interfaces.
     pub(super) through_interfaces: Vec<bool>,
 }
 
@@ -140,9 +140,9 @@ impl ModalBlock {
         block
     }
 
-    /// Where a field's coupling turns with the state, as a link's does with the angle of the
-    /// next: its shapes become interfaces, so that only scalars turn. The shapes themselves
-    /// must not, or the interfaces would cost more than they spare.
+    /// Makes the shapes of a field interfaces if its coupling depends on the state, as that of a link depends
+    /// on the angle of the next one; only scalars then depend on the state. Shapes that depend on the state
+    /// are excluded, because their interfaces would cost more than they save.
     fn couple_through_interfaces(&mut self, graph: &mut Graph, field: FieldId) {
         if !matches!(
             self.inverses[field],
@@ -199,14 +199,13 @@ impl ModalBlock {
         diagonal && !self.through_interfaces.contains(&true)
     }
 
-    /// Makes the interfaces of a field orthogonal by D^-1 (Gram-Schmidt), each keeping its
-    /// own direction: phi_k = psi_k + sum over j < k of mu_kj psi_j, G' = U G U^T with
-    /// U_jk = mu_kj.
+    /// Makes the interfaces of a field orthogonal with respect to D^-1 (Gram-Schmidt): phi_k = psi_k + sum
+    /// over j < k of mu_kj psi_j, G' = U G U^T with U_jk = mu_kj.
     ///
-    /// The pivots of I + G K, K = Phi^T D^-1 Phi, are ratios of its leading minors. With K
-    /// diagonal these are the minors of the symmetric I + K^1/2 G K^1/2, all positive if
-    /// the modal block is positive definite. With any other K they need not be: for a mass
-    /// on a lever between two points of a beam the first can be negative.
+    /// The pivots of I + G K, K = Phi^T D^-1 Phi, are ratios of its leading minors. With a diagonal K these
+    /// are the minors of the symmetric I + K^1/2 G K^1/2, all positive if the modal block is positive
+    /// definite. With another K a pivot can be negative, for example for a mass on a lever between two points
+    /// of a beam.
     fn orthogonalise(&mut self, graph: &mut Graph, field: FieldId) {
         let places: Vec<usize> = (0..self.interfaces.len())
             .filter(|place| self.interfaces[*place].field == field)
@@ -227,8 +226,8 @@ impl ModalBlock {
         }
     }
 
-    /// mu: how much of the orthogonal interface `earlier` is in the interface `place`; 0 if
-    /// `earlier` was a combination of others, which leaves nothing but rounding of it.
+    /// Returns mu, the share of the orthogonal interface `earlier` in the interface `place`; 0 if `earlier`
+    /// depends on other interfaces, so that only rounding errors remain of it.
     fn share(&self, graph: &mut Graph, place: usize, earlier: usize) -> NodeId {
         let (own, other) = (&self.interfaces[place], &self.interfaces[earlier]);
         let product = inner_product(graph, own.field, own.shape, other.solved);
@@ -239,7 +238,7 @@ impl ModalBlock {
         graph.select(square, least, share, zero)
     }
 
-    /// The weights after phi_place = psi + share psi_earlier.
+    /// Updates the weights for phi_place = psi + share psi_earlier.
     fn move_weight(&mut self, graph: &mut Graph, place: usize, earlier: usize, share: NodeId) {
         for column in 0..self.interfaces.len() {
             let moved = graph.multiply(share, self.weights[place][column]);
@@ -255,7 +254,7 @@ impl ModalBlock {
         }
     }
 
-    /// Separates u v^T into interfaces: scalar factors go into the weights.
+    /// Splits u v^T into interfaces; scalar factors become weights.
     fn add_outer(&mut self, graph: &mut Graph, u: (FieldId, NodeId), v: (FieldId, NodeId)) {
         let (rows, columns) = (separate(graph, u.1), separate(graph, v.1));
         for u_part in &rows {

@@ -1,20 +1,19 @@
-//! Separation of state-dependent coupling: vectors over the modes as scalars times vectors that
-//! hold no scalar factor. What depends on the state then stands in the scalars, and the vectors
-//! depend on parameters alone.
+//! Separation of coupling vectors over the modes into state-dependent scalars and vectors that depend only on
+//! parameters.
 
 use std::collections::BTreeMap;
 
 use crate::symbolic::graph::{Graph, NodeId, Operation, Shape};
 
-/// A scalar times a vector without scalar factors (1 for equal entries).
+/// Scalar times a vector without scalar factors (1 for equal entries).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SeparatedTerm {
     pub(super) scalar: NodeId,
     pub(super) vector: NodeId,
 }
 
-/// A vector as a sum of parts, each vector once, in the order of the graph. Sums are opened
-/// from the outermost to the innermost, so that a shared one is opened once.
+/// Splits a vector into a sum of terms, each vector once, in the order of the graph. Sums are expanded from
+/// the outermost to the innermost, so that a shared one is expanded once.
 pub(super) fn separate(graph: &mut Graph, vector: NodeId) -> Vec<SeparatedTerm> {
     let one = graph.one();
     let mut waiting: BTreeMap<NodeId, Vec<(f64, NodeId)>> =
@@ -64,7 +63,7 @@ pub(super) fn separate(graph: &mut Graph, vector: NodeId) -> Vec<SeparatedTerm> 
         .collect()
 }
 
-/// The terms of a sum among the factors, which is taken out of them; none if there is none.
+/// Removes a sum from the factors and returns its terms; empty without a sum.
 fn sum_among(graph: &Graph, factors: &mut Vec<(NodeId, i32)>) -> Vec<(f64, NodeId)> {
     let place = factors.iter().position(|(factor, exponent)| {
         *exponent == 1 && matches!(graph.operation(*factor), Operation::Sum(_))

@@ -1,5 +1,5 @@
-//! The small system of interface forces and coordinates that is left when the modes are
-//! eliminated, and its elimination without pivoting.
+//! Small system of interface forces and coordinates after the elimination of the modes, solved without
+//! pivoting.
 
 use super::elimination::{inner_product, pivot_reciprocal};
 use super::modal::ModalBlock;
@@ -8,20 +8,20 @@ use crate::mechanics::rows::RowNodes;
 use crate::symbolic::graph::{Graph, NodeId, Space};
 use eomgen_model_spec::ids::FieldId;
 
-/// The system left when the modes are eliminated: interface forces, then coordinates.
+/// System after the elimination of the modes: interface forces, then coordinates.
 pub(super) struct SmallSystem {
     pub(super) interfaces: usize,
-    /// How many of the last rows are those of multipliers, whose pivots are negative.
+    /// Number of rows of multipliers at the end, whose pivots are negative.
     multipliers: usize,
     pub(super) matrix: Vec<Vec<NodeId>>,
     pub(super) right: Vec<NodeId>,
-    /// D^-1 f_q per field
+    /// D^-1 f_q of each field.
     pub(super) free_modes: Vec<NodeId>,
-    /// D^-1 h per coordinate and field
+    /// D^-1 h of each coordinate and field.
     pub(super) solved_coupling: Vec<Vec<NodeId>>,
 }
 
-/// What the interfaces do when the modes alone move them.
+/// Response of the interfaces to the modes.
 struct Response {
     /// K = Phi^T D^-1 Phi
     compliance: Vec<Vec<NodeId>>,
@@ -91,7 +91,7 @@ impl SmallSystem {
             let coupling = coupling.map(|h| inner_product(graph, field, shape, h[field]));
             response.coupling.push(coupling.collect());
             let free = self.free_modes[field];
-            // Many terms are summed before they are multiplied with shape after shape.
+            // Many terms are summed before the products with the shapes.
             response.free.push(if orthogonal && !graph.is_zero(free) {
                 let product = graph.multiply(shape, free);
                 graph.total_over(Space::Modes(field), product)
@@ -102,7 +102,7 @@ impl SmallSystem {
         response
     }
 
-    /// (1 + G K) p + (G Phi^T D^-1 H^T - C^T) a = G Phi^T D^-1 f_q - b
+    /// Adds the row (1 + G K) p + (G Phi^T D^-1 H^T - C^T) a = G Phi^T D^-1 f_q - b.
     fn push_interface_row(
         &mut self,
         graph: &mut Graph,
@@ -134,8 +134,8 @@ impl SmallSystem {
         self.matrix.push(row);
     }
 
-    /// (A - H D^-1 H^T) a - (H D^-1 Phi + C K) p = f - H D^-1 f_q - C Phi^T D^-1 f_q; a field
-    /// couples by C or by H.
+    /// Adds the row (A - H D^-1 H^T) a - (H D^-1 Phi + C K) p = f - H D^-1 f_q - C Phi^T D^-1 f_q; a field
+    /// couples through C or through H.
     fn push_coordinate_row(
         &mut self,
         graph: &mut Graph,
@@ -175,7 +175,7 @@ impl SmallSystem {
         self.matrix.push(entries);
     }
 
-    /// Whether both halves of the matrix are the same nodes.
+    /// Returns true if both halves of the matrix are the same nodes.
     fn is_symmetric(&self) -> bool {
         let mut rows = self.matrix.iter().enumerate();
         rows.all(|(row, entries)| {
@@ -183,9 +183,9 @@ impl SmallSystem {
         })
     }
 
-    /// Elimination without pivoting, interfaces first, then coordinates in this order, then
-    /// multipliers. Returns the unknowns in their own order, and the pivots, of multipliers with
-    /// the other sign: all must be positive.
+    /// Eliminates without pivoting: interfaces, coordinates in the given order, multipliers. Returns the
+    /// unknowns in their original order, and the pivots (with opposite sign for multipliers), which must be
+    /// positive.
     pub(super) fn eliminate(
         &self,
         graph: &mut Graph,
@@ -217,7 +217,7 @@ impl SmallSystem {
                     continue;
                 }
                 let factor = graph.multiply(matrix[row][pivot_row], reciprocal);
-                // What is left of a symmetric matrix is symmetric: its upper half is enough.
+                // The remainder of a symmetric matrix is symmetric: its upper half suffices.
                 let first = if symmetric { place } else { step + 1 };
                 for &column in &order[first..] {
                     let product = graph.multiply(factor, matrix[pivot_row][column]);
@@ -246,8 +246,8 @@ impl SmallSystem {
         (unknowns, pivots)
     }
 
-    /// The accelerations of the modes once interface forces and coordinates are known:
-    /// D^-1 (f_q - H^T a - Phi p), where H has rows of the multipliers too.
+    /// Returns the accelerations of the modes, D^-1 (f_q - H^T a - Phi p); H includes the rows of the
+    /// multipliers.
     pub(super) fn back_substitute(
         &self,
         graph: &mut Graph,
@@ -280,7 +280,7 @@ impl SmallSystem {
     }
 }
 
-/// start + sign sum of a_k b_k
+/// Returns start + sign * sum of a_k b_k.
 fn plus_products(
     graph: &mut Graph,
     start: NodeId,
