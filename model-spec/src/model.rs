@@ -1,10 +1,9 @@
-//! The checked model: every name looked up, every unit consistent. This is what the
-//! derivation reads; it knows nothing of TOML, and nothing of how equations are derived.
+//! Checked model: every name resolved, every unit consistent. Input of the derivation;
+//! independent of TOML.
 //!
-//! All numbers are in coherent SI units. The state of a model of order S is the
-//! coordinates in the order of the specification, then each field's S modes, then the
-//! rates of all these in the same order, then the states of first order in the order of the
-//! specification.
+//! All numbers are in coherent SI units. State of a model of order S: the coordinates in the
+//! order of the specification, each field's S modes, the rates of all these in the same order,
+//! and the states of first order.
 
 use std::sync::Arc;
 
@@ -19,33 +18,32 @@ use crate::source::Source;
 use crate::span::Span;
 use crate::unit::Unit;
 
-/// The highest modal truncation order accepted.
+/// Highest modal truncation order accepted.
 pub const MAX_ORDER: usize = 128;
 
-/// The parameter that says how fast emitted equations bring residuals of constraints back to
-/// zero, in 1/s.
+/// Name of the parameter for the decay rate of constraint residuals in emitted equations, 1/s.
 pub const STABILISATION_RATE: &str = "stabilisation_rate";
 
-/// What the observable of a constraint's multiplier is called before the constraint's name.
+/// Prefix of the observable for the multiplier of a constraint.
 pub const MULTIPLIER: &str = "lambda_";
 
-/// What the observable of a constraint's residual is called before the constraint's name.
+/// Prefix of the observable for the residual of a constraint.
 pub const RESIDUAL: &str = "residual_";
 
-/// The most constraints accepted: what they cost grows with the cube of their number.
+/// Largest number of constraints: the cost grows with the cube of their number.
 pub const MAX_CONSTRAINTS: usize = 100;
 
-/// The most impacts accepted: what they cost grows with the cube of their number.
+/// Largest number of impacts: the cost grows with the cube of their number.
 pub const MAX_IMPACTS: usize = 100;
 
-/// A mechanical system: parameters, coordinates and the terms of its Lagrangian.
+/// Mechanical system: parameters, coordinates and the terms of its Lagrangian.
 #[derive(Clone, Debug)]
 pub struct Model {
-    /// Identifier of the model (a valid Rust and C identifier).
+    /// Name of the model, a valid Rust and C identifier.
     pub name: String,
-    /// One line for people.
+    /// Title in one line.
     pub title: String,
-    /// The text the model was read from.
+    /// Text of the specification.
     pub source: Source,
     /// Parameters in the order of the specification.
     pub parameters: Vec<Parameter>,
@@ -53,205 +51,202 @@ pub struct Model {
     pub coordinates: Vec<Coordinate>,
     /// Signals supplied at run time.
     pub inputs: Vec<Input>,
-    /// States of first order, whose rates the specification gives.
+    /// States of first order, with rates given by the specification.
     pub states: Vec<State>,
     /// Flexible fields.
     pub fields: Vec<Field>,
-    /// Named expressions; a definition refers only to definitions before it in
-    /// [`Model::definition_order`].
+    /// Named expressions; each refers only to earlier ones in [`Model::definition_order`].
     pub definitions: Vec<Definition>,
     /// Terms of the kinetic energy, in J.
     pub kinetic: Vec<Term>,
     /// Terms of the potential energy, in J.
     pub potential: Vec<Term>,
-    /// The frames and the bodies, if there are any. The energies above hold those of the bodies,
-    /// as terms of the bodies' names.
+    /// Frames and bodies, if any. The energies above contain those of the bodies, as terms with the
+    /// bodies' names.
     pub rigid_tree: Option<RigidTree<Expr>>,
-    /// Rayleigh functions, in W: the force on coordinate j is minus the derivative by
+    /// Rayleigh functions, in W: the force on coordinate j is minus the derivative with respect to
     /// its rate.
     pub dissipation: Vec<Term>,
     /// Forces acting by virtual work.
     pub forces: Vec<Force>,
-    /// Expressions that stay zero.
+    /// Constraints, holonomic or nonholonomic.
     pub constraints: Vec<Constraint>,
-    /// Distances that do not fall below zero: bodies hit each other there.
+    /// Unilateral contacts with impacts.
     pub impacts: Vec<Impact>,
-    /// Quantities to be reported; of each constraint its multiplier and its residual, last.
-    /// `energy` and `power` are added to these for every model and are not in this list.
+    /// Observables of the specification, then the multiplier and the residual of each constraint.
+    /// `energy` and `power` exist in every model and are not in this list.
     pub observables: Vec<Observable>,
-    /// Names the specification gives to coefficients of the derived equations.
+    /// Names that the specification gives to coefficients of the derived equations.
     pub coefficients: Vec<Coefficient>,
-    /// How measured channels differ from the quantities of the model.
+    /// Gain, bias and delay of measured channels.
     pub sensors: Vec<Sensor>,
-    /// How the machine is drawn, if the specification says so. Nothing that is derived or emitted
-    /// depends on it.
+    /// Drawing of the machine, if the specification has one. Derivation and emission do not use it.
     pub drawing: Option<Drawing>,
-    /// The parameters in an order such that each comes after those it refers to.
+    /// Parameters in dependency order.
     pub parameter_order: Vec<ParameterId>,
-    /// The definitions in an order such that each comes after those it refers to.
+    /// Definitions in dependency order.
     pub definition_order: Vec<DefinitionId>,
 }
 
-/// A drawing of the machine in a plane: points that move and lines between them.
+/// Drawing of the machine in a plane: moving points, and lines between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawing {
-    /// The points: `origin`, which is (0, 0), then those of the specification in its order.
+    /// Points: `origin` at (0, 0), then those of the specification in its order.
     pub points: Vec<DrawnPoint>,
-    /// The lines in the order of the specification.
+    /// Lines in the order of the specification.
     pub lines: Vec<DrawnLine>,
 }
 
-/// A point of a drawing.
+/// Point of a drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DrawnPoint {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// To the right, in m.
+    /// Ordinate to the right, in m.
     pub x: Ordinate,
-    /// Upwards, in m.
+    /// Ordinate upwards, in m.
     pub y: Ordinate,
-    /// Where x and y stand.
+    /// Positions of x and y in the text.
     pub spans: [Span; 2],
 }
 
-/// What places a point along an axis.
+/// Ordinate of a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ordinate {
-    /// A number, in m.
+    /// Number, in m.
     Number(f64),
-    /// A coordinate that is a length.
+    /// Coordinate with the unit m.
     Coordinate(CoordinateId),
-    /// An observable that is a length.
+    /// Observable with the unit m.
     Observable(ObservableId),
 }
 
-/// A line of a drawing, from point to point.
+/// Line of a drawing, from point to point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DrawnLine {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Two points or more.
+    /// At least two points.
     pub points: Vec<PointId>,
 }
 
-/// A parameter of the model.
+/// Parameter of the model.
 #[derive(Clone, Debug)]
 pub struct Parameter {
     /// ASCII name.
     pub name: String,
-    /// The unit the specification declares; the value below is already in SI.
+    /// Unit declared in the specification; `value` is in SI.
     pub unit: Unit,
-    /// What it is.
+    /// Description.
     pub doc: String,
-    /// Where its value comes from ("Table I", "assumed: ...", "fitted to ...").
+    /// Origin of the value ("Table I", "assumed: ...", "fitted to ...").
     pub origin: String,
-    /// A number in SI, or an expression in other parameters.
+    /// Number in SI, or expression in other parameters.
     pub value: ParameterValue,
-    /// Smallest admissible value in SI, if stated.
+    /// Smallest admissible value in SI, if given.
     pub min: Option<f64>,
-    /// Largest admissible value in SI, if stated.
+    /// Largest admissible value in SI, if given.
     pub max: Option<f64>,
-    /// What is not known of its value, if stated.
+    /// Uncertainty of the value, if given.
     pub uncertainty: Option<Uncertainty>,
-    /// Where its name stands.
+    /// Position of the name in the text.
     pub span: Span,
 }
 
-/// What is not known of a parameter's value.
+/// Uncertainty of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Uncertainty {
-    /// It is normal, with this standard deviation as a part of the value.
+    /// Normal distribution; standard deviation as a fraction of the value.
     Relative(f64),
-    /// It is normal, with this standard deviation in SI.
+    /// Normal distribution; standard deviation in SI.
     StandardDeviation(f64),
-    /// It lies between these ends, in SI, anywhere alike.
+    /// Uniform distribution between two ends, in SI.
     Between([f64; 2]),
 }
 
-/// The value of a parameter.
+/// Value of a parameter.
 #[derive(Clone, Debug)]
 pub enum ParameterValue {
-    /// A number in SI.
+    /// Number in SI.
     Number(f64),
-    /// An expression in other parameters (no coordinate, input, time or field).
+    /// Expression in other parameters, without coordinates, inputs, time or fields.
     Expression(Expr),
 }
 
-/// A generalised coordinate.
+/// Generalised coordinate.
 #[derive(Clone, Debug)]
 pub struct Coordinate {
     /// ASCII name.
     pub name: String,
-    /// Its unit (coherent SI).
+    /// Unit (coherent SI).
     pub unit: Unit,
-    /// What it is.
+    /// Description.
     pub doc: String,
     /// Initial value (parameters only), 0 if absent.
     pub initial: Option<Expr>,
     /// Initial rate (parameters only), 0 if absent.
     pub initial_rate: Option<Expr>,
-    /// Where it lives, if the specification says so.
+    /// Range of validity, if given.
     pub range: Option<Range>,
-    /// Where its name stands.
+    /// Position of the name in the text.
     pub span: Span,
 }
 
-/// Interval of a coordinate, an input or a state. The model makes no statement outside.
+/// Range of a coordinate, an input or a state; the model is not valid outside.
 #[derive(Clone, Debug)]
 pub struct Range {
-    /// The lower end (parameters only).
+    /// Lower end (parameters only).
     pub low: Expr,
-    /// The upper end (parameters only), above the lower one.
+    /// Upper end (parameters only), above the lower one.
     pub high: Expr,
-    /// Where both stand.
+    /// Position of the array in the text.
     pub span: Span,
 }
 
-/// A signal supplied at run time.
+/// Signal supplied at run time.
 #[derive(Clone, Debug)]
 pub struct Input {
     /// ASCII name.
     pub name: String,
-    /// Its unit (coherent SI).
+    /// Unit (coherent SI).
     pub unit: Unit,
-    /// What it is.
+    /// Description.
     pub doc: String,
-    /// Where it lives, if the specification says so.
+    /// Range of validity, if given.
     pub range: Option<Range>,
-    /// The input that is its rate, if that is given: of prescribed motion s this is `s_dot`, of
-    /// `s_dot` it is `s_ddot`.
+    /// Input that is the rate of this one, if given: `s_dot` for the prescribed motion s, `s_ddot`
+    /// for `s_dot`.
     pub rate: Option<InputId>,
-    /// The input that it is the rate of, if it is one.
+    /// Input of which this one is the rate, if any.
     pub rate_of: Option<InputId>,
-    /// Where its name stands.
+    /// Position of the name in the text.
     pub span: Span,
 }
 
-/// A state of first order z, with dz/dt = `rate`: a filter, an actuator, a current.
+/// State of first order z, with dz/dt = `rate`: a filter, an actuator, a current.
 #[derive(Clone, Debug)]
 pub struct State {
     /// ASCII name.
     pub name: String,
-    /// Its unit (coherent SI).
+    /// Unit (coherent SI).
     pub unit: Unit,
-    /// What it is.
+    /// Description.
     pub doc: String,
-    /// Its rate, in its unit per s: an expression of coordinates, rates, states, inputs,
-    /// parameters and time. The rates of states that it holds, in definitions too, lead to no
-    /// circle.
+    /// Rate, in the state's unit per s: an expression of coordinates, rates, states, inputs,
+    /// parameters and time. The rates of states in it, also through definitions, have no cycle.
     pub rate: Expr,
     /// Initial value (parameters only), 0 if absent.
     pub initial: Option<Expr>,
-    /// Interval outside which the model makes no statement, if the specification gives one.
+    /// Range of validity, if given.
     pub range: Option<Range>,
-    /// Where its name stands.
+    /// Position of the name in the text.
     pub span: Span,
 }
 
-/// A flexible field w(x, t) = sum over i of phi_i(x) q_i(t), x from `from` to `to`.
+/// Flexible field w(x, t) = sum over i of phi_i(x) q_i(t), x from `from` to `to`.
 #[derive(Clone, Debug)]
 pub struct Field {
-    /// ASCII name, `w` in the paper.
+    /// ASCII name; `w` in the paper.
     pub name: String,
     /// Unit of the field and of its mode coordinates (phi is dimensionless).
     pub unit: Unit,
@@ -265,43 +260,43 @@ pub struct Field {
     pub basis: Basis,
     /// Name of the mode coordinates: `q` gives `q_1 .. q_S`.
     pub coordinates: String,
-    /// The specification's default order.
+    /// Default order of the specification.
     pub order: usize,
-    /// What it is.
+    /// Description.
     pub doc: String,
-    /// Where its name stands.
+    /// Position of the name in the text.
     pub span: Span,
 }
 
-/// The mode shapes of a field.
+/// Mode shapes of a field.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Basis {
-    /// The elastic modes of a uniform beam. Clamped and free: Eq. (17) with beta_r l the roots of
-    /// cos z cosh z = -1 and the corrected xi_r. A rod in tension or torsion, or a string, fixed
-    /// at an end has the shapes of a beam pinned there, one free at an end those of a beam guided
-    /// there. In a specification `"clamped_free"`, `"string"` and so on.
+    /// Elastic modes of a uniform beam. Clamped-free: Eq. (17) with beta_r l the roots of cos z
+    /// cosh z = -1 and the corrected xi_r. Rods in tension or torsion, and strings, use the same
+    /// shapes: a fixed end equals a pinned one, a free end equals a guided one. In a specification:
+    /// `"clamped_free"`, `"string"` and others.
     Beam {
-        /// The end at `from`.
+        /// End at `from`.
         from: End,
-        /// The end at `to`.
+        /// End at `to`.
         to: End,
     },
-    /// Eq. (17) with beta_r and xi_r as Eq. (18) and (19) print them, for comparison
-    /// only: these shapes are not orthogonal and violate the free end's conditions.
-    /// In a specification `"clamped_free_printed"`.
+    /// Eq. (17) with beta_r and xi_r as printed in Eq. (18) and (19), for comparison. These shapes
+    /// are not orthogonal and violate the boundary conditions at the free end. In a specification:
+    /// `"clamped_free_printed"`.
     ClampedFreePrinted,
-    /// Shapes from a file, between whose rows a cubic spline runs. They belong to
-    /// s = (x - from)/(to - from): another length stretches them. In a specification `"table"`.
+    /// Shapes from a file, with a cubic spline between its rows. They are functions of s = (x -
+    /// from)/(to - from), so another length stretches them. In a specification: `"table"`.
     Table {
         /// The shapes.
         table: Arc<ShapeTable>,
-        /// Where the file's name stands.
+        /// Position of the file's name in the text.
         span: Span,
     },
 }
 
 impl Basis {
-    /// The table of a basis that has one.
+    /// Returns the table of a basis from a file.
     pub fn table(&self) -> Option<&ShapeTable> {
         match self {
             Self::Table { table, .. } => Some(table),
@@ -309,76 +304,76 @@ impl Basis {
         }
     }
 
-    /// The beam of the paper.
+    /// Clamped-free beam of the paper.
     pub const CLAMPED_FREE: Self = Self::Beam {
         from: End::Clamped,
         to: End::Free,
     };
 }
 
-/// What holds the end of a beam.
+/// Boundary condition at an end of a beam.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum End {
-    /// No deflection and no slope.
+    /// No deflection, no slope.
     Clamped,
-    /// No deflection and no moment.
+    /// No deflection, no moment.
     Pinned,
-    /// No moment and no shear.
+    /// No moment, no shear.
     Free,
-    /// No slope and no shear: it slides across the beam without turning.
+    /// No slope, no shear: the end moves across the beam without rotation.
     Guided,
 }
 
-/// A named expression of coordinates, rates, inputs, parameters and time (no bare field or
-/// position: a field appears through `at`, `integral` or `sum`).
+/// Named expression of coordinates, rates, inputs, parameters and time. A field appears in it
+/// through `at`, `integral` or `sum`.
 #[derive(Clone, Debug)]
 pub struct Definition {
     /// ASCII name.
     pub name: String,
-    /// What it stands for.
+    /// Value.
     pub value: Expr,
-    /// Its unit, inferred.
+    /// Unit, inferred.
     pub unit: Unit,
-    /// What it is.
+    /// Description.
     pub doc: String,
-    /// Where its name stands.
+    /// Position of the name in the text.
     pub span: Span,
 }
 
-/// A named term of an energy or of the dissipation.
+/// Named term of an energy or of the dissipation.
 #[derive(Clone, Debug)]
 pub struct Term {
-    /// The term's own name.
+    /// Name of the term.
     pub name: String,
-    /// Its value.
+    /// Value.
     pub value: Expr,
-    /// What it is.
+    /// Description.
     pub doc: String,
-    /// Where it comes from ("Eq. (21)", "fitted to ...").
+    /// Origin ("Eq. (21)", "fitted to ...").
     pub origin: String,
-    /// Where its name stands.
+    /// Position of the name in the text.
     pub span: Span,
 }
 
-/// A force that acts by virtual work: Q_j = value * d(on)/d(q_j).
+/// Force that acts by virtual work: Q_j = value * d(on)/d(q_j).
 #[derive(Clone, Debug)]
 pub struct Force {
-    /// The force's own name.
+    /// Name of the force.
     pub name: String,
-    /// What it does work on: an expression of coordinates (often a coordinate or a
-    /// definition), free of rates and inputs.
+    /// Expression of coordinates, without rates and inputs; often a coordinate or a definition.
     pub on: Expr,
-    /// The force or torque.
+    /// Force or torque.
     pub value: Expr,
-    /// What it is.
+    /// Description.
     pub doc: String,
-    /// Where it comes from ("Eq. (11)", "fitted to ...").
+    /// Origin ("Eq. (11)", "fitted to ...").
     pub origin: String,
-    /// Where its name stands.
+    /// Position of the name in the text.
     pub span: Span,
 }
 
-/// The name of an entry as the specification writes it at `span`: that of the vector for a component.
+/// Returns the name that the specification has at `span`: for a component, the name of the
+/// vector.
 pub fn written_name<'n>(name: &'n str, span: Span, source: &Source) -> &'n str {
     match source.text.get(span.start..span.end) {
         Some(text) if !text.is_empty() && name.starts_with(text) => &name[..text.len()],
@@ -386,137 +381,136 @@ pub fn written_name<'n>(name: &'n str, span: Span, source: &Source) -> &'n str {
     }
 }
 
-/// An expression that stays zero along the motion. Its force on the coordinates is A^T lambda, A
-/// the derivative of the expression by the coordinates or, of a nonholonomic one, by their rates.
+/// Expression that is zero along the motion. Its generalised force is A^T lambda. A is the
+/// derivative of the expression with respect to the coordinates or, if it is nonholonomic, to
+/// their rates.
 #[derive(Clone, Debug)]
 pub struct Constraint {
     /// ASCII name.
     pub name: String,
-    /// What stays zero: of coordinates, prescribed motion and time, or linear in the rates.
+    /// Expression of coordinates, prescribed motion and time, or linear in the rates.
     pub zero: Expr,
-    /// Whether it holds rates: its multiplier is then in W per unit of the expression, else in J.
+    /// True if the expression contains rates. The multiplier is then in W per unit of the
+    /// expression, else in J.
     pub is_nonholonomic: bool,
-    /// Its unit, inferred.
+    /// Unit, inferred.
     pub unit: Unit,
-    /// What it is.
+    /// Description.
     pub doc: String,
-    /// Where it comes from.
+    /// Origin.
     pub origin: String,
-    /// Where its name stands.
+    /// Position of the name in the text.
     pub span: Span,
 }
 
-/// A unilateral contact: a distance g(q, t) that does not fall below zero. Where it falls to zero the
-/// rates jump by M^-1 A^T P, A the distance's derivative by the coordinates and P an impulse that is
-/// not negative, so that its rate comes back as restitution times what it was (Newton).
+/// Unilateral contact: a distance g(q, t) >= 0. When g falls to zero, the rates jump by M^-1
+/// A^T P. A is the derivative of g with respect to the coordinates, and the impulse P >= 0
+/// gives the rate of g after the impact: minus the restitution times the rate before (Newton).
 #[derive(Clone, Debug)]
 pub struct Impact {
     /// ASCII name.
     pub name: String,
-    /// The distance: of coordinates, prescribed motion and time.
+    /// Distance: an expression of coordinates, prescribed motion and time.
     pub when: Expr,
-    /// The part of its rate that comes back, from 0 to 1, of parameters.
+    /// Coefficient of restitution, from 0 to 1 (parameters only).
     pub restitution: Expr,
-    /// The distance's unit, inferred.
+    /// Unit of the distance, inferred.
     pub unit: Unit,
-    /// What it is.
+    /// Description.
     pub doc: String,
-    /// Where it comes from.
+    /// Origin.
     pub origin: String,
-    /// Where its name stands.
+    /// Position of the name in the text.
     pub span: Span,
 }
 
-/// A quantity to be reported.
+/// Reported quantity.
 #[derive(Clone, Debug)]
 pub struct Observable {
     /// ASCII name.
     pub name: String,
-    /// Its value (no accelerations).
+    /// Value, without accelerations.
     pub value: Expr,
-    /// The observable whose time derivative it is instead, if it is one; see
-    /// [`Model::observe_rate`].
+    /// Set if the observable is the time derivative of another one; see [`Model::observe_rate`].
     pub rate_of: Option<ObservedRate>,
-    /// Its unit (coherent SI), inferred, and checked against the declared one if any.
+    /// Unit (coherent SI), inferred and checked against the declared one.
     pub unit: Unit,
-    /// What it is.
+    /// Description.
     pub doc: String,
-    /// Where its name stands.
+    /// Position of the name in the text.
     pub span: Span,
 }
 
-/// A time derivative of an observable.
+/// Time derivative of an observable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ObservedRate {
-    /// Place of the observable in [`Model::observables`].
+    /// Index into [`Model::observables`].
     pub observable: usize,
     /// 1 for the rate, 2 for the acceleration.
     pub times: u8,
 }
 
-/// A name for a coefficient of the derived accelerations, as Eq. (22) names them.
+/// Name for a coefficient of the derived accelerations, as in Eq. (22).
 #[derive(Clone, Debug)]
 pub struct Coefficient {
-    /// ASCII name; for one per mode the names are listed by the derivation as
-    /// `name_1 ..` unless `names` says otherwise.
+    /// ASCII name. Coefficients of each mode are named `name_1 ..` by the derivation.
     pub name: String,
-    /// What it names.
+    /// Meaning.
     pub kind: CoefficientKind,
-    /// The field for each of whose modes it is given, if its specification says so
-    /// (`each = "w[i]"`); `phi[i]` then stands outside any sum.
+    /// Field with one coefficient per mode, if given (`each = "w[i]"`); `phi[i]` is then allowed
+    /// outside a sum.
     pub each: Option<FieldId>,
-    /// What it is.
+    /// Description.
     pub doc: String,
-    /// Where its name stands.
+    /// Position of the name in the text.
     pub span: Span,
 }
 
-/// What a coefficient names.
+/// Meaning of a coefficient.
 #[derive(Clone, Debug)]
 pub enum CoefficientKind {
-    /// An expression of parameters and of coefficients listed before it.
+    /// Expression of parameters and of earlier coefficients.
     Value(Expr),
-    /// The factor with which `by` enters the acceleration of `of`, times `times`.
+    /// Factor of `by` in the acceleration of `of`, multiplied by `times`.
     Factor {
-        /// The coordinate (or, with a field's mode coordinates, every mode) whose
-        /// acceleration is meant.
+        /// Coordinate of the acceleration; with a field's mode coordinates, every mode.
         of: Expr,
-        /// The quantity it multiplies: a coordinate, a rate, `deadzone(p, b)`,
-        /// `contact(p, b)*dot(p)`, a field's mode coordinates, or 1 for what is left.
+        /// Quantity multiplied: a coordinate, a rate, `deadzone(p, b)`, `contact(p, b)*dot(p)`, a
+        /// field's mode coordinates, or 1 for the remainder.
         by: Expr,
-        /// A factor to multiply with (parameters and earlier coefficients), if any.
+        /// Additional factor (parameters and earlier coefficients), if any.
         times: Option<Expr>,
     },
 }
 
-/// A measured channel: measured(t) = gain * quantity(t - delay) + bias.
+/// Measured channel: measured(t) = gain * quantity(t - delay) + bias.
 #[derive(Clone, Debug)]
 pub struct Sensor {
-    /// Its name.
+    /// Name of the channel.
     pub channel: String,
-    /// What it measures: a coordinate, a rate (`NAME_dot`), an observable, `energy` or `power`.
+    /// Name of a coordinate, a rate (`NAME_dot`), an observable, `energy` or `power`.
     pub observable: String,
-    /// Dimensionless, 1 for a true sensor.
+    /// Gain; 1 for an ideal sensor.
     pub gain: f64,
-    /// In the channel's SI unit.
+    /// Bias in the channel's SI unit.
     pub bias: f64,
-    /// In s, negative where the channel is early.
+    /// Delay in s; negative for an early signal.
     pub delay: f64,
-    /// Where what it measures is said.
+    /// Position of the observable's name in the text.
     pub span: Span,
 }
 
-/// An expression with every name looked up.
+/// Expression with every name resolved.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expr {
-    /// What stands here.
+    /// Form of the expression.
     pub kind: ExprKind,
-    /// Where it stands.
+    /// Position in the text.
     pub span: Span,
 }
 
 impl Expr {
-    /// Shows this expression and all its parts to `see`, the whole before its parts.
+    /// Calls `see` with this expression and all its parts, the whole before its parts.
     pub fn visit(&self, see: &mut impl FnMut(&Expr)) {
         see(self);
         match &self.kind {
@@ -559,78 +553,77 @@ impl Expr {
     }
 }
 
-/// The forms of a checked expression.
+/// Forms of a checked expression.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ExprKind {
-    /// A number (literals carry no unit; in SI).
+    /// Number in SI; literals are dimensionless.
     Number(f64),
     /// The constant pi.
     Pi,
-    /// The time t, in s.
+    /// Time t, in s.
     Time,
-    /// The position along a field, inside that field's functions only.
+    /// Position along a field; only in functions of that field.
     Position(FieldId),
-    /// A parameter.
+    /// Parameter.
     Parameter(ParameterId),
-    /// A generalised coordinate (not a mode).
+    /// Generalised coordinate, not a mode.
     Coordinate(CoordinateId),
-    /// An input.
+    /// Input.
     Input(InputId),
-    /// A state of first order.
+    /// State of first order.
     State(StateId),
-    /// A definition.
+    /// Definition.
     Definition(DefinitionId),
-    /// An earlier entry of [`Model::coefficients`], inside coefficients only.
+    /// Earlier entry of [`Model::coefficients`]; only in coefficients.
     Coefficient(CoefficientId),
-    /// The multiplier of a constraint, in observables only.
+    /// Multiplier of a constraint; only in observables.
     Multiplier(ConstraintId),
-    /// What the expression of a constraint is, in observables only.
+    /// Residual of a constraint; only in observables.
     Residual(ConstraintId),
-    /// A field w(x, t), inside that field's `integral`, `at` or `diff` only.
+    /// Field w(x, t); only in `integral`, `at` or `diff` of that field.
     Field(FieldId),
-    /// A field's mode coordinate `q[i]`, i the index of the innermost enclosing sum
-    /// over that field.
+    /// Mode coordinate `q[i]` of a field; i is the index of the innermost enclosing sum over that
+    /// field.
     ModeCoordinate(FieldId),
-    /// A field's mode shape `phi[i]`, a function of the position, i as above.
+    /// Mode shape `phi[i]` of a field, a function of the position; i as for mode coordinates.
     ModeShape(FieldId),
-    /// The time derivative of a coordinate, definition, field, mode coordinate or state.
+    /// Time derivative of a coordinate, definition, field, mode coordinate or state.
     Dot(Box<Expr>),
-    /// The derivative of an expression in the field (`w`, `dot(w)` or `phi[i]`) by the
-    /// position, this many times (1 to 4).
+    /// Derivative of `w`, `dot(w)` or `phi[i]` with respect to the position, 1 to 4 times.
     Diff(Box<Expr>, u8),
-    /// `at(expression, position)` of field `field`: a function of the position,
-    /// evaluated at `position` (parameters only).
+    /// `at(expression, position)`: a function of the position, evaluated at `position` (parameters
+    /// only).
     At {
-        /// The field whose position is replaced.
+        /// Field with the position.
         field: FieldId,
-        /// The function of the position.
+        /// Function of the position.
         value: Box<Expr>,
-        /// Where to evaluate it.
+        /// Position of the evaluation.
         position: Box<Expr>,
     },
-    /// The integral of an expression over the field's domain.
+    /// Integral of an expression over the field's domain.
     Integral {
-        /// The field whose domain is meant.
+        /// Field with the domain.
         field: FieldId,
-        /// The integrand, a function of the position.
+        /// Integrand, a function of the position.
         integrand: Box<Expr>,
     },
-    /// The sum over the field's modes; 0 at order 0.
+    /// Sum over the field's modes; 0 at order 0.
     Sum {
-        /// The field whose modes are meant.
+        /// Field with the modes.
         field: FieldId,
-        /// The summand, with `q[i]` and `phi[i]`.
+        /// Summand, with `q[i]` and `phi[i]`.
         summand: Box<Expr>,
     },
     /// `-operand`.
     Negate(Box<Expr>),
     /// `left operator right`.
     Binary(BinaryOperator, Box<Expr>, Box<Expr>),
-    /// A function of one or two scalar arguments.
+    /// Function of one or two scalar arguments.
     Call(Function, Vec<Expr>),
 }
 
-/// The functions of the expression language.
+/// Functions of the expression language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Function {
     /// Sine of an angle.
@@ -645,7 +638,7 @@ pub enum Function {
     Acos,
     /// Inverse tangent.
     Atan,
-    /// `atan2(y, x)`, the angle of the point (x, y); both of one unit.
+    /// `atan2(y, x)`, the angle of the point (x, y); both arguments in one unit.
     Atan2,
     /// Hyperbolic sine.
     Sinh,
@@ -663,14 +656,14 @@ pub enum Function {
     Abs,
     /// Sign, with sign(0) = 0; switches at 0.
     Sign,
-    /// The smaller of two; switches where they are equal.
+    /// Smaller of two values; switches at equality.
     Min,
-    /// The larger of two; switches where they are equal.
+    /// Larger of two values; switches at equality.
     Max,
     /// `deadzone(p, b)`, f_k of Eq. (7).
     Deadzone,
-    /// `contact(p, b)`, 1 where |p| > b and 0 elsewhere, Eq. (8) without the rate.
+    /// `contact(p, b)`, 1 if |p| > b, else 0: Eq. (8) without the rate.
     Contact,
-    /// `above(p)`, 1 where p > 0 and 0 elsewhere.
+    /// `above(p)`, 1 if p > 0, else 0.
     Above,
 }

@@ -1,7 +1,6 @@
-//! Which coordinates, rates, states and inputs each expression depends on, through definitions too,
-//! and what of that is allowed where: energies hold no states and only inputs whose rates are
-//! given, potentials no rates, a force
-//! works on something that moves, and every coordinate has inertia.
+//! Finds the coordinates, rates, states and inputs of each expression, also through
+//! definitions, and checks them: energies contain no states and only inputs with given rates,
+//! potentials no rates, a force acts on a quantity that moves, every coordinate has inertia.
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::id_set::IdSet;
@@ -12,45 +11,46 @@ use crate::model::{
 use crate::rate_order::{WrittenOut, rate_order};
 use crate::span::Span;
 
-/// The deepest expression accepted once definitions are written out.
+/// Deepest expression accepted after expansion of its definitions.
 pub const MAX_EXPANDED_DEPTH: usize = 600;
 
-/// The number of a coordinate among what has a rate.
+/// Returns the index of a coordinate among coordinates and fields.
 fn coordinate_number(coordinate: CoordinateId) -> usize {
     2 * coordinate.index()
 }
 
-/// The number of a field among what has a rate.
+/// Returns the index of a field among coordinates and fields.
 fn field_number(field: FieldId) -> usize {
     2 * field.index() + 1
 }
 
-/// What an expression depends on.
+/// Dependencies of an expression.
 #[derive(Clone, Debug, Default)]
 struct Motion {
-    /// Coordinates and fields, by their values.
+    /// Coordinates and fields that enter by value.
     values: IdSet,
-    /// Coordinates and fields, by their rates.
+    /// Coordinates and fields that enter by rate.
     rates: IdSet,
-    /// Where a rate enters, if one does.
+    /// Position of the first rate.
     rate: Option<Span>,
-    /// The states that enter by their values.
+    /// States that enter by value.
     states: IdSet,
-    /// Where a state, or the rate of one, enters, if one does.
+    /// Position of the first state, or rate of a state.
     state: Option<Span>,
-    /// Where the input enters of which the fewest rates are given, if one does, with how many.
+    /// Number of given rates, and position, of the input with the fewest.
     input: Option<(u8, Span)>,
-    /// Where the multiplier or the residual of a constraint enters, if one does.
+    /// Position of the first multiplier or residual of a constraint.
     reaction: Option<Span>,
-    /// Where a function switches with what moves, if one does.
+    /// Position of the first function that switches during the motion.
     switch: Option<Span>,
-    /// Whether time enters.
+    /// True if time enters.
     time: bool,
-    /// Depth of the expression with definitions written out.
+    /// Depth after expansion of definitions.
     depth: usize,
 }
 
-/// Checks what every expression of a model depends on, and fills in which constraints hold rates.
+/// Checks the dependencies of every expression of a model, and sets `is_nonholonomic` of the
+/// constraints.
 pub fn check(model: &mut Model, found: &mut Diagnostics) {
     let nonholonomic = check_expressions(model, found);
     for (constraint, is_nonholonomic) in model.constraints.iter_mut().zip(nonholonomic) {
@@ -58,7 +58,7 @@ pub fn check(model: &mut Model, found: &mut Diagnostics) {
     }
 }
 
-/// Whether each of the constraints holds rates.
+/// Returns for each constraint whether it contains rates.
 fn check_expressions(model: &Model, found: &mut Diagnostics) -> Vec<bool> {
     let mut checker = Checker {
         definitions: vec![Motion::default(); model.definitions.len()],
@@ -66,7 +66,7 @@ fn check_expressions(model: &Model, found: &mut Diagnostics) -> Vec<bool> {
         model,
         found,
     };
-    // Names lead to no circle here: those that do are refused where they are looked up.
+    // `resolve` has rejected cycles already.
     for written in rate_order(model).unwrap_or_default() {
         match written {
             WrittenOut::Definition(index) => {
@@ -92,7 +92,7 @@ fn check_expressions(model: &Model, found: &mut Diagnostics) -> Vec<bool> {
 struct Checker<'m, 'f> {
     model: &'m Model,
     definitions: Vec<Motion>,
-    /// How deep the rates of the states are, definitions written out.
+    /// Depth of the rates of the states, after expansion of definitions.
     state_rates: Vec<usize>,
     found: &'f mut Diagnostics,
 }
@@ -111,9 +111,12 @@ impl Checker<'_, '_> {
             self.refuse_driven(term, &motion, "the potential energy");
             if let Some(place) = motion.rate {
                 self.found.push(
-                    Diagnostic::error(format!("the potential energy `{}` holds a rate", term.name))
-                        .at(place, "this is a rate")
-                        .help("energies of motion belong in [kinetic], losses in [dissipation]"),
+                    Diagnostic::error(format!(
+                        "the potential energy `{}` contains a rate",
+                        term.name
+                    ))
+                    .at(place, "this is a rate")
+                    .help("move a kinetic energy to [kinetic], a loss to [dissipation]"),
                 );
             }
         }
@@ -126,34 +129,36 @@ impl Checker<'_, '_> {
         }
     }
 
-    /// An energy is one of the mechanism alone.
+    /// Rejects inputs and states in an energy.
     fn refuse_driven(&mut self, term: &Term, motion: &Motion, what: &str) {
         if let Some((0, place)) = motion.input {
             self.found.push(
-                Diagnostic::error(format!("{what} `{}` holds an input", term.name))
-                    .at(place, "this is an input whose rate is not given")
+                Diagnostic::error(format!("{what} `{}` contains an input", term.name))
+                    .at(place, "this input has no given rate")
                     .help(
-                        "inputs act through [forces]; of prescribed motion the rates are given: \
+                        "inputs act only through [forces]; declare the rates of a prescribed motion: \
                          rates = 2",
                     ),
             );
         }
         if let Some(place) = motion.state {
             self.found.push(
-                Diagnostic::error(format!("{what} `{}` holds a state", term.name))
+                Diagnostic::error(format!("{what} `{}` contains a state", term.name))
                     .at(place, "this is a state")
-                    .help("states act through [forces]"),
+                    .help("states act only through [forces]"),
             );
         }
     }
 
-    /// Without inertia there is no acceleration to solve for.
+    /// Rejects coordinates without inertia: their acceleration would be undetermined.
     fn refuse_massless(&mut self, inertial: &IdSet) {
         let mut refuse = |name: &str, kind: &str, span: Span| {
             self.found.push(
                 Diagnostic::error(format!("the {kind} `{name}` has no inertia"))
-                    .at(span, "its rate is in no term of [kinetic]")
-                    .help(format!("add a kinetic energy such as 1/2*m*dot({name})^2")),
+                    .at(span, "no term of [kinetic] contains its rate")
+                    .help(format!(
+                        "add a kinetic energy, for example 1/2*m*dot({name})^2"
+                    )),
             );
         };
         for (index, coordinate) in self.model.coordinates.iter().enumerate() {
@@ -187,15 +192,15 @@ impl Checker<'_, '_> {
             if let Some((place, why)) = problem {
                 let name = written_name(&force.name, force.span, &self.model.source);
                 self.found.push(
-                    Diagnostic::error(format!("the force `{name}` can do no work here"))
+                    Diagnostic::error(format!("`on` of the force `{name}` is not a displacement"))
                         .at(place, why)
-                        .help("`on` is a coordinate, or an expression of coordinates"),
+                        .help("give `on` a coordinate, or an expression of coordinates"),
                 );
             }
         }
     }
 
-    /// Checks what may stay zero; whether each of the constraints holds rates.
+    /// Checks all constraints. Returns for each whether it contains rates.
     fn constraints(&mut self) -> Vec<bool> {
         let model = self.model;
         let degrees = model.coordinates.len();
@@ -206,16 +211,16 @@ impl Checker<'_, '_> {
         if let Some(excess) = model.constraints.get(most) {
             let help = match most < MAX_CONSTRAINTS {
                 true => {
-                    format!("{degrees} constraints already leave {degrees} coordinates no freedom")
+                    format!("{degrees} constraints already fix all {degrees} coordinates")
                 }
-                false => format!("at most {MAX_CONSTRAINTS} are taken"),
+                false => format!("give at most {MAX_CONSTRAINTS} constraints"),
             };
             self.found.push(
                 Diagnostic::error(format!(
-                    "{} constraints are too many",
+                    "the model has too many constraints: {}",
                     model.constraints.len()
                 ))
-                .at(excess.span, "one more than can be held")
+                .at(excess.span, "one constraint too many")
                 .help(help),
             );
             return Vec::new();
@@ -227,34 +232,36 @@ impl Checker<'_, '_> {
             .collect()
     }
 
-    /// Checks what stays zero; whether it holds rates.
+    /// Checks a constraint. Returns whether it contains rates.
     fn constraint(&mut self, constraint: &Constraint) -> bool {
         let motion = self.motion(&constraint.zero);
         let span = constraint.zero.span;
         let is_nonholonomic = motion.rate.is_some() && !motion.rates.is_empty();
         let needed = if is_nonholonomic { 1 } else { 2 };
         let problem = if let Some(place) = motion.state {
-            let help = "a constraint is one of coordinates, their rates, prescribed motion and t";
+            let help =
+                "a constraint contains only coordinates, their rates, prescribed motion and t";
             Some((place, "this is a state", help))
         } else if let Some((given, place)) = motion.input.filter(|(given, _)| *given < needed) {
-            let help = "its accelerations must be known: an input whose rates are given, rates = 2";
+            let help = "its accelerations must be given: declare the input with rates = 2";
             let why = match given {
-                0 => "this is an input whose rate is not given",
-                _ => "this is a rate whose own rate is not given",
+                0 => "this input has no given rate",
+                _ => "this rate has no given rate",
             };
             Some((place, why, help))
         } else if let Some(place) = motion.switch {
-            let help = "a constraint is smooth; what touches and leaves stands in [impacts]";
+            let help =
+                "a constraint must be smooth; move a contact that opens and closes to [impacts]";
             Some((place, "this switches", help))
         } else if motion.values.is_empty() && motion.rates.is_empty() {
-            let help = "give an expression of coordinates, such as x^2 + y^2 - l^2";
-            Some((span, "this holds no coordinate", help))
+            let help = "give an expression of coordinates, for example x^2 + y^2 - l^2";
+            Some((span, "this contains no coordinate", help))
         } else {
             None
         };
         if let Some((place, why, help)) = problem {
             self.found.push(
-                Diagnostic::error(format!("`{}` is no constraint", constraint.name))
+                Diagnostic::error(format!("`{}` is not a valid constraint", constraint.name))
                     .at(place, why)
                     .help(help),
             );
@@ -262,14 +269,17 @@ impl Checker<'_, '_> {
         is_nonholonomic
     }
 
-    /// Checks what may not fall below zero.
+    /// Checks the distances of all impacts.
     fn impacts(&mut self) {
         let model = self.model;
         if let Some(excess) = model.impacts.get(MAX_IMPACTS) {
             self.found.push(
-                Diagnostic::error(format!("{} impacts are too many", model.impacts.len()))
-                    .at(excess.span, "one more than is taken")
-                    .help(format!("at most {MAX_IMPACTS} are taken")),
+                Diagnostic::error(format!(
+                    "the model has too many impacts: {}",
+                    model.impacts.len()
+                ))
+                .at(excess.span, "one impact too many")
+                .help(format!("give at most {MAX_IMPACTS} impacts")),
             );
             return;
         }
@@ -278,24 +288,23 @@ impl Checker<'_, '_> {
             let problem = if let Some(place) = motion.rate {
                 Some((place, "this is a rate", "give a distance"))
             } else if let Some(place) = motion.state {
-                let help = "a distance is one of coordinates, prescribed motion and t";
+                let help = "a distance contains only coordinates, prescribed motion and t";
                 Some((place, "this is a state", help))
             } else if let Some((_, place)) = motion.input.filter(|(given, _)| *given < 2) {
-                let help =
-                    "its accelerations must be known: an input whose rates are given, rates = 2";
-                Some((place, "this is an input whose rates are not given", help))
+                let help = "its accelerations must be given: declare the input with rates = 2";
+                Some((place, "this input has no given rates", help))
             } else if let Some(place) = motion.switch {
-                let help = "give each of the smooth distances an impact of its own";
+                let help = "declare a separate impact for each smooth distance";
                 Some((place, "this switches", help))
             } else if motion.values.is_empty() {
-                let help = "give a distance between bodies, such as y, or x_2 - x_1 - d";
-                Some((impact.when.span, "this holds no coordinate", help))
+                let help = "give a distance between bodies, for example y, or x_2 - x_1 - d";
+                Some((impact.when.span, "this contains no coordinate", help))
             } else {
                 None
             };
             if let Some((place, why, help)) = problem {
                 self.found.push(
-                    Diagnostic::error(format!("`{}` is no impact", impact.name))
+                    Diagnostic::error(format!("`{}` is not a valid impact", impact.name))
                         .at(place, why)
                         .help(help),
                 );
@@ -303,34 +312,35 @@ impl Checker<'_, '_> {
         }
     }
 
-    /// How many rates of an input are given.
+    /// Returns the number of given rates of an input.
     fn given_rates(&self, input: InputId) -> u8 {
         let inputs = &self.model.inputs;
         let rates = std::iter::successors(inputs[input].rate, |rate| inputs[*rate].rate);
         u8::try_from(rates.count()).unwrap_or(u8::MAX)
     }
 
-    /// What an expression depends on; reports what `dot` is used on wrongly, and reactions.
+    /// Returns the dependencies of an expression. Reports invalid uses of `dot`, multipliers and
+    /// residuals.
     fn motion(&mut self, expr: &Expr) -> Motion {
         let motion = self.motion_with_reactions(expr);
         if let Some(place) = motion.reaction {
             self.found.push(
-                Diagnostic::error("what a constraint does is known when the motion is")
-                    .at(place, "this belongs to a constraint")
-                    .help("it may stand in [observables] alone"),
+                Diagnostic::error("multipliers and residuals are allowed only in [observables]")
+                    .at(place, "this is the multiplier or residual of a constraint")
+                    .help("they follow from the motion, so the motion cannot depend on them"),
             );
         }
         motion
     }
 
-    /// What an expression depends on; reports what `dot` is used on wrongly.
+    /// Returns the dependencies of an expression. Reports invalid uses of `dot`.
     fn motion_with_reactions(&mut self, expr: &Expr) -> Motion {
         let mut motion = Motion::default();
         self.add(expr, &mut motion, 1);
         if motion.depth > MAX_EXPANDED_DEPTH {
             self.found.push(
                 Diagnostic::error(format!(
-                    "with its definitions written out this is more than {MAX_EXPANDED_DEPTH} deep"
+                    "the expression is more than {MAX_EXPANDED_DEPTH} deep after expansion of its definitions"
                 ))
                 .at(expr.span, "too deep"),
             );
@@ -401,7 +411,7 @@ impl Checker<'_, '_> {
         motion.depth = motion.depth.max(depth + 1 + deepest.max().unwrap_or(0));
         motion.rate = motion.rate.or(Some(operand.span));
         motion.rates.extend(&inner.values);
-        // The rate of a definition, or of a field's function, depends on the coordinates too.
+        // The rate of a definition, or of `at`, depends on the coordinates too.
         if matches!(operand.kind, ExprKind::Definition(_) | ExprKind::At { .. }) {
             motion.values.extend(&inner.values);
             motion.states.extend(&inner.states);
@@ -415,14 +425,14 @@ impl Checker<'_, '_> {
 }
 
 impl Motion {
-    /// Holds an input of which so many rates are given.
+    /// Adds an input with this number of given rates.
     fn hold_input(&mut self, rates: u8, span: Span) {
         if self.input.is_none_or(|(fewest, _)| rates < fewest) {
             self.input = Some((rates, span));
         }
     }
 
-    /// Adds what a definition depends on that is named at `span`.
+    /// Adds the dependencies of a definition that is named at `span`.
     fn include(&mut self, known: &Self, span: Span, depth: usize) {
         self.values.extend(&known.values);
         self.rates.extend(&known.rates);
@@ -439,7 +449,7 @@ impl Motion {
     }
 }
 
-/// Whether an expression holds more than numbers and parameters.
+/// Returns true if an expression contains more than numbers and parameters.
 fn may_move(expr: &Expr) -> bool {
     let mut moves = false;
     expr.visit(&mut |part| {
@@ -459,28 +469,28 @@ fn may_move(expr: &Expr) -> bool {
 
 fn rate_error(span: Span, inner: &Motion) -> Option<Diagnostic> {
     if let Some(place) = inner.reaction {
-        let diagnostic = Diagnostic::error("the rate of what a constraint does is not known")
-            .at(place, "this belongs to a constraint")
-            .help("dot() takes a coordinate, a definition that holds one, or a field");
+        let diagnostic = Diagnostic::error("multipliers and residuals have no rate")
+            .at(place, "this is the multiplier or residual of a constraint")
+            .help("give dot() a coordinate, a definition with one, or a field");
         return Some(diagnostic);
     }
     if inner.rate.is_some() {
         let diagnostic = Diagnostic::error("dot() of a rate is an acceleration")
-            .at(span, "this holds a rate")
-            .help("accelerations follow from the energies and appear nowhere in them");
+            .at(span, "this contains a rate")
+            .help("a specification contains no accelerations: they follow from the energies");
         return Some(diagnostic);
     }
     if matches!(inner.input, Some((0, _))) {
-        let diagnostic = Diagnostic::error("the rate of an input is not known")
-            .at(span, "this holds an input")
-            .help("`rates = 2` in its entry says that its rates are given as well");
+        let diagnostic = Diagnostic::error("the input has no given rate")
+            .at(span, "this contains an input")
+            .help("add `rates = 2` to the input to supply its rates");
         return Some(diagnostic);
     }
     let is_still = inner.values.is_empty() && inner.states.is_empty() && inner.input.is_none();
     if is_still && !inner.time {
-        let diagnostic = Diagnostic::error("dot() of something that has no rate")
-            .at(span, "this holds no coordinate")
-            .help("dot() takes a coordinate, a definition that holds one, or a field");
+        let diagnostic = Diagnostic::error("dot() of a quantity without a rate")
+            .at(span, "this contains no coordinate")
+            .help("give dot() a coordinate, a definition with one, or a field");
         return Some(diagnostic);
     }
     None

@@ -1,6 +1,5 @@
-//! In which order definitions and the rates of states can be written out, where `dot(z)` stands
-//! for the rate of the state z, and where they go round in a circle: a rate that holds itself is
-//! an equation to be solved, not a rate.
+//! Sorts definitions and rates of states for expansion; `dot(z)` expands to the rate of the
+//! state z. Reports cycles: a rate that contains itself is an equation to be solved.
 
 use std::collections::BTreeMap;
 
@@ -9,21 +8,22 @@ use crate::model::{Expr, ExprKind, Model};
 use crate::order::{Reference, order};
 use crate::span::Span;
 
-/// What is written out where it is named.
+/// Expression that is expanded at its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WrittenOut {
-    /// The value of a definition.
+    /// Value of a definition.
     Definition(DefinitionId),
-    /// The rate of a state, for `dot(z)`.
+    /// Rate of a state, for `dot(z)`.
     Rate(StateId),
-    /// The rates of all states that a definition holds, for `dot` of that definition.
+    /// Rates of all states in a definition, for `dot` of that definition.
     RatesWithin(DefinitionId),
 }
 
-/// Definitions and rates, each after those that it holds.
+/// Returns definitions and rates in dependency order.
 ///
 /// # Errors
-/// A circle, beginning with the rate of a state: each with the place that refers to the next.
+/// A cycle, starting with the rate of a state: each entry with the place that refers to the
+/// next.
 pub fn rate_order(model: &Model) -> Result<Vec<WrittenOut>, Vec<(WrittenOut, Span)>> {
     let sizes = Sizes {
         definitions: model.definitions.len(),
@@ -53,7 +53,8 @@ pub fn rate_order(model: &Model) -> Result<Vec<WrittenOut>, Vec<(WrittenOut, Spa
     }
 }
 
-/// Places in one list: values of definitions, rates of states, rates within definitions.
+/// Sizes for indices into one list: values of definitions, rates of states, rates within
+/// definitions.
 #[derive(Clone, Copy)]
 struct Sizes {
     definitions: usize,
@@ -80,7 +81,7 @@ impl Sizes {
     }
 }
 
-/// What an expression refers to, each once, by the first place that does.
+/// Returns the references of an expression, each with its first position.
 fn references(expr: &Expr, sizes: Sizes) -> Vec<Reference> {
     let mut found = BTreeMap::new();
     expr.visit(&mut |part| match &part.kind {
@@ -93,7 +94,7 @@ fn references(expr: &Expr, sizes: Sizes) -> Vec<Reference> {
     found.into_iter().collect()
 }
 
-/// The rates of the states that an expression holds.
+/// Adds the rates of the states in an expression.
 fn held_rates(expr: &Expr, sizes: Sizes, found: &mut BTreeMap<usize, Span>) {
     expr.visit(&mut |part| {
         let place = match part.kind {

@@ -1,15 +1,14 @@
-//! The factor between a unit and its coherent SI unit, kept exactly: a fraction of whole
-//! numbers times a power of pi. A decimal factor such as 0.001 is not a binary number, so
-//! 3 mm is 3/1000 and not 3 * 0.001.
+//! Exact factor between a unit and its coherent SI unit: a rational number times a power of pi.
+//! Decimal factors such as 0.001 have no exact double: 9 mm is 9/1000, not 9 * 0.001.
 
 use num_rational::Ratio;
 use num_traits::{CheckedDiv, CheckedMul, One};
 
-/// Upper and lower part of pi: their sum is pi to 32 digits.
+/// Pi as a sum of two doubles, to 32 digits.
 const PI_HIGH: f64 = std::f64::consts::PI;
 const PI_LOW: f64 = 1.224_646_799_147_353_2e-16;
 
-/// A positive factor `fraction * pi^pi_power`.
+/// Positive factor `fraction * pi^pi_power`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Scale {
     fraction: Ratio<i128>,
@@ -17,13 +16,13 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// The factor 1.
+    /// Factor 1.
     pub const ONE: Self = Self {
         fraction: Ratio::new_raw(1, 1),
         pi_power: 0,
     };
 
-    /// The factor `numerator / denominator`; None if either is not positive.
+    /// Returns the factor `numerator / denominator`; `None` if either is not positive.
     pub fn fraction(numerator: i128, denominator: i128) -> Option<Self> {
         (numerator > 0 && denominator > 0).then(|| Self {
             fraction: Ratio::new(numerator, denominator),
@@ -31,13 +30,13 @@ impl Scale {
         })
     }
 
-    /// The factor pi/180 between a degree and a radian.
+    /// Factor pi/180 between degree and radian.
     pub const DEGREE: Self = Self {
         fraction: Ratio::new_raw(1, 180),
         pi_power: 1,
     };
 
-    /// `10^exponent`; None beyond 10^38.
+    /// Returns `10^exponent`; `None` beyond 10^38.
     pub fn power_of_ten(exponent: i32) -> Option<Self> {
         let magnitude = 10_i128.checked_pow(exponent.unsigned_abs())?;
         if exponent < 0 {
@@ -47,7 +46,7 @@ impl Scale {
         }
     }
 
-    /// The product; None where it is too large to be kept exactly.
+    /// Returns the product; `None` if it is not exact.
     pub fn times(self, other: Self) -> Option<Self> {
         Some(Self {
             fraction: self.fraction.checked_mul(&other.fraction)?,
@@ -55,7 +54,7 @@ impl Scale {
         })
     }
 
-    /// The whole power; None where it is too large to be kept exactly.
+    /// Returns the integer power; `None` if it is not exact.
     pub fn power(self, exponent: i32) -> Option<Self> {
         if exponent.unsigned_abs() > 64 {
             return (self == Self::ONE).then_some(self);
@@ -78,8 +77,8 @@ impl Scale {
         })
     }
 
-    /// `value` times this factor. Correctly rounded for factors such as 1000, 1/1000 or
-    /// 1/60, within one unit in the last place otherwise.
+    /// Returns `value` times this factor: correctly rounded for factors such as 1000, 1/1000 or
+    /// 1/60, else within one unit in the last place.
     pub fn apply(self, value: f64) -> f64 {
         if self == Self::ONE {
             return value;
@@ -97,14 +96,14 @@ impl Scale {
         result.over(denominator, 0.0).value()
     }
 
-    /// `value` divided by this factor, rounded as [`Scale::apply`].
+    /// Returns `value` divided by this factor, with the rounding of [`Scale::apply`].
     pub fn remove(self, value: f64) -> f64 {
         self.inverse()
             .map_or(f64::NAN, |inverse| inverse.apply(value))
     }
 }
 
-/// A number as an unevaluated sum of two, twice as long as either.
+/// Number of double length, as an unevaluated sum.
 #[derive(Clone, Copy)]
 struct Doubled {
     high: f64,
@@ -136,7 +135,7 @@ impl Doubled {
         }
     }
 
-    /// The nearest number; where the rest overflowed the leading part still stands.
+    /// Returns the nearest double; only the leading part if the rest overflowed.
     fn value(self) -> f64 {
         if self.low.is_finite() {
             self.high + self.low
@@ -160,8 +159,8 @@ mod tests {
     }
 
     #[test]
-    fn degrees_are_right_to_the_last_place() {
-        // The double nearest 24.6, times pi/180 to 40 digits:
+    fn degrees_are_correctly_rounded() {
+        // Reference: the double nearest 24.6 times pi/180, to 40 digits:
         // 0.4293509959906051007258483593...
         assert_eq!(Scale::DEGREE.apply(24.6), 0.429_350_995_990_605_1);
         assert_eq!(Scale::DEGREE.apply(180.0), std::f64::consts::PI);
@@ -169,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn too_large_powers_are_refused() {
+    fn powers_beyond_the_exact_range_are_rejected() {
         let tera = Scale::power_of_ten(12).unwrap();
         assert_eq!(tera.power(3), Scale::power_of_ten(36));
         assert_eq!(tera.power(4), None);
@@ -177,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn extreme_values_stay_what_they_are() {
+    fn zero_and_non_finite_values_are_preserved() {
         let kilo = Scale::power_of_ten(3).unwrap();
         assert_eq!(kilo.apply(0.0), 0.0);
         assert_eq!(kilo.apply(f64::MAX), f64::INFINITY);

@@ -237,8 +237,12 @@ fn limits_of_sections_are_held_and_named() {
         ("a chain of more than 100 frames", 100, &|count| {
             bodies(count, "xyz")
         }),
-        ("101 constraints are too many", 100, &rolling_wheels),
-        ("101 impacts are too many", 100, &falling_masses),
+        (
+            "the model has too many constraints: 101",
+            100,
+            &rolling_wheels,
+        ),
+        ("the model has too many impacts: 101", 100, &falling_masses),
     ];
     for (refusal, most, text) in cases {
         let found = examined(refusal, &text(most));

@@ -61,12 +61,12 @@ impl Resolver<'_> {
             }
             ExprKind::Dot(_) => Err(Diagnostic::error("dot(dot(...)) is an acceleration")
                 .at(span, "already a rate")
-                .help("accelerations follow from the energies and appear nowhere in them")),
+                .help("a specification contains no accelerations: they follow from the energies")),
             ExprKind::Input(input) => match self.names.input_rate(input) {
                 Some(rate) => Ok(ExprKind::Input(rate)),
-                None => Err(Diagnostic::error("the rate of an input is not known")
+                None => Err(Diagnostic::error("the input has no given rate")
                     .at(span, "this is an input")
-                    .help("`rates = 2` in its entry says that its rates are given as well")),
+                    .help("add `rates = 2` to the input to supply its rates")),
             },
             ExprKind::At {
                 field,
