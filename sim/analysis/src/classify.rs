@@ -231,7 +231,7 @@ impl fmt::Display for Numbers<'_> {
         match finite(*line_share) {
             Some(share) => write!(
                 f,
-                "; {:.0} % of the power beside the harmonics in lines",
+                "; {:.0} % of the power outside the forcing harmonics in spectral lines",
                 100.0 * share
             ),
             None => Ok(()),
@@ -355,7 +355,7 @@ mod tests {
             classify(&growing(5.0, 0.25)).sentence,
             "chaotic: neighbouring motions separate and the section diffuses (largest exponent \
              5.000 ± 0.250 1/s, 1.000 per forcing period; 0-1 test K = 0.97; no period found; \
-             20 % of the power beside the harmonics in lines)."
+             20 % of the power outside the forcing harmonics in spectral lines)."
         );
         let periodic = Evidence {
             period: Some(2),

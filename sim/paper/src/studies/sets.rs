@@ -20,7 +20,7 @@ pub struct Range {
 pub const RANGES: [Range; 5] = [
     Range { name: "I", unit: "m^4", bounds: (1e-10, 1e-8), reason: "sections of 1e-4 m^2: a strip 3.5 mm thick (1e-10), a 10 mm square (8.3e-10), a bar 30 mm high (7.5e-9), a thin tube (1e-8)" },
     Range { name: "a_m", unit: "N m", bounds: (0.1, 20.0), reason: "motors that can swing a 0.4 kg arm through a reducer of 4.7, up to some ten times what it needs" },
-    Range { name: "b_m", unit: "N m s", bounds: (1e-3, 0.5), reason: "time constants J/b_m of the drive from 6 s to 12 ms; one set in four has 0, a drive that accelerates all the time it is watched" },
+    Range { name: "b_m", unit: "N m s", bounds: (1e-3, 0.5), reason: "time constants J/b_m of the drive from 6 s to 12 ms; one set in four has 0: the drive accelerates during the whole record" },
     Range { name: "F_w", unit: "N m", bounds: (0.1, 20.0), reason: "ripple from a few per cent of the smallest a_m, to torques that bend the arm by centimetres" },
     Range { name: "c", unit: "N s/m", bounds: (195.0, 1950.0), reason: "3 % to 30 % of critical damping of the sun-planet mesh; damping ratios of 3 % to 17 % are usual for gear meshes" },
 ];
