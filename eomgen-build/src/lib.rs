@@ -255,7 +255,7 @@ mod tests {
         let refused = generate_with("p.toml", &[], &["jacobian"]).expect_err("refused");
         let message = refused.to_string();
         assert!(
-            message.starts_with("`jacobian` is not known; known are "),
+            message.starts_with("unknown output `jacobian`; use one of "),
             "{message}"
         );
         assert!(message.contains("jacobians"), "{message}");

@@ -141,7 +141,7 @@ fn integrands_have_4096_terms() {
     assert!(at < 2000, "{at} nodes");
     let said = refusal(&product(65, 64));
     assert!(
-        said.contains("more than 4096 terms when multiplied out"),
+        said.contains("more than 4096 terms when expanded"),
         "{said}"
     );
 }

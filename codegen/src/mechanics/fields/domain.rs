@@ -1,5 +1,3 @@
-//! The domain of a field, as nodes of the graph.
-
 use eomgen_model_spec::ids::FieldId;
 use eomgen_model_spec::model::Basis;
 
@@ -8,37 +6,37 @@ use super::term::Atom;
 use crate::symbolic::graph::{Graph, NodeId};
 use crate::symbolic::tables::TableKind;
 
-/// The domain of a field, as nodes.
+/// Domain of a field, as graph nodes.
 pub struct Domain {
-    /// The field.
+    /// Field.
     pub field: FieldId,
-    /// Its mode shapes.
+    /// Mode shapes.
     pub basis: Basis,
-    /// Where it starts.
+    /// Start position.
     pub from: NodeId,
-    /// Where it ends.
+    /// End position.
     pub to: NodeId,
-    /// to - from
+    /// Length, to - from.
     pub length: NodeId,
 }
 
 impl Domain {
-    /// Whether shapes have as many derivatives as this atom.
+    /// Checks that the shapes have the derivatives of this atom.
     ///
     /// # Errors
-    /// A third derivative of shapes between whose values a cubic spline runs.
+    /// A third derivative of tabulated shapes, which are cubic splines.
     pub fn has(&self, atom: Atom) -> Result<(), String> {
         if self.basis.table().is_some() && atom.derivative() > 2 {
             return Err(
-                "the shapes of a table have two derivatives: a cubic spline runs between its rows"
+                "the shapes of a table have only two derivatives: they are cubic splines through its rows"
                     .into(),
             );
         }
         Ok(())
     }
 
-    /// s = (x - from)/(to - from). The shapes of a table are known where it is a number, so there
-    /// what is added and taken off again is looked for.
+    /// Returns s = (x - from)/(to - from). Tabulated shapes need a constant s, so equal terms of x and the
+    /// domain are cancelled for them.
     pub fn relative(&self, graph: &mut Graph, position: NodeId) -> NodeId {
         if self.basis.table().is_none() {
             let from_start = graph.subtract(position, self.from);
@@ -49,7 +47,7 @@ impl Domain {
         graph.divide(from_start, length)
     }
 
-    /// The node of one of the field's tables.
+    /// Returns the node of a table of the field.
     pub fn table(&self, graph: &mut Graph, kind: TableKind) -> NodeId {
         let order = graph.orders()[self.field];
         let basis = &self.basis;

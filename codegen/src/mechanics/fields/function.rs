@@ -1,12 +1,10 @@
 //! Functions of the position along a field, and their integrals over its domain.
 //!
-//! An integrand is kept as a sum of terms: a scalar, a power of s = (x - from)/(to - from),
-//! an optional weight given at quadrature nodes, and at most two field atoms (w, its rate,
-//! a mode shape, or a derivative of one by the position). Terms without a weight have
-//! exact dimensionless integrals (`modes`), so that lengths and stiffnesses stay
-//! parameters; a weight that depends on parameters alone is integrated once, when the
-//! coefficients are prepared. What does not fit, an integrand that is not quadratic in the
-//! field, is evaluated at the quadrature nodes.
+//! An integrand is a sum of terms. Each term has a scalar, a power of s = (x - from)/(to - from), an optional
+//! weight at quadrature nodes, and at most two field atoms (w, its rate, a mode shape, or a derivative of one
+//! by the position). Terms without a weight have exact dimensionless integrals (`modes`), so that lengths and
+//! stiffnesses remain parameters. A weight of parameters is integrated when the coefficients are prepared.
+//! Other integrands are evaluated at the quadrature nodes.
 
 use eomgen_model_spec::ast::BinaryOperator;
 use eomgen_model_spec::model::Function;
@@ -18,22 +16,22 @@ use crate::symbolic::arguments::Arguments;
 use crate::symbolic::graph::{Graph, NodeId, Space};
 use crate::symbolic::tables::TableKind;
 
-/// A function of the position along a field.
+/// Function of the position along a field.
 #[derive(Clone, Debug)]
 pub struct FieldFunction {
     terms: Vec<IntegrandTerm>,
 }
 
-/// The most terms an integrand may have when products of its sums are formed.
+/// Largest number of terms of an expanded integrand.
 const MAX_TERMS: usize = 4096;
 
-/// The highest power of s that is integrated by a table of its own.
+/// Highest power of s with a separate table of integrals.
 const MAX_MOMENT: u32 = 32;
 
 type Outcome<T> = Result<T, String>;
 
 impl FieldFunction {
-    /// Something that does not vary along the field.
+    /// Returns a function that is constant along the field.
     pub fn constant(scalar: NodeId) -> Self {
         Self {
             terms: vec![IntegrandTerm {
@@ -45,7 +43,7 @@ impl FieldFunction {
         }
     }
 
-    /// The position x = from + length s.
+    /// Returns the position x = from + length s.
     pub fn position(graph: &mut Graph, domain: &Domain) -> Self {
         let mut function = Self::constant(domain.length);
         function.terms[0].power = 1;
@@ -55,7 +53,7 @@ impl FieldFunction {
         function
     }
 
-    /// A field atom whose derivatives are by x.
+    /// Returns a field atom, differentiated by x.
     pub fn atom(graph: &mut Graph, domain: &Domain, atom: Atom) -> Self {
         let scale = graph.integer_power(domain.length, -i32::from(atom.derivative()));
         let mut function = Self::constant(scale);
@@ -63,7 +61,7 @@ impl FieldFunction {
         function
     }
 
-    /// A multiple.
+    /// Returns a multiple.
     pub fn scaled(mut self, graph: &mut Graph, factor: f64) -> Self {
         for term in &mut self.terms {
             term.scalar = graph.scale(factor, term.scalar);
@@ -71,7 +69,7 @@ impl FieldFunction {
         self
     }
 
-    /// A sum, difference, product, quotient or power.
+    /// Returns a sum, difference, product, quotient or power.
     pub fn binary(
         &self,
         graph: &mut Graph,
@@ -102,7 +100,7 @@ impl FieldFunction {
         }
     }
 
-    /// A function applied at every position.
+    /// Applies a function at every position.
     pub fn call(
         graph: &mut Graph,
         domain: &Domain,
@@ -122,14 +120,14 @@ impl FieldFunction {
         Ok(Self::weight(graph, result))
     }
 
-    /// The value at a position (parameters only).
+    /// Returns the value at a position that depends only on parameters.
     pub fn at(&self, graph: &mut Graph, domain: &Domain, position: NodeId) -> Outcome<NodeId> {
         let s = domain.relative(graph, position);
         let mut terms = Vec::new();
         for term in &self.terms {
             if term.weight.is_some() {
                 return Err(
-                    "at(...) takes the field, its derivatives and polynomials of the position"
+                    "at(...) accepts the field, its derivatives and polynomials of the position"
                         .into(),
                 );
             }
@@ -150,7 +148,7 @@ impl FieldFunction {
         Ok(graph.combine(&terms))
     }
 
-    /// The integral over the domain.
+    /// Returns the integral over the domain.
     pub fn integral(&self, graph: &mut Graph, domain: &Domain) -> Outcome<NodeId> {
         let mut terms = Vec::new();
         for term in &self.terms {
@@ -167,7 +165,7 @@ impl FieldFunction {
         function
     }
 
-    /// The scalar, if this does not vary along the field.
+    /// Returns the scalar if the function is constant along the field.
     fn as_scalar(&self) -> Option<NodeId> {
         match self.terms.as_slice() {
             [term] if term.power == 0 && term.weight.is_none() && term.atoms.is_empty() => {
@@ -243,7 +241,7 @@ impl FieldFunction {
         }
     }
 
-    /// The values at the quadrature nodes: a vector over the nodes, or a scalar.
+    /// Returns the values at the quadrature nodes: a vector over the nodes, or a scalar.
     fn values(&self, graph: &mut Graph, domain: &Domain) -> Outcome<NodeId> {
         let s = domain.table(graph, TableKind::NodePosition);
         let mut terms = Vec::new();
@@ -253,7 +251,7 @@ impl FieldFunction {
             for atom in &term.atoms {
                 let matrix = domain.table(graph, TableKind::ShapeAtNodes(atom.derivative()));
                 let Some(amplitudes) = atom.amplitudes(graph, domain.field) else {
-                    return Err("phi[i] enters an integrand as a factor, at most twice".into());
+                    return Err("phi[i] must be a factor of the integrand, at most twice".into());
                 };
                 factors.push((graph.apply(matrix, false, amplitudes), 1));
             }
@@ -263,7 +261,7 @@ impl FieldFunction {
     }
 }
 
-/// A power too high for a moment of its own becomes part of the weight.
+/// Moves a power without a table into the weight.
 fn within_moments(
     graph: &mut Graph,
     domain: &Domain,
@@ -303,5 +301,5 @@ fn bounded(terms: Vec<IntegrandTerm>) -> Outcome<FieldFunction> {
 }
 
 fn too_many_terms() -> String {
-    format!("this integrand has more than {MAX_TERMS} terms when multiplied out")
+    format!("this integrand has more than {MAX_TERMS} terms when expanded")
 }

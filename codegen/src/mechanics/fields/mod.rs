@@ -1,8 +1,8 @@
 //! Functions of the position along a field, and their integrals.
 //!
-//! `term` and `function` (integrands as sums of terms), `moments` (their integrals as nodes),
-//! `domain` (where a field lives), `mode`, `beam` and `spline` (shapes), `modes` and `quadrature` (the numbers
-//! of a basis).
+//! `term` and `function` define integrands as sums of terms, `moments` their integrals as nodes, `domain` the
+//! interval of a field. `mode`, `beam` and `spline` compute shapes, `modes` and `quadrature` the tables of a
+//! basis.
 
 mod beam;
 pub mod domain;

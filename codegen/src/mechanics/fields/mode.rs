@@ -1,38 +1,36 @@
-//! One mode of a uniform beam, a rod or a string: its shape, its derivatives and what they are
-//! at the ends.
+//! Mode of a uniform beam, a rod or a string: shape, derivatives and end values.
 //!
-//! phi(s) = a sin z + c cos z + f exp(-z) + g exp(z - k), z = k s, with one exponential that
-//! falls from the start and one that falls from the end: the hyperbolic functions themselves
-//! lose all digits from the twelfth mode or so on. The elementary functions are the project's
-//! own, so that the tables have the same bits on every machine.
+//! phi(s) = a sin z + c cos z + f exp(-z) + g exp(z - k), z = k s. One exponential decays from the start and
+//! one from the end: hyperbolic functions would lose all digits from about the twelfth mode on. The
+//! elementary functions are those of this project, so that the tables have the same bits on every machine.
 
 use eomgen_elementary::Function;
 use eomgen_model_spec::model::End;
 
-/// A mode shape.
+/// Mode shape.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Mode {
-    /// k = beta_r l
+    /// Wave number k = beta_r l.
     pub(super) wavenumber: f64,
-    /// a
+    /// Amplitude a of the sine.
     pub(super) sine: f64,
-    /// c, which is xi_r of Eq. (17) where the beam starts clamped.
+    /// Amplitude c of the cosine; xi_r of Eq. (17) for a clamped start.
     pub(super) cosine: f64,
-    /// f
+    /// Amplitude f of the exponential that decays from the start.
     pub(super) falling: f64,
-    /// g
+    /// Amplitude g of the exponential that decays from the end.
     pub(super) rising: f64,
-    /// phi^(n)/k^n at the start for n = 0 .. 3, zero where the end says so.
+    /// phi^(n)/k^n at the start for n = 0 .. 3; exactly zero if the end condition requires it.
     pub(super) at_start: [f64; 4],
-    /// The same at the end.
+    /// phi^(n)/k^n at the end.
     pub(super) at_end: [f64; 4],
-    /// The integral of phi^2, as two factors.
+    /// Integral of phi^2, as two factors.
     pub(super) mean_square: [f64; 2],
 }
 
 impl Mode {
-    /// The integral of phi, or of s phi with `power` 1: phi'''' = k^4 phi, so that integrating by
-    /// parts leaves values at the ends.
+    /// Returns the integral of phi, or of s phi with `power` 1. With phi'''' = k^4 phi, integration by parts
+    /// leaves only end values.
     pub(super) fn moment(&self, power: u32) -> f64 {
         let k = self.wavenumber;
         match power {
@@ -41,7 +39,7 @@ impl Mode {
         }
     }
 
-    /// phi^(n)(s), the derivative by s.
+    /// Returns phi^(n)(s), the derivative by s.
     pub(super) fn shape(&self, derivative: u8, s: f64) -> f64 {
         let z = self.wavenumber * s;
         let (sine, cosine) = (Function::Sin.apply(&[z]), Function::Cos.apply(&[z]));
@@ -62,10 +60,9 @@ impl Mode {
     }
 }
 
-/// phi^(n)/k^n for n = 0 .. 3 at a kind of end, from the wave (the sum of the first two terms of
-/// phi) and the exponentials there, each with its first derivative over k. An end makes two of the
-/// four vanish; where both kinds of term are needed for that, they are opposite in these two and
-/// equal in the other two.
+/// Returns phi^(n)/k^n for n = 0 .. 3 at an end, from the wave (the first two terms of phi) and the
+/// exponentials, each with its first derivative divided by k. The end condition makes two of the four vanish.
+/// If both kinds of term contribute, they are opposite in these two and equal in the other two.
 pub(super) fn values_at(end: End, [w, dw]: [f64; 2], [x, dx]: [f64; 2]) -> [f64; 4] {
     match end {
         End::Clamped => [0.0, 0.0, -2.0 * w, -2.0 * dw],
@@ -75,12 +72,11 @@ pub(super) fn values_at(end: End, [w, dw]: [f64; 2], [x, dx]: [f64; 2]) -> [f64;
     }
 }
 
-/// exp(x)
 pub(super) fn exponential(x: f64) -> f64 {
     Function::Exp.apply(&[x])
 }
 
-/// A power by repeated multiplication.
+/// Computes a power by repeated multiplication.
 pub(super) fn power(base: f64, exponent: u8) -> f64 {
     (0..exponent).fold(1.0, |product, _| product * base)
 }

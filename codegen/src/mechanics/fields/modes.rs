@@ -1,6 +1,5 @@
-//! The numbers of a basis: mode shapes at points and their dimensionless integrals. Everything is
-//! a function of s = x/l and of the mode's number; lengths and stiffnesses enter elsewhere as
-//! parameters.
+//! Tables of a basis: mode shapes at points and their dimensionless integrals, as functions of s = x/l and of
+//! the mode number. Lengths and stiffnesses are parameters.
 
 use eomgen_model_spec::model::Basis;
 
@@ -10,12 +9,11 @@ use super::quadrature::{QuadratureRule, composite, gauss_legendre};
 use super::spline::Spline;
 use crate::symbolic::tables::{TableKind, quadrature_size};
 
-/// The fewest nodes in each piece of a spline: a product of two shapes is of degree 6.
+/// Smallest number of nodes in each spline piece: a product of two shapes has degree 6.
 const NODES_OF_A_PIECE: usize = 4;
 
-/// Whether the integral of s^k phi_r^(a) phi_p^(b) vanishes for r != p in this basis: the shapes
-/// and their curvatures are orthogonal for a uniform beam. Sines and cosines are so in every
-/// derivative that is one of the same kind.
+/// Returns true if the integral of s^k phi_r^(a) phi_p^(b) vanishes for r != p. The shapes and the curvatures
+/// of a uniform beam are orthogonal; sines and cosines are also in other derivatives of equal kind.
 pub fn is_orthogonal(basis: &Basis, power: u32, left: u8, right: u8) -> bool {
     let alike = left == right && (left == 0 || left == 2);
     match *basis {
@@ -27,7 +25,7 @@ pub fn is_orthogonal(basis: &Basis, power: u32, left: u8, right: u8) -> bool {
     }
 }
 
-/// How many quadrature nodes a field of this order has.
+/// Returns the number of quadrature nodes of a field with this order.
 pub fn node_count(basis: &Basis, order: usize) -> usize {
     match basis {
         Basis::Table { table, .. } => {
@@ -38,14 +36,14 @@ pub fn node_count(basis: &Basis, order: usize) -> usize {
     }
 }
 
-/// As many nodes over the whole field as other bases have, and enough for the products.
+/// Returns the nodes in each piece: together as many as for other bases, and enough for the products.
 fn nodes_of_a_piece(pieces: usize, order: usize) -> usize {
     quadrature_size(order)
         .div_ceil(pieces)
         .max(NODES_OF_A_PIECE)
 }
 
-/// The numbers of a table for modes 1 to `order`; matrices row by row.
+/// Computes a table for modes 1 to `order`; matrices row by row.
 pub fn table(basis: &Basis, order: usize, kind: TableKind) -> Vec<f64> {
     let shapes = Shapes::of(basis, order);
     match kind {
@@ -71,11 +69,11 @@ pub fn table(basis: &Basis, order: usize, kind: TableKind) -> Vec<f64> {
     }
 }
 
-/// The shapes of a basis up to an order.
+/// Shapes of a basis up to an order.
 enum Shapes {
-    /// By formulas.
+    /// Analytic shapes.
     Modes(Vec<Mode>),
-    /// By a table, with its knots.
+    /// Tabulated shapes, with their knots.
     Splines(Vec<f64>, Vec<Spline>),
 }
 
@@ -99,7 +97,7 @@ impl Shapes {
         }
     }
 
-    /// A number of each mode that has a formula.
+    /// Returns a number of each analytic mode.
     fn each(&self, value: impl Fn(&Mode) -> f64) -> Vec<f64> {
         match self {
             Self::Modes(modes) => modes.iter().map(value).collect(),
@@ -107,7 +105,7 @@ impl Shapes {
         }
     }
 
-    /// All shapes at a place.
+    /// Returns all shapes at a position.
     fn at(&self, derivative: u8, s: f64) -> Vec<f64> {
         match self {
             Self::Modes(modes) => modes.iter().map(|m| m.shape(derivative, s)).collect(),
@@ -129,8 +127,8 @@ impl Shapes {
         }
     }
 
-    /// By the values the end's conditions give, which are free of the error of a phase of beta_r l.
-    /// The clamped beam's free end keeps the rounding it has always had where they say nothing.
+    /// Returns all shapes at the end from the end conditions, which avoids the error of the phase beta_r l.
+    /// The clamped-free beam keeps its original rounding in derivatives that the conditions do not determine.
     fn at_end(&self, basis: &Basis, derivative: u8) -> Vec<f64> {
         let keeps = *basis == Basis::CLAMPED_FREE && matches!(derivative, 1 | 4..);
         match (self, basis) {
@@ -141,12 +139,12 @@ impl Shapes {
         }
     }
 
-    /// Rows: places; columns: modes.
+    /// Rows: positions; columns: modes.
     fn at_each(&self, derivative: u8, places: &[f64]) -> Vec<Vec<f64>> {
         places.iter().map(|s| self.at(derivative, *s)).collect()
     }
 
-    /// Integrals of s^k phi_r^(a).
+    /// Returns the integrals of s^k phi_r^(a).
     fn moments(&self, basis: &Basis, moment: u32, derivative: u8) -> Vec<f64> {
         if matches!(basis, Basis::Beam { .. }) && moment < 2 && derivative == 0 {
             return self.each(|mode| mode.moment(moment));
@@ -158,7 +156,7 @@ impl Shapes {
             .collect()
     }
 
-    /// Integrals of s^k phi_r^(a) phi_r^(b); where a and b differ by 2, twice by parts.
+    /// Returns the integrals of s^k phi_r^(a) phi_r^(b), twice by parts if a and b differ by 2.
     fn own_moments(&self, basis: &Basis, moment: u32, left: u8, right: u8) -> Vec<f64> {
         if is_orthogonal(basis, moment, left, right) {
             let opposite = !(left.abs_diff(right) / 2).is_multiple_of(2);
@@ -193,7 +191,7 @@ impl Shapes {
         }
     }
 
-    /// Nodes, and weights times s^k.
+    /// Returns nodes, and weights times s^k.
     fn rule(&self, moment: u32) -> QuadratureRule {
         let order = self.order();
         let mut rule = match self {
@@ -210,8 +208,8 @@ impl Shapes {
     }
 }
 
-/// Sum of weights times values with a running compensation of the rounding errors: the
-/// off-diagonal integrals are small differences of large terms.
+/// Sums weights times values with compensation of the rounding errors: the off-diagonal integrals are small
+/// differences of large terms.
 fn sum_over(weights: &[f64], value: impl Fn(usize) -> f64) -> f64 {
     let (mut total, mut lost) = (0.0, 0.0);
     for (g, weight) in weights.iter().enumerate() {

@@ -1,5 +1,5 @@
-//! Mode shapes at a point and integrals of one term of an integrand, as nodes: exact
-//! dimensionless constants where there are some, quadrature elsewhere.
+//! Mode shapes at a point and integrals of integrand terms, as nodes: exact dimensionless constants if
+//! possible, else quadrature.
 
 use eomgen_model_spec::model::{Basis, End, Function};
 
@@ -10,10 +10,10 @@ use crate::mechanics::fields::term::IntegrandTerm;
 use crate::symbolic::graph::{Graph, NodeId, Operation, Space};
 use crate::symbolic::tables::TableKind;
 
-/// phi_r^(a) at s, a vector over the modes: tables at the ends, formulas elsewhere.
+/// Returns phi_r^(a) at s, a vector over the modes: tables at the ends, formulas elsewhere.
 ///
 /// # Errors
-/// A place between the rows of a table of shapes that depends on parameters.
+/// A tabulated shape at a position that depends on parameters.
 pub(crate) fn shapes_at(
     graph: &mut Graph,
     domain: &Domain,
@@ -39,16 +39,16 @@ pub(crate) fn shapes_at(
             let bits = s.to_bits();
             Ok(domain.table(graph, TableKind::ShapeAtPlace { bits, derivative }))
         }
-        (Basis::Table { .. }, Some(_)) => Err("a table has no shapes outside its field".into()),
+        (Basis::Table { .. }, Some(_)) => Err("the position is outside the table of shapes".into()),
         (Basis::Table { .. }, None) => Err(
-            "the shapes of a table are known at its ends and at a fixed fraction of its length, \
-             such as at(w, 0.3*l)"
+            "tabulated shapes need an end or a fixed fraction of the length as position, for example \
+             at(w, 0.3*l)"
                 .into(),
         ),
     }
 }
 
-/// Eq. (17), by xi_r and (1 + xi_r) exp(beta_r l).
+/// Computes Eq. (17) from xi_r and (1 + xi_r) exp(beta_r l).
 fn clamped_shapes(graph: &mut Graph, domain: &Domain, s: NodeId, derivative: u8) -> NodeId {
     let beta = domain.table(graph, TableKind::Wavenumber);
     let xi = domain.table(graph, TableKind::Mixing);
@@ -85,8 +85,8 @@ fn clamped_shapes(graph: &mut Graph, domain: &Domain, s: NodeId, derivative: u8)
     graph.product(&[(beta, i32::from(derivative)), (shape, 1)])
 }
 
-/// sin z, sin z + xi cos z or cos z, as the start has it, with exponentials from both ends unless
-/// neither end has one.
+/// Computes sin z, sin z + xi cos z or cos z, depending on the start, plus exponentials from both ends if an
+/// end has one.
 fn beam_shapes(
     graph: &mut Graph,
     domain: &Domain,
@@ -129,7 +129,7 @@ fn beam_shapes(
     graph.product(&[(beta, i32::from(derivative)), (shape, 1)])
 }
 
-/// A derivative of sin z or cos z by z, with its sign.
+/// Returns a derivative of sin z or cos z by z, and its sign.
 fn turned(graph: &mut Graph, function: Function, z: NodeId, derivative: u8) -> (f64, NodeId) {
     let quarters = derivative + u8::from(function == Function::Cos);
     let own = if quarters.is_multiple_of(2) {
@@ -141,8 +141,8 @@ fn turned(graph: &mut Graph, function: Function, z: NodeId, derivative: u8) -> (
     (sign, graph.call(own, &[z]))
 }
 
-/// The integral over s of s^power weight atom_1 atom_2; a vector over the modes where a
-/// bare shape is left.
+/// Returns the integral over s of s^power weight atom_1 atom_2; a vector over the modes if one atom is a bare
+/// shape.
 pub(crate) fn integral_of_term(graph: &mut Graph, domain: &Domain, term: &IntegrandTerm) -> NodeId {
     if let Some(weight) = term.weight {
         return weighted_integral(graph, domain, term, weight);

@@ -1,18 +1,17 @@
-//! Gauss-Legendre nodes and weights on [0, 1], by Newton's method on the Legendre
-//! recurrence. Nothing here knows of modes.
+//! Gauss-Legendre nodes and weights on [0, 1], by Newton's method on the Legendre recurrence.
 
 use eomgen_elementary::Function;
 
-/// A rule of quadrature on [0, 1]: the integral is nearly the sum of weights times values.
+/// Quadrature rule on [0, 1].
 #[derive(Clone, Debug, PartialEq)]
 pub struct QuadratureRule {
-    /// Where the function is evaluated, ascending.
+    /// Nodes, ascending.
     pub nodes: Vec<f64>,
-    /// What each value counts, in the order of the nodes.
+    /// Weight of each node.
     pub weights: Vec<f64>,
 }
 
-/// The n-point rule of Gauss and Legendre, exact for polynomials up to degree 2 n - 1.
+/// Computes the n-point Gauss-Legendre rule, exact for polynomials up to degree 2 n - 1.
 pub fn gauss_legendre(n: usize) -> QuadratureRule {
     let mut nodes = vec![0.0; n];
     let mut weights = vec![0.0; n];
@@ -37,7 +36,7 @@ pub fn gauss_legendre(n: usize) -> QuadratureRule {
     QuadratureRule { nodes, weights }
 }
 
-/// The n-point rule between each two of these knots.
+/// Applies the n-point rule between adjacent knots.
 pub fn composite(knots: &[f64], n: usize) -> QuadratureRule {
     let rule = gauss_legendre(n);
     let pieces = knots.windows(2).map(|ends| (ends[0], ends[1] - ends[0]));
@@ -50,7 +49,7 @@ pub fn composite(knots: &[f64], n: usize) -> QuadratureRule {
     QuadratureRule { nodes, weights }
 }
 
-/// P_n(x) and its derivative.
+/// Returns P_n(x) and its derivative.
 fn legendre(n: usize, x: f64) -> (f64, f64) {
     let (mut previous, mut current) = (1.0, x);
     for k in 2..=n {
@@ -70,7 +69,7 @@ mod tests {
     use super::{QuadratureRule, gauss_legendre};
 
     #[test]
-    fn integrates_polynomials_up_to_twice_the_number_of_nodes() {
+    fn gauss_legendre_integrates_degree_2n_minus_1_exactly() {
         let QuadratureRule { nodes, weights } = gauss_legendre(12);
         for degree in 0..24 {
             let integral: f64 = nodes
@@ -88,7 +87,7 @@ mod tests {
     fn weights_of_a_large_rule_sum_to_one() {
         let rule = gauss_legendre(288);
         let total: f64 = rule.weights.iter().sum();
-        // 288 weights, each rounded: a hundred units in the last place of 1.
+        // 288 rounded weights: a hundred units in the last place of 1.
         assert_abs_diff_eq!(total, 1.0, epsilon = 1e-13);
     }
 }

@@ -1,12 +1,13 @@
-//! Cubic splines through the values of a table, for shapes that no formula gives.
+//! Cubic splines through the values of a table, for shapes without formulas.
 //!
-//! A spline is written by its values and slopes at the knots. Second derivatives are continuous
-//! at the inner knots, and third derivatives at the first and the last inner one (no knot there),
-//! which makes the slopes the solution of a tridiagonal system after one elimination at each end
-//! (C. de Boor, "A Practical Guide to Splines", chapter IV). With steps h the values are within
+//! A spline is stored by its values and slopes at the knots. Second derivatives are continuous at the inner
+//! knots, third derivatives at the first and the last inner one (not-a-knot condition). The slopes then solve
+//! a tridiagonal system after one elimination at each end (C. de Boor, "A Practical Guide to Splines",
+//! chapter IV). With steps h the values are within O(h^4) of a smooth function, the second derivatives within
+//! O(h^2).
 //! O(h^4) of a smooth function, the second derivatives within O(h^2).
 
-/// A function on [0, 1].
+/// Spline on [0, 1].
 #[derive(Clone, Debug)]
 pub(super) struct Spline {
     knots: Vec<f64>,
@@ -15,7 +16,7 @@ pub(super) struct Spline {
 }
 
 impl Spline {
-    /// Through these values at these knots, four or more, increasing from 0 to 1.
+    /// Interpolates `values` at `knots`, four or more, increasing from 0 to 1.
     pub(super) fn new(knots: &[f64], values: &[f64]) -> Self {
         Self {
             knots: knots.to_vec(),
@@ -24,7 +25,7 @@ impl Spline {
         }
     }
 
-    /// A derivative at s; third derivatives are those of the piece that ends at or beyond s.
+    /// Returns a derivative at s; at a knot, the third derivative is that of the piece before it.
     pub(super) fn derivative(&self, derivative: u8, s: f64) -> f64 {
         let last = self.knots.len() - 2;
         let piece = self.knots[1..=last].partition_point(|knot| *knot < s);
@@ -51,7 +52,7 @@ fn slopes(knots: &[f64], values: &[f64]) -> Vec<f64> {
     let chord: Vec<f64> = (0..n - 1)
         .map(|i| (values[i + 1] - values[i]) / h[i])
         .collect();
-    // Rows: below, diagonal, above, right-hand side.
+    // Rows: lower diagonal, diagonal, upper diagonal, right-hand side.
     let mut rows = vec![[0.0; 4]; n];
     let (a, b) = (h[0], h[1]);
     rows[0] = [
@@ -89,7 +90,7 @@ mod tests {
     use super::Spline;
 
     #[test]
-    fn a_cubic_is_itself() {
+    fn spline_reproduces_a_cubic() {
         let cubic = |s: f64| {
             [
                 1.0 - 2.0 * s + 3.0 * s * s - 4.0 * s * s * s,
@@ -116,9 +117,9 @@ mod tests {
         }
     }
 
-    /// Halving the step makes the error of the values 16 times less, of the second derivatives 4.
+    // Halving the step divides the error of the values by 16, that of the second derivatives by 4.
     #[test]
-    fn errors_fall_as_the_steps_do() {
+    fn spline_errors_have_orders_four_and_two() {
         let error = |count: usize, derivative: u8| {
             let knots: Vec<f64> = (0..=count).map(|i| i as f64 / count as f64).collect();
             let values: Vec<f64> = knots.iter().map(|s| (5.0 * s).sin()).collect();

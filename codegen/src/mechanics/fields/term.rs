@@ -1,9 +1,9 @@
-//! A term of an integrand: powers of the position, a weight, and field atoms.
+//! Term of an integrand: powers of the position, a weight, and field atoms.
 
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 use eomgen_model_spec::ids::FieldId;
 
-/// A field, its rate or a mode shape, with the number of derivatives by the position.
+/// Field, its rate or a mode shape, with the number of derivatives by the position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Atom {
     /// w
@@ -15,7 +15,7 @@ pub enum Atom {
 }
 
 impl Atom {
-    /// The atom differentiated `times` more by the position.
+    /// Returns the atom, differentiated `times` more by the position.
     pub fn differentiated(self, times: u8) -> Self {
         match self {
             Self::Coordinates(d) => Self::Coordinates(d + times),
@@ -30,7 +30,7 @@ impl Atom {
         }
     }
 
-    /// The vector over the modes that multiplies the shapes; `None` for a bare shape.
+    /// Returns the vector over the modes that multiplies the shapes; `None` for a bare shape.
     pub(crate) fn amplitudes(self, graph: &mut Graph, field: FieldId) -> Option<NodeId> {
         match self {
             Self::Coordinates(_) => Some(graph.intern(Operation::ModeCoordinates(field))),
@@ -40,7 +40,7 @@ impl Atom {
     }
 }
 
-/// scalar s^power weight atom_1 atom_2; the derivatives in the atoms are by s.
+/// Term scalar s^power weight atom_1 atom_2; the derivatives in the atoms are by s.
 #[derive(Clone, Debug)]
 pub(crate) struct IntegrandTerm {
     pub(crate) scalar: NodeId,

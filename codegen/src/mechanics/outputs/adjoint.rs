@@ -1,7 +1,7 @@
-//! Gradients by reverse accumulation: of a weighted sum of nodes, by every leaf they depend
-//! on, in one pass from the nodes down. Vectors stay vectors: what a scalar receives from a
-//! vector is summed over its elements, what a sum hands down stands for every element.
-//! What comes through a branch is chosen where it leaves the branch, not where it enters.
+//! Gradients by reverse accumulation: derivatives of a weighted sum of nodes by every leaf, in one pass from
+//! the nodes to the leaves. Vectors are not split: contributions of a vector to a scalar are summed over its
+//! elements, and a contribution of a sum applies to every element. Conditions of a branch are applied to its
+//! final contributions.
 
 use eomgen_model_spec::ids::{CoordinateId, FieldId, ParameterId, StateId};
 use std::collections::HashMap;
@@ -14,12 +14,12 @@ use crate::symbolic::graph::{
     Argument, Dependence, Graph, NodeId, Operation, Shape, Space, Variable,
 };
 
-/// The leaf of the weight of a rate.
+/// Returns the leaf of the weight of a rate.
 pub fn weight(graph: &mut Graph, variable: Variable) -> NodeId {
     graph.intern(Operation::Argument(Argument::Weights, variable))
 }
 
-/// The weight of each acceleration and of each rate of a state of first order, and what it weighs.
+/// Pairs the weight of each acceleration and of each first-order rate with its node.
 pub fn weighted(equations: &mut Equations) -> Vec<(NodeId, NodeId)> {
     let rows = &equations.accelerations.rows;
     let graph = &mut equations.graph;
@@ -36,17 +36,16 @@ pub fn weighted(equations: &mut Equations) -> Vec<(NodeId, NodeId)> {
     weighted
 }
 
-/// The gradient of the sum of weight times node, a vector's elements summed, by every leaf
-/// that is no parameter. Diagonals of Gram matrices that move are not followed; the caller sees to
-/// it that there are none.
+/// Returns the gradient of the sum of weight times node (summed over the elements of a vector) by every leaf
+/// that is no parameter. Moving diagonals of Gram matrices are not followed; the caller must exclude them.
 pub fn gradient(graph: &mut Graph, weighted: &[(NodeId, NodeId)]) -> HashMap<NodeId, NodeId> {
     accumulate(graph, weighted, |graph, id| {
         !graph.dependence(id).is_parameter_only()
     })
 }
 
-/// The gradient of the same by every independent parameter, in their order with those that
-/// are derived from others left out; nothing where a matrix depends on parameters.
+/// Returns the gradient by every independent parameter, in their order, through derived parameters. None if a
+/// matrix depends on parameters.
 pub fn gradient_by_parameters(
     graph: &mut Graph,
     weighted: &[(NodeId, NodeId)],
@@ -70,7 +69,7 @@ pub fn gradient_by_parameters(
     Some(independent.map(|(parts, _)| graph.combine(parts)).collect())
 }
 
-/// Adds what each parameter's own leaf receives to its parts.
+/// Adds the contributions to the leaf of each parameter to its parts.
 fn hand_to_parameters(
     graph: &mut Graph,
     weighted: &[(NodeId, NodeId)],
@@ -90,7 +89,7 @@ fn depends_on_parameters(graph: &Graph, id: NodeId) -> bool {
     graph.dependence(id).has(Dependence::PARAMETER)
 }
 
-/// The derived parameters, each before those that its expression reads.
+/// Returns the derived parameters, each before those that its expression uses.
 fn outermost_first(graph: &Graph, derived: &[Option<NodeId>]) -> Vec<ParameterId> {
     let mut order = Vec::new();
     let mut known = vec![false; derived.len()];
@@ -120,8 +119,7 @@ fn after_what_is_read(
     order.push(index);
 }
 
-/// Every leaf's part in the sum of weight times node, by way of the nodes that `follows`
-/// names.
+/// Returns the gradient by every leaf, through the nodes that `follows` accepts.
 fn accumulate(
     graph: &mut Graph,
     weighted: &[(NodeId, NodeId)],
@@ -153,7 +151,7 @@ fn accumulate(
     gradient
 }
 
-/// What decides whether a branch is taken: a > b, or that this does not hold.
+/// Condition of a branch: a > b, or its negation.
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct Condition {
     a: NodeId,
@@ -162,7 +160,7 @@ struct Condition {
 }
 
 impl Condition {
-    /// `value` where the branch is taken, 0 elsewhere.
+    /// Returns `value` if the branch is taken, else 0.
     fn chosen(self, graph: &mut Graph, value: NodeId) -> NodeId {
         let zero = graph.zero();
         let (then, otherwise) = if self.holds {
@@ -180,9 +178,9 @@ impl Condition {
     }
 }
 
-/// A part of an adjoint that counts under conditions, the outermost first. The choice waits
-/// until parts of other branches join it: a partial derivative inside a branch that is not
-/// taken may be infinite or no number, and 0 times it would be no number either.
+/// Part of an adjoint under conditions, the outermost first. The selection is postponed until parts of other
+/// branches join: a partial derivative in a branch that is not taken can be infinite or NaN, and 0 times it
+/// is NaN.
 #[derive(Clone)]
 pub(super) struct Part {
     conditions: Vec<Condition>,
@@ -214,7 +212,7 @@ impl Part {
         self.chosen_to(graph, 0).value
     }
 
-    /// The same with no more than this many conditions left open.
+    /// Applies conditions until at most `open` remain.
     fn chosen_to(mut self, graph: &mut Graph, open: usize) -> Self {
         while self.conditions.len() > open
             && let Some(condition) = self.conditions.pop()
@@ -224,7 +222,7 @@ impl Part {
         self
     }
 
-    /// The same with no condition open that differs from element to element.
+    /// Applies the conditions that differ between elements.
     fn chosen_by_element(self, graph: &mut Graph) -> Self {
         let whole = self
             .conditions
@@ -235,10 +233,10 @@ impl Part {
     }
 }
 
-/// What each node has received so far.
+/// Contributions to each node so far.
 pub(super) struct Adjoints {
     received: HashMap<NodeId, Vec<Part>>,
-    /// Which nodes count.
+    /// Predicate of the nodes to follow.
     pub(super) follows: fn(&Graph, NodeId) -> bool,
 }
 
@@ -247,7 +245,7 @@ impl Adjoints {
         self.received.entry(id).or_default().push(part);
     }
 
-    /// The sum of what a node has received, under the conditions that all of it has.
+    /// Sums the contributions to a node, under their common conditions.
     fn total(&mut self, graph: &mut Graph, id: NodeId) -> Part {
         let parts = self.received.remove(&id).unwrap_or_default();
         let mut common = parts.first().map_or(Vec::new(), |p| p.conditions.clone());
@@ -265,7 +263,7 @@ impl Adjoints {
         }
     }
 
-    /// Adds a part that is a vector over `space`, or stands for each of its elements.
+    /// Adds a vector over `space`, or a scalar that applies to each of its elements.
     pub(super) fn add_over(
         &mut self,
         graph: &mut Graph,
@@ -284,7 +282,7 @@ impl Adjoints {
         self.add(operand, part);
     }
 
-    /// What the operands of `id` receive from its adjoint.
+    /// Passes the adjoint of `id` to its operands.
     fn hand_down(&mut self, graph: &mut Graph, id: NodeId, adjoint: &Part) {
         match graph.operation(id).clone() {
             Operation::Total(a) => self.add(a, adjoint.clone()),

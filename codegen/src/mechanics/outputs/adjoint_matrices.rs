@@ -1,11 +1,11 @@
-//! What a matrix that moves with the state receives in reverse accumulation: y for the bilinear form
-//! y^T M x, which is how the solution x of a system takes part in a gradient.
+//! Contributions to a matrix that depends on the state in reverse accumulation. They are the gradient of the
+//! bilinear form y^T M x, in which x is the solution of a system.
 
 use super::adjoint::{Adjoints, Part};
 use crate::symbolic::graph::{Graph, NodeId, Operation, Space};
 
 impl Adjoints {
-    /// Hands the gradient of y^T M x to what M is computed from, x held; `y` is a vector under conditions.
+    /// Passes the gradient of y^T M x to the operands of M, with x held; `y` is a vector under conditions.
     pub(super) fn hand_to_matrix(&mut self, graph: &mut Graph, matrix: NodeId, y: Part, x: NodeId) {
         match graph.operation(matrix).clone() {
             Operation::Assemble(assembly) => {
@@ -67,7 +67,7 @@ impl Adjoints {
         self.hand_product(graph, nodes, weight, &y, x);
     }
 
-    /// Hands y times x, element by element over `space`, to a vector or to the scalar that stands for one.
+    /// Adds y times x, element by element over `space`, to a vector or to a repeated scalar.
     fn hand_product(&mut self, graph: &mut Graph, space: Space, to: NodeId, y: &Part, x: NodeId) {
         if (self.follows)(graph, to) {
             let part = y.with(graph.multiply(y.value, x));
@@ -81,7 +81,7 @@ fn total_product(graph: &mut Graph, space: Space, a: NodeId, b: NodeId) -> NodeI
     graph.total_over(space, product)
 }
 
-/// The index space of a matrix's rows.
+/// Returns the index space of a matrix's rows.
 fn rows(graph: &Graph, matrix: NodeId) -> Option<Space> {
     match graph.shape(matrix) {
         crate::symbolic::graph::Shape::Matrix(rows, _) => Some(rows),

@@ -1,6 +1,5 @@
-//! What is derived on request, as nodes of the equations' graph: bias forces, inverse
-//! dynamics, guards' rates, products with the Jacobian. Jacobians themselves are in
-//! `jacobian`. The structure they stand in is in `types`.
+//! Derivation of the requested outputs as nodes: bias forces, inverse dynamics, rates of guards, products
+//! with the Jacobian. `jacobian` derives Jacobians; `types` defines the results.
 
 use super::adjoint::{self, weighted};
 use super::hessian::gradient_derivative;
@@ -20,10 +19,10 @@ use crate::symbolic::factor::cheaper;
 use crate::symbolic::graph::{Argument, Graph, NodeId, Operation, Shape, Space, Variable};
 use eomgen_model_spec::ids::{CoordinateId, FieldId};
 
-/// Derives these outputs.
+/// Derives the requested outputs.
 ///
 /// # Errors
-/// `MovingDiagonal`: products and Jacobians are not derived then.
+/// `MovingDiagonal`, for products and Jacobians.
 pub fn derive_outputs(
     equations: &mut Equations,
     outputs: &[Output],
@@ -74,11 +73,11 @@ pub fn derive_outputs(
     Ok(result)
 }
 
-/// A sum over modes that weighs the square of each mode shape by a function of the state. It has no Jacobian
-/// here.
+/// Sum over modes that weights the square of each mode shape by a function of the state. Its Jacobian is not
+/// implemented.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MovingDiagonal {
-    /// The term that holds it, by its place in [`Equations::terms`]; none outside of these.
+    /// Index of the term in [`Equations::terms`]; `None` if the sum is in no term.
     pub term: Option<usize>,
 }
 
@@ -94,7 +93,7 @@ impl MovingDiagonal {
 impl std::fmt::Display for MovingDiagonal {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(
-            "no Jacobian: a sum over modes weighs the square of each mode shape by a function of the state",
+            "no Jacobian: a sum over modes weights the square of each mode shape by a function of the state",
         )
     }
 }
@@ -115,9 +114,8 @@ fn bias_forces(equations: &mut Equations) -> RowNodes {
     }
 }
 
-/// The rows of M a + bias, with a from the argument: by the mass matrix, by a sweep with these
-/// accelerations or from frame to frame, neither of which forms a mass matrix. What takes fewest
-/// operations is kept.
+/// Returns the rows of M a + bias with the accelerations as an argument, in the cheapest form: by the mass
+/// matrix, by a sweep, or by recursion from frame to frame. The last two form no mass matrix.
 fn inverse_dynamics(equations: &mut Equations, bias: &RowNodes) -> RowNodes {
     let mut best = inverse_dynamics_by_mass(equations, bias);
     let scalars = [
@@ -136,7 +134,7 @@ fn inverse_dynamics(equations: &mut Equations, bias: &RowNodes) -> RowNodes {
     best
 }
 
-/// The acceleration of a coordinate as an argument.
+/// Returns the acceleration of a coordinate as an argument.
 fn given_acceleration(graph: &mut Graph, index: CoordinateId) -> NodeId {
     let variable = Variable::Coordinate(index);
     graph.intern(Operation::Argument(Argument::Accelerations, variable))
@@ -199,14 +197,14 @@ fn inverse_dynamics_by_mass(equations: &mut Equations, bias: &RowNodes) -> RowNo
     rows
 }
 
-/// The rates of the guards along the motion, the inputs held.
+/// Returns the rates of the guards along the motion, with constant inputs.
 fn guard_rates(equations: &mut Equations) -> Vec<NodeId> {
     let values: Vec<NodeId> = equations.guards.iter().map(|guard| guard.value).collect();
     let mut rate = |value: &NodeId| guard_rate(equations, *value);
     values.iter().map(&mut rate).collect()
 }
 
-/// The rate of a function of the motion, the inputs held.
+/// Returns the rate of a function of the motion, with constant inputs.
 pub(crate) fn guard_rate(equations: &mut Equations, value: NodeId) -> NodeId {
     let rows = &equations.accelerations.rows;
     let state_rates = &equations.state_rates;
@@ -247,8 +245,8 @@ fn products(equations: &mut Equations) -> Products<NodeId, RowNodes> {
     }
 }
 
-/// The gradient of the weighted rates by the independent parameters: backward where it can be,
-/// one parameter after the other where matrices hold them.
+/// Returns the gradient of the weighted rates by the independent parameters: by reverse accumulation, or
+/// parameter by parameter if matrices depend on them.
 fn weighted_by_parameters(
     equations: &mut Equations,
     weighted: &[(NodeId, NodeId)],
@@ -264,7 +262,7 @@ fn weighted_by_parameters(
     }
 }
 
-/// The sum of weights times accelerations and rates, the rows that hold parameters.
+/// Returns the sum of weights times accelerations and first-order rates.
 fn weighted_sum(graph: &mut Graph, weighted: &[(NodeId, NodeId)]) -> NodeId {
     let mut terms = Vec::new();
     for &(weight, row) in weighted {

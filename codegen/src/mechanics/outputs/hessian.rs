@@ -1,6 +1,6 @@
-//! Second derivatives of the rates: the derivative of the gradient of their weighted sum along a
-//! direction, forward over backward. One function gives every column of the Hessian, so that what
-//! is emitted grows as the gradient does, and not with the number of variables.
+//! Second derivatives of the rates: the derivative of the gradient of their weighted sum along a direction,
+//! forward over reverse. One function gives every column of the Hessian, so that the emitted code grows as
+//! the gradient does, independently of the number of variables.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -13,12 +13,11 @@ use crate::symbolic::differentiate::Direction;
 use crate::symbolic::graph::{Argument, NodeId, Operation, Variable};
 use eomgen_model_spec::ids::{InputId, ParameterId};
 
-/// Every variable of the gradient with its place in the order of time, state, inputs and
-/// independent parameters.
+/// Indices of each variable in the order time, state, inputs, independent parameters.
 type Places = Vec<(Variable, Range<usize>)>;
 
-/// The derivative along a direction. `weighted_by_parameters` is the gradient by the parameters, a
-/// Jacobian of one row.
+/// Derives the gradient's derivative along a direction. `weighted_by_parameters` is the gradient by the
+/// parameters.
 pub(crate) fn gradient_derivative(
     equations: &mut Equations,
     weighted_by_parameters: &Jacobian<NodeId>,
@@ -92,13 +91,12 @@ fn places(equations: &Equations) -> Places {
     places
 }
 
-/// The independent parameters, in their order.
 fn independent(equations: &Equations) -> impl Iterator<Item = ParameterId> {
     let derived = &equations.derived_parameters;
     ParameterId::first(derived.len()).filter(|index| derived[*index].is_none())
 }
 
-/// The gradient, without what the weights of the coordinates' rates add to it: that is constant.
+/// Returns the gradient, without the constant contribution of the weights of the coordinates' rates.
 fn gradient(
     equations: &mut Equations,
     places: &Places,
@@ -125,8 +123,7 @@ fn gradient(
     rows
 }
 
-/// The columns that each leaf stands for: its own, and those of what a derived parameter is
-/// computed from.
+/// Returns the columns of each leaf: its own, or for a derived parameter those of its independent parameters.
 fn columns(equations: &mut Equations, places: &Places) -> HashMap<NodeId, Vec<Range<usize>>> {
     let mut columns = HashMap::new();
     for (variable, place) in places {
@@ -136,7 +133,7 @@ fn columns(equations: &mut Equations, places: &Places) -> HashMap<NodeId, Vec<Ra
     for index in ParameterId::first(equations.derived_parameters.len()) {
         let graph = &mut equations.graph;
         let leaf = graph.intern(Operation::Parameter(index));
-        // Expressions read other derived parameters: all that is reached in the end.
+        // Expressions can use other derived parameters; collect all parameters that they reach.
         let mut pending = vec![leaf];
         let mut reached = Vec::new();
         while let Some(of) = pending.pop() {

@@ -1,7 +1,6 @@
-//! Jacobians as blocks of structural nonzeros: each row, or the rows of a field's modes, by
-//! each variable, or by the modes of a field. RowNodes are differentiated as they stand in the
-//! graph, with the factorisation that they share, so that a bottleneck such as the one sum
-//! over all modes is differentiated once.
+//! Jacobians as blocks of structural nonzeros: each row, or the rows of a field's modes, by each variable, or
+//! by the modes of a field. Rows are differentiated with their shared factors, so that a common sum over all
+//! modes is differentiated once.
 
 use super::types::{Jacobian, JacobianBlock};
 use crate::mechanics::equations::Equations;
@@ -11,26 +10,25 @@ use crate::symbolic::matrix::StructuredMatrix;
 use crate::symbolic::modal_derivative::ModalDerivative;
 use eomgen_model_spec::ids::{CoordinateId, FieldId, InputId, ParameterId, StateId};
 
-/// The rows of a Jacobian: nodes, and the diagonal block of ones if there is one.
+/// Rows of a Jacobian: nodes, and possibly a diagonal block of ones.
 pub(crate) struct JacobianRows {
     count: usize,
-    /// Ones from the first row on at the columns from here on.
+    /// First column of a diagonal block of ones in the first rows.
     identity: Option<usize>,
     rows: Vec<EquationRow>,
 }
 
-/// One row, or one for each mode of a field.
+/// Row, or one row for each mode of a field.
 #[derive(Clone, Copy)]
 struct EquationRow {
     first: usize,
     count: usize,
     node: NodeId,
-    /// The field whose modes the rows are.
+    /// Field whose modes the rows belong to.
     field: Option<FieldId>,
 }
 
 impl JacobianRows {
-    /// One row.
     pub(crate) fn single(node: NodeId) -> Self {
         let row = EquationRow {
             first: 0,
@@ -46,7 +44,7 @@ impl JacobianRows {
     }
 }
 
-/// The rates of the state: the rates of coordinates are themselves part of the state.
+/// Returns the rates of the state; the rates of coordinates are themselves states.
 pub(crate) fn rate_rows(equations: &Equations) -> JacobianRows {
     let degrees = degrees_of_freedom(equations);
     let accelerations = &equations.accelerations.rows;
@@ -83,7 +81,7 @@ pub(crate) fn rate_rows(equations: &Equations) -> JacobianRows {
     }
 }
 
-/// The observables, energy and power last.
+/// Returns the observables, with energy and power last.
 pub(crate) fn observable_rows(equations: &mut Equations) -> JacobianRows {
     let energy = equations.graph.add(equations.kinetic, equations.potential);
     let nodes = equations.observables.iter().copied();
@@ -104,7 +102,7 @@ pub(crate) fn observable_rows(equations: &mut Equations) -> JacobianRows {
     }
 }
 
-/// The Jacobian by the state, or by the inputs.
+/// Derives the Jacobian by the state, or by the inputs.
 pub(crate) fn by_variables(
     equations: &mut Equations,
     rows: &JacobianRows,
@@ -126,7 +124,7 @@ pub(crate) fn by_variables(
     blocks.jacobian(name, column)
 }
 
-/// The Jacobian by the independent parameters.
+/// Derives the Jacobian by the independent parameters.
 pub(crate) fn by_parameters(
     equations: &mut Equations,
     rows: &JacobianRows,
@@ -142,7 +140,7 @@ pub(crate) fn by_parameters(
     blocks.jacobian(name, independent.len())
 }
 
-/// The derivative by the time, state and inputs held: a Jacobian of one column.
+/// Derives the derivative by time, with constant state and inputs: a Jacobian of one column.
 pub(crate) fn by_time(
     equations: &mut Equations,
     rows: &JacobianRows,
@@ -157,7 +155,7 @@ pub(crate) fn by_time(
     blocks.jacobian(name, 1)
 }
 
-/// A Jacobian of one row.
+/// Builds a Jacobian of one row.
 pub(crate) fn one_row(graph: &Graph, name: &'static str, row: &[NodeId]) -> Jacobian<NodeId> {
     let nonzeros = row
         .iter()
@@ -199,7 +197,7 @@ pub(super) fn state_variables(equations: &Equations) -> Vec<Variable> {
         .collect()
 }
 
-/// The blocks of a Jacobian so far.
+/// Collected blocks of a Jacobian.
 struct Blocks<'a> {
     graph: &'a mut Graph,
     rows: &'a JacobianRows,
@@ -238,7 +236,7 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// The blocks by a variable whose first column is this; how many columns it has.
+    /// Adds the blocks of a variable from this column on; returns the number of columns.
     fn by_variable(&mut self, variable: Variable, column: usize) -> usize {
         let leaf = self.graph.variable(variable);
         if let Some(mut derivative) = ModalDerivative::new(self.graph, leaf) {
@@ -265,7 +263,7 @@ impl<'a> Blocks<'a> {
         self.along(&mut direction, column);
     }
 
-    /// One column: the derivatives of all rows along a direction.
+    /// Adds a column: the derivatives of all rows along a direction.
     fn along(&mut self, direction: &mut Direction<'_>, column: usize) {
         for row in &self.rows.rows {
             let value = direction.derivative(self.graph, row.node);
@@ -324,8 +322,7 @@ impl<'a> Blocks<'a> {
     }
 }
 
-/// Gives the leaf of a derived parameter its derivative along the direction, those that its
-/// expression reads first.
+/// Sets the derivatives of derived parameters along the direction, operands first.
 pub(super) fn seed_derived(
     graph: &mut Graph,
     derived: &[Option<NodeId>],

@@ -1,13 +1,12 @@
-//! Derivatives along a direction of what is computed with matrices that move with it:
-//! products, Gram matrices and solutions by a Cholesky factor. Modal matrices move with
-//! parameters; a factor is not differentiated, but the system that it solves:
+//! Directional derivatives of products, Gram matrices and Cholesky solutions with matrices that vary along
+//! the direction. Modal matrices depend on parameters. Instead of a factor, its system is differentiated:
 //! d(M^-1 b) = M^-1 (db - dM M^-1 b).
 
 use crate::symbolic::differentiate::Direction;
 use crate::symbolic::graph::{Assembly, Dependence, Graph, NodeId, Operation};
 
 impl Direction<'_> {
-    /// d(matrix vector) along the direction.
+    /// Returns d(matrix vector) along the direction.
     pub(crate) fn applied(
         &mut self,
         graph: &mut Graph,
@@ -21,7 +20,7 @@ impl Direction<'_> {
         graph.add(by_vector, by_matrix)
     }
 
-    /// d(L^-T L^-1 right) along the direction, `solution` being the node itself.
+    /// Returns d(L^-T L^-1 right) along the direction; `solution` is the node itself.
     pub(crate) fn solved(
         &mut self,
         graph: &mut Graph,
@@ -40,7 +39,7 @@ impl Direction<'_> {
         graph.cholesky_solve(factor, rest)
     }
 
-    /// d(matrix) vector, the vector held.
+    /// Returns d(matrix) vector, with the vector held.
     fn moved_matrix_applied(
         &mut self,
         graph: &mut Graph,
@@ -72,8 +71,7 @@ impl Direction<'_> {
         }
     }
 
-    /// The same of an assembled matrix, part by part. It is never transposed: a factor is that
-    /// of a symmetric one.
+    /// Returns d(matrix) vector for an assembled matrix, part by part. It is symmetric, so never transposed.
     fn moved_assembly(&mut self, graph: &mut Graph, assembly: &Assembly, vector: NodeId) -> NodeId {
         let mut terms = Vec::new();
         if let Some(diagonal) = assembly.diagonal {
@@ -103,7 +101,7 @@ impl Direction<'_> {
         graph.combine(&terms)
     }
 
-    /// d(diagonal of left^T diag(weight) right) along the direction.
+    /// Returns d(diagonal of left^T diag(weight) right) along the direction.
     pub(crate) fn gram_diagonal(
         &mut self,
         graph: &mut Graph,
@@ -123,8 +121,8 @@ impl Direction<'_> {
     }
 }
 
-/// Returns true if `roots` hold the diagonal of a Gram matrix that moves with the state: those are
-/// differentiated by parameters alone.
+/// Returns true if `roots` depend on the diagonal of a Gram matrix that varies with the state. Such diagonals
+/// are differentiated only by parameters.
 pub(crate) fn holds_moving_diagonal(graph: &Graph, roots: &[NodeId]) -> bool {
     graph.reachable(roots).into_iter().any(|id| {
         matches!(graph.operation(id), Operation::GramDiagonal { .. })
@@ -132,7 +130,7 @@ pub(crate) fn holds_moving_diagonal(graph: &Graph, roots: &[NodeId]) -> bool {
     })
 }
 
-/// Whether something in `roots` is a matrix operation on what depends on parameters.
+/// Returns true if `roots` depend on a matrix operation on parameters.
 pub(crate) fn holds_matrix_of_parameters(graph: &Graph, roots: &[NodeId]) -> bool {
     graph.reachable(roots).into_iter().any(|id| {
         matches!(

@@ -1,9 +1,9 @@
-//! What is derived on request beside rates, observables, energy, power, guards and mass matrix.
+//! Outputs on request, in addition to rates, observables, energy, power, guards and mass matrix.
 //!
-//! `output` (what can be asked for), `types` (the structure of what was derived), `derive` (its
-//! derivation), `jacobian` (columns by state, inputs and parameters), `adjoint` and `adjoint_matrices`
-//! (products with weights, backward), `hessian` (second derivatives of the weighted rates),
-//! `matrix_derivatives` (derivatives of modal matrices), `regimes` (which surfaces decide each branch).
+//! `output` lists them, `types` defines their structure, `derive` derives them. `jacobian` differentiates by
+//! state, inputs and parameters, `adjoint` and `adjoint_matrices` derive products with weights by reverse
+//! accumulation, `hessian` second derivatives of the weighted rates, `matrix_derivatives` derivatives of
+//! modal matrices, and `regimes` the surfaces that decide each branch.
 
 mod adjoint;
 mod adjoint_matrices;

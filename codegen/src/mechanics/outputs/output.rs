@@ -1,12 +1,11 @@
-//! What can be asked for beside rates, observables, energy, power, guards and mass matrix,
-//! which are always there. How it is derived is in `derive`.
+//! Outputs that can be requested in addition to rates, observables, energy, power, guards and mass matrix.
 
-/// An output on request: a function that is derived and emitted where it is asked for.
+/// Function that is derived and emitted on request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Output {
-    /// c - f of M q'' + c = f.
+    /// Bias forces c - f of M q'' + c = f.
     BiasForces,
-    /// M a + c - f for any accelerations a: the forces that are missing for them.
+    /// Inverse dynamics M a + c - f: the additional forces for given accelerations a.
     InverseDynamics,
     /// Time derivatives of the guards.
     GuardRates,
@@ -14,23 +13,23 @@ pub enum Output {
     Jacobians,
     /// Products of the rates' Jacobian with a direction, and of weights with the Jacobian.
     Products,
-    /// A, B, C and D about a point; brings the Jacobians with it.
+    /// Matrices A, B, C and D of a linearisation; includes the Jacobians.
     Linearisation,
-    /// The number of a state's regime, and the rates in a regime with every branch decided.
+    /// Number of a state's regime, and rates in a regime with every branch decided.
     Regimes,
-    /// The derivative of the rates by the time. Not asked for by name: it is the column that
-    /// what calls from elsewhere misses in the Jacobians.
+    /// Derivative of the rates by time. It has no name for requests: external interfaces add it to the
+    /// Jacobians.
     TimeDerivatives,
-    /// The Jacobian of the gradient of the weighted rates by time, state, inputs and parameters:
-    /// the second derivatives that optimisers ask for. Brings the products with it.
+    /// Jacobian of the gradient of the weighted rates by time, state, inputs and parameters, for optimisers.
+    /// Includes the products.
     Hessians,
-    /// Every function a second time as `inlined_...`, for lanes: to be compiled with the code
-    /// around it for registers that are known at run time.
+    /// A second version of every function, `inlined_...`, for SIMD lanes. It is compiled together with the
+    /// calling code for registers that are known at run time.
     Lanes,
 }
 
 impl Output {
-    /// Every output that is emitted in every language.
+    /// Every output that all languages support and a request can name.
     pub const ALL: [Self; 8] = [
         Self::BiasForces,
         Self::InverseDynamics,
@@ -42,7 +41,7 @@ impl Output {
         Self::Lanes,
     ];
 
-    /// Its name.
+    /// Returns the name in requests.
     pub fn name(self) -> &'static str {
         match self {
             Self::BiasForces => "bias_forces",
@@ -58,23 +57,23 @@ impl Output {
         }
     }
 
-    /// The names of all, for messages.
+    /// Returns the names of all outputs, for messages.
     pub fn names() -> String {
         Self::ALL.map(Self::name).join(", ")
     }
 }
 
-/// A name that is no output.
+/// Error for a name that is not an output.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownOutput {
-    /// The name.
+    /// Name in the request.
     pub name: String,
 }
 
 impl std::fmt::Display for UnknownOutput {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let names = Output::names();
-        write!(f, "`{}` is not known; known are {names}", self.name)
+        write!(f, "unknown output `{}`; use one of {names}", self.name)
     }
 }
 

@@ -1,50 +1,47 @@
-//! Regimes: which switching surfaces decide each piecewise function of the accelerations, so
-//! that a kernel for one side of all of them need not ask. How such a kernel is written is the
-//! backend's; the polynomials in sides that make a model linear are in `affine`.
+//! Regimes: the switching surfaces that decide each piecewise function of the accelerations. A function for
+//! one regime needs no comparisons. `affine` derives the polynomials in sides that make a model linear.
 
 use crate::mechanics::equations::Equations;
 use crate::mechanics::forces::{Surfaces, surfaces};
 use crate::symbolic::graph::{Graph, NodeId, Operation, Shape};
 
-/// How many surfaces the number of a regime has room for, a bit each.
+/// Largest number of surfaces in the number of a regime, which has one bit for each.
 pub const SURFACES_OF_A_REGIME: usize = u32::BITS as usize;
 
-/// A piecewise function of the accelerations, as a node or value `N`, whose branch a regime
-/// decides.
+/// Piecewise function of the accelerations, as a node or value `N`, whose branch a regime decides.
 #[derive(Clone, Copy, Debug)]
 pub struct Switch<N> {
-    /// The function's value.
+    /// Value of the function.
     pub value: N,
-    /// What decides.
+    /// Deciding surfaces.
     pub decided: Decided,
 }
 
-/// What decides about a branch: surfaces by their places among the numbers of all guards.
+/// Surfaces that decide a branch, by their indices among all guard values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Decided {
-    /// A dead zone or a contact, by p - b and p + b.
+    /// Dead zone or contact, by p - b and p + b.
     Between {
-        /// The place of p - b.
+        /// Index of p - b.
         above: usize,
-        /// The place of p + b.
+        /// Index of p + b.
         beyond: usize,
     },
-    /// A sign or a contact that may rest on a whole region, by p - b and -p - b, where b is 0
-    /// for a sign.
+    /// Sign or contact that can be zero in a whole regime, by p - b and -p - b, with b = 0 for a sign.
     Outside {
-        /// The place of p - b.
+        /// Index of p - b.
         above: usize,
-        /// The place of -p - b.
+        /// Index of -p - b.
         below: usize,
     },
-    /// Anything else, by the one surface at which it switches.
+    /// Other function, by its only surface.
     By(usize),
-    /// A choice where a > b, by b - a; or what is above where p > 0, by -p.
+    /// Selection for a > b by b - a, or `above(p)` by -p.
     Turned(usize),
 }
 
-/// The piecewise functions of the accelerations that surfaces decide. What switches mode by
-/// mode, or by surfaces that the number of a regime has no room for, is not among them.
+/// Returns the piecewise functions of the accelerations that surfaces decide. Functions of modes are
+/// excluded, as are those whose surfaces exceed the bits of a regime's number.
 pub(crate) fn switches(equations: &mut Equations) -> Vec<Switch<NodeId>> {
     let roots = equations.rate_nodes();
     let places = places(equations);
@@ -65,7 +62,7 @@ pub(crate) fn switches(equations: &mut Equations) -> Vec<Switch<NodeId>> {
     found
 }
 
-/// The surfaces that are single numbers, with their places.
+/// Returns the scalar surfaces with their indices.
 fn places(equations: &Equations) -> Vec<(NodeId, usize)> {
     let graph = &equations.graph;
     let mut places = Vec::new();

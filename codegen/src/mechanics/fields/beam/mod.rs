@@ -1,12 +1,11 @@
-//! The modes of a uniform beam between two ends, each clamped, pinned, free or guided.
+//! Modes of a uniform beam between two ends, each clamped, pinned, free or guided.
 //!
-//! Wave numbers are sought beside a multiple of pi/4, from which they differ by less and less:
-//! cos z cosh z = 1 and -1 become sin d = (-1)^(r+1) sech z, tan z = tanh z and -tanh z become
-//! tan d = -exp(-2 z) and exp(-2 z). The amplitudes follow from the conditions at the two ends
-//! (R. D. Blevins, "Formulas for Natural Frequency and Mode Shape", 1979, Table 8-1, where
-//! guided ends are called sliding). The second derivative of a mode is a mode with clamped and
-//! free ends exchanged, so that a beam with a free start has the wave numbers and the wave of
-//! one with a clamped start.
+//! A wave number is the sum of a multiple of pi/4 and a small difference d: cos z cosh z = 1 and -1 become
+//! sin d = (-1)^(r+1) sech z, tan z = tanh z and -tanh z become tan d = -exp(-2 z) and exp(-2 z). The
+//! amplitudes follow from the conditions at the two ends (R. D. Blevins, "Formulas for Natural Frequency and
+//! Mode Shape", 1979, Table 8-1, where guided ends are called sliding). The second derivative of a mode is a
+//! mode with clamped and free ends exchanged; a beam with a free start therefore has the wave numbers and the
+//! wave of one with a clamped start.
 
 use eomgen_elementary::Function;
 use eomgen_model_spec::model::End;
@@ -16,7 +15,7 @@ use super::mode::{Mode, exponential, values_at};
 #[cfg(test)]
 mod tests;
 
-/// Elastic mode `number`, from 1, of a beam with these ends.
+/// Computes the elastic mode `number`, from 1, of a beam with these ends.
 pub(super) fn mode(from: End, to: End, number: usize) -> Mode {
     let root = Root::of(from, to, number);
     let wave = wave(from, to, root);
@@ -24,8 +23,8 @@ pub(super) fn mode(from: End, to: End, number: usize) -> Mode {
     let [falling, rising] = exponentials(from, to, root, wave, wave_at_end[0]);
     let [sine, cosine] = wave;
     let (falling_at_end, rising_at_start) = (falling * root.decay, rising * root.decay);
-    // 4 int phi^2 = phi(1)^2 + phi''(1)^2/k^4 - 2 phi'(1) phi'''(1)/k^4, or the same from the
-    // start; of these an end from which the shape decays leaves one.
+    // 4 int phi^2 = phi(1)^2 + phi''(1)^2/k^4 - 2 phi'(1) phi'''(1)/k^4, or the same at the start. At an end
+    // from which the shape decays, one of these terms remains.
     let mean_square = match (from, to) {
         (start, _) if decays(start) => [cosine; 2],
         (_, end) if decays(end) => [wave_at_end[0]; 2],
@@ -51,8 +50,8 @@ pub(super) fn mode(from: End, to: End, number: usize) -> Mode {
     }
 }
 
-/// Mode `number` with beta_r l and xi_r as Eq. (18) and (19) print them. It satisfies no condition
-/// at its end, and none of its integrals is known in closed form.
+/// Computes the mode `number` with beta_r l and xi_r as printed in Eq. (18) and (19). It satisfies no
+/// condition at its end, and its integrals have no closed form.
 pub(super) fn printed(number: usize) -> Mode {
     let wavenumber = std::f64::consts::PI * (number as f64 - 0.5);
     let sine = -alternating(number);
@@ -70,12 +69,12 @@ pub(super) fn printed(number: usize) -> Mode {
     }
 }
 
-/// Whether every shape is a sine or a cosine alone.
+/// Returns true if every shape is a pure sine or cosine.
 pub(super) fn is_sinusoidal(from: End, to: End) -> bool {
     !decays(from) && !decays(to)
 }
 
-/// k = beta_r l with its sine and cosine, which are known better than by its rounded value.
+/// k = beta_r l with its sine and cosine, which are more accurate than those of the rounded k.
 #[derive(Clone, Copy)]
 struct Root {
     k: f64,
@@ -108,7 +107,7 @@ impl Root {
         }
     }
 
-    /// The fixed point of k = (r + quarters/4) pi + offset(k), a contraction.
+    /// Finds the fixed point of the contraction k = (r + quarters/4) pi + offset(k).
     fn beside(number: usize, quarters: f64, offset: impl Fn(f64) -> f64) -> Self {
         let centre = std::f64::consts::PI * (number as f64 + 0.25 * quarters);
         let mut d = 0.0;
@@ -131,7 +130,7 @@ impl Root {
     }
 }
 
-/// The sine and cosine of -2, -1, 0, 1 or 2 times pi/4.
+/// Returns the sine and cosine of -2, -1, 0, 1 or 2 times pi/4.
 fn quarter_turns(quarters: f64) -> [f64; 2] {
     let half = std::f64::consts::FRAC_1_SQRT_2;
     if quarters == 0.0 {
@@ -143,23 +142,23 @@ fn quarter_turns(quarters: f64) -> [f64; 2] {
     }
 }
 
-/// sech k from exp(-k).
+/// Returns sech k from exp(-k).
 fn sech(decay: f64) -> f64 {
     2.0 * decay / (1.0 + decay * decay)
 }
 
-/// Whether shapes have an exponential that falls off from this end.
+/// Returns true if shapes have an exponential that decays from this end.
 fn decays(end: End) -> bool {
     matches!(end, End::Clamped | End::Free)
 }
 
-/// Of ends that decay: -1 for two of a kind, cos k cosh k = 1, and 1 for clamped with free,
-/// cos k cosh k = -1.
+/// Returns the sign of two ends that decay: -1 for equal ends, cos k cosh k = 1; 1 for clamped and free, cos
+/// k cosh k = -1.
 fn unlikeness(from: End, to: End) -> f64 {
     if from == to { -1.0 } else { 1.0 }
 }
 
-/// The factors of sin z and of cos z: the sine's is 1, or the cosine's where there is no sine.
+/// Returns the factors of sin z and of cos z. The sine has the factor 1; without a sine, the cosine has it.
 fn wave(from: End, to: End, root: Root) -> [f64; 2] {
     let square = root.decay * root.decay;
     let mixing = match (from, to) {
@@ -178,15 +177,15 @@ fn wave(from: End, to: End, root: Root) -> [f64; 2] {
     [1.0, mixing]
 }
 
-/// cos k - cosh k or cos k + cosh k, times 2 exp(-k).
+/// Returns cos k - cosh k or cos k + cosh k, times 2 exp(-k).
 fn divisor(unlike: f64, root: Root) -> f64 {
     2.0 * root.cosine * root.decay + unlike + unlike * root.decay * root.decay
 }
 
-/// What the wave is at the end, and its first derivative over k.
+/// Returns the wave at the end, and its first derivative divided by k.
 fn wave_at_end(from: End, to: End, root: Root, number: usize, [a, c]: [f64; 2]) -> [f64; 2] {
     if decays(from) && decays(to) {
-        // Such a wave is the same from either end, but for signs.
+        // Such a wave is equal from both ends except for signs.
         let sign = unlikeness(from, to) * alternating(number);
         return [sign * c, -sign * a];
     }
@@ -196,7 +195,7 @@ fn wave_at_end(from: End, to: End, root: Root, number: usize, [a, c]: [f64; 2]) 
     ]
 }
 
-/// The factors of exp(-z) and of exp(z - k).
+/// Returns the factors of exp(-z) and of exp(z - k).
 fn exponentials(from: End, to: End, root: Root, wave: [f64; 2], wave_at_end: f64) -> [f64; 2] {
     let decay = root.decay;
     // Exponentials cancel the wave at a clamped end and double it at a free one.
@@ -229,7 +228,6 @@ fn exponentials(from: End, to: End, root: Root, wave: [f64; 2], wave_at_end: f64
     }
 }
 
-/// (-1)^r
 fn alternating(number: usize) -> f64 {
     if number.is_multiple_of(2) { 1.0 } else { -1.0 }
 }

@@ -1,5 +1,4 @@
-//! Modes of beams against published eigenvalues, the conditions at their ends, a rule of quadrature
-//! and their mirror images.
+//! Modes of beams, compared with published eigenvalues, end conditions, quadrature and mirror images.
 
 use eomgen_model_spec::model::End;
 
@@ -9,7 +8,7 @@ use crate::mechanics::fields::quadrature::gauss_legendre;
 const ENDS: [End; 4] = [End::Clamped, End::Pinned, End::Free, End::Guided];
 const NUMBERS: [usize; 6] = [1, 2, 3, 12, 64, 128];
 
-/// Every pairing of ends with every number.
+/// Returns every pair of ends with every mode number.
 fn all() -> impl Iterator<Item = (End, End, usize)> {
     ENDS.into_iter().flat_map(|from| {
         ENDS.into_iter()
@@ -26,9 +25,9 @@ fn vanishing(end: End) -> [u8; 2] {
     }
 }
 
-/// Blevins, Table 8-1; those whose ends are exchanged are the same.
+// Blevins, Table 8-1; exchanged ends have equal eigenvalues.
 #[test]
-fn eigenvalues_are_the_published_ones() {
+fn eigenvalues_match_published_table() {
     use End::{Clamped, Free, Guided, Pinned};
     let pi = std::f64::consts::PI;
     let published = [
@@ -47,7 +46,7 @@ fn eigenvalues_are_the_published_ones() {
         for (number, eigenvalue) in (1..).zip(eigenvalues) {
             for mode in [mode(from, to, number), mode(to, from, number)] {
                 let found = mode.wavenumber;
-                // A unit of the last printed digit.
+                // One unit of the last printed digit.
                 assert!(
                     (found - eigenvalue).abs() < 1e-7,
                     "{from:?}, {to:?}: {found}"
@@ -57,7 +56,7 @@ fn eigenvalues_are_the_published_ones() {
     }
 }
 
-/// The phase at the end, up to 403, is rounded to 3e-14.
+// The phase at the end, up to 403, has a rounding error of 3e-14.
 #[test]
 fn shapes_satisfy_the_conditions_at_both_ends() {
     for (from, to, number) in all() {
@@ -79,10 +78,10 @@ fn shapes_satisfy_the_conditions_at_both_ends() {
     }
 }
 
-/// The closed forms of the integrals of phi^2, phi and s phi, by a rule that knows nothing of
-/// them; its nodes are rounded, as the phases are.
+// Closed forms of the integrals of phi^2, phi and s phi, compared with quadrature; its nodes are rounded, as
+// the phases are.
 #[test]
-fn closed_integrals_are_those_of_the_shapes() {
+fn closed_integrals_match_quadrature() {
     for (from, to, number) in all() {
         let mode = mode(from, to, number);
         let rule = gauss_legendre(2 * number + 40);
@@ -107,7 +106,7 @@ fn closed_integrals_are_those_of_the_shapes() {
 }
 
 #[test]
-fn exchanged_ends_have_the_mirrored_shapes() {
+fn exchanged_ends_have_mirrored_shapes() {
     for (from, to, number) in all() {
         let (one, other) = (mode(from, to, number), mode(to, from, number));
         let mirrored = |s: f64| other.shape(0, 1.0 - s);
