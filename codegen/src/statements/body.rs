@@ -34,6 +34,7 @@ pub struct Body<'a> {
     in_loops: HashMap<ValueId, bool>,
     pub(super) bound: HashMap<ValueId, String>,
     statements: Vec<Statement>,
+    /// Functions that the statements call.
     pub needed: &'a mut Needed,
     /// Vectors that the caller reads as arrays.
     arrays: HashSet<ValueId>,

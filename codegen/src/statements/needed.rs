@@ -7,6 +7,7 @@ use eomgen_elementary::Function as Elementary;
 /// Functions that a file must define.
 #[derive(Clone, Debug, Default)]
 pub struct Needed {
+    /// Elementary functions.
     pub elementary: BTreeSet<Elementary>,
     /// f_k of Eq. (7).
     pub deadzone: bool,
@@ -22,6 +23,7 @@ pub struct Needed {
     pub either: bool,
     /// Selection by a given condition.
     pub chosen: bool,
+    /// Reciprocals of pivots.
     pub pivot_reciprocal: bool,
     /// Cholesky factorisation and solution.
     pub cholesky: bool,

@@ -13,6 +13,7 @@ use super::statement::{Place, Statement};
 use crate::program::{Extent, Op, Program, ValueId};
 use eomgen_model_spec::ids::FieldId;
 
+/// Documentation of the arguments and results of the rates.
 pub const ORDER: &str = "`t` in s; `state` and the rates in the order of [`STATE_NAMES`].";
 
 const NOT_DEFINITE: &str = "\n\n\
@@ -26,6 +27,7 @@ const BETWEEN_IMPACTS: &str = "\n\n\
 /// Largest copy, in numbers, that every compiler unrolls: one cache line.
 const COPIED_AT_ONCE: usize = 8;
 
+/// Builds the stage of the rates.
 pub fn rates(file: &File<'_>, needed: &mut Needed) -> Emitted<Stage> {
     let body = file.body(&file.program.rate_roots(), needed)?;
     rates_of(

@@ -1,19 +1,18 @@
-//! What a function of the expression language is applied to: one operand or two, never
-//! another number of them.
+//! Arguments of a function of the expression language: one or two.
 
 use std::ops::Deref;
 
-/// The operands of a function, in the order in which they are written. It reads as a slice.
+/// Arguments of a function in written order, readable as a slice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Arguments<T> {
-    /// Of a function of one argument.
+    /// One argument.
     One([T; 1]),
-    /// Of a function of two.
+    /// Two arguments.
     Two([T; 2]),
 }
 
 impl<T> Arguments<T> {
-    /// The operands as there are, if there are one or two.
+    /// Builds arguments from one or two operands; `None` for another number.
     pub fn of(operands: Vec<T>) -> Option<Self> {
         let operands = match <[T; 1]>::try_from(operands) {
             Ok(one) => return Some(Self::One(one)),
@@ -22,7 +21,7 @@ impl<T> Arguments<T> {
         <[T; 2]>::try_from(operands).ok().map(Self::Two)
     }
 
-    /// The same of what becomes of each operand.
+    /// Applies `change` to each argument.
     pub fn map<U>(self, change: impl FnMut(T) -> U) -> Arguments<U> {
         match self {
             Self::One(one) => Arguments::One(one.map(change)),

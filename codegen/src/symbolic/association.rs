@@ -1,6 +1,6 @@
-//! In which order the factors of products are multiplied: pairs that several products share come
-//! first, the pair that most of them share before all others, so that each is multiplied once. A
-//! product that shares nothing keeps the order of its factors.
+//! Multiplication order of products. Pairs of factors that several products share are multiplied first, the
+//! most frequent pair before all others, so that each is computed once. Other products keep the order of
+//! their factors.
 
 use std::collections::{BTreeSet, BinaryHeap, HashMap};
 
@@ -8,28 +8,28 @@ use eomgen_model_spec::model::Function;
 
 use crate::symbolic::graph::{Graph, NodeId, Operation, Shape};
 
-/// What is multiplied.
+/// Factor of a product.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) enum Factor {
-    /// A prepared factor, by its place in the list of them.
+    /// Prepared factor, by its index.
     Coefficient(usize),
-    /// A node.
+    /// Node.
     Node(NodeId),
-    /// The product of two of these, by its place in the list of them.
+    /// Product of two factors, by its index.
     Pair(usize),
 }
 
-/// A number times powers of nodes of parameters alone.
+/// Number times powers of nodes that depend only on parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct PreparedFactor {
     pub(crate) number: f64,
     pub(crate) powers: Vec<(NodeId, i32)>,
 }
 
-/// A product of a sum or of its own: magnitude of the number in front, and the node.
+/// Product with the magnitude of its numeric factor.
 type ProductKey = (u64, NodeId);
 
-/// The orders that were chosen.
+/// Chosen multiplication orders.
 #[derive(Default)]
 pub(crate) struct Association {
     coefficients: Vec<PreparedFactor>,
@@ -41,30 +41,29 @@ pub(crate) struct Association {
 
 type ProductPowers = (u64, Vec<(NodeId, i32)>);
 
-/// Products of more factors keep their order: the pairs that they hold are too many to compare.
+/// Largest number of factors of a reordered product; longer ones have too many pairs to compare.
 pub(crate) const MOST_FACTORS: usize = 12;
 
-/// Beyond this a power is left to squarings.
+/// Largest exponent of a reordered factor; higher powers use squaring.
 const LARGEST_EXPONENT: i32 = 3;
 
 impl Association {
-    /// The factors of a product, if it shares any with others.
+    /// Returns the factors of a product if it shares a pair with another product.
     pub(crate) fn factors(&self, magnitude: f64, product: NodeId) -> Option<&[Factor]> {
         let factors = self.products.get(&(magnitude.to_bits(), product))?;
         Some(factors)
     }
 
-    /// A prepared factor.
     pub(crate) fn coefficient(&self, place: usize) -> &PreparedFactor {
         &self.coefficients[place]
     }
 
-    /// The two factors of a pair.
+    /// Returns the two factors of a pair.
     pub(crate) fn pair(&self, place: usize) -> (Factor, Factor) {
         self.pairs[place]
     }
 
-    /// How many multiplications the products that were met take per call, each pair once.
+    /// Counts the multiplications per call of all known products, each shared pair once.
     fn multiplications(&self, graph: &Graph) -> usize {
         let own = self.seen.iter().map(|&(bits, product)| {
             if let Some(factors) = self.products.get(&(bits, product)) {
@@ -87,8 +86,7 @@ impl Association {
         own.sum::<usize>() + self.pairs.len()
     }
 
-    /// Chooses the orders of all products that `roots` are computed from and that were not met
-    /// before.
+    /// Chooses the orders of all new products that `roots` depend on.
     pub(crate) fn extend(&mut self, graph: &Graph, roots: &[NodeId]) {
         let keys = product_keys(graph, roots);
         let mut found: Vec<(ProductKey, Vec<Factor>)> = Vec::new();
@@ -157,11 +155,10 @@ impl Association {
     }
 }
 
-/// What a sine or a cosine counts for: they come in pairs, and wait for little.
+/// Cost of a sine or a cosine in operations: they occur in pairs and wait for few operations.
 const TURN: usize = 20;
 
-/// How many operations nodes of scalars take per call, with what products share: by this the
-/// cheaper of two forms is told.
+/// Counts the operations of scalar nodes per call with shared products. The count decides between two forms.
 pub(crate) fn shared_operations(graph: &Graph, roots: &[NodeId]) -> usize {
     let mut association = Association::default();
     association.extend(graph, roots);
@@ -184,7 +181,7 @@ pub(crate) fn shared_operations(graph: &Graph, roots: &[NodeId]) -> usize {
     others.sum::<usize>() + association.multiplications(graph)
 }
 
-/// The products that stand in sums, with their numbers, and those that stand elsewhere.
+/// Returns the products that are terms of sums, with their numeric factors, and all other products.
 fn product_keys(graph: &Graph, roots: &[NodeId]) -> Vec<ProductKey> {
     let one = 1.0_f64.to_bits();
     let mut keys = BTreeSet::new();
@@ -219,7 +216,7 @@ fn product_keys(graph: &Graph, roots: &[NodeId]) -> Vec<ProductKey> {
 
 type Pair = (Factor, Factor);
 
-/// Which products hold which pairs.
+/// Products that contain each pair.
 struct Sharing {
     products: Vec<Vec<Factor>>,
     holders: HashMap<Pair, BTreeSet<usize>>,
@@ -239,7 +236,7 @@ impl Sharing {
         sharing
     }
 
-    /// Multiplies the pair that most products share, as long as two of them do.
+    /// Replaces the most frequent pair until no pair is shared.
     fn run(&mut self, pairs: &mut Vec<Pair>) {
         let mut queue: BinaryHeap<(usize, std::cmp::Reverse<Pair>)> = self
             .holders
@@ -271,7 +268,7 @@ impl Sharing {
         }
     }
 
-    /// Puts a pair in the place of its two factors; the pairs that the product now holds.
+    /// Replaces two factors of a product by their pair; returns the pairs that the product now contains.
     fn replace(&mut self, place: usize, pair: Pair, made: Factor) -> BTreeSet<Pair> {
         for held in pairs_of(&self.products[place]) {
             if let Some(holders) = self.holders.get_mut(&held) {
@@ -293,7 +290,7 @@ impl Sharing {
     }
 }
 
-/// Every pair of factors that a product holds.
+/// Returns every pair of factors in a product.
 fn pairs_of(product: &[Factor]) -> BTreeSet<Pair> {
     let mut pairs = BTreeSet::new();
     for (place, &a) in product.iter().enumerate() {

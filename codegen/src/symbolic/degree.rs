@@ -1,17 +1,15 @@
-//! The degree of a node in the rates, read off its structure. Used to see that a kinetic
-//! energy is a quadratic form of the rates and nothing else.
+//! Degree of a node in the rates, read off its structure. Shows that a kinetic energy is a quadratic form.
 
 use std::collections::HashMap;
 
 use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation};
 
-/// Whether a node is, by its structure, a homogeneous quadratic form of the rates.
+/// Returns true if the structure of a node is a homogeneous quadratic form of the rates.
 pub fn is_quadratic_in_rates(graph: &Graph, id: NodeId) -> bool {
     graph.is_zero(id) || degree(graph, id, &mut HashMap::new()) == Some(2)
 }
 
-/// The degree of a homogeneous polynomial of the rates; `None` if it is none, or if its
-/// structure does not tell.
+/// Returns the degree of a homogeneous polynomial of the rates; `None` for another or unrecognised structure.
 fn degree(graph: &Graph, id: NodeId, known: &mut HashMap<NodeId, Option<i32>>) -> Option<i32> {
     if !graph.dependence(id).has(Dependence::RATE) {
         return Some(0);

@@ -1,16 +1,16 @@
-//! Multiplying out, a level at a time and within bounds. The derivation does not do this
-//! as a rule: it is tried where terms are known to cancel, and kept if it pays.
+//! Expansion of products, level by level and within bounds. It is applied only to terms that are likely to
+//! cancel, and kept if it saves operations.
 
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 
-/// How many levels are tried.
+/// Largest number of expanded levels.
 pub const MOST_EXPANSIONS: usize = 4;
 
-/// The most terms a sum may grow to.
+/// Largest number of terms of an expanded sum.
 const MOST_TERMS: usize = 200;
 
-/// A sum in which every product with a sum among its factors is multiplied out by one of
-/// them; `None` if there is nothing to multiply out, or too much.
+/// Expands every product with a sum among its factors by one of the sums; `None` if there is no such product,
+/// or if the result is too long.
 pub fn expand_once(graph: &mut Graph, id: NodeId) -> Option<NodeId> {
     let terms: Vec<(f64, NodeId)> = match graph.operation(id) {
         Operation::Sum(terms) => terms.iter().map(|(c, term)| (c.value(), *term)).collect(),
@@ -34,7 +34,7 @@ pub fn expand_once(graph: &mut Graph, id: NodeId) -> Option<NodeId> {
     changed.then(|| graph.combine_flat(&result))
 }
 
-/// The terms of a product that has a sum as a factor, to the first power or squared.
+/// Returns the terms of a product with a sum as a factor, to the first or second power.
 fn expanded_product(graph: &mut Graph, id: NodeId) -> Option<Vec<(f64, NodeId)>> {
     let Operation::Product(factors) = graph.operation(id).clone() else {
         return None;

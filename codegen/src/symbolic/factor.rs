@@ -1,5 +1,5 @@
-//! Sums with common factors taken out. What is needed once is opened into the sum that it stands in
-//! first, so that equal terms meet.
+//! Extraction of common factors of sums. Inner sums with one use are expanded first, so that equal terms
+//! meet.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -9,10 +9,9 @@ use crate::symbolic::association::{MOST_FACTORS, shared_operations};
 use crate::symbolic::graph::{Graph, NodeId, Operation, Shape};
 use crate::symbolic::substitute::substitute;
 
-/// Terms of a sum.
 type Terms = Vec<(f64, NodeId)>;
 
-/// The nodes with common factors of sums taken out, if they take fewer operations so.
+/// Extracts common factors of sums if that saves operations.
 pub(crate) fn cheaper(graph: &mut Graph, roots: Vec<NodeId>) -> Vec<NodeId> {
     let other = factored(graph, &roots);
     if shared_operations(graph, &other) < shared_operations(graph, &roots) {
@@ -22,7 +21,7 @@ pub(crate) fn cheaper(graph: &mut Graph, roots: Vec<NodeId>) -> Vec<NodeId> {
     }
 }
 
-/// The nodes with common factors of sums taken out, in all that they are computed from.
+/// Extracts common factors in all sums that the roots depend on.
 fn factored(graph: &mut Graph, roots: &[NodeId]) -> Vec<NodeId> {
     let mut uses = graph.uses(roots);
     for root in roots {
@@ -58,7 +57,7 @@ fn factored(graph: &mut Graph, roots: &[NodeId]) -> Vec<NodeId> {
     roots.iter().map(|root| known[root]).collect()
 }
 
-/// A sum of terms, those that differ in parameters and numbers alone collected: a x + b x = (a + b) x.
+/// Adds terms; terms that differ only in parameters and numbers are collected: a x + b x = (a + b) x.
 pub(crate) fn collected(graph: &mut Graph, terms: &[(f64, NodeId)]) -> NodeId {
     let mut by_live: BTreeMap<NodeId, Terms> = BTreeMap::new();
     for &(c, term) in terms {
@@ -86,7 +85,7 @@ pub(crate) fn collected(graph: &mut Graph, terms: &[(f64, NodeId)]) -> NodeId {
     graph.combine(&terms)
 }
 
-/// A sum of terms, the factor that most of them share taken out first.
+/// Adds terms, with the most frequent factor extracted first.
 fn sum(graph: &mut Graph, terms: &[(f64, NodeId)]) -> NodeId {
     let combined = graph.combine(terms);
     let Operation::Sum(terms) = graph.operation(combined).clone() else {
@@ -116,8 +115,8 @@ fn sum(graph: &mut Graph, terms: &[(f64, NodeId)]) -> NodeId {
     graph.combine(&terms)
 }
 
-/// The factor that stands in most terms, in two at least; of equals sines and cosines first: both
-/// rows of a rotation then hold the same sums.
+/// Returns the most frequent factor of at least two terms. Sines and cosines precede equally frequent
+/// factors, because both rows of a rotation then contain the same sums.
 fn most_common_factor(graph: &Graph, terms: &[(f64, NodeId)]) -> Option<NodeId> {
     let mut counts: BTreeMap<NodeId, usize> = BTreeMap::new();
     for (_, term) in terms {
@@ -138,8 +137,8 @@ fn most_common_factor(graph: &Graph, terms: &[(f64, NodeId)]) -> Option<NodeId> 
         .map(|(id, _)| id)
 }
 
-/// The scalar factors of a term that depend on the state and have a positive exponent; of a product
-/// of many none, which takes too long to take apart.
+/// Returns the scalar factors of a term that depend on the state and have a positive exponent; none for a
+/// product with too many factors.
 fn live_factors(graph: &Graph, term: NodeId) -> Vec<NodeId> {
     let live =
         |id: NodeId| graph.shape(id) == Shape::Scalar && !graph.dependence(id).is_parameter_only();

@@ -1,11 +1,10 @@
-//! The hash-consed expression graph: every distinct expression stands in it once, so
-//! that differentiation and emission work on shared parts and nothing is expanded.
+//! Hash-consed expression graph: every distinct expression is stored once, so that differentiation and
+//! emission work on shared parts.
 //!
-//! A node is a scalar, a vector over an index space (a field's modes, or its quadrature
-//! nodes) or a matrix over two of them; element-wise operations broadcast scalars. Sums
-//! over modes therefore stay sums: the graph has the same size for any order. What
-//! the operations mean is in `operation`, how they simplify in `simplify`, their
-//! derivatives in `differentiate`.
+//! A node is a scalar, a vector over an index space (a field's modes, or its quadrature nodes) or a matrix
+//! over two of them; element-wise operations broadcast scalars. Sums over modes are single nodes, so the
+//! graph has the same size for any truncation order. `operation` defines the operations, `simplify` their
+//! simplification, `differentiate` their derivatives.
 
 use std::collections::{HashMap, HashSet};
 
@@ -24,22 +23,22 @@ struct Node {
     operation: Operation,
     shape: Shape,
     dependence: Dependence,
-    /// One of 64 bits for each variable that the node depends on; variables may share a bit.
+    /// Bit set of 64 bits for the variables that the node depends on; variables can share a bit.
     variables: u64,
     critical_path: u32,
     has_reciprocal_root: bool,
     holds_switch: bool,
 }
 
-/// The graph of one variant: its nodes, constant tables and the sizes of its spaces.
+/// Graph of one variant: nodes, constant tables and sizes of the index spaces.
 pub struct Graph {
     nodes: Vec<Node>,
     known: NodeMap<Operation, NodeId>,
-    /// Nodes of the numbers 0 and 1, once made.
+    /// Nodes of 0 and 1, if they exist.
     pub(super) zero_and_one: [Option<NodeId>; 2],
     tables: Vec<Table>,
     orders: Vec<usize>,
-    /// For each input the one that is its rate, if that is given.
+    /// For each input, the input that is its rate, if there is one.
     input_rates: Vec<Option<InputId>>,
     node_counts: Vec<usize>,
     names: HashMap<NodeId, String>,
@@ -50,7 +49,7 @@ pub struct Graph {
 }
 
 impl Graph {
-    /// An empty graph for fields of these orders with these numbers of quadrature nodes.
+    /// Creates an empty graph for fields with these truncation orders and numbers of quadrature nodes.
     pub fn new(orders: &[usize], node_counts: &[usize]) -> Self {
         Self {
             nodes: Vec::new(),
@@ -67,32 +66,32 @@ impl Graph {
         }
     }
 
-    /// Keeps names from being given to nodes: those of the specification's quantities.
+    /// Reserves names for the quantities of the specification.
     pub fn reserve_names<'n>(&mut self, names: impl Iterator<Item = &'n String>) {
         self.taken.extend(names.cloned());
     }
 
-    /// The names in use, of nodes and of quantities.
+    /// Returns the names in use, of nodes and of quantities.
     pub fn taken_names(&self) -> impl Iterator<Item = &str> {
         self.taken.iter().map(String::as_str)
     }
 
-    /// Says for each input which one is its rate, if that is given.
+    /// Sets, for each input, the input that is its rate, if there is one.
     pub(crate) fn set_input_rates(&mut self, rates: Vec<Option<InputId>>) {
         self.input_rates = rates;
     }
 
-    /// The input that is the rate of an input, if that is given.
+    /// Returns the input that is the rate of an input, if there is one.
     pub(crate) fn input_rate(&self, input: InputId) -> Option<InputId> {
         self.input_rates.get(input.index()).copied().flatten()
     }
 
-    /// The order of each field.
+    /// Returns the truncation order of each field.
     pub fn orders(&self) -> &[usize] {
         &self.orders
     }
 
-    /// How many indices a space has.
+    /// Returns the size of an index space.
     pub fn size(&self, space: Space) -> usize {
         match space {
             Space::Modes(field) => self.orders[field],
@@ -100,7 +99,7 @@ impl Graph {
         }
     }
 
-    /// How many numbers a node of this shape holds.
+    /// Returns the count of numbers in a node of this shape.
     pub fn length(&self, shape: Shape) -> usize {
         match shape {
             Shape::Scalar => 1,
@@ -109,59 +108,58 @@ impl Graph {
         }
     }
 
-    /// What a node computes.
+    /// Returns the operation of a node.
     pub fn operation(&self, id: NodeId) -> &Operation {
         &self.nodes[id.0 as usize].operation
     }
 
-    /// A node's shape.
+    /// Returns the shape of a node.
     pub fn shape(&self, id: NodeId) -> Shape {
         self.nodes[id.0 as usize].shape
     }
 
-    /// What a node depends on.
+    /// Returns the dependence of a node.
     pub fn dependence(&self, id: NodeId) -> Dependence {
         self.nodes[id.0 as usize].dependence
     }
 
-    /// The length of the critical path to a node, in elementary functions of the state: how many
-    /// stand one inside the other at most. Each takes as long as some dozen additions in a row.
+    /// Returns the length of the critical path to a node: the largest number of nested elementary functions
+    /// of the state. Each takes as long as some dozen additions in a row.
     pub fn critical_path(&self, id: NodeId) -> u32 {
         self.nodes[id.0 as usize].critical_path
     }
 
-    /// Returns true if the reciprocal of a root stands in a node without a guard where the root is 0.
+    /// Returns true if a node contains the reciprocal of a root without a guard at the root's zero.
     pub(crate) fn has_reciprocal_root(&self, id: NodeId) -> bool {
         self.nodes[id.0 as usize].has_reciprocal_root
     }
 
-    /// Returns true if a node is computed from a function that switches between sides.
+    /// Returns true if a node depends on a function that switches between sides.
     pub(crate) fn holds_switch(&self, id: NodeId) -> bool {
         self.nodes[id.0 as usize].holds_switch
     }
 
-    /// A table of constants.
+    /// Returns a table of constants.
     pub fn table(&self, index: usize) -> &Table {
         &self.tables[index]
     }
 
-    /// How many nodes there are.
+    /// Returns the number of nodes.
     pub fn len(&self) -> usize {
         self.nodes.len()
     }
 
-    /// Whether there are none.
+    /// Returns true if there are no nodes.
     pub fn is_empty(&self) -> bool {
         self.nodes.is_empty()
     }
 
-    /// The name a node was given by the specification, if any.
+    /// Returns the name of a node, if it has one.
     pub fn name(&self, id: NodeId) -> Option<&str> {
         self.names.get(&id).map(String::as_str)
     }
 
-    /// Names a node after a quantity of the specification. Leaves keep their own names, a
-    /// node its first.
+    /// Names a node after a quantity of the specification. Leaves and named nodes keep their names.
     pub fn set_name(&mut self, id: NodeId, name: &str) {
         let compound = !self.operands(self.operation(id)).is_empty();
         if compound && !self.names.contains_key(&id) {
@@ -177,7 +175,7 @@ impl Graph {
         }
     }
 
-    /// The node of an operation that needs no simplification.
+    /// Returns the node of an operation without simplification.
     pub(crate) fn intern(&mut self, operation: Operation) -> NodeId {
         if let Some(&id) = self.known.get(&operation) {
             return id;
@@ -204,7 +202,7 @@ impl Graph {
         id
     }
 
-    /// The node of a table of constants.
+    /// Returns the node of a table of constants.
     pub fn constants(
         &mut self,
         field: FieldId,
@@ -304,7 +302,7 @@ impl Graph {
         }
     }
 
-    /// Whether `id` can depend on all that `of` depends on; false only if it cannot.
+    /// Returns false only if `id` cannot depend on all variables of `of`.
     pub(crate) fn may_depend_on(&self, id: NodeId, of: NodeId) -> bool {
         let [own, needed] = [id, of].map(|id| self.nodes[id.0 as usize].variables);
         own & needed == needed
@@ -333,7 +331,7 @@ impl Graph {
         u32::from(own) + inner.unwrap_or(0)
     }
 
-    /// The nodes an operation reads.
+    /// Returns the operands of an operation.
     pub fn operands(&self, operation: &Operation) -> Vec<NodeId> {
         match operation {
             Operation::Constant(_)
@@ -375,7 +373,7 @@ impl Graph {
         }
     }
 
-    /// The leaf of a variable.
+    /// Returns the leaf of a variable.
     pub fn variable(&mut self, variable: Variable) -> NodeId {
         self.intern(match variable {
             Variable::Coordinate(index) => Operation::Coordinate(index),
@@ -389,7 +387,7 @@ impl Graph {
         })
     }
 
-    /// How often each node is an operand of what `roots` are computed from.
+    /// Counts the uses of each node as an operand among the nodes that `roots` depend on.
     pub fn uses(&self, roots: &[NodeId]) -> HashMap<NodeId, usize> {
         let mut uses = HashMap::new();
         for id in self.reachable(roots) {
@@ -400,8 +398,8 @@ impl Graph {
         uses
     }
 
-    /// Every node that `roots` are computed from, operands first. Takes as long as there are
-    /// such nodes, however large the graph is.
+    /// Returns every node that `roots` depend on, operands first. The time is proportional to the number of
+    /// these nodes.
     pub fn reachable(&self, roots: &[NodeId]) -> Vec<NodeId> {
         let size = roots.iter().map(|root| root.0 as usize + 1).max();
         let mut seen = vec![false; size.unwrap_or(0)];
@@ -414,13 +412,13 @@ impl Graph {
                 waiting.extend(self.operands(self.operation(id)));
             }
         }
-        // An operand is older than what is computed from it.
+        // Operands are older than their uses.
         found.sort_unstable();
         found
     }
 }
 
-/// Whether a function takes no longer than a few additions.
+/// Returns true if a function takes at most as long as a few additions.
 fn is_quick(function: Function) -> bool {
     matches!(
         function,

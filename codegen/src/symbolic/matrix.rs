@@ -1,11 +1,11 @@
-//! Matrices over modes that keep their structure: a diagonal, outer products of vectors
-//! and scaled tables. Modal mass matrices have this form: a uniform beam's is diagonal, a
-//! tip mass adds one outer product, a basis that is not orthogonal a table.
+//! Structured matrices over modes: a diagonal, outer products of vectors and scaled tables. Modal mass
+//! matrices have this form: diagonal for a uniform beam, plus an outer product for a tip mass, plus a table
+//! for a basis that is not orthogonal.
 
 use crate::symbolic::graph::{Assembly, Graph, NodeId, Operation, ScaledMatrix, Shape, Space};
 
 impl Assembly {
-    /// The parts of this matrix times a vector.
+    /// Returns the terms of this matrix times a vector.
     pub(crate) fn times(&self, graph: &mut Graph, vector: NodeId) -> Vec<NodeId> {
         let mut parts = Vec::new();
         if let Some(diagonal) = self.diagonal {
@@ -25,14 +25,14 @@ impl Assembly {
     }
 }
 
-/// diagonal + sum of u v^T + sum of diag(row) matrix diag(column).
+/// Matrix diagonal + sum of u v^T + sum of diag(row) matrix diag(column).
 #[derive(Clone, Debug)]
 pub struct StructuredMatrix {
     /// Index space of the rows.
     pub rows: Space,
     /// Index space of the columns.
     pub columns: Space,
-    /// The diagonal (a vector, or a scalar for equal entries); only if rows = columns.
+    /// Diagonal (a vector, or a scalar for equal entries); only for rows = columns.
     pub diagonal: Option<NodeId>,
     /// Outer products u v^T; u and v are vectors, or scalars for equal entries.
     pub outer: Vec<(NodeId, NodeId)>,
@@ -41,7 +41,7 @@ pub struct StructuredMatrix {
 }
 
 impl StructuredMatrix {
-    /// The zero matrix.
+    /// Returns the zero matrix.
     pub fn zero(rows: Space, columns: Space) -> Self {
         Self {
             rows,
@@ -52,7 +52,7 @@ impl StructuredMatrix {
         }
     }
 
-    /// Whether nothing stands in it.
+    /// Returns true if the matrix has no parts.
     pub fn is_zero(&self) -> bool {
         self.diagonal.is_none() && self.outer.is_empty() && self.matrices.is_empty()
     }
@@ -71,7 +71,7 @@ impl StructuredMatrix {
         self.diagonal = (!graph.is_zero(sum)).then_some(sum);
     }
 
-    /// Adds u v^T; outer products of the same v are collected.
+    /// Adds u v^T; outer products with equal v are collected.
     pub fn add_outer(&mut self, graph: &mut Graph, u: NodeId, v: NodeId) {
         if graph.is_zero(u) || graph.is_zero(v) {
             return;
@@ -107,7 +107,7 @@ impl StructuredMatrix {
         }
     }
 
-    /// matrix times this (or its transpose times this).
+    /// Returns `matrix`, or its transpose, times this matrix.
     pub fn applied(&self, graph: &mut Graph, matrix: NodeId, transposed: bool) -> Self {
         let rows = match (graph.shape(matrix), transposed) {
             (Shape::Matrix(rows, _), false) => rows,
@@ -129,7 +129,7 @@ impl StructuredMatrix {
             result.add_outer(graph, applied, v);
         }
         for inner in &self.matrices {
-            // Only shapes at quadrature nodes meet here: Phi^T diag(row) Phi.
+            // Only shapes at quadrature nodes occur here: Phi^T diag(row) Phi.
             let product = graph.intern(Operation::Gram {
                 left: matrix,
                 weight: inner.row,
@@ -145,7 +145,7 @@ impl StructuredMatrix {
         result
     }
 
-    /// The solution of a system by its Cholesky factor with this as the right side.
+    /// Solves a system by its Cholesky factor with this matrix as the right-hand side.
     pub fn solved(&self, graph: &mut Graph, factor: NodeId) -> Self {
         let mut result = Self::zero(self.rows, self.columns);
         for &(u, v) in &self.outer {
@@ -169,8 +169,8 @@ impl StructuredMatrix {
         result
     }
 
-    /// The row vector of column sums: the gradient of the total of a vector whose
-    /// Jacobian this is.
+    /// Returns the row vector of column sums: the gradient of a vector's total, if this is the vector's
+    /// Jacobian.
     pub fn column_totals(&self, graph: &mut Graph) -> NodeId {
         let mut terms = Vec::new();
         if let Some(diagonal) = self.diagonal {
@@ -187,7 +187,7 @@ impl StructuredMatrix {
         graph.combine(&terms)
     }
 
-    /// This as the parts of one node.
+    /// Returns the parts as the operand of a node.
     pub fn assembly(&self) -> Assembly {
         Assembly {
             rows: self.rows,
@@ -198,7 +198,7 @@ impl StructuredMatrix {
         }
     }
 
-    /// This as one assembled node.
+    /// Returns the matrix as one node.
     pub fn assemble(&self, graph: &mut Graph) -> NodeId {
         graph.intern(Operation::Assemble(Box::new(self.assembly())))
     }

@@ -1,12 +1,12 @@
-//! Expressions as nodes of one hash-consed graph, and what is done with them without knowing any
-//! mechanics.
+//! Expressions as nodes of one hash-consed graph, with all operations on them that need no mechanics.
 //!
-//! `operation` (of `arguments`) and `graph` (the nodes, known by `node_map`), `simplify` (the algebraic laws, applied
-//! by the constructors), `tables` and `table_text` (constants of a basis), `matrix`, `differentiate` and
-//! `modal_derivative` (derivatives that keep their structure), `limits` and `orders` (derivatives at zeros
-//! of roots), `switches` and `branches` (operations that switch), `flat` (derivatives on their flat sides), `substitute`, `expand`, `degree` and `operation_count` (walks over nodes), `association`
-//! (which factors are multiplied first), `factor` and `trigonometry` (other forms of sums, for whoever
-//! compares what they cost), `formula` (for people).
+//! - Nodes: `graph` and `node_map` store them, `operation` and `arguments` define them, `simplify` applies
+//!   algebraic laws in their constructors, `tables` and `table_text` hold constants of a basis.
+//! - Derivatives: `differentiate`, `modal_derivative` and `matrix` keep the structure; `limits` and `orders`
+//!   handle zeros of roots, `switches`, `branches` and `flat` operations that switch.
+//! - Transformations: `substitute`, `expand`, `factor`, `trigonometry` and `association` (multiplication
+//!   order), with `degree` and `operation_count` to compare forms.
+//! - `formula` prints nodes.
 
 pub(crate) mod arguments;
 pub(crate) mod association;

@@ -1,5 +1,5 @@
-//! Derivatives by a field's modes: of a scalar a vector, its gradient, and of a vector a structured matrix
-//! (diagonal, outer products and tables).
+//! Derivatives by a field's modes: a gradient vector for a scalar, a structured matrix (diagonal, outer
+//! products and tables) for a vector.
 
 use crate::symbolic::branches::choice;
 use crate::symbolic::differentiate::{Moving, choose, partial_derivatives};
@@ -17,7 +17,8 @@ pub struct ModalDerivative {
 }
 
 impl ModalDerivative {
-    /// Derivatives by the vector leaf `variable` (a field's mode coordinates or rates).
+    /// Prepares derivatives by the vector leaf `variable` (mode coordinates or rates); `None` for a scalar
+    /// leaf.
     pub fn new(graph: &Graph, variable: NodeId) -> Option<Self> {
         match graph.shape(variable) {
             Shape::Vector(space) => Some(Self {
@@ -45,7 +46,7 @@ impl ModalDerivative {
         })
     }
 
-    /// The gradient of a scalar node: a vector over the modes, or 0.
+    /// Returns the gradient of a scalar node: a vector over the modes, or 0.
     pub fn gradient(&mut self, graph: &mut Graph, id: NodeId) -> NodeId {
         if let Some(&known) = self.gradients.get(&id) {
             return known;
@@ -78,7 +79,7 @@ impl ModalDerivative {
         result
     }
 
-    /// The Jacobian of a vector node: rows its own index, columns the modes.
+    /// Returns the Jacobian of a vector node: rows for its elements, columns for the modes.
     pub fn jacobian(&mut self, graph: &mut Graph, id: NodeId) -> StructuredMatrix {
         if let Some(known) = self.jacobians.get(&id) {
             return known.clone();
@@ -88,7 +89,7 @@ impl ModalDerivative {
         result
     }
 
-    /// The Jacobian of a vector, or of the scalar that stands for each of its elements.
+    /// Returns the Jacobian of a vector, or of a scalar that is repeated for each element.
     pub fn of_elements(&mut self, graph: &mut Graph, id: NodeId, rows: Space) -> StructuredMatrix {
         if graph.shape(id) != Shape::Scalar {
             return self.jacobian(graph, id);
@@ -99,7 +100,7 @@ impl ModalDerivative {
         matrix
     }
 
-    /// The Jacobian of M x with the solution x of M x = right held, where the factor of M moves.
+    /// Returns the Jacobian of M x with x, the solution of M x = right, held; M depends on the modes.
     fn moved_matrix(
         &mut self,
         graph: &mut Graph,

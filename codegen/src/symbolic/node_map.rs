@@ -1,19 +1,18 @@
-//! Maps by nodes and operations. A derivation looks up millions of entries, and no attacker chooses them: a few
-//! operations per word suffice (FxHash of Firefox and rustc).
+//! Maps with nodes or operations as keys. A derivation performs millions of lookups with trusted keys, so
+//! that a few operations per word suffice as hash (FxHash of Firefox and rustc).
 
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
 
-/// A map by nodes or operations.
 pub(crate) type NodeMap<K, V> = HashMap<K, V, BuildHasherDefault<WordHasher>>;
 
-/// A polynomial hash of words.
+/// Polynomial hash of words.
 #[derive(Clone, Default)]
 pub(crate) struct WordHasher {
     state: u64,
 }
 
-/// An odd number without a pattern in its bits.
+/// Odd number without a bit pattern.
 const MULTIPLIER: u64 = 0xf135_7aea_2e62_a9c5;
 
 impl Hasher for WordHasher {
@@ -42,7 +41,7 @@ impl Hasher for WordHasher {
     }
 
     fn finish(&self) -> u64 {
-        // The high bits of a product depend on all of its factors' bits; tables look at the low ones.
+        // The high bits of a product depend on all bits of its factors; hash tables use the low ones.
         self.state.rotate_left(26)
     }
 }

@@ -1,139 +1,138 @@
-//! What the nodes of the graph compute, their shapes, and what they depend on.
+//! Operations of the graph's nodes, their shapes and dependences.
 
 use eomgen_model_spec::ids::{CoordinateId, FieldId, InputId, ParameterId, StateId};
 use eomgen_model_spec::model::Function;
 
 use crate::symbolic::arguments::Arguments;
 
-/// A node of a graph.
+/// Node of a graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct NodeId(pub(crate) u32);
 
-/// An index space.
+/// Index space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Space {
-    /// The modes of a field.
+    /// Modes of a field.
     Modes(FieldId),
-    /// The quadrature nodes along a field.
+    /// Quadrature nodes of a field.
     Nodes(FieldId),
 }
 
-/// The shape of a node.
+/// Shape of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Shape {
     /// One number.
     Scalar,
-    /// One number per index.
+    /// One number for each index.
     Vector(Space),
-    /// One number per pair of indices (rows, columns).
+    /// One number for each pair of indices (rows, columns).
     Matrix(Space, Space),
 }
 
-/// A floating-point number that can be hashed: compared by its bits.
+/// Floating-point number with equality and hash of its bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Bits(u64);
 
 impl Bits {
-    /// The number as bits; -0 becomes 0 so that both are one constant.
+    /// Converts a number; -0 becomes 0, so that both are one constant.
     pub fn new(value: f64) -> Self {
         Self((value + 0.0).to_bits())
     }
 
-    /// The number.
+    /// Returns the number.
     pub fn value(self) -> f64 {
         f64::from_bits(self.0)
     }
 }
 
-/// What the equations move with or are driven by, one by one or by the modes of a field.
+/// Variable of the equations, or the variables of all modes of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Variable {
-    /// A generalised coordinate.
+    /// Generalised coordinate.
     Coordinate(CoordinateId),
-    /// A field's mode coordinates.
+    /// Mode coordinates of a field.
     ModeCoordinates(FieldId),
-    /// The rate of a generalised coordinate.
+    /// Rate of a generalised coordinate.
     Rate(CoordinateId),
-    /// The rates of a field's mode coordinates.
+    /// Rates of a field's mode coordinates.
     ModeRates(FieldId),
-    /// A state of first order.
+    /// State of first order.
     State(StateId),
-    /// An input.
+    /// Input.
     Input(InputId),
-    /// A parameter; in a program, a place among the independent ones.
+    /// Parameter; in a program, the index among the independent ones.
     Parameter(ParameterId),
-    /// The time.
+    /// Time.
     Time,
 }
 
-/// What some outputs are called with besides state and inputs: a number for each
-/// of these variables.
+/// Additional argument of an output: a number for each of its variables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Argument {
     /// Accelerations, in the order of the coordinates.
     Accelerations,
-    /// A direction in the space of states and inputs.
+    /// Direction in the space of states and inputs.
     Direction,
-    /// A direction in the space of time, state, inputs and independent parameters.
+    /// Direction in the space of time, state, inputs and independent parameters.
     PointDirection,
-    /// A weight for each rate of the state, in the order of the state.
+    /// Weight of each rate of the state, in the order of the state.
     Weights,
 }
 
-/// What a node computes.
+/// Operation of a node.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Operation {
-    /// A number.
+    /// Number.
     Constant(Bits),
-    /// A parameter, independent or derived.
+    /// Parameter, independent or derived.
     Parameter(ParameterId),
-    /// A generalised coordinate.
+    /// Generalised coordinate.
     Coordinate(CoordinateId),
-    /// The rate of a generalised coordinate.
+    /// Rate of a generalised coordinate.
     Rate(CoordinateId),
-    /// A state of first order.
+    /// State of first order.
     State(StateId),
-    /// A signal supplied at run time.
+    /// Input.
     Input(InputId),
-    /// The time.
+    /// Time.
     Time,
-    /// A field's mode coordinates, a vector.
+    /// Mode coordinates of a field, a vector.
     ModeCoordinates(FieldId),
-    /// The rates of a field's mode coordinates, a vector.
+    /// Rates of a field's mode coordinates, a vector.
     ModeRates(FieldId),
-    /// What an argument holds for a variable.
+    /// Component of an argument for a variable.
     Argument(Argument, Variable),
-    /// A table of constants: a vector or a matrix.
+    /// Table of constants: a vector or a matrix.
     Table(usize),
-    /// A linear combination with numeric factors, in the order of the nodes; the
-    /// constant 1 as a node carries a constant term.
+    /// Linear combination with numeric factors, in the order of the nodes. A constant term is a factor of the
+    /// node 1.
     Sum(Box<[(Bits, NodeId)]>),
-    /// A product of integer powers, in the order of the nodes.
+    /// Product of integer powers, in the order of the nodes.
     Product(Box<[(NodeId, i32)]>),
-    /// A function applied element by element.
+    /// Function applied element by element.
     Call(Function, Arguments<NodeId>),
-    /// A real power `base^exponent` with an exponent that is no integer literal.
+    /// Real power `base^exponent`; the exponent is no integer literal.
     Power(NodeId, NodeId),
     /// `if a > b { then } else { otherwise }`.
     Select {
-        /// Compared.
+        /// Left side of the comparison.
         a: NodeId,
-        /// Compared with.
+        /// Right side of the comparison.
         b: NodeId,
-        /// Value where a > b.
+        /// Result if a > b.
         then: NodeId,
-        /// Value elsewhere.
+        /// Result otherwise.
         otherwise: NodeId,
     },
-    /// The sum of a vector's elements.
+    /// Sum of a vector's elements.
     Total(NodeId),
-    /// A matrix, or its transpose, times a vector.
+    /// Matrix, or its transpose, times a vector.
     Apply {
-        /// The matrix.
+        /// Matrix.
         matrix: NodeId,
-        /// Whether its transpose is meant.
+        /// True to use the transpose.
         transposed: bool,
-        /// The vector.
+        /// Vector.
         vector: NodeId,
     },
     /// left^T diag(weight) right, for tables over quadrature nodes.
@@ -145,7 +144,7 @@ pub enum Operation {
         /// Matrix nodes x modes.
         right: NodeId,
     },
-    /// The diagonal of left^T diag(weight) right.
+    /// Diagonal of left^T diag(weight) right.
     GramDiagonal {
         /// Matrix nodes x modes.
         left: NodeId,
@@ -154,48 +153,46 @@ pub enum Operation {
         /// Matrix nodes x modes.
         right: NodeId,
     },
-    /// A matrix put together from a diagonal, outer products u v^T and
-    /// row-scaled and column-scaled matrices.
+    /// Matrix assembled from a diagonal, outer products u v^T and matrices with scaled rows and columns.
     Assemble(Box<Assembly>),
-    /// The lower Cholesky factor of a symmetric positive definite matrix. A pivot that
-    /// is not positive makes the factor NaN.
+    /// Lower Cholesky factor of a symmetric positive definite matrix; NaN if a pivot is not positive.
     Cholesky(NodeId),
-    /// The solution of a system by its Cholesky factor; the right side is a vector, a scalar
-    /// that stands for one, or a matrix.
+    /// Solution of a system by its Cholesky factor. The right-hand side is a vector, a repeated scalar, or a
+    /// matrix.
     CholeskySolve(NodeId, NodeId),
-    /// The reciprocal of a pivot, NaN where it is not positive.
+    /// Reciprocal of a pivot, NaN if it is not positive.
     PivotReciprocal(NodeId),
 }
 
-/// The parts of an assembled matrix.
+/// Parts of an assembled matrix.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Assembly {
     /// Index space of the rows.
     pub rows: Space,
     /// Index space of the columns.
     pub columns: Space,
-    /// The diagonal, a vector or a scalar; only of a square matrix.
+    /// Diagonal, a vector or a scalar; only for a square matrix.
     pub diagonal: Option<NodeId>,
     /// Outer products u v^T.
     pub outer: Vec<(NodeId, NodeId)>,
-    /// diag(row) matrix diag(column), the matrix transposed if so said.
+    /// Terms diag(row) matrix diag(column), possibly with the transposed matrix.
     pub matrices: Vec<ScaledMatrix>,
 }
 
-/// diag(row) matrix diag(column).
+/// Term diag(row) matrix diag(column).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ScaledMatrix {
-    /// Scales the rows: scalar or vector.
+    /// Factors of the rows: scalar or vector.
     pub row: NodeId,
-    /// The matrix.
+    /// Matrix.
     pub matrix: NodeId,
-    /// Whether its transpose is meant.
+    /// True to use the transpose.
     pub transposed: bool,
-    /// Scales the columns: scalar or vector.
+    /// Factors of the columns: scalar or vector.
     pub column: NodeId,
 }
 
-/// What a node depends on.
+/// Kinds of quantities that a node depends on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Dependence(u8);
 
@@ -213,12 +210,12 @@ impl Dependence {
         Self(self.0 | other.0)
     }
 
-    /// Whether it depends on anything in `kinds`.
+    /// Returns true if it includes one of `kinds`.
     pub fn has(self, kinds: Self) -> bool {
         self.0 & kinds.0 != 0
     }
 
-    /// Whether it depends on nothing but parameters and constants.
+    /// Returns true if it includes only parameters and constants.
     pub fn is_parameter_only(self) -> bool {
         self.0 & !Self::PARAMETER.0 == 0
     }

@@ -1,8 +1,8 @@
-//! How many operations nodes take per call: what expansions and orders of elimination are chosen by.
+//! Number of operations of nodes per call, by which expansions and elimination orders are compared.
 
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 
-/// Additions, multiplications and calls that depend on the state, element by element.
+/// Counts the additions, multiplications and calls that depend on the state, element by element.
 pub fn count_operations(graph: &Graph, roots: &[NodeId]) -> usize {
     graph
         .reachable(roots)

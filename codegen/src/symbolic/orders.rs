@@ -1,11 +1,11 @@
-//! Orders of nodes where the argument of a root vanishes, as [`limits`](super::limits) finds them.
+//! Orders of nodes at zeros of a root's argument, used by [`limits`](super::limits).
 
 use std::collections::HashMap;
 use std::sync::Arc;
 
 use crate::symbolic::operation::NodeId;
 
-/// Powers of nodes, all exponents positive.
+/// Powers of nodes with positive exponents.
 pub(crate) type Monomial = Vec<(NodeId, i32)>;
 
 /// Monomials with their orders in s: |monomial| <= C s^order.
@@ -14,10 +14,10 @@ pub(crate) type Bounds = Arc<Vec<(Monomial, f64)>>;
 /// Orders found so far.
 #[derive(Default)]
 pub(crate) struct Orders {
-    /// By the argument of a root; none if it is not known where the argument vanishes.
+    /// Bounds by the argument of a root; `None` if its zeros are unknown.
     pub bounds: HashMap<NodeId, Option<Bounds>>,
-    /// By the argument of a root and a node.
+    /// Orders by the argument of a root and a node.
     pub orders: HashMap<(NodeId, NodeId), f64>,
-    /// Arguments of the roots whose reciprocals a node holds.
+    /// Arguments of the roots whose reciprocals a node contains.
     pub arguments: HashMap<NodeId, Arc<Vec<NodeId>>>,
 }

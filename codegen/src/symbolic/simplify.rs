@@ -1,6 +1,5 @@
-//! The constructors of the graph's nodes. Each applies a few algebraic laws, one per
-//! rule and stated beside it; none of them multiplies out a product of sums, so shared
-//! parts stay shared. Rounding may change under a law, values do not.
+//! Constructors of the graph's nodes. Each applies a few algebraic laws, stated in its documentation. No law
+//! expands a product of sums, so shared parts remain shared. A law preserves values except for rounding.
 
 use std::collections::BTreeMap;
 
@@ -13,17 +12,17 @@ use crate::symbolic::graph::{Bits, Graph, NodeId, Operation, Shape};
 type Factors = Vec<(NodeId, i32)>;
 
 impl Graph {
-    /// A number.
+    /// Returns a constant.
     pub fn constant(&mut self, value: f64) -> NodeId {
         self.intern(Operation::Constant(Bits::new(value)))
     }
 
-    /// The number 0.
+    /// Returns the constant 0.
     pub fn zero(&mut self) -> NodeId {
         self.small_number(0)
     }
 
-    /// The number 1.
+    /// Returns the constant 1.
     pub fn one(&mut self) -> NodeId {
         self.small_number(1)
     }
@@ -37,7 +36,7 @@ impl Graph {
         made
     }
 
-    /// The value of a constant node.
+    /// Returns the value of a constant node, None for others.
     pub fn as_constant(&self, id: NodeId) -> Option<f64> {
         match self.operation(id) {
             Operation::Constant(bits) => Some(bits.value()),
@@ -45,33 +44,33 @@ impl Graph {
         }
     }
 
-    /// Whether a node is the constant 0.
+    /// Returns true for the constant 0.
     pub fn is_zero(&self, id: NodeId) -> bool {
         self.as_constant(id) == Some(0.0)
     }
 
-    /// c a.
+    /// Returns c a.
     pub fn scale(&mut self, factor: f64, a: NodeId) -> NodeId {
         self.combine(&[(factor, a)])
     }
 
-    /// -a.
+    /// Returns -a.
     pub fn negate(&mut self, a: NodeId) -> NodeId {
         self.scale(-1.0, a)
     }
 
-    /// a + b.
+    /// Returns a + b.
     pub fn add(&mut self, a: NodeId, b: NodeId) -> NodeId {
         self.combine(&[(1.0, a), (1.0, b)])
     }
 
-    /// a - b.
+    /// Returns a - b.
     pub fn subtract(&mut self, a: NodeId, b: NodeId) -> NodeId {
         self.combine(&[(1.0, a), (-1.0, b)])
     }
 
-    /// A linear combination. Laws: numbers are folded, c (k a) = (c k) a, and equal
-    /// nodes are collected; a sum inside a sum stays a node of its own.
+    /// Returns a linear combination. Laws: numbers are folded, c (k a) = (c k) a, equal nodes are collected;
+    /// an inner sum remains a node.
     pub fn combine(&mut self, terms: &[(f64, NodeId)]) -> NodeId {
         // No law changes a single term that is no product.
         if let [(1.0, only)] = *terms
@@ -86,8 +85,7 @@ impl Graph {
         self.sum_of(collected)
     }
 
-    /// A linear combination in which sums inside sums are opened, so that equal terms
-    /// cancel across them.
+    /// Returns a linear combination with inner sums expanded, so that equal terms cancel across them.
     pub fn combine_flat(&mut self, terms: &[(f64, NodeId)]) -> NodeId {
         let mut collected = BTreeMap::new();
         for &(factor, id) in terms {
@@ -146,7 +144,7 @@ impl Graph {
         terms.retain(|_, factor| *factor != 0.0);
     }
 
-    /// For X sin(a)^2: X and X cos(a)^2.
+    /// Returns X and X cos(a)^2 for X sin(a)^2.
     fn squared_sine_partner(&mut self, id: NodeId) -> Option<(NodeId, NodeId)> {
         let Operation::Product(factors) = self.operation(id) else {
             return None;
@@ -165,9 +163,9 @@ impl Graph {
         Some((rest, partner))
     }
 
-    /// a b.
+    /// Returns a b.
     pub fn multiply(&mut self, a: NodeId, b: NodeId) -> NodeId {
-        // 0 times an infinite number is no 0.
+        // 0 times an infinite number is not 0.
         let holds_number = |id| match self.operation(id) {
             Operation::Constant(_) => true,
             Operation::Sum(terms) => terms.len() == 1,
@@ -180,19 +178,19 @@ impl Graph {
         self.product(&[(a, 1), (b, 1)])
     }
 
-    /// a / b.
+    /// Returns a / b.
     pub fn divide(&mut self, a: NodeId, b: NodeId) -> NodeId {
         self.product(&[(a, 1), (b, -1)])
     }
 
-    /// a^n.
+    /// Returns a^n.
     pub fn integer_power(&mut self, a: NodeId, exponent: i32) -> NodeId {
         self.product(&[(a, exponent)])
     }
 
-    /// A product of integer powers. Laws: numeric factors move in front of the product,
-    /// products inside are opened, (a^m)^n = a^(m n), equal factors are collected, a^0 = 1.
-    /// Where that would make an exponent too large products inside stay closed.
+    /// Returns a product of integer powers. Laws: numeric factors move in front of the product, inner
+    /// products are expanded, (a^m)^n = a^(m n), equal factors are collected, a^0 = 1. Inner products are not
+    /// expanded if an exponent would become too large.
     pub fn product(&mut self, factors: &[(NodeId, i32)]) -> NodeId {
         let (number, mut collected) = match self.opened_factors(factors) {
             Some(opened) => opened,
@@ -212,7 +210,7 @@ impl Graph {
         self.scale(number, product)
     }
 
-    /// The number and the powers of a product; `None` if an exponent is too large.
+    /// Returns the number and the powers of a product; `None` if an exponent is too large.
     fn opened_factors(&self, factors: &[(NodeId, i32)]) -> Option<(f64, BTreeMap<NodeId, i32>)> {
         let mut number = 1.0;
         let mut collected = BTreeMap::new();
@@ -255,8 +253,8 @@ impl Graph {
         Some(())
     }
 
-    /// Laws: contact^n = contact for n > 0, and deadzone(p, b)^n contact(p, b) =
-    /// deadzone(p, b)^n, since the force of Eq. (7) vanishes where the contact does.
+    /// Laws: contact^n = contact for n > 0, and deadzone(p, b)^n contact(p, b) = deadzone(p, b)^n, because
+    /// the force of Eq. (7) vanishes without contact.
     fn apply_piecewise_laws(&mut self, factors: &mut BTreeMap<NodeId, i32>) {
         let contacts: Vec<(NodeId, Arguments<NodeId>)> = factors
             .keys()
@@ -278,7 +276,7 @@ impl Graph {
         }
     }
 
-    /// base^exponent. Laws: integer exponents become products, 1/2 a square root.
+    /// Returns base^exponent. Laws: an integer exponent gives a product, 1/2 a square root.
     pub fn power(&mut self, base: NodeId, exponent: NodeId) -> NodeId {
         match self.as_constant(exponent) {
             Some(value) if value == value.round() && value.abs() <= 64.0 => {
@@ -292,8 +290,8 @@ impl Graph {
         }
     }
 
-    /// A function of scalars or vectors. Laws: sin, cos, exp and sqrt of their simplest
-    /// numbers; odd functions take a minus sign out, even ones drop it.
+    /// Returns a function of scalars or vectors. Laws: exact values of simple numbers are computed; odd
+    /// functions move a minus sign out, even ones drop it.
     pub fn call(&mut self, function: Function, arguments: impl Into<Arguments<NodeId>>) -> NodeId {
         let arguments = arguments.into();
         if let Arguments::One([a]) = arguments {
@@ -322,7 +320,7 @@ impl Graph {
         self.intern(Operation::Call(function, arguments))
     }
 
-    /// The node a in -a.
+    /// Returns a for -a, None for other nodes.
     fn without_minus(&mut self, id: NodeId) -> Option<NodeId> {
         match self.operation(id).clone() {
             Operation::Sum(terms) if terms.iter().all(|(factor, _)| factor.value() < 0.0) => {
@@ -338,7 +336,7 @@ impl Graph {
         self.combine(&negated)
     }
 
-    /// `if a > b { then } else { otherwise }`. Law: equal branches need no choice.
+    /// Returns `if a > b { then } else { otherwise }`. Law: equal branches need no selection.
     pub fn select(&mut self, a: NodeId, b: NodeId, then: NodeId, otherwise: NodeId) -> NodeId {
         if then == otherwise {
             return then;
@@ -351,15 +349,15 @@ impl Graph {
         })
     }
 
-    /// The factors of a product that are scalars, and the others.
+    /// Splits the factors of a product into scalars and others.
     pub(crate) fn scalar_factors(&self, factors: &[(NodeId, i32)]) -> (Factors, Factors) {
         factors
             .iter()
             .partition(|(id, _)| self.shape(*id) == Shape::Scalar)
     }
 
-    /// The sum of a vector's elements. Laws: scalar factors move in front of the sum, a
-    /// scalar is summed size times, an empty sum is 0.
+    /// Returns the sum of a vector's elements. Laws: scalar factors move in front of the sum, an empty sum is
+    /// 0.
     pub fn total(&mut self, vector: NodeId) -> NodeId {
         let Shape::Vector(space) = self.shape(vector) else {
             return vector;
@@ -386,7 +384,7 @@ impl Graph {
         }
     }
 
-    /// The sum over `space` of a scalar or vector.
+    /// Returns the sum over `space`; a scalar is multiplied by the size.
     pub fn total_over(&mut self, space: crate::symbolic::graph::Space, summand: NodeId) -> NodeId {
         match self.shape(summand) {
             Shape::Scalar => {
@@ -397,10 +395,10 @@ impl Graph {
         }
     }
 
-    /// A matrix, or its transpose, times a vector (a scalar stands for the vector of
-    /// that value). Laws: scalar factors of the vector move in front; empty spaces and
-    /// zero vectors give 0; left^T diag(weight) right with a weight that moves is applied factor by
-    /// factor, which takes fewer operations than the matrix and can be differentiated.
+    /// Returns a matrix, or its transpose, times a vector or repeated scalar. Laws: scalar factors of the
+    /// vector move in front; empty spaces and zero vectors give 0. left^T diag(weight) right with a moving
+    /// weight is applied factor by factor, which takes fewer operations than the matrix and can be
+    /// differentiated.
     pub fn apply(&mut self, matrix: NodeId, transposed: bool, vector: NodeId) -> NodeId {
         let Shape::Matrix(rows, columns) = self.shape(matrix) else {
             return self.zero();
@@ -443,7 +441,7 @@ impl Graph {
         }
     }
 
-    /// The solution of a system by its Cholesky factor. Law: 0 for 0.
+    /// Returns the solution of a system by its Cholesky factor. Law: 0 for 0.
     pub fn cholesky_solve(&mut self, factor: NodeId, vector: NodeId) -> NodeId {
         if self.is_zero(vector) {
             return vector;
@@ -460,10 +458,10 @@ impl Graph {
     }
 }
 
-/// The largest exponent that equal factors are collected to.
+/// Largest exponent of collected equal factors.
 const MAX_EXPONENT: i32 = 4096;
 
-/// The factors as they are, equal ones collected.
+/// Collects equal factors without expanding inner products.
 fn closed_factors(factors: &[(NodeId, i32)]) -> BTreeMap<NodeId, i32> {
     let mut collected = BTreeMap::new();
     for &(id, exponent) in factors {
@@ -472,7 +470,7 @@ fn closed_factors(factors: &[(NodeId, i32)]) -> BTreeMap<NodeId, i32> {
     collected
 }
 
-/// value^exponent by repeated multiplication: `powi` may round differently elsewhere.
+/// Computes value^exponent by repeated multiplication: `powi` may round differently on other machines.
 fn power_of_number(value: f64, exponent: i32) -> f64 {
     let magnitude = (0..exponent.unsigned_abs()).fold(1.0, |product, _| product * value);
     if exponent < 0 {

@@ -1,11 +1,11 @@
-//! Replacing nodes in an expression, by rebuilding what depends on them.
+//! Replacement of nodes in an expression.
 
 use std::collections::HashMap;
 
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 
-/// `id` with every node for which `replacement` gives another one replaced by it. Matrix
-/// factors, which depend on parameters alone, are kept.
+/// Replaces every node in `id` for which `replacement` returns another one. Matrix factors, which depend only
+/// on parameters, are kept.
 pub fn substitute(
     graph: &mut Graph,
     id: NodeId,

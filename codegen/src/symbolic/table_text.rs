@@ -1,5 +1,5 @@
-//! What a table of constants holds, in words: as plain text, as LaTeX, as documentation
-//! and as the name of a constant in emitted code.
+//! Descriptions of tables of constants: as plain text, LaTeX, documentation, and as the name of a constant in
+//! emitted code.
 
 use crate::symbolic::tables::{Table, TableKind};
 
@@ -15,8 +15,8 @@ fn power_of_s(power: u32) -> String {
     }
 }
 
-/// What a table holds, in plain text: integrals run over s from 0 to 1, primes are
-/// derivatives by s.
+/// Returns the content of a table in plain text. Integrals are over s from 0 to 1, primes are derivatives by
+/// s.
 pub fn plain(kind: TableKind) -> String {
     match kind {
         TableKind::Wavenumber => "betal_i".to_owned(),
@@ -57,7 +57,7 @@ pub fn plain(kind: TableKind) -> String {
     }
 }
 
-/// The same in LaTeX.
+/// Returns the content of a table in LaTeX.
 pub fn latex(kind: TableKind) -> String {
     let integral = |inner: String| format!("\\int_0^1 {inner}\\,ds");
     let s = |power: u32| match power {
@@ -92,7 +92,7 @@ pub fn latex(kind: TableKind) -> String {
     }
 }
 
-/// One line on what a table holds.
+/// Returns the description of a table on one line.
 pub fn doc(table: &Table) -> String {
     match table.kind {
         TableKind::Wavenumber => "beta_r l of the modes".to_owned(),
@@ -109,7 +109,7 @@ pub fn doc(table: &Table) -> String {
     }
 }
 
-/// A table's name as a constant.
+/// Returns the name of a table as a constant.
 pub fn constant_name(table: &Table) -> String {
     let derivative = |d: u8| {
         if d == 0 {

@@ -1,6 +1,6 @@
-//! Sums of products of sines and cosines as those of sums and differences of angles:
-//! cos a cos b + sin a sin b = cos(a - b) and its kin. Nothing here is a law of the constructors:
-//! it multiplies out, and whoever asks compares what the two forms cost.
+//! Addition theorems for sums of products of sines and cosines, such as cos a cos b + sin a sin b = cos(a -
+//! b). They need an expansion and are no laws of the constructors; the caller compares the operations of both
+//! forms.
 
 use std::collections::BTreeMap;
 
@@ -10,10 +10,10 @@ use crate::symbolic::expand::expand_once;
 use crate::symbolic::factor::collected;
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 
-/// How many levels are multiplied out.
+/// Largest number of expanded levels.
 const MOST_LEVELS: usize = 12;
 
-/// A node multiplied out, with the addition theorems applied to its terms.
+/// Expands a node and applies the addition theorems to its terms.
 pub(crate) fn with_sums_of_angles(graph: &mut Graph, node: NodeId) -> NodeId {
     let mut expanded = node;
     for _ in 0..MOST_LEVELS {
@@ -41,7 +41,7 @@ pub(crate) fn with_sums_of_angles(graph: &mut Graph, node: NodeId) -> NodeId {
     collected(graph, &terms)
 }
 
-/// Two terms that an addition theorem makes one, and that one.
+/// Returns two terms that an addition theorem combines, with the result.
 fn merging_pair(
     graph: &mut Graph,
     terms: &BTreeMap<NodeId, f64>,
@@ -83,7 +83,7 @@ fn merging_pair(
     None
 }
 
-/// The cosine for a sine and the other way round.
+/// Returns the cosine for a sine, and the sine for a cosine.
 fn partner(graph: &mut Graph, (_, function, angle): (NodeId, Function, NodeId)) -> NodeId {
     let other = match function {
         Function::Sin => Function::Cos,
@@ -92,7 +92,7 @@ fn partner(graph: &mut Graph, (_, function, angle): (NodeId, Function, NodeId)) 
     graph.call(other, &[angle])
 }
 
-/// What two terms are together: factor times first times second, plus other times their partners.
+/// Returns factor * first * second + other * (partner of first) * (partner of second) as one term.
 fn merged(
     graph: &mut Graph,
     (factor, other): (f64, f64),
@@ -100,8 +100,9 @@ fn merged(
     (_, second, b): (NodeId, Function, NodeId),
 ) -> (f64, NodeId) {
     let same = factor == other;
-    // sin a sin b and cos a cos b of one sign: cos(a - b); of two, cos(a + b) with the sign of
-    // the cosines. sin a cos b and cos a sin b: sin(a + b), or sin(a - b) with the sign of the first.
+    // sin a sin b and cos a cos b with equal signs give cos(a - b), with opposite signs cos(a + b) with the
+    // sign of the cosines. sin a cos b and cos a sin b give sin(a + b), or sin(a - b) with the sign of the
+    // first.
     let alike = first == second;
     let sum = alike != same;
     let angle = graph.combine_flat(&[(1.0, a), (if sum { 1.0 } else { -1.0 }, b)]);

@@ -31,6 +31,7 @@ use small::SmallSystem;
 /// Accelerations with their pivots.
 #[derive(Clone, Debug)]
 pub struct Accelerations {
+    /// Accelerations.
     pub rows: RowNodes,
     /// All pivots of the factorisation, which must be positive: those of the coordinates in the order of
     /// their elimination, those of the interfaces, vectors over the modes, and Cholesky factors (positive if

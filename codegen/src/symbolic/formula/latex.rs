@@ -1,8 +1,7 @@
-//! Formulas in LaTeX's mathematical mode, with the commands of amsmath.
+//! Formulas in LaTeX math mode with amsmath.
 //!
-//! TeX breaks lines at the signs of sums that no fraction or stretched pair of parentheses
-//! holds together. So long sums stand in parentheses that do not stretch, and long quotients
-//! beside a stroke.
+//! TeX breaks lines at the signs of a sum, except inside fractions and stretched parentheses. Long sums
+//! therefore have fixed parentheses, and long quotients a slash.
 
 use eomgen_model_spec::model::Function;
 
@@ -11,22 +10,22 @@ use super::symbol::Symbol;
 use super::tree::{Choice, Formula, Level, MatrixPart, Term, powers_of_ten, small_fraction};
 use crate::symbolic::table_text;
 
-/// Up to so many characters of plain text a part is held together.
+/// Largest length, in characters of plain text, of a part that TeX must not break.
 const HELD_TOGETHER: usize = 80;
 
-/// In sums of more terms fractions stand beside a stroke.
+/// Largest number of terms of a sum with fractions; longer sums have quotients with a slash.
 const MOST_FRACTIONS: usize = 8;
 
 const TIMES: &str = "\\,";
 
 impl Formula {
-    /// In LaTeX's mathematical mode, with the commands of amsmath.
+    /// Returns the formula in LaTeX math mode with amsmath.
     pub fn latex(&self) -> String {
         at(self, Level::Sum)
     }
 }
 
-/// A formula in its surroundings.
+/// Writes a formula with parentheses if its surroundings require them.
 fn at(formula: &Formula, level: Level) -> String {
     if formula.set_level() < level {
         return in_parentheses(formula);
@@ -103,7 +102,7 @@ fn sum(terms: &[Term]) -> String {
     text
 }
 
-/// Factors side by side; a sum over modes that others follow stands in parentheses.
+/// Writes factors next to each other; a sum over modes before other factors has parentheses.
 fn product(factors: &[Formula]) -> String {
     if let [only] = factors {
         return only.latex();
@@ -126,7 +125,7 @@ fn quotient(above: &[Formula], below: &[Formula]) -> String {
         factors => product(factors),
     };
     if below.is_empty() {
-        // Alone a factor is as it would be without any product.
+        // A single factor needs no more parentheses than outside a product.
         return match above {
             [only] => at(only, Level::Product),
             _ => numerator,
@@ -138,7 +137,7 @@ fn quotient(above: &[Formula], below: &[Formula]) -> String {
     format!("\\frac{{{numerator}}}{{{}}}", product(below))
 }
 
-/// A quotient, or a product, in one line, which can be broken.
+/// Writes a quotient with a slash, or a product, on one line that TeX can break.
 fn beside_a_stroke(above: &[Formula], below: &[Formula]) -> String {
     let numerator = match above {
         [only] => at(only, Level::Product),
@@ -151,7 +150,7 @@ fn beside_a_stroke(above: &[Formula], below: &[Formula]) -> String {
     }
 }
 
-/// A symbol takes an exponent as it is; braces keep that of anything else apart from its own.
+/// Writes a power. Braces separate the exponent from other superscripts, except for a symbol.
 fn power(base: &Formula, exponent: &Formula) -> String {
     let (base_text, exponent) = (at(base, Level::Base), exponent.latex());
     match base {
@@ -169,7 +168,7 @@ fn call(function: Function, arguments: &[Formula]) -> String {
     }
 }
 
-/// The command that sets a function's name.
+/// Returns the LaTeX command of a function name.
 pub(super) fn function_name(function: Function) -> String {
     match function {
         Function::Asin => "\\arcsin".to_owned(),
@@ -188,7 +187,7 @@ pub(super) fn function_name(function: Function) -> String {
     }
 }
 
-/// Symbols need no stretched parentheses.
+/// Writes arguments. Symbols need no stretched parentheses.
 fn list(arguments: &[Formula]) -> String {
     let long = arguments.iter().any(is_long);
     let low = arguments.iter().all(|a| matches!(a, Formula::Symbol(_)));
@@ -203,7 +202,7 @@ fn list(arguments: &[Formula]) -> String {
     }
 }
 
-/// `gram_ii` with its indices below the line.
+/// Writes an operation; the indices of a name such as `gram_ii` become subscripts.
 fn operation(name: &str, operands: &[Formula]) -> String {
     let (name, indices) = name.split_once('_').unwrap_or((name, ""));
     format!(
@@ -242,7 +241,7 @@ fn matrix_part(part: &MatrixPart) -> String {
     }
 }
 
-/// A name with its dots above its head and everything else below the line.
+/// Writes a name with dots above its head and its other parts as subscripts.
 fn symbol(symbol: &Symbol) -> String {
     let (head, mut parts) = symbol.parts();
     let head = word(head);
@@ -256,7 +255,7 @@ fn symbol(symbol: &Symbol) -> String {
     format!("{head}{}", below(&parts))
 }
 
-/// What stands below the line, the parts with commas between them.
+/// Writes a subscript with commas between the parts.
 fn below(parts: &[&str]) -> String {
     let parts: Vec<&str> = parts
         .iter()
@@ -277,7 +276,7 @@ fn word(head: &str) -> String {
     }
 }
 
-/// A magnitude in front of a product: a small fraction where it is one exactly.
+/// Writes the numeric factor of a product, as a small fraction if that is exact.
 fn factor(magnitude: f64) -> String {
     match small_fraction(magnitude) {
         Some((numerator, denominator)) => format!("\\tfrac{{{numerator}}}{{{denominator}}}"),
@@ -293,8 +292,7 @@ fn number(value: f64) -> String {
     }
 }
 
-/// Characters of prose that have a meaning in LaTeX, escaped; letters that its fonts lack in
-/// mathematical mode, or by their numbers.
+/// Escapes LaTeX characters in prose. Letters outside the font are written in math mode or as code points.
 pub(crate) fn prose(text: &str) -> String {
     text.chars().map(prose_letter).collect()
 }

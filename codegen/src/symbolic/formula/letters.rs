@@ -1,6 +1,6 @@
-//! Names of Greek letters, as LaTeX and as the letters themselves.
+//! Names of Greek letters with their LaTeX commands and characters.
 
-/// Name, command and letter.
+/// Name, command and character.
 const GREEK: [(&str, &str, &str); 35] = [
     ("alpha", "\\alpha", "α"),
     ("beta", "\\beta", "β"),
@@ -39,17 +39,17 @@ const GREEK: [(&str, &str, &str); 35] = [
     ("dphi", "\\Delta\\phi", "Δφ"),
 ];
 
-/// The LaTeX command of a letter's name.
+/// Returns the LaTeX command for the name of a letter.
 pub(super) fn command(name: &str) -> Option<&'static str> {
     entry(name).map(|(_, command, _)| *command)
 }
 
-/// The Greek letter of this name: `theta` is θ.
+/// Returns the Greek letter for a name: θ for `theta`.
 pub fn letter(name: &str) -> Option<&'static str> {
     entry(name).map(|(_, _, letter)| *letter)
 }
 
-/// The LaTeX command of a letter, for prose.
+/// Returns the LaTeX command for a character.
 pub(super) fn command_of(letter: char) -> Option<&'static str> {
     GREEK
         .iter()

@@ -1,10 +1,9 @@
-//! Formulas for people, as trees: read off the graph once, then set as plain text or as
-//! LaTeX. (As MathML they are set where pages are made.)
+//! Formulas for documents, as trees that are printed as plain text or LaTeX. (The page generator prints
+//! MathML.)
 //!
-//! The pipeline, one file each: `shared` (which shared nodes get lines of their own), `read`
-//! (graph to tree), `tree`, `symbol` and `letters` (names as they are set), and a printer per notation,
-//! `text` and `latex`. Sums over modes run over an index i; a node that has a name is
-//! written by its name, except where its own formula is asked for.
+//! `shared` chooses shared nodes with separate lines, `read` converts nodes to a `tree` of `symbol`s and
+//! numbers, `text` and `latex` print it. Sums over modes have an index i. A named node is written by its
+//! name, except in its own formula.
 
 mod latex;
 mod letters;

@@ -1,4 +1,4 @@
-//! From a node of the graph to its formula.
+//! Conversion of graph nodes to formulas.
 
 use std::collections::{HashMap, HashSet};
 
@@ -10,13 +10,13 @@ use super::symbol::{Index, Symbol};
 use super::tree::{Choice, Formula, MatrixPart, Term};
 use crate::symbolic::graph::{Argument, Assembly, Bits, Graph, NodeId, Operation, Shape, Variable};
 
-/// Up to this many characters a formula that stands by itself is written out.
+/// Largest length of an abridged formula in characters.
 const ABRIDGED: u64 = 2000;
 
-/// Nothing is left out where what is left would be shorter than this.
+/// Smallest length of an omitted part in characters.
 const SHORTEST: u64 = 40;
 
-/// Reads formulas off a graph.
+/// Reader of the formulas of a graph.
 pub struct Reader<'a> {
     graph: &'a Graph,
     model: &'a Model,
@@ -24,13 +24,13 @@ pub struct Reader<'a> {
     omitted: HashSet<NodeId>,
 }
 
-/// The formula of a node, with nothing but named nodes by their names. Of large models it can
-/// be exponentially longer than the graph.
+/// Returns the complete formula of a node; only named nodes are abbreviated. For large models it can be
+/// exponentially longer than the graph.
 pub fn written_out(graph: &Graph, model: &Model, id: NodeId) -> Formula {
     Reader::new(graph, model, &Shared::default()).formula(id)
 }
 
-/// The formula of a node for a message or a comment: parts of a very long one are left out.
+/// Returns the formula of a node for a message or a comment; parts of a very long formula are omitted.
 pub fn abridged(graph: &Graph, model: &Model, id: NodeId) -> Formula {
     let shared = Shared::default();
     let mut reader = Reader::new(graph, model, &shared);
@@ -46,7 +46,7 @@ pub fn abridged(graph: &Graph, model: &Model, id: NodeId) -> Formula {
 }
 
 impl<'a> Reader<'a> {
-    /// Of a graph of this model, with lines of their own for these nodes.
+    /// Prepares a reader in which the nodes of `shared` have separate lines.
     pub fn new(graph: &'a Graph, model: &'a Model, shared: &'a Shared) -> Self {
         Self {
             graph,
@@ -56,8 +56,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The formula of a node, also if the specification names it; the name of its line if it
-    /// has one.
+    /// Returns the formula of a node, even if the node has a name in the specification; a node with a
+    /// separate line is represented by its name.
     pub fn formula(&self, id: NodeId) -> Formula {
         match self.shared.name(id) {
             Some(name) => Formula::Symbol(self.indexed(Symbol::plain(name), id)),
@@ -65,7 +65,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The node by its name, or its formula.
+    /// Returns the name of a node, or its formula if it has none.
     pub fn expression(&self, id: NodeId) -> Formula {
         match self.graph.name(id) {
             Some(name) => Formula::Symbol(self.indexed(self.symbol(name), id)),
@@ -73,7 +73,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The lines of the shared nodes: name and formula.
+    /// Returns name and formula of each shared node.
     pub fn lines(&self) -> impl Iterator<Item = (Formula, Formula)> {
         self.shared
             .nodes()
@@ -81,8 +81,8 @@ impl<'a> Reader<'a> {
             .map(|id| (self.formula(*id), self.operation(*id)))
     }
 
-    /// What a name of the graph says: one that is made of the name of something that moves is
-    /// its rate or its acceleration.
+    /// Returns the symbol for a name of the graph. The suffixes `_dot` and `_ddot` after the name of a moving
+    /// quantity become dots.
     pub fn symbol(&self, name: &str) -> Symbol {
         for (ending, dots) in [("_dot", 1), ("_ddot", 2)] {
             if let Some(stem) = name.strip_suffix(ending)
@@ -101,7 +101,7 @@ impl<'a> Reader<'a> {
             || model.definitions.iter().any(|known| known.name == name)
     }
 
-    /// Marks operands as left out so that the formula of a node keeps to a length.
+    /// Marks operands as omitted until the formula of a node is short enough.
     fn omit(&mut self, id: NodeId, longest: u64, lengths: &HashMap<NodeId, u64>) {
         if lengths.get(&id).is_none_or(|length| *length <= longest) {
             return;
@@ -185,7 +185,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The symbol of something that moves or drives.
+    /// Returns the symbol of a variable.
     fn variable(&self, variable: Variable) -> Symbol {
         let model = self.model;
         let modes = |field: FieldId| {

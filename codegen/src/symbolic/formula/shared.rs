@@ -1,7 +1,6 @@
-//! Which shared nodes get lines of their own. A graph of n nodes can stand for a tree of 2^n:
-//! written out, the equations of a chain of twenty pendulums fill gigabytes. With every shared
-//! node that is longer than a name in a line of its own, what is written is no longer than the
-//! graph. Short reports are left in one piece; longer ones are cut as little as is needed.
+//! Choice of shared nodes with separate lines. A graph of n nodes can represent a tree of 2^n: the complete
+//! equations of a chain of twenty pendulums fill gigabytes. If every long shared node has a line, the text is
+//! not longer than the graph. Short reports are not split; longer ones are split only as much as necessary.
 
 use std::collections::{BTreeSet, HashMap, HashSet};
 
@@ -9,32 +8,32 @@ use eomgen_model_spec::model::Model;
 
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 
-/// Up to this many characters in all formulas nothing is cut.
+/// Largest total length in characters of formulas that are not split.
 const WRITTEN_OUT: u64 = 16_000;
 
-/// What is longer is cut as much as [`LENGTHS`] allow to be no longer than this.
+/// Target length in characters of split formulas, as far as [`LENGTHS`] permit.
 const CUT: u64 = 24_000;
 
-/// Shared nodes longer than one of these get lines; tried in turn.
+/// Lengths above which shared nodes get lines, tried in turn.
 const LENGTHS: [u64; 4] = [320, 160, 80, 40];
 
-/// How long a name in a line of its own is, about.
+/// Approximate length in characters of the name of a line.
 const NAME: u64 = 5;
 
-/// Letters for the names, the first that no quantity of the model has with a number.
+/// Stems of the names; the first that no numbered quantity of the model uses.
 const STEMS: [&str; 4] = ["s", "z", "y", "h"];
 
-/// The shared nodes with lines of their own.
+/// Shared nodes with separate lines.
 #[derive(Clone, Debug, Default)]
 pub struct Shared {
-    /// In the order of the graph: a line needs none but those before it.
+    /// Nodes in the order of the graph: each line uses only earlier lines.
     nodes: Vec<NodeId>,
     names: HashMap<NodeId, String>,
 }
 
 impl Shared {
-    /// Chooses among what the formulas of `roots` share. A root that the graph names is
-    /// written out where it stands, and by its name everywhere else.
+    /// Chooses among the nodes that the formulas of `roots` share. A named root is written in full as itself,
+    /// and by its name elsewhere.
     pub fn among(graph: &Graph, model: &Model, roots: &[NodeId]) -> Self {
         let uses = uses(graph, roots);
         let lengths = Lengths { graph, uses: &uses };
@@ -57,26 +56,25 @@ impl Shared {
         }
     }
 
-    /// The nodes in an order in which each needs none but those before it.
+    /// Returns the nodes; each uses only earlier ones.
     pub fn nodes(&self) -> &[NodeId] {
         &self.nodes
     }
 
-    /// The name of a node that has a line.
+    /// Returns the name of a node with a line.
     pub fn name(&self, id: NodeId) -> Option<&str> {
         self.names.get(&id).map(String::as_str)
     }
 }
 
-/// How long nodes are, written out.
+/// Lengths of the formulas of nodes.
 struct Lengths<'a> {
     graph: &'a Graph,
     uses: &'a HashMap<NodeId, usize>,
 }
 
 impl Lengths<'_> {
-    /// The length of all formulas if shared nodes longer than this have lines of their own,
-    /// and these nodes.
+    /// Returns the total length if shared nodes above `longest` have lines, and these nodes.
     fn total(&self, roots: &[NodeId], longest: u64) -> (u64, Vec<NodeId>) {
         let mut ids: Vec<NodeId> = self.uses.keys().copied().collect();
         ids.sort_unstable();
@@ -105,7 +103,7 @@ impl Lengths<'_> {
     }
 }
 
-/// How often each node without a name is written, if what is shared were written once.
+/// Counts the uses of each unnamed node if shared nodes are written once.
 fn uses(graph: &Graph, roots: &[NodeId]) -> HashMap<NodeId, usize> {
     let mut uses: HashMap<NodeId, usize> = HashMap::new();
     let mut waiting: BTreeSet<NodeId> = roots.iter().copied().collect();
@@ -115,7 +113,7 @@ fn uses(graph: &Graph, roots: &[NodeId]) -> HashMap<NodeId, usize> {
             *uses.entry(root).or_insert(0) += 1;
         }
     }
-    // Operands stand before what is computed from them.
+    // Operands are older than their uses.
     while let Some(id) = waiting.pop_last() {
         for operand in graph.operands(graph.operation(id)) {
             if is_written(operand) {
@@ -131,8 +129,7 @@ pub(super) fn is_leaf(graph: &Graph, id: NodeId) -> bool {
     graph.operands(graph.operation(id)).is_empty()
 }
 
-/// How many characters a node takes, about; `written` holds those of its operands that have
-/// no name.
+/// Returns the approximate length of a node in characters; `written` has the lengths of its unnamed operands.
 pub(super) fn own_length(graph: &Graph, id: NodeId, written: &HashMap<NodeId, u64>) -> u64 {
     let part = |id: &NodeId| match (written.get(id), graph.name(*id)) {
         (Some(known), _) => *known,
@@ -168,7 +165,7 @@ fn leaf_length(graph: &Graph, id: NodeId) -> u64 {
     }
 }
 
-/// The letter of the names, or a word if all letters are taken.
+/// Returns a letter for the names, or a word if all letters are taken.
 fn stem(graph: &Graph, model: &Model) -> String {
     let terms = [&model.kinetic, &model.potential, &model.dissipation];
     let own: HashSet<&str> = graph

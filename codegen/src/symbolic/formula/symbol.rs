@@ -1,20 +1,18 @@
-//! Names of quantities in the parts a reader expects: a letter or word, what stands below the
-//! line, dots of a rate or an acceleration, an index over modes. How each is set is the
-//! printers' business.
+//! Symbols of quantities: a letter or word, subscripts, dots for time derivatives, and indices over modes.
 
 use std::fmt;
 
-/// An index over the modes of a field, or over its quadrature nodes.
+/// Index over the modes of a field, or over its quadrature nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Index {
-    /// Of elements and rows.
+    /// Index of elements and rows.
     I,
-    /// Of columns.
+    /// Index of columns.
     J,
 }
 
 impl Index {
-    /// As it is written.
+    /// Returns the letter of the index.
     pub fn name(self) -> &'static str {
         match self {
             Self::I => "i",
@@ -23,19 +21,19 @@ impl Index {
     }
 }
 
-/// A named quantity.
+/// Named quantity.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Symbol {
-    /// Its name in the specification.
+    /// Name in the specification.
     pub name: String,
-    /// How often it is differentiated by time.
+    /// Number of time derivatives.
     pub dots: u8,
-    /// Its indices: none of a scalar, one of a vector, two of a matrix.
+    /// Indices: none for a scalar, one for a vector, two for a matrix.
     pub indices: Vec<Index>,
 }
 
 impl Symbol {
-    /// A scalar of this name.
+    /// Returns the symbol of a scalar.
     pub fn plain(name: &str) -> Self {
         Self {
             name: name.to_owned(),
@@ -44,19 +42,19 @@ impl Symbol {
         }
     }
 
-    /// Differentiated so often by time.
+    /// Sets the number of time derivatives.
     pub fn with_dots(mut self, dots: u8) -> Self {
         self.dots = dots;
         self
     }
 
-    /// With these indices.
+    /// Sets the indices.
     pub fn with_indices(mut self, indices: &[Index]) -> Self {
         self.indices = indices.to_vec();
         self
     }
 
-    /// The entry of a state of this name: what ends in `_dot` is a rate.
+    /// Returns the symbol of a state; the suffix `_dot` denotes a rate.
     pub fn of_state(name: &str) -> Self {
         match name.strip_suffix("_dot").filter(|stem| !stem.is_empty()) {
             Some(stem) => Self::plain(stem).with_dots(1),
@@ -64,8 +62,8 @@ impl Symbol {
         }
     }
 
-    /// Head and subscripts of the name: `theta_s` is theta with s. A name that is no such
-    /// sequence is a head as it is.
+    /// Splits the name into head and subscripts: `theta_s` is theta with s. A name with empty parts is not
+    /// split.
     pub fn parts(&self) -> (&str, Vec<&str>) {
         let mut parts = self.name.split('_');
         let head = parts.next().unwrap_or_default();
@@ -77,7 +75,7 @@ impl Symbol {
     }
 }
 
-/// In plain text a rate is `dot(x)`; the index of a rate's element stands with the name.
+/// Prints a rate as `dot(x)`; indices follow the name inside the parentheses.
 impl fmt::Display for Symbol {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (before, after) = match self.dots {
@@ -99,7 +97,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_fall_into_head_and_subscripts() {
+    fn name_splits_into_head_and_subscripts() {
         for (name, head, rest) in [
             ("t", "t", vec![]),
             ("theta_s", "theta", vec!["s"]),
@@ -112,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn symbols_are_written_with_dots_and_indices() {
+    fn symbol_prints_dots_and_indices() {
         let symbol = Symbol::plain("q").with_indices(&[Index::I]);
         assert_eq!(symbol.to_string(), "q_i");
         assert_eq!(symbol.with_dots(2).to_string(), "ddot(q_i)");

@@ -1,14 +1,14 @@
-//! Formulas as plain text, with the specification's names and operators.
+//! Formulas as plain text, with the names and operators of the specification.
 
 use std::fmt::{self, Display, Formatter};
 
 use super::tree::{Choice, Formula, Level, MatrixPart, Term, powers_of_ten, small_fraction};
 use crate::symbolic::table_text;
 
-/// A formula in its surroundings.
+/// Formula with the level of its surroundings.
 struct At<'a>(&'a Formula, Level);
 
-/// Formulas with something between each two.
+/// Formulas with a separator.
 struct Joined<'a>(&'a [Formula], &'static str, Level);
 
 impl Display for Formula {
@@ -51,7 +51,7 @@ impl Display for At<'_> {
     }
 }
 
-/// Below which surroundings a formula needs parentheses.
+/// Returns the lowest level at which a formula needs no parentheses.
 fn own_level(formula: &Formula) -> Level {
     match formula {
         Formula::Sum(_) => Level::Sum,
@@ -130,7 +130,7 @@ fn matrix(f: &mut Formatter<'_>, parts: &[MatrixPart]) -> fmt::Result {
     Ok(())
 }
 
-/// A magnitude in front of a product: a small fraction where it is one exactly.
+/// Writes the numeric factor of a product, as a small fraction if that is exact.
 fn factor(magnitude: f64) -> String {
     match small_fraction(magnitude) {
         Some((numerator, denominator)) => format!("{numerator}/{denominator}"),

@@ -1,4 +1,4 @@
-//! A formula as a tree, without a notation.
+//! Formula as a tree, independent of its notation.
 
 use eomgen_model_spec::model::Function;
 use serde::{Serialize, Serializer};
@@ -6,97 +6,97 @@ use serde::{Serialize, Serializer};
 use super::symbol::{Index, Symbol};
 use crate::symbolic::tables::TableKind;
 
-/// A formula.
+/// Formula.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Formula {
-    /// A number.
+    /// Number.
     Number(f64),
-    /// A named quantity.
+    /// Named quantity.
     Symbol(Symbol),
-    /// A constant of a basis.
+    /// Constant of a basis.
     Table(TableKind),
-    /// Terms, each with a factor.
+    /// Sum of terms.
     Sum(Vec<Term>),
-    /// A product over a product; nothing above is 1.
+    /// Quotient of two products; an empty numerator is 1.
     Quotient {
-        /// The factors above the line.
+        /// Factors of the numerator.
         above: Vec<Self>,
-        /// The factors below the line; none where there is no line.
+        /// Factors of the denominator; empty for a product.
         below: Vec<Self>,
     },
-    /// A base and its exponent.
+    /// Power with base and exponent.
     Power(Box<Self>, Box<Self>),
-    /// A function of the specification's language.
+    /// Function of the specification language.
     Call(Function, Vec<Self>),
-    /// One formula where a > b and another elsewhere.
+    /// Selection between two formulas.
     Choice(Box<Choice>),
-    /// The sum over an index.
+    /// Sum over an index.
     Total(Index, Box<Self>),
-    /// The elements of a matrix times a vector.
+    /// Element of a matrix times a vector.
     Applied(Box<Self>, Box<Self>),
-    /// A transposed matrix.
+    /// Transposed matrix.
     Transposed(Box<Self>),
-    /// The elements of a matrix, by the parts that add up to it.
+    /// Element of a matrix, as a sum of parts.
     Matrix(Vec<MatrixPart>),
-    /// An operation that has no sign of its own, by its name.
+    /// Operation without a symbol, by its name.
     Operation(&'static str, Vec<Self>),
-    /// What is left out of an abridged formula.
+    /// Omitted part of an abridged formula.
     Omitted,
 }
 
-/// A term of a sum.
+/// Term of a sum.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Term {
-    /// What the formula is multiplied with.
+    /// Numeric factor.
     pub factor: f64,
-    /// The formula; a constant term is its factor alone.
+    /// Formula; `None` for a constant term.
     pub of: Option<Formula>,
 }
 
-/// One formula where a > b and another elsewhere.
+/// Selection: one formula if a > b, else another.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Choice {
-    /// Compared.
+    /// Left side of the comparison.
     pub a: Formula,
-    /// Compared with.
+    /// Right side of the comparison.
     pub b: Formula,
-    /// The formula where a > b.
+    /// Formula if a > b.
     pub then: Formula,
-    /// The formula elsewhere.
+    /// Formula otherwise.
     pub otherwise: Formula,
 }
 
-/// A part of a matrix.
+/// Part of a matrix.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MatrixPart {
-    /// A diagonal.
+    /// Diagonal.
     Diagonal(Formula),
-    /// The outer product of two vectors.
+    /// Outer product of two vectors.
     Outer(Formula, Formula),
-    /// A matrix with scaled rows and columns.
+    /// Matrix with scaled rows and columns.
     Scaled(Formula, Formula, Formula),
 }
 
-/// What stands around a formula and decides whether it needs parentheses.
+/// Surroundings of a formula, which decide about its parentheses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
-    /// A sum needs none.
+    /// Term of a sum, or no surroundings.
     Sum,
-    /// A factor of a product.
+    /// Factor of a product.
     Product,
-    /// What something is divided by.
+    /// Divisor.
     Divisor,
-    /// The base of a power.
+    /// Base of a power.
     Base,
 }
 
 impl Formula {
-    /// A quantity by its name, without any index or dot.
+    /// Returns a named quantity without index or dot.
     pub fn named(name: &str) -> Self {
         Self::Symbol(Symbol::plain(name))
     }
 
-    /// The product of two formulas; a factor 1 is not written.
+    /// Returns the product of two formulas; a factor 1 is omitted.
     pub fn times(self, other: Self) -> Self {
         match (self, other) {
             (Self::Number(1.0), other) => other,
@@ -108,7 +108,7 @@ impl Formula {
         }
     }
 
-    /// The sum of formulas; without any it is 0.
+    /// Returns the sum of formulas; 0 without any.
     pub fn sum(formulas: Vec<Self>) -> Self {
         let mut terms: Vec<Term> = formulas
             .into_iter()
@@ -127,7 +127,7 @@ impl Formula {
         }
     }
 
-    /// A vector's element as one that is summed over columns; other formulas stay.
+    /// Changes the index of a vector's element to the column index; other formulas are unchanged.
     pub fn by_columns(self) -> Self {
         match self {
             Self::Symbol(symbol) if symbol.indices == [Index::I] => {
@@ -139,7 +139,7 @@ impl Formula {
 }
 
 impl Formula {
-    /// Below which surroundings it needs parentheses where fractions have lines.
+    /// Returns the lowest level at which the formula needs no parentheses, in a notation with fraction bars.
     pub fn set_level(&self) -> Level {
         match self {
             Self::Sum(_) | Self::Choice(_) => Level::Sum,
@@ -154,7 +154,7 @@ impl Formula {
         }
     }
 
-    /// Hands this formula and all that it is made of to `see`.
+    /// Calls `see` with the formula and all its parts.
     pub fn visit(&self, see: &mut impl FnMut(&Self)) {
         see(self);
         match self {
@@ -194,14 +194,14 @@ impl Formula {
     }
 }
 
-/// Programs read formulas as plain text.
+/// Writes the formula as plain text.
 impl Serialize for Formula {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(self)
     }
 }
 
-/// A magnitude as a small fraction, where it is one exactly and no whole number.
+/// Returns numerator and denominator if the magnitude is exactly a small fraction and no integer.
 pub fn small_fraction(value: f64) -> Option<(f64, u32)> {
     if value.fract() == 0.0 {
         return None;
@@ -213,7 +213,7 @@ pub fn small_fraction(value: f64) -> Option<(f64, u32)> {
     })
 }
 
-/// The mantissa and the exponent of ten of a number that is written with one.
+/// Returns mantissa and exponent of ten of a very small or large number; None for others.
 pub fn powers_of_ten(value: f64) -> Option<(String, String)> {
     let magnitude = value.abs();
     if magnitude == 0.0 || (1e-4..1e6).contains(&magnitude) {
