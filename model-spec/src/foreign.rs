@@ -65,7 +65,7 @@ const FUNCTIONS: [Foreign; 9] = [
     (&["log10"], "the logarithm to base 10 is ln(x)/ln(10)"),
     (&["sgn", "signum"], "write `sign(x)` for -1, 0 or 1"),
     (&["fabs"], "write `abs(x)`"),
-    (&["ddt", "der", "derivative"], "a rate is written dot(x)"),
+    (&["ddt", "der", "derivative"], "write dot(x) for the rate"),
 ];
 
 const AND: &str = "for both conditions write the product: `above(x - a)*above(b - x)`";
@@ -73,7 +73,7 @@ const OR: &str = "for one of two conditions write the larger: `max(above(x - a),
 const NOT: &str = "write `1 - above(x - a)` for 1 if x <= a, else 0";
 const IF: &str = "write `above(x - a)*A + (1 - above(x - a))*B` for A if x > a, else B; `min` and `max` \
                   choose the smaller and the larger of two";
-const POWER: &str = "a power is written x^2";
+const POWER: &str = "write x^2 for a power";
 const REMAINDER: &str =
     "there is no remainder function: `atan2(sin(x), cos(x))` is the angle x between -pi and pi";
 

@@ -125,10 +125,10 @@ fn foreign(operator: &str, span: Span) -> Diagnostic {
 
 fn stray(letter: char, span: Span) -> Diagnostic {
     let help = match letter {
-        '\'' => "a rate is written dot(x); an expression holds no strings".to_owned(),
-        '"' => "an expression holds no strings".to_owned(),
+        '\'' => "write dot(x) for the rate; an expression contains no strings".to_owned(),
+        '"' => "an expression contains no strings".to_owned(),
         '{' | '}' => "group with ( and )".to_owned(),
-        '·' | '×' => "a product is written with `*`".to_owned(),
+        '·' | '×' => "write a product with `*`".to_owned(),
         '−' | '–' => "this is not the minus sign `-` of the keyboard".to_owned(),
         _ if letter.is_alphabetic() => {
             "names consist of the letters a-z and A-Z, digits and `_`".to_owned()

@@ -318,7 +318,7 @@ fn missing_operator(found: &TokenKind) -> Option<String> {
         found,
         TokenKind::Number(_) | TokenKind::Name(_) | TokenKind::Open
     );
-    starts.then(|| "products are written out: 2*x, not 2 x".to_owned())
+    starts.then(|| "write a product with `*`: 2*x, not 2 x".to_owned())
 }
 
 #[cfg(test)]

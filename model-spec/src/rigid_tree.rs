@@ -1,55 +1,56 @@
-//! The frames and the bodies of a model as they are declared: what their energies, which are terms
-//! of the model as any others, do not show. Nothing needs them; recursions from body to body do.
+//! Frames and bodies of a model as declared. The energies of the model contain their terms
+//! already; recursive algorithms from body to body use this structure.
 
 use crate::ids::FrameId;
 
-/// Frames with the bodies fixed to them, and gravity; expressions of kind `T`.
+/// Frames with the bodies fixed to them, and gravity; `T` is the type of an expression.
 #[derive(Clone, Debug)]
 pub struct RigidTree<T> {
-    /// The acceleration of free fall along the fixed axes, in m/s^2; 0 where bodies have no weight.
+    /// Acceleration of free fall along the fixed axes, in m/s^2; 0 without gravity.
     pub gravity: [T; 3],
-    /// The frames, each after the one that it is placed in.
+    /// Frames, each after its parent.
     pub frames: Vec<PlacedFrame<T>>,
-    /// The bodies. Each gives its name to its energies.
+    /// Bodies.
     pub bodies: Vec<RigidBody<T>>,
 }
 
-/// A frame: its origin moved, then its axes turned.
+/// Frame, given by the position of its origin and the rotation of its axes.
 #[derive(Clone, Debug)]
 pub struct PlacedFrame<T> {
-    /// The frame that it is placed in; the fixed axes if there is none.
+    /// Parent frame; `None` for the fixed axes.
     pub parent: Option<FrameId>,
-    /// Its origin along that frame's axes, in m.
+    /// Origin along the parent's axes, in m.
     pub origin: [T; 3],
-    /// From that frame's axes to its own, each about an axis that those before it have turned.
+    /// Rotations from the parent's axes to this frame's, each about an axis rotated by those before
+    /// it.
     pub turns: Vec<AxisTurn<T>>,
 }
 
-/// A turn about an axis by the right hand.
+/// Right-handed rotation about a coordinate axis.
 #[derive(Clone, Debug)]
 pub struct AxisTurn<T> {
     /// 0, 1, 2 for x, y, z.
     pub axis: usize,
-    /// The angle, in rad.
+    /// Angle, in rad.
     pub angle: T,
-    /// Its cosine: a number for quarter turns.
+    /// Cosine of the angle: a number for quarter turns.
     pub cosine: T,
-    /// Its sine: a number for quarter turns.
+    /// Sine of the angle: a number for quarter turns.
     pub sine: T,
 }
 
-/// A rigid body.
+/// Rigid body.
 #[derive(Clone, Debug)]
 pub struct RigidBody<T> {
-    /// The name of its terms in the energies.
+    /// Name of the body and of its terms in the energies.
     pub name: String,
-    /// The frame that it is fixed to.
+    /// Frame that the body is fixed to.
     pub frame: FrameId,
-    /// Its mass, in kg; 0 if it has inertia only.
+    /// Mass, in kg; 0 for a body that has only inertia.
     pub mass: T,
-    /// Its centre of mass along the frame's axes, in m.
+    /// Centre of mass along the frame's axes, in m.
     pub centre: [T; 3],
-    /// I_xx, I_yy, I_zz about the centre of mass along the frame's axes, in kg m^2; 0 of a point
+    /// I_xx, I_yy, I_zz about the centre of mass along the frame's axes, in kg m^2; 0 for a point
     /// mass.
     pub moments: [T; 3],
     /// I_xy, I_yz, I_xz of the same matrix.
@@ -57,10 +58,10 @@ pub struct RigidBody<T> {
 }
 
 impl<T> RigidTree<T> {
-    /// The tree of what becomes of each expression; the first failure ends it.
+    /// Converts every expression of the tree.
     ///
     /// # Errors
-    /// Those of `change`.
+    /// The first error of `change`.
     pub fn try_map<U, E>(
         &self,
         mut change: impl FnMut(&T) -> Result<U, E>,
@@ -116,7 +117,7 @@ impl<T> RigidBody<T> {
     }
 }
 
-/// What becomes of three expressions.
+/// Converts three expressions.
 fn each<T, U, E>(parts: &[T; 3], change: &mut impl FnMut(&T) -> Result<U, E>) -> Result<[U; 3], E> {
     let [x, y, z] = parts.each_ref().map(change);
     Ok([x?, y?, z?])

@@ -1,10 +1,9 @@
-//! The language's JSON schema, by which editors complete and check a specification while it is
-//! written. It knows sections, keys and kinds of values; names, expressions and units are for
-//! [`crate::check`] alone.
+//! JSON schema of the language, for completion and checks in editors. It covers sections, keys
+//! and kinds of values; only [`crate::check`] checks names, expressions and units.
 
-/// The schema, in draft 2020-12 of JSON Schema. Editors for TOML often know an older draft alone:
-/// the keywords are those that all drafts since 6 read alike, and nothing that counts stands
-/// beside a `$ref`, where they overlook it.
+/// The schema, in draft 2020-12 of JSON Schema. Many TOML editors support only older drafts: it
+/// uses only keywords with one meaning in all drafts since 6, and no constraints next to a
+/// `$ref`, which older drafts ignore.
 pub const SCHEMA: &str = include_str!("schema.json");
 
 #[cfg(test)]
@@ -23,17 +22,17 @@ mod tests {
         serde_json::from_str(SCHEMA).expect("a JSON document")
     }
 
-    /// What a `$ref` leads to, or the schema itself.
+    /// Returns the target of a `$ref`, or the schema itself.
     fn followed<'s>(whole: &'s Value, part: &'s Value) -> &'s Value {
         match part["$ref"].as_str() {
             Some(place) => whole
                 .pointer(place.trim_start_matches('#'))
-                .unwrap_or_else(|| panic!("{place} leads nowhere")),
+                .unwrap_or_else(|| panic!("no schema at {place}")),
             None => part,
         }
     }
 
-    /// The keys of all tables that a value may be.
+    /// Returns the keys of all tables that a value may be.
     fn keys_of<'s>(whole: &'s Value, part: &'s Value) -> BTreeSet<&'s str> {
         let part = followed(whole, part);
         let own = part["properties"].as_object();
@@ -44,7 +43,7 @@ mod tests {
     }
 
     #[test]
-    fn the_schema_lists_the_sections_and_keys_that_the_reader_knows() {
+    fn schema_lists_the_sections_and_keys_of_the_reader() {
         let schema = schema();
         let sections = schema["properties"].as_object().expect("sections");
         assert_eq!(
@@ -63,10 +62,10 @@ mod tests {
     }
 
     #[test]
-    fn every_table_of_the_schema_refuses_other_keys() {
+    fn tables_of_the_schema_reject_unknown_keys() {
         fn look(part: &Value, place: &str) {
             if let Some(keys) = part.as_object() {
-                // The alternatives at the top only ask for one of two sections.
+                // The alternatives at the top only require one of two sections.
                 if keys.contains_key("properties") && !place.starts_with("/anyOf") {
                     assert_eq!(keys["additionalProperties"], false, "{place}");
                 }
@@ -86,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn only_words_stand_beside_a_reference() {
+    fn references_have_only_descriptions_next_to_them() {
         fn look(part: &Value) {
             if let Some(keys) = part.as_object() {
                 let words = ["$ref", "description", "default"];
@@ -103,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn the_schema_has_the_readers_limits_and_words() {
+    fn schema_has_the_limits_of_the_reader() {
         let schema = schema();
         let defined = &schema["$defs"];
         assert_eq!(defined["name"]["maxLength"], MAX_NAME);

@@ -1,7 +1,5 @@
-//! Mode shapes from a file: a table of CSV beside the specification, as a finite-element
-//! program writes it. Columns `x, phi_1, phi_2, ...`, a row for each place.
-//!
-//! Nothing here knows how shapes are interpolated.
+//! Mode shapes from a CSV file, for example from a finite-element program. Columns
+//! `x, phi_1, phi_2, ...`, one row for each position. The generator interpolates the shapes.
 
 use std::path::Path;
 
@@ -10,44 +8,46 @@ use crate::file_beside;
 use crate::source::sha256;
 use crate::span::Span;
 
-/// The most rows of a table: each is a knot of the shapes in emitted code.
+/// Largest number of rows: each row is a knot of the shapes in emitted code.
 pub const MAX_ROWS: usize = 2000;
 
-/// The fewest rows: four make a cubic.
+/// Smallest number of rows: a cubic needs four.
 const MIN_ROWS: usize = 4;
 
-/// The most cells of a line that are looked at: more than any table has.
+/// Largest number of cells read from a line: more than any table has.
 const MAX_CELLS: usize = 1000;
 
-/// How much longer a step may be than both steps beside it: more is a gap.
+/// Largest ratio of a step to its longer neighbour; a larger one is reported as a gap.
 const GAP: f64 = 3.0;
 
-/// What has to be left of a shape beside the others, relative to it, for it to be another one.
+/// Smallest norm of a shape after orthogonalisation, relative to its norm before, that counts
+/// as independent.
 const INDEPENDENT: f64 = 1e-8;
 
-/// How far the ends of the table may lie from those of the field, relative to its length.
+/// Largest distance between the ends of the table and those of the field, relative to the
+/// field's length.
 const ENDS: f64 = 1e-9;
 
-/// Mode shapes given at places.
+/// Mode shapes at discrete positions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShapeTable {
-    /// The file's name, as the specification gives it.
+    /// Name of the file, as in the specification.
     pub file: String,
     /// SHA-256 of the file, in hexadecimal digits.
     pub sha256: String,
-    /// The places x, in m, strictly increasing.
+    /// Positions x, in m, strictly increasing.
     pub positions: Vec<f64>,
-    /// For each mode its values at the places.
+    /// Values of each mode at the positions.
     pub shapes: Vec<Vec<f64>>,
 }
 
 impl ShapeTable {
-    /// The file of that name, written at `span`, in a specification's folder or below, with at most
-    /// `most` shapes.
+    /// Reads the file of this name, in the folder of a specification or below, with at most `most`
+    /// shapes. `span` is the position of the name.
     ///
     /// # Errors
-    /// No folder, a name that leads out of it, a file that cannot be read, is too large or is not
-    /// UTF-8, and what [`Self::parse`] refuses.
+    /// No folder; a name outside it; a file that cannot be read, is too large or is not UTF-8;
+    /// errors of [`Self::parse`].
     pub fn read(
         folder: Option<&Path>,
         span: Span,
@@ -57,24 +57,24 @@ impl ShapeTable {
         let refused = |message: String| Diagnostic::error(message).at(span, "this table");
         let Some(folder) = folder else {
             return Err(refused(format!(
-                "the table \"{name}\" lies beside the specification's file, and here is its text alone"
+                "the table \"{name}\" cannot be found: the specification was given as text, without a folder"
             ))
-            .help("give the specification as a file; `compare`, `discover`, sections in place and texts without a file take no tables"));
+            .help("give the specification as a file; `compare`, `discover`, sections in a macro and specifications given as text do not support tables"));
         };
         let text = file_beside::read(folder, name)
             .map_err(|error| refused(format!("the table \"{name}\" {}", error.0)).help(error.1))?;
         Self::parse(name, &text, most).map_err(|fault| {
             refused(format!("{name}:{}:{}: {}", fault.line, fault.column, fault.message)).help(
-                "the first line is x,phi_1,phi_2,... and every other a place, increasing, with the shapes there",
+                "write x,phi_1,phi_2,... in the first line, and an increasing position with its values in each other line",
             )
         })
     }
 
-    /// The table of a text, with at most `most` shapes.
+    /// Parses a table with at most `most` shapes.
     ///
     /// # Errors
-    /// A header other than `x,phi_1,phi_2,...`, numbers that are missing or not finite, places that
-    /// do not increase or leave a gap, too few or too many rows, shapes that are not independent.
+    /// A header other than `x,phi_1,phi_2,...`, missing or infinite numbers, positions that do not
+    /// increase or leave a gap, too few or too many rows, dependent shapes.
     pub fn parse(file: &str, text: &str, most: usize) -> Result<Self, TableFault> {
         let content = text.strip_prefix('\u{feff}').unwrap_or(text);
         let mut lines = (1..).zip(content.lines());
@@ -87,7 +87,7 @@ impl ShapeTable {
             shapes: vec![Vec::new(); count],
         };
         for (number, line) in lines {
-            // A last line may end in nothing but its end.
+            // A trailing empty line is allowed.
             if !line.trim().is_empty() || content.lines().count() > number {
                 table.row(number, line)?;
             }
@@ -104,7 +104,10 @@ impl ShapeTable {
         let expected = 1 + self.shapes.len();
         let cells = cells(text);
         if cells.len() != expected {
-            let message = format!("{} numbers where the header has {expected}", cells.len());
+            let message = format!(
+                "{} numbers, but the header has {expected} columns",
+                cells.len()
+            );
             return Err(TableFault::new(line, 1, message));
         }
         for (index, (column, cell)) in cells.into_iter().enumerate() {
@@ -112,7 +115,7 @@ impl ShapeTable {
             let number = number.ok_or_else(|| {
                 let message = match cell {
                     "" => "a number is missing".to_owned(),
-                    cell => format!("`{}` is no finite number", shortened(cell)),
+                    cell => format!("`{}` is not a finite number", shortened(cell)),
                 };
                 TableFault::new(line, column, message)
             })?;
@@ -128,14 +131,14 @@ impl ShapeTable {
         if let Some(last) = self.positions.last()
             && x <= *last
         {
-            let message = format!("x = {x} does not lie beyond the {last} before it");
+            let message = format!("x = {x} is not greater than {last} in the line before");
             return Err(TableFault::new(line, column, message));
         }
         self.positions.push(x);
         Ok(())
     }
 
-    /// What only the whole table shows.
+    /// Checks the table as a whole.
     fn check(&self) -> Result<(), TableFault> {
         let (rows, modes) = (self.positions.len(), self.shapes.len());
         let least = MIN_ROWS.max(2 * modes + 2);
@@ -146,7 +149,7 @@ impl ShapeTable {
         self.gaps()?;
         if let Some(mode) = dependent(&self.shapes) {
             let message = format!(
-                "phi_{} is a combination of the shapes before it, or zero",
+                "phi_{} is zero or a linear combination of the shapes before it",
                 mode + 1
             );
             return Err(TableFault::new(1, 1, message));
@@ -167,7 +170,7 @@ impl ShapeTable {
             if *step > GAP * longest {
                 let (from, to) = (self.positions[index], self.positions[index + 1]);
                 let message = format!(
-                    "a gap from x = {from} to {to}, more than {GAP} times the steps beside it"
+                    "a gap from x = {from} to {to}, more than {GAP} times the neighbouring steps"
                 );
                 return Err(TableFault::new(index + 3, 1, message));
             }
@@ -175,17 +178,17 @@ impl ShapeTable {
         Ok(())
     }
 
-    /// Whether the places span the field's domain.
+    /// Checks that the positions span the domain of the field.
     ///
     /// # Errors
-    /// The end that lies elsewhere.
+    /// The end that differs.
     pub fn spans(&self, from: f64, to: f64) -> Result<(), TableFault> {
         let last = self.positions.len() - 1;
         for (index, end, name) in [(0, from, "from"), (last, to, "to")] {
             let x = self.positions[index];
             let there = (x - end).abs() <= ENDS * (to - from).abs();
             if !there {
-                let message = format!("x = {x} at this end, where the field has {name} = {end} m");
+                let message = format!("x = {x} at this end, but the field has {name} = {end} m");
                 return Err(TableFault::new(index + 2, 1, message));
             }
         }
@@ -193,14 +196,14 @@ impl ShapeTable {
     }
 }
 
-/// What is wrong with a table, and where in its file.
+/// Error in a table, with its position in the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TableFault {
-    /// The line, from 1.
+    /// Line, from 1.
     pub line: usize,
-    /// The character in it, from 1.
+    /// Column in characters, from 1.
     pub column: usize,
-    /// What is wrong.
+    /// The cause.
     pub message: String,
 }
 
@@ -214,7 +217,7 @@ impl TableFault {
     }
 }
 
-/// How many shapes a header names.
+/// Returns the number of shapes in a header.
 fn modes(header: &str, most: usize) -> Result<usize, TableFault> {
     let cells = cells(header);
     if cells.len() < 2 {
@@ -228,7 +231,7 @@ fn modes(header: &str, most: usize) -> Result<usize, TableFault> {
         };
         if *name != expected {
             let message = format!(
-                "the column `{}` where {expected} is expected",
+                "unexpected column `{}`, expected {expected}",
                 shortened(name)
             );
             return Err(TableFault::new(1, *column, message));
@@ -242,7 +245,7 @@ fn modes(header: &str, most: usize) -> Result<usize, TableFault> {
     Ok(modes)
 }
 
-/// The cells of a line without their blanks, each with its place in it.
+/// Returns the cells of a line, trimmed, each with its column.
 fn cells(line: &str) -> Vec<(usize, &str)> {
     let mut column = 1;
     line.split(',')
@@ -263,13 +266,13 @@ fn shortened(cell: &str) -> String {
     }
 }
 
-/// The first shape of which nothing is left when those before it are taken off, by the modified
-/// process of Gram and Schmidt, done twice.
+/// Returns the first shape that depends linearly on those before it, by modified Gram-Schmidt
+/// orthogonalisation, done twice.
 fn dependent(shapes: &[Vec<f64>]) -> Option<usize> {
     let norm = |shape: &[f64]| shape.iter().map(|v| v * v).sum::<f64>().sqrt();
     let mut directions: Vec<Vec<f64>> = Vec::new();
     for (mode, shape) in shapes.iter().enumerate() {
-        // Sizes whose squares overflow or vanish are sizes as well.
+        // Normalised first, so that squares neither overflow nor underflow.
         let size = shape.iter().fold(0.0, |size: f64, v| size.max(v.abs()));
         let mut rest: Vec<f64> = shape.iter().map(|v| v / size).collect();
         let before = norm(&rest);
@@ -280,7 +283,7 @@ fn dependent(shapes: &[Vec<f64>]) -> Option<usize> {
             }
         }
         let left = norm(&rest);
-        // Of a shape that is zero everywhere this is not a number.
+        // NaN for a shape that is zero everywhere.
         let is_another = left > INDEPENDENT * before;
         if !is_another {
             return Some(mode);

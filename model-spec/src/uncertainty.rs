@@ -1,44 +1,44 @@
-//! What is not known of parameters: how their values are spread, as a specification declares it.
+//! Distributions of uncertain parameters, as declared in a specification.
 
 use crate::model::{Model, Parameter, ParameterValue, Uncertainty};
 use crate::variant::ModelError;
 
-/// How the values of a parameter are spread, in the unit that the specification declares for it.
+/// Distribution of a parameter, in its declared unit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spread {
-    /// The parameter's name.
+    /// Name of the parameter.
     pub name: String,
-    /// The law of its values.
+    /// Distribution law.
     pub law: Law,
 }
 
-/// A law of values.
+/// Distribution law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Law {
-    /// Normal, without what lies outside the bounds.
+    /// Normal distribution, truncated at the bounds.
     Normal {
-        /// The mean, which is the parameter's value.
+        /// Mean: the value of the parameter.
         mean: f64,
-        /// The standard deviation, greater than 0.
+        /// Standard deviation, greater than 0.
         sd: f64,
-        /// The bounds, a standard deviation from the mean or more.
+        /// Bounds, at least one standard deviation from the mean.
         bounds: [Option<f64>; 2],
     },
-    /// All values between two ends alike.
+    /// Uniform distribution between two ends.
     Uniform {
-        /// The lower end.
+        /// Lower end.
         low: f64,
-        /// The upper end.
+        /// Upper end.
         high: f64,
     },
 }
 
 impl Model {
-    /// How the uncertain parameters are spread about the values that they have, in the order of the
-    /// model. A parameter whose uncertainty is a part of its value keeps its sign.
+    /// Returns the distributions of the uncertain parameters about their present values, in the
+    /// order of the model. A parameter with a relative uncertainty keeps its sign.
     ///
     /// # Errors
-    /// An uncertainty that is none at this value, by name.
+    /// An uncertainty that is invalid for the present value, with the name of the parameter.
     pub fn spreads(&self) -> Result<Vec<Spread>, ModelError> {
         let uncertain = self.parameters.iter().filter_map(|parameter| {
             let uncertainty = parameter.uncertainty.as_ref()?;
@@ -52,8 +52,8 @@ fn spread(parameter: &Parameter, uncertainty: &Uncertainty) -> Result<Spread, Mo
     let ParameterValue::Number(value) = parameter.value else {
         return Err(wrong(
             parameter,
-            "it is given by an expression",
-            "declare what is not known of the numbers that the expression is made of",
+            "the value is an expression",
+            "declare the uncertainty of the parameters in the expression",
         ));
     };
     let law = match *uncertainty {
@@ -62,7 +62,7 @@ fn spread(parameter: &Parameter, uncertainty: &Uncertainty) -> Result<Spread, Mo
             return Err(wrong(
                 parameter,
                 &format!("{part} of {}", parameter.unit.from_si(value)),
-                "a part is between 0 and 1, and of a value that is not 0; `sd` is in the parameter's unit",
+                "give a `relative` between 0 and 1, for a value other than 0; otherwise give `sd` in the parameter's unit",
             ));
         }
         Uncertainty::Relative(part) => {
@@ -93,11 +93,12 @@ fn uniform(parameter: &Parameter, value: f64, [low, high]: [f64; 2]) -> Result<L
     Err(wrong(
         parameter,
         &format!("{low} to {high} {}", parameter.unit),
-        "the lower end comes first, the value lies between, and both ends within `min` and `max`",
+        "give the lower end first, with the value between the ends and both ends within `min` and `max`",
     ))
 }
 
-/// About the value; `further` are bounds beside those of the parameter, all in SI.
+/// Returns a normal law about the value. `further` are additional bounds; all numbers are in
+/// SI.
 fn normal(
     parameter: &Parameter,
     value: f64,
@@ -109,7 +110,7 @@ fn normal(
         return Err(wrong(
             parameter,
             &format!("a standard deviation of {}", declared(sd)),
-            "a standard deviation is greater than 0",
+            "give a standard deviation greater than 0",
         ));
     }
     let low = [parameter.min, further[0]].into_iter().flatten();
@@ -119,8 +120,8 @@ fn normal(
     if bounds.iter().flatten().any(near) {
         return Err(wrong(
             parameter,
-            "`min` or `max` is nearer than a standard deviation",
-            "say between which ends the value lies, as { between = [1, 2] }",
+            "`min` or `max` is less than a standard deviation from the value",
+            "give the ends of an interval instead, for example { between = [1, 2] }",
         ));
     }
     Ok(Law::Normal {

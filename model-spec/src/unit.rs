@@ -1,34 +1,34 @@
-//! Units as a specification writes them: `N s/m`, `kg/m^3`, `deg`, `mm`. A unit is a
-//! dimension and an exact scale. Grammar: factors side by side (or joined by `*`) are
-//! multiplied; at most one `/`, which divides by the one factor or the one parenthesis
-//! behind it and ends the unit, so that nothing like `N/m s` is left to be guessed.
+//! Units of a specification: `N s/m`, `kg/m^3`, `deg`, `mm`. A unit is a dimension and an exact
+//! scale. Grammar: factors separated by spaces or `*` are multiplied. At most one `/` divides
+//! by the one factor or the one parenthesis after it and ends the unit, so that ambiguous units
+//! such as `N/m s` are rejected.
 
 use num_rational::Ratio;
 
 use crate::dimension::{Dimension, Exponent};
 use crate::scale::Scale;
 
-/// A unit as written.
+/// Unit as written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unit {
-    /// As the specification writes it; inferred units are written as dimensions are.
+    /// Text in the specification; for an inferred unit, the text of its dimension.
     pub text: String,
-    /// What it measures.
+    /// Dimension.
     pub dimension: Dimension,
-    /// Its size in the coherent SI unit.
+    /// Factor to the coherent SI unit.
     scale: Scale,
 }
 
-/// Why a text is no unit.
+/// Error of [`Unit::parse`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnitError {
-    /// What is wrong.
+    /// The cause.
     pub message: String,
-    /// What would be right, if known.
+    /// The cure, if known.
     pub help: Option<String>,
 }
 
-/// The SI prefixes from pico to tera and their powers of ten.
+/// SI prefixes from pico to tera, with their powers of ten.
 const PREFIXES: [(&str, i32); 11] = [
     ("p", -12),
     ("n", -9),
@@ -43,7 +43,7 @@ const PREFIXES: [(&str, i32); 11] = [
     ("T", 12),
 ];
 
-/// Units that take prefixes: name, power of ten, exponents of kg, m, s, A, K, mol, cd.
+/// Units that accept prefixes: name, power of ten, exponents of kg, m, s, A, K, mol, cd.
 const PREFIXED: [(&str, i32, [i32; 7]); 20] = [
     ("m", 0, [0, 1, 0, 0, 0, 0, 0]),
     ("g", -3, [1, 0, 0, 0, 0, 0, 0]),
@@ -67,17 +67,17 @@ const PREFIXED: [(&str, i32, [i32; 7]); 20] = [
     ("H", 0, [1, 2, -2, -2, 0, 0, 0]),
 ];
 
-/// The largest exponent accepted in a unit.
+/// Largest exponent accepted in a unit.
 const MAX_EXPONENT: i32 = 12;
 
-/// The longest unit accepted, in bytes.
+/// Longest unit accepted, in bytes.
 const MAX_LENGTH: usize = 64;
 
 impl Unit {
-    /// Reads a unit; `""` and `"1"` are pure numbers.
+    /// Parses a unit; `""` and `"1"` are dimensionless.
     ///
     /// # Errors
-    /// Says which part is no unit, and how it would be written.
+    /// The part that is not a unit, with a valid spelling if known.
     pub fn parse(text: &str) -> Result<Self, UnitError> {
         if text.len() > MAX_LENGTH {
             return Err(UnitError::new("a unit has at most 64 characters", None));
@@ -90,7 +90,7 @@ impl Unit {
         })
     }
 
-    /// The coherent SI unit of a dimension.
+    /// Returns the coherent SI unit of a dimension.
     pub fn coherent(dimension: Dimension) -> Self {
         Self {
             text: dimension.to_string(),
@@ -99,24 +99,25 @@ impl Unit {
         }
     }
 
-    /// Whether a number in this unit is the number in SI.
+    /// Returns true if the scale is 1.
     pub fn is_coherent(&self) -> bool {
         self.scale == Scale::ONE
     }
 
-    /// The coherent unit of a rate of what is in this one; none if its dimension is out of range.
+    /// Returns the coherent unit of the rate of a quantity in this unit; `None` if an exponent
+    /// overflows.
     pub fn per_second(&self) -> Option<Self> {
         let mut unit = Self::coherent(self.dimension.over(Dimension::TIME)?);
         unit.text = format!("{self}/s");
         Some(unit)
     }
 
-    /// A number in this unit, in SI; 3 mm is 3/1000, correctly rounded.
+    /// Converts a number in this unit to SI; 3 mm is 3/1000, correctly rounded.
     pub fn to_si(&self, value: f64) -> f64 {
         self.scale.apply(value)
     }
 
-    /// A number in SI, in this unit.
+    /// Converts a number in SI to this unit.
     pub fn from_si(&self, value: f64) -> f64 {
         self.scale.remove(value)
     }
@@ -162,11 +163,11 @@ fn parse_quotient(text: &str) -> Result<Parsed, UnitError> {
     let above = parse_product(text[..slash].trim())?;
     let written = text[slash + 1..].trim();
     if written.is_empty() || text[..slash].trim().is_empty() {
-        let help = "a reciprocal is written 1/s".to_owned();
-        return Err(UnitError::new("`/` stands between two units", Some(help)));
+        let help = "write a reciprocal as 1/s".to_owned();
+        return Err(UnitError::new("`/` needs a unit on both sides", Some(help)));
     }
     if written == "()" {
-        return Err(UnitError::new("`()` holds no unit", None));
+        return Err(UnitError::new("`()` contains no unit", None));
     }
     let below = match written.strip_prefix('(').and_then(|w| w.strip_suffix(')')) {
         Some(inner) => parse_product(inner.trim())?,
@@ -182,7 +183,7 @@ fn parse_quotient(text: &str) -> Result<Parsed, UnitError> {
         .ok_or_else(|| UnitError::too_large(text))
 }
 
-/// The first `/` that is not part of an exponent such as `^(1/2)`.
+/// Returns the position of the first `/` outside an exponent such as `^(1/2)`.
 fn outer_slash(text: &str) -> Option<usize> {
     let mut depth = 0_usize;
     for (place, letter) in text.char_indices() {
@@ -209,12 +210,12 @@ fn refuse_ambiguous(above: &str, below: &str) -> Result<(), UnitError> {
     let first = first.trim();
     let help = format!("write {above}/({below}) or {above} {rest}/{first}");
     Err(UnitError::new(
-        "what `/` divides by is ambiguous",
+        "the divisor of `/` is ambiguous",
         Some(help),
     ))
 }
 
-/// The factors of a product, parted by spaces or `*`.
+/// Splits a product at spaces and `*`.
 fn factors(text: &str) -> impl Iterator<Item = &str> {
     text.split([' ', '*']).filter(|part| !part.is_empty())
 }
@@ -264,8 +265,9 @@ fn parse_exponent(text: &str) -> Result<Exponent, UnitError> {
             Ok(Ratio::new(n, d))
         }
         _ => {
-            let help = "exponents are whole numbers up to 12 or fractions: m^2, s^-1, m^(1/2)";
-            let message = format!("`{text}` is no exponent of a unit");
+            let help =
+                "write an exponent as a whole number up to 12 or a fraction: m^2, s^-1, m^(1/2)";
+            let message = format!("`{text}` is not a valid exponent");
             Err(UnitError::new(message, Some(help.to_owned())))
         }
     }
@@ -288,7 +290,7 @@ fn behind_prefix(symbol: &str) -> Option<Parsed> {
     candidates.find_map(|(prefix, power)| prefixed(symbol.strip_prefix(prefix)?, *power))
 }
 
-/// Two units that are written as one word, parted.
+/// Splits a word into two units, if possible.
 fn parted(symbol: &str) -> Option<String> {
     let is_unit = |part: &str| prefixed(part, 0).is_some() || behind_prefix(part).is_some();
     let mut ends = symbol.char_indices().skip(1);
@@ -308,13 +310,13 @@ fn unknown(symbol: &str) -> UnitError {
     let help = match symbol {
         "rpm" => "give the speed in rad/s: 1 rpm is 2 pi/60 rad/s".to_owned(),
         "°" => "write deg".to_owned(),
-        "Nms" => "factors are parted by a space: N m s".to_owned(),
-        "Kg" => "the kilogram is written kg".to_owned(),
-        "sec" => "the second is written s".to_owned(),
-        _ if symbol.starts_with(['µ', 'μ']) => "micro is written u: um".to_owned(),
+        "Nms" => "separate factors by a space: N m s".to_owned(),
+        "Kg" => "write kg for the kilogram".to_owned(),
+        "sec" => "write s for the second".to_owned(),
+        _ if symbol.starts_with(['µ', 'μ']) => "write u for micro: um".to_owned(),
         _ => match parted(symbol) {
-            Some(parted) => format!("factors are parted by a space: {parted}"),
-            None => "known are SI units with prefixes, joined as in N s/m or kg m^2".to_owned(),
+            Some(parted) => format!("separate factors by a space: {parted}"),
+            None => "use SI units with prefixes, combined as in N s/m or kg m^2".to_owned(),
         },
     };
     UnitError::new(format!("unknown unit `{symbol}`"), Some(help))
@@ -329,7 +331,7 @@ mod tests {
     }
 
     #[test]
-    fn usual_units_have_their_dimensions() {
+    fn common_units_have_their_dimensions() {
         for (text, expected) in [
             ("", "1"),
             ("1", "1"),
@@ -366,7 +368,7 @@ mod tests {
     }
 
     #[test]
-    fn coherent_units_are_known_as_such() {
+    fn coherent_units_have_scale_one() {
         for text in ["", "m", "kg", "N m", "rad", "kg/m^3", "mm km"] {
             assert!(Unit::parse(text).unwrap().is_coherent(), "{text}");
         }
@@ -376,7 +378,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_unit_is_refused_with_advice() {
+    fn invalid_units_are_rejected_with_help() {
         for (text, message, help) in [
             ("N/m s", "ambiguous", "N/(m s) or N s/m"),
             ("kg/m/s", "at most one `/`", "kg/(m s)"),
@@ -405,7 +407,7 @@ mod tests {
     }
 
     #[test]
-    fn every_displayed_dimension_reads_back() {
+    fn displayed_dimensions_can_be_parsed() {
         for kg in -1..=1 {
             for m in -4..=4 {
                 for s in -4..=2 {

@@ -1,6 +1,6 @@
-//! The units a model demands: every term of an energy is in J, of the dissipation in W, a
-//! force times what it works on in J, parameters, initial values and observables as
-//! declared. How the unit of an expression is found is the business of `infer`.
+//! Checks the units of a model: energies are in J, the dissipation in W, a force times its
+//! displacement in J; parameters, initial values and observables as declared. `infer` computes
+//! the unit of an expression.
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dimension::Dimension;
@@ -12,7 +12,7 @@ use crate::model::{
 use crate::resolve::Resolved;
 use crate::unit::Unit;
 
-/// Checks the units of all expressions and fills in those of definitions and observables.
+/// Checks the units of all expressions, and sets those of definitions and observables.
 pub fn check(resolved: &mut Resolved, found: &mut Diagnostics) {
     let mut units = Units {
         known: Inference {
@@ -122,7 +122,7 @@ impl Units<'_, '_> {
         }
     }
 
-    /// Whether all definitions have a unit.
+    /// Infers the units of all definitions. Returns true if all have one.
     fn definitions(&mut self) -> bool {
         let mut all = true;
         for &index in &self.model.definition_order {
@@ -170,12 +170,13 @@ impl Units<'_, '_> {
                 ExprKind::Coordinate(index) => self.model.coordinates[index].unit.to_string(),
                 _ => on.to_string(),
             };
-            let because = format!("expected {expected}: times what it works on ({works}) it is J");
+            let because =
+                format!("expected {expected}: multiplied by its displacement ({works}) it is J");
             self.expect(&force.value, expected, &subject, &because);
         }
     }
 
-    /// A rate is one, also where the specification declares it itself.
+    /// Checks the unit of a declared stabilisation rate.
     fn stabilisation_rate(&mut self) {
         let model = self.model;
         let declared = model
@@ -186,10 +187,10 @@ impl Units<'_, '_> {
             return;
         };
         if let ParameterValue::Expression(value) = &parameter.value {
-            let message = format!("`{STABILISATION_RATE}` is set while equations run");
+            let message = format!("`{STABILISATION_RATE}` must be a number: it is set at run time");
             self.found.push(
                 Diagnostic::error(message)
-                    .at(value.span, "this follows from other parameters")
+                    .at(value.span, "this depends on other parameters")
                     .help("give a number"),
             );
         }
@@ -198,12 +199,12 @@ impl Units<'_, '_> {
             self.found.push(
                 Diagnostic::error(message)
                     .at(parameter.span, "expected 1/s")
-                    .help("it is how fast residuals of constraints decay: unit = \"1/s\""),
+                    .help("it is the decay rate of constraint residuals: unit = \"1/s\""),
             );
         }
     }
 
-    /// The unit of every constraint.
+    /// Returns the unit of every constraint.
     fn constraints(&mut self) -> Vec<Unit> {
         let mut units = Vec::with_capacity(self.model.constraints.len());
         for constraint in &self.model.constraints {
@@ -214,7 +215,7 @@ impl Units<'_, '_> {
         units
     }
 
-    /// The unit of every distance; what comes back of a speed is a number.
+    /// Returns the unit of every distance, and checks that restitutions are dimensionless.
     fn impacts(&mut self) -> Vec<Unit> {
         let mut units = Vec::with_capacity(self.model.impacts.len());
         for impact in &self.model.impacts {
@@ -240,7 +241,7 @@ impl Units<'_, '_> {
                 None => {
                     let inferred = self.known.infer(&observable.value);
                     let inferred = match observable.value.kind {
-                        // What is wrong with a constraint is said once, of itself.
+                        // An error in a constraint is reported at the constraint.
                         ExprKind::Multiplier(_) | ExprKind::Residual(_) => inferred.ok(),
                         _ => self.found.keep(inferred),
                     }
@@ -266,8 +267,8 @@ impl Units<'_, '_> {
         }
     }
 
-    /// Whether the quantities of short forms have their units; the energies made of one that has
-    /// not would only say it again.
+    /// Checks the units of the quantities of short forms. Returns false after an error: the
+    /// energies of the short form would repeat it.
     fn short_forms(
         &mut self,
         demanded: &[(Expr, Dimension, String)],
@@ -284,7 +285,7 @@ impl Units<'_, '_> {
         !clean || self.found.is_empty()
     }
 
-    /// The components of a vector have one unit.
+    /// Checks that the components of a vector have one unit.
     fn alike(&mut self, components: &[Expr]) {
         let mut first: Option<(Dimension, &Expr)> = None;
         for component in components {
@@ -309,7 +310,7 @@ impl Units<'_, '_> {
         }
     }
 
-    /// A quantity for which a bare number is in SI.
+    /// Checks the unit of a quantity for which a bare number is in SI.
     fn expect_quantity(&mut self, expr: &Expr, expected: Dimension, subject: &str) {
         if !matches!(expr.kind, ExprKind::Number(_)) {
             self.expect(

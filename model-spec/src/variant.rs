@@ -1,5 +1,5 @@
-//! Questions to a model and changes of its numbers: the values of its parameters, one
-//! parameter set to another value, the orders of its fields, the names of its states.
+//! Evaluates and changes the numbers of a model: values of parameters, orders of fields, names
+//! of states.
 
 use crate::constants;
 use crate::diagnostic::Diagnostic;
@@ -9,17 +9,17 @@ use crate::source::sha256;
 use crate::span::Span;
 use crate::suggest::did_you_mean;
 
-/// The most names that a message suggests.
+/// Largest number of names in a suggestion.
 const MOST_NAMES: usize = 12;
 
-/// Why a model cannot be had with these numbers.
+/// Error of a change: the model is invalid with these numbers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ModelError {
-    /// What is wrong.
+    /// The cause.
     pub message: String,
-    /// What would be right, if known.
+    /// The cure, if known.
     pub help: Option<String>,
-    /// The part of the specification it is about, if it is about one.
+    /// Position in the specification, if there is one.
     pub span: Option<Span>,
 }
 
@@ -42,7 +42,7 @@ impl ModelError {
         self
     }
 
-    /// The same as a finding on the model's source.
+    /// Converts the error to a finding on the model's source.
     pub fn diagnostic(self) -> Diagnostic {
         let diagnostic = Diagnostic::error(self.message).help_if(self.help);
         match self.span {
@@ -65,8 +65,9 @@ impl std::fmt::Display for ModelError {
 impl std::error::Error for ModelError {}
 
 impl Model {
-    /// SHA-256 of all that the model was read from: of the specification's text, or, where it
-    /// names tables, of the digits of its hash and of theirs in the order of the fields.
+    /// Returns the SHA-256 of everything that the model was read from. Without tables it is the
+    /// hash of the specification's text. With tables it is the hash of the hexadecimal digits of
+    /// that hash followed by those of the tables, in the order of the fields.
     pub fn hash(&self) -> String {
         let tables = self.fields.iter().filter_map(|field| field.basis.table());
         let tables: String = tables.map(|table| table.sha256.as_str()).collect();
@@ -76,16 +77,16 @@ impl Model {
         }
     }
 
-    /// The highest order that every field has: a table has as many shapes as columns.
+    /// Returns the highest order of all fields: a table has one shape per column.
     pub fn highest_order(&self) -> usize {
         let tables = self.fields.iter().filter_map(|field| field.basis.table());
         tables.fold(MAX_ORDER, |order, table| order.min(table.shapes.len()))
     }
 
-    /// The values of all parameters in SI, in the order of [`Model::parameters`].
+    /// Returns the values of all parameters in SI, in the order of [`Model::parameters`].
     ///
     /// # Errors
-    /// A value that is not finite or outside its parameter's bounds, by name.
+    /// A value that is not finite or outside its bounds, with the name of the parameter.
     pub fn parameter_values(&self) -> Result<Vec<f64>, ModelError> {
         let values = self.evaluated_parameters();
         for &index in &self.parameter_order {
@@ -94,7 +95,7 @@ impl Model {
         Ok(values)
     }
 
-    /// The values of all parameters in SI, admissible or not.
+    /// Returns the values of all parameters in SI, without checks.
     pub(crate) fn evaluated_parameters(&self) -> Vec<f64> {
         let mut values = vec![f64::NAN; self.parameters.len()];
         for &index in &self.parameter_order {
@@ -106,11 +107,11 @@ impl Model {
         values
     }
 
-    /// The initial state in SI at these orders: values of coordinates, modes (0), then
-    /// their rates, then the states of first order.
+    /// Returns the initial state in SI at these orders: values of coordinates and modes (0), their
+    /// rates, and the states of first order.
     ///
     /// # Errors
-    /// As [`Model::parameter_values`], and initial values that are not finite.
+    /// Those of [`Model::parameter_values`], and initial values that are not finite.
     pub fn initial_state(&self, orders: &[usize]) -> Result<Vec<f64>, ModelError> {
         let parameters = self.parameter_values()?;
         let modes: usize = orders.iter().sum();
@@ -129,10 +130,10 @@ impl Model {
         Ok(state)
     }
 
-    /// Where each coordinate lives, in SI; none for one that may be anywhere.
+    /// Returns the ranges of the coordinates, in SI; `None` without a `range`.
     ///
     /// # Errors
-    /// As [`Model::parameter_values`].
+    /// Those of [`Model::parameter_values`].
     pub fn coordinate_ranges(&self) -> Result<Vec<Option<(f64, f64)>>, ModelError> {
         let values = self.parameter_values()?;
         let ranges = self.coordinates.iter().map(|c| c.range.as_ref());
@@ -141,10 +142,10 @@ impl Model {
             .collect())
     }
 
-    /// Intervals of the states of first order, in SI; `None` without a `range`.
+    /// Returns the ranges of the states of first order, in SI; `None` without a `range`.
     ///
     /// # Errors
-    /// As [`Model::parameter_values`].
+    /// Those of [`Model::parameter_values`].
     pub fn state_ranges(&self) -> Result<Vec<Option<(f64, f64)>>, ModelError> {
         let values = self.parameter_values()?;
         let ranges = self.states.iter().map(|state| state.range.as_ref());
@@ -153,11 +154,11 @@ impl Model {
             .collect())
     }
 
-    /// Inputs where nobody gives them, in SI: of prescribed motion, which may stand in the energies,
-    /// the middle of its range, or this number without one; 0 of all others.
+    /// Returns default values of the inputs, in SI. A prescribed motion, which can occur in the
+    /// energies, gets the middle of its range, or `without_range`; any other input gets 0.
     ///
     /// # Errors
-    /// As [`Model::parameter_values`].
+    /// Those of [`Model::parameter_values`].
     pub fn typical_inputs(&self, without_range: f64) -> Result<Vec<f64>, ModelError> {
         let ranges = self.input_ranges()?;
         let typical = self.inputs.iter().zip(ranges).map(|(input, range)| {
@@ -170,10 +171,10 @@ impl Model {
         Ok(typical.collect())
     }
 
-    /// Where each input lives, in SI; none for one that may be anything.
+    /// Returns the ranges of the inputs, in SI; `None` without a `range`.
     ///
     /// # Errors
-    /// As [`Model::parameter_values`].
+    /// Those of [`Model::parameter_values`].
     pub fn input_ranges(&self) -> Result<Vec<Option<(f64, f64)>>, ModelError> {
         let values = self.parameter_values()?;
         let ranges = self.inputs.iter().map(|input| input.range.as_ref());
@@ -182,20 +183,20 @@ impl Model {
             .collect())
     }
 
-    /// The same model with one parameter set to a number in its declared unit; what is
-    /// computed from it follows.
+    /// Returns the model with one parameter set to a number in its declared unit. Dependent
+    /// parameters are recomputed.
     ///
     /// # Errors
-    /// An unknown name, a number that is not finite or outside the parameter's bounds, or
-    /// another value that then is not finite.
+    /// An unknown name, a number that is not finite or outside its bounds, or a dependent value
+    /// that is not finite.
     pub fn with_parameter(&self, name: &str, value: f64) -> Result<Self, ModelError> {
         self.with_parameters(&[(name, value)])
     }
 
-    /// The same model with several parameters set; only what they are together is checked.
+    /// Returns the model with several parameters set. Only the final values are checked.
     ///
     /// # Errors
-    /// As [`Model::with_parameter`].
+    /// Those of [`Model::with_parameter`].
     pub fn with_parameters(&self, settings: &[(&str, f64)]) -> Result<Self, ModelError> {
         let mut model = self.clone();
         for (name, value) in settings {
@@ -219,18 +220,20 @@ impl Model {
         Ok(())
     }
 
-    /// Which parameters may have been meant by a name: the nearest, those that share a part of
-    /// it, or the first of all.
+    /// Suggests parameters for an unknown name: the nearest, those with a common part, or the first
+    /// of all.
     pub(crate) fn parameters_like(&self, name: &str) -> String {
         let known = || self.parameters.iter().map(|known| known.name.as_str());
         if let Some(help) = did_you_mean(name, known()) {
             return help;
         }
         if self.coordinates.iter().any(|known| known.name == name) {
-            return format!("`{name}` is a coordinate: its `initial` says where it begins");
+            return format!(
+                "`{name}` is a coordinate: set its `initial` for another initial value"
+            );
         }
         if self.states.iter().any(|known| known.name == name) {
-            return format!("`{name}` is a state: its `initial` says where it begins");
+            return format!("`{name}` is a state: set its `initial` for another initial value");
         }
         let alike: Vec<&str> = known().filter(|known| share_a_part(name, known)).collect();
         let (intro, names) = match alike.len() {
@@ -252,10 +255,11 @@ impl Model {
         }
     }
 
-    /// The order of each field: its own, or `order` for all of them.
+    /// Returns the order of each field: its default, or `order` for all of them.
     ///
     /// # Errors
-    /// An order above [`MAX_ORDER`], or other than 0 where there is no field.
+    /// An order above [`MAX_ORDER`] or above the number of shapes in a table; an order other than 0
+    /// without a field.
     pub fn orders(&self, order: Option<usize>) -> Result<Vec<usize>, ModelError> {
         match order {
             Some(order) if order > MAX_ORDER => {
@@ -264,7 +268,7 @@ impl Model {
             }
             Some(order) if order > self.highest_order() => {
                 let shapes = self.highest_order();
-                let message = format!("the order {order} asks for more shapes than a table has");
+                let message = format!("the order {order} needs more shapes than the table has");
                 Err(ModelError::new(message).help(format!("the table has {shapes}")))
             }
             Some(order) if self.fields.is_empty() && order > 0 => {
@@ -272,7 +276,7 @@ impl Model {
                     "the model `{}` has no field, so no order {order}",
                     self.name
                 );
-                Err(ModelError::new(message).help("leave the order out, or give 0"))
+                Err(ModelError::new(message).help("remove the order, or give 0"))
             }
             _ => {
                 let own = self.fields.iter().map(|field| order.unwrap_or(field.order));
@@ -281,8 +285,8 @@ impl Model {
         }
     }
 
-    /// The names of the states at these orders: coordinates, modes `q_1 ..`, then the
-    /// rates `NAME_dot` in the same order, then the states of first order.
+    /// Returns the names of the states at these orders: coordinates, modes `q_1 ..`, their rates
+    /// `NAME_dot` in the same order, and the states of first order.
     pub fn state_names(&self, orders: &[usize]) -> Vec<String> {
         let mut names: Vec<String> = self.coordinates.iter().map(|c| c.name.clone()).collect();
         for (field, order) in self.fields.iter().zip(orders) {
@@ -294,7 +298,7 @@ impl Model {
         names
     }
 
-    /// Whether all numbers of the model have finite, admissible values.
+    /// Checks that all numbers of the model are finite and admissible.
     pub(crate) fn check_numbers(&self) -> Result<(), ModelError> {
         let values = self.parameter_values()?;
         let state = self.initial_state(&vec![0; self.fields.len()])?;
@@ -325,7 +329,7 @@ impl Model {
                 let message = format!("the field `{}` has the length {length} m", field.name);
                 return Err(ModelError::new(message)
                     .at(field.to.span)
-                    .help("`to` is greater than `from`"));
+                    .help("give a `to` greater than `from`"));
             }
         }
         constants::check(self, &values).map_err(|fault| {
@@ -337,7 +341,7 @@ impl Model {
 }
 
 impl Model {
-    /// Whether every impact gives back a part of the speed.
+    /// Checks that all restitutions are between 0 and 1.
     fn check_restitutions(&self, parameters: &[f64]) -> Result<(), ModelError> {
         for impact in &self.impacts {
             let value = evaluate(&impact.restitution, parameters);
@@ -345,7 +349,7 @@ impl Model {
                 let message = format!("the restitution of `{}` is {value}", impact.name);
                 return Err(ModelError::new(message)
                     .at(impact.restitution.span)
-                    .help("from 0, nothing comes back, to 1, all of the speed does"));
+                    .help("give a restitution from 0 (plastic) to 1 (elastic)"));
             }
         }
         Ok(())
@@ -353,14 +357,14 @@ impl Model {
 }
 
 impl Range {
-    /// Both ends in SI, with the values of all parameters in SI, in the order of the model.
+    /// Returns both ends in SI, from the values of all parameters in SI.
     pub fn ends(&self, parameters: &[f64]) -> (f64, f64) {
         let end = |expr| evaluate(expr, parameters);
         (end(&self.low), end(&self.high))
     }
 }
 
-/// An initial value in SI: 0 where none is given.
+/// Evaluates an initial value in SI; 0 if absent.
 fn initial_value(name: &str, expr: Option<&Expr>, parameters: &[f64]) -> Result<f64, ModelError> {
     let Some(expr) = expr else {
         return Ok(0.0);
@@ -369,36 +373,37 @@ fn initial_value(name: &str, expr: Option<&Expr>, parameters: &[f64]) -> Result<
     if value.is_finite() {
         return Ok(value);
     }
-    let message = format!("the initial value of `{name}` comes out as {value}");
+    let message = format!("the initial value of `{name}` evaluates to {value}");
     Err(ModelError::new(message).at(expr.span))
 }
 
-/// Whether a range is one: finite, the lower end below the upper one.
+/// Checks that the ends of a range are finite and in ascending order.
 fn check_range(name: &str, range: &Range, values: &[f64]) -> Result<(), ModelError> {
     let (low, high) = range.ends(values);
     if low.is_finite() && high.is_finite() && low < high {
         return Ok(());
     }
-    let message = format!("the range of `{name}` comes out as {low} to {high}");
+    let message = format!("the range of `{name}` evaluates to {low} to {high}");
     Err(ModelError::new(message)
         .at(range.span)
         .help("give two finite ends, the lower one first"))
 }
 
-/// Checks that an initial value lies in its range.
+/// Checks that an initial value is in its range.
 fn check_inside(name: &str, range: &Range, values: &[f64], initial: f64) -> Result<(), ModelError> {
     let (low, high) = range.ends(values);
     if (low..=high).contains(&initial) {
         return Ok(());
     }
-    let message = format!("`{name}` begins at {initial}, outside its range {low} to {high}");
+    let message =
+        format!("the initial value {initial} of `{name}` is outside its range {low} to {high}");
     Err(ModelError::new(message)
         .at(range.span)
         .help("give an initial value inside, or a wider range"))
 }
 
-/// Whether two names have a part in common, as `backlash_sp` and `b_sp`: one of two letters or
-/// more, or the whole of either.
+/// Returns true if two names share a part of at least two letters, as `backlash_sp` and `b_sp`,
+/// or a whole name.
 fn share_a_part(one: &str, other: &str) -> bool {
     let (one, other) = (one.to_lowercase(), other.to_lowercase());
     let mut parts = one.split('_');
@@ -412,9 +417,9 @@ fn check_value(parameter: &Parameter, value: f64) -> Result<(), ModelError> {
         ParameterValue::Number(_) => parameter.span,
     };
     if !value.is_finite() {
-        let message = format!("the value of `{name}` comes out as {value}");
+        let message = format!("the value of `{name}` evaluates to {value}");
         let error = ModelError::new(message).at(place);
-        return Err(error.help("look for a division by 0 or a root of a negative number"));
+        return Err(error.help("look for a division by 0 or a square root of a negative number"));
     }
     let shown = |value: f64| format!("{} {}", parameter.unit.from_si(value), parameter.unit);
     let bound = match (parameter.min, parameter.max) {

@@ -1,10 +1,10 @@
-//! Text of files, as it may be shown on a terminal or a page: control characters and those that reverse
-//! the direction of writing are escaped.
+//! Escapes control characters, and characters that change the writing direction, in text for a
+//! terminal or a page.
 
 use std::borrow::Cow;
 
-/// Whether a character is a control character other than a line feed or a tab, or changes the direction
-/// of writing. Shown as it is, it can hide or forge text.
+/// Returns true for a control character other than line feed and tab, and for a character that
+/// changes the writing direction. Printed as they are, they can hide or forge text.
 pub fn is_hidden(letter: char) -> bool {
     let is_directional = matches!(
         letter,
@@ -13,13 +13,13 @@ pub fn is_hidden(letter: char) -> bool {
     is_directional || (letter.is_control() && !matches!(letter, '\n' | '\t'))
 }
 
-/// Text with hidden characters written as `\u{202e}`.
+/// Writes hidden characters as `\u{202e}`.
 pub fn visible(text: &str) -> Cow<'_, str> {
     escaped(text, |letter| format!("\\u{{{:x}}}", u32::from(letter)))
 }
 
-/// The text of a JSON document or of a quoted TOML string with hidden characters written as `\u202e`, as
-/// both allow within strings.
+/// Writes hidden characters as `\u202e`, which strings of JSON and quoted strings of TOML
+/// allow.
 pub fn visible_in_strings(text: &str) -> Cow<'_, str> {
     // All hidden characters have four hexadecimal digits.
     escaped(text, |letter| format!("\\u{:04x}", u32::from(letter)))
@@ -44,7 +44,7 @@ mod tests {
     use super::{visible, visible_in_strings};
 
     #[test]
-    fn hidden_characters_are_escaped_and_all_others_stay() {
+    fn only_hidden_characters_are_escaped() {
         let plain = "θ [°]\n\tשלום 转速";
         assert_eq!(visible(plain), plain);
         let hostile = "a\u{1b}[2J\u{202e}b\u{9b}\r";

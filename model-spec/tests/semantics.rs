@@ -494,7 +494,7 @@ fn a_parameter_that_moves_a_range_off_the_beginning_is_refused() {
     let error = model.with_parameter("b", 0.5).expect_err("0.5 mm");
     assert_eq!(
         error.message,
-        "`x` begins at 0.001, outside its range 0 to 0.0005"
+        "the initial value 0.001 of `x` is outside its range 0 to 0.0005"
     );
     assert!(error.span.is_some());
     let error = model.with_parameter("b", -5.0).expect_err("upside down");
@@ -536,7 +536,7 @@ fn states_have_ranges_in_which_they_begin() {
     let outside = text.replace("initial = 0.002", "initial = 0.02");
     let message = refused(&outside);
     assert!(
-        message.contains("`z` begins at 0.02, outside its range -0.005 to 0.004"),
+        message.contains("the initial value 0.02 of `z` is outside its range -0.005 to 0.004"),
         "{message}"
     );
     let wrong = text.replace("[\"-b\", 0.004]", "[\"-b\", \"m\"]");

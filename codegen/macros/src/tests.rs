@@ -172,7 +172,7 @@ fn findings_point_at_their_tokens() {
         ),
         (
             "observables { o: sum(i, w, q[i]) }",
-            "the name of a field is expected",
+            "expected the name of a field",
             "w",
         ),
         ("observables { o: atan2(x, .5, ) }", "unexpected `)`", ")"),

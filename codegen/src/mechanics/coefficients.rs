@@ -110,7 +110,7 @@ pub(crate) fn row_of(of: &Expr) -> Derived<EquationRow> {
         ExprKind::ModeCoordinate(field) => Ok(EquationRow::Modes(field)),
         _ => Err(DeriveError {
             span: of.span,
-            message: "`of` names a coordinate or a field's mode coordinates".into(),
+            message: "`of` must be a coordinate or the mode coordinates of a field".into(),
             help: None,
         }),
     }

@@ -124,7 +124,7 @@ fn derivatives_by_the_position_are_of_order_4() {
     assert!(equations(&model(&bent(4)), 2).graph.len() < 400);
     let said = refusal(&bent(5));
     assert!(
-        said.contains("a derivative by the position is of order 1, 2, 3 or 4"),
+        said.contains("the order of a derivative along a field must be 1, 2, 3 or 4"),
         "{said}"
     );
 }

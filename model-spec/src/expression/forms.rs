@@ -1,5 +1,5 @@
-//! The forms that are no functions of scalars: rates, derivatives and integrals along a
-//! field, sums over its modes.
+//! Resolves the special forms: rates, derivatives and integrals along a field, sums over its
+//! modes.
 
 use super::{ResolvedKind, Resolver, Scope, wrong_count};
 use crate::ast::{Syntax, SyntaxKind};
@@ -9,11 +9,11 @@ use crate::model::{Expr, ExprKind};
 use crate::names::Symbol;
 use crate::span::Span;
 
-/// The highest derivative by the position.
+/// Highest derivative with respect to the position.
 const MAX_DERIVATIVE: f64 = 4.0;
 
 impl Resolver<'_> {
-    /// A call of one of the forms.
+    /// Resolves a call of a special form.
     pub(super) fn form(
         &mut self,
         name: &str,
@@ -24,7 +24,7 @@ impl Resolver<'_> {
         let motion = matches!(self.scope, Scope::Motion | Scope::Factor);
         if self.scope == Scope::Parameters || (name == "dot" && !motion) {
             let what = format!("{name}(...)");
-            return Err(self.out_of_scope(&quoted(&what), "no number known beforehand", name_span));
+            return Err(self.out_of_scope(&quoted(&what), "not a constant", name_span));
         }
         match (name, arguments) {
             ("dot", [operand]) => self.dot(operand),
@@ -79,27 +79,27 @@ impl Resolver<'_> {
             | ExprKind::ModeShape(_) => Err(not_moving(span, "a constant")),
             ExprKind::Time | ExprKind::Position(_) => Err(not_moving(span, "no coordinate")),
             _ => Err(not_moving(span, "an expression")
-                .help("name the expression in [definitions] and write dot(NAME)")),
+                .help("move the expression to [definitions] and write dot(NAME)")),
         }
     }
 
     fn diff(&mut self, value: &Syntax, along: &Syntax, times: u8) -> ResolvedKind {
         let resolved = self.resolve(value)?;
         let Some(field) = field_of(&resolved) else {
-            return Err(
-                Diagnostic::error("diff() takes a field, its rate or a mode shape")
-                    .at(value.span, "not one of them")
-                    .help("write diff(w, x, 2), diff(dot(w), x, 1) or diff(phi[i], x, 2)"),
-            );
+            return Err(Diagnostic::error(
+                "the first argument of diff() must be a field, its rate or a mode shape",
+            )
+            .at(value.span, "not a field")
+            .help("write diff(w, x, 2), diff(dot(w), x, 1) or diff(phi[i], x, 2)"));
         };
         let names = &self.names.fields[field];
         if !matches!(&along.kind, SyntaxKind::Name(name) if *name == names.along) {
             let (field, along_name) = (&names.field, &names.along);
-            return Err(
-                Diagnostic::error("diff() is by the position along the field")
-                    .at(along.span, "not the position")
-                    .help(format!("the position along `{field}` is `{along_name}`")),
-            );
+            return Err(Diagnostic::error(
+                "the second argument of diff() must be the position along the field",
+            )
+            .at(along.span, "not the position")
+            .help(format!("the position along `{field}` is `{along_name}`")));
         }
         let (inner, before) = match resolved.kind {
             ExprKind::Diff(inner, before) => (inner, before),
@@ -130,7 +130,7 @@ impl Resolver<'_> {
         Ok(ExprKind::Integral { field, integrand })
     }
 
-    /// An expression in which the position along `field` has a meaning.
+    /// Resolves an expression of the position along `field`.
     fn within(&mut self, field: FieldId, syntax: &Syntax) -> Result<Box<Expr>, Diagnostic> {
         self.domains.push(field);
         let resolved = self.resolve(syntax);
@@ -140,20 +140,24 @@ impl Resolver<'_> {
 
     fn sum(&mut self, index: &Syntax, field: &Syntax, summand: &Syntax) -> ResolvedKind {
         let SyntaxKind::Name(name) = &index.kind else {
-            return Err(Diagnostic::error("a sum begins with the name of its index")
-                .at(index.span, "not a name")
-                .help("write sum(i, w, q[i]^2)"));
+            return Err(Diagnostic::error(
+                "the first argument of sum() must be the name of an index",
+            )
+            .at(index.span, "not a name")
+            .help("write sum(i, w, q[i]^2)"));
         };
         if let Some(symbol) = self.names.get(name) {
             return Err(
-                Diagnostic::error(format!("the index `{name}` is {} too", symbol.kind()))
+                Diagnostic::error(format!("the index `{name}` is also {}", symbol.kind()))
                     .at(index.span, "choose another name"),
             );
         }
         let field_index = self.field_named(field)?;
         if self.sums.iter().any(|(_, known)| *known == field_index) {
-            return Err(Diagnostic::error("a sum inside a sum over the same field")
-                .at(field.span, "this field's modes are summed over already"));
+            return Err(
+                Diagnostic::error("a sum over a field inside a sum over the same field")
+                    .at(field.span, "an enclosing sum has this field"),
+            );
         }
         self.sums.push((name.clone(), field_index));
         let summand = self.resolve(summand);
@@ -176,12 +180,12 @@ impl Resolver<'_> {
             [] => "this model has no field".to_owned(),
             fields => format!("the fields are: {}", fields.join(", ")),
         };
-        Err(Diagnostic::error("the name of a field is expected")
+        Err(Diagnostic::error("expected the name of a field")
             .at(syntax.span, "not a field")
             .help(help))
     }
 
-    /// The one field an expression of the position belongs to.
+    /// Returns the field of an expression of the position.
     fn field_in(&self, syntax: &Syntax) -> Result<FieldId, Diagnostic> {
         let mut named = Vec::new();
         let mut positions = Vec::new();
@@ -191,19 +195,21 @@ impl Resolver<'_> {
         candidates.dedup();
         match candidates.as_slice() {
             [only] => Ok(*only),
-            [] => Err(Diagnostic::error("at() takes an expression in a field")
-                .at(syntax.span, "no field in it")
-                .help("write at(w, l) or at(diff(w, x, 1), l)")),
-            _ => Err(Diagnostic::error("at() of more than one field")
-                .at(syntax.span, "which field's position?")
-                .help("write one at(...) for each field")),
+            [] => Err(Diagnostic::error(
+                "the first argument of at() must be an expression of a field",
+            )
+            .at(syntax.span, "this contains no field")
+            .help("write at(w, l) or at(diff(w, x, 1), l)")),
+            _ => Err(Diagnostic::error("at() of several fields")
+                .at(syntax.span, "the position is ambiguous")
+                .help("write a separate at(...) for each field")),
         }
     }
 
-    /// Fields named in an expression, and fields along whose position it uses.
+    /// Collects the fields named in an expression, and the fields with a position in it.
     fn fields_of(&self, syntax: &Syntax, named: &mut Vec<FieldId>, positions: &mut Vec<FieldId>) {
         match &syntax.kind {
-            // Vectors are scalars by now, or refused.
+            // Vectors have been expanded to scalars, or rejected.
             SyntaxKind::Number(_) | SyntaxKind::Vector(_) | SyntaxKind::Member { .. } => {}
             SyntaxKind::Name(name) => match self.names.get(name) {
                 Some(Symbol::Field(field)) => named.push(field),
@@ -224,7 +230,7 @@ impl Resolver<'_> {
                 arguments,
                 ..
             } => {
-                // What stands inside these has a position of its own.
+                // These forms have their own position.
                 if function != "integral" && function != "at" {
                     for argument in arguments {
                         self.fields_of(argument, named, positions);
@@ -240,7 +246,7 @@ impl Resolver<'_> {
     }
 }
 
-/// The field of `w`, `dot(w)`, `phi[i]` and their derivatives.
+/// Returns the field of `w`, `dot(w)`, `phi[i]` and their derivatives.
 fn field_of(expr: &Expr) -> Option<FieldId> {
     match &expr.kind {
         ExprKind::Field(field) | ExprKind::ModeShape(field) => Some(*field),
@@ -249,8 +255,8 @@ fn field_of(expr: &Expr) -> Option<FieldId> {
     }
 }
 
-/// The rate of what a field is at a place: dot(at(w, l)) = at(dot(w), l), because the place is
-/// fixed. Of anything but the field or its derivative it stays the rate of the whole.
+/// Returns the rate at a fixed position: dot(at(w, l)) = at(dot(w), l). For anything but a
+/// field or its derivative, returns the rate of the whole.
 fn rate_at(field: FieldId, value: Expr, position: Box<Expr>, span: Span) -> ExprKind {
     let expr = |kind| Box::new(Expr { kind, span });
     let at = |value| ExprKind::At {
@@ -279,11 +285,13 @@ fn derivative_order(syntax: &Syntax) -> Result<u8, Diagnostic> {
 }
 
 fn derivative_range(span: Span) -> Diagnostic {
-    Diagnostic::error("a derivative by the position is of order 1, 2, 3 or 4")
-        .at(span, "not one of them")
+    Diagnostic::error("the order of a derivative along a field must be 1, 2, 3 or 4")
+        .at(span, "invalid order")
 }
 
 fn not_moving(span: Span, what: &str) -> Diagnostic {
-    Diagnostic::error("dot() takes a coordinate, a definition, a field or at(...) of one")
-        .at(span, format!("this is {what}, it has no rate of its own"))
+    Diagnostic::error(
+        "the argument of dot() must be a coordinate, a definition, a field or at(...) of a field",
+    )
+    .at(span, format!("this is {what}, which has no rate"))
 }

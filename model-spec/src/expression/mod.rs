@@ -1,6 +1,6 @@
-//! From the syntax tree of an expression to an expression with every name looked up. What
-//! a name may stand for depends on where the expression stands ([`Scope`]) and, along a
-//! field, on the enclosing `integral`, `at` and `sum`. Units are not looked at here.
+//! Resolves the names of an expression. The valid names depend on the place of the expression
+//! ([`Scope`]) and, along a field, on the enclosing `integral`, `at` and `sum`. Units are
+//! checked later.
 
 mod forms;
 
@@ -14,35 +14,35 @@ use crate::names::{Names, Symbol};
 use crate::span::Span;
 use crate::suggest::did_you_mean;
 
-/// Where an expression stands, hence what it may hold.
+/// Place of an expression, which determines its valid names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scope {
-    /// Parameters only: parameters' own expressions, initial values, places along a field.
+    /// Only parameters: expressions of parameters, initial values, positions along a field.
     Parameters,
-    /// Anything but coefficients: definitions, energies, forces, observables.
+    /// Everything but coefficients: definitions, energies, forces, observables.
     Motion,
-    /// Parameters, integrals of them, and coefficients before this one.
+    /// Parameters, integrals of them, and earlier coefficients.
     Coefficient(CoefficientId),
-    /// What a coefficient multiplies: as `Motion`, and mode coordinates without an index.
+    /// Quantity multiplied by a coefficient: as `Motion`, and mode coordinates without an index.
     Factor,
 }
 
-/// Looks up the names of one expression.
+/// Resolver of the names of one expression.
 pub struct Resolver<'n> {
     names: &'n Names,
     scope: Scope,
-    /// Fields whose position may be used, innermost last.
+    /// Fields with a valid position, innermost last.
     domains: Vec<FieldId>,
-    /// Indices of the enclosing sums and their fields, innermost last.
+    /// Indices and fields of the enclosing sums, innermost last.
     sums: Vec<(String, FieldId)>,
-    /// Of each earlier coefficient, the fields for whose modes it is given.
+    /// For each earlier coefficient, the fields with one coefficient per mode.
     per_mode: &'n [Vec<FieldId>],
 }
 
 type ResolvedKind = Result<ExprKind, Diagnostic>;
 
 impl<'n> Resolver<'n> {
-    /// A resolver for expressions that stand in `scope`.
+    /// Creates a resolver for expressions in `scope`.
     pub fn new(names: &'n Names, scope: Scope) -> Self {
         Self {
             names,
@@ -53,22 +53,22 @@ impl<'n> Resolver<'n> {
         }
     }
 
-    /// The same with what is known of earlier coefficients.
+    /// Sets the fields of earlier coefficients.
     pub fn knowing(mut self, per_mode: &'n [Vec<FieldId>]) -> Self {
         self.per_mode = per_mode;
         self
     }
 
-    /// The same for an expression that is given for each mode of a field, by its index.
+    /// Sets the index and the field of an expression for each mode.
     pub fn for_each(mut self, each: Option<(String, FieldId)>) -> Self {
         self.sums.extend(each);
         self
     }
 
-    /// Looks up the names of an expression.
+    /// Resolves the names of an expression.
     ///
     /// # Errors
-    /// The first name or call that has no meaning where it stands.
+    /// The first name or call that is invalid at its place.
     pub fn resolve(&mut self, syntax: &Syntax) -> Result<Expr, Diagnostic> {
         let span = syntax.span;
         let kind = match &syntax.kind {
@@ -120,14 +120,14 @@ impl<'n> Resolver<'n> {
             Symbol::Modes(field) if self.scope == Scope::Factor => {
                 Ok(ExprKind::ModeCoordinate(field))
             }
-            Symbol::Modes(_) if motion => Err(Diagnostic::error(format!(
-                "`{name}` stands for all modes at once"
-            ))
-            .at(span, "which mode?")
-            .help(format!(
-                "write a sum over the modes: sum(i, {}, {name}[i])",
-                self.field_of(symbol)
-            ))),
+            Symbol::Modes(_) if motion => {
+                Err(Diagnostic::error(format!("`{name}` denotes all modes"))
+                    .at(span, "no mode index")
+                    .help(format!(
+                        "write a sum over the modes: sum(i, {}, {name}[i])",
+                        self.field_of(symbol)
+                    )))
+            }
             Symbol::Multiplier(index) if self.scope == Scope::Motion => {
                 Ok(ExprKind::Multiplier(index))
             }
@@ -158,10 +158,10 @@ impl<'n> Resolver<'n> {
                 }
             }
             Scope::Coefficient(_) => Err(Diagnostic::error(format!(
-                "the coefficient `{name}` is not known yet"
+                "the coefficient `{name}` is not defined yet"
             ))
             .at(span, "refers to itself or to a later entry")
-            .help("a coefficient refers to those listed before it")),
+            .help("refer only to coefficients listed before this one")),
             _ => Err(self.out_of_scope(&quoted(name), "a coefficient", span)),
         }
     }
@@ -169,9 +169,9 @@ impl<'n> Resolver<'n> {
     fn one_per_mode(&self, field: FieldId, name: &str, span: Span) -> Diagnostic {
         let field = &self.names.fields[field].field;
         Diagnostic::error(format!(
-            "the coefficient `{name}` is one for each mode of `{field}`"
+            "the coefficient `{name}` exists for each mode of `{field}`"
         ))
-        .at(span, "of which mode?")
+        .at(span, "no mode index")
         .help(format!(
             "use it inside sum(i, {field}, ...) or with each = \"{field}[i]\""
         ))
@@ -180,11 +180,13 @@ impl<'n> Resolver<'n> {
     fn out_of_scope(&self, what: &str, kind: &str, span: Span) -> Diagnostic {
         let rule = match self.scope {
             Scope::Factor if kind == "a state" => {
-                "coefficients are factors of accelerations, by coordinates, rates and inputs"
+                "coefficients are factors of coordinates, rates and inputs in an acceleration"
             }
-            Scope::Parameters => "this expression may hold parameters only",
-            Scope::Coefficient(_) => "a coefficient holds parameters and earlier coefficients",
-            Scope::Motion | Scope::Factor => "coefficients are names for results, not for input",
+            Scope::Parameters => "use only parameters in this expression",
+            Scope::Coefficient(_) => "use only parameters and earlier coefficients",
+            Scope::Motion | Scope::Factor => {
+                "coefficients are results, and no expression may depend on them"
+            }
         };
         let label = if what == "`t`" {
             "this is the time".to_owned()
@@ -202,9 +204,9 @@ impl<'n> Resolver<'n> {
         }
         Err(
             Diagnostic::error(format!("the field `{name}` is a function of the position"))
-                .at(span, "stands outside integral(...) and at(...)")
+                .at(span, "outside integral(...) and at(...)")
                 .help(format!(
-                    "write at({name}, PLACE) for its value at a place, or integral(..., {name})"
+                    "write at({name}, POSITION) for its value at a position, or integral(..., {name})"
                 )),
         )
     }
@@ -214,9 +216,9 @@ impl<'n> Resolver<'n> {
             Some(&field) if self.names.fields[field].along == name => Ok(ExprKind::Position(field)),
             _ => Err(
                 Diagnostic::error(format!("the position `{name}` has no value here"))
-                    .at(span, "stands outside its field's functions")
+                    .at(span, "outside the functions of its field")
                     .help(format!(
-                        "`{name}` is known inside integral(..., FIELD) and at(...) only"
+                        "use `{name}` only inside integral(..., FIELD) and at(...)"
                     )),
             ),
         }
@@ -236,32 +238,32 @@ impl<'n> Resolver<'n> {
             return diagnostic
                 .at(span, "a single mode cannot be used")
                 .help(format!(
-                    "the order is open: write sum(i, {field}, ... {modes}[i] ...)"
+                    "the number of modes can change: write sum(i, {field}, ... {modes}[i] ...)"
                 ));
         }
         if self.names.is_observable(name) {
-            return diagnostic.at(span, "this is an observable").help(
-                "observables are reported only: give the expression a name in [definitions]",
-            );
+            return diagnostic
+                .at(span, "this is an observable")
+                .help("an observable is only an output: move the expression to [definitions]");
         }
         let rate = name
             .strip_suffix("_dot")
             .filter(|stem| self.names.get(stem).is_some());
         let help = match rate {
-            Some(stem) => Some(format!("a rate is written dot({stem})")),
+            Some(stem) => Some(format!("write dot({stem}) for the rate")),
             None => did_you_mean(name, self.names.known().chain(["t", "pi"])),
         };
         diagnostic.at(span, "not declared").help_if(help)
     }
 
-    /// `q[i]` or `phi[i]`.
+    /// Resolves `q[i]` or `phi[i]`.
     fn element(&self, name: &str, span: Span, index: &str, index_span: Span) -> ResolvedKind {
         let Some((_, field)) = self.sums.iter().rev().find(|(known, _)| known == index) else {
             return Err(
-                Diagnostic::error(format!("the index {} is not known", quoted(index)))
-                    .at(index_span, "no sum over it here")
+                Diagnostic::error(format!("unknown index {}", quoted(index)))
+                    .at(index_span, "no enclosing sum has this index")
                     .help(format!(
-                        "modes appear inside a sum: sum({index}, w, {name}[{index}])"
+                        "write a sum over the modes: sum({index}, w, {name}[{index}])"
                     )),
             );
         };
@@ -272,7 +274,7 @@ impl<'n> Resolver<'n> {
             }
             return Err(
                 Diagnostic::error("the mode shape `phi` is a function of the position")
-                    .at(span, "stands outside integral(...) and at(...)"),
+                    .at(span, "outside integral(...) and at(...)"),
             );
         }
         if name != names.modes {
@@ -317,7 +319,7 @@ impl<'n> Resolver<'n> {
         if let Some(symbol) = self.names.get(name) {
             return Diagnostic::error(format!("`{name}` is {}, not a function", symbol.kind()))
                 .at(span, "called like a function")
-                .help(format!("products are written out: {name}*(...)"));
+                .help(format!("write a product with `*`: {name}*(...)"));
         }
         if VECTOR_FUNCTIONS.contains(&name) {
             return vectors_elsewhere(span);
@@ -332,20 +334,20 @@ impl<'n> Resolver<'n> {
     }
 }
 
-/// The finding that there are no vectors here.
+/// Reports a vector in place of a scalar.
 fn vectors_elsewhere(span: Span) -> Diagnostic {
     Diagnostic::error("a vector cannot be used here")
         .at(span, "expected a scalar")
         .help(
-            "vectors stand in [definitions], energies, [forces], [constraints], [observables], \
+            "use vectors in [definitions], energies, [forces], [constraints], [observables], \
              [frames] and [bodies]",
         )
 }
 
-/// The finding that a call has the wrong number of arguments.
+/// Reports a wrong number of arguments.
 pub(super) fn wrong_count(name: &str, span: Span, count: usize, usage: &str) -> Diagnostic {
     let plural = if count == 1 { "" } else { "s" };
-    Diagnostic::error(format!("`{name}` does not take {count} argument{plural}"))
+    Diagnostic::error(format!("`{name}` does not accept {count} argument{plural}"))
         .at(span, "here")
         .help(format!("write {usage}"))
 }

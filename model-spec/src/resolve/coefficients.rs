@@ -1,5 +1,4 @@
-//! Names for coefficients of the derived equations: what they name, and for the modes of
-//! which fields they are given.
+//! Builds the named coefficients of the derived equations.
 
 use super::Builder;
 use crate::ast::SyntaxKind;
@@ -12,7 +11,7 @@ use crate::raw::{RawCoefficient, RawCoefficientKind};
 use crate::table::{Quantity, Written};
 
 impl Builder {
-    /// All coefficients, each knowing those before it.
+    /// Builds all coefficients; each may refer to earlier ones.
     pub(super) fn coefficients(&mut self, raw: Vec<RawCoefficient>) -> Vec<Coefficient> {
         let mut built = Vec::with_capacity(raw.len());
         let mut per_mode = Vec::with_capacity(raw.len());
@@ -24,7 +23,7 @@ impl Builder {
         built
     }
 
-    /// One coefficient, given for the modes of which fields those before it are.
+    /// Builds one coefficient; `before` are the fields of the earlier ones.
     fn coefficient(&mut self, raw: RawCoefficient, before: &[Vec<FieldId>]) -> Option<Coefficient> {
         let each = match &raw.each {
             Some(written) => Some(self.each(written)?),
@@ -46,7 +45,7 @@ impl Builder {
                 let of = resolved(of, Scope::Factor, each.clone()).and_then(moving_quantity);
                 of.and_then(|of| {
                     let by = resolved(by, Scope::Factor, each.clone())?;
-                    // The rows of modes may be scaled each by its own factor.
+                    // Each mode's equation may have its own factor.
                     let rows = rows_of(&of).map(|field| (String::new(), field));
                     let each = each.or(rows);
                     let times = times.as_ref().map(|times| resolved(times, known, each));
@@ -64,7 +63,7 @@ impl Builder {
         })
     }
 
-    /// The index and field of `each = "w[i]"`.
+    /// Returns the index and the field of `each = "w[i]"`.
     fn each(&mut self, written: &Written) -> Option<(String, FieldId)> {
         let syntax = self.found.keep(written.syntax())?;
         if let SyntaxKind::Element { name, index, .. } = syntax.kind
@@ -73,7 +72,7 @@ impl Builder {
             return Some((index, field));
         }
         self.found.push(
-            Diagnostic::error("`each` names a field and an index")
+            Diagnostic::error("`each` must name a field and an index")
                 .at(syntax.span, "not a field with an index")
                 .help("write each = \"w[i]\" to give a coefficient for each mode of w"),
         );
@@ -81,19 +80,21 @@ impl Builder {
     }
 }
 
-/// `of` names a coordinate or a field's mode coordinates.
+/// Checks that `of` is a coordinate or the mode coordinates of a field.
 fn moving_quantity(of: Expr) -> Result<Expr, Diagnostic> {
     match of.kind {
         ExprKind::Coordinate(_) | ExprKind::ModeCoordinate(_) => Ok(of),
         _ => Err(
-            Diagnostic::error("`of` names a coordinate or a field's mode coordinates")
-                .at(of.span, "not one of them")
-                .help("the acceleration of what? for example of = \"theta\" or of = \"q\""),
+            Diagnostic::error("`of` must be a coordinate or the mode coordinates of a field")
+                .at(of.span, "not a coordinate")
+                .help(
+                    "name the coordinate of the equation, for example of = \"theta\" or of = \"q\"",
+                ),
         ),
     }
 }
 
-/// The field whose modes an expression names.
+/// Returns the field of a mode coordinate or its rate.
 fn rows_of(expr: &Expr) -> Option<FieldId> {
     match &expr.kind {
         ExprKind::ModeCoordinate(field) => Some(*field),
@@ -102,7 +103,7 @@ fn rows_of(expr: &Expr) -> Option<FieldId> {
     }
 }
 
-/// The fields for each of whose modes a coefficient is given.
+/// Returns the fields with one coefficient per mode.
 fn modes_of(coefficient: &Coefficient) -> Vec<FieldId> {
     let mut fields: Vec<FieldId> = coefficient.each.into_iter().collect();
     if let CoefficientKind::Factor { of, by, .. } = &coefficient.kind {

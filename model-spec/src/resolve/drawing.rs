@@ -1,5 +1,5 @@
-//! The points and lines of a drawing: what places each point, and which points a line joins.
-//! Whether that is a length is checked when units are known, by `checks`.
+//! Builds the points and lines of a drawing. `checks` verifies later that the ordinates are
+//! lengths.
 
 use super::Builder;
 use crate::diagnostic::{Diagnostic, quoted};
@@ -10,10 +10,10 @@ use crate::span::Span;
 use crate::suggest::did_you_mean;
 use crate::table::{Quantity, Written};
 
-/// The point that every drawing has, at (0, 0).
+/// Name of the point (0, 0), which every drawing has.
 const ORIGIN: &str = "origin";
 
-/// What a point may be placed by.
+/// Names for ordinates.
 struct Known<'d> {
     coordinates: Vec<&'d str>,
     observables: Vec<&'d str>,
@@ -25,9 +25,10 @@ impl Known<'_> {
             Quantity::Number(number) => return Ok(Ordinate::Number(number.value)),
             Quantity::Expression(written) => written,
             Quantity::Listed(..) | Quantity::Expansion(_) => {
-                return Err(
-                    Diagnostic::error("a point is placed by a name").at(quantity.span(), "")
-                );
+                return Err(Diagnostic::error(
+                    "the ordinate of a point must be a number or a name",
+                )
+                .at(quantity.span(), ""));
             }
         };
         let place = |names: &[&str]| names.iter().position(|name| *name == written.text);
@@ -38,7 +39,7 @@ impl Known<'_> {
             return Ok(Ordinate::Coordinate(CoordinateId::new(place)));
         }
         let names = self.observables.iter().chain(&self.coordinates).copied();
-        let help = "an expression goes into [observables], its name here";
+        let help = "add the expression to [observables] and use its name";
         let message = format!("unknown name {}", quoted(&written.text));
         Err(Diagnostic::error(message)
             .at(written.span, "neither an observable nor a coordinate")
@@ -47,7 +48,7 @@ impl Known<'_> {
 }
 
 impl Builder {
-    /// The drawing of a document, if it has one.
+    /// Builds the drawing of a document, if it has one.
     pub(super) fn drawing(&mut self, document: &Document) -> Option<Drawing> {
         let raw = document.drawing.as_ref()?;
         let coordinates = document.coordinates.iter();
@@ -77,7 +78,7 @@ impl Builder {
     fn point(&mut self, raw: &RawPoint, known: &Known<'_>) -> Option<DrawnPoint> {
         if raw.name.text == ORIGIN {
             self.found.push(
-                Diagnostic::error(format!("the point `{ORIGIN}` is there already"))
+                Diagnostic::error(format!("the point `{ORIGIN}` is predefined"))
                     .at(raw.name.span, "it is (0, 0)")
                     .help("choose another name"),
             );
@@ -102,7 +103,7 @@ impl Builder {
     }
 }
 
-/// The point of this name.
+/// Returns the point of a name.
 fn named(written: &Written, names: &[&str]) -> Result<PointId, Diagnostic> {
     let place = names.iter().position(|name| *name == written.text);
     place.map(PointId::new).ok_or_else(|| {

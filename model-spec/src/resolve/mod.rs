@@ -1,6 +1,5 @@
-//! From raw entries to a model: units read, names looked up, references put in order. What
-//! the expressions mean physically is checked afterwards, by `motion`, `units_check` and
-//! `checks`.
+//! Builds a model from raw entries: parses units, resolves names, sorts by references.
+//! `motion`, `units_check` and `checks` check the result.
 
 mod coefficients;
 mod drawing;
@@ -30,25 +29,23 @@ use crate::span::Span;
 use crate::table::{Number, Quantity, Written};
 use crate::unit::Unit;
 
-/// A model whose units are not checked yet: those of definitions and observables stand as
-/// pure numbers.
+/// Model before the check of units; definitions and observables are still dimensionless.
 pub struct Resolved {
-    /// The model.
     pub model: Model,
-    /// The units that observables declare, in their order.
+    /// Declared units of the observables, in their order.
     pub declared: Vec<Option<Unit>>,
-    /// Quantities of short forms, each with its unit and what it is.
+    /// Quantities of short forms, each with its required unit and its name in messages.
     pub demanded: Vec<(Expr, Dimension, String)>,
-    /// Components of vectors, which must have one unit.
+    /// Components of vectors, which need one unit.
     pub alike: Vec<Vec<Expr>>,
-    /// Inertias of bodies.
+    /// Inertias of the bodies.
     pub inertias: Vec<Inertia<Expr>>,
 }
 
-/// The model of a document.
+/// Builds the model of a document.
 ///
 /// # Errors
-/// Unfit names, unknown names, unreadable units and expressions, references in a circle.
+/// Invalid or unknown names, invalid units and expressions, cyclic references.
 pub fn resolve(
     document: Document,
     demands: Demands,
@@ -91,7 +88,7 @@ impl Builder {
             fields: self.all(document.fields, Self::field),
             kinetic: self.all(document.kinetic, Self::term),
             potential: self.all(document.potential, Self::term),
-            // Known when the names are.
+            // Set by `demands`, after the names.
             rigid_tree: None,
             dissipation: self.all(document.dissipation, Self::term),
             forces: self.all(document.forces, Self::force),
@@ -121,7 +118,7 @@ impl Builder {
         }
     }
 
-    /// What short forms ask of their quantities.
+    /// Resolves the quantities of short forms.
     fn demands(&mut self, demands: Demands, resolved: &mut Resolved) {
         if !self.found.is_empty() {
             return;
@@ -193,7 +190,7 @@ impl Builder {
             }
             Err(circle) => self.found.push(circular("definition", &circle, named)),
         }
-        // What refers to itself without any rate is said above.
+        // Cycles without a rate are reported above.
         if self.found.is_empty() && !model.states.is_empty() {
             self.refuse_circular_rates(model);
         }
@@ -226,7 +223,7 @@ impl Builder {
         self.found.keep(unit)
     }
 
-    /// A unit in which a number is the number in SI.
+    /// Parses a unit with scale 1.
     fn coherent_unit(&mut self, written: Option<Written>) -> Option<Unit> {
         let span = written
             .as_ref()
@@ -240,11 +237,9 @@ impl Builder {
             _ => unit.dimension.to_string(),
         };
         self.found.push(
-            Diagnostic::error(format!(
-                "the unit `{unit}` is not an SI unit without a factor"
-            ))
-            .at(span, "only parameters may be in such a unit")
-            .help(format!("use unit = \"{right}\"")),
+            Diagnostic::error(format!("the unit `{unit}` is not a coherent SI unit"))
+                .at(span, "only parameters may have such a unit")
+                .help(format!("write unit = \"{right}\"")),
         );
         None
     }
@@ -274,7 +269,7 @@ impl Builder {
             && low > high
         {
             self.found.push(
-                Diagnostic::error(format!("no value of `{}` lies between", raw.name.text))
+                Diagnostic::error(format!("`{}` has no admissible value", raw.name.text))
                     .at(number.span, "max is less than min"),
             );
         }
@@ -336,7 +331,7 @@ impl Builder {
         })
     }
 
-    /// A range where there is one; none if it cannot be read.
+    /// Builds a range, `Some(None)` if absent, `None` after an error.
     fn range(&mut self, raw: Option<RawRange>) -> Option<Option<Range>> {
         let Some(raw) = raw else {
             return Some(None);
@@ -360,7 +355,7 @@ impl Builder {
         let rate_of = before.filter(|_| raw.rate_order > 0).map(InputId::new);
         let rate = own.and_then(|own| self.names.input_rate(own));
         let unit = match raw.rate_order {
-            // What is wrong with the unit is said once, of the input itself.
+            // An error in the unit is reported at the input itself.
             0 => self.coherent_unit(raw.unit)?,
             order => per_seconds(&Unit::parse(&raw.unit?.text).ok()?, order)?,
         };
@@ -375,7 +370,7 @@ impl Builder {
         })
     }
 
-    /// The mode shapes of a field of this order.
+    /// Builds the mode shapes of a field of this order.
     fn basis(&mut self, raw: RawBasis, (order, span): (i64, Span)) -> Option<Basis> {
         let file = match raw {
             RawBasis::Named(basis) => return Some(basis),
@@ -390,7 +385,7 @@ impl Builder {
         ))?;
         let shapes = table.shapes.len();
         if usize::try_from(order).is_ok_and(|order| order > shapes && order <= MAX_ORDER) {
-            let message = format!("the order {order} asks for more shapes than {}", file.text);
+            let message = format!("the order {order} needs more shapes than {}", file.text);
             self.found.push(
                 Diagnostic::error(message)
                     .at(span, "too high")
@@ -479,7 +474,7 @@ impl Builder {
     fn constraint(&mut self, raw: RawTerm) -> Option<Constraint> {
         Some(Constraint {
             zero: self.expression(&raw.value, Scope::Motion)?,
-            // Both are known when the definitions are.
+            // `motion` and `units_check` set both.
             is_nonholonomic: false,
             unit: Unit::coherent(Dimension::NONE),
             name: raw.name.text,
@@ -494,7 +489,7 @@ impl Builder {
         Some(Impact {
             when: self.expression(&raw.value, Scope::Motion)?,
             restitution: restitution?,
-            // Known when the definitions are.
+            // `units_check` sets it.
             unit: Unit::coherent(Dimension::NONE),
             name: raw.name.text,
             doc: raw.doc,
@@ -538,7 +533,7 @@ fn sensor(raw: RawSensor) -> Sensor {
     }
 }
 
-/// What is reported of every constraint.
+/// Returns the multiplier and the residual of each constraint as observables.
 fn reported(constraints: &[Constraint]) -> Vec<Observable> {
     let observable =
         |prefix: &str, kind: ExprKind, doc: &str, constraint: &Constraint| Observable {
@@ -577,7 +572,7 @@ fn field_order((order, span): (i64, Span)) -> Result<usize, Diagnostic> {
         ),
         Err(_) => Err(Diagnostic::error(format!("the order {order} is negative"))
             .at(span, "negative")
-            .help("an order is 0 (rigid) or the number of modes")),
+            .help("give the number of modes, or 0 for a rigid body")),
     }
 }
 
@@ -603,7 +598,7 @@ fn definition_references(definition: &Definition) -> Vec<Reference> {
     list
 }
 
-/// A unit per s, or per s^2; none if its dimension cannot be told.
+/// Returns a unit per s or per s^2; `None` if an exponent overflows.
 fn per_seconds(unit: &Unit, order: u8) -> Option<Unit> {
     let mut dimension = unit.dimension;
     for _ in 0..order {

@@ -802,7 +802,7 @@ fn what_a_newcomer_forgets_is_told_with_what_to_write() {
     assert!(said.contains("from 1 on: column = 1"), "{said}");
     let joined = DESCRIPTION.replace("\"mrad\"", "\"mNm\"");
     let said = refused_with(&joined, "t,angle\n", &plain);
-    assert!(said.contains("parted by a space: mN m"), "{said}");
+    assert!(said.contains("separate factors by a space: mN m"), "{said}");
     let motion = along(&ALONG.replace("observable = \"G\"", ""));
     let said = motion.err().map(|refusal| refusal.to_string());
     let said = said.expect("no such input");

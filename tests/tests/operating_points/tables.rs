@@ -161,11 +161,11 @@ fn tables_that_are_none_are_refused_with_the_place() {
     let cases: [(Vec<u8>, &str); 21] = [
         (
             line(5, "0.37,1,NaN,1").into(),
-            "modes.csv:5:8: `NaN` is no finite number",
+            "modes.csv:5:8: `NaN` is not a finite number",
         ),
         (
             line(5, "0.37,1,1e999,1").into(),
-            "modes.csv:5:8: `1e999` is no finite number",
+            "modes.csv:5:8: `1e999` is not a finite number",
         ),
         (
             line(5, "0.37,1,,1").into(),
@@ -173,7 +173,7 @@ fn tables_that_are_none_are_refused_with_the_place() {
         ),
         (
             line(5, "0.37,1,1").into(),
-            "modes.csv:5:1: 3 numbers where the header has 4",
+            "modes.csv:5:1: 3 numbers, but the header has 4 columns",
         ),
         (line(5, "0.37;1;1;1").into(), "modes.csv:5:1: 1 numbers"),
         (line(5, "").into(), "modes.csv:5:1: 1 numbers"),
@@ -202,7 +202,7 @@ fn tables_that_are_none_are_refused_with_the_place() {
         (vec![0; 100], "is not UTF-8 text"),
         (
             good.replace("phi_1", "phi_x").into(),
-            "modes.csv:1:3: the column `phi_x` where phi_1 is expected",
+            "modes.csv:1:3: unexpected column `phi_x`, expected phi_1",
         ),
     ];
     for (table, said) in cases {
@@ -241,7 +241,7 @@ fn shapes_that_are_not_enough_or_not_independent_are_refused() {
     );
     let message = refused(&["check", &model]);
     assert!(
-        message.contains("the order 4 asks for more shapes than modes.csv"),
+        message.contains("the order 4 needs more shapes than modes.csv"),
         "{message}"
     );
     assert!(message.contains("model.toml:16:9"), "{message}");
