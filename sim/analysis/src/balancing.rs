@@ -1,22 +1,23 @@
-//! Scaling of a linearised machine's state matrix, so that no result depends on units.
+//! Scaling of the state matrix of a linearised machine, which makes results independent of units.
 //!
-//! States are scaled so that rows and columns have entries of like size (B. N. Parlett, C. Reinsch, Numer.
-//! Math. 13 (1969) 293-304), and the time so that the largest entry is about 1. All factors are powers of
-//! two, which round nothing. Sizes are compared by their exponents, so that no square overflows.
+//! States are scaled until rows and columns have entries of similar size (B. N. Parlett, C.
+//! Reinsch, Numer. Math. 13 (1969) 293-304). Time is scaled until the largest entry is about 1. All
+//! factors are powers of two, so nothing is rounded. Sizes are compared by exponents, so no square
+//! overflows.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-/// Sweeps over the states; three or four are usual.
+/// Largest number of sweeps over the states; three or four are usual.
 const MAX_SWEEPS: usize = 100;
 
 /// A state matrix in scaled states and scaled time.
 #[derive(Clone, Debug)]
 pub struct Balanced {
-    /// The matrix: T D^-1 A D.
+    /// Scaled matrix T D^-1 A D.
     pub matrix: DMatrix<f64>,
-    /// The diagonal of D: what 1 of a scaled state is in its own unit, in parts of the largest.
+    /// Diagonal of D: unit of each scaled state, relative to the largest.
     pub sizes: DVector<f64>,
-    /// The exponent of 2 in T, the unit of the scaled time in s.
+    /// Exponent of 2 in T, the unit of scaled time in s.
     time: i32,
 }
 
@@ -52,18 +53,18 @@ impl Balanced {
         }
     }
 
-    /// A rate of the scaled time, in 1/s.
+    /// Converts a rate of scaled time to 1/s.
     fn per_second(&self, rate: f64) -> f64 {
         times_power_of_two(rate, -self.time)
     }
 
-    /// An eigenvalue of the scaled matrix, in 1/s.
+    /// Converts an eigenvalue of the scaled matrix to 1/s.
     pub fn eigenvalue(&self, scaled: Complex<f64>) -> Complex<f64> {
         Complex::new(self.per_second(scaled.re), self.per_second(scaled.im))
     }
 }
 
-/// The exponents of 2 of the entries of a matrix that are not 0, with their columns or rows.
+/// Binary logarithms of the nonzero entries of a matrix, with their columns or rows.
 struct Exponents {
     rows: Vec<Vec<(usize, f64)>>,
     columns: Vec<Vec<(usize, f64)>>,
@@ -86,7 +87,7 @@ impl Exponents {
     }
 }
 
-/// The exponents of 2 in the diagonal of D.
+/// Computes the exponents of 2 in the diagonal of D.
 fn balancing_exponents(entries: &Exponents) -> Vec<i32> {
     let count = entries.rows.len();
     let mut sizes = vec![0_i32; count];
@@ -115,7 +116,7 @@ fn balancing_exponents(entries: &Exponents) -> Vec<i32> {
     sizes
 }
 
-/// A number times a power of 2, in two steps as the power alone may overflow.
+/// Multiplies by a power of 2 in two steps, because the power may overflow.
 fn times_power_of_two(number: f64, exponent: i32) -> f64 {
     let half = exponent / 2;
     number * 2_f64.powi(half) * 2_f64.powi(exponent - half)
@@ -126,7 +127,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn entries_of_any_size_become_like() {
+    fn balancing_equalises_entries_of_any_size() {
         for stiffness in [1e-300, 1e-200, 1.0, 1e150, 1e300] {
             let matrix = DMatrix::from_row_slice(2, 2, &[0.0, 1.0, -stiffness, 0.0]);
             let balanced = Balanced::new(&matrix);

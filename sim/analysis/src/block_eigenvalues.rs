@@ -1,15 +1,16 @@
-//! Eigenvalues of a balanced matrix, group by group of states that depend on each other.
+//! Eigenvalues of a balanced matrix, computed for each group of coupled states.
 //!
-//! The QR iteration errs by rounding of the largest entry, in which a slow motion beside a fast one would
-//! be lost. So what does not feel each other is computed apart, and within a group the fast states come
-//! first: the iteration then finds small eigenvalues last and to their own size (graded matrices; G. W.
-//! Stewart, *Matrix Algorithms II*, 2.3).
+//! The error of a QR iteration is a rounding of the largest entry, which can exceed a slow
+//! eigenvalue. Uncoupled groups are therefore solved separately. In a group the fast states come
+//! first: the iteration then finds small eigenvalues last, to their own precision (graded matrices;
+//! G. W. Stewart, *Matrix Algorithms II*, 2.3).
 
 use nalgebra::{Complex, DMatrix};
 
 use crate::qr_iteration;
 
-/// The eigenvalues of a balanced square matrix, in no order; nothing if an iteration does not converge.
+/// Computes the eigenvalues of a balanced square matrix, in no order. Returns `None` if an
+/// iteration does not converge.
 pub(crate) fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
     let speeds: Vec<f64> = matrix.row_iter().map(|row| row.amax()).collect();
     let mut all = Vec::with_capacity(matrix.nrows());
@@ -26,7 +27,8 @@ pub(crate) fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
     Some(all)
 }
 
-/// For each state the others that its rate depends on. What rounding of both rates covers does not count.
+/// Returns, for each state, the states that its rate depends on. Entries below the rounding of both
+/// rates are ignored.
 fn coupled(matrix: &DMatrix<f64>, speeds: &[f64]) -> Vec<Vec<usize>> {
     let counts = |row: usize, column: usize| {
         matrix[(row, column)].abs() > f64::EPSILON * speeds[row].min(speeds[column])
@@ -43,7 +45,8 @@ fn coupled(matrix: &DMatrix<f64>, speeds: &[f64]) -> Vec<Vec<usize>> {
         .collect()
 }
 
-/// The groups of states that depend on each other, also by way of others (S. R. Kosaraju's two searches).
+/// Returns the groups of mutually dependent states (strongly connected components, by S. R.
+/// Kosaraju's two searches).
 fn groups(depends_on: &[Vec<usize>]) -> Vec<Vec<usize>> {
     let mut needed_by = vec![Vec::new(); depends_on.len()];
     for (state, others) in depends_on.iter().enumerate() {
@@ -65,7 +68,7 @@ fn groups(depends_on: &[Vec<usize>]) -> Vec<Vec<usize>> {
     found.filter(|group| !group.is_empty()).collect()
 }
 
-/// Adds what is reached from a state and was not seen, each after what is reached from it.
+/// Appends all unseen nodes reachable from `state`, each after its successors.
 fn search(next: &[Vec<usize>], state: usize, seen: &mut [bool], finished: &mut Vec<usize>) {
     if std::mem::replace(&mut seen[state], true) {
         return;
@@ -93,8 +96,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn states_that_depend_on_each_other_are_a_group() {
-        // 0 and 2 on each other, 1 on them, 3 alone.
+    fn mutually_dependent_states_form_a_group() {
+        // 0 and 2 depend on each other, 1 on 0, 3 on none.
         let found = groups(&[vec![2], vec![0], vec![0], vec![]]);
         let mut found: Vec<Vec<usize>> = found
             .into_iter()

@@ -1,74 +1,71 @@
-//! What kind of motion it is, from several kinds of evidence and by one stated rule.
-//!
-//! The evidence is gathered elsewhere in this folder; here it is only weighed.
+//! Classification of a motion from several kinds of evidence, by one rule.
 
 use std::f64::consts::TAU;
 use std::fmt;
 
 use super::exponent::Exponent;
 
-/// A kind of motion under periodic forcing.
+/// Kind of motion under periodic forcing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Motion {
-    /// It repeats.
+    /// Periodic motion.
     Periodic {
-        /// After how many forcing periods.
+        /// Period in forcing periods.
         period_multiple: usize,
     },
-    /// It has several frequencies without a common period.
+    /// Motion with several frequencies without a common period.
     QuasiPeriodic,
-    /// Neighbouring motions separate exponentially.
+    /// Motion whose neighbouring motions separate exponentially.
     Chaotic,
-    /// The evidence is thin or contradicts itself.
+    /// Insufficient or contradictory evidence.
     Undecided,
 }
 
-/// What is known of a motion after its transient. What could not be had is `None`; a number
-/// that is not finite counts as `None`.
+/// Evidence on a motion after its transient. Missing evidence is `None`; a number that is not
+/// finite counts as `None`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Evidence {
-    /// The largest Lyapunov exponent, 1/s.
+    /// Largest Lyapunov exponent, 1/s.
     pub exponent: Option<Exponent>,
-    /// K of the 0-1 test, of a series sampled once per forcing period.
+    /// K of the 0-1 test, for a series sampled once per forcing period.
     pub chaos_indicator: Option<f64>,
-    /// The period found on the section, in forcing periods.
+    /// Period of the section, in forcing periods.
     pub period: Option<usize>,
-    /// Of the power that is not the forcing's and its harmonics', the share that lies in discrete
-    /// lines of the spectrum. With them every forced motion has nearly all of it in lines.
+    /// Share of spectral lines in the power outside the forcing harmonics. The harmonics are
+    /// excluded, because they contain nearly all power of every forced motion.
     pub line_share: Option<f64>,
-    /// The forcing frequency, rad/s.
+    /// Forcing frequency, rad/s.
     pub forcing: f64,
 }
 
-/// A kind of motion with what speaks for it.
+/// Classification with its reason.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Verdict {
-    /// The kind.
+    /// Kind of motion.
     pub motion: Motion,
-    /// A sentence for people: the kind, the numbers and, if undecided, what is missing.
+    /// Sentence with the kind, the reason and the numbers.
     pub sentence: String,
 }
 
-/// The least growth that counts as such, per forcing period: neighbours drift apart by a
-/// factor e in 100 periods. A neutral direction of a finite record stays below.
+/// Least growth per forcing period that counts as growth: a factor e in 100 periods. The exponent
+/// of a neutral direction in a finite record is smaller.
 pub const LEAST_GROWTH: f64 = 0.01;
-/// The most growth per forcing period that may be hidden in the error of an exponent that
-/// passes for zero.
+/// Largest growth per forcing period that the error of an exponent near zero may hide.
 pub const HIDDEN_GROWTH: f64 = 0.1;
-/// How many standard errors make an exponent significant.
+/// Number of standard errors of a significant exponent.
 pub const SIGNIFICANCE: f64 = 3.0;
-/// From this K on the 0-1 test speaks for chaos by itself.
+/// Smallest K that indicates chaos without further evidence.
 pub const CHAOS: f64 = 0.8;
-/// Up to this K the 0-1 test speaks for regular motion by itself.
+/// Largest K that indicates regular motion without further evidence.
 pub const REGULAR: f64 = 0.2;
-/// Between the two, K and the spectrum must agree: K on its side of this.
+/// Limit for K if the spectrum gives the same indication.
 pub const MIDDLE: f64 = 0.5;
-/// A spectrum with a smaller share in lines is continuous.
+/// Largest share of spectral lines in a continuous spectrum.
 pub const CONTINUOUS: f64 = 0.5;
-/// A spectrum with a larger share in lines is discrete.
+/// Smallest share of spectral lines in a discrete spectrum.
 pub const DISCRETE: f64 = 0.9;
 
-/// What the exponent says.
+/// Sign of the exponent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Growth {
     Positive,
@@ -76,26 +73,23 @@ enum Growth {
     Unknown,
 }
 
-/// Weighs the evidence.
+/// Classifies a motion.
 ///
-/// With l the exponent, s its standard error, T = 2 pi/forcing, K the chaos indicator and L
-/// the share of the power beside the forcing's harmonics that is in lines:
+/// Let l be the exponent, s its standard error, T = 2 pi/forcing, K the chaos indicator, and L the
+/// share of spectral lines in the power outside the forcing harmonics.
 ///
-/// * l is *positive* if l > max(3 s, 0.01/T), and *not positive* if l <= max(3 s, 0.01/T)
-///   and l + 3 s <= 0.1/T: an error so large that it could hide growth is no evidence. A
-///   rigid rotation gives an exponent of zero, so the largest is often zero and not below.
-/// * **Chaotic**: l is positive, no period was found, and K >= 0.8, or K >= 0.5 with
-///   L < 0.5.
-/// * **Periodic**: l is not positive and a period was found. K and L are not asked: a period
-///   repeats to the tolerance of the section, and K of a motion repeating after many periods
-///   is no sharp test.
-/// * **Quasi-periodic**: l is not positive, no period was found, and K <= 0.2, or K <= 0.5
-///   with L > 0.9.
-/// * **Undecided**: everything else. Growth with a period, or growth without diffusion, is a
-///   contradiction: most often the record is too short or the transient has not passed.
+/// * l is *positive* if l > max(3 s, 0.01/T). It is *not positive* if l <= max(3 s, 0.01/T) and l +
+///   3 s <= 0.1/T: a larger error could hide growth. A rigid rotation has an exponent of zero, so
+///   the largest exponent is often zero and not negative.
+/// * **Chaotic**: l is positive, no period was found, and K >= 0.8, or K >= 0.5 with L < 0.5.
+/// * **Periodic**: l is not positive and a period was found. K and L do not count: the period is
+///   exact to the tolerance of the section, and K is not a sharp test of long periods.
+/// * **Quasi-periodic**: l is not positive, no period was found, and K <= 0.2, or K <= 0.5 with L >
+///   0.9.
+/// * **Undecided**: all other cases. Growth with a period, and growth without diffusion, are
+///   contradictions; usually the record is too short or contains the transient.
 ///
-/// A period beyond the longest looked for counts as none, so a motion of very long period is
-/// called quasi-periodic.
+/// A motion whose period exceeds the search limit is classified as quasi-periodic.
 pub fn classify(evidence: &Evidence) -> Verdict {
     let (motion, reason) = judge(evidence);
     Verdict {
@@ -123,7 +117,7 @@ fn judge(evidence: &Evidence) -> (Motion, &'static str) {
     }
 }
 
-/// Neighbours separate and no period was found.
+/// Classifies a motion with growth and without a period.
 fn judge_growing(k: f64, lines: Option<f64>) -> (Motion, &'static str) {
     let is_continuous = lines.is_some_and(|share| share < CONTINUOUS);
     if k >= CHAOS {
@@ -138,7 +132,7 @@ fn judge_growing(k: f64, lines: Option<f64>) -> (Motion, &'static str) {
     }
 }
 
-/// Neighbours stay together and no period was found.
+/// Classifies a motion without growth and without a period.
 fn judge_bounded(k: f64, lines: Option<f64>) -> (Motion, &'static str) {
     let is_discrete = lines.is_some_and(|share| share > DISCRETE);
     if k <= REGULAR {
@@ -197,7 +191,7 @@ impl fmt::Display for Motion {
     }
 }
 
-/// The evidence as people read it.
+/// Displays the numbers of the evidence.
 struct Numbers<'a>(&'a Evidence);
 
 impl fmt::Display for Numbers<'_> {
@@ -271,8 +265,7 @@ mod tests {
         }
     }
 
-    /// All that this folder finds in a map x -> f(x) with the slopes f'(x), one step per
-    /// second.
+    /// Computes the evidence for a map x -> f(x) with slopes f'(x), one step per second.
     fn evidence(series: &[f64], slope: impl Fn(f64) -> f64) -> Evidence {
         let growths: Vec<f64> = series.iter().map(|x| slope(*x).abs().ln()).collect();
         let observed: Vec<f64> = series.iter().map(|x| (TAU * x).cos()).collect();
@@ -291,7 +284,7 @@ mod tests {
     }
 
     #[test]
-    fn known_maps_are_called_what_they_are() {
+    fn known_maps_are_classified_correctly() {
         let logistic_slope = |r: f64| move |x: f64| r * (1.0 - 2.0 * x);
         let (golden, strength) = ((5_f64.sqrt() - 1.0) / 2.0, 0.8);
         let circle_slope = |x: f64| 1.0 - strength * (TAU * x).cos();
@@ -315,7 +308,7 @@ mod tests {
     }
 
     #[test]
-    fn thin_evidence_decides_nothing() {
+    fn insufficient_evidence_is_undecided() {
         let (mut repeating, mut vague) = (growing(5.0, 0.1), [QUASI_PERIODIC; 5]);
         repeating.period = Some(3);
         vague[0].exponent = None;
@@ -323,8 +316,8 @@ mod tests {
         vague[2].chaos_indicator = Some(0.6);
         (vague[3].chaos_indicator, vague[3].line_share) = (Some(0.4), None);
         vague[4].forcing = 0.0;
-        // 0.01 growth per period of 0.2 s is 0.05 1/s; 0.1 is 0.5 1/s: an error that hides
-        // growth, and diffusion with too little of it.
+        // 0.01 growth per period of 0.2 s is 0.05 1/s, 0.1 is 0.5 1/s. Here: an error that hides
+        // growth; diffusion with too little growth; no number.
         let thin = [(0.4, 0.2), (0.04, 0.0), (f64::NAN, 0.0)];
         let thin = thin.map(|(value, error)| growing(value, error));
         for evidence in thin.iter().chain(&vague).chain([&repeating]) {
@@ -334,7 +327,7 @@ mod tests {
     }
 
     #[test]
-    fn the_spectrum_breaks_the_tie() {
+    fn spectrum_decides_for_moderate_k() {
         let moderate = |evidence: Evidence, k| Evidence {
             chaos_indicator: Some(k),
             ..evidence
@@ -350,7 +343,7 @@ mod tests {
     }
 
     #[test]
-    fn the_sentence_gives_kind_and_numbers() {
+    fn sentence_has_kind_and_numbers() {
         assert_eq!(
             classify(&growing(5.0, 0.25)).sentence,
             "chaotic: neighbouring motions separate and the section diffuses (largest exponent \

@@ -1,7 +1,7 @@
-//! Natural modes of a linearised machine with constraints: those of the motions that they allow.
+//! Natural modes of a linearised machine with constraints.
 //!
-//! They are the modes of N^T A N, with N from [`allowed_motions`](crate::allowed_motions). The eigenvalue 0 is counted by null spaces, as in
-//! [`natural_modes`](crate::natural_modes).
+//! They are the modes of N^T A N, with N from [`allowed_motions`](crate::allowed_motions). Null
+//! spaces give the multiplicity of the eigenvalue 0, as in [`natural_modes`](crate::natural_modes).
 
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -14,9 +14,9 @@ use crate::inverse_iteration::{SparseRows, null_vector_at};
 use crate::natural_modes::{NaturalMode, connected_modes, equal, gather, natural_modes};
 use crate::null_space::{null_space, zero_eigenvalues};
 
-/// The natural modes of d(q, q', z)/dt = A (q, q', z) with so many degrees of freedom within the
-/// motions for which C (q, q', z) = 0, lowest frequency first; `matrix` and `held` are A and C row by
-/// row. An eigenvalue that is one several times is listed with the shapes it has.
+/// Computes the natural modes of d(q, q', z)/dt = A (q, q', z), subject to C (q, q', z) = 0, lowest
+/// frequency first. `matrix` and `held` are A and C row by row; `degrees` is the number of
+/// coordinates q. A multiple eigenvalue is listed once per shape.
 ///
 /// # Errors
 /// As [`natural_modes`].
@@ -45,7 +45,7 @@ pub fn constrained_modes(
     })
 }
 
-/// The modes of a single connected part with constraints.
+/// Computes the modes of one connected part with constraints.
 fn modes_within(
     matrix: &DMatrix<f64>,
     held: &DMatrix<f64>,
@@ -102,7 +102,8 @@ fn modes_within(
     Ok(modes.collect())
 }
 
-/// Coordinates and states of first order of a motion, the largest of the coordinates 1.
+/// Returns coordinates and first-order states of a motion, scaled so that the largest coordinate is
+/// 1.
 fn shape(motion: &DVector<Complex<f64>>, degrees: usize) -> Vec<Complex<f64>> {
     let coordinates = motion.iter().take(degrees);
     let all: Vec<Complex<f64>> = coordinates
@@ -124,7 +125,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_mass_that_is_held_has_no_modes() {
+    fn held_mass_has_no_modes() {
         let a = [[0.0, 1.0], [-9.0, 0.0]];
         let held = [[1.0, 0.0], [0.0, 1.0]];
         let modes = constrained_modes(a.as_flattened(), held.as_flattened(), 1).unwrap();
@@ -132,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn two_masses_held_together_swing_as_one() {
+    fn two_joined_masses_have_one_mode() {
         // x_1'' = -9 x_1, x_2'' = 0 with x_1 = x_2 and equal masses: x'' = -4.5 x.
         let a = [
             [0.0, 0.0, 1.0, 0.0],

@@ -1,12 +1,12 @@
-//! One number of a course over time, from samples. What is sampled, and when, is the caller's.
+//! Single numbers of a time history, from samples.
 
-/// The greatest value; nothing without values.
+/// Returns the greatest value, or `None` without values.
 pub fn greatest(values: &[f64]) -> Option<f64> {
     values.iter().copied().reduce(f64::max)
 }
 
-/// The root mean square over the time between the first and the last sample, by the trapezoidal
-/// rule. `times` (s, ascending) and `values` go together; nothing without at least two of them.
+/// Computes the RMS over the time between the first and the last sample, by the trapezoidal rule.
+/// `times` (s) ascend and belong to `values`. Returns `None` with fewer than two samples.
 pub fn root_mean_square(times: &[f64], values: &[f64]) -> Option<f64> {
     let whole = times.last()? - times.first()?;
     let steps = times.windows(2).zip(values.windows(2));
@@ -20,8 +20,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_sine_has_the_root_of_a_half() {
-        // Over whole periods the trapezoidal rule is exact for a sine's square.
+    fn rms_of_a_sine_is_the_root_of_a_half() {
+        // Over whole periods, the trapezoidal rule is exact for the square of a sine.
         let times: Vec<f64> = (0..=50).map(|i| f64::from(i) / 50.0).collect();
         let sine = |t: &f64| (std::f64::consts::TAU * t).sin();
         let values: Vec<f64> = times.iter().map(sine).collect();
@@ -30,7 +30,7 @@ mod tests {
     }
 
     #[test]
-    fn no_time_has_no_mean() {
+    fn rms_needs_two_samples() {
         assert_eq!(root_mean_square(&[1.0], &[2.0]), None);
         assert_eq!(root_mean_square(&[], &[]), None);
         assert_eq!(greatest(&[]), None);

@@ -1,50 +1,50 @@
-//! Why a series could not be analysed, and the checks that several analyses share.
+//! Errors of analyses, and shared checks.
 
 use std::fmt;
 
 use nalgebra::DMatrix;
 
-/// Why a series could not be analysed. Samples are counted from 0.
+/// Reason for a failed analysis. Samples are counted from 0.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum AnalysisError {
-    /// There are too few values.
+    /// Too few values.
     TooFew {
-        /// How many are needed.
+        /// Required number of values.
         needed: usize,
-        /// How many there are.
+        /// Given number of values.
         given: usize,
     },
-    /// A value is not finite, or so large that its square is not.
+    /// A value is not finite, or its square overflows.
     NotFinite {
-        /// Which value.
+        /// Index of the value.
         sample: usize,
     },
-    /// Slices that belong together have different lengths.
+    /// Related slices have different lengths.
     Lengths {
-        /// The length of the first.
+        /// Length of the first slice.
         expected: usize,
-        /// The length of the other.
+        /// Length of the other slice.
         given: usize,
     },
-    /// A length, a step or a scale that must be positive is not.
+    /// A length, a step or a scale is not positive.
     NotPositive {
-        /// What it is.
+        /// Name of the quantity.
         what: &'static str,
     },
-    /// Eigenvalues were not found within the steps allowed.
+    /// The eigenvalue iteration did not converge.
     NotConverged {
-        /// How many powers of ten lie between the smallest and the largest entry of the matrix.
+        /// Decades between the smallest and the largest entry of the matrix.
         decades: u32,
     },
     /// Natural frequencies do not ascend.
     NotAscending {
-        /// Which frequency is not above the one before.
+        /// Index of a frequency that is not above the previous one.
         index: usize,
     },
 }
 
 impl AnalysisError {
-    /// The failure of an eigenvalue iteration on this matrix.
+    /// Creates the error of an eigenvalue iteration on this matrix.
     pub(crate) fn not_converged(matrix: &DMatrix<f64>) -> Self {
         let sizes = matrix.iter().filter(|entry| **entry != 0.0);
         let (least, most) = sizes
@@ -69,7 +69,7 @@ impl fmt::Display for AnalysisError {
             }
             Self::NotFinite { sample } => write!(f, "value {sample} of the series is not finite"),
             Self::Lengths { expected, given } => {
-                write!(f, "a series has {given} values where {expected} belong")
+                write!(f, "a series has {given} values instead of {expected}")
             }
             Self::NotPositive { what } => write!(f, "{what} must be positive and finite"),
             Self::NotConverged { decades } => write!(
@@ -79,7 +79,7 @@ impl fmt::Display for AnalysisError {
             ),
             Self::NotAscending { index } => write!(
                 f,
-                "natural frequency {index} is not above the one before it"
+                "natural frequency {index} is not above the previous one; give them in ascending order"
             ),
         }
     }
@@ -87,7 +87,7 @@ impl fmt::Display for AnalysisError {
 
 impl std::error::Error for AnalysisError {}
 
-/// Refuses fewer than `needed` values and values whose squares overflow.
+/// Rejects fewer than `needed` values, and values whose squares overflow.
 pub(super) fn check(values: &[f64], needed: usize) -> Result<(), AnalysisError> {
     if values.len() < needed {
         return Err(AnalysisError::TooFew {
@@ -102,7 +102,7 @@ pub(super) fn check(values: &[f64], needed: usize) -> Result<(), AnalysisError> 
     }
 }
 
-/// Refuses what is not a positive number of ordinary size.
+/// Rejects numbers that are not positive or would overflow.
 pub(super) fn check_positive(value: f64, what: &'static str) -> Result<(), AnalysisError> {
     if (1e-100..1e100).contains(&value) {
         Ok(())
@@ -111,7 +111,7 @@ pub(super) fn check_positive(value: f64, what: &'static str) -> Result<(), Analy
     }
 }
 
-/// The arithmetic mean; not a number for no values.
+/// Computes the arithmetic mean; NaN without values.
 pub(super) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }

@@ -1,33 +1,31 @@
-//! The mean exponent of a series of logarithmic growths, and how well it is known.
-//!
-//! The growths come from whoever carries the tangent vectors; that is not done here.
+//! Mean exponent of a series of logarithmic growths, with its standard error.
 
 use super::error::{AnalysisError, check, check_positive, mean};
 
-/// An exponent with its spread.
+/// Exponent with its standard error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exponent {
-    /// The mean growth rate, 1/s.
+    /// Mean growth rate, 1/s.
     pub value: f64,
-    /// Its standard error, 1/s.
+    /// Standard error, 1/s.
     pub standard_error: f64,
 }
 
-/// How many batches, the least long ones first, and Student's factor for so many: what a
-/// standard error from them has to be taken times to hold the truth in 68 % of all cases.
+/// Numbers of batches, shortest batches first, with Student's factor: the standard error times the
+/// factor covers the true value in 68 % of all cases.
 ///
-/// Between 10 and 30 a further batch buys little, and batches should be long (B. Schmeiser,
+/// Between 10 and 30, additional batches gain little, and batches should be long (B. Schmeiser,
 /// "Batch size effects in the analysis of simulation output", Oper. Res. 30 (1982) 556-568).
 const BATCHES: [(usize, f64); 3] = [(20, 1.027), (10, 1.059), (5, 1.142)];
 
-/// The fewest growths from which there is an exponent.
+/// Smallest number of growths for an exponent.
 pub const FEWEST: usize = BATCHES[0].0;
 
-/// The mean exponent from the growths ln(|v_k| / |v_(k-1)|) over intervals of equal length,
-/// in s, with its standard error by non-overlapping batch means.
+/// Computes the mean exponent of the growths ln(|v_k| / |v_(k-1)|) over equal intervals (s), with
+/// its standard error by non-overlapping batch means.
 ///
-/// The n growths are cut into B batches of m = floor(n/B); the first n - m B, nearest to the
-/// transient, are left out. With l_b the growth of batch b over m intervals T,
+/// The n growths are divided into B batches of m = floor(n/B). The first n - m B, nearest to the
+/// transient, are omitted. With l_b the growth rate of batch b over m intervals T,
 ///
 /// ```text
 /// l_b = sum of the batch / (m T),     mean = sum_b l_b / B
@@ -35,15 +33,15 @@ pub const FEWEST: usize = BATCHES[0].0;
 /// value = the mean for B = 20,     standard_error = max(error_20, error_10, error_5)
 /// ```
 ///
-/// with s_B Student's factor. An error from batches shorter than the correlation of the growths
-/// is too small, and those of growing batches rise until the batches are longer than it: a
-/// nearly undamped vibration makes chaos come and go over hundreds of forcing periods. The
-/// greatest of three overstates the error of growths without correlation by a fourth. No error
-/// bar covers a transient, or a correlation longer than a fifth of the series.
+/// with Student's factor s_B. The error is too small if the batches are shorter than the
+/// correlation of the growths, and rises with longer batches: a nearly undamped vibration switches
+/// chaos on and off over hundreds of forcing periods. For uncorrelated growths, the greatest of
+/// three errors is 25 % too large. The error does not cover a transient, nor a correlation
+/// longer than a fifth of the series.
 ///
 /// # Errors
 ///
-/// Fewer than 20 growths, growths that are not finite, a length that is not positive.
+/// Fewer than 20 growths, growths that are not finite, an interval that is not positive.
 pub fn mean_exponent(growths: &[f64], interval: f64) -> Result<Exponent, AnalysisError> {
     check_positive(interval, "the interval of growth")?;
     check(growths, FEWEST)?;
@@ -57,7 +55,7 @@ pub fn mean_exponent(growths: &[f64], interval: f64) -> Result<Exponent, Analysi
     })
 }
 
-/// The mean of batch means and its standard error.
+/// Computes the mean of batch means and its standard error.
 fn batch_mean(growths: &[f64], batches: usize) -> (f64, f64) {
     let length = growths.len() / batches;
     let used = growths.get(growths.len() - length * batches..);
@@ -74,21 +72,22 @@ mod tests {
     use crate::maps::{henon, logistic, noise};
 
     #[test]
-    fn the_logistic_map_has_ln_two() -> Result<(), AnalysisError> {
+    fn logistic_map_has_exponent_ln_two() -> Result<(), AnalysisError> {
         let growths: Vec<f64> = logistic(4.0, 100_000)
             .iter()
             .map(|x| (4.0 - 8.0 * x).abs().ln())
             .collect();
         let exponent = mean_exponent(&growths, 1.0)?;
         let ln_two = std::f64::consts::LN_2;
-        // Four standard errors: once in 1000 by Student's distribution with 19 degrees.
+        // Four standard errors: exceeded once in 1000 by Student's distribution with 19 degrees of
+        // freedom.
         assert!((exponent.value - ln_two).abs() < 4.0 * exponent.standard_error);
         assert!(exponent.standard_error < 5e-3, "{exponent:?}");
         Ok(())
     }
 
     #[test]
-    fn henons_map_has_its_published_exponent() -> Result<(), AnalysisError> {
+    fn henon_map_has_its_published_exponent() -> Result<(), AnalysisError> {
         let mut tangent = [1.0, 0.0];
         let growths: Vec<f64> = henon(100_000)
             .iter()
@@ -100,7 +99,7 @@ mod tests {
                 norm.ln()
             })
             .collect();
-        // Half a second per step: twice the exponent per second.
+        // Steps of 0.5 s double the exponent per second.
         let exponent = mean_exponent(&growths, 0.5)?;
         let error = (exponent.value - 2.0 * 0.419_22).abs();
         assert!(
@@ -114,8 +113,8 @@ mod tests {
     fn independent_growths_have_the_textbook_error() -> Result<(), AnalysisError> {
         let exponent = mean_exponent(&noise(40_013), 1.0)?;
         let textbook = (1.0 / 3.0 / 40_000_f64).sqrt();
-        // Below by three times the 16 % by which an error from 20 batches scatters; above by
-        // twice the 35 % of one from 5 with its factor: the greatest counts.
+        // Lower limit: three times the 16 % scatter of an error from 20 batches. Upper limit: twice
+        // the 35 % scatter of an error from 5 batches, because the greatest counts.
         let ratio = exponent.standard_error / textbook;
         assert!((0.5..2.0).contains(&ratio), "{exponent:?}");
         assert!(exponent.value.abs() < 4.0 * textbook, "{exponent:?}");
@@ -123,10 +122,8 @@ mod tests {
     }
 
     #[test]
-    fn correlated_growths_have_the_error_that_their_means_scatter_by() -> Result<(), AnalysisError>
-    {
-        // Each growth remembers 0.95 of the one before: 40 intervals of correlation in series of
-        // 400, as in the arm's chaos.
+    fn error_of_correlated_growths_matches_the_scatter_of_means() -> Result<(), AnalysisError> {
+        // Correlation over 40 intervals (factor 0.95) in series of 400, as in the arm's chaos.
         let mut growth = 0.0;
         let growths: Vec<f64> = noise(200 * 400)
             .iter()
@@ -151,7 +148,7 @@ mod tests {
         };
         let scatter = square(&|exponent| exponent.value);
         let stated = square(&|exponent| exponent.standard_error);
-        // 200 series know the scatter to 5 %. Batches of 20 alone would state 0.61 of it.
+        // 200 series determine the scatter to 5 %. Only batches of 20 would give 0.61 of it.
         assert!(
             (0.85..1.3).contains(&(stated / scatter)),
             "{stated} {scatter}"
@@ -160,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn steady_growth_has_no_error_and_short_series_are_refused() -> Result<(), AnalysisError> {
+    fn steady_growth_has_no_error_and_short_series_are_rejected() -> Result<(), AnalysisError> {
         let steady = mean_exponent(&[0.25; 47], 0.5)?;
         assert_eq!((steady.value, steady.standard_error), (0.5, 0.0));
         assert!(mean_exponent(&[0.0; 19], 1.0).is_err());

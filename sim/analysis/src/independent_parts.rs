@@ -1,29 +1,29 @@
-//! Independent parts of a linearised machine. Solving them one by one takes the sum of their work; the work for
-//! one matrix of all grows with the cube of its size.
+//! Independent parts of a linearised machine. Separate solutions cost the sum of their work, while
+//! the cost of one matrix grows with the cube of its size.
 
 use nalgebra::DMatrix;
 
-/// A part of a linearised machine.
+/// Part of a linearised machine.
 pub(crate) struct Part {
-    /// A of its coordinates, their rates and its states of first order.
+    /// A of the part's coordinates, their rates and its first-order states.
     pub matrix: DMatrix<f64>,
-    /// The rows of C of these states.
+    /// Rows of C of these states.
     pub held: DMatrix<f64>,
-    /// Number of its coordinates.
+    /// Number of coordinates.
     pub degrees: usize,
-    /// The places of its coordinates and states of first order among those of the machine.
+    /// Indices of the coordinates and first-order states in the machine.
     pub places: Vec<usize>,
 }
 
-/// The parts of d(q, q', z)/dt = A (q, q', z) with so many degrees of freedom and C (q, q', z) = 0 that share
-/// no entry of A and no row of C, by their first coordinates.
+/// Returns the parts of d(q, q', z)/dt = A (q, q', z) with C (q, q', z) = 0 that share no entry of
+/// A and no row of C, ordered by their first coordinates. `degrees` is the number of coordinates.
 pub(crate) fn independent_parts(
     matrix: &DMatrix<f64>,
     held: &DMatrix<f64>,
     degrees: usize,
 ) -> Vec<Part> {
     let count = matrix.nrows() - degrees;
-    // A coordinate is in one part with its rate.
+    // A coordinate and its rate belong to the same part.
     let place = |state: usize| match state < degrees {
         true => state,
         false => state - degrees,
@@ -85,9 +85,9 @@ fn part(
     }
 }
 
-/// Disjoint groups of places.
+/// Disjoint sets of indices (union-find).
 struct Groups {
-    /// For each place one that is nearer to the first of its group.
+    /// Parent of each index; the root is the smallest index of the set.
     nearer: Vec<usize>,
 }
 
@@ -112,7 +112,7 @@ impl Groups {
         self.nearer[a.max(b)] = a.min(b);
     }
 
-    /// The places of each group, at the place of its first.
+    /// Returns the indices of each set, at the index of its root.
     fn members(&mut self) -> Vec<Vec<usize>> {
         let mut members = vec![Vec::new(); self.nearer.len()];
         for place in 0..self.nearer.len() {
@@ -126,7 +126,7 @@ impl Groups {
 mod tests {
     use super::*;
 
-    /// A of undamped masses with these springs between them, an end each.
+    /// Returns A of undamped masses with springs between the given pairs.
     fn masses(count: usize, springs: &[(usize, usize)]) -> DMatrix<f64> {
         let mut matrix = DMatrix::zeros(2 * count, 2 * count);
         for place in 0..count {
@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn masses_without_a_spring_between_them_are_parts() {
+    fn unconnected_masses_are_separate_parts() {
         let matrix = masses(4, &[(0, 2)]);
         let parts = independent_parts(&matrix, &DMatrix::zeros(0, 8), 4);
         let places: Vec<&[usize]> = parts.iter().map(|part| &part.places[..]).collect();
@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_held_together_is_one_part() {
+    fn constrained_coordinates_are_one_part() {
         let mut held = DMatrix::zeros(1, 8);
         (held[(0, 1)], held[(0, 7)]) = (1.0, -1.0);
         let parts = independent_parts(&masses(4, &[(0, 2)]), &held, 4);

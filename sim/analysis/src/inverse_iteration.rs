@@ -1,28 +1,28 @@
-//! Eigenvectors to known eigenvalues by inverse iteration (G. H. Golub, C. F. Van Loan, *Matrix
-//! Computations*, 7.6), with factors within the band of the matrix: those of a chain cost as many
-//! multiplications as it has members.
+//! Eigenvectors of known eigenvalues by inverse iteration (G. H. Golub, C. F. Van Loan, *Matrix
+//! Computations*, 7.6), with factors within the band of the matrix. For a chain, the cost is
+//! proportional to its length.
 
 use nalgebra::{Complex, DVector};
 
-/// How far beside its eigenvalue the matrix of the inverse iteration is taken, relative to its size:
-/// there it is not singular, and one step gains as many digits.
+/// Relative distance of the shift from the eigenvalue. At this distance the matrix is not singular,
+/// and each step gains as many digits.
 const BESIDE: f64 = 1e-11;
 
-/// Steps of the iteration; the second mostly changes nothing.
+/// Number of steps; usually the second changes nothing.
 const STEPS: usize = 4;
 
-/// The entries of a square matrix that are not 0, row by row, with their columns.
+/// Nonzero entries of a square matrix row by row, with their columns.
 pub(crate) type SparseRows = Vec<Vec<(usize, Complex<f64>)>>;
 
-/// The vector that a matrix function maps to 0 at its eigenvalue, of norm 1, without the parts along
-/// `earlier` vectors of the same eigenvalue.
+/// Computes the unit vector that `matrix(eigenvalue)` maps to 0, orthogonal to `earlier` vectors of
+/// the same eigenvalue.
 pub(crate) fn null_vector_at(
     matrix: impl Fn(Complex<f64>) -> SparseRows,
     eigenvalue: Complex<f64>,
     earlier: &[DVector<Complex<f64>>],
 ) -> DVector<Complex<f64>> {
     let factors = Factors::new(&matrix(eigenvalue * (1.0 + BESIDE)));
-    // Of no symmetry that a machine might have too.
+    // The start vector has no symmetry that a machine might share.
     let mut vector = DVector::from_fn(factors.steps.len(), |row, _| {
         Complex::new(1.0 + (1.7 * (row + earlier.len()) as f64).sin() / 2.0, 0.1)
     });
@@ -49,15 +49,15 @@ struct Factors {
     steps: Vec<Step>,
 }
 
-/// A step of the elimination.
+/// Step of the elimination.
 struct Step {
-    /// The row that changes places with this one.
+    /// Row exchanged with this one.
     pivot: usize,
-    /// The multipliers of rows below.
+    /// Multipliers of the rows below.
     below: Vec<(usize, Complex<f64>)>,
-    /// The pivot.
+    /// Pivot.
     own: Complex<f64>,
-    /// The entries of the upper factor right of the pivot.
+    /// Entries of the upper factor to the right of the pivot.
     right: Vec<(usize, Complex<f64>)>,
 }
 
@@ -73,7 +73,7 @@ impl Factors {
                 right = right.max(column.saturating_sub(place));
             }
         }
-        // A row that is exchanged upward widens the upper band.
+        // Row exchanges widen the upper band.
         let right = right + below;
         let steps = (0..count).map(|place| {
             let last_row = count.min(place + below + 1);
@@ -85,7 +85,7 @@ impl Factors {
         }
     }
 
-    /// The x with matrix x = right; not finite where the matrix is singular.
+    /// Solves matrix x = right; not finite if the matrix is singular.
     fn solve(&self, right: &DVector<Complex<f64>>) -> DVector<Complex<f64>> {
         let mut solution = right.clone();
         for (place, step) in self.steps.iter().enumerate() {
@@ -104,7 +104,7 @@ impl Factors {
     }
 }
 
-/// Eliminates a column from the rows below; none of them reaches beyond the last column.
+/// Eliminates a column from the rows below, which have no entries beyond `last_column`.
 fn eliminate(rows: &mut [Vec<Complex<f64>>], place: usize, last_column: usize) -> Step {
     let zero = Complex::from(0.0);
     let sizes = rows[place..].iter().map(|row| row[place].norm());
@@ -141,8 +141,8 @@ mod tests {
     use nalgebra::DMatrix;
 
     #[test]
-    fn factors_of_a_band_solve_its_system_whatever_rows_are_exchanged() {
-        // Small pivots on the diagonal, so that rows change places.
+    fn band_factors_solve_with_row_exchanges() {
+        // Small pivots on the diagonal force row exchanges.
         let entry = |row: usize, column: usize| {
             let size = if row == column { 1e-3 } else { 1.0 };
             Complex::new(
@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn vectors_of_a_double_eigenvalue_are_two() {
+    fn double_eigenvalue_has_two_vectors() {
         let matrix = DMatrix::from_row_slice(3, 3, &[2.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 1.0, 5.0]);
         let at = |value: Complex<f64>| {
             matrix.map(Complex::from) - DMatrix::from_diagonal_element(3, 3, value)

@@ -1,23 +1,26 @@
-//! What kind of motion a sampled trajectory is: spectra, sections, exponents, tests for chaos.
+//! Classification of sampled motions, and natural modes of linearised machines.
 //!
 //! ```
 //! use eomgen_analysis::exponent::mean_exponent;
 //!
-//! // Neighbouring motions that part by e^0.2 in every half second.
+//! // Neighbouring motions separate by e^0.2 in every half second.
 //! let exponent = mean_exponent(&[0.2; 40], 0.5)?;
 //! assert!((exponent.value - 0.4).abs() < 1e-12); // 1/s
 //! # Ok::<(), eomgen_analysis::AnalysisError>(())
 //! ```
 //!
-//! Pure functions of slices. Nothing here simulates, knows of a model, draws or writes files.
-//! [`spectrum`] estimates power spectral densities, [`zero_one`] tests a series for chaos,
-//! [`poincare`] describes a stroboscopic section, [`exponent`] averages logarithmic growth,
-//! and [`classify`] weighs these against each other by a stated rule. [`modes`] says which
-//! mode of a flexible body carries the motion, [`course`] has single numbers of a course over time, [`statistics`] numbers of many values, [`natural_modes`] which modes a
-//! linearised machine has, [`constrained_modes`] which one with constraints has, whose [`allowed_motions`]
-//! have matrices of their own. [`qr_iteration`] finds their eigenvalues after `balancing`, `block_eigenvalues` group by group within
-//! `independent_parts`, `inverse_iteration`
-//! their shapes in a `pencil`, and `null_space` the rigid ones.
+//! All functions are pure functions of slices.
+//!
+//! - [`spectrum`] estimates power spectral densities, [`zero_one`] tests a series for chaos,
+//!   [`poincare`] describes a stroboscopic section, and [`exponent`] averages logarithmic growth.
+//!   [`classify`] combines them by one rule.
+//! - [`modes`] finds the dominant mode of a flexible body. [`course`] reduces a time history to a
+//!   number, and [`statistics`] describes samples of values.
+//! - [`natural_modes`] computes the modes of a linearised machine, and [`constrained_modes`] those
+//!   of a machine with constraints, from its [`allowed_motions`]. [`qr_iteration`] finds
+//!   eigenvalues after `balancing`, for each group in `block_eigenvalues` and each of the
+//!   `independent_parts`. `inverse_iteration` finds their shapes in a `pencil`, and `null_space`
+//!   the rigid motions.
 
 pub mod allowed_motions;
 mod balancing;

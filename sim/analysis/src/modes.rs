@@ -1,59 +1,58 @@
-//! Which mode of a flexible body carries the motion: by its share in the deflection of the
-//! tip, and by the band of frequencies that holds the power.
+//! Dominant mode of a flexible body, by its share in the tip deflection and by frequency bands.
 
 use super::error::{AnalysisError, check, mean};
 use super::spectrum::PowerSpectrum;
 
-/// How much each mode moves the tip, modes counted from 0.
+/// Contribution of each mode to the tip deflection, modes counted from 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TipShares {
-    /// The mean square of phi_i(l) q_i, in the square of its unit.
+    /// Mean square of phi_i(l) q_i, in the squared unit.
     pub mean_square: Vec<f64>,
-    /// The same about its mean: without the static deflection.
+    /// Variance of phi_i(l) q_i, which excludes the static deflection.
     pub variance: Vec<f64>,
 }
 
-/// How the power of a deflection lies about natural frequencies, counted from 0.
+/// Power of a deflection in the bands of natural frequencies, counted from 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BandPower {
-    /// The power in the band of each natural frequency, in the square of the unit.
+    /// Power in the band of each natural frequency, in the squared unit.
     pub power: Vec<f64>,
-    /// The power below the first band: what follows the forcing quasi-statically.
+    /// Power below the first band: the quasi-static response to the forcing.
     pub below: f64,
-    /// The power above the last band.
+    /// Power above the last band.
     pub above: f64,
 }
 
 impl TipShares {
-    /// The mode with the greatest mean square; none if nothing moves.
+    /// Returns the mode with the greatest mean square, or `None` if all are 0.
     pub fn dominant(&self) -> Option<usize> {
         greatest(&self.mean_square)
     }
 
-    /// The mode with the greatest variance: dominant in the vibration; none if nothing
-    /// vibrates.
+    /// Returns the mode with the greatest variance, or `None` if all are 0.
     pub fn dominant_in_vibration(&self) -> Option<usize> {
         greatest(&self.variance)
     }
 }
 
 impl BandPower {
-    /// The natural frequency whose band holds most power; none if there is none in any band.
+    /// Returns the natural frequency whose band has the most power, or `None` without power in any
+    /// band.
     pub fn dominant(&self) -> Option<usize> {
         greatest(&self.power)
     }
 }
 
-/// What each modal coordinate contributes to the tip: `coordinates[i]` are the samples of
+/// Computes the contribution of each modal coordinate to the tip: `coordinates[i]` are samples of
 /// q_i, and `at_tip[i]` is phi_i(l).
 ///
-/// Mean squares of single modes do not add up to that of the tip: modes that move together
-/// also contribute by their products.
+/// The mean squares of the modes do not sum to that of the tip, because correlated modes also
+/// contribute by their products.
 ///
 /// # Errors
 ///
-/// Not one shape per coordinate, coordinates of different lengths, no samples, values that
-/// are not finite.
+/// Different numbers of shapes and coordinates, coordinates of different lengths, no samples,
+/// values that are not finite.
 pub fn tip_shares(coordinates: &[&[f64]], at_tip: &[f64]) -> Result<TipShares, AnalysisError> {
     check(at_tip, 0)?;
     check_length(coordinates.len(), at_tip.len())?;
@@ -76,16 +75,15 @@ pub fn tip_shares(coordinates: &[&[f64]], at_tip: &[f64]) -> Result<TipShares, A
     Ok(shares)
 }
 
-/// The power of a deflection in the bands of `natural` frequencies, in Hz, ascending.
+/// Computes the power of a deflection in the bands of ascending `natural` frequencies (Hz).
 ///
-/// Neighbouring bands meet at the geometric mean of their frequencies: each frequency of the
-/// spectrum belongs to the natural frequency it is nearest to by ratio. The first band
-/// reaches as far below its frequency, by ratio, as above, and the last as far above as
-/// below; a single band is an octave wide.
+/// Neighbouring bands meet at the geometric mean of their frequencies. The first band extends as
+/// far below its frequency, by ratio, as above; the last as far above as below. A single band is an
+/// octave wide.
 ///
 /// # Errors
 ///
-/// No natural frequency, one that is not positive, or not above the one before.
+/// No natural frequency, a frequency that is not positive or not above the previous one.
 pub fn band_power(spectrum: &PowerSpectrum, natural: &[f64]) -> Result<BandPower, AnalysisError> {
     check(natural, 1)?;
     let edges = edges(natural)?;
@@ -102,7 +100,7 @@ pub fn band_power(spectrum: &PowerSpectrum, natural: &[f64]) -> Result<BandPower
     })
 }
 
-/// The limits of the bands: one more than there are natural frequencies.
+/// Returns the limits of the bands, one more than there are natural frequencies.
 fn edges(natural: &[f64]) -> Result<Vec<f64>, AnalysisError> {
     let mut ratios = Vec::with_capacity(natural.len());
     let mut below = 0.0;
@@ -134,10 +132,11 @@ fn check_length(expected: usize, given: usize) -> Result<(), AnalysisError> {
     }
 }
 
-/// Where the greatest value is, the first of equal ones; none if no value is positive.
+/// Returns the index of the greatest value, the first of equal ones, or `None` if no value is
+/// positive.
 fn greatest(values: &[f64]) -> Option<usize> {
     let positive = values.iter().enumerate().filter(|(_, value)| **value > 0.0);
-    // The last of equal maxima would be taken in ascending order.
+    // Descending order, because `max_by` returns the last of equal maxima.
     positive
         .rev()
         .max_by(|a, b| a.1.total_cmp(b.1))
@@ -159,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn the_static_deflection_counts_only_with_the_mean() -> Result<(), AnalysisError> {
+    fn variance_excludes_the_static_deflection() -> Result<(), AnalysisError> {
         let (q_1, q_2) = (wave(1e-3, 1e-5, 12.0), wave(0.0, 3e-5, 75.0));
         let shares = tip_shares(&[&q_1, &q_2], &[2.0, -2.0])?;
         assert_eq!(shares.dominant(), Some(0));
@@ -182,8 +181,8 @@ mod tests {
     }
 
     #[test]
-    fn each_vibration_falls_into_its_band() -> Result<(), AnalysisError> {
-        // Natural frequencies of a clamped beam, 1 : 6.27 : 17.5, and forcing far below.
+    fn band_power_separates_vibrations() -> Result<(), AnalysisError> {
+        // Natural frequencies of a clamped beam (1 : 6.27 : 17.5), with forcing far below.
         let natural = [20.0, 125.4, 350.0];
         let parts = [
             wave(0.0, 1.0, 3.0),
@@ -196,7 +195,7 @@ mod tests {
         let spectrum = welch(&sum, 1.0 / 4096.0, 4096, Trend::Mean)?;
         let bands = band_power(&spectrum, &natural)?;
         assert_eq!(bands.dominant(), Some(2));
-        // Whole periods in the segment: the window leaks to two neighbours and no farther.
+        // With whole periods in the segment, the window leaks to two neighbours only.
         assert!((bands.power[0] - 0.125).abs() < 1e-9 && bands.power[1] < 1e-9);
         assert!((bands.power[2] - 2.0).abs() < 1e-9 && (bands.below - 0.5).abs() < 1e-9);
         assert!(bands.above < 1e-9);
@@ -204,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_belong_together_is_refused() {
+    fn mismatched_lengths_are_rejected() {
         assert!(tip_shares(&[&[1.0]], &[1.0, 1.0]).is_err());
         assert!(tip_shares(&[&[1.0], &[1.0, 2.0]], &[1.0, 1.0]).is_err());
         assert!(tip_shares(&[&[]], &[1.0]).is_err());

@@ -1,12 +1,12 @@
-//! Natural modes of a linearised machine: the eigenvalues of q'' = K q + D q' + F z with states of
-//! first order z' = G q + H z + E q', where there are such, and the shapes that belong to them.
+//! Natural modes of a linearised machine: eigenvalues and shapes of q'' = K q + D q' + F z with
+//! first-order states z' = G q + H z + E q'.
 //!
-//! The eigenvalues are those of the state matrix, balanced first, by its real Schur form; shapes by
-//! inverse iteration on lambda^2 - lambda D - K (Golub and Van Loan, *Matrix Computations*, 7.5 and 7.6). A rigid motion has the eigenvalue 0, mostly twice and
-//! defective, which rounding turns into numbers as large as the root of the unit roundoff; how
-//! often it is one is therefore counted by the ranks of K and of D on its null space, and, beside
-//! states of first order, whose integrals make longer chains, by taking null spaces away one after
-//! the other (Golub and Van Loan, 7.6.5).
+//! The eigenvalues come from the real Schur form of the balanced state matrix, the shapes from
+//! inverse iteration on lambda^2 - lambda D - K (Golub and Van Loan, *Matrix Computations*, 7.5 and
+//! 7.6). A rigid motion has the eigenvalue 0, usually double and defective; rounding moves such
+//! eigenvalues by the root of the unit roundoff. Their multiplicity is therefore counted by the
+//! ranks of K, and of D on its null space. With first-order states, whose integrals make longer
+//! chains, null spaces are removed successively (Golub and Van Loan, 7.6.5).
 
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -18,31 +18,31 @@ use crate::inverse_iteration::null_vector_at;
 use crate::null_space::zero_eigenvalues;
 use crate::pencil::Pencil;
 
-/// Eigenvalues that differ by less, relative to their size, share a space of shapes.
+/// Relative difference of eigenvalues that share a space of shapes.
 const EQUAL: f64 = 1e-7;
 
-/// A natural mode: the motion exp(lambda t) v, or its real part.
+/// Natural mode: the motion exp(lambda t) v, or its real part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NaturalMode {
-    /// lambda, 1/s. Of a conjugate pair that with the positive imaginary part.
+    /// lambda, 1/s. Of a conjugate pair, the one with positive imaginary part.
     pub eigenvalue: Complex<f64>,
-    /// v: the coordinates' amplitudes in their SI units, the largest number of them 1, and those of
-    /// states of first order; where no coordinate moves, the largest of these is 1.
+    /// v: amplitudes of the coordinates in SI units, scaled so that the largest is 1, then those of
+    /// first-order states. If no coordinate moves, the largest of these is 1.
     pub shape: Vec<Complex<f64>>,
 }
 
 impl NaturalMode {
-    /// The undamped natural frequency abs(lambda)/(2 pi), Hz; 0 of a rigid motion.
+    /// Returns the undamped natural frequency abs(lambda)/(2 pi), Hz; 0 for a rigid motion.
     pub fn frequency(&self) -> f64 {
         self.eigenvalue.norm() / std::f64::consts::TAU
     }
 
-    /// The damping ratio -Re(lambda)/abs(lambda): 1 of a motion that decays without swinging,
-    /// negative of one that grows, 0 of a rigid motion.
+    /// Returns the damping ratio -Re(lambda)/abs(lambda): 1 for a decay without oscillation,
+    /// negative for growth, 0 for a rigid motion.
     pub fn damping(&self) -> f64 {
         let size = self.eigenvalue.norm();
         if size > 0.0 {
-            // Not -0 where nothing damps.
+            // Avoids -0 without damping.
             0.0 - self.eigenvalue.re / size
         } else {
             0.0
@@ -50,13 +50,13 @@ impl NaturalMode {
     }
 }
 
-/// The natural modes of d(q, q', z)/dt = A (q, q', z) with so many degrees of freedom, lowest
-/// frequency first: `matrix` is A row by row, the rows of q being (0 1 0).
+/// Computes the natural modes of d(q, q', z)/dt = A (q, q', z), lowest frequency first. `matrix` is
+/// A row by row, with the rows (0 1 0) for q; `degrees` is the number of coordinates q.
 ///
 /// # Errors
 ///
-/// A matrix that is not square with at least two rows for each degree of freedom, entries that are not finite, and
-/// eigenvalues that cannot be computed.
+/// A matrix that is not square with at least two rows per degree of freedom, entries that are not
+/// finite, an eigenvalue iteration that does not converge.
 pub fn natural_modes(matrix: &[f64], degrees: usize) -> Result<Vec<NaturalMode>, AnalysisError> {
     let states = matrix.len().isqrt().max(2 * degrees);
     if states * states != matrix.len() {
@@ -76,10 +76,11 @@ pub fn natural_modes(matrix: &[f64], degrees: usize) -> Result<Vec<NaturalMode>,
     })
 }
 
-/// The modes of parts, lowest frequency first, with so many coordinates and states of first order in all.
+/// Collects the modes of all parts, lowest frequency first. `count` is the number of coordinates
+/// and first-order states of the machine.
 ///
 /// # Errors
-/// As the modes of a part.
+/// As for the modes of a part.
 pub(crate) fn gather(
     count: usize,
     parts: Vec<Part>,
@@ -101,7 +102,7 @@ pub(crate) fn gather(
     Ok(all)
 }
 
-/// The natural modes of a single connected part.
+/// Computes the natural modes of one connected part.
 pub(crate) fn connected_modes(
     matrix: &DMatrix<f64>,
     degrees: usize,
@@ -132,7 +133,7 @@ pub(crate) fn connected_modes(
     Ok(scaled.collect())
 }
 
-/// The vectors of the modes whose eigenvalue equals this one.
+/// Returns the vectors of the modes with this eigenvalue.
 pub(crate) fn equal(
     modes: &[(Complex<f64>, DVector<Complex<f64>>)],
     eigenvalue: Complex<f64>,
@@ -146,7 +147,7 @@ pub(crate) fn equal(
 mod tests {
     use super::*;
 
-    /// The state matrix of q'' = K q + D q'.
+    /// Returns the state matrix of q'' = K q + D q'.
     fn matrix(stiffness: &[&[f64]], damping: &[&[f64]]) -> Vec<f64> {
         let degrees = stiffness.len();
         let mut rows = Vec::new();
@@ -167,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn a_damped_oscillator_has_its_closed_form() -> Result<(), AnalysisError> {
+    fn damped_oscillator_matches_closed_form() -> Result<(), AnalysisError> {
         let modes = natural_modes(&matrix(&[&[-400.0]], &[&[-4.0]]), 1)?;
         assert_eq!(modes.len(), 1);
         assert!(close(modes[0].frequency(), 20.0 / std::f64::consts::TAU));
@@ -183,8 +184,8 @@ mod tests {
     }
 
     #[test]
-    fn two_masses_on_a_spring_move_rigidly_once() -> Result<(), AnalysisError> {
-        // Masses 1 and 3, stiffness 1e6 beside a second pair a million times softer.
+    fn two_masses_on_a_spring_have_one_rigid_motion() -> Result<(), AnalysisError> {
+        // Masses 1 and 3 with stiffness 1e6, and a second pair softer by a factor of a million.
         for (k, c) in [(1e6, 0.0), (1e6, 2.0), (1e-3, 0.0)] {
             let (stiffness, damping) = (
                 [[-k, k], [k / 3.0, -k / 3.0]],
@@ -213,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn a_free_mass_with_friction_moves_rigidly_and_decays() -> Result<(), AnalysisError> {
+    fn free_mass_with_friction_has_a_rigid_motion_and_a_decay() -> Result<(), AnalysisError> {
         let modes = natural_modes(&matrix(&[&[0.0]], &[&[-3.0]]), 1)?;
         let found: Vec<(f64, f64)> = modes
             .iter()
@@ -224,8 +225,8 @@ mod tests {
     }
 
     #[test]
-    fn an_integral_of_a_free_position_makes_a_chain_of_three() -> Result<(), AnalysisError> {
-        // q'' = -3 u with u' = -5 u + 2 q', and an integral of q: eigenvalues 0 twice, and those
+    fn integral_of_a_free_position_makes_a_chain_of_three() -> Result<(), AnalysisError> {
+        // q'' = -3 u with u' = -5 u + 2 q', and an integral of q: the eigenvalue 0 twice, and those
         // of lambda^2 + 5 lambda + 6.
         let matrix = [
             [0.0, 1.0, 0.0, 0.0],
@@ -239,7 +240,7 @@ mod tests {
             found.len() == 3 && found[0] == 0.0 && close(found[1], -2.0) && close(found[2], -3.0),
             "{found:?}"
         );
-        // u = -lambda^2 q/3, and an integral of 1/lambda.
+        // u = -lambda^2 q/3; the integral is 1/lambda.
         let [q, u, integral] = modes[2].shape[..] else {
             panic!("{modes:?}");
         };
@@ -253,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn equal_frequencies_have_shapes_of_their_own() -> Result<(), AnalysisError> {
+    fn equal_frequencies_have_independent_shapes() -> Result<(), AnalysisError> {
         let none: &[f64] = &[0.0, 0.0];
         let modes = natural_modes(&matrix(&[&[-9.0, 0.0], &[0.0, -9.0]], &[none, none]), 2)?;
         assert_eq!(modes.len(), 2);
@@ -264,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_state_matrix_is_refused() {
+    fn malformed_state_matrices_are_rejected() {
         assert!(natural_modes(&[1.0; 8], 1).is_err());
         assert!(natural_modes(&[1.0; 4], 2).is_err());
         assert!(natural_modes(&[f64::NAN; 4], 1).is_err());
@@ -291,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stiff_spring_leaves_a_soft_one_its_frequency() -> Result<(), AnalysisError> {
+    fn soft_spring_keeps_its_frequency_with_a_stiff_one() -> Result<(), AnalysisError> {
         for k in [1e100, 1e160, 1e300] {
             let none: &[f64] = &[0.0, 0.0];
             let modes = natural_modes(&matrix(&[&[-k, 0.0], &[0.0, -4.0]], &[none, none]), 2)?;
@@ -299,7 +300,7 @@ mod tests {
             assert!(close(found[0], 2.0), "{k:e} {found:?}");
             assert!((found[1] / k.sqrt() - 1.0).abs() < 1e-12, "{k:e} {found:?}");
         }
-        // One mass on a stiff spring, a second one on a soft spring on it.
+        // A mass on a stiff spring, and a second mass on a soft spring attached to it.
         for k in [1e8, 1e20, 1e30, 1e50, 1e70, 1e150, 1e300] {
             let none: &[f64] = &[0.0, 0.0];
             let stiffness: [&[f64]; 2] = [&[-25.0 - k, 25.0], &[25.0, -25.0]];

@@ -1,14 +1,14 @@
-//! Null spaces of matrices, by their singular values.
+//! Null spaces of matrices, from singular values.
 
 use nalgebra::DMatrix;
 
 use crate::qr_iteration;
 
-/// Below this, relative to the largest, a singular value is rounding.
+/// Largest singular value, relative to the greatest, that counts as rounding.
 pub(crate) const RANK: f64 = 1e-12;
 
-/// How often 0 is an eigenvalue, chains of any length counted: null spaces are taken away until
-/// there is none. Nothing if they cannot be computed.
+/// Counts the eigenvalue 0 with Jordan chains of any length: null spaces are removed until none
+/// remains. Returns `None` if they cannot be computed.
 pub(crate) fn zero_eigenvalues(mut matrix: DMatrix<f64>) -> Option<usize> {
     let mut count = 0;
     loop {
@@ -20,13 +20,14 @@ pub(crate) fn zero_eigenvalues(mut matrix: DMatrix<f64>) -> Option<usize> {
         if null.ncols() == matrix.ncols() {
             return Some(count);
         }
-        // An orthonormal basis of what is left: the null space of the null space.
+        // Orthonormal basis of the complement: the null space of the projector on the null space.
         let rest = null_space(&(&null * null.transpose()))?;
         matrix = rest.transpose() * matrix * rest;
     }
 }
 
-/// An orthonormal basis of what a matrix maps to 0, as columns; nothing if it cannot be computed.
+/// Computes an orthonormal basis of the null space, as columns. Returns `None` if the singular
+/// values cannot be computed.
 pub(crate) fn null_space(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let decomposed = qr_iteration::svd(matrix)?;
     let rows = decomposed.v_t?;
@@ -44,8 +45,8 @@ pub(crate) fn null_space(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     })
 }
 
-/// The matrix with each row divided by its largest entry, which leaves its null space: whether a soft
-/// spring is there does not depend on a stiff one.
+/// Divides each row by its largest entry, which preserves the null space. A soft spring is then not
+/// neglected because of a stiff one.
 pub(crate) fn with_rows_of_one_size(mut matrix: DMatrix<f64>) -> DMatrix<f64> {
     for mut row in matrix.row_iter_mut() {
         let size = row.amax();

@@ -1,4 +1,4 @@
-//! The quadratic eigenvalue problem of a balanced state matrix, in its coordinates.
+//! Quadratic eigenvalue problem of a balanced state matrix, in its coordinates.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -7,35 +7,35 @@ use crate::inverse_iteration::SparseRows;
 use crate::null_space::{RANK, null_space, with_rows_of_one_size};
 use crate::qr_iteration;
 
-/// lambda^2 - lambda D - K in balanced coordinates, states of first order after them with
-/// lambda in place of lambda^2.
+/// lambda^2 - lambda D - K in balanced coordinates. First-order states follow, with lambda instead
+/// of lambda^2.
 pub(crate) struct Pencil {
-    /// The columns in which each row may hold more than 0: its own, and those of K and D.
+    /// Columns of possible nonzeros in each row: the diagonal, and those of K and D.
     columns: Vec<Vec<usize>>,
     /// (K F; G H)
     stiffness: DMatrix<f64>,
     /// (D 0; E 0)
     damping: DMatrix<f64>,
-    /// From the upper rows: q' in balanced numbers for each q; 1 for states of first order.
+    /// Balanced q' per q, from the upper rows; 1 for first-order states.
     ratio: DVector<f64>,
-    /// What a balanced number is in SI.
+    /// SI value of a balanced unit.
     sizes: DVector<f64>,
     degrees: usize,
 }
 
-/// The motions with the eigenvalue 0.
+/// Motions with the eigenvalue 0.
 pub(crate) struct Rigid {
     pub shapes: Vec<DVector<Complex<f64>>>,
-    /// How often 0 is an eigenvalue.
+    /// Algebraic multiplicity of the eigenvalue 0.
     pub multiplicity: usize,
 }
 
 impl Pencil {
-    /// The pencil of a balanced state matrix with so many degrees of freedom.
+    /// Creates the pencil of a balanced state matrix with `degrees` coordinates.
     pub fn new(balanced: &Balanced, degrees: usize) -> Self {
         let (balanced, sizes) = (&balanced.matrix, &balanced.sizes);
         let count = balanced.nrows() - degrees;
-        // Positions and states of first order, by their places in the state.
+        // Index in the state of a coordinate or first-order state.
         let held = |place: usize| {
             if place < degrees {
                 place
@@ -73,7 +73,8 @@ impl Pencil {
         }
     }
 
-    /// lambda (lambda/ratio) - (lambda/ratio) D - K: the rates are lambda/ratio of the coordinates.
+    /// Evaluates lambda (lambda/ratio) - (lambda/ratio) D - K; the rates are lambda/ratio times the
+    /// coordinates.
     pub fn at(&self, eigenvalue: Complex<f64>) -> SparseRows {
         let entry = |row: usize, column: usize| {
             let rate = eigenvalue / self.ratio[column];
@@ -89,7 +90,8 @@ impl Pencil {
             .collect()
     }
 
-    /// The motions with the eigenvalue 0; nothing if they cannot be computed.
+    /// Computes the motions with the eigenvalue 0. Returns `None` if the iteration does not
+    /// converge.
     pub fn rigid(&self) -> Option<Rigid> {
         let equilibrated = with_rows_of_one_size(self.stiffness.clone());
         let (right, left) = (
@@ -106,7 +108,7 @@ impl Pencil {
                 multiplicity: 0,
             });
         }
-        // Back from the equilibrated rows to those of the equations.
+        // Undoes the scaling of the rows.
         let left = DMatrix::from_fn(left.nrows(), left.ncols(), |row, column| {
             left[(row, column)] / weights[row]
         });
@@ -128,7 +130,8 @@ impl Pencil {
         })
     }
 
-    /// Coordinates in SI, the largest number 1, and states of first order.
+    /// Converts a shape to SI, with the largest coordinate 1 and first-order states after the
+    /// coordinates.
     pub fn in_si(&self, shape: &DVector<Complex<f64>>) -> Vec<Complex<f64>> {
         let amplitudes: Vec<Complex<f64>> = shape
             .iter()
@@ -142,7 +145,7 @@ impl Pencil {
                 .max_by(|a, b| a.norm().total_cmp(&b.norm()));
             most.filter(|value| value.norm() > 0.0)
         };
-        // What rounding moves does not count.
+        // Coordinates that move by rounding only do not set the scale.
         let moves = shape.rows(0, self.degrees).norm() > RANK * shape.norm();
         let largest = largest(&amplitudes[..self.degrees])
             .filter(|_| moves)

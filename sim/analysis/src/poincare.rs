@@ -1,64 +1,63 @@
-//! The section of a forced motion at its forcing period: period, extent and dimension of the
-//! points seen once per period. Sampling the states there is the caller's business.
+//! Stroboscopic section of a forced motion: period, extent and dimension of the points seen once
+//! per forcing period.
 
 use super::error::{AnalysisError, check, check_positive};
 
-/// The longest period looked for, in forcing periods, and the most clusters counted.
+/// Longest period searched, in forcing periods, and largest number of clusters counted.
 pub const LONGEST_PERIOD: usize = 64;
-/// How many points, the last ones, the dimension is estimated from: two million pairs.
+/// Number of last points used for the dimension: two million pairs.
 const DIMENSION_POINTS: usize = 2000;
-/// The fewest points an estimate of the dimension makes sense for.
+/// Smallest number of points for an estimate of the dimension.
 const LEAST_DIMENSION_POINTS: usize = 200;
-/// The shares of the pairs between whose distances the dimension is measured.
+/// Shares of the pairs whose distances bound the estimate of the dimension.
 const SHARES: (f64, f64) = (0.01, 0.05);
 
-/// States seen once per forcing period, in the order of time.
+/// States once per forcing period, in order of time.
 ///
-/// Leave out a coordinate that drifts, the angle of a rotation say, and take its rate alone.
+/// Omit a coordinate that drifts, such as an angle of rotation, and use its rate.
 #[derive(Clone, Copy, Debug)]
 pub struct Section<'a> {
-    /// The points, one after another, each of as many coordinates as `scale` has.
+    /// Points one after another, each with as many coordinates as `scale`.
     pub points: &'a [f64],
-    /// The extent of each coordinate over the whole motion, not only on the section: that
-    /// shrinks to nothing when each period repeats the last.
+    /// Extent of each coordinate over the whole motion. The extent on the section is zero for a
+    /// motion with the forcing period.
     pub scale: &'a [f64],
 }
 
-/// What a section looks like.
+/// Properties of a section.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shape {
-    /// The smallest n, at most 64, for which each point is within the tolerance of the point
-    /// n periods before; none if there is none.
+    /// Smallest n, at most 64, for which each point is within the tolerance of the point n periods
+    /// before; `None` if there is none.
     pub period: Option<usize>,
-    /// How many clusters the points form; none if there are more than 64.
+    /// Number of clusters of points; `None` for more than 64.
     pub clusters: Option<usize>,
-    /// The least and the greatest value of each coordinate, in its own unit.
+    /// Least and greatest value of each coordinate, in its unit.
     pub extent: Vec<(f64, f64)>,
-    /// The correlation dimension: near 0 for finitely many points, 1 for a closed curve, not
-    /// an integer for a strange attractor, 2 and more for a cloud. None for fewer than 200
-    /// points or points that coincide.
+    /// Correlation dimension: near 0 for finitely many points, 1 for a closed curve, not an integer
+    /// for a strange attractor, 2 or more for a cloud. `None` for fewer than 200 points, or points
+    /// that coincide.
     pub dimension: Option<f64>,
 }
 
 impl Section<'_> {
-    /// Describes the section; points are equal if no coordinate differs by more than
-    /// `tolerance` of its scale.
+    /// Describes the section. Points are equal if no coordinate differs by more than `tolerance` of
+    /// its scale.
     ///
-    /// With d(i, k) the greatest difference of the coordinates of points i and k, each
-    /// divided by its scale: the period is the smallest n with d(k, k+n) <= tolerance for
-    /// all k, where at least n such pairs are there to be compared. Clusters are counted by
-    /// going through the points in order: one that is farther than the tolerance from the
-    /// first point of every cluster begins another.
+    /// With d(i, k) the greatest difference of the coordinates of points i and k, each divided by
+    /// its scale, the period is the smallest n with d(k, k+n) <= tolerance for all k, if there are
+    /// at least n such pairs. Clusters are counted in order of time: a point farther than the
+    /// tolerance from the first point of every cluster begins another.
     ///
-    /// The dimension is that of P. Grassberger and I. Procaccia (Physica D 9 (1983)
-    /// 189-208): if r_1 and r_2 are the distances that 1 % and 5 % of the pairs fall below,
-    /// ln 5 / ln(r_2/r_1), from the last 2000 points at most, each coordinate divided by its
-    /// extent on the section. It grows with the square of the number of points.
+    /// The dimension is that of P. Grassberger and I. Procaccia (Physica D 9 (1983) 189-208): with
+    /// r_1 and r_2 the distances that 1 % and 5 % of the pairs do not reach, ln 5 / ln(r_2/r_1). It
+    /// uses at most the last 2000 points, each coordinate divided by its extent on the section. The
+    /// cost is quadratic in the number of points.
     ///
     /// # Errors
     ///
-    /// No scale, scales or a tolerance that are not positive, points cut short, values that
-    /// are not finite, fewer than two points.
+    /// No scale, scales or a tolerance that are not positive, an incomplete point, values that are
+    /// not finite, fewer than two points.
     pub fn shape(&self, tolerance: f64) -> Result<Shape, AnalysisError> {
         self.check()?;
         check_positive(tolerance, "the tolerance")?;
@@ -113,7 +112,8 @@ impl Section<'_> {
         if recent.len() < LEAST_DIMENSION_POINTS * width {
             return None;
         }
-        // What moves by less than the tolerance does not move: its noise has no dimension.
+        // A coordinate that varies by less than the tolerance is constant: its noise has no
+        // dimension.
         let own: Vec<f64> = extent
             .iter()
             .zip(self.scale)
@@ -138,7 +138,7 @@ fn scaled(points: &[f64], scale: &[f64]) -> Vec<f64> {
     points.iter().zip(scales).map(|(x, s)| x / s).collect()
 }
 
-/// The greatest difference of the coordinates.
+/// Returns the greatest difference of the coordinates.
 fn distance(a: &[f64], b: &[f64]) -> f64 {
     let differences = a.iter().zip(b).map(|(a, b)| (a - b).abs());
     differences.fold(0.0, f64::max)
@@ -170,7 +170,7 @@ fn clusters(points: &[&[f64]], tolerance: f64) -> Option<usize> {
     Some(leaders.len())
 }
 
-/// The value that this share of the values falls below.
+/// Returns the value that this share of the values does not reach.
 fn quantile(values: &mut [f64], share: f64) -> Option<f64> {
     let index = (share * values.len() as f64) as usize;
     if index >= values.len() {
@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn the_logistic_map_doubles_its_period() {
+    fn logistic_map_doubles_its_period() {
         // Between the thresholds of May (1976): 3, 1 + sqrt 6, 3.5441, 3.5644, 3.5688.
         for (r, period) in [(2.9, 1), (3.2, 2), (3.5, 4), (3.55, 8), (3.566, 16)] {
             let found = shape(&logistic(r, 400), &[1.0]);
@@ -206,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rotation_closes_a_curve() {
+    fn rotation_is_a_closed_curve() {
         let golden = (5_f64.sqrt() - 1.0) / 2.0;
         let points: Vec<f64> = circle(golden, 0.5, 2000)
             .iter()
@@ -214,7 +214,7 @@ mod tests {
             .collect();
         let found = shape(&points, &[6.0, 2e-3]);
         assert_eq!((found.period, found.clusters), (None, None));
-        // One per cent of 2000 points is 20 neighbours: counted to one in 20 on a line.
+        // 1 % of 2000 points is 20 neighbours: counted to one in 20 on a line.
         let dimension = found.dimension.unwrap();
         assert!((dimension - 1.0).abs() < 0.1, "{dimension}");
         let (low, high) = found.extent[0];
@@ -228,25 +228,25 @@ mod tests {
     }
 
     #[test]
-    fn dimensions_are_those_of_the_literature() {
+    fn dimensions_match_the_literature() {
         let henon: Vec<f64> = henon(2000).into_flattened();
         let strange = shape(&henon, &[2.5, 0.8]).dimension.unwrap();
-        // 1.21 in the limit; local slopes at these distances scatter by a tenth.
+        // 1.21 in the limit; local slopes at these distances scatter by 10 %.
         assert!((strange - 1.21).abs() < 0.12, "{strange}");
         let cloud = shape(&noise(4000), &[2.0, 2.0]).dimension.unwrap();
-        // A square, seen up to a tenth of its side: edges cost a few per cent.
+        // A square at distances up to a tenth of its side: edges cost a few per cent.
         assert!((cloud - 2.0).abs() < 0.15, "{cloud}");
     }
 
     #[test]
-    fn rounding_around_a_fixed_point_is_period_one() {
+    fn fixed_point_with_rounding_has_period_one() {
         let points: Vec<f64> = noise(600).iter().map(|x| 2.5e-5 + 1e-16 * x).collect();
         let found = shape(&points, &[1e-4]);
         assert_eq!((found.period, found.clusters), (Some(1), Some(1)));
     }
 
     #[test]
-    fn malformed_sections_are_refused() {
+    fn malformed_sections_are_rejected() {
         let attempt = |points: &[f64], scale: &[f64], tolerance| {
             Section { points, scale }.shape(tolerance).is_err()
         };

@@ -1,18 +1,20 @@
-//! Schur forms, eigenvalues and singular values of small dense matrices by QR iterations of bounded length.
+//! Schur forms, eigenvalues and singular values of small dense matrices, by QR iterations of
+//! bounded length.
 //!
-//! Nalgebra's iteration has no exceptional shifts: where eigenvalues lie symmetrically, as those of
-//! undamped machines do, it may go round in circles. In another basis it does not.
+//! The iteration of `nalgebra` has no exceptional shifts. It may cycle if eigenvalues are
+//! symmetric, as those of undamped machines. A change of basis ends the cycle.
 
 use nalgebra::{Complex, ComplexField, DMatrix, DVector, Dyn, SVD, Schur, SymmetricEigen};
 
-/// Iterations per eigenvalue before one gives up; two or three are usual.
+/// Largest number of iterations per eigenvalue; two or three are usual.
 const ITERATIONS: usize = 400;
 
-/// Reflections after which the iteration is tried again.
+/// Number of reflections that are tried.
 const OTHER_BASES: usize = 3;
 
-/// Q, unitary, and T, upper triangular (of a real matrix with blocks of two on its diagonal), of a square
-/// matrix Q T Q^H; nothing if the iteration ends in no basis that was tried.
+/// Computes the Schur form Q T Q^H of a square matrix: unitary Q, and upper triangular T (with
+/// blocks of two on the diagonal for a real matrix). Returns `None` if the iteration converges in
+/// no basis.
 pub fn schur_form<T: ComplexField<RealField = f64>>(
     matrix: &DMatrix<T>,
 ) -> Option<(DMatrix<T>, DMatrix<T>)> {
@@ -24,14 +26,15 @@ pub fn schur_form<T: ComplexField<RealField = f64>>(
     })
 }
 
-/// The eigenvalues of a square matrix, in no order; nothing where there is no [`schur_form`].
+/// Computes the eigenvalues of a square matrix, in no order. Returns `None` without a
+/// [`schur_form`].
 pub fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
     let schur = iterated(matrix)?.schur;
     Some(schur.complex_eigenvalues().iter().copied().collect())
 }
 
-/// The singular values of a matrix, largest first, with both kinds of vectors; nothing if an entry is not
-/// finite, there are none, or the iteration does not converge.
+/// Computes the singular values of a matrix, largest first, with left and right vectors. Returns
+/// `None` if the matrix is empty or not finite, or if the iteration does not converge.
 pub fn svd(matrix: &DMatrix<f64>) -> Option<SVD<f64, Dyn, Dyn>> {
     if matrix.is_empty() || !matrix.iter().all(|entry| entry.is_finite()) {
         return None;
@@ -40,8 +43,8 @@ pub fn svd(matrix: &DMatrix<f64>) -> Option<SVD<f64, Dyn, Dyn>> {
     SVD::try_new(matrix.clone(), true, true, 5.0 * f64::EPSILON, most)
 }
 
-/// The eigenvalues and eigenvectors of a symmetric matrix; nothing if an entry is not finite, there are
-/// none, or the iteration does not converge.
+/// Computes the eigenvalues and eigenvectors of a symmetric matrix. Returns `None` if the matrix is
+/// empty or not finite, or if the iteration does not converge.
 pub fn symmetric_eigen(matrix: &DMatrix<f64>) -> Option<SymmetricEigen<f64, Dyn>> {
     if matrix.is_empty() || !matrix.iter().all(|entry| entry.is_finite()) {
         return None;
@@ -50,7 +53,7 @@ pub fn symmetric_eigen(matrix: &DMatrix<f64>) -> Option<SymmetricEigen<f64, Dyn>
     SymmetricEigen::try_new(matrix.clone(), f64::EPSILON, most)
 }
 
-/// An iteration that ended, of the matrix between two reflections if there is one.
+/// Converged iteration of the matrix, or of its reflection.
 struct Iterated<T: ComplexField<RealField = f64>> {
     reflection: Option<DMatrix<T>>,
     schur: Schur<T, Dyn>,
@@ -83,7 +86,7 @@ mod tests {
     use super::{eigenvalues, schur_form, svd, symmetric_eigen};
     use nalgebra::{Complex, DMatrix, Schur};
 
-    /// Two masses on a spring beside one that is free: x' = v, v' = K x.
+    /// Returns x' = v, v' = K x of two masses on a spring and a free mass.
     fn circling() -> DMatrix<f64> {
         let mut matrix = DMatrix::zeros(6, 6);
         for place in 0..3 {
@@ -97,18 +100,18 @@ mod tests {
     }
 
     #[test]
-    fn a_circle_is_left() {
+    fn cyclic_iteration_converges_in_another_basis() {
         let matrix = circling();
         assert!(Schur::try_new(matrix.clone(), f64::EPSILON, 1000).is_none());
         let found = eigenvalues(&matrix).expect("another basis");
         let fastest = found.iter().map(|e| e.norm()).fold(0.0, f64::max);
         assert!((fastest / (2.0 * 251.31233257696744_f64).sqrt() - 1.0).abs() < 1e-14);
-        // Four zeros, two and two of which share an eigenvector: rounding moves them by its root.
+        // Four zeros, in two pairs with one eigenvector each: rounding moves them by its root.
         assert_eq!(found.iter().filter(|e| e.norm() < 1e-6).count(), 4);
     }
 
     #[test]
-    fn the_form_is_that_of_the_matrix() {
+    fn schur_form_reproduces_the_matrix() {
         let matrix = circling();
         let (unitary, triangle) = schur_form(&matrix).expect("another basis");
         let back = &unitary * triangle * unitary.transpose();
@@ -120,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn matrices_that_are_not_finite_are_refused() {
+    fn matrices_that_are_not_finite_are_rejected() {
         for entry in [f64::NAN, f64::INFINITY] {
             let matrix = DMatrix::from_element(3, 3, entry);
             assert!(svd(&matrix).is_none() && symmetric_eigen(&matrix).is_none());

@@ -1,65 +1,65 @@
-//! Power spectral densities, by Welch's method or of a whole series, and how much of the power
-//! lies in lines.
+//! Power spectral densities, by Welch's method or of a whole series, and the share of spectral
+//! lines.
 //!
-//! P. D. Welch, "The use of fast Fourier transform for the estimation of power spectra",
-//! IEEE Trans. Audio Electroacoust. 15 (1967) 70-73.
+//! P. D. Welch, "The use of fast Fourier transform for the estimation of power spectra", IEEE
+//! Trans. Audio Electroacoust. 15 (1967) 70-73.
 
 use realfft::RealFftPlanner;
 
 use super::error::{AnalysisError, check, check_positive};
 
-/// A one-sided power spectral density.
+/// One-sided power spectral density.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PowerSpectrum {
     /// Frequencies from 0 to half the sampling rate, evenly spaced, Hz.
     pub frequency: Vec<f64>,
-    /// As many densities, in the square of the series' unit per Hz.
+    /// Densities at these frequencies, in the squared unit of the series per Hz.
     pub density: Vec<f64>,
 }
 
-/// What is taken off each segment before it is windowed.
+/// Trend removed from each segment before the window is applied.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Trend {
-    /// The mean of the segment.
+    /// Mean of the segment.
     #[default]
     Mean,
-    /// The straight line of least squares: for an angle that drifts while it vibrates.
+    /// Straight line of least squares, for an angle that drifts while it vibrates.
     Line,
 }
 
-/// Half the width of a line under the Hann window, in steps of frequency.
+/// Half-width of a line under the Hann window, in frequency steps.
 const LINE_HALF_WIDTH: usize = 2;
-/// How far to both sides the background of a line is looked for, in steps of frequency.
+/// Half-width of the background of a line, in frequency steps.
 const BACKGROUND_REACH: usize = 24;
-/// A smaller share of the power than this is that of rounding, a thousandth of a millionth of
-/// the amplitude.
+/// Largest share of the power that counts as rounding: 1e-9 of the amplitude.
 const ROUNDING: f64 = 1e-18;
-/// How far a line stands out of its background. A density averaged over eight segments or
-/// more exceeds four times its median once in some 10^6 values if the signal is noise.
+/// Least ratio of a line to its background. A density of noise averaged over eight or more segments
+/// exceeds four times its median once in about 10^6 values.
 const PROMINENCE: f64 = 20.0;
 
-/// The density of `values`, sampled every `interval` s, from segments of `segment` samples.
+/// Estimates the density of `values`, sampled every `interval` s, from segments of `segment`
+/// samples.
 ///
-/// Segments overlap by half; what fills no further segment at the end is left out. Each has
-/// its `trend` removed, giving x_n, and is windowed with Hann's w_n = sin^2(pi n/N). With
-/// X_k the discrete Fourier transform of w_n x_n, N = `segment` and h = `interval`,
+/// Segments overlap by half; an incomplete last segment is omitted. Each segment without its
+/// `trend`, x_n, is multiplied by Hann's window w_n = sin^2(pi n/N). With X_k the discrete Fourier
+/// transform of w_n x_n, N = `segment` and h = `interval`,
 ///
 /// ```text
 /// S_k = c_k h |X_k|^2 / sum_n w_n^2,     f_k = k/(N h),     k = 0 .. N/2
 /// ```
 ///
-/// where c_k = 2, but 1 at zero and at half the sampling rate; the mean over the segments is
-/// returned. Parseval's theorem then holds to rounding, with df = 1/(N h):
+/// and c_k = 2, but c_k = 1 at zero and at half the sampling rate. The result is the mean over the
+/// segments. Parseval's theorem then holds to rounding, with df = 1/(N h):
 ///
 /// ```text
 /// sum_k S_k df = mean over segments of  sum_n (w_n x_n)^2 / sum_n w_n^2
 /// ```
 ///
-/// which is the variance, weighted with the square of the window.
+/// This is the variance weighted with the squared window.
 ///
 /// # Errors
 ///
-/// Fewer values than one segment, a segment of fewer than 8, values that are not finite, an
+/// Fewer values than one segment, a segment of fewer than 8 values, values that are not finite, an
 /// interval that is not positive.
 pub fn welch(
     values: &[f64],
@@ -88,8 +88,8 @@ pub fn welch(
     Ok(one_sided(windowed, segment, interval, weight))
 }
 
-/// The density of the whole of `values`, sampled every `interval` s, neither windowed nor with
-/// a trend removed: [`welch`]'s S_k of one segment with w_n = 1.
+/// Estimates the density of all `values`, sampled every `interval` s, without window and with its
+/// trend: S_k of [`welch`] for one segment with w_n = 1.
 ///
 /// # Errors
 ///
@@ -102,7 +102,8 @@ pub fn periodogram(values: &[f64], interval: f64) -> Result<PowerSpectrum, Analy
     Ok(one_sided(whole, length, interval, length as f64))
 }
 
-/// The mean density of segments of `length` samples, whose window's squares sum to `weight`.
+/// Computes the mean density of segments of `length` samples. `weight` is the sum of the squared
+/// window.
 fn one_sided(
     segments: impl Iterator<Item = Vec<f64>>,
     length: usize,
@@ -123,7 +124,7 @@ fn one_sided(
     }
 }
 
-/// The mean of |X_k|^2 over segments of `length` samples.
+/// Computes the mean of |X_k|^2 over segments of `length` samples.
 fn mean_power(segments: impl Iterator<Item = Vec<f64>>, length: usize) -> Vec<f64> {
     let transform = RealFftPlanner::<f64>::new().plan_fft_forward(length);
     let mut transformed = transform.make_output_vec();
@@ -131,7 +132,7 @@ fn mean_power(segments: impl Iterator<Item = Vec<f64>>, length: usize) -> Vec<f6
     let mut power = vec![0.0; transformed.len()];
     let mut count = 0_u32;
     for mut segment in segments {
-        // Fails only for buffers of wrong lengths, and these are the plan's own.
+        // Fails only for buffers of wrong length, and these come from the plan.
         let _ = transform.process_with_scratch(&mut segment, &mut transformed, &mut scratch);
         for (sum, value) in power.iter_mut().zip(&transformed) {
             *sum += value.norm_sqr();
@@ -144,10 +145,9 @@ fn mean_power(segments: impl Iterator<Item = Vec<f64>>, length: usize) -> Vec<f6
     power
 }
 
-/// What is left of a series when the mean over all periods of `period` samples is taken off
-/// it: the forcing's line and all of its harmonics, which any forced motion has, chaos
-/// included. Samples after the last whole period are left out. None if nothing is left but
-/// rounding, for a motion that repeats with the forcing, or if there is no whole period.
+/// Subtracts the mean over all periods of `period` samples: the forcing line and its harmonics,
+/// which every forced motion has. Samples after the last whole period are omitted. Returns `None`
+/// if only rounding remains, for a motion with the forcing period, or if there is no whole period.
 pub fn without_harmonics(values: &[f64], period: usize) -> Option<Vec<f64>> {
     let periods = values.len().checked_div(period)?;
     let mut repeated = vec![0.0; period];
@@ -166,7 +166,7 @@ pub fn without_harmonics(values: &[f64], period: usize) -> Option<Vec<f64>> {
 }
 
 impl PowerSpectrum {
-    /// The step from one frequency to the next, Hz; 0 if there are fewer than two.
+    /// Returns the frequency step, Hz; 0 with fewer than two frequencies.
     pub fn resolution(&self) -> f64 {
         match *self.frequency.as_slice() {
             [first, second, ..] => second - first,
@@ -174,7 +174,7 @@ impl PowerSpectrum {
         }
     }
 
-    /// The power at frequencies in [`low`, `high`), in the square of the series' unit.
+    /// Returns the power at frequencies in [`low`, `high`), in the squared unit of the series.
     pub fn power_between(&self, low: f64, high: f64) -> f64 {
         let inside = self.frequency.iter().zip(&self.density);
         inside
@@ -184,32 +184,32 @@ impl PowerSpectrum {
             * self.resolution()
     }
 
-    /// The power at all frequencies, in the square of the series' unit.
+    /// Returns the power at all frequencies, in the squared unit of the series.
     pub fn power(&self) -> f64 {
         self.density.iter().sum::<f64>() * self.resolution()
     }
 
-    /// The share of the power that lies in discrete lines, between 0 and 1; none if there is
-    /// no power at all.
+    /// Returns the share of the power in spectral lines, between 0 and 1, or `None` without power.
     ///
-    /// A line is a density that is the greatest within two steps of frequency (half the main
-    /// lobe of the window) and at least 20 times the median density within 24 steps; its
-    /// power is that of these five densities above that median. Periodic and quasi-periodic
-    /// motion has a share near 1, chaos less. Lines closer than some ten steps are taken for
-    /// a continuum: the segments must be long enough. With fewer than some eight segments
-    /// peaks of noise may be taken for lines: the series must be long enough.
+    /// A line is a density that is the greatest within two frequency steps (half the main lobe of
+    /// the window) and at least 20 times the median density within 24 steps. Its power is that of
+    /// these five densities above the median. Periodic and quasi-periodic motions have a share near
+    /// 1, chaotic motions less. Lines closer than about ten steps count as a continuum, so segments
+    /// must be long enough. With fewer than about eight segments, peaks of noise may count as
+    /// lines.
     pub fn line_share(&self) -> Option<f64> {
         let total: f64 = self.density.iter().sum();
         if !(total > 0.0 && total.is_finite()) {
             return None;
         }
         let lines = (0..self.density.len()).filter_map(|k| self.line_density(k));
-        // From 0 on: the sum of nothing is -0.
+        // Starts at 0, because the sum of no values is -0.
         let sum = lines.fold(0.0, |sum, line| sum + line);
         Some((sum / total).clamp(0.0, 1.0))
     }
 
-    /// The sum of the densities of the line at `k` above its background, if there is one.
+    /// Returns the sum of the densities of the line at `k` above its background, if there is a
+    /// line.
     fn line_density(&self, k: usize) -> Option<f64> {
         let peak = *self.density.get(k)?;
         let around = |reach: usize| {
@@ -217,7 +217,7 @@ impl PowerSpectrum {
             self.density.get(k.saturating_sub(reach)..end)
         };
         let lobe = around(LINE_HALF_WIDTH)?;
-        // Of equal neighbours only the first is a peak.
+        // Only the first of equal neighbours is a peak.
         let before = self.density.get(k.saturating_sub(LINE_HALF_WIDTH)..k)?;
         if lobe.iter().any(|other| *other > peak) || before.contains(&peak) {
             return None;
@@ -230,7 +230,7 @@ impl PowerSpectrum {
     }
 }
 
-/// Hann's window without the zero at its end, so that windows overlapping by half sum to 1.
+/// Returns Hann's window without the zero at its end, so that windows overlapping by half sum to 1.
 fn hann(length: usize) -> Vec<f64> {
     let angle = std::f64::consts::PI / length as f64;
     (0..length)
@@ -271,8 +271,8 @@ mod tests {
     }
 
     #[test]
-    fn a_sine_has_half_its_squared_amplitude_at_its_frequency() -> Result<(), AnalysisError> {
-        // 125 Hz lies on a frequency of the estimate, 126.3 Hz between two.
+    fn welch_finds_power_and_frequency_of_a_sine() -> Result<(), AnalysisError> {
+        // 125 Hz is a frequency of the estimate, 126.3 Hz is between two.
         for frequency in [125.0, 126.3] {
             let values = sine(3e-5, frequency, 1e-3, 4096);
             let spectrum = welch(&values, 1e-3, 512, Trend::Mean)?;
@@ -282,7 +282,7 @@ mod tests {
             let resolution = spectrum.resolution();
             assert!((spectrum.frequency[top] - frequency).abs() <= 0.5 * resolution);
             let power = spectrum.power_between(frequency - 8.0, frequency + 8.0);
-            // Sidelobes of the window beyond four steps hold less than 1e-3 of the power.
+            // Sidelobes of the window beyond four steps have less than 1e-3 of the power.
             assert!(
                 (power / (0.5 * 3e-5_f64.powi(2)) - 1.0).abs() < 1e-3,
                 "{power}"
@@ -293,7 +293,7 @@ mod tests {
     }
 
     #[test]
-    fn a_periodogram_holds_the_mean_square() -> Result<(), AnalysisError> {
+    fn periodogram_sums_to_the_mean_square() -> Result<(), AnalysisError> {
         for count in [8, 999, 1000] {
             let values = noise(count);
             let mean_square = values.iter().map(|x| x * x).sum::<f64>() / count as f64;
@@ -306,13 +306,13 @@ mod tests {
     }
 
     #[test]
-    fn white_noise_has_twice_its_variance_times_the_interval_everywhere()
-    -> Result<(), AnalysisError> {
+    fn white_noise_has_a_flat_density() -> Result<(), AnalysisError> {
         let (interval, count, segment) = (1e-2, 1 << 17, 256);
-        // Even on [-1, 1): variance 1/3.
+        // Uniform on [-1, 1): variance 1/3.
         let spectrum = welch(&noise(count), interval, segment, Trend::Mean)?;
         let level = 2.0 * interval / 3.0;
-        // 1023 overlapping segments leave a scatter of 1.06/sqrt(1023), 3.3 %: five of these.
+        // The scatter of 1023 overlapping segments is 1.06/sqrt(1023), 3.3 %; the limit is five
+        // times this.
         for (k, density) in spectrum.density.iter().enumerate().take(128).skip(3) {
             assert!((density / level - 1.0).abs() < 0.17, "{k}: {density}");
         }
@@ -321,8 +321,8 @@ mod tests {
     }
 
     #[test]
-    fn the_density_sums_to_the_variance_of_the_windowed_signal() -> Result<(), AnalysisError> {
-        // One segment, odd and even lengths: nothing is left to chance.
+    fn welch_density_sums_to_the_windowed_variance() -> Result<(), AnalysisError> {
+        // One segment of odd or even length, so the result is exact.
         for segment in [8, 9, 100, 101] {
             let values = noise(segment);
             let mean = values.iter().sum::<f64>() / segment as f64;
@@ -341,7 +341,7 @@ mod tests {
     }
 
     #[test]
-    fn a_drift_does_not_hide_a_vibration() -> Result<(), AnalysisError> {
+    fn linear_trend_removal_keeps_a_vibration() -> Result<(), AnalysisError> {
         let vibration = sine(1e-3, 50.0, 1e-3, 4096);
         let drifting: Vec<f64> = vibration
             .iter()
@@ -349,7 +349,7 @@ mod tests {
             .map(|(n, x)| x + 5.0 * n as f64)
             .collect();
         let spectrum = welch(&drifting, 1e-3, 512, Trend::Line)?;
-        // A line fitted to a segment of 26 periods takes less than 1 % of the sine with it.
+        // A line fitted to a segment of 26 periods removes less than 1 % of the sine.
         assert!(
             (spectrum.power() / 0.5e-6 - 1.0).abs() < 1e-2,
             "{}",
@@ -359,7 +359,7 @@ mod tests {
     }
 
     #[test]
-    fn half_noise_leaves_half_the_power_in_the_line() -> Result<(), AnalysisError> {
+    fn line_share_of_half_noise_is_half() -> Result<(), AnalysisError> {
         let (count, amplitude) = (1 << 16, (2.0_f64 / 3.0).sqrt());
         let mixed: Vec<f64> = noise(count)
             .iter()
@@ -367,15 +367,15 @@ mod tests {
             .map(|(noise, sine)| noise + sine)
             .collect();
         let share = welch(&mixed, 1e-3, 1000, Trend::Mean)?.line_share();
-        // 130 segments: the noise under the line is subtracted to within a per cent.
+        // 130 segments: the noise under the line is subtracted to within 1 %.
         assert!((share.unwrap() - 0.5).abs() < 0.02, "{share:?}");
         Ok(())
     }
 
     #[test]
-    fn a_strong_forcing_does_not_hide_that_the_rest_is_noise() -> Result<(), AnalysisError> {
+    fn removed_harmonics_reveal_noise() -> Result<(), AnalysisError> {
         let (count, period) = (1 << 16, 50);
-        // Harmonics a hundred times as strong as what else moves, noise or another line.
+        // Harmonics a hundred times as strong as the rest, which is noise or another line.
         let forced = |rest: &[f64]| -> Vec<f64> {
             let harmonics = |n: usize| {
                 let angle = TAU * n as f64 / period as f64;
@@ -403,7 +403,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_spectrum_is_refused() {
+    fn invalid_series_have_no_spectrum() {
         let short = welch(&[0.0; 7], 1.0, 8, Trend::Mean);
         assert_eq!(
             short,

@@ -1,29 +1,29 @@
-//! Numbers that say how values are spread: moments, quantiles, and how the ranks of two go together.
+//! Moments, quantiles and rank correlations.
 
-/// How values are spread.
+/// Moments and quantiles of a sample.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
-    /// How many values.
+    /// Number of finite values.
     pub count: usize,
-    /// Their mean.
+    /// Mean.
     pub mean: f64,
-    /// The standard deviation, with `count - 1` below the root; none of one value.
+    /// Standard deviation with `count - 1` in the denominator; `None` for one value.
     pub sd: Option<f64>,
-    /// The standard error of the mean, sd/sqrt(count).
+    /// Standard error of the mean, sd/sqrt(count).
     pub standard_error: Option<f64>,
-    /// The values in ascending order.
+    /// Values in ascending order.
     pub sorted: Vec<f64>,
 }
 
 impl Summary {
-    /// Of finite values; none where there is none.
+    /// Summarises the finite values. Returns `None` without finite values.
     pub fn of(values: &[f64]) -> Option<Self> {
         let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
         sorted.sort_by(f64::total_cmp);
         let (low, high) = (*sorted.first()?, *sorted.last()?);
         let count = sorted.len() as f64;
-        // From the lowest on, so that what they have in common takes no digits, and in parts of their whole
-        // range, whose half does not overflow.
+        // Values relative to the lowest keep the digits of the spread. Division by the range, in
+        // halves, avoids overflow.
         let half = if high > low {
             high / 2.0 - low / 2.0
         } else {
@@ -42,8 +42,9 @@ impl Summary {
         })
     }
 
-    /// The value below which this part of all lies, by linear interpolation between the sorted values:
-    /// the seventh definition of R. J. Hyndman and Y. Fan, The American Statistician 50 (1996) 361-365.
+    /// Returns the quantile of a probability, by linear interpolation between the sorted values:
+    /// the seventh definition of R. J. Hyndman and Y. Fan, The American Statistician 50 (1996)
+    /// 361-365.
     pub fn quantile(&self, part: f64) -> f64 {
         let place = part.clamp(0.0, 1.0) * (self.sorted.len() - 1) as f64;
         let (below, above) = (place.floor(), place.ceil());
@@ -53,9 +54,9 @@ impl Summary {
     }
 }
 
-/// How the ranks of pairs go together, from -1 to 1 (Spearman's coefficient, equal values with their
-/// mean rank). Pairs in which a number is not finite are left out; none where either is the same in all
-/// that are left.
+/// Computes Spearman's rank correlation coefficient, from -1 to 1; equal values get their mean
+/// rank. Pairs with a number that is not finite are omitted. Returns `None` if either series is
+/// constant.
 pub fn rank_correlation(one: &[f64], other: &[f64]) -> Option<f64> {
     let pairs = one
         .iter()
@@ -63,7 +64,7 @@ pub fn rank_correlation(one: &[f64], other: &[f64]) -> Option<f64> {
         .filter(|(a, b)| a.is_finite() && b.is_finite());
     let (one, other): (Vec<f64>, Vec<f64>) = pairs.map(|(a, b)| (*a, *b)).unzip();
     let (one, other) = (ranks(&one), ranks(&other));
-    // Ranks add up to the same, whatever is equal among them.
+    // Equal values do not change the sum of the ranks.
     let middle = (one.len() as f64 + 1.0) / 2.0;
     let product = |a: &[f64], b: &[f64]| -> f64 {
         let pairs = a.iter().zip(b);
@@ -73,7 +74,7 @@ pub fn rank_correlation(one: &[f64], other: &[f64]) -> Option<f64> {
     (size > 0.0).then(|| (product(&one, &other) / size).clamp(-1.0, 1.0))
 }
 
-/// The rank of each value from 1 on; equal ones have the mean of theirs.
+/// Returns the rank of each value from 1 on; equal values get their mean rank.
 fn ranks(values: &[f64]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
@@ -94,7 +95,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn moments_and_quantiles_are_those_by_hand() {
+    fn moments_and_quantiles_match_hand_calculation() {
         let found = Summary::of(&[4.0, f64::NAN, 1.0, 3.0, 2.0]).expect("four values");
         assert_eq!((found.count, found.mean), (4, 2.5));
         // (1.5^2 + 0.5^2) 2/3 = 5/3
@@ -109,7 +110,7 @@ mod tests {
         assert_eq!(Summary::of(&[f64::INFINITY]), None);
         let large = Summary::of(&[-1e308, 1e308]).expect("two values");
         assert!(large.mean.abs() < 1e293 && large.sd.is_some_and(f64::is_finite));
-        // What all have in common takes no digits of the spread.
+        // A common offset does not reduce the precision of the spread.
         let far = Summary::of(&[1e9, 1e9 + 1.0])
             .and_then(|of| of.sd)
             .expect("two values");
@@ -117,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn ranks_go_together_whatever_the_values() {
+    fn rank_correlation_ignores_monotonic_maps() {
         let x = [1.0, 2.0, 3.0, 4.0, 5.0];
         let cubes = x.map(|x: f64| x.powi(3));
         assert_eq!(rank_correlation(&x, &cubes), Some(1.0));
@@ -125,7 +126,7 @@ mod tests {
         // 1 - 6 (1 + 1 + 4 + 1 + 1)/(5 * 24)
         let found = rank_correlation(&x, &[2.0, 1.0, 5.0, 3.0, 4.0]).expect("a number");
         assert!((found - 0.6).abs() < 1e-15, "{found}");
-        // Ranks 1.5, 1.5, 3, 4 beside 1, 2, 3, 4: 4.5/sqrt(4.5 * 5).
+        // Ranks 1.5, 1.5, 3, 4 against 1, 2, 3, 4: 4.5/sqrt(4.5 * 5).
         let found = rank_correlation(&[0.0, 0.0, 1.0, 2.0], &x[..4]).expect("a number");
         assert!((found - 0.9_f64.sqrt()).abs() < 1e-15, "{found}");
         assert_eq!(rank_correlation(&x, &[1.0; 5]), None);

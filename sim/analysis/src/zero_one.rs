@@ -1,24 +1,23 @@
-//! The 0-1 test for chaos: does a walk driven by the series spread like diffusion, or stay?
+//! 0-1 test for chaos: a walk driven by a chaotic series spreads like diffusion.
 //!
-//! G. A. Gottwald, I. Melbourne, "On the implementation of the 0-1 test for chaos", SIAM J.
-//! Appl. Dyn. Syst. 8 (2009) 129-145. How the series is sampled is the caller's business:
-//! a flow sampled many times per period of its fastest motion looks regular to this test,
-//! once per forcing period is usual.
+//! G. A. Gottwald, I. Melbourne, "On the implementation of the 0-1 test for chaos", SIAM J. Appl.
+//! Dyn. Syst. 8 (2009) 129-145. Sample the series once per forcing period: a flow sampled many
+//! times per period of its fastest motion appears regular.
 
 use std::f64::consts::PI;
 
 use super::error::{AnalysisError, check, mean};
 
-/// How many angles c the median is taken over; the paper's number.
+/// Number of angles c for the median, as in the paper.
 const ANGLES: usize = 100;
-/// The least length at which the displacement has enough lags for a correlation.
+/// Smallest number of values with enough lags for a correlation.
 const LEAST: usize = 100;
-/// Below this share of the greatest magnitude, what varies is rounding and not motion.
+/// Largest variation, relative to the greatest magnitude, that counts as rounding.
 const CONSTANT: f64 = 1e-10;
 
-/// The growth rate K: near 1 for chaos, near 0 for periodic and quasi-periodic motion.
+/// Computes the growth rate K: near 1 for chaos, near 0 for periodic and quasi-periodic motion.
 ///
-/// For each of 100 angles c in (pi/5, 4 pi/5), the values phi(j), less their mean, drive
+/// For each of 100 angles c in (pi/5, 4 pi/5), the values phi(j) without their mean drive
 ///
 /// ```text
 /// p(n) = sum_{j<=n} phi(j) cos(j c),     q(n) = sum_{j<=n} phi(j) sin(j c)
@@ -26,11 +25,10 @@ const CONSTANT: f64 = 1e-10;
 /// K_c = correlation of (1 .. L) with (D(1) .. D(L))
 /// ```
 ///
-/// and K is the median of K_c. Without the mean, D is the displacement from which the
-/// oscillating term (mean phi)^2 (1 - cos n c)/(1 - cos c) has been taken, the paper's
-/// modified one. The angles follow the golden-ratio sequence, so that a series has one K. A
-/// series that is constant to 10^-10 of its magnitude, a fixed point of the section, has
-/// K = 0. About 10 N^2 steps.
+/// and K is the median of K_c. Without the mean, D is the modified displacement of the paper, which
+/// lacks the oscillating term (mean phi)^2 (1 - cos n c)/(1 - cos c). The angles follow the
+/// golden-ratio sequence, so K is deterministic. A series that is constant to 10^-10 of its
+/// magnitude (a fixed point of the section) has K = 0. The cost is about 10 N^2 steps.
 ///
 /// # Errors
 ///
@@ -44,7 +42,7 @@ pub fn chaos_indicator(values: &[f64]) -> Result<f64, AnalysisError> {
     if spread <= CONSTANT * largest(values) {
         return Ok(0.0);
     }
-    // Scaled, so that squares neither overflow nor vanish.
+    // Scaling prevents overflow and underflow of squares.
     let series: Vec<f64> = series.iter().map(|value| value / spread).collect();
     let mut rates: Vec<f64> = angles().map(|angle| growth(&series, angle)).collect();
     rates.sort_by(f64::total_cmp);
@@ -52,14 +50,14 @@ pub fn chaos_indicator(values: &[f64]) -> Result<f64, AnalysisError> {
     Ok(mean(middle))
 }
 
-/// The golden-ratio sequence on (pi/5, 4 pi/5): even for any number of angles, and in
-/// resonance with no motion of short period.
+/// Returns the golden-ratio sequence on (pi/5, 4 pi/5). It is even for any number of angles, and
+/// not resonant with motions of short period.
 fn angles() -> impl Iterator<Item = f64> {
     let golden = (5_f64.sqrt() - 1.0) / 2.0;
     (1..=ANGLES).map(move |i| PI / 5.0 + 3.0 * PI / 5.0 * (i as f64 * golden).fract())
 }
 
-/// K_c: how straight the mean-square displacement grows.
+/// Computes K_c, the linearity of the growth of the mean-square displacement.
 fn growth(series: &[f64], angle: f64) -> f64 {
     let walk = walk(series, angle);
     let lags = series.len() / 10;
@@ -77,7 +75,7 @@ fn growth(series: &[f64], angle: f64) -> f64 {
     correlation_with_index(&displacements)
 }
 
-/// The points (p, q).
+/// Returns the points (p, q).
 fn walk(series: &[f64], angle: f64) -> Vec<(f64, f64)> {
     series
         .iter()
@@ -91,7 +89,7 @@ fn walk(series: &[f64], angle: f64) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// The correlation coefficient of the values with 1, 2, 3, ...; 0 if they are all equal.
+/// Computes the correlation coefficient of the values with 1, 2, 3, ...; 0 if they are equal.
 fn correlation_with_index(values: &[f64]) -> f64 {
     let average = mean(values);
     let middle = (values.len() as f64 - 1.0) / 2.0;
@@ -113,7 +111,7 @@ mod tests {
 
     #[test]
     fn chaotic_maps_have_k_near_one() -> Result<(), AnalysisError> {
-        // The paper's own series are of 2000 values and reach 0.99.
+        // The series of the paper have 2000 values and K = 0.99.
         let x: Vec<f64> = henon(2000).iter().map(|point| point[0]).collect();
         for (name, series) in [("logistic", logistic(4.0, 2000)), ("Henon", x)] {
             let k = chaos_indicator(&series)?;
@@ -144,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn k_does_not_depend_on_origin_or_unit() -> Result<(), AnalysisError> {
+    fn k_is_independent_of_origin_and_unit() -> Result<(), AnalysisError> {
         let series = logistic(3.97, 500);
         let micro: Vec<f64> = series.iter().map(|x| 1e-6 * x + 1e-3).collect();
         // The offset costs three of sixteen digits, the sums two more.
@@ -153,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn fixed_points_are_regular_and_short_series_refused() {
+    fn fixed_points_are_regular_and_short_series_rejected() {
         assert_eq!(chaos_indicator(&[0.0; 100]), Ok(0.0));
         let rounding: Vec<f64> = (0..500).map(|n| 1.0 + f64::from(n % 7) * 1e-15).collect();
         assert_eq!(chaos_indicator(&rounding), Ok(0.0));
