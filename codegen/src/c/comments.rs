@@ -1,10 +1,9 @@
-//! Documentation as comments. Text from a specification passes through here: nothing in it can
-//! end a comment.
+//! Documentation as C comments. Text from a specification cannot end a comment.
 
 use super::names::of_item;
 use crate::program::Program;
 
-/// A comment of these lines, before what it is about.
+/// Writes a comment with these lines.
 pub(super) fn comment(lines: &[String]) -> String {
     let lines: Vec<String> = lines.iter().map(|line| clean(line)).collect();
     match lines.as_slice() {
@@ -19,7 +18,7 @@ pub(super) fn comment(lines: &[String]) -> String {
     }
 }
 
-/// The generator's own lines, whose links in brackets become names in C.
+/// Splits the generator's documentation into lines; links in brackets become C names.
 pub(super) fn linked(program: &Program, lines: &str) -> Vec<String> {
     let mut text = String::with_capacity(lines.len());
     let mut rest = lines;
@@ -36,8 +35,8 @@ pub(super) fn linked(program: &Program, lines: &str) -> Vec<String> {
     text.split('\n').map(str::to_owned).collect()
 }
 
-/// Without what could begin or end a comment, without control characters, those that turn the
-/// direction of the text, and trigraphs.
+/// Removes beginnings and ends of comments, control characters, characters that change the direction of text,
+/// and trigraphs.
 fn clean(text: &str) -> String {
     let mut clean = String::with_capacity(text.len());
     for c in text.chars() {

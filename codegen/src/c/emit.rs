@@ -1,5 +1,3 @@
-//! The header and the source of a program.
-
 use std::collections::BTreeSet;
 
 use super::comments::comment;
@@ -18,19 +16,19 @@ use crate::statements::{
     rates_in_regime, requested, stage_roots,
 };
 
-/// A program as C.
+/// C files of a program.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Files {
-    /// `NAME.h`
+    /// Content of `NAME.h`.
     pub header: String,
-    /// `NAME.c`
+    /// Content of `NAME.c`.
     pub source: String,
 }
 
-/// A program as C99 that is C++ as well.
+/// Writes a program as C99 that is also valid C++.
 ///
 /// # Errors
-/// If a name of the program is a word of C or C++.
+/// A name of the program that is a word of C or C++.
 pub fn emit(program: &Program) -> Result<Files, EmitError> {
     let file = File::new(program, &WORDS)?;
     let mut needed = Needed::default();
@@ -71,7 +69,8 @@ fn stages(file: &File<'_>, needed: &mut Needed) -> Emitted<Vec<Stage>> {
     Ok(stages)
 }
 
-/// What comes before all else. Clang contracts unless told otherwise; gcc is told by its options.
+/// Writes the first lines of the source. Clang contracts by default and obeys the pragma; gcc needs its
+/// option.
 fn opening(program: &Program) -> String {
     named(
         program,
@@ -87,7 +86,7 @@ fn opening(program: &Program) -> String {
     )
 }
 
-/// The tables that some stage reads.
+/// Writes the tables with a use.
 fn tables(file: &File<'_>) -> Emitted<String> {
     let program = file.program;
     let mut roots = stage_roots(program);

@@ -1,5 +1,4 @@
-//! Expressions and statements as marked text of C, with parentheses only where the order of
-//! evaluation needs them.
+//! Expressions and statements as marked C text, with parentheses only as the order of evaluation requires.
 
 use std::collections::BTreeSet;
 
@@ -10,7 +9,7 @@ use crate::program::{PARTIAL_SUMS, Program};
 use crate::statements::layout::{BLOCK, CLOSE, COMMA_OUT, FLOW, FLOW_OUT, SPACE, ZERO, block};
 use crate::statements::{Array, Expression, Index, Operator, Place, Statement, Structure};
 
-/// How tightly an expression holds together.
+/// Precedence of an expression.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Level {
     And,
@@ -21,18 +20,18 @@ enum Level {
     Atom,
 }
 
-/// Writes expressions and statements.
+/// Writer of expressions and statements.
 pub(super) struct Writer {
-    /// What names of functions, types and tables begin with.
+    /// Prefix of functions, types and tables.
     prefix: String,
-    /// The type of numbers.
+    /// Type of numbers.
     pub(super) real: String,
-    /// Whether that type may be narrower than literals, which then are converted.
+    /// True if that type can be narrower than literals, which are then converted.
     narrow: bool,
 }
 
 impl Writer {
-    /// For the stages of a program.
+    /// Creates a writer for the stages of a program.
     pub(super) fn new(program: &Program) -> Self {
         Self {
             prefix: format!("{}_", program.name),
@@ -41,7 +40,7 @@ impl Writer {
         }
     }
 
-    /// For functions that compute in double precision.
+    /// Creates a writer for functions in double precision.
     pub(super) fn double(program: &Program) -> Self {
         Self {
             real: "double".to_owned(),
@@ -50,7 +49,6 @@ impl Writer {
         }
     }
 
-    /// The statements, a line each or more.
     pub(super) fn statements(&self, statements: &[Statement]) -> String {
         let mut text = String::new();
         let mut together = BTreeSet::new();
@@ -69,7 +67,7 @@ impl Writer {
         text
     }
 
-    /// Sine and cosine of the same, named at once.
+    /// Writes one call for the sine and the cosine of the same argument.
     fn sine_and_cosine(&self, both: &SineAndCosine) -> String {
         let [sine, cosine] = [both.sine, both.cosine];
         let declared = format!("{} {sine}, {cosine};\n", self.real);
@@ -115,7 +113,7 @@ impl Writer {
         }
     }
 
-    /// A named number.
+    /// Writes the definition of a named number.
     pub(super) fn bound(&self, name: &str, value: &Expression) -> String {
         let value = self.expression(value);
         assignment(&format!("const {} {name}", self.real), &value)
@@ -127,8 +125,8 @@ impl Writer {
         format!("{} {name}{extents} = {open}0{close};\n", self.real)
     }
 
-    /// A sum: the first elements each begin a partial sum, every eighth element from there on is
-    /// added in order, then neighbours are added in pairs.
+    /// Writes a sum: each of the first elements begins a partial sum, every eighth element after it is added
+    /// in order, then neighbours are added in pairs.
     fn sum(&self, name: &str, length: usize, element: &Expression) -> String {
         let real = &self.real;
         if length == 0 {
@@ -139,7 +137,7 @@ impl Writer {
         let mut text = format!("{real} {parts}[{count}];\n");
         let first = assignment(&format!("{parts}[i]"), &self.expression(element));
         text += &looped("i", count, &first);
-        // Parentheses around a sum: C adds from left to right.
+        // C adds from left to right, so a sum needs parentheses.
         let element = self.at(element, Level::Product);
         let blocks = length / PARTIAL_SUMS;
         let added = |first: &str, part: &str| {
@@ -149,7 +147,7 @@ impl Writer {
                 &format!("{parts}[{part}] + {element}"),
             )
         };
-        // One block is no loop over blocks: gcc then adds the partial sums in vectors.
+        // One block is written without a loop over blocks: gcc then vectorises the partial sums.
         if blocks == 2 {
             let first = format!("{PARTIAL_SUMS} + k");
             text += &looped("k", PARTIAL_SUMS, &added(&first, "k"));
@@ -203,7 +201,7 @@ impl Writer {
         call(&format!("{}{function}", self.prefix), arguments) + ";\n"
     }
 
-    /// Without parentheses around it.
+    /// Writes an expression without outer parentheses.
     pub(super) fn expression(&self, expression: &Expression) -> String {
         self.leveled(expression).0
     }
@@ -275,7 +273,7 @@ impl Writer {
         (infix(sign, self.at(a, level), self.at(b, right)), level)
     }
 
-    /// The third of four where the first compares so with the second, else the fourth.
+    /// Writes `[a, b, then, otherwise]`: `then` if the comparison of a and b is true, else `otherwise`.
     fn choice(&self, comparison: &str, parts: &[Expression]) -> String {
         match parts {
             [a, b, then, otherwise] => {
@@ -290,7 +288,7 @@ impl Writer {
         }
     }
 
-    /// The second of three where the first holds, else the third.
+    /// Writes `[condition, then, otherwise]`.
     fn conditional(&self, parts: &[Expression]) -> String {
         match parts {
             [first, then, otherwise] => ternary(
@@ -320,7 +318,7 @@ impl Writer {
         }
     }
 
-    /// An array by its name.
+    /// Returns the name of an array.
     pub(super) fn array(&self, array: &Array) -> String {
         match array {
             Array::Local(name) => name.clone(),
@@ -330,7 +328,7 @@ impl Writer {
         }
     }
 
-    /// The first entry of a matrix, by its address.
+    /// Returns the address of a matrix's first entry.
     fn matrix(&self, array: &Array) -> String {
         first_entry(&self.array(array))
     }
@@ -340,7 +338,7 @@ fn first_entry(matrix: &str) -> String {
     format!("&{matrix}[0][0]")
 }
 
-/// A finite number with all its bits.
+/// Writes a finite number with all its bits.
 pub(super) fn number(value: f64) -> String {
     let magnitude = value.abs();
     if magnitude == 0.0 || (1e-4..1e7).contains(&magnitude) {
@@ -350,7 +348,7 @@ pub(super) fn number(value: f64) -> String {
     }
 }
 
-/// Neighbours added in pairs until one is left; of an odd count the last passes on.
+/// Adds neighbours in pairs until one is left; an odd last number moves on to the next round.
 fn in_pairs(mut terms: Vec<String>) -> String {
     while terms.len() > 1 {
         let last = terms.len() <= 2;
@@ -400,8 +398,8 @@ fn index_text(index: &Index) -> String {
     }
 }
 
-/// What a difference rounds to an integer, if it takes away again what was added for that: text of its own,
-/// because compilers that may reorder sums leave out both.
+/// Returns x if the difference is the rounding x + c - c. It is written as a call, because compilers that may
+/// reorder sums remove both operations.
 fn rounded<'e>(operator: Operator, a: &'e Expression, b: &Expression) -> Option<&'e Expression> {
     let aligner = |e: &Expression| matches!(e, Expression::Number(n) if *n == ROUNDING_ALIGNER);
     match (operator, a) {
@@ -412,29 +410,27 @@ fn rounded<'e>(operator: Operator, a: &'e Expression, b: &Expression) -> Option<
     }
 }
 
-/// A call of a function.
 pub(super) fn call(name: &str, arguments: &[String]) -> String {
     let separator = format!(",{SPACE}");
     format!("{name}({FLOW}{ZERO}{}{CLOSE})", arguments.join(&separator))
 }
 
-/// A loop of these lines.
 pub(super) fn looped(index: &str, length: usize, lines: &str) -> String {
     let head = format!("for (int {index} = 0; {index} < {length}; ++{index}) {{");
     block(&head, lines, "}")
 }
 
-/// An assignment to `target`, which may declare it.
+/// Writes an assignment; `target` can contain a declaration.
 pub(super) fn assignment(target: &str, value: &str) -> String {
     format!("{target} = {value};\n")
 }
 
-/// Two operands with an operator between them, broken before the operator.
+/// Writes a binary operation that can be broken before the operator.
 fn infix(operator: &str, a: impl std::fmt::Display, b: impl std::fmt::Display) -> String {
     format!("{FLOW}{FLOW_OUT}{a}{CLOSE}{SPACE}{operator} {b}{CLOSE}")
 }
 
-/// An initialiser of these elements, each on a line of its own if they do not fit on one.
+/// Writes an initialiser; elements that do not fit on one line have one line each.
 pub(super) fn initialiser(items: &[String]) -> String {
     let separator = format!(",{SPACE}");
     format!(

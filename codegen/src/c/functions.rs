@@ -1,4 +1,4 @@
-//! What emitted stages call: helpers as text, elementary functions from their kernels.
+//! Functions that emitted stages call: helpers as text, and elementary functions from their kernels.
 
 use super::comments::comment;
 use super::expression::Writer;
@@ -8,7 +8,7 @@ use crate::statements::layout::block;
 use crate::statements::{KernelStatements, Needed, describe_elementary};
 use eomgen_elementary::Function as Elementary;
 
-/// The functions that `stages` call, before these.
+/// Writes the functions that `stages` call.
 pub(super) fn functions(program: &Program, needed: &Needed, stages: &str) -> String {
     let mut elementary = needed.elementary.clone();
     if needed.cholesky || needed.cholesky_of_matrix {
@@ -17,7 +17,7 @@ pub(super) fn functions(program: &Program, needed: &Needed, stages: &str) -> Str
     let mut text = String::new();
     for function in elementary {
         let call = named(program, &format!("NAME_{}(", function.name()));
-        // What all stages take with its partner has no function of its own.
+        // A sine or cosine that all stages compute as a pair needs no separate function.
         let paired = matches!(function, Elementary::Sin | Elementary::Cos);
         if !paired || stages.contains(&call) {
             text += &elementary_function(program, function);
@@ -53,7 +53,7 @@ pub(super) fn functions(program: &Program, needed: &Needed, stages: &str) -> Str
     named(program, BITS) + &primitives + &text
 }
 
-/// An elementary function: in double precision whatever numbers are, then rounded.
+/// Writes an elementary function, computed in double precision and rounded to the type of numbers.
 fn elementary_function(program: &Program, function: Elementary) -> String {
     let arguments: &[&str] = match (function, function.arity()) {
         (Elementary::Atan2, _) => &["y", "x"],
@@ -92,7 +92,7 @@ fn elementary_function(program: &Program, function: Elementary) -> String {
         + &block(&named(program, &outer), &named(program, &rounded), "}")
 }
 
-/// Sine and cosine at once, with the bits of each.
+/// Writes the joint function of sine and cosine, with the same bits as the separate functions.
 fn sine_and_cosine(program: &Program) -> String {
     let kernel = KernelStatements::sine_and_cosine("x");
     let writer = Writer::double(program);
@@ -108,7 +108,7 @@ fn sine_and_cosine(program: &Program) -> String {
         + &block(&named(program, head), &lines, "}")
 }
 
-/// Numbers as bits and back.
+/// Union of a number and its bits.
 const BITS: &str = "\
 /** A number and its bits. */
 typedef union {
@@ -117,7 +117,7 @@ typedef union {
 } NAME_bits;
 ";
 
-/// What kernels call and what has no literal, by name.
+/// Functions that kernels call and constants without a literal, by name.
 const PRIMITIVES: [(&str, &str); 8] = [
     (
         "nan",
@@ -235,8 +235,8 @@ static NAME_real NAME_deadzone(NAME_real p, NAME_real b) {
 }
 ";
 
-/// The indicator of Eq. (8). By the magnitude, because gcc makes a branch of two comparisons where
-/// it selects with one; it is computed in the numbers' own precision.
+/// Indicator of Eq. (8), in the precision of the numbers. It compares the magnitude, because gcc compiles two
+/// comparisons to a branch but one to a selection.
 const CONTACT: &str = "\
 /** 1 where |p| > b and 0 elsewhere: the contact of Eq. (8). */
 static NAME_real NAME_contact(NAME_real p, NAME_real b) {
@@ -245,7 +245,7 @@ static NAME_real NAME_contact(NAME_real p, NAME_real b) {
 }
 ";
 
-/// The indicator of one side.
+/// Indicator of p > 0.
 const ABOVE: &str = "\
 /** 1 where p > 0 and 0 elsewhere. */
 static NAME_real NAME_above(NAME_real p) {
@@ -253,7 +253,7 @@ static NAME_real NAME_above(NAME_real p) {
 }
 ";
 
-/// f_k on a side of its dead zone.
+/// f_k on a given side of its dead zone.
 const DEADZONE_ON_SIDE: &str = "\
 /** Deflection beyond the backlash on a known side of it: f_k of Eq. (7). */
 static NAME_real NAME_deadzone_on_side(int above, int beyond, NAME_real p, NAME_real b) {
@@ -261,7 +261,7 @@ static NAME_real NAME_deadzone_on_side(int above, int beyond, NAME_real p, NAME_
 }
 ";
 
-/// The indicator on a side of its dead zone.
+/// Contact on a given side of its dead zone.
 const TOUCHING: &str = "\
 /** Whether there is contact on a known side of the backlash. */
 static int NAME_touching(int above, int beyond) {
@@ -269,7 +269,7 @@ static int NAME_touching(int above, int beyond) {
 }
 ";
 
-/// The indicator outside of what may be a whole region.
+/// Indicator for a function on either side of its zero interval.
 const EITHER: &str = "\
 /** Whether a switching function is on either side of where it rests. */
 static int NAME_either(int above, int below) {
@@ -277,7 +277,7 @@ static int NAME_either(int above, int below) {
 }
 ";
 
-/// The reciprocal that is NaN where a pivot is not positive.
+/// Reciprocal of a pivot, NaN if it is not positive.
 const PIVOT_RECIPROCAL: &str = "\
 /** 1/pivot of a positive pivot; NaN where the mass matrix is not positive definite. */
 static NAME_real NAME_pivot_reciprocal(NAME_real pivot) {
@@ -286,7 +286,7 @@ static NAME_real NAME_pivot_reciprocal(NAME_real pivot) {
 }
 ";
 
-/// Cholesky factors and their solutions.
+/// Cholesky factorisation and solution.
 const CHOLESKY: &str = "\
 /** Lower factor L of a symmetric matrix L L^T of n rows; NaN where it is not positive definite. */
 static void NAME_cholesky(int n, const NAME_real *matrix, NAME_real *factor) {

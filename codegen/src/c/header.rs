@@ -1,4 +1,4 @@
-//! The header: sizes, names, structures, declarations.
+//! Header of the emitted C: sizes, names, structures, declarations.
 
 use super::comments::{comment, linked};
 use super::jacobians;
@@ -10,7 +10,7 @@ use super::types::structures;
 use crate::program::Program;
 use crate::statements::{Emitted, File, Stage};
 
-/// What a file is, by lines.
+/// Returns title and origin of a file, by lines.
 pub(super) fn documentation(program: &Program) -> Vec<String> {
     let orders: Vec<String> = program.fields.iter().map(|f| f.order.to_string()).collect();
     let order = if orders.is_empty() {
@@ -34,7 +34,7 @@ pub(super) fn documentation(program: &Program) -> Vec<String> {
     ]
 }
 
-/// What a caller has to know.
+/// Returns the notes for callers, by lines.
 fn notes(program: &Program) -> Vec<String> {
     let mut lines = documentation(program);
     let state = program.state_names().join(", ");
@@ -53,7 +53,6 @@ fn notes(program: &Program) -> Vec<String> {
     lines
 }
 
-/// The header.
 pub(super) fn header(file: &File<'_>, stages: &[Stage]) -> Emitted<String> {
     let program = file.program;
     let mut text = comment(&notes(program));
@@ -125,8 +124,8 @@ fn sizes(file: &File<'_>) -> String {
     text
 }
 
-/// Arrays of names and orders: head, elements, documentation. C has no array without elements: one
-/// null pointer, or 0, stands for none.
+/// Returns the arrays of names and orders: head, elements, documentation. An empty array has one null pointer
+/// or 0, because C has no empty arrays.
 pub(super) fn lists(program: &Program) -> Vec<(String, Vec<String>, &'static str)> {
     let quoted = |names: Vec<String>| -> Vec<String> {
         names

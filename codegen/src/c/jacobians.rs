@@ -1,5 +1,4 @@
-//! Jacobians beside their stages: where the structural nonzeros stand, and the linearisation,
-//! which puts them into dense matrices.
+//! Positions of the Jacobians' structural nonzeros, and the linearisation into dense matrices.
 
 use super::comments::comment;
 use super::expression::initialiser;
@@ -8,7 +7,7 @@ use super::stages::{GIVEN, head, nested, passed_on};
 use crate::program::{Jacobian, Output, Program, ValueId};
 use crate::statements::layout::block;
 
-/// What the header says of them.
+/// Writes the declarations for the header.
 pub(super) fn declarations(program: &Program) -> String {
     let mut text = String::new();
     for jacobian in &program.outputs.jacobians {
@@ -31,7 +30,7 @@ pub(super) fn declarations(program: &Program) -> String {
     text
 }
 
-/// Numbers of structural nonzeros, as macros.
+/// Writes the numbers of structural nonzeros as macros.
 pub(super) fn sizes(program: &Program) -> String {
     let size = |jacobian: &Jacobian<ValueId>| {
         let line = format!(
@@ -65,7 +64,6 @@ fn linearise_head(program: &Program, definition: bool) -> String {
     head(program, ("void ", "linearise"), &arguments, definition)
 }
 
-/// The definitions.
 pub(super) fn definitions(program: &Program) -> String {
     if program.outputs.jacobians.is_empty() {
         return String::new();
@@ -89,7 +87,7 @@ pub(super) fn definitions(program: &Program) -> String {
     text
 }
 
-/// The blocks of nonzeros. C has no array without elements.
+/// Writes the blocks of nonzeros; an empty list has one empty block, because C has no empty arrays.
 fn blocks(program: &Program, jacobian: &Jacobian<ValueId>) -> String {
     let mut blocks: Vec<String> = Vec::new();
     for e in &jacobian.entries {

@@ -1,10 +1,10 @@
-//! The C backend: a header and one source file per variant, C99 that is C++ as well, without
-//! allocation or library, with the bits of the emitted Rust.
+//! C backend: a header and one source file for each variant, in C99 that is also valid C++, without
+//! allocation or library calls. Its results have the same bits as the emitted Rust.
 //!
-//! `emit` lays both files out: `header` declares, `types` prepares the coefficients, `stages` are
-//! the functions (`regimes` and `jacobians` more of those on request), `functions` what they call.
-//! `casadi` is a second interface to them. `expression` writes the statements, `comments` the documentation, `names` every name. What is
-//! computed in which order comes from [`statements`](crate::statements).
+//! `emit` arranges both files: `header` declares, `types` prepares the coefficients, `stages`, `regimes` and
+//! `jacobians` write functions, `functions` their helpers. `casadi` is an additional interface. `expression`
+//! writes statements, `comments` documentation, `names` all names. [`statements`](crate::statements) decides
+//! the order of computation.
 
 mod casadi;
 mod comments;

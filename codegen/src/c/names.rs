@@ -1,10 +1,10 @@
-//! Names of emitted C: the model's before every one that other files see.
+//! Names of emitted C; external names begin with the name of the model.
 
 use crate::program::Program;
 use crate::statements::Words;
 
-/// Keywords are words that are no names in C, C++ or to some preprocessor. Taken are the names
-/// of variables and macros in emitted functions.
+/// Rules for names in C. Keywords are words of C, C++ or a preprocessor; taken names are variables and macros
+/// of emitted functions.
 pub(super) const WORDS: Words = Words {
     language: "C or C++",
     keywords: &[
@@ -138,12 +138,12 @@ pub(super) const WORDS: Words = Words {
     prefixed: true,
 };
 
-/// A template with the names of a model: `NAME_` in it stands for the model's name and `_`.
+/// Replaces `NAME_` in a template by the model's name and `_`.
 pub(super) fn named(program: &Program, template: &str) -> String {
     template.replace("NAME_", &format!("{}_", program.name))
 }
 
-/// The name that C has for an item, given the one in Rust.
+/// Returns the C name of an item of the emitted Rust.
 pub(super) fn of_item(program: &Program, item: &str) -> String {
     let name = match item {
         "Coefficients::positive_definite" => return "positive_definite".to_owned(),

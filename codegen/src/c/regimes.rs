@@ -1,5 +1,4 @@
-//! The function that gives the number of the regime that a state is in. The rates in a regime are a
-//! stage like others.
+//! Function for the number of a state's regime. The rates in a regime are an ordinary stage.
 
 use super::names::named;
 use super::stages::{GIVEN, head, passed_on};
@@ -7,16 +6,15 @@ use crate::program::{Program, SURFACES_OF_A_REGIME};
 use crate::statements::File;
 use crate::statements::layout::block;
 
-/// What the function gives.
+/// Documentation of the function.
 pub(super) const REGIME: &str = "The regime that a state is in: bit k is set where number k of [`guards`] is positive,\n\
                                  for up to 32 of them. Crossing one flips its bit.";
 
-/// The head of the function that gives the number of a regime.
 pub(super) fn regime_head(program: &Program, definition: bool) -> String {
     head(program, ("uint32_t ", "regime"), &GIVEN, definition)
 }
 
-/// The definition, if regimes are asked for.
+/// Writes the definition, if regimes are requested.
 pub(super) fn regime(file: &File<'_>) -> String {
     let program = file.program;
     if program.outputs.regimes.is_none() {

@@ -1,15 +1,15 @@
-//! Which statements name the sine and the cosine of the same: one call computes both.
+//! Pairs of statements that name the sine and the cosine of one argument, for a joint call.
 
 use crate::statements::{Expression, Statement};
 
-/// The names of the sine and the cosine of an argument.
+/// Names of the sine and the cosine of an argument.
 pub(super) struct SineAndCosine<'s> {
     pub(super) sine: &'s str,
     pub(super) cosine: &'s str,
     pub(super) argument: &'s Expression,
 }
 
-/// If the first statement names a sine or a cosine: how far ahead its partner is named.
+/// Returns the distance to the partner of the first statement, if that names a sine or a cosine.
 pub(super) fn partner(statements: &[Statement]) -> Option<(usize, SineAndCosine<'_>)> {
     let (first, rest) = statements.split_first()?;
     let (function, name, argument) = turned(first)?;
@@ -32,7 +32,7 @@ pub(super) fn partner(statements: &[Statement]) -> Option<(usize, SineAndCosine<
     })
 }
 
-/// The function, the name and the argument of a named sine or cosine.
+/// Returns function, name and argument of a named sine or cosine.
 fn turned(statement: &Statement) -> Option<(&'static str, &str, &Expression)> {
     match statement {
         Statement::Let(name, Expression::Call(function @ ("sin" | "cos"), arguments)) => {

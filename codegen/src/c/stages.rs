@@ -1,4 +1,4 @@
-//! Stages as functions: their declarations for the header, their definitions for the source.
+//! Stages as functions: declarations for the header, definitions for the source.
 
 use super::comments::{comment, linked};
 use super::expression::{Writer, assignment, call, looped, place_text};
@@ -7,7 +7,7 @@ use crate::program::Program;
 use crate::statements::layout::{BLOCK, CLOSE, DEEPER, SHALLOWER, SPACE, ZERO, ZERO_OUT, block};
 use crate::statements::{Argument, Expression, Index, Outcome, Place, Size, Stage, Used};
 
-/// What a stage is called with: type and name of each, arrays by their first element.
+/// Returns type and name of each argument of a stage; arrays by their first element.
 fn arguments(stage: &Stage) -> Vec<(&'static str, &'static str)> {
     let mut all = GIVEN.to_vec();
     all.extend(stage.arguments.iter().map(|argument| match argument {
@@ -34,7 +34,7 @@ fn arguments(stage: &Stage) -> Vec<(&'static str, &'static str)> {
     all
 }
 
-/// What every stage is called with.
+/// Arguments of every stage.
 pub(super) const GIVEN: [(&str, &str); 4] = [
     ("NAME_real ", "t"),
     ("const NAME_real *", "state"),
@@ -42,10 +42,10 @@ pub(super) const GIVEN: [(&str, &str); 4] = [
     ("const NAME_coefficients *", "coefficients"),
 ];
 
-/// A square matrix.
+/// Argument for a square matrix.
 const MATRIX: (&str, &str) = ("NAME_real (*", "values)[NAME_DEGREES_OF_FREEDOM]");
 
-/// The head of a function. In a definition what is pointed to is declared not to overlap.
+/// Writes the head of a function; pointers of a definition are declared not to overlap.
 pub(super) fn head(
     program: &Program,
     (result, name): (&str, &str),
@@ -69,7 +69,7 @@ pub(super) fn head(
     )
 }
 
-/// What comes of a stage as the type of its function.
+/// Returns the result type of a stage's function.
 fn result(stage: &Stage) -> &'static str {
     match stage.outcome {
         Outcome::Number(_) => "NAME_real ",
@@ -77,7 +77,7 @@ fn result(stage: &Stage) -> &'static str {
     }
 }
 
-/// The documented declaration.
+/// Writes the declaration with its documentation.
 pub(super) fn declaration(program: &Program, stage: &Stage) -> String {
     let mut lines = linked(program, &stage.doc);
     lines.extend(stage.list.iter().cloned());
@@ -85,7 +85,6 @@ pub(super) fn declaration(program: &Program, stage: &Stage) -> String {
     comment(&lines) + &head(program, result, &arguments(stage), false) + ";\n"
 }
 
-/// The definition.
 pub(super) fn definition(program: &Program, stage: Stage) -> String {
     let arguments = arguments(&stage);
     let head = head(program, (result(&stage), stage.name), &arguments, true);
@@ -159,14 +158,14 @@ fn length(program: &Program, size: &Size) -> usize {
     }
 }
 
-/// The call of another stage with what this one is called with, and what is written to.
+/// Writes the call of another stage with the same arguments.
 pub(super) fn passed_on(program: &Program, stage: &str, written: &str) -> String {
     let given = GIVEN.iter().map(|(_, name)| *name).chain([written]);
     let arguments: Vec<String> = given.map(str::to_owned).collect();
     call(&of_item(program, stage), &arguments) + ";\n"
 }
 
-/// Lines between an opening and a closing one.
+/// Returns `lines` between an opening and a closing line.
 pub(super) fn nested(opening: &str, lines: &str, closing: &str) -> String {
     format!("{opening}\n{DEEPER}{lines}{SHALLOWER}{closing}\n")
 }

@@ -1,4 +1,4 @@
-//! Structures, with units, and the functions that fill them.
+//! Structures of the emitted C, with units, and the functions that fill them.
 
 use super::comments::comment;
 use super::expression::{Writer, assignment, looped, number};
@@ -9,7 +9,6 @@ use crate::program::{Extent, Program, Quantity};
 use crate::statements::layout::block;
 use crate::statements::{Emitted, File, Needed, Prepared, Used, preparation, quantity_line};
 
-/// The structures.
 pub(super) fn structures(file: &File<'_>) -> Emitted<String> {
     let program = file.program;
     let mut fields = String::new();
@@ -61,21 +60,20 @@ fn structure(file: &File<'_>, doc: &str, name: &str, fields: String) -> String {
     comment(&[doc.to_owned()]) + &nested("typedef struct {", &fields, &closing)
 }
 
-/// A documented member.
+/// Writes a member with its documentation.
 fn field(file: &File<'_>, quantity: &Quantity, origin: &str) -> Emitted<String> {
     let name = file.words.identifier(&quantity.name)?;
     let doc = comment(&[quantity_line(&quantity.doc, &quantity.unit, origin)]);
     Ok(doc + &named(file.program, &format!("NAME_real {name};\n")))
 }
 
-/// Functions that fill structures: name, arguments by type and name, documentation.
+/// Function that fills a structure: name, arguments by type and name, documentation.
 type Filling = (
     &'static str,
     &'static [(&'static str, &'static str)],
     &'static str,
 );
 
-/// All of them.
 const FILLING: [Filling; 4] = [
     (
         "default_parameters",
@@ -108,7 +106,6 @@ const FILLING: [Filling; 4] = [
     ),
 ];
 
-/// The declarations of these functions.
 pub(super) fn declarations(program: &Program) -> String {
     let declared = FILLING.map(|(name, arguments, doc)| {
         let head = head(program, ("void ", name), arguments, false);
@@ -117,7 +114,6 @@ pub(super) fn declarations(program: &Program) -> String {
     declared.concat()
 }
 
-/// The definitions of these functions.
 pub(super) fn filling(file: &File<'_>, needed: &mut Needed) -> Emitted<String> {
     let program = file.program;
     let [defaults, parameters, inputs, prepare] =

@@ -1,9 +1,9 @@
-//! The constants of an emitted file: sizes, and the names of what arrays hold, in their order.
+//! Constants of an emitted file: sizes and names.
 
 use super::expression::array;
 use crate::statements::File;
 
-/// Sizes and names of what the file computes with, and where it comes from.
+/// Writes sizes, names and origin of the file.
 pub(super) fn constants(file: &File<'_>) -> String {
     let program = file.program;
     let orders: Vec<String> = program.fields.iter().map(|f| f.order.to_string()).collect();
@@ -41,7 +41,7 @@ pub(super) fn constants(file: &File<'_>) -> String {
     ) + &names(file)
 }
 
-/// The inputs and the parameters: how many, and their names.
+/// Writes number and names of the inputs and of the parameters.
 fn names(file: &File<'_>) -> String {
     let program = file.program;
     let parameters = program.parameters.iter().map(|p| p.quantity.name.as_str());
@@ -61,7 +61,6 @@ fn names(file: &File<'_>) -> String {
     )
 }
 
-/// An array of these names as string literals.
 fn quoted<'n>(names: impl Iterator<Item = &'n str>) -> String {
     let quoted: Vec<String> = names.map(|name| format!("\"{name}\"")).collect();
     array(&quoted)

@@ -1,5 +1,5 @@
-//! The items of an emitted file and their order: constants, parameters, coefficients,
-//! inputs, then one function per stage.
+//! Items of an emitted Rust file in their order: constants, parameters, coefficients, inputs, then the
+//! functions.
 
 use std::collections::BTreeSet;
 
@@ -22,38 +22,37 @@ use crate::statements::{
     stage_roots,
 };
 
-/// What the emitted file is.
+/// Form of the emitted file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Packaging {
-    /// The root of a crate of its own.
+    /// Root of a crate.
     Crate,
-    /// A module of a crate that is `no_std` already.
+    /// Module of a `no_std` crate.
     Module,
-    /// What a module is filled with, by `include!` or by a macro, where the attributes of
-    /// a file may not stand: the items come out of an inner module, [`ITEMS_MODULE`], that
-    /// keeps its helpers to itself.
+    /// Content of a module for `include!` or a macro, without attributes of a file. The items are re-exported
+    /// from an inner module, [`ITEMS_MODULE`], which hides its helpers.
     Items,
 }
 
-/// The inner module of [`Packaging::Items`].
+/// Name of the inner module of [`Packaging::Items`].
 pub const ITEMS_MODULE: &str = "eomgen_emitted";
 
-/// The source of a program as Rust.
+/// Writes a program as Rust.
 ///
 /// # Errors
-/// If a name of the program is no Rust identifier, or if it was derived with Hessians, which are
-/// written in C alone.
+/// A name of the program that is not a Rust identifier, and a program with Hessians, which are available only
+/// in C.
 pub fn emit(program: &Program, packaging: Packaging) -> Result<String, EmitError> {
     if program.outputs.gradient_derivative.is_some() {
         return Err(EmitError::Value(
-            "Hessians are written in C alone".to_owned(),
+            "Hessians are available only in C".to_owned(),
         ));
     }
     let file = File::new(program, &WORDS)?;
     Ok(layout::source(&marked(&file, packaging)?))
 }
 
-/// The file as marked text.
+/// Returns the file as marked text.
 fn marked(file: &File<'_>, packaging: Packaging) -> Emitted<String> {
     let mut needed = Needed::default();
     let mut writer = Writer {
@@ -101,7 +100,7 @@ fn marked(file: &File<'_>, packaging: Packaging) -> Emitted<String> {
     })
 }
 
-/// What the file is and where it comes from, by lines.
+/// Returns title and origin of the file, by lines.
 fn documentation(file: &File<'_>) -> Vec<String> {
     let program = file.program;
     let orders: Vec<String> = program.fields.iter().map(|f| f.order.to_string()).collect();
@@ -127,7 +126,7 @@ fn documentation(file: &File<'_>) -> Vec<String> {
     ]
 }
 
-/// The tables that some stage reads.
+/// Writes the tables with a use.
 fn tables(file: &File<'_>) -> Emitted<String> {
     let program = file.program;
     let mut roots = stage_roots(program);

@@ -1,5 +1,4 @@
-//! Expressions and statements as marked text of Rust, with parentheses only where the order of
-//! evaluation needs them.
+//! Expressions and statements as marked Rust text, with parentheses only as the order of evaluation requires.
 
 use super::literals::number;
 use crate::program::{Extent, PARTIAL_SUMS};
@@ -10,7 +9,7 @@ use crate::statements::layout::{
 };
 use crate::statements::{Array, Expression, Index, Operator, Place, Statement, Structure};
 
-/// How tightly an expression holds together.
+/// Precedence of an expression.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Level {
     And,
@@ -20,30 +19,28 @@ enum Level {
     Atom,
 }
 
-/// Which conversions of whole arrays the text calls.
+/// Array conversions with a use.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Conversions {
     /// Vectors of another type.
     pub(super) converted: bool,
     /// Matrices of another type.
     pub(super) converted_matrix: bool,
-    /// Vectors of coefficients as a whole.
+    /// Whole vectors of coefficients.
     pub(super) read_array: bool,
-    /// Matrices of coefficients as a whole.
+    /// Whole matrices of coefficients.
     pub(super) read_matrix: bool,
 }
 
-/// Writes expressions and statements.
+/// Writer of expressions and statements.
 #[derive(Debug, Default)]
 pub(super) struct Writer {
-    /// Whether coefficients are read for lanes.
+    /// True if coefficients are read for SIMD lanes.
     pub(super) lanes: bool,
-    /// What has been called so far.
     pub(super) conversions: Conversions,
 }
 
 impl Writer {
-    /// The statements, a line each or more.
     pub(super) fn statements(&mut self, statements: &[Statement]) -> String {
         statements.iter().map(|one| self.statement(one)).collect()
     }
@@ -100,17 +97,16 @@ impl Writer {
         }
     }
 
-    /// A named number.
+    /// Writes the definition of a named number.
     pub(super) fn bound(&mut self, name: &str, value: &Expression) -> String {
         assignment(&format!("let {name}"), self.expression(value)) + "\n"
     }
 
-    /// Without parentheses around it.
+    /// Writes an expression without outer parentheses.
     pub(super) fn expression(&mut self, expression: &Expression) -> String {
         self.leveled(expression).0
     }
 
-    /// These expressions.
     pub(super) fn expressions(&mut self, expressions: &[Expression]) -> Vec<String> {
         expressions.iter().map(|e| self.expression(e)).collect()
     }
@@ -165,7 +161,7 @@ impl Writer {
         (infix(sign, a, b), level)
     }
 
-    /// An entry of a table becomes a number of the scalar type.
+    /// Writes an element; an entry of a table is converted to the scalar type.
     fn element(&mut self, array: &Array, indices: &[Index]) -> String {
         let brackets: Vec<String> = indices.iter().map(index_text).collect();
         let brackets = brackets.join("][");
@@ -179,7 +175,7 @@ impl Writer {
         }
     }
 
-    /// An array as a whole.
+    /// Writes a whole array.
     pub(super) fn array(&mut self, array: &Array) -> String {
         match array {
             Array::Local(name) => name.clone(),
@@ -211,8 +207,8 @@ impl Writer {
         }
     }
 
-    /// The call of a function that sums this many elements i. The number goes in the type of
-    /// an array, where the function knows it as a constant.
+    /// Writes the call of a function that sums `length` elements i. The length is in the type of an array, so
+    /// that the function knows it at compile time.
     fn sum(&mut self, function: &str, length: usize, element: &Expression) -> String {
         let (element, level) = self.leveled(element);
         let body = if level == Level::Atom && element.ends_with(')') {
@@ -225,7 +221,7 @@ impl Writer {
     }
 }
 
-/// An array of zeros of this name.
+/// Writes the definition of an array of zeros.
 pub(super) fn zeros(name: &str, lengths: &[String]) -> String {
     let zero = "T::number(0.0)".to_owned();
     let value = lengths
@@ -235,12 +231,11 @@ pub(super) fn zeros(name: &str, lengths: &[String]) -> String {
     format!("let mut {name} = {value};\n")
 }
 
-/// An `f64`, a literal or the entry of a table, as a number of the scalar type.
+/// Converts an `f64`, a literal or a table entry, to the scalar type.
 fn converted(number: &str) -> String {
     call("T::number", &[number.to_owned()])
 }
 
-/// A field of a struct.
 fn field(of: &str, name: &str) -> String {
     format!("{BLOCK}{BLOCK_OUT}{of}{CLOSE}{ZERO}.{name}{CLOSE}")
 }
@@ -271,7 +266,6 @@ fn index_text(index: &Index) -> String {
     }
 }
 
-/// A call of a function.
 pub(super) fn call(name: &str, arguments: &[String]) -> String {
     format!(
         "{name}({BLOCK}{ZERO}{}{COMMA_OUT}{CLOSE})",
@@ -279,22 +273,21 @@ pub(super) fn call(name: &str, arguments: &[String]) -> String {
     )
 }
 
-/// A loop of these lines.
 pub(super) fn looped(index: &str, length: usize, lines: &str) -> String {
     block(&format!("for {index} in 0..{length} {{"), lines, "}")
 }
 
-/// Two operands with an operator between them, broken before the operator.
+/// Writes a binary operation that can be broken before the operator.
 fn infix(operator: &str, a: impl std::fmt::Display, b: impl std::fmt::Display) -> String {
     format!("{FLOW}{FLOW_OUT}{a}{CLOSE}{SPACE}{operator} {b}{CLOSE}")
 }
 
-/// An assignment to `target`, which may declare it.
+/// Writes an assignment; `target` can contain a declaration.
 pub(super) fn assignment(target: &str, value: impl std::fmt::Display) -> String {
     format!("{target} = {FIRM}{value};")
 }
 
-/// Elements of an array or of a call, each on a line of its own if they do not fit on one.
+/// Joins elements of an array or a call; those that do not fit on one line have one line each.
 fn listed(items: &[String]) -> String {
     let mut text = String::new();
     for (place, item) in items.iter().enumerate() {
@@ -307,7 +300,6 @@ fn listed(items: &[String]) -> String {
     text
 }
 
-/// An array of these elements.
 pub(super) fn array(items: &[String]) -> String {
     if items.is_empty() {
         return "[]".to_owned();
@@ -315,7 +307,6 @@ pub(super) fn array(items: &[String]) -> String {
     format!("[{BLOCK}{ZERO}{}{COMMA_OUT}{CLOSE}]", listed(items))
 }
 
-/// A reference to an array.
 pub(super) fn reference(array: String) -> String {
     format!("&{array}")
 }

@@ -1,5 +1,5 @@
-//! The functions that an emitted file has besides its stages: which of them a file needs, and
-//! the small ones as text. Elementary functions are in `kernels`.
+//! Helper functions of an emitted file: their selection, and the text of the small ones. `kernels` writes
+//! elementary functions.
 
 use super::expression::Conversions;
 use super::kernels::elementary_function;
@@ -10,7 +10,7 @@ use super::slopes;
 use crate::statements::Needed;
 use eomgen_elementary::Function as Elementary;
 
-/// The items of every function needed.
+/// Writes the required functions.
 pub fn items(needed: &Needed, conversions: Conversions) -> String {
     let mut text = String::new();
     for (needed, item) in [
@@ -56,7 +56,7 @@ pub fn items(needed: &Needed, conversions: Conversions) -> String {
         .collect::<String>()
 }
 
-/// The reciprocal that is NaN where a pivot is not positive.
+/// Reciprocal of a pivot, NaN if it is not positive.
 const PIVOT_RECIPROCAL: &str = "\
 /// 1/pivot of a positive pivot; NaN where the mass matrix is not positive definite.
 #[inline(always)]
@@ -66,7 +66,7 @@ fn pivot_reciprocal<T: Scalar>(pivot: T) -> T {
 }
 ";
 
-/// Cholesky factors and their solutions. Rates solve with a prepared factor, lanes of them too.
+/// Cholesky factorisation and solution; the solution is also used by rates for SIMD lanes.
 const CHOLESKY: &str = "\
 /// Lower factor L of a symmetric matrix L L^T; NaN where it is not positive definite.
 fn cholesky<T: Scalar, const N: usize>(matrix: &[[T; N]; N]) -> [[T; N]; N] {
@@ -113,7 +113,7 @@ fn cholesky_solve<T: Scalar, const N: usize>(
     x
 }
 ";
-/// Solutions column by column.
+/// Cholesky solution column by column.
 const CHOLESKY_OF_MATRIX: &str = "\
 /// Solution of L L^T X = right, column by column.
 fn cholesky_solve_matrix<T: Scalar, const N: usize, const M: usize>(
@@ -131,7 +131,7 @@ fn cholesky_solve_matrix<T: Scalar, const N: usize, const M: usize>(
 }
 ";
 
-/// Vectors as numbers of another type.
+/// Conversion of vectors to another type.
 const CONVERTED: &str = "\
 /// These numbers in another type.
 #[inline(always)]
@@ -144,7 +144,7 @@ fn converted<T: Scalar, const N: usize>(numbers: &[f64; N]) -> [T; N] {
 }
 ";
 
-/// Matrices as numbers of another type.
+/// Conversion of matrices to another type.
 const CONVERTED_MATRIX: &str = "\
 /// The same of a matrix.
 #[inline(always)]
@@ -159,7 +159,7 @@ fn converted_matrix<T: Scalar, const N: usize, const M: usize>(
 }
 ";
 
-/// How the partial sums of any sum are added.
+/// Sum of the partial sums in pairs.
 const PAIRED: &str = "\
 /// The sum of the first `N` of eight numbers, neighbours added in pairs.
 #[inline(always)]
@@ -174,7 +174,7 @@ fn paired<const N: usize, T: Scalar>(s: &[T; 8]) -> T {
 }
 ";
 
-/// Coefficients that are read as a whole.
+/// Whole vectors of coefficients.
 const READ_ARRAY: &str = "\
 /// These coefficients as what is computed with.
 #[inline(always)]
@@ -187,7 +187,7 @@ fn read_array<T: Scalar, C: Coefficient<T>, const N: usize>(numbers: &[C; N]) ->
 }
 ";
 
-/// The same of matrices.
+/// Whole matrices of coefficients.
 const READ_MATRIX: &str = "\
 /// This matrix of coefficients as what is computed with.
 #[inline(always)]
@@ -202,7 +202,7 @@ fn read_matrix<T: Scalar, C: Coefficient<T>, const N: usize, const M: usize>(
 }
 ";
 
-/// Sums of no more elements than there are partial sums.
+/// Sums of at most as many elements as there are partial sums.
 const SUM_OF_FEW: &str = "\
 /// The sum of up to eight elements.
 #[inline(always)]
@@ -218,10 +218,10 @@ fn sum_of_few<const N: usize, T: Scalar, F: Fn(usize) -> T>(
 }
 ";
 
-/// Sums of more elements. Not inlined for single numbers: with the loops around it unrolled into
-/// one piece the compiler vectorises across them, and spills. Inlined in every place for lanes,
-/// where the compiler would stop after some places if it were left to it. Their number is a
-/// constant of the type, so that no bound is left to be checked.
+/// Sums of more elements. For single numbers the function is not inlined: the compiler would vectorise across
+/// unrolled outer loops and spill registers. For SIMD lanes it is inlined everywhere by attribute, because
+/// the compiler would stop after some calls. The length is a constant of the type, which removes bounds
+/// checks.
 const SUM: &str = "\
 /// The sum of elements in eight partial sums, number k of elements k, k + 8, k + 16, ...
 #[inline(always)]

@@ -1,20 +1,19 @@
-//! Which emitted types and functions are generic in what.
+//! Generic parameters of emitted types and functions.
 
 use crate::program::Output;
 use crate::statements::File;
 
-/// Whether every function is written a second time, for lanes.
+/// Returns true if every function has a second version for SIMD lanes.
 pub(super) fn for_lanes(file: &File<'_>) -> bool {
     file.program.outputs.kinds.contains(&Output::Lanes)
 }
 
-/// What the names of functions that emitted functions call begin with.
+/// Returns the prefix of functions that emitted functions call.
 pub(super) fn inlined(file: &File<'_>) -> &'static str {
     if for_lanes(file) { "inlined_" } else { "" }
 }
 
-/// The type of the parameters, of the inputs or of the coefficients: generic if a number
-/// stands in it.
+/// Returns the type of the parameters, inputs or coefficients; it is generic if it contains a number.
 pub(super) fn generic(file: &File<'_>, name: &str) -> String {
     let numbers = match name {
         "Parameters" => file.program.parameters.len(),

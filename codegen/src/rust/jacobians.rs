@@ -1,6 +1,5 @@
-//! The emitted Jacobians: for each the pattern of its structural nonzeros, as blocks from
-//! which the places of all are made at compile time, and a function that returns the
-//! nonzeros, row by row. The linearisation puts them into dense matrices.
+//! Emitted Jacobians. Each has a pattern of structural nonzeros, expanded from blocks at compile time, and a
+//! function that returns the nonzeros, row by row. The linearisation copies them into dense matrices.
 
 use super::expression::{Writer, array, assignment, call, reference};
 use super::literals::linked_doc;
@@ -33,7 +32,7 @@ pub(super) fn jacobians(
     Ok(text + PATTERN)
 }
 
-/// The statements of the linearisation: every part from its own function.
+/// Writes the statements of the linearisation, which calls a function for each part.
 fn linearise(file: &File<'_>) -> String {
     let parts = [
         "rates",

@@ -1,5 +1,4 @@
-//! The elementary functions as emitted Rust: their kernels, printed operation by operation.
-//! Their derivatives are in `slopes`.
+//! Elementary functions as emitted Rust, from their kernels. `slopes` writes their derivatives.
 
 use super::expression::Writer;
 use super::slopes;
@@ -8,7 +7,7 @@ use crate::statements::layout::{DEEPER, SHALLOWER};
 use crate::statements::{KernelStatements, describe_elementary};
 use eomgen_elementary::Function as Elementary;
 
-/// The function that stages call and the type that names it.
+/// Writes the function that stages call, and the type that represents it.
 pub(super) fn elementary_function(function: Elementary) -> String {
     let (name, type_name) = (function.name(), slopes::type_name(function));
     let description = describe_elementary(function);

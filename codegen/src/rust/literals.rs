@@ -1,7 +1,7 @@
-//! Numbers, names and documentation as source. Text from a specification passes through
-//! here and nowhere else: names are checked to be identifiers where statements are made, prose becomes comments.
+//! Numbers and documentation as Rust source. All prose of a specification is converted to comments here;
+//! names are checked when statements are built.
 
-/// A number with all its bits, in the shorter of the two usual notations.
+/// Writes a number with all its bits, in the shorter of the two usual notations.
 pub fn number(value: f64) -> String {
     if value.is_nan() {
         return "f64::NAN".to_owned();
@@ -22,12 +22,12 @@ pub fn number(value: f64) -> String {
     }
 }
 
-/// Documentation of the item that follows, a comment per line.
+/// Writes the documentation of an item, one comment for each line.
 pub fn doc(lines: &[String]) -> String {
     comments("///", lines)
 }
 
-/// Documentation of the item that follows: the generator's own lines, with links in brackets.
+/// Writes the generator's documentation of an item, with links in brackets.
 pub fn linked_doc(lines: &str) -> String {
     let line = |line: &str| match line {
         "" => "///\n".to_owned(),
@@ -36,7 +36,7 @@ pub fn linked_doc(lines: &str) -> String {
     lines.split('\n').map(line).collect()
 }
 
-/// Documentation of the file.
+/// Writes the documentation of the file.
 pub fn file_doc(lines: &[String]) -> String {
     comments("//!", lines)
 }
@@ -48,9 +48,9 @@ fn comments(opening: &str, lines: &[String]) -> String {
         .collect()
 }
 
-/// Without control characters and without those that turn the direction of the text, which
-/// rustc refuses, with a space in front as in a written comment, and with
-/// brackets that rustdoc would take for links or tags defused.
+/// Prepares a line for a comment: adds a space in front, removes control characters and characters that
+/// change the direction of text (rejected by rustc), and escapes brackets that rustdoc would read as links or
+/// tags.
 fn single_line(text: &str) -> String {
     let mut clean = String::with_capacity(text.len() + 1);
     for c in text.chars() {

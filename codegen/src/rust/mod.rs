@@ -1,12 +1,10 @@
-//! The Rust backend: one source file per variant, `no_std`, without dependency,
-//! allocation or panic, that compiles on its own with any edition.
+//! Rust backend: one source file for each variant, `no_std`, without dependencies, allocations or panics, for
+//! every edition.
 //!
-//! `emit` lays the items out, `types` writes parameters and coefficients, `stages` the functions
-//! (`regimes` and `jacobians` more of those on request, `signature` their heads), `expression` the
-//! statements and expressions in them, `scalar` the trait of the numbers, `functions` (with
-//! `kernels`, `slopes` and `piecewise`) the functions that they call, `literals` numbers and
-//! documentation, `layout` the lines. What is computed in which order comes from
-//! [`statements`](crate::statements).
+//! `emit` arranges the items, `types` writes parameters and coefficients, `stages`, `regimes` and `jacobians`
+//! write functions, `signature` their heads, `expression` their statements. `scalar` is the trait of numbers,
+//! `functions`, `kernels`, `slopes` and `piecewise` are helpers, `literals` writes numbers and documentation.
+//! [`statements`](crate::statements) decides the order of computation.
 
 mod constants;
 mod emit;

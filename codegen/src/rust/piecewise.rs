@@ -1,5 +1,5 @@
-//! The emitted helpers of piecewise functions: with a choice at every call, and on a side that
-//! the constant number of a regime tells.
+//! Emitted helpers of piecewise functions, with a selection in every call, or for a side given by the
+//! constant number of a regime.
 
 /// f_k of Eq. (7).
 pub const DEADZONE: &str = "\
@@ -11,7 +11,7 @@ fn deadzone<T: Scalar>(p: T, b: T) -> T {
 }
 ";
 
-/// The indicator of Eq. (8).
+/// Indicator of |p| > b, Eq. (8).
 pub const CONTACT: &str = "\
 /// 1 where |p| > b and 0 elsewhere: the contact of Eq. (8).
 #[inline(always)]
@@ -21,7 +21,7 @@ fn contact<T: Scalar>(p: T, b: T) -> T {
 }
 ";
 
-/// The indicator of one side.
+/// Indicator of p > 0.
 pub const ABOVE: &str = "\
 /// 1 where p > 0 and 0 elsewhere.
 #[inline(always)]
@@ -30,7 +30,7 @@ fn above<T: Scalar>(p: T) -> T {
 }
 ";
 
-/// f_k on a side of its dead zone.
+/// f_k on a given side of its dead zone.
 pub const DEADZONE_ON_SIDE: &str = "\
 /// Deflection beyond the backlash on a known side of it: f_k of Eq. (7).
 #[inline(always)]
@@ -39,7 +39,7 @@ fn deadzone_on_side<T: Scalar>(above: bool, beyond: bool, p: T, b: T) -> T {
 }
 ";
 
-/// The indicator on a side of its dead zone.
+/// Contact on a given side of its dead zone.
 pub const TOUCHING: &str = "\
 /// Whether there is contact on a known side of the backlash.
 #[inline(always)]
@@ -48,7 +48,7 @@ fn touching(above: bool, beyond: bool) -> bool {
 }
 ";
 
-/// The indicator outside of what may be a whole region.
+/// Indicator for a function on either side of its zero interval.
 pub const EITHER: &str = "\
 /// Whether a switching function is on either side of where it rests.
 #[inline(always)]
@@ -57,7 +57,7 @@ fn either(above: bool, below: bool) -> bool {
 }
 ";
 
-/// A choice that is made when a kernel is compiled.
+/// Selection at compile time.
 pub const CHOSEN: &str = "\
 /// One of two, where it is known which.
 #[inline(always)]
@@ -66,7 +66,7 @@ fn chosen<T: Scalar>(first: bool, then: T, otherwise: T) -> T {
 }
 ";
 
-/// The sides of a regime.
+/// Side of a guard in a regime.
 pub const POSITIVE: &str = "\
 /// Whether a guard, by its place, is positive in a regime.
 #[inline(always)]

@@ -1,6 +1,6 @@
-//! The emitted functions that know regimes: the number of the one a state is in, and the rates
-//! in one that is a constant, where every branch is decided when the kernel is compiled. One
-//! text serves all regimes, so that the source does not grow with their number.
+//! Emitted functions for regimes: the number of a state's regime, and the rates in a constant regime, with
+//! every branch decided at compile time. One function serves all regimes, so that the source does not grow
+//! with their number.
 
 use super::expression::{Writer, assignment, looped};
 use super::literals::linked_doc;
@@ -10,7 +10,6 @@ use crate::program::SURFACES_OF_A_REGIME;
 use crate::statements::layout::block;
 use crate::statements::{Emitted, File, Needed, rates_in_regime};
 
-/// The number of a state's regime, and the rates in a regime.
 pub(super) fn regimes(
     file: &File<'_>,
     needed: &mut Needed,

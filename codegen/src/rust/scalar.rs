@@ -1,12 +1,11 @@
-//! The emitted trait of what a model computes with, and its implementations for `f64` and
-//! `f32`. The text is the same in every file: a type that has the trait once has it of every
-//! model by the same lines.
+//! Emitted trait of numbers with its implementations for `f64` and `f32`. The text is the same in every file,
+//! so that a type can implement the trait of every model with the same lines.
 //!
-//! Elementary functions go through `Scalar::function`: plain numbers and lanes carry out the
-//! kernel, numbers with derivatives take its value and slope. A kernel itself asks for
-//! `Real`, because rounding tricks and exponent fields have no derivative.
+//! Elementary functions are called through `Scalar::function`: plain numbers and SIMD lanes compute the
+//! kernel, dual numbers its value and slope. Kernels require `Real`, because rounding by addition and
+//! exponent fields have no derivatives.
 
-/// The traits and their implementations.
+/// Traits of numbers and their implementations.
 pub const SCALAR: &str = "\
 /// What the equations are computed with: `f64`, `f32`, lanes of them, or numbers that carry
 /// derivatives. Nothing branches on a value, so that lanes may differ in every condition.
@@ -148,7 +147,7 @@ impl Scalar for f32 {
 }
 ";
 
-/// What lanes read coefficients by.
+/// Trait of coefficients for SIMD lanes.
 pub const COEFFICIENT: &str = "\
 /// A coefficient as the functions for lanes read it: a number of the type that they compute
 /// with, or an `f64` that all lanes share, which takes an eighth of the memory.

@@ -1,4 +1,4 @@
-//! What every emitted function that is called with prepared coefficients looks like.
+//! Heads of emitted functions with prepared coefficients.
 
 use super::expression::call;
 use super::generics::{for_lanes, generic, inlined};
@@ -6,19 +6,19 @@ use crate::statements::File;
 use crate::statements::layout::block;
 use crate::statements::layout::{DEEPER, SHALLOWER};
 
-/// What an emitted function is called with and returns, beside what all are called with.
+/// Additional arguments and result of an emitted function.
 pub(super) struct Signature<'a> {
     pub(super) name: &'a str,
-    /// Constants among the generic parameters, each with its comma.
+    /// Constant generic parameters, each with its comma.
     pub(super) constant: &'a str,
-    /// Further arguments, a line each.
+    /// Additional arguments, one on each line.
     pub(super) arguments: &'a str,
-    /// Empty for nothing.
+    /// Result type; empty if there is none.
     pub(super) result: &'a str,
 }
 
 impl<'a> Signature<'a> {
-    /// No more than a name and a result.
+    /// Returns a signature without additional arguments.
     pub(super) fn of(name: &'a str, result: &'a str) -> Self {
         Self {
             name,
@@ -29,7 +29,7 @@ impl<'a> Signature<'a> {
     }
 }
 
-/// A function that is called with prepared coefficients.
+/// Writes a function with prepared coefficients.
 pub(super) fn stage_with(
     file: &File<'_>,
     head: &str,
@@ -91,7 +91,7 @@ pub(super) fn stage_with(
     block(&whole, &call, "}") + &block(&format!("{inlined_head}{signature}"), statements, "}")
 }
 
-/// What follows the name of a function for lanes that is called with constants.
+/// Returns the generic arguments in the call of a function for SIMD lanes.
 fn given(file: &File<'_>, constant: &str) -> String {
     let constants: Vec<&str> = constant
         .split(", ")

@@ -1,13 +1,12 @@
-//! The derivatives of the elementary functions as emitted Rust, for numbers that carry
-//! derivatives. Written by hand from the calculus, apart from `differentiate`, so that one
-//! can be checked against the other.
+//! Derivatives of the elementary functions as emitted Rust, for dual numbers. They are written by hand,
+//! independently of `differentiate`, so that each can check the other.
 
 use std::collections::BTreeSet;
 
 use crate::statements::layout::block;
 use eomgen_elementary::Function as Elementary;
 
-/// The emitted type that stands for a function.
+/// Returns the emitted type that represents a function.
 pub fn type_name(function: Elementary) -> &'static str {
     match function {
         Elementary::Abs => "Abs",
@@ -32,7 +31,7 @@ pub fn type_name(function: Elementary) -> &'static str {
     }
 }
 
-/// These functions and those that their slopes call.
+/// Adds the functions that the derivatives call.
 pub fn with_slopes(functions: &BTreeSet<Elementary>) -> BTreeSet<Elementary> {
     let mut all = functions.clone();
     for function in functions {
@@ -47,7 +46,7 @@ pub fn with_slopes(functions: &BTreeSet<Elementary>) -> BTreeSet<Elementary> {
     all
 }
 
-/// The function `slope`, or `slopes` by both arguments.
+/// Writes the function `slope`, or `slopes` by both arguments.
 pub fn slope(function: Elementary) -> String {
     let signature = match function {
         Elementary::Atan2 => "fn slopes<T: Scalar>(y: T, x: T, _: T) -> [T; 2] {",

@@ -1,4 +1,4 @@
-//! Stages as emitted functions: their statements between a head and what they return.
+//! Stages as emitted functions.
 
 use super::expression::{Writer, array, assignment, call, zeros};
 use super::generics::{generic, inlined};
@@ -7,8 +7,8 @@ use super::signature::{Signature, stage_with};
 use super::types::literal;
 use crate::statements::{Argument, Expression, File, ORDER, Outcome, Size, Stage, where_they_end};
 
-/// The rates written to where the caller wants them, and the same returned: what is
-/// returned has to be filled with zeros first.
+/// Writes the rates as a function that fills an array, and as one that returns an array, which it must fill
+/// with zeros first.
 pub(super) fn rates(file: &File<'_>, written: &Stage, writer: &mut Writer) -> String {
     let call = format!(
         "let mut rates = [T::number(0.0); STATES];\n\
@@ -24,9 +24,8 @@ pub(super) fn rates(file: &File<'_>, written: &Stage, writer: &mut Writer) -> St
     function(file, written, writer) + &stage_with(file, &linked_doc(&lines), &signature, &call)
 }
 
-/// The function of a stage.
 pub(super) fn function(file: &File<'_>, stage: &Stage, writer: &mut Writer) -> String {
-    // Something is always written to what is as long as the state.
+    // An array with the length of the state is always written to.
     let mutable = match stage.outcome {
         Outcome::Array(_, Size::States) => false,
         Outcome::Array(..) | Outcome::MassMatrix => true,
@@ -106,7 +105,7 @@ fn input_product(values: &[(String, Expression)], writer: &mut Writer) -> String
     assignment("let input_product", literal.trim_end()) + "\n"
 }
 
-/// How many numbers, as the name of a constant.
+/// Returns the length as the name of a constant.
 fn length(size: &Size) -> String {
     match size {
         Size::States => "STATES".to_owned(),
@@ -118,7 +117,7 @@ fn length(size: &Size) -> String {
     }
 }
 
-/// The call of another stage with what this one is called with.
+/// Writes the call of another stage with the same arguments.
 pub(super) fn passed_on(file: &File<'_>, stage: &str) -> String {
     let arguments = ["t", "state", "inputs", "coefficients"].map(str::to_owned);
     call(&format!("{}{stage}", inlined(file)), &arguments)

@@ -1,4 +1,4 @@
-//! The emitted types: parameters, inputs, and the coefficients with their preparation.
+//! Emitted types: parameters, inputs, and the coefficients with their preparation.
 
 use super::expression::Writer;
 use super::generics::generic;
@@ -9,7 +9,7 @@ use crate::statements::layout::block;
 use crate::statements::layout::{CLOSE, FLOW_EVEN, SPACE};
 use crate::statements::{Emitted, File, Needed, Prepared, preparation, quantity_line};
 
-/// The most characters of a struct's literal that is written on one line.
+/// Largest number of characters of a struct literal on one line.
 const LITERAL_WIDTH: usize = 34;
 
 pub(super) fn parameters(file: &File<'_>) -> Emitted<String> {
@@ -56,7 +56,7 @@ pub(super) fn inputs(file: &File<'_>) -> Emitted<String> {
     Ok(text + &array_conversion(file, "Inputs", "INPUTS"))
 }
 
-/// The conversion from an array of numbers in the order of the names.
+/// Writes the conversion from an array of numbers in the order of the names.
 fn array_conversion(file: &File<'_>, name: &str, count: &str) -> String {
     let program = file.program;
     let quantities: Vec<&Quantity> = match name {
@@ -143,8 +143,8 @@ pub(super) fn coefficients(
     Ok(block(&head, &fields, "}") + &block(generic, &prepare, "}") + &cast)
 }
 
-/// The function that prepares the coefficients by these statements. Where no coefficient is a
-/// number, the parameters alone say of which type the numbers are, or nobody does.
+/// Writes the function that prepares the coefficients. Without numeric coefficients, the parameters determine
+/// the type of numbers; without either, it is `f64`.
 fn prepare(file: &File<'_>, statements: &str) -> String {
     let parameters = generic(file, "Parameters");
     let (with_coefficients, with_parameters) =
@@ -168,19 +168,19 @@ fn prepare(file: &File<'_>, statements: &str) -> String {
     block(&opening, &format!("{declared}{statements}"), "}")
 }
 
-/// A documented field of a struct.
+/// Writes a field with its documentation.
 fn field(file: &File<'_>, quantity: &Quantity, origin: &str) -> Emitted<String> {
     let name = file.words.identifier(&quantity.name)?;
     let docs = doc(&[quantity_line(&quantity.doc, &quantity.unit, origin)]);
     Ok(format!("{docs}pub {name}: T,\n"))
 }
 
-/// The type parameter of a struct that holds numbers.
+/// Returns the type parameter of a struct that contains numbers.
 fn declared(numbers: bool) -> &'static str {
     if numbers { "<T = f64>" } else { "" }
 }
 
-/// The conversion of a struct of `f64` to one of another scalar type, field by field.
+/// Writes the conversion of a struct from `f64` to another scalar type.
 fn cast(name: &str, what: &str, fields: &[String]) -> String {
     if fields.is_empty() {
         return String::new();
@@ -194,7 +194,7 @@ fn cast(name: &str, what: &str, fields: &[String]) -> String {
     block(&format!("impl {name} {{"), &body, "}")
 }
 
-/// A struct's literal: on one line if it is short.
+/// Writes a struct literal, on one line if it is short.
 pub(super) fn literal(name: &str, values: &[String]) -> String {
     let line = format!("{name} {{ {} }}\n", values.join(", "));
     let width = line

@@ -1,9 +1,9 @@
-//! Words that a model's names keep clear of in emitted Rust.
+//! Names reserved in emitted Rust.
 
 use crate::statements::Words;
 
-/// Keywords are words that are no names in some edition of Rust. Taken are the names of
-/// variables, helpers, constants and fields, and what Rust's prelude gives a value of.
+/// Rules for names in Rust. Keywords are those of any edition; taken names are variables, helpers, constants
+/// and fields, and values of Rust's prelude.
 pub(super) const WORDS: Words = Words {
     language: "Rust",
     keywords: &[

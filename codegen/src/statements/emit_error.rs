@@ -31,10 +31,7 @@ impl std::fmt::Display for EmitError {
                 "`{name}` is not a valid {language} identifier: rename it in the specification"
             ),
             Self::Value(message) => {
-                write!(
-                    f,
-                    "internal error: the program cannot be emitted: {message}"
-                )
+                write!(f, "the program cannot be emitted: {message}")
             }
         }
     }

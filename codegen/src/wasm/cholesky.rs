@@ -1,5 +1,4 @@
-//! Cholesky factors and solutions with them, operation by operation in the order of the other
-//! backends.
+//! Cholesky factorisation and solution, with the order of operations of the other backends.
 
 use super::code::Code;
 use eomgen_elementary::Function as Elementary;
@@ -7,24 +6,24 @@ use eomgen_elementary::Function as Elementary;
 use crate::program::Extent;
 use crate::statements::{Array, Emitted, Expression, Index, Place};
 
-/// A named solution with a Cholesky factor.
+/// Named solution with a Cholesky factor.
 pub(super) struct Solution<'s> {
     pub(super) name: &'s str,
     pub(super) factor: &'s Array,
     pub(super) right: &'s Array,
     pub(super) rows: usize,
-    /// Columns of the right side if it is a matrix.
+    /// Number of columns if the right-hand side is a matrix.
     pub(super) columns: Option<usize>,
 }
 
-/// What is left after the products so far. No name of a model has a space in it.
+/// Name of the remainder after the products so far; names of a model contain no space.
 const REST: &str = "the rest";
 
-/// Counts rows from the last.
+/// Name of the index that counts rows from the last.
 const FROM_THE_END: &str = "from the end";
 
 impl Code<'_> {
-    /// The named lower factor L of a symmetric matrix L L^T; NaN where it is not positive definite.
+    /// Computes the named lower factor L of a symmetric matrix L L^T; NaN if it is not positive definite.
     pub(super) fn cholesky(&mut self, name: &str, matrix: &Array, rows: usize) -> Emitted<()> {
         let region = self.array(name, &[rows, rows])?;
         self.zero(region, rows * rows)?;
@@ -62,7 +61,7 @@ impl Code<'_> {
         })
     }
 
-    /// The named solution of L L^T X = right.
+    /// Computes the named solution of L L^T X = right.
     pub(super) fn cholesky_solve(&mut self, solution: &Solution<'_>) -> Emitted<()> {
         let Solution { name, rows, .. } = *solution;
         let columns = solution.columns.unwrap_or(1);
@@ -101,12 +100,12 @@ impl Code<'_> {
         })
     }
 
-    /// Takes products for k from 0 up to an index from the rest, one after the other.
+    /// Subtracts products for k from 0 to an index from the remainder, in order.
     fn less(&mut self, to: &Index, product: &Expression) -> Emitted<()> {
         self.less_between((&Index::Number(0), to), product)
     }
 
-    /// The same for k from one index up to another.
+    /// Subtracts products for k between two indices from the remainder, in order.
     fn less_between(&mut self, range: (&Index, &Index), product: &Expression) -> Emitted<()> {
         let rest = self.named(REST)?;
         self.counted_between("k", range, |code| {

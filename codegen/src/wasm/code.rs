@@ -1,4 +1,4 @@
-//! One function being written: its instructions, its variables and the arrays it knows by name.
+//! Function under construction: instructions, variables and named arrays.
 
 use std::collections::HashMap;
 
@@ -9,25 +9,25 @@ use super::memory::{Memory, NUMBER, Region, nowhere};
 use crate::program::{Extent, Program};
 use crate::statements::{EmitError, Emitted, Index};
 
-/// The binary logarithm of the bytes of a number: how numbers are aligned.
+/// Binary logarithm of the bytes of a number, for alignment.
 const ALIGNMENT: u32 = NUMBER.trailing_zeros();
 
-/// A function being written.
+/// Function under construction.
 pub(super) struct Code<'m> {
     pub(super) program: &'m Program,
     pub(super) memory: &'m mut Memory,
     pub(super) functions: &'m Indices,
     bytes: Vec<u8>,
-    /// How many variables are arguments.
+    /// Number of arguments.
     arguments: u32,
-    /// The types of the others.
+    /// Types of the other variables.
     types: Vec<ValType>,
     variables: HashMap<String, u32>,
     arrays: HashMap<String, Region>,
 }
 
 impl<'m> Code<'m> {
-    /// A function of these numbers.
+    /// Starts a function with these arguments.
     pub(super) fn new(
         program: &'m Program,
         memory: &'m mut Memory,
@@ -47,12 +47,12 @@ impl<'m> Code<'m> {
         }
     }
 
-    /// Knows an array by a name.
+    /// Names an array.
     pub(super) fn name_array(&mut self, name: &str, region: Region) {
         self.arrays.insert(name.to_owned(), region);
     }
 
-    /// The written function.
+    /// Returns the finished function.
     pub(super) fn finish(mut self) -> Function {
         self.put().end();
         let mut function = Function::new_with_locals_types(self.types);
@@ -60,39 +60,38 @@ impl<'m> Code<'m> {
         function
     }
 
-    /// Takes instructions.
+    /// Returns the sink of instructions.
     pub(super) fn put(&mut self) -> InstructionSink<'_> {
         InstructionSink::new(&mut self.bytes)
     }
 
-    /// A new variable.
     fn variable(&mut self, of: ValType) -> u32 {
         let place = self.arguments + self.types.len() as u32;
         self.types.push(of);
         place
     }
 
-    /// A new number of this name.
+    /// Declares a named number.
     pub(super) fn number(&mut self, name: &str) -> u32 {
         let variable = self.variable(ValType::F64);
         self.variables.insert(name.to_owned(), variable);
         variable
     }
 
-    /// A new flag of this name.
+    /// Declares a named flag.
     pub(super) fn flag(&mut self, name: &str) -> u32 {
         let variable = self.variable(ValType::I32);
         self.variables.insert(name.to_owned(), variable);
         variable
     }
 
-    /// The variable of this name.
+    /// Returns the variable with this name.
     pub(super) fn named(&self, name: &str) -> Emitted<u32> {
         let variable = self.variables.get(name).copied();
         variable.ok_or_else(|| nowhere(name))
     }
 
-    /// A new array of this name, of zeros or of what was left there.
+    /// Allocates a named array; its content is undefined.
     pub(super) fn array(&mut self, name: &str, lengths: &[usize]) -> Emitted<Region> {
         let extent = match *lengths {
             [rows, columns] => Extent::Matrix(rows, columns),
@@ -103,13 +102,12 @@ impl<'m> Code<'m> {
         Ok(region)
     }
 
-    /// The array of this name.
+    /// Returns the array with this name.
     pub(super) fn region(&self, name: &str) -> Emitted<Region> {
         let region = self.arrays.get(name).copied();
         region.ok_or_else(|| nowhere(name))
     }
 
-    /// Writes zeros to an array.
     pub(super) fn zero(&mut self, region: Region, length: usize) -> Emitted<()> {
         if length > 0 {
             let (first, bytes) = (signed(region.first)?, signed(length as u32 * NUMBER)?);
@@ -122,7 +120,7 @@ impl<'m> Code<'m> {
         Ok(())
     }
 
-    /// The lines for every value of a variable from one number up to another.
+    /// Writes a loop over a variable between two numbers.
     pub(super) fn counted(
         &mut self,
         index: &'static str,
@@ -145,7 +143,7 @@ impl<'m> Code<'m> {
         Ok(())
     }
 
-    /// The lines for every value of a variable from one variable or 0 up to another.
+    /// Writes a loop over a variable between two indices.
     pub(super) fn counted_between(
         &mut self,
         index: &'static str,
@@ -167,7 +165,7 @@ impl<'m> Code<'m> {
         Ok(())
     }
 
-    /// A new variable of a loop, and the one of the same name around it.
+    /// Declares a loop variable; returns it and the outer variable with the same name.
     fn loop_variable(&mut self, index: &str) -> (u32, Option<u32>) {
         let variable = self.variable(ValType::I32);
         (variable, self.variables.insert(index.to_owned(), variable))
@@ -180,7 +178,7 @@ impl<'m> Code<'m> {
         };
     }
 
-    /// An index on the stack.
+    /// Pushes an index.
     pub(super) fn index(&mut self, index: &Index) -> Emitted<()> {
         match index {
             Index::Number(number) => {
@@ -205,15 +203,18 @@ impl<'m> Code<'m> {
         Ok(())
     }
 
-    /// On the stack the place of an element relative to what is returned: where a load or a store
-    /// starts to count.
+    /// Pushes the address of an element, relative to the returned offset of a load or store.
     pub(super) fn address(&mut self, region: Region, indices: &[Index]) -> Emitted<MemArg> {
         let place = match indices {
             [place] => place.clone(),
             [row, column] => Index::times(region.columns, row.clone()).plus(column.clone()),
-            _ => return Err(EmitError::Value("an element has one or two indices".into())),
+            _ => {
+                return Err(EmitError::Value(
+                    "an array element must have one or two indices".into(),
+                ));
+            }
         };
-        // A constant place is part of the instruction.
+        // A constant address is part of the instruction.
         let from = if let Index::Number(number) = place {
             self.put().i32_const(0);
             region.at(number)
@@ -225,13 +226,13 @@ impl<'m> Code<'m> {
         Ok(aligned(from))
     }
 
-    /// The number at a fixed place, on the stack.
+    /// Pushes the number at a fixed address.
     pub(super) fn load(&mut self, place: u32) {
         self.put().i32_const(0).f64_load(aligned(place));
     }
 }
 
-/// Numbers from a place on.
+/// Returns the memory argument for numbers from an address on.
 fn aligned(from: u32) -> MemArg {
     MemArg {
         offset: u64::from(from),
@@ -250,5 +251,5 @@ fn signed(number: u32) -> Emitted<i32> {
 }
 
 fn too_large(number: usize) -> EmitError {
-    EmitError::Value(format!("{number} is too large an index"))
+    EmitError::Value(format!("the index {number} exceeds 32 bits"))
 }

@@ -1,4 +1,4 @@
-//! The module: its functions, its memory and what it exports.
+//! WebAssembly module: functions, memory and exports.
 
 use wasm_encoder::{
     CodeSection, ConstExpr, DataSection, ExportKind, ExportSection, Function, FunctionSection,
@@ -16,22 +16,22 @@ use crate::statements::{
     Statement, Used, guards, observables, preparation, rates,
 };
 
-/// A program as a module of WebAssembly that imports nothing.
+/// Writes a program as a WebAssembly module without imports.
 ///
-/// It exports its `memory`, where numbers stand (`f64`), and the functions
+/// It exports its `memory` of `f64` numbers and the functions
 ///
-/// * `prepare() -> i32`: coefficients from the parameters; whether all prepared pivots of the mass
-///   matrix are positive and finite. The parameters are the specification's until they are
-///   written to;
-/// * `rates(t)`: rates of the state, of what stands in state and inputs;
-/// * `observables(t)`, energy and power last;
-/// * `guards(t)` if there are any: the switching surfaces.
+/// * `prepare() -> i32`: computes the coefficients from the parameters; returns 1 if all prepared pivots of
+///   the mass matrix are positive and finite. The parameters are initially those of the specification;
+/// * `rates(t)`: computes the rates of the state from state and inputs;
+/// * `observables(t)`: computes the observables, with energy and power last;
+/// * `guards(t)`, if there are any: computes the switching surfaces.
 ///
 /// The constant globals `parameters_at`, `inputs_at`, `state_at`, `rates_at`, `observables_at` and
-/// `guards_at` are the places in bytes of what these read and write, in the order of the program.
+/// `guards_at` are the addresses, in bytes, of the numbers that these read and write, in the order of the
+/// program.
 ///
 /// # Errors
-/// If the memory of a module is too small.
+/// A program that exceeds the memory of a module.
 pub fn emit(program: &Program) -> Result<Vec<u8>, EmitError> {
     let file = File::new(program, &WORDS)?;
     let mut needed = Needed::default();
@@ -57,7 +57,7 @@ pub fn emit(program: &Program) -> Result<Vec<u8>, EmitError> {
     Ok(module(&helpers, &exported, &written, &memory))
 }
 
-/// The name that a stage is called by.
+/// Returns the exported name of a stage.
 fn exported_name(stage: &Stage) -> &'static str {
     match stage.outcome {
         Outcome::Rates => "rates",
@@ -65,7 +65,7 @@ fn exported_name(stage: &Stage) -> &'static str {
     }
 }
 
-/// The function that prepares the coefficients.
+/// Writes the function that prepares the coefficients.
 fn preparing(
     file: &File<'_>,
     prepared: Preparation,
@@ -78,7 +78,7 @@ fn preparing(
     let mut code = Code::new(program, memory, functions, &[]);
     code.statements(&computed)?;
     for (id, coefficient) in file.fields.iter().zip(&prepared.coefficients) {
-        // No name of a model has a space in it.
+        // Names of a model contain no space.
         let (target, source) = ("the coefficient", "what was prepared");
         let region = code.memory.coefficient(&file.field_names[id])?;
         code.name_array(target, region);
@@ -86,7 +86,7 @@ fn preparing(
             Prepared::Number(value) => {
                 code.assign(&Place::new(target, [Index::Number(0)]), value)?;
             }
-            // Both are arrays of the same extent, so that they are copied number by number.
+            // Both arrays have the same extent and are copied number by number.
             Prepared::Numbers(array) => {
                 let from = Region {
                     columns: 1,
@@ -111,7 +111,7 @@ fn preparing(
     Ok(code.finish())
 }
 
-/// The function of a stage.
+/// Writes the function of a stage.
 fn computing(
     program: &Program,
     stage: Stage,
@@ -141,7 +141,7 @@ fn computing(
     Ok(code.finish())
 }
 
-/// The sections of a module: helpers first among its functions, then what is exported.
+/// Assembles the sections of a module; helpers precede the exported functions.
 fn module(helpers: &[Helper], exported: &[&str], written: &[Function], memory: &Memory) -> Vec<u8> {
     const NUMBER: ValType = ValType::F64;
     let mut types = TypeSection::new();
@@ -197,7 +197,7 @@ fn module(helpers: &[Helper], exported: &[&str], written: &[Function], memory: &
     module.finish()
 }
 
-/// What callers write to and read from, by the names of its globals.
+/// Returns the regions of the exported globals.
 fn places(memory: &Memory) -> [(&'static str, Region); 6] {
     let exchanged = memory.exchanged;
     [

@@ -1,11 +1,11 @@
-//! Expressions as instructions that leave a number, or a condition, on the stack.
+//! Expressions as instructions that push a number or a condition.
 
 use super::code::Code;
 use super::memory::{Region, nowhere};
 use crate::statements::{Array, EmitError, Emitted, Expression, Operator, Structure};
 
 impl Code<'_> {
-    /// The value of an expression, on the stack.
+    /// Pushes the value of an expression.
     pub(super) fn expression(&mut self, expression: &Expression) -> Emitted<()> {
         match expression {
             Expression::Number(value) => {
@@ -48,7 +48,7 @@ impl Code<'_> {
                 self.expressions(parts)?;
                 self.primitive(name)?;
             }
-            // Both are computed, which leaves no trace of the one that is not taken.
+            // Both branches are computed; the unused value is dropped.
             Expression::Select(parts) => {
                 let [a, b, then, otherwise] = &**parts;
                 self.expressions([then, otherwise, a, b])?;
@@ -66,7 +66,9 @@ impl Code<'_> {
                 self.put().i32_const(1);
             }
             Expression::Positive(_) => {
-                return Err(EmitError::Value("no stage is within a regime".into()));
+                return Err(EmitError::Value(
+                    "regimes are not available in WebAssembly".into(),
+                ));
             }
         }
         Ok(())
@@ -87,13 +89,13 @@ impl Code<'_> {
         Ok(())
     }
 
-    /// Where an array stands.
+    /// Returns the region of an array.
     pub(super) fn region_of(&mut self, array: &Array) -> Emitted<Region> {
         match array {
             Array::Local(name) => self.region(name),
             Array::Coefficient(name, _) => self.memory.coefficient(name),
             Array::Table(name, _) => self.memory.table(self.program, name),
-            Array::Filled(..) => Err(EmitError::Value("equal numbers are no array".into())),
+            Array::Filled(..) => Err(EmitError::Value("a repeated number is not an array".into())),
         }
     }
 
@@ -107,7 +109,7 @@ impl Code<'_> {
         };
     }
 
-    /// What the elementary functions do to the bits of a number: see `Real` of `eomgen-elementary`.
+    /// Writes an operation on the bits of a number; see `Real` in `eomgen-elementary`.
     fn primitive(&mut self, name: &str) -> Emitted<()> {
         const MANTISSA_BITS: i64 = 52;
         let mut put = self.put();

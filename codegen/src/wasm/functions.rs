@@ -1,5 +1,5 @@
-//! What stages call: helpers of piecewise functions and pivots, elementary functions from their
-//! kernels. Each is a function of numbers alone; none calls another.
+//! Helper functions of the stages: piecewise functions, reciprocals of pivots, and elementary functions from
+//! their kernels. Each has only numbers as arguments; none calls another.
 
 use wasm_encoder::Function;
 
@@ -10,7 +10,7 @@ use crate::program::Program;
 use crate::statements::{Emitted, Expression, KernelStatements, Needed, Statement};
 use eomgen_elementary::Function as Elementary;
 
-/// A function of one number or two.
+/// Function of one or two numbers.
 #[derive(Debug)]
 pub(super) struct Helper {
     pub(super) name: &'static str,
@@ -20,7 +20,6 @@ pub(super) struct Helper {
 }
 
 impl Helper {
-    /// Written out.
     pub(super) fn function(
         &self,
         program: &Program,
@@ -34,7 +33,7 @@ impl Helper {
     }
 }
 
-/// The helpers that are needed.
+/// Returns the required helpers.
 pub(super) fn helpers(needed: &Needed) -> Vec<Helper> {
     let mut elementary = needed.elementary.clone();
     if needed.cholesky || needed.cholesky_of_matrix {
@@ -54,7 +53,6 @@ pub(super) fn helpers(needed: &Needed) -> Vec<Helper> {
     all
 }
 
-/// An elementary function.
 fn of_kernel(function: Elementary) -> Option<Helper> {
     let arguments: &[&str] = match function.arity() {
         2 => &["x", "y"],
@@ -69,7 +67,7 @@ fn of_kernel(function: Elementary) -> Option<Helper> {
     })
 }
 
-/// `then` where a > b, `otherwise` elsewhere.
+/// Returns `then` if a > b, else `otherwise`.
 fn select(a: &Expression, b: &Expression, then: Expression, otherwise: Expression) -> Expression {
     Expression::Select(Box::new([a.clone(), b.clone(), then, otherwise]))
 }
@@ -101,7 +99,7 @@ fn deadzone() -> Helper {
     )
 }
 
-/// 1 where |p| > b and 0 elsewhere: the contact of Eq. (8).
+/// Indicator of |p| > b: the contact of Eq. (8).
 fn contact() -> Helper {
     let [zero, one] = [0.0, 1.0].map(Expression::Number);
     of_deflection("contact", Vec::new(), |p, b| {
@@ -110,7 +108,7 @@ fn contact() -> Helper {
     })
 }
 
-/// 1 where p > 0 and 0 elsewhere.
+/// Indicator of p > 0.
 fn above() -> Helper {
     let [zero, one] = [0.0, 1.0].map(Expression::Number);
     let p = Expression::name("p");
@@ -122,7 +120,7 @@ fn above() -> Helper {
     }
 }
 
-/// 1/pivot of a positive pivot; NaN where the mass matrix is not positive definite.
+/// 1/pivot of a positive pivot; NaN if the mass matrix is not positive definite.
 fn pivot_reciprocal() -> Helper {
     let [zero, one, none] = [0.0, 1.0, f64::NAN].map(Expression::Number);
     let pivot = Expression::name("pivot");

@@ -1,21 +1,21 @@
-//! The helpers of a module by the names that expressions call them by.
+//! Indices of the helpers of a module.
 
 use std::collections::HashMap;
 
 use super::memory::nowhere;
 use crate::statements::Emitted;
 
-/// Numbers of functions by name.
+/// Indices of functions by name.
 #[derive(Debug)]
 pub(super) struct Indices(HashMap<&'static str, u32>);
 
 impl Indices {
-    /// Those of the functions that come first in their module, in their order.
+    /// Numbers the functions at the beginning of their module, in order.
     pub(super) fn new(names: impl Iterator<Item = &'static str>) -> Self {
         Self(names.zip(0..).collect())
     }
 
-    /// The number of a function.
+    /// Returns the index of a function.
     pub(super) fn of(&self, name: &str) -> Emitted<u32> {
         self.0.get(name).copied().ok_or_else(|| nowhere(name))
     }

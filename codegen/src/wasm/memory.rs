@@ -1,5 +1,4 @@
-//! Where everything stands in the linear memory: one array of numbers after the other. Nothing is
-//! allocated while the module runs.
+//! Layout of the linear memory: one array after the other. No memory is allocated at run time.
 
 use std::collections::HashMap;
 
@@ -9,30 +8,30 @@ use crate::statements::{EmitError, Emitted, File};
 /// Bytes of a number.
 pub(super) const NUMBER: u32 = 8;
 
-/// What a module may address: the places are signed 32-bit constants.
+/// Largest address: addresses are signed 32-bit constants.
 const MOST: u32 = i32::MAX as u32;
 
-/// Bytes of a page, in which memories are counted.
+/// Bytes of a page, the unit of memory sizes.
 const PAGE: u32 = 65536;
 
-/// An array in the memory.
+/// Array in the memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Region {
-    /// The place of its first byte.
+    /// Address of its first byte.
     pub(super) first: u32,
-    /// Numbers in a row if it has two dimensions, else 1.
+    /// Length of a row for a matrix, else 1.
     pub(super) columns: usize,
 }
 
 impl Region {
-    /// The place of a number.
+    /// Returns the address of a number.
     pub(super) fn at(self, place: usize) -> u32 {
-        // Within a region, whose end was checked when it was allocated.
+        // No overflow: the end of the region was checked at allocation.
         self.first + NUMBER * place as u32
     }
 }
 
-/// What callers write to and read from.
+/// Arrays that callers write and read.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Exchanged {
     pub(super) parameters: Region,
@@ -43,7 +42,7 @@ pub(super) struct Exchanged {
     pub(super) guards: Region,
 }
 
-/// The memory of a module.
+/// Memory of a module.
 #[derive(Debug)]
 pub(super) struct Memory {
     size: u32,
@@ -52,12 +51,12 @@ pub(super) struct Memory {
     tables: HashMap<String, Region>,
     parameters: HashMap<String, usize>,
     inputs: HashMap<String, usize>,
-    /// Numbers that stand there from the beginning.
+    /// Initial content.
     pub(super) constants: Vec<(Region, Vec<f64>)>,
 }
 
 impl Memory {
-    /// What every stage reads and writes.
+    /// Allocates the arrays that stages read and write.
     pub(super) fn new(file: &File<'_>) -> Emitted<Self> {
         let program = file.program;
         let mut size = 0;
@@ -87,17 +86,17 @@ impl Memory {
         Ok(memory)
     }
 
-    /// A further array.
+    /// Allocates an array.
     pub(super) fn allocate(&mut self, extent: Extent) -> Emitted<Region> {
         allocate(&mut self.size, extent)
     }
 
-    /// Pages that hold everything.
+    /// Returns the number of pages.
     pub(super) fn pages(&self) -> u64 {
         u64::from(self.size.div_ceil(PAGE))
     }
 
-    /// A table, which is put into the memory when it is first asked for.
+    /// Returns the region of a table, which is allocated at its first use.
     pub(super) fn table(&mut self, program: &Program, name: &str) -> Emitted<Region> {
         if let Some(known) = self.tables.get(name) {
             return Ok(*known);
@@ -110,26 +109,25 @@ impl Memory {
         Ok(region)
     }
 
-    /// A coefficient.
     pub(super) fn coefficient(&self, name: &str) -> Emitted<Region> {
         let region = self.coefficients.get(name).copied();
         region.ok_or_else(|| nowhere(name))
     }
 
-    /// The place of a parameter.
+    /// Returns the address of a parameter.
     pub(super) fn parameter(&self, name: &str) -> Emitted<u32> {
         let place = self.parameters.get(name).ok_or_else(|| nowhere(name))?;
         Ok(self.exchanged.parameters.at(*place))
     }
 
-    /// The place of an input.
+    /// Returns the address of an input.
     pub(super) fn input(&self, name: &str) -> Emitted<u32> {
         let place = self.inputs.get(name).ok_or_else(|| nowhere(name))?;
         Ok(self.exchanged.inputs.at(*place))
     }
 }
 
-/// The end of what is allocated, moved behind an array of this extent.
+/// Reserves an array of this extent at the end of the memory.
 fn allocate(size: &mut u32, extent: Extent) -> Emitted<Region> {
     let columns = match extent {
         Extent::Matrix(_, columns) => columns,
@@ -141,7 +139,7 @@ fn allocate(size: &mut u32, extent: Extent) -> Emitted<Region> {
     let end = bytes.and_then(|bytes| size.checked_add(bytes));
     let Some(end) = end.filter(|end| *end <= MOST) else {
         return Err(EmitError::Value(
-            "its numbers do not fit into the memory of a module".to_owned(),
+            "its numbers exceed the 2 GiB memory of a WebAssembly module".to_owned(),
         ));
     };
     let first = std::mem::replace(size, end);
@@ -155,7 +153,7 @@ fn places<'n>(names: impl Iterator<Item = &'n String>) -> HashMap<String, usize>
         .collect()
 }
 
-/// What has no place: a defect of the generator.
+/// Returns the error for a name without place: a defect of the generator.
 pub(super) fn nowhere(name: &str) -> EmitError {
     EmitError::Value(format!("`{name}` has no place in the module"))
 }

@@ -1,12 +1,10 @@
-//! The WebAssembly backend: a module that imports nothing, for browsers and whatever else runs
-//! WebAssembly, with the bits of the emitted Rust in double precision. (Only the sign and payload of
-//! NaN are left open, as everywhere.)
+//! WebAssembly backend: a module without imports, for browsers and other hosts, in double precision. Its
+//! results have the same bits as the emitted Rust, except for the sign and payload of NaN.
 //!
-//! `emit` makes the module: its functions, its memory and what it exports. `memory` says where every
-//! array stands, `functions` are the helpers that stages call, elementary functions from their
-//! kernels among them, and `indices` their numbers. `code` is one function being written,
-//! `expressions`, `statements` and `cholesky` write into it; `names` are the words that stages keep
-//! for themselves. What is computed in which order comes from [`statements`](crate::statements).
+//! `emit` assembles the module from its functions, memory and exports. `memory` is the layout of the arrays,
+//! `functions` writes the helpers, `indices` numbers them. `code` is a function under construction, into
+//! which `expressions`, `statements` and `cholesky` write; `names` lists reserved names.
+//! [`statements`](crate::statements) decides the order of computation.
 
 mod cholesky;
 mod code;

@@ -1,10 +1,8 @@
-//! Names within a stage: the arrays that it is given and writes to, and the variables of loops.
-//! A module in WebAssembly shows none of them.
+//! Names within a stage: its arrays and loop variables. They do not occur in the module.
 
 use crate::statements::Words;
 
-/// What names of the model have to leave to the stages. Names of a module may be any text, so that
-/// nothing is a keyword.
+/// Rules for names. A module has no keywords.
 pub(super) const WORDS: Words = Words {
     language: "WebAssembly",
     keywords: &[],

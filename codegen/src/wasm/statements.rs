@@ -6,7 +6,6 @@ use crate::program::PARTIAL_SUMS;
 use crate::statements::{Emitted, Expression, Index, Place, Statement};
 
 impl Code<'_> {
-    /// The statements, one after the other.
     pub(super) fn statements(&mut self, statements: &[Statement]) -> Emitted<()> {
         statements.iter().try_for_each(|one| self.statement(one))
     }
@@ -51,7 +50,7 @@ impl Code<'_> {
         }
     }
 
-    /// A number under a name.
+    /// Computes a named number.
     pub(super) fn bind(&mut self, name: &str, value: &Expression) -> Emitted<()> {
         self.expression(value)?;
         let variable = self.number(name);
@@ -59,7 +58,7 @@ impl Code<'_> {
         Ok(())
     }
 
-    /// A number put where one stands, or a flag.
+    /// Assigns to an element or a flag.
     pub(super) fn assign(&mut self, place: &Place, value: &Expression) -> Emitted<()> {
         if place.indices.is_empty() {
             self.expression(value)?;
@@ -74,13 +73,13 @@ impl Code<'_> {
         Ok(())
     }
 
-    /// A sum: the first elements each begin a partial sum, every eighth element from there on is
+    /// Computes a sum: each of the first elements begins a partial sum, every eighth element after it is
     /// added in order, then neighbours are added in pairs.
     fn sum(&mut self, name: &str, length: usize, element: &Expression) -> Emitted<()> {
         if length == 0 {
             return self.bind(name, &Expression::Number(0.0));
         }
-        // No name of a model has a space in it.
+        // Names of a model contain no space.
         let parts = format!("parts of {name}");
         let count = length.min(PARTIAL_SUMS);
         self.array(&parts, &[count])?;
@@ -88,7 +87,7 @@ impl Code<'_> {
         self.counted("i", (0, count), |code| {
             code.assign(&part("i".into()), element)
         })?;
-        // Element i belongs to the partial sum that its place within its block tells.
+        // Element i belongs to the partial sum with its index within its block.
         self.counted("i", (count, length), |code| {
             let (i, k) = (code.named("i")?, code.flag("k"));
             let mut put = code.put();
@@ -102,7 +101,7 @@ impl Code<'_> {
     }
 }
 
-/// Neighbours added in pairs until one is left; of an odd count the last passes on.
+/// Adds neighbours in pairs until one is left; an odd last number moves on to the next round.
 fn in_pairs(mut terms: Vec<Expression>) -> Expression {
     while terms.len() > 1 {
         let pairs = terms.chunks(2).map(|pair| match pair {

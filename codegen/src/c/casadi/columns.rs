@@ -1,5 +1,4 @@
-//! Matrices by their columns, as CasADi has them, of structural nonzeros that the emitted functions
-//! return row by row.
+//! Matrices in compressed columns for CasADi, built from structural nonzeros in row order.
 
 use std::ops::Range;
 
@@ -7,7 +6,7 @@ use super::super::expression::initialiser;
 use super::super::names::named;
 use crate::program::{GradientDerivative, Jacobian, Program, ValueId};
 
-/// A structural nonzero: where it stands, and its place among those row by row.
+/// Structural nonzero: its position in the matrix, and its index in row order.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Nonzero {
     column: usize,
@@ -15,11 +14,11 @@ struct Nonzero {
     place: usize,
 }
 
-/// A matrix by its columns.
+/// Matrix in compressed columns.
 pub(super) struct Columns {
     rows: usize,
     columns: usize,
-    /// By columns, then by rows.
+    /// Nonzeros by columns, then by rows.
     nonzeros: Vec<Nonzero>,
 }
 
@@ -33,12 +32,11 @@ impl Columns {
         }
     }
 
-    /// A matrix of zeros.
     pub(super) fn zero(rows: usize, columns: usize) -> Self {
         Self::new(rows, columns, Vec::new())
     }
 
-    /// A column without zeros.
+    /// Returns a full column.
     pub(super) fn dense(rows: usize) -> Self {
         let nonzero = |row| Nonzero {
             column: 0,
@@ -48,7 +46,7 @@ impl Columns {
         Self::new(rows, 1, (0..rows).map(nonzero).collect())
     }
 
-    /// The structural nonzeros of a Jacobian of so many columns.
+    /// Collects the structural nonzeros of a Jacobian with this number of columns.
     pub(super) fn of(jacobian: &Jacobian<ValueId>, columns: usize) -> Self {
         let mut nonzeros = Vec::new();
         for (block, place) in jacobian.entries.iter().zip(jacobian.places()) {
@@ -65,7 +63,7 @@ impl Columns {
         Self::new(jacobian.rows, columns, nonzeros)
     }
 
-    /// The block of a Hessian with these rows and columns: what the rows depend on.
+    /// Collects the structural nonzeros of a Hessian's block with these rows and columns.
     pub(super) fn where_not_zero(
         derivative: &GradientDerivative<ValueId>,
         rows: &Range<usize>,
@@ -89,7 +87,6 @@ impl Columns {
         Self::new(rows.len(), columns.len(), nonzeros)
     }
 
-    /// The transposed matrix.
     pub(super) fn transposed(&self) -> Self {
         let turned = self.nonzeros.iter().map(|nonzero| Nonzero {
             column: nonzero.row,
@@ -99,13 +96,12 @@ impl Columns {
         Self::new(self.columns, self.rows, turned.collect())
     }
 
-    /// How many structural nonzeros there are.
+    /// Returns the number of structural nonzeros.
     pub(super) fn count(&self) -> usize {
         self.nonzeros.len()
     }
 
-    /// The sparsity as CasADi wants it: rows, columns, where each column begins, the row of each
-    /// nonzero.
+    /// Writes CasADi's sparsity: rows, columns, first nonzero of each column, row of each nonzero.
     pub(super) fn sparsity(&self, program: &Program, name: &str) -> String {
         let starts = (0..=self.columns)
             .map(|column| self.nonzeros.partition_point(|known| known.column < column));
@@ -114,14 +110,15 @@ impl Columns {
         list(program, "casadi_int", &format!("{name}_sparsity"), numbers)
     }
 
-    /// Where the nonzeros by columns stand among those by rows.
+    /// Writes the row-order index of each nonzero in column order.
     pub(super) fn order(&self, program: &Program, name: &str) -> String {
         let places = self.nonzeros.iter().map(|nonzero| nonzero.place);
         list(program, "int", &format!("{name}_order"), places)
     }
 }
 
-/// A constant list, sixteen numbers in a line. C has none without elements.
+/// Writes a constant array with sixteen numbers on a line. An empty list has one 0, because C has no empty
+/// arrays.
 fn list(program: &Program, of: &str, name: &str, numbers: impl Iterator<Item = usize>) -> String {
     let mut numbers: Vec<String> = numbers.map(|number| number.to_string()).collect();
     if numbers.is_empty() {

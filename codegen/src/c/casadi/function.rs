@@ -1,26 +1,26 @@
-//! One function of CasADi's interface: how many arguments and results it has, their names and
-//! sparsities, the room that it works in, and the function itself.
+//! Function of CasADi's interface: numbers, names and sparsities of arguments and results, work memory, and
+//! body.
 
 use super::super::names::named;
 use super::given::Given;
 use crate::program::Program;
 use crate::statements::layout::block;
 
-/// A function of time, state, inputs and parameters, and maybe more.
+/// Function of time, state, inputs and parameters, and of further arguments.
 pub(super) struct Function {
     name: &'static str,
-    /// Names of arguments, and of their sparsities.
+    /// Names of the arguments and of their sparsities.
     given: Vec<(String, String)>,
-    /// Names of results, and of their sparsities.
+    /// Names of the results and of their sparsities.
     results: Vec<(String, String)>,
-    /// How many numbers it works with beside the point.
+    /// Size of the work array.
     room: usize,
-    /// What it does once the coefficients are prepared.
+    /// Statements after the preparation of the coefficients.
     pub(super) statements: String,
 }
 
 impl Function {
-    /// A function of what the rates are functions of.
+    /// Starts a function with the given arguments.
     pub(super) fn of(given: &[Given], name: &'static str) -> Self {
         let given = given.iter();
         Self {
@@ -34,22 +34,22 @@ impl Function {
         }
     }
 
-    /// One more argument.
+    /// Adds an argument.
     pub(super) fn given(&mut self, name: &str, shape: &str) {
         self.given.push((name.to_owned(), shape.to_owned()));
     }
 
-    /// One more result.
+    /// Adds a result.
     pub(super) fn result(&mut self, name: String, sparsity: &str) {
         self.results.push((name, sparsity.to_owned()));
     }
 
-    /// At least so many numbers to work with.
+    /// Makes the work array at least this long.
     pub(super) fn need(&mut self, room: usize) {
         self.room = self.room.max(room);
     }
 
-    /// The function and what CasADi asks about it.
+    /// Writes the function and its descriptions for CasADi.
     pub(super) fn text(&self, program: &Program) -> String {
         let names = |of: &[(String, String)]| {
             let names: Vec<String> = of.iter().map(|(name, _)| format!("\"{name}\"")).collect();

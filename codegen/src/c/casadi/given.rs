@@ -1,10 +1,9 @@
-//! What the rates are functions of, as CasADi names it, and the Jacobians by each.
+//! Arguments of the rates with CasADi's names, and the Jacobian by each.
 
 use crate::program::{Jacobian, Program, ValueId};
 use crate::statements::{EmitError, Emitted};
 
-/// An argument of the rates: its name, the sparsity of a column of it, the Jacobian of the rates
-/// by it, how many numbers it has.
+/// Argument of the rates: name, sparsity of its column, Jacobian of the rates by it, and length.
 #[derive(Clone, Copy)]
 pub(super) struct Given {
     pub(super) name: &'static str,
@@ -13,7 +12,7 @@ pub(super) struct Given {
     pub(super) count: usize,
 }
 
-/// What the rates are functions of.
+/// Returns the arguments of the rates.
 pub(super) fn given(program: &Program) -> [Given; 4] {
     let one = |name, shape, jacobian, count| Given {
         name,
@@ -34,9 +33,9 @@ pub(super) fn given(program: &Program) -> [Given; 4] {
     ]
 }
 
-/// One of the Jacobians by its name.
+/// Finds a Jacobian by its name.
 pub(super) fn derived<'a>(program: &'a Program, name: &str) -> Emitted<&'a Jacobian<ValueId>> {
     let mut jacobians = program.outputs.jacobians.iter();
     let found = jacobians.find(|known| known.name == name);
-    found.ok_or_else(|| EmitError::Value(format!("{name} was not derived")))
+    found.ok_or_else(|| EmitError::Value(format!("the program lacks the Jacobian `{name}`")))
 }

@@ -1,6 +1,6 @@
-//! What an optimiser asks for beside the Jacobians: the gradient of the weighted rates,
-//! `adj1_rates`, and its Jacobian, `jac_adj1_rates`, whose blocks by (t, x, u, p) are second
-//! derivatives of the weighted rates and whose blocks by the weights are the Jacobians transposed.
+//! Second derivatives for optimisers: the gradient of the weighted rates, `adj1_rates`, and its Jacobian,
+//! `jac_adj1_rates`. Blocks of the Jacobian by (t, x, u, p) are second derivatives of the weighted rates;
+//! blocks by the weights are transposed Jacobians.
 
 use super::super::names::named;
 use super::columns::Columns;
@@ -9,7 +9,7 @@ use super::given::{Given, derived};
 use crate::program::{GradientDerivative, Program, ValueId};
 use crate::statements::Emitted;
 
-/// Both functions.
+/// Writes both functions.
 pub(super) fn gradient(
     program: &Program,
     given: &[Given; 4],
@@ -18,7 +18,7 @@ pub(super) fn gradient(
     Ok(weighted(program, given)? + &second(program, given, derivative)?)
 }
 
-/// A function of the point, the rates there, which nothing reads, and the weights.
+/// Starts a function of the point, of the rates (unused), and of the weights.
 fn of_weights(given: &[Given; 4], name: &'static str) -> Function {
     let mut function = Function::of(given, name);
     function.given("out_rates", "states");
@@ -44,8 +44,7 @@ fn weighted(program: &Program, given: &[Given; 4]) -> Emitted<String> {
     Ok(function.text(program))
 }
 
-/// The Jacobian of the gradient, column by column: where its blocks may not be zero, and the
-/// function that computes them.
+/// Writes the Jacobian of the gradient, computed column by column, and the sparsities of its blocks.
 fn second(
     program: &Program,
     given: &[Given; 4],

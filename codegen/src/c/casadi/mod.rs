@@ -1,12 +1,12 @@
-//! A program as CasADi's external functions, in one file with the C that they call: `rates` and
-//! `jac_rates` of (t, x, u, p), by CasADi's interface of C functions, with the sparsities of their
-//! results in compressed columns, and `default_parameters`, the specification's p. With the Hessians
-//! `adj1_rates`, the gradient of the weighted rates, and its Jacobian `jac_adj1_rates` as well.
+//! CasADi's external functions of a program, in one C file with the functions that they call: `rates` and
+//! `jac_rates` of (t, x, u, p) with sparsities in compressed columns, and `default_parameters`, the p of the
+//! specification. With the Hessians also `adj1_rates`, the gradient of the weighted rates, and its Jacobian
+//! `jac_adj1_rates`.
 //!
-//! u and p are the inputs and the parameters in SI, in the order of their names.
+//! u and p are the inputs and the parameters in SI units, in the order of their names.
 //!
-//! `given` (what the rates are functions of), `columns` (matrices by their columns), `function` (one function of the interface), `gradient`
-//! (what comes with the Hessians).
+//! `given` lists the arguments, `columns` builds compressed columns, `function` writes a function of the
+//! interface, and `gradient` the functions for the Hessians.
 
 mod columns;
 mod function;
@@ -25,14 +25,13 @@ use crate::program::{Output, Program};
 use crate::statements::layout;
 use crate::statements::{EmitError, Emitted};
 
-/// What a program has to be derived with.
+/// Outputs that the program must have.
 pub const CASADI_OUTPUTS: [Output; 2] = [Output::Jacobians, Output::TimeDerivatives];
 
-/// The file `NAME_casadi.c`, which compiles by itself.
+/// Writes the file `NAME_casadi.c`, which compiles without other files.
 ///
 /// # Errors
-/// If a name of the program is a word of C or C++, or if it was not derived with
-/// [`CASADI_OUTPUTS`].
+/// A name of the program that is a word of C or C++, and a program without [`CASADI_OUTPUTS`].
 pub fn emit_casadi(program: &Program) -> Result<String, EmitError> {
     let files = emit(program)?;
     let include = format!("#include \"{}.h\"\n", program.name);
