@@ -95,7 +95,7 @@ fn inertia_that_vanishes_elsewhere_is_no_fault() {
 
 #[test]
 fn no_shipped_specification_and_no_feature_lacks_inertia() {
-    for folder in [models(), models().join("../../tests/tests/features")] {
+    for folder in [models(), models().join("../../tests/features")] {
         for entry in std::fs::read_dir(folder).unwrap() {
             let text = std::fs::read_to_string(entry.unwrap().path()).unwrap();
             assert_eq!(found(&text), None);
@@ -105,7 +105,7 @@ fn no_shipped_specification_and_no_feature_lacks_inertia() {
 
 #[test]
 fn modes_without_inertia_are_named_by_their_field() {
-    let path = models().join("../../tests/tests/features/massless_beam.toml");
+    let path = models().join("../../tests/features/massless_beam.toml");
     let text = std::fs::read_to_string(path)
         .unwrap()
         .replace("order = 1", "order = 3");

@@ -23,7 +23,7 @@ fn report(model: &Model) -> Report {
 
 /// Every shipped specification and every one with a feature of the language.
 fn specifications() -> Vec<(String, Model)> {
-    let features = models().join("../../tests/tests/features");
+    let features = models().join("../../tests/features");
     let paths = [models(), features].into_iter().flat_map(|folder| {
         let entries = std::fs::read_dir(folder).unwrap();
         entries
@@ -50,7 +50,7 @@ fn json(report: &Report) -> String {
 
 /// A beam with a mass that a lever drives from two of its points: its tree is endless.
 fn lever_mass() -> Model {
-    let path = models().join("../../tests/tests/features/lever_mass.toml");
+    let path = models().join("../../tests/features/lever_mass.toml");
     model(&std::fs::read_to_string(path).unwrap())
 }
 

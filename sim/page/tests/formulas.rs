@@ -26,7 +26,7 @@ fn report(text: &str) -> Report {
 
 /// Every shipped specification, and every one with a feature of the language.
 fn specifications() -> Vec<(String, String)> {
-    let features = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/tests/features");
+    let features = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/features");
     let entries = std::fs::read_dir(features).unwrap();
     let mut paths: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
     paths.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));

@@ -260,7 +260,7 @@ theta_2 = { value = "theta_2", unit = "rad" }
 /// A mass on a spring that a force drives.
 const OSCILLATOR: Machine = Machine {
     name: "oscillator",
-    specification: crate::specifications::OSCILLATOR,
+    specification: super::specifications::OSCILLATOR,
     channels: &[("x", "m", 1e-5)],
     uncertain: "m = { relative = 0.02 }",
     unit: "N",

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use eomgen_tests::program::refused;
 
-use crate::machines::{
+use super::machines::{
     BEAM, CYLINDER, Machine, PENDULUM, SAMPLES, STEP, Table, answered, description, mass, spread,
 };
 

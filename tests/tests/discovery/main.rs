@@ -1,12 +1,16 @@
 //! What `compare` and `discover` are given, and what they find.
 
 mod arm;
+mod blind;
 mod documented_example;
 mod effects_files;
 mod effects_found;
 mod effects_placed;
+mod empirical;
 mod friction_that_stops;
 mod friction_under_load;
+mod input_faults;
+mod joint_acceptance;
 mod kinds_of_channels;
 mod machines;
 mod measured_current;
@@ -15,5 +19,8 @@ mod next_experiment;
 mod nothing_compared;
 mod off_the_list;
 mod play_in_a_drive;
+mod residual_force;
 mod specifications;
+mod split_sample;
+mod undeclared;
 mod units;

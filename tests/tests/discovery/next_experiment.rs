@@ -7,7 +7,7 @@ use eomgen_tests::logistic_noise::LogisticNoise;
 use eomgen_tests::program;
 use serde_json::Value;
 
-use crate::specifications::OSCILLATOR;
+use super::specifications::OSCILLATOR;
 
 /// A machine of one coordinate `x` that an input `u` drives, and how its records are made.
 struct Machine<'m> {

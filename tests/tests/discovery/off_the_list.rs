@@ -6,7 +6,7 @@ use eomgen_tests::logistic_noise::LogisticNoise;
 use eomgen_tests::program::{self, Texts};
 use serde_json::Value;
 
-use crate::specifications::OSCILLATOR;
+use super::specifications::OSCILLATOR;
 
 /// A machine of one coordinate: its specification, the unit of its coordinate and of its input, and
 /// the acceleration at a position, a rate and an input.

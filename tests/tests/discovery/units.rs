@@ -6,7 +6,7 @@ use std::path::Path;
 use eomgen_model_spec::unit::Unit;
 use serde_json::Value;
 
-use crate::machines::{
+use super::machines::{
     BEAM, CYLINDER, Channel, Machine, PENDULUM, STEP, Table, answered, description, mass, spread,
 };
 

@@ -8,6 +8,7 @@
 
 mod dual;
 mod evaluators;
+mod lanes;
 mod models;
 mod rounded;
 mod tracked;

@@ -38,12 +38,12 @@ models! {
     furuta = "../../model-spec/models/furuta_pendulum.toml", 0;
     pendulum = "../../model-spec/models/pendulum.toml", 0;
     emps = "../../model-spec/models/emps.toml", 0;
-    exponential_taper = "../tests/features/exponential_taper.toml", 3;
-    printed_basis = "../tests/features/printed_basis.toml", 2;
-    two_fields = "../tests/features/two_fields.toml", 2;
-    functions = "../tests/features/functions.toml", 0;
-    nonquadratic_kinetic = "../tests/features/nonquadratic_kinetic.toml", 0;
-    rheonomic = "../tests/features/rheonomic.toml", 0;
-    lever_mass_turning = "../tests/features/lever_mass_turning.toml", 2;
-    centrifugal_stiffening = "../tests/features/centrifugal_stiffening.toml", 3;
+    exponential_taper = "../features/exponential_taper.toml", 3;
+    printed_basis = "../features/printed_basis.toml", 2;
+    two_fields = "../features/two_fields.toml", 2;
+    functions = "../features/functions.toml", 0;
+    nonquadratic_kinetic = "../features/nonquadratic_kinetic.toml", 0;
+    rheonomic = "../features/rheonomic.toml", 0;
+    lever_mass_turning = "../features/lever_mass_turning.toml", 2;
+    centrifugal_stiffening = "../features/centrifugal_stiffening.toml", 3;
 }

@@ -308,7 +308,7 @@ fn every_feature_of_the_language_has_the_bits_of_rust() {
     if !compilers() {
         return;
     }
-    let folder = project().join("tests/tests/features");
+    let folder = project().join("tests/features");
     let entries = std::fs::read_dir(folder).expect("the folder of features");
     let mut paths: Vec<PathBuf> = entries
         .map(|entry| entry.expect("an entry").path())

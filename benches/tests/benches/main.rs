@@ -1,0 +1,5 @@
+//! Counts of the benchmarks: instructions, operations, contenders.
+
+mod contenders;
+mod instructions;
+mod rigid_trees;

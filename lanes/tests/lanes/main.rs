@@ -1,0 +1,4 @@
+//! Batches of states against single states: regimes, throughput.
+
+mod regimes;
+mod throughput;

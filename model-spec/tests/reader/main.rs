@@ -1,0 +1,7 @@
+//! Reading specifications: grammar, names, units, messages, edits.
+
+mod broken;
+mod edits;
+mod properties;
+mod semantics;
+mod shipped;

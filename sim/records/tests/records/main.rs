@@ -1,0 +1,4 @@
+//! Reading records: documented forms, file formats, wrapped angles.
+
+mod documented;
+mod formats;

@@ -1,0 +1,387 @@
+//! The implicit Radau method on stiff problems with known or published solutions.
+
+#[allow(dead_code)]
+use std::f64::consts::PI;
+
+use super::systems::dead_zone;
+use eomgen_sim::ode::{Method, Settings, SolveError, System, Trajectory, simulate, simulate_into};
+
+/// A system made of functions, with its Jacobian.
+struct Stiff<R, J> {
+    states: usize,
+    rates: R,
+    jacobian: J,
+    /// The place of a switching surface, as a value of the first state.
+    surface: Option<f64>,
+    breakpoints: Vec<f64>,
+}
+
+impl<R: Fn(f64, &[f64], &mut [f64]), J: Fn(f64, &[f64], &mut [f64])> System for Stiff<R, J> {
+    fn states(&self) -> usize {
+        self.states
+    }
+
+    fn rates(&self, t: f64, y: &[f64], out: &mut [f64]) {
+        (self.rates)(t, y, out);
+    }
+
+    fn jacobian(&self, t: f64, y: &[f64], out: &mut [f64]) {
+        (self.jacobian)(t, y, out);
+    }
+
+    fn guard_count(&self) -> usize {
+        usize::from(self.surface.is_some())
+    }
+
+    fn guards(&self, _t: f64, y: &[f64], out: &mut [f64]) {
+        if let Some(surface) = self.surface {
+            out[0] = y[0] - surface;
+        }
+    }
+
+    fn next_breakpoint(&self, t: f64) -> Option<f64> {
+        self.breakpoints.iter().copied().find(|next| *next > t)
+    }
+}
+
+fn stiff<R, J>(states: usize, rates: R, jacobian: J) -> Stiff<R, J>
+where
+    R: Fn(f64, &[f64], &mut [f64]),
+    J: Fn(f64, &[f64], &mut [f64]),
+{
+    Stiff {
+        states,
+        rates,
+        jacobian,
+        surface: None,
+        breakpoints: Vec::new(),
+    }
+}
+
+fn by(method: Method, tolerance: f64) -> Settings {
+    Settings {
+        method,
+        ..Settings::with_tolerance(tolerance)
+    }
+}
+
+fn radau(tolerance: f64) -> Settings {
+    by(Method::Radau, tolerance)
+}
+
+fn run(
+    system: &dyn System,
+    initial: &[f64],
+    samples: &[f64],
+    settings: &Settings,
+) -> Result<Trajectory, SolveError> {
+    let span = (0.0, *samples.last().expect("an end"));
+    simulate(system, initial, span, samples, settings, &mut |_| {})
+}
+
+/// The largest difference between a component of the rows and what it should be.
+fn worst(found: &Trajectory, component: usize, expected: impl Fn(f64) -> f64) -> f64 {
+    let rows = found.times.iter().zip(&found.states);
+    let errors = rows.map(|(t, state)| (state[component] - expected(*t)).abs());
+    errors.fold(0.0, f64::max)
+}
+
+fn grid(until: f64, count: u32) -> Vec<f64> {
+    let all = 0..=count;
+    all.map(|k| until * f64::from(k) / f64::from(count))
+        .collect()
+}
+
+/// m x'' = (1 - x^2) x' - x.
+fn van_der_pol(m: f64) -> impl System {
+    stiff(
+        2,
+        move |_, y: &[f64], out: &mut [f64]| {
+            out[0] = y[1];
+            out[1] = ((1.0 - y[0] * y[0]) * y[1] - y[0]) / m;
+        },
+        move |_, y: &[f64], out: &mut [f64]| {
+            out[0] = 0.0;
+            out[1] = 1.0;
+            out[2] = (-2.0 * y[0] * y[1] - 1.0) / m;
+            out[3] = (1.0 - y[0] * y[0]) / m;
+        },
+    )
+}
+
+#[test]
+fn van_der_pol_ends_where_the_test_set_says() {
+    // VDPOL of the Test Set for IVP Solvers (Mazzia and Magherini, Bari) with 1e6 and its
+    // reference solution at t = 2.
+    let reference = [1.706_167_732_170_469, -0.892_809_701_024_812_5];
+    // The time of a jump, which x passes within 1e-6, magnifies errors by some hundred.
+    for (tolerance, most) in [(1e-6, 5_000), (1e-8, 12_000), (1e-10, 35_000)] {
+        let found = run(&van_der_pol(1e-6), &[2.0, 0.0], &[2.0], &radau(tolerance));
+        let found = found.expect("an end");
+        for (y, reference) in found.last.iter().zip(reference) {
+            let error = (y / reference - 1.0).abs();
+            assert!(error < 10.0 * tolerance, "{error:e} at {tolerance:e}");
+        }
+        let evaluations = found.work.evaluations;
+        assert!(evaluations < most, "{evaluations} at {tolerance:e}");
+    }
+}
+
+#[test]
+fn rows_have_the_tolerance_and_cost_nothing_however_stiff() {
+    // The second state follows a cosine within 1e-7 s.
+    let system = stiff(
+        2,
+        |t: f64, y: &[f64], out: &mut [f64]| {
+            out[0] = -y[0];
+            out[1] = -1e7 * (y[1] - t.cos());
+        },
+        |_, _: &[f64], out: &mut [f64]| out.copy_from_slice(&[-1.0, 0.0, 0.0, -1e7]),
+    );
+    let rows = grid(10.0, 1000);
+    for tolerance in [1e-3, 1e-6, 1e-9, 1e-13] {
+        let found = run(&system, &[1.0, 1.0], &rows, &radau(tolerance)).expect("an end");
+        let error = worst(&found, 0, |t| (-t).exp());
+        assert!(error < 3.0 * tolerance, "{error:e} at {tolerance:e}");
+        let error = worst(&found, 1, |t| t.cos() + 1e-7 * t.sin());
+        assert!(error < 3.0 * tolerance, "{error:e} at {tolerance:e}");
+        let without = run(&system, &[1.0, 1.0], &[10.0], &radau(tolerance)).expect("an end");
+        assert_eq!(without.work.evaluations, found.work.evaluations);
+        assert_eq!(without.last, found.last);
+    }
+}
+
+#[test]
+fn steps_are_of_order_5_and_choose_their_length_by_an_error_of_order_3() {
+    let system = stiff(
+        2,
+        |_: f64, y: &[f64], out: &mut [f64]| out.copy_from_slice(&[y[1], -y[0]]),
+        |_, _: &[f64], out: &mut [f64]| out.copy_from_slice(&[0.0, 1.0, -1.0, 0.0]),
+    );
+    let end = [20.0 * PI];
+    let at = |tolerance| run(&system, &[1.0, 0.0], &end, &radau(tolerance)).expect("an end");
+    let (rough, fine) = (at(1e-5), at(1e-9));
+    let steps = (fine.work.steps as f64 / rough.work.steps as f64).log10();
+    // Four digits take 10 times the steps, and give five in each.
+    assert!((0.8..1.2).contains(&steps), "{steps}");
+    let error = |found: &Trajectory| (found.last[0] - 1.0).hypot(found.last[1]);
+    let order = (error(&rough) / error(&fine)).log10() / steps;
+    assert!((4.5..6.0).contains(&order), "order {order}");
+    assert!(error(&fine) < 1e-9);
+}
+
+/// A pendulum (1/s^2) with dry friction (1/s^2) that is smoothed over a speed (rad/s).
+fn smoothed_friction(friction: f64, speed: f64) -> impl System {
+    stiff(
+        2,
+        move |_: f64, y: &[f64], out: &mut [f64]| {
+            let smooth = (y[1] / speed).tanh();
+            out.copy_from_slice(&[y[1], -9.81 * y[0].sin() - friction * smooth]);
+        },
+        move |_, y: &[f64], out: &mut [f64]| {
+            let smooth = (y[1] / speed).tanh();
+            let slope = -friction * (1.0 - smooth * smooth) / speed;
+            out.copy_from_slice(&[0.0, 1.0, -9.81 * y[0].cos(), slope]);
+        },
+    )
+}
+
+#[test]
+fn smoothed_dry_friction_comes_to_rest_in_ten_thousand_evaluations() {
+    // Ten seconds, of which rest takes more than half; an explicit method makes millions there.
+    let (friction, speed) = (2.0, 1e-6);
+    let system = smoothed_friction(friction, speed);
+    let found = run(&system, &[1.0, 0.0], &[10.0], &radau(1e-10)).expect("an end");
+    assert!(found.work.evaluations < 10_000, "{:?}", found.work);
+    // At rest it creeps as fast as the friction that holds it asks for.
+    let creep = -speed * (9.81 * found.last[0].sin() / friction).atanh();
+    assert!((found.last[1] - creep).abs() < 1e-2 * creep.abs());
+    // Until it rests, against the explicit method of order 8: the rest is creep from there.
+    let rests = 2.5;
+    let explicit = Settings::with_tolerance(1e-10);
+    let until = |settings| run(&system, &[1.0, 0.0], &[rests], settings).expect("an end");
+    let (explicit, implicit) = (until(&explicit), until(&radau(1e-10)));
+    let error = (implicit.last[0] / explicit.last[0] - 1.0).abs();
+    assert!(error < 1e-6, "{error:e}");
+}
+
+#[test]
+fn a_loudspeaker_with_half_a_microhenry_follows_a_square_wave() {
+    // m x'' + c x' + k x = B q', L q'' + R q' + B x' = u with a current q', which settles within
+    // L/R = 6e-8 s.
+    let (m, c, k, b, l, r) = (0.02, 1.5, 2e3, 7.0, 0.5e-6, 8.0);
+    let matrix = [
+        [0.0, 0.0, 1.0, 0.0],
+        [0.0, 0.0, 0.0, 1.0],
+        [-k / m, 0.0, -c / m, b / m],
+        [0.0, 0.0, -b / l, -r / l],
+    ];
+    let voltage = |t: f64| {
+        if (100.0 * t).floor() % 2.0 < 0.5 {
+            5.0
+        } else {
+            -5.0
+        }
+    };
+    let system = Stiff {
+        breakpoints: (1..10).map(|k| f64::from(k) / 100.0).collect(),
+        ..stiff(
+            4,
+            move |t: f64, y: &[f64], out: &mut [f64]| {
+                for (out, row) in out.iter_mut().zip(&matrix) {
+                    *out = row.iter().zip(y).map(|(a, y)| a * y).sum();
+                }
+                out[3] += voltage(t) / l;
+            },
+            move |_, _: &[f64], out: &mut [f64]| out.copy_from_slice(matrix.as_flattened()),
+        )
+    };
+    let found = run(&system, &[0.0; 4], &grid(0.1, 10), &radau(1e-9)).expect("an end");
+    assert!(found.work.evaluations < 30_000, "{:?}", found.work);
+    // With the voltage as a fifth, constant state, an exponential per hundredth of a second.
+    let mut augmented = nalgebra::Matrix5::<f64>::zeros();
+    for (i, row) in matrix.iter().enumerate() {
+        for (j, entry) in row.iter().enumerate() {
+            augmented[(i, j)] = *entry;
+        }
+    }
+    augmented[(3, 4)] = 1.0 / l;
+    let over = (augmented * 0.01).exp();
+    let mut state = nalgebra::Vector5::zeros();
+    for (row, (t, found)) in found.times.iter().zip(&found.states).enumerate() {
+        for (component, scale) in [(0, 2e-3), (2, 0.5), (3, 0.6)] {
+            let error: f64 = (found[component] - state[component]) / scale;
+            assert!(
+                error.abs() < 1e-7,
+                "component {component} at {t}: {error:e}"
+            );
+        }
+        state[4] = if row % 2 == 0 { 5.0 } else { -5.0 };
+        state = over * state;
+    }
+}
+
+/// x'' = -g, beyond the ground at 0 with a spring (1/s^2) and a damper (1/s) in addition.
+fn falls_on(spring: f64, damper: f64) -> impl System {
+    Stiff {
+        surface: Some(0.0),
+        ..stiff(
+            2,
+            move |_: f64, y: &[f64], out: &mut [f64]| {
+                out[0] = y[1];
+                out[1] = -9.81;
+                if y[0] < 0.0 {
+                    out[1] -= spring * y[0] + damper * y[1];
+                }
+            },
+            move |_, y: &[f64], out: &mut [f64]| {
+                let contact = f64::from(u8::from(y[0] < 0.0));
+                out.copy_from_slice(&[0.0, 1.0, -contact * spring, -contact * damper]);
+            },
+        )
+    }
+}
+
+#[test]
+fn a_nearly_rigid_contact_throws_back_what_falls_on_it() {
+    // A contact of 3e-6 s between flights of half a second.
+    let (frequency, height, g) = (1e6, 0.3, 9.81_f64);
+    let speed = (2.0 * g * height).sqrt();
+    let contact = (PI + 2.0 * (g / (frequency * speed)).atan()) / frequency;
+    let period = 2.0 * speed / g + contact;
+    let system = falls_on(frequency * frequency, 0.0);
+    let found = run(&system, &[height, 0.0], &[10.0 * period], &radau(1e-10)).expect("an end");
+    assert_eq!(found.switches.len(), 20);
+    let error = (found.last[0] / height - 1.0).abs();
+    assert!(error < 1e-6, "{error:e}");
+    let first = found.switches[0].t * g / speed - 1.0;
+    assert!(first.abs() < 1e-12, "{first:e}");
+}
+
+#[test]
+fn what_falls_on_a_stiff_damper_comes_to_rest_on_it() {
+    // The contact creeps back within spring/damper = 1e-4 s, the speed is gone within 1e-6 s.
+    let system = falls_on(1e10, 1e6);
+    let found = run(&system, &[0.1, 0.0], &[1.0], &radau(1e-9)).expect("an end");
+    assert!((found.last[0] + 9.81e-10).abs() < 1e-13);
+    assert!(found.work.evaluations < 10_000, "{:?}", found.work);
+    let explicit = Settings {
+        max_steps: 20_000,
+        ..Settings::with_tolerance(1e-9)
+    };
+    let error = run(&system, &[0.1, 0.0], &[1.0], &explicit).expect_err("too many steps");
+    assert!(matches!(error, SolveError::TooManySteps { .. }), "{error}");
+}
+
+#[test]
+fn what_cannot_be_integrated_is_reported_where_it_is() {
+    let none = |_: f64, _: &[f64], out: &mut [f64]| out.fill(0.0);
+    for tolerance in [1e-3, 1e-9, 1e-13] {
+        let pole = stiff(
+            1,
+            |_: f64, y: &[f64], out: &mut [f64]| out[0] = y[0] * y[0],
+            |_, y: &[f64], out: &mut [f64]| out[0] = 2.0 * y[0],
+        );
+        let rows = grid(2.0, 200);
+        let mut found = Trajectory::default();
+        let asked = (&[1.0][..], (0.0, 2.0), rows.as_slice());
+        let settings = radau(tolerance);
+        let error = simulate_into(&mut found, &pole, asked, &settings, &mut |_| {});
+        let t = error.expect_err("a pole").time().expect("a time");
+        assert!((t - 1.0).abs() < 10.0 * tolerance.max(1e-6), "{t}");
+        assert!((98..=101).contains(&found.times.len()));
+        // Rates that are no numbers beyond a time; slopes that are infinite or no numbers.
+        let root = stiff(
+            1,
+            |t: f64, _: &[f64], out: &mut [f64]| out[0] = (0.5 - t).sqrt(),
+            none,
+        );
+        let error = run(&root, &[0.0], &[1.0], &settings).expect_err("no number");
+        let SolveError::NotFinite { t, state: 0 } = error else {
+            panic!("{error:?}")
+        };
+        assert!((t - 0.5).abs() < 1e-3, "{t}");
+    }
+}
+
+#[test]
+fn a_singular_matrix_of_the_iteration_is_got_around() {
+    // y' = a y with a h just the real eigenvalue of the method in the first step.
+    let rate = 3.637_834_252_744_496 / 1e-6;
+    let system = stiff(
+        1,
+        move |_: f64, y: &[f64], out: &mut [f64]| out[0] = rate * y[0],
+        move |_, _: &[f64], out: &mut [f64]| out[0] = rate,
+    );
+    let mut found = Trajectory::default();
+    let settings = Settings {
+        max_steps: 100_000,
+        ..radau(1e-6)
+    };
+    let asked = (&[1e-9][..], (0.0, 1.0), &[][..]);
+    let error = simulate_into(&mut found, &system, asked, &settings, &mut |_| {});
+    // It grows beyond all numbers, 1e317 times.
+    let error = error.expect_err("no end");
+    let t = rate * error.time().expect("a time");
+    assert!((650.0..731.0).contains(&t), "{t}: {error}");
+    assert!(!matches!(error, SolveError::TooManySteps { .. }), "{error}");
+}
+
+#[test]
+fn switches_are_located_as_by_runge_kutta() {
+    let system = dead_zone(0.3, 20.0);
+    let times: Vec<f64> = (0..=50).map(|i| 0.2 * f64::from(i)).collect();
+    let by_radau = run(&system, &[0.0, 0.7], &times, &radau(1e-10)).expect("a motion");
+    let settings = Settings::with_tolerance(1e-12);
+    let by_runge_kutta = run(&system, &[0.0, 0.7], &times, &settings).expect("a motion");
+    assert_eq!(by_radau.switches.len(), by_runge_kutta.switches.len());
+    assert!(!by_radau.switches.is_empty());
+    for (one, other) in by_radau.switches.iter().zip(&by_runge_kutta.switches) {
+        assert!((one.t - other.t).abs() < 1e-8 && one.guard == other.guard);
+    }
+    for (one, other) in by_radau.states.iter().zip(&by_runge_kutta.states) {
+        for (a, b) in one.iter().zip(other) {
+            assert!((a - b).abs() < 1e-8, "{a} {b}");
+        }
+    }
+}

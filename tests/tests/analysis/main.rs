@@ -1,0 +1,4 @@
+//! Equilibria, linearisation, natural modes and sweeps.
+
+mod operating_points;
+mod sweep;

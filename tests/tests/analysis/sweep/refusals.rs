@@ -1,0 +1,151 @@
+//! Points without a number, sweeps that do not go together, options that make no sense.
+
+use std::fs;
+
+use eomgen_tests::models::path;
+use eomgen_tests::program::{accepted, refused};
+
+use super::place::{MAP, OSCILLATOR, Place, accept, column, refuse, results, table};
+
+#[test]
+fn another_sweep_in_the_folder_is_refused_and_left_alone() {
+    let place = Place::new();
+    accept(&place.sweep("map", &MAP));
+    let before = results(&place.at("map"));
+    for (more, what) in [
+        (["--set", "F=2"], "--set"),
+        (["--vary", "k=4:5:1"], "--vary"),
+        (["--frequency", "omega2"], "omega2"),
+    ] {
+        let message = refuse(&place.sweep("map", &[&MAP[..], &more[..]].concat()));
+        assert!(message.contains(what), "{message}");
+    }
+    let changed = OSCILLATOR.replace("value = 3,", "value = 3.5,");
+    fs::write(place.at("oscillator.toml"), changed).expect("a specification");
+    let message = refuse(&place.sweep("map", &MAP));
+    assert!(
+        message.contains("not the same: the specification"),
+        "{message}"
+    );
+    assert!(results(&place.at("map")) == before);
+}
+
+#[test]
+fn engines_are_asked_for_what_they_can_do() {
+    let place = Place::new();
+    for (more, what) in [
+        (&["--engine", "pbs"][..], "slurm, dask"),
+        (
+            &["--engine", "slurm", "--shard", "1/2"],
+            "--shards says how many",
+        ),
+        (&["--shards", "4"], "--shards goes with --engine"),
+        (&["--engine", "slurm", "--shards", "0"], "1..=1000"),
+        (&["--engine", "slurm", "--shards", "1001"], "1..=1000"),
+        (
+            &["--engine", "slurm", "--scheduler", "tcp://a:1"],
+            "--engine dask",
+        ),
+        (&["--engine", "dask"], "DASK_SCHEDULER_ADDRESS"),
+    ] {
+        let message = refuse(&place.sweep("map", &[&MAP[..], more].concat()));
+        assert!(message.contains(what), "{more:?}: {message}");
+        assert!(!place.at("map/sweep.parquet").exists());
+    }
+}
+
+#[test]
+fn points_without_a_number_say_why() {
+    let place = Place::new();
+    // Without mass there is no motion, at a frequency of 0 no forcing period.
+    let axes = ["--vary", "m=0:1:2", "--vary", "omega=0:2:2"];
+    let more = ["--set", "zeta=0.1", "--periods", "2", "--json"];
+    let json = accept(&place.sweep("few", &[&axes[..], &more[..]].concat()));
+    let document: serde_json::Value = serde_json::from_str(&json).expect("one document");
+    assert_eq!(
+        (&document["points"], &document["computed"]),
+        (&4.into(), &4.into())
+    );
+    assert_eq!(document["failed"]["poincare"], 3);
+    let found = table(&place.at("few"));
+    let status = column(&found, "poincare_status");
+    assert_eq!(status[1..], [1.0, 5.0, 0.0]);
+    let mean = column(&found, "poincare_mean");
+    assert_eq!(mean.iter().filter(|mean| mean.is_nan()).count(), 3);
+    // Negative damping: growth by exp(9 t) for more than 950 s, beyond any number.
+    let growing = ["--vary", "c=-10000:-9000:2", "--transient", "300"];
+    accept(&place.sweep("growing", &growing));
+    let found = table(&place.at("growing"));
+    assert!(
+        column(&found, "poincare_status")
+            .iter()
+            .all(|status| *status == 2.0)
+    );
+    let text = fs::read_to_string(place.at("few/sweep.json")).expect("the description");
+    assert!(
+        text.contains("the parameters are no admissible model"),
+        "{text}"
+    );
+}
+
+#[test]
+fn what_makes_no_sense_is_refused_before_anything_is_written() {
+    let place = Place::new();
+    let c = "c=1:2:3";
+    for (more, part) in [
+        (vec!["--vary", "d=1:2:3"], "no parameter `d`"),
+        (vec!["--vary", "omeag=1:2:3"], "did you mean `omega`"),
+        (vec!["--vary", "m=-1:2:3"], "at least 0 kg"),
+        (vec!["--vary", "m=2:-1:3"], "at least 0 kg"),
+        (vec!["--vary", "c=1:2"], "FROM:TO:COUNT"),
+        (vec!["--vary", "c=1:2:0"], "at least one value"),
+        (vec!["--vary", "c=1:nan:3"], "finite"),
+        (
+            vec!["--vary", "c=1:2:5000", "--vary", "k=1:2:5000"],
+            "10000000 points",
+        ),
+        (vec!["--vary", c, "--vary", c], "varied twice"),
+        (vec!["--vary", c, "--set", "c=1"], "both set and varied"),
+        (vec!["--vary", c, "--set", "m"], "NAME=VALUE"),
+        (vec!["--vary", c, "--shard", "0/3"], "such as 2/3"),
+        (vec!["--vary", c, "--shard", "4/3"], "such as 2/3"),
+        (vec!["--vary", c, "--threads", "0"], "--threads"),
+        (vec!["--vary", c, "--order", "3"], "no field"),
+        (vec!["--vary", c, "--frequency", "k"], "angular frequency"),
+        (vec!["--vary", c, "--periods", "1"], "at least 2 --periods"),
+        (vec!["--vary", c, "--transient", "9999999"], "--transient"),
+        (vec!["--vary", c, "--measure", "fly"], "there is"),
+        (
+            vec!["--vary", c, "--measure", "poincare"],
+            "name each measure once",
+        ),
+    ] {
+        let message = refuse(&place.sweep("never", &more));
+        assert!(message.contains(part), "{more:?}: {message}");
+        assert!(!place.at("never").exists(), "{more:?}");
+    }
+    let pendulum = path("pendulum").display().to_string();
+    let out = place.at("never").display().to_string();
+    let message = refused(&[
+        "sweep",
+        &pendulum,
+        "--vary",
+        "m=1:2:3",
+        "--measure",
+        "poincare",
+        "--out",
+        &out,
+    ]);
+    assert!(message.contains("--frequency NAME"), "{message}");
+    let file = place.at("oscillator.toml").display().to_string();
+    assert!(refused(&["merge", &file]).contains("sweep.json"));
+}
+
+#[test]
+fn help_has_an_example() {
+    for command in ["sweep", "merge"] {
+        let help = accepted(&[command, "--help"]);
+        let example = help.split_once("Example").map(|(_, example)| example);
+        assert!(example.is_some_and(|text| text.contains(&format!("eomgen {command} "))));
+    }
+}

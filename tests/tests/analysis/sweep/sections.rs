@@ -1,0 +1,348 @@
+//! `--measure poincare:NAME` and `--section`: any coordinate, and models without a forcing.
+
+use eomgen_tests::program::{accepted, refused};
+
+use super::place::{Place, accept, column, table};
+
+/// x = sin(t) and y = cos(1.5 t): two oscillators that nothing couples and nothing drives.
+const TWO: &str = r#"
+[model]
+name = "two"
+[parameters]
+m = { value = 1, unit = "kg" }
+k = { value = 1, unit = "N/m" }
+c = { value = 2.25, unit = "N/m" }
+[coordinates]
+x = { unit = "m", initial_rate = 1 }
+y = { unit = "m", initial = 1 }
+[kinetic]
+both = "1/2*m*(dot(x)^2 + dot(y)^2)"
+[potential]
+both = "1/2*k*x^2 + 1/2*c*y^2"
+"#;
+
+fn of_two(place: &Place, more: &[&str]) -> Vec<String> {
+    std::fs::write(place.at("two.toml"), TWO).expect("a specification");
+    let (spec, out) = (place.at("two.toml"), place.at("two"));
+    let (spec, out) = (spec.display().to_string(), out.display().to_string());
+    let given = ["sweep", &spec, "--out", &out, "--vary", "m=1:1.5:2"];
+    given
+        .iter()
+        .chain(more)
+        .map(|part| (*part).to_owned())
+        .collect()
+}
+
+fn borrowed(arguments: &[String]) -> Vec<&str> {
+    arguments.iter().map(String::as_str).collect()
+}
+
+#[test]
+fn an_autonomous_model_is_seen_where_a_coordinate_goes_through_a_value() {
+    let place = Place::new();
+    let section = [
+        "--measure",
+        "poincare:y",
+        "--section",
+        "x=0:down",
+        "--until",
+        "200",
+    ];
+    let span = ["--transient", "3", "--periods", "12"];
+    accept(&of_two(&place, &[&section[..], &span].concat()));
+    let found = table(&place.at("two"));
+    let one = |name: &str| column(&found, name)[0];
+    // x goes down through 0 at t = pi (2 k + 1), where y = cos(1.5 pi (2 k + 1)) = 0.
+    assert!((one("poincare:y_time") - std::f64::consts::TAU).abs() < 1e-7);
+    for point in 1..=12 {
+        let y = one(&format!("poincare:y_{point}"));
+        assert!(y.abs() < 1e-6, "{point}: {y}");
+    }
+    // The rates there are 1.5 and -1.5 in turn.
+    assert_eq!(one("poincare:y_period"), 2.0);
+    assert_eq!(one("poincare:y_clusters"), 2.0);
+}
+
+#[test]
+fn upwards_is_another_section() {
+    let place = Place::new();
+    let section = [
+        "--measure",
+        "poincare:y",
+        "--section",
+        "x=0.5",
+        "--until",
+        "200",
+    ];
+    let span = ["--transient", "2", "--periods", "8"];
+    accept(&of_two(&place, &[&section[..], &span].concat()));
+    let found = table(&place.at("two"));
+    for point in 1..=8_u32 {
+        // sin(t) = 1/2, upwards: t = pi/6 + 2 pi k.
+        let t = std::f64::consts::PI / 6.0 + std::f64::consts::TAU * f64::from(point + 1);
+        let y = column(&found, &format!("poincare:y_{point}"))[0];
+        assert!((y - (1.5 * t).cos()).abs() < 1e-6, "{point}: {y}");
+    }
+}
+
+#[test]
+fn another_coordinate_is_seen_once_per_forcing_period() {
+    let place = Place::new();
+    let more = [
+        "--measure",
+        "poincare:x_dot",
+        "--vary",
+        "c=500:500:1",
+        "--transient",
+        "40",
+    ];
+    let spec = place.at("oscillator.toml").display().to_string();
+    let out = place.at("map").display().to_string();
+    let given = ["sweep", &spec, "--out", &out];
+    accepted(&[&given[..], &more, &["--periods", "4"]].concat());
+    // m = 1, k = 4, omega = 2: at resonance x = -F/(c omega) cos(omega t).
+    let found = table(&place.at("map"));
+    let rate = column(&found, "poincare:x_dot_mean")[0];
+    assert!(rate.abs() < 1e-9, "{rate}");
+}
+
+#[test]
+fn sections_that_make_no_sense_are_refused() {
+    let place = Place::new();
+    for (more, what) in [
+        (
+            &[
+                "--measure",
+                "poincare:z",
+                "--section",
+                "x=0",
+                "--until",
+                "9",
+            ][..],
+            "`z`",
+        ),
+        (
+            &["--measure", "poincare", "--section", "x", "--until", "9"],
+            "no `=`",
+        ),
+        (
+            &[
+                "--measure",
+                "poincare",
+                "--section",
+                "x=0:over",
+                "--until",
+                "9",
+            ],
+            "no direction",
+        ),
+        (
+            &[
+                "--measure",
+                "poincare",
+                "--section",
+                "x=NaN",
+                "--until",
+                "9",
+            ],
+            "finite",
+        ),
+        (
+            &["--measure", "poincare", "--section", "x=0"],
+            "--until as well",
+        ),
+        (
+            &["--measure", "poincare", "--section", "x=0", "--until", "-1"],
+            "above 0",
+        ),
+        (&["--measure", "poincare"], "--section NAME=VALUE"),
+    ] {
+        let arguments = of_two(&place, more);
+        let message = refused(&borrowed(&arguments));
+        assert!(message.contains(what), "{more:?}: {message}");
+        assert!(!place.at("two").exists());
+    }
+}
+
+/// A shaft that a motor turns with a torque that swings; PHI is its coordinate.
+const SHAFT: &str = r#"
+[model]
+name = "shaft"
+[parameters]
+J = { value = 1, unit = "kg m^2" }
+c = { value = 0.5, unit = "N m s" }
+T_0 = { value = 1, unit = "N m" }
+T_1 = { value = 0.5, unit = "N m" }
+omega = { value = 3, unit = "rad/s" }
+[coordinates]
+phi = { unit = "rad" }
+[kinetic]
+k = "1/2*J*dot(phi)^2"
+[dissipation]
+c = "1/2*c*dot(phi)^2"
+[forces]
+motor = { on = "phi", value = "T_0 + T_1*cos(omega*t)" }
+"#;
+
+/// Period and greatest value of what is seen once per forcing period.
+fn repetition(place: &Place, text: &str, vary: &str, quantity: &str) -> (f64, f64) {
+    std::fs::write(place.at("model.toml"), text).expect("a specification");
+    let _ = std::fs::remove_dir_all(place.at("out"));
+    let (spec, out) = (place.at("model.toml"), place.at("out"));
+    let (spec, out) = (spec.display().to_string(), out.display().to_string());
+    let measure = format!("poincare:{quantity}");
+    let given = [
+        "sweep",
+        &spec,
+        "--out",
+        &out,
+        "--vary",
+        vary,
+        "--measure",
+        &measure,
+        "--transient",
+        "300",
+    ];
+    let given: Vec<String> = given.iter().map(|part| (*part).to_owned()).collect();
+    accept(&given);
+    let found = table(&place.at("out"));
+    let one = |part: &str| column(&found, &format!("{measure}_{part}"))[0];
+    (one("period"), one("max"))
+}
+
+#[test]
+fn machines_that_turn_or_travel_repeat_with_their_forcing() {
+    use std::f64::consts::PI;
+    let place = Place::new();
+    // By its rate; in a range of angles by the angle itself.
+    assert_eq!(repetition(&place, SHAFT, "c=0.5:0.6:2", "phi_dot").0, 1.0);
+    let (period, greatest) = repetition(&place, SHAFT, "c=0.5:0.6:2", "phi");
+    assert!(period == 1.0 && greatest <= PI, "{period} {greatest}");
+    // Without a swing of the torque the speed does not change at all.
+    assert_eq!(repetition(&place, SHAFT, "T_1=0:0:1", "phi_dot").0, 1.0);
+    let rack = SHAFT
+        .replace("phi = { unit = \"rad\" }", "phi = { unit = \"m\" }")
+        .replace("kg m^2", "kg")
+        .replace("N m s", "N s/m")
+        .replace("N m\"", "N\"");
+    assert_eq!(repetition(&place, &rack, "c=0.5:0.6:2", "phi_dot").0, 1.0);
+    assert_eq!(repetition(&place, &rack, "c=0.5:0.6:2", "phi").0, 1.0);
+    // Two wheels on a soft contact turn together.
+    let gear = SHAFT
+        .replace("[coordinates]", "k = { value = 40, unit = \"N m\" }\n[coordinates]\npsi = { unit = \"rad\" }")
+        .replace("[dissipation]", "w = \"1/2*J*dot(psi)^2\"\n[potential]\nk = \"1/2*k*(phi - 2*psi)^2\"\n[dissipation]\nd = \"1/2*c*dot(psi)^2\"");
+    assert_eq!(repetition(&place, &gear, "c=0.5:0.6:2", "phi_dot").0, 1.0);
+    assert_eq!(repetition(&place, &gear, "c=0.5:0.6:2", "psi").0, 1.0);
+    // A pendulum that a steady torque turns over: its equations repeat with a turn. The torque is
+    // modulated so that the motion locks to it.
+    let pendulum = SHAFT
+        .replace(
+            "value = 0.5, unit = \"N m\" }",
+            "value = 1.5, unit = \"N m\" }",
+        )
+        .replace(
+            "[dissipation]",
+            "[potential]\nw = \"-w*cos(phi)\"\n[dissipation]",
+        )
+        .replace(
+            "[coordinates]",
+            "w = { value = 0.8, unit = \"N m\" }\n[coordinates]",
+        )
+        .replace(
+            "phi = { unit = \"rad\" }",
+            "phi = { unit = \"rad\", initial_rate = \"omega\" }",
+        )
+        .replace(
+            "value = 1, unit = \"N m\" }\nT_1",
+            "value = 1.5, unit = \"N m\" }\nT_1",
+        );
+    let (period, greatest) = repetition(&place, &pendulum, "c=0.5:0.5:1", "phi");
+    assert!(period == 1.0 && greatest <= PI, "{period} {greatest}");
+}
+
+/// A rotor that a potential slows down and speeds up; V is its potential.
+const ROTOR: &str = r#"
+[model]
+name = "rotor"
+[parameters]
+J = { value = 1, unit = "kg m^2" }
+a = { value = 0.1, unit = "N m" }
+[coordinates]
+p = { unit = "rad", initial = 0.1, initial_rate = 6 }
+[kinetic]
+k = "1/2*J*dot(p)^2"
+[potential]
+v = "V"
+"#;
+
+/// Runs a sweep of `a` with a section; the value of a column of the measure at its first value.
+fn on_section(
+    place: &Place,
+    text: &str,
+    measure: &str,
+    section: &str,
+) -> impl Fn(&str) -> f64 + use<> {
+    std::fs::write(place.at("model.toml"), text).expect("a specification");
+    let _ = std::fs::remove_dir_all(place.at("out"));
+    let (spec, out) = (place.at("model.toml"), place.at("out"));
+    let (spec, out) = (spec.display().to_string(), out.display().to_string());
+    let line = format!(
+        "sweep|{spec}|--out|{out}|--vary|a=0.1:0.2:2|--measure|{measure}|--section|{section}|--until|60\
+         |--transient|3|--periods|10"
+    );
+    accept(&line.split('|').map(str::to_owned).collect::<Vec<_>>());
+    let found = table(&place.at("out"));
+    let measure = measure.to_owned();
+    move |part: &str| column(&found, &format!("{measure}_{part}"))[0]
+}
+
+#[test]
+fn a_section_by_an_angle_is_crossed_once_per_turn() {
+    let place = Place::new();
+    let rotor = ROTOR.replace("\"V\"", "\"a*cos(p)\"");
+    // The energy is 18 + 0.1 cos(0.1), in every turn.
+    let rate = |p: f64| (36.0 + 0.2 * (0.1f64.cos() - p.cos())).sqrt();
+    for section in ["p=1", "p=1 + 4*pi", "p=-1:up"] {
+        let one = on_section(&place, &rotor, "poincare:p_dot", section);
+        let at = if section.starts_with("p=-") {
+            -1.0
+        } else {
+            1.0
+        };
+        assert_eq!(one("period"), 1.0, "{section}");
+        for point in 1..=10 {
+            let found = one(&point.to_string());
+            assert!((found - rate(at)).abs() < 1e-7, "{section}: {found}");
+        }
+        // One turn takes the mean of 1/rate over the angle.
+        let parts = 0..1000;
+        let turn: f64 = parts
+            .map(|k| 1.0 / rate(std::f64::consts::TAU * f64::from(k) / 1000.0))
+            .sum();
+        let right = std::f64::consts::TAU * turn / 1000.0;
+        assert!((one("time") - right).abs() < 1e-7, "{section}");
+    }
+    let angle = on_section(&place, &rotor, "poincare:p", "p=1");
+    assert_eq!(angle("period"), 1.0);
+    assert!((angle("min") - angle("max")).abs() < 1e-7);
+    // Backwards, without a potential: one step of the solver passes many turns.
+    let back = ROTOR
+        .replace("\"V\"", "\"0*a\"")
+        .replace("rate = 6", "rate = -6");
+    let one = on_section(&place, &back, "poincare:p_dot", "p=1:down");
+    assert_eq!(one("period"), 1.0);
+    assert!((one("time") - std::f64::consts::TAU / 6.0).abs() < 1e-9);
+}
+
+#[test]
+fn a_section_by_an_angle_that_a_spring_tells_apart_is_crossed_at_its_value_only() {
+    let place = Place::new();
+    // w = 2 rad/s, and an amplitude of about 12 rad: the motion comes back once per 2 pi/w.
+    let spring = ROTOR
+        .replace("\"V\"", "\"1/2*40*a*p^2\"")
+        .replace("initial_rate = 6", "initial_rate = 24");
+    let one = on_section(&place, &spring, "poincare:p_dot", "p=1");
+    assert_eq!(one("period"), 1.0);
+    let time = one("time");
+    assert!((time - std::f64::consts::PI).abs() < 1e-6, "{time}");
+}

@@ -1,0 +1,10 @@
+//! Emitted code: the bits of the interpreter, single precision, microcontrollers, build scripts.
+
+mod bare_metal;
+mod bare_metal_gain;
+mod bench_of_a_model;
+mod checked_in_variants;
+mod machine_code;
+mod regimes;
+mod routes;
+mod single_precision;

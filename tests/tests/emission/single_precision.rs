@@ -1,0 +1,118 @@
+//! Emitted code in `f32` against the same in double precision that bounds what `f32` rounds
+//! away at every operation.
+
+#[path = "../../requested/tests/requested/rounded.rs"]
+mod rounded;
+
+use proptest::prelude::*;
+
+use rounded::Rounded;
+
+/// What is right to the first order in the unit is right to this: products of two roundings,
+/// and what double precision itself rounds away, are some 1e-7 of the first order.
+const FIRST_ORDER: f64 = 1.001;
+
+/// What the motor's terms accelerate the sun by, each of them, in m/s^2: at rest they may cancel.
+const MOTOR: f64 = 100.0;
+
+/// A number in double precision, and a bound of the error that it would have in single
+/// precision.
+type Single = Rounded<24>;
+
+macro_rules! agrees {
+    ($($module:ident $order:literal $test:ident)*) => {$(
+        mod $module {
+            eomgen::model! { spec = "../model-spec/models/planetary_arm.toml", order = $order }
+        }
+
+        impl $module::Scalar for Single {
+            fn number(value: f64) -> Self {
+                Self::result(value, 0.0)
+            }
+            fn select_greater(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
+                if a.number > b.number { then } else { otherwise }
+            }
+            fn all_greater(a: Self, b: Self) -> bool {
+                a.number > b.number
+            }
+            fn function<F: $module::Function>(self) -> Self {
+                let value = F::value(self.number);
+                Self::result(value, F::slope(self.number, value).abs() * self.error)
+            }
+            fn function_of_two<F: $module::FunctionOfTwo>(self, other: Self) -> Self {
+                let value = F::value(self.number, other.number);
+                let [first, second] = F::slopes(self.number, other.number, value);
+                Self::result(value, first.abs() * self.error + second.abs() * other.error)
+            }
+        }
+
+        proptest! {
+            /// Modes fall off with their number, as they do in motion; deflections are well within
+            /// or well beyond the play, where both precisions find the same side.
+            #[test]
+            fn $test(
+                numbers in prop::collection::vec(-1.0..1.0_f32, $module::STATES),
+                deflections in [within_or_beyond(), within_or_beyond()],
+                t in 0.0..1.0_f32,
+            ) {
+                let degrees = $module::DEGREES_OF_FREEDOM;
+                let coefficients = $module::Coefficients::prepare(&$module::Parameters::default());
+                let mut state: [f32; $module::STATES] = std::array::from_fn(|i| {
+                    let mode = (i % degrees).saturating_sub(2).max(1) as f32;
+                    1e-3 * numbers[i] / (mode * mode)
+                });
+                state[..2].copy_from_slice(&deflections);
+                let inputs = $module::Inputs::default();
+                let single = coefficients.cast::<f32>();
+                let bounded = coefficients.cast::<Single>();
+                let exact = state.map(Single::exact);
+                let rates = $module::rates(t, &state, &inputs, &single);
+                let expected = $module::rates(Single::exact(t), &exact, &inputs, &bounded);
+                agree(&rates, &expected)?;
+                are_sharp(&expected)?;
+                let exact_numbers = exact.map(|number| number.number);
+                let (t_double, inputs_double) = (f64::from(t), $module::Inputs::default());
+                let double = $module::rates(t_double, &exact_numbers, &inputs_double, &coefficients);
+                prop_assert_eq!(double, expected.map(|rate| rate.number));
+                let observables = $module::observables(t, &state, &inputs, &single);
+                let expected = $module::observables(Single::exact(t), &exact, &inputs, &bounded);
+                agree(&observables, &expected)?;
+            }
+        }
+    )*};
+}
+
+/// A mesh's deflection in m; its play is 25e-6 m.
+fn within_or_beyond() -> impl Strategy<Value = f32> {
+    (prop_oneof![0.0..2e-5_f32, 3e-5..1e-3_f32], any::<bool>())
+        .prop_map(|(size, turned)| if turned { -size } else { size })
+}
+
+fn agree(found: &[f32], expected: &[Single]) -> Result<(), TestCaseError> {
+    for (i, (found, expected)) in found.iter().zip(expected).enumerate() {
+        let error = (f64::from(*found) - expected.number).abs();
+        prop_assert!(
+            error <= FIRST_ORDER * expected.error,
+            "number {i}: {found:e} and {expected:?}"
+        );
+    }
+    Ok(())
+}
+
+/// The bounds say something: no acceleration that counts would be wrong below them.
+fn are_sharp(rates: &[Single]) -> Result<(), TestCaseError> {
+    let sizes = rates.iter().map(|rate| rate.number.abs());
+    let largest = sizes.fold(MOTOR, f64::max);
+    for rate in rates {
+        prop_assert!(rate.error <= 1e-4 * largest, "{rate:?} of {largest:e}");
+    }
+    Ok(())
+}
+
+agrees! {
+    rigid 0 a_rigid_arm
+    one 1 one_mode
+    four 4 four_modes
+    sixty_four 64 sixty_four_modes
+    many 128 as_many_modes_as_there_can_be
+}

@@ -1,0 +1,9 @@
+//! Derived equations, coefficients and certificates against independent computations.
+
+mod certificates;
+mod certified;
+mod coefficients;
+mod inverse_dynamics;
+mod linearity;
+mod smooth_models;
+mod two_link_arm;

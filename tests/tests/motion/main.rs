@@ -1,0 +1,12 @@
+//! Motions against closed forms, published figures, reference trajectories and other solvers.
+
+mod constraints;
+mod energy_audit;
+mod exact_properties;
+mod exact_reference;
+mod exact_survival;
+mod impacts;
+mod piecewise;
+mod reference_trajectory;
+mod stopped;
+mod taylor;

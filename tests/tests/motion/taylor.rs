@@ -1,0 +1,197 @@
+//! The Taylor series by themselves: arithmetic, mode shapes, first crossings, independence
+//! of the step, and the paper's case against a trajectory known to seventeen digits.
+
+use eomgen_tests::taylor::arm::Case;
+use eomgen_tests::taylor::crossing::first_rise;
+use eomgen_tests::taylor::double_double::DoubleDouble;
+use eomgen_tests::taylor::modes::Mode;
+use eomgen_tests::taylor::run::{LONGEST, Run};
+use eomgen_tests::taylor::scalar::Scalar;
+use serde_json::Value;
+
+/// Mode shapes to 25 digits.
+const MODES: &str = include_str!("../../reference/clamped_free_modes.json");
+
+/// Two codes in quadruple precision agree to its last digit.
+const TRAJECTORY: &str = include_str!("../../reference/trajectory_order4.csv");
+
+fn pair(high: f64, low: f64) -> DoubleDouble {
+    DoubleDouble { high, low }
+}
+
+/// |a - b| relative to b.
+fn relative(a: DoubleDouble, b: DoubleDouble) -> f64 {
+    ((a - b) / b).nearest().abs()
+}
+
+/// A decimal number with up to thirty digits, correctly but for the last bits.
+fn decimal(text: &str) -> DoubleDouble {
+    let digits = text.chars().filter(char::is_ascii_digit);
+    let whole = digits.fold(DoubleDouble::exactly(0.0), |number, digit| {
+        let digit = digit.to_digit(10).expect("a digit");
+        number.times(10.0) + DoubleDouble::exactly(f64::from(digit))
+    });
+    let places = text.split_once('.').map_or(0, |(_, places)| places.len());
+    let scale = (0..places).fold(DoubleDouble::exactly(1.0), |scale, _| scale.times(10.0));
+    let sign = if text.starts_with('-') { -1.0 } else { 1.0 };
+    whole.times(sign) / scale
+}
+
+#[test]
+fn double_doubles_carry_thirty_one_digits() {
+    let number = DoubleDouble::exactly;
+    let (sin_1, cos_1) = number(1.0).sin_cos();
+    let (sin_40, cos_40) = number(40.0).sin_cos();
+    // The right column from rational arithmetic with sixty decimals.
+    let found = [
+        (
+            number(1.0) / number(3.0),
+            0.3333333333333333,
+            1.850371707708594e-17,
+        ),
+        (
+            number(1.0).exp(),
+            std::f64::consts::E,
+            1.4456468917292502e-16,
+        ),
+        (
+            number(-20.0).exp(),
+            2.061153622438558e-09,
+            -4.19755767595054e-26,
+        ),
+        (sin_1, 0.8414709848078965, 1.776845092935536e-18),
+        (cos_1, 0.5403023058681398, -4.760954612604417e-17),
+        (sin_40, 0.7451131604793488, -4.800921719561452e-17),
+        (cos_40, -0.6669380616522619, 3.771106789024549e-17),
+    ];
+    for (found, high, low) in found {
+        let error = relative(found, pair(high, low));
+        // The reduction of 40 by multiples of pi/2 multiplies pi's rounding by 25.
+        assert!(error < 1e-30, "{found:?} is off by {error:e}");
+    }
+}
+
+#[test]
+fn modes_1_to_128_agree_with_high_precision() {
+    let modes: Vec<Value> = serde_json::from_str(MODES).expect("a list of modes");
+    assert_eq!(modes.len(), 128);
+    for (r, mode) in (1..).zip(&modes) {
+        let own = Mode::<DoubleDouble>::clamped_free(r);
+        let found = [
+            ("beta_l", own.z),
+            ("xi", own.xi),
+            ("int_s_phi", own.moment),
+            ("int_phi2", own.square),
+            ("int_phi_ss2", own.bending),
+            ("phi_tip", own.tip),
+        ];
+        for (name, found) in found {
+            let expected = decimal(mode[name].as_str().expect("a decimal number"));
+            let error = relative(found, expected);
+            // The table has 25 digits, the last rounded.
+            assert!(error < 1e-24, "mode {r}, {name}: off by {error:e}");
+        }
+    }
+}
+
+/// The coefficients of the product of (u - root) over the roots.
+fn product(roots: &[f64]) -> Vec<DoubleDouble> {
+    let zero = DoubleDouble::exactly(0.0);
+    let mut coefficients = vec![DoubleDouble::exactly(1.0)];
+    for root in roots {
+        let mut next = vec![zero; coefficients.len() + 1];
+        for (k, coefficient) in coefficients.iter().enumerate() {
+            next[k + 1] = next[k + 1] + *coefficient;
+            next[k] = next[k] - coefficient.times(*root);
+        }
+        coefficients = next;
+    }
+    coefficients
+}
+
+#[test]
+fn the_first_rise_is_found_however_short_it_is() {
+    // Above zero only between the first two roots, for a billionth of the step.
+    let found = first_rise(&product(&[0.3, 0.3 + 1e-9, 0.9, 1.5, 2.0]));
+    assert!(found.is_some_and(|at| (at.nearest() - 0.3).abs() < 1e-15));
+    // A dip from above, then a rise.
+    let found = first_rise(&product(&[0.25, 0.75]));
+    assert!(found.is_some_and(|at| (at.nearest() - 0.75).abs() < 1e-15));
+    // Falls at its only root within the step; rises beyond it.
+    assert!(first_rise(&product(&[0.25, 1.25])).is_none());
+    // Complex roots closer to the axis than the step is long: comes to -1e-20 of zero.
+    let mut touching = product(&[0.4, 0.4]);
+    touching[0] = touching[0] + DoubleDouble::exactly(1e-20);
+    let touching: Vec<DoubleDouble> = touching.into_iter().map(|c| -c).collect();
+    assert!(first_rise(&touching).is_none());
+    // Starts on the edge, by rounding beyond it, and moves out or in.
+    let start = |slope: f64| [1e-40, slope, 0.0].map(DoubleDouble::exactly);
+    assert!(first_rise(&start(1.0)).is_some_and(|at| at.nearest() == 0.0));
+    assert!(first_rise(&start(-1.0)).is_none());
+}
+
+/// The paper's ripple, 10 pi.
+fn case(order: usize, b: f64) -> Case {
+    Case {
+        order,
+        b,
+        omega: 31.41592653589793,
+    }
+}
+
+/// A time per millisecond, in s.
+fn milliseconds(until: usize) -> Vec<f64> {
+    (0..=until).map(|k| k as f64 / 1000.0).collect()
+}
+
+#[test]
+fn the_motion_does_not_depend_on_the_step() {
+    let times = milliseconds(2000);
+    let chosen = Run::<DoubleDouble>::of(case(4, 100e-6), &times, LONGEST);
+    let finer = Run::<DoubleDouble>::of(case(4, 100e-6), &times, 1.0 / 32768.0);
+    assert!(finer.steps * 2 > chosen.steps * 3, "not finer");
+    assert_eq!(chosen.counts(), finer.counts());
+    let deviations =
+        (0..times.len()).map(|sample| (chosen.tip(sample) - finer.tip(sample)).nearest());
+    let worst = deviations.fold(0.0, |worst: f64, deviation| worst.max(deviation.abs()));
+    println!(
+        "tip, b = 100 um: {worst:.1e} m in {} and {} steps",
+        chosen.steps, finer.steps
+    );
+    // Rounding of 1e-33 m grows by 1e5, as it does in doubles; luck may add two digits.
+    assert!(worst < 1e-26, "{worst:e}");
+}
+
+#[test]
+fn the_papers_case_is_met_to_the_references_last_digits() {
+    let times: Vec<f64> = (0..=200).map(|k| f64::from(k) / 100.0).collect();
+    let run = Run::<DoubleDouble>::of(case(4, 25e-6), &times, LONGEST);
+    assert_eq!(run.counts().iter().sum::<usize>(), 965);
+    let rows: Vec<Vec<f64>> = TRAJECTORY
+        .lines()
+        .skip(1)
+        .map(|line| {
+            line.split(',')
+                .map(|field| field.parse().expect("a number"))
+                .collect()
+        })
+        .collect();
+    assert_eq!(rows.len(), times.len());
+    let mut worst = [0.0_f64; 4];
+    for (sample, row) in rows.iter().enumerate() {
+        let [x_sp, x_pr, x_c] = [0, 1, 2].map(|j| run.states[sample].positions[j]);
+        let found = [x_sp, x_pr, x_c, run.tip(sample)];
+        for ((worst, found), expected) in worst.iter_mut().zip(found).zip(&row[1..]) {
+            let deviation = (found - DoubleDouble::exactly(*expected)).nearest().abs();
+            *worst = worst.max(deviation);
+        }
+    }
+    // Seventeen digits of 1e-4 m, 1 m and 3e-3 m, and as much again for constants of which
+    // the reference rounded others: 10 pi, 24.6 degrees.
+    for (worst, allowed) in worst.into_iter().zip([2e-17, 2e-17, 1e-15, 1e-16]) {
+        assert!(
+            worst < allowed,
+            "{worst:e} m where {allowed:e} m is allowed"
+        );
+    }
+}

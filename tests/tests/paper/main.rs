@@ -1,0 +1,6 @@
+//! The paper's equations, figures and claims.
+
+mod claims_page;
+mod errata;
+mod study;
+mod study_search;

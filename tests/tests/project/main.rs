@@ -1,0 +1,11 @@
+//! The program as a whole: options, files it writes, packages, documentation.
+
+mod built_once;
+mod files;
+mod imports;
+mod installed;
+mod packages;
+mod printed_commands;
+mod shells;
+mod streams;
+mod usage;

@@ -1,0 +1,375 @@
+//! Wrong use of the program: exit status 2 and a message that says what would be right.
+
+use eomgen_tests::measured::Measured;
+use eomgen_tests::models::path;
+use eomgen_tests::program::{accepted, eomgen, refused};
+
+/// Every command with the specification it is given.
+const COMMANDS: [&str; 9] = [
+    "check",
+    "derive",
+    "generate",
+    "validate",
+    "simulate",
+    "page",
+    "linearise",
+    "modes",
+    "trim",
+];
+
+/// A shipped specification's path as an argument.
+fn spec(name: &str) -> String {
+    path(name).display().to_string()
+}
+
+/// A command on a specification, with what else it needs; nothing is written.
+fn arguments(command: &'static str, name: &str, more: &[&str]) -> Vec<String> {
+    let needed: &[&str] = match command {
+        "generate" => &["--out", "never-made"],
+        "page" => &["--out", "never-made/a.html"],
+        "simulate" => &["--out", "never-made/a.csv", "--until", "0.01"],
+        _ => &[],
+    };
+    let given = needed
+        .iter()
+        .chain(more)
+        .map(|argument| (*argument).to_owned());
+    [command.to_owned(), spec(name)]
+        .into_iter()
+        .chain(given)
+        .collect()
+}
+
+/// The message of a refusal that leaves nothing in its folder.
+fn message(arguments: &[String]) -> String {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut command = eomgen();
+    let output = command.args(arguments).current_dir(folder.path()).output();
+    let output = output.expect("the program can be run");
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    let shown = arguments.join(" ");
+    assert_eq!(output.status.code(), Some(2), "{shown}: {message}");
+    assert!(message.starts_with("error: "), "{shown}: {message}");
+    assert!(output.stdout.is_empty(), "{shown}");
+    let left = std::fs::read_dir(folder.path())
+        .expect("the folder")
+        .count();
+    assert_eq!(left, 0, "{shown} left something");
+    message
+}
+
+/// Asserts that `simulate` with these options is refused with a message that holds `part`.
+fn simulate_refuses(name: &str, options: &[&str], part: &str) {
+    let found = message(&arguments("simulate", name, options));
+    assert!(found.contains(part), "{options:?}: {found}");
+}
+
+/// What is said where the solver stops on the arm with these options: before it has begun (exit
+/// status 2) or after (1).
+fn stops(options: &[&str]) -> String {
+    let folder = tempfile::tempdir().expect("a folder");
+    let arguments = arguments("simulate", "planetary_arm", options);
+    let output = eomgen().args(arguments).current_dir(folder.path()).output();
+    let output = output.expect("the program can be run");
+    assert!(matches!(output.status.code(), Some(1 | 2)), "{options:?}");
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+#[test]
+fn commands_and_options_that_do_not_exist_are_refused() {
+    assert!(refused(&["fly"]).contains("fly"));
+    assert!(refused(&["check", &spec("pendulum"), "--fly"]).contains("--fly"));
+    assert!(refused(&["derive", &spec("pendulum"), "--format", "word"]).contains("latex"));
+    assert!(refused(&["generate", &spec("pendulum"), "--target", "ada"]).contains("rust, c99"));
+    let unknown = refused(&["generate", &spec("pendulum"), "--with", "jacobian"]);
+    assert!(unknown.contains("`jacobian` is not known"), "{unknown}");
+    assert!(unknown.contains("jacobians, products"), "{unknown}");
+    assert!(refused(&["check"]).contains("<SPEC>"));
+    assert!(refused(&["generate", &spec("pendulum")]).contains("--out"));
+    assert!(refused(&["generate", "--all", &spec("pendulum")]).contains("--all"));
+    assert!(refused(&["simulate", &spec("pendulum"), "--out", "a.csv"]).contains("--until"));
+}
+
+#[test]
+fn help_has_an_example_and_succeeds() {
+    assert!(accepted(&["--help"]).contains("simulate"));
+    assert!(accepted(&["--version"]).starts_with("eomgen "));
+    for command in COMMANDS
+        .into_iter()
+        .chain(["dataset", "sweep", "merge", "tour"])
+    {
+        let help = accepted(&[command, "--help"]);
+        // The line of the usage names the command too.
+        let example = help.split_once("Example").map(|(_, example)| example);
+        assert!(
+            example.is_some_and(|example| example.contains(&format!("eomgen {command} "))),
+            "{command}: {help}"
+        );
+    }
+}
+
+#[test]
+fn generate_check_without_all_is_refused_and_writes_nothing() {
+    for more in [
+        &["--check"][..],
+        &["--check", "--certify"],
+        &["--check", "--target", "c99", "--json"],
+    ] {
+        let refusal = message(&arguments("generate", "pendulum", more));
+        assert!(refusal.contains("generate --all --check"), "{refusal}");
+    }
+    refused(&["generate", "--check"]);
+    refused(&["generate", "--all", "--check", "--target", "c99"]);
+}
+
+#[test]
+fn a_proposed_dataset_file_is_written_whole_beside_its_record_or_not_at_all() {
+    let measured = Measured::stage(0.0);
+    let record = measured.file("train.csv").display().to_string();
+    let out = measured.file("proposed.toml").display().to_string();
+    accepted(&["dataset", &record, &spec("emps"), "--out", &out]);
+    assert!(measured.read("proposed.toml").contains("[inputs.force]"));
+    let printed = accepted(&["dataset", &record, &spec("emps")]);
+    assert_eq!(printed, measured.read("proposed.toml"));
+    let json: serde_json::Value =
+        serde_json::from_str(&accepted(&["dataset", &record, &spec("emps"), "--json"]))
+            .expect("JSON");
+    assert_eq!(json["dataset"], printed);
+    let elsewhere = tempfile::tempdir().expect("a folder");
+    let outside = elsewhere.path().join("a.toml");
+    let text = outside.display().to_string();
+    let found = refused(&["dataset", &record, &spec("emps"), "--out", &text]);
+    assert!(
+        found.contains("in the folder of its records or above it"),
+        "{found}"
+    );
+    assert!(!outside.exists());
+    let found = refused(&["dataset", &record, &spec("double_pendulum")]);
+    assert!(found.contains("no column is an observable"), "{found}");
+}
+
+#[test]
+fn orders_that_are_none_are_refused_by_every_command() {
+    for command in COMMANDS {
+        for order in [
+            "-1",
+            "abc",
+            "1e9",
+            "4.0",
+            "1 000",
+            "99999999999999999999",
+            "٣",
+        ] {
+            let found = message(&arguments(command, "planetary_arm", &["--order", order]));
+            assert!(
+                found.contains("whole number from 0 to 128"),
+                "{command} {order}: {found}"
+            );
+        }
+        let found = message(&arguments(command, "planetary_arm", &["--order", "129"]));
+        assert!(
+            found.contains("the highest order is 128"),
+            "{command}: {found}"
+        );
+        let found = message(&arguments(command, "pendulum", &["--order", "4"]));
+        assert!(found.contains("no field"), "{command}: {found}");
+    }
+}
+
+#[test]
+fn a_certificate_for_different_orders_is_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let spec = folder.path().join("two_fields.toml");
+    let two = include_str!("../../features/two_fields.toml").replacen("order = 3", "order = 1", 1);
+    std::fs::write(&spec, two).expect("a file");
+    let spec = spec.display().to_string();
+    assert!(accepted(&["check", &spec]).contains("order 1, 3"));
+    assert!(refused(&["validate", &spec]).contains("give --order"));
+    assert!(accepted(&["validate", &spec, "--order", "1"]).contains("passed"));
+}
+
+#[test]
+fn parameters_that_cannot_be_set_are_refused() {
+    for (assignment, part) in [
+        ("b_spp=1", "did you mean `b_sp`"),
+        ("=1", "NAME=VALUE"),
+        ("b_sp", "NAME=VALUE"),
+        ("b_sp=", "NAME=VALUE"),
+        ("b_sp=1=2", "--set:1:7"),
+        ("b_sp=25 kg", "in m, not in kg"),
+        ("b_sp=2*b_pp", "did you mean `b_pr`"),
+        ("b_sp=nan", "finite"),
+        ("b_sp=inf", "finite"),
+        ("k_sp=1e400", "finite"),
+        ("b_sp=-1e-6", "at least 0 m"),
+        ("l=0", "greater than"),
+        ("z_s=0", "division by 0"),
+    ] {
+        simulate_refuses("planetary_arm", &["--set", assignment], part);
+    }
+}
+
+/// What has no inertia where it begins is refused by all that would use its accelerations, at
+/// the coordinate. Its equations can be read.
+#[test]
+fn coordinates_without_inertia_of_their_own_are_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("spec.toml");
+    let text = "[model]\nname = \"two\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\n\
+                [coordinates]\nx = { unit = \"m\" }\ny = { unit = \"m\" }\n\
+                [kinetic]\nboth = \"1/2*m*(dot(x) + dot(y))^2\"\n";
+    std::fs::write(&path, text).expect("a file");
+    let spec = path.display().to_string();
+    let out = folder.path().join("out.csv").display().to_string();
+    for command in [
+        &["check", &spec][..],
+        &["generate", &spec, "--out", &out],
+        &["validate", &spec],
+        &["simulate", &spec, "--until", "1", "--out", &out],
+    ] {
+        let found = refused(command);
+        assert!(
+            found.contains("`x`, `y` together have no inertia"),
+            "{found}"
+        );
+        assert!(found.contains("spec.toml:6:1"), "{found}");
+    }
+    let record = eomgen()
+        .args(["check", &spec, "--json"])
+        .output()
+        .expect("it can be run");
+    let record: serde_json::Value = serde_json::from_slice(&record.stdout).expect("JSON");
+    assert_eq!(record["diagnostics"][0]["line"], 6);
+    assert!(accepted(&["derive", &spec]).contains("M[x, y] = m"));
+}
+
+#[test]
+fn parameters_without_a_motion_are_refused() {
+    for assignment in ["rho=-7900", "rho=0", "I_p=-1", "l=1e300"] {
+        simulate_refuses("planetary_arm", &["--set", assignment], "positive definite");
+    }
+    for assignment in ["r_s=0", "m=0"] {
+        simulate_refuses("planetary_arm", &["--set", assignment], "division by 0");
+    }
+    // Values so large or small that a rate overflows, or so stiff that no step is short
+    // enough: the general solver has begun by then.
+    for assignment in ["l=1e-300", "omega=1e300", "k_sp=1e300", "alpha=90"] {
+        let general = ["--solver", "rk", "--set", assignment];
+        let found = stops(&general);
+        assert!(found.contains("at t = "), "{assignment}: {found}");
+    }
+    let fast = ["--solver", "rk", "--set", "omega=1e300"];
+    let found = stops(&fast);
+    assert!(found.contains("`x_sp`"), "{found}");
+    for (assignment, part) in [
+        ("l=1e-300", "a coefficient"),
+        ("omega=1e300", "slower motion"),
+        ("k_sp=1e300", "eigenvalues"),
+        ("alpha=90", "slower motion"),
+    ] {
+        let exact = ["--solver", "exact", "--set", assignment];
+        let found = stops(&exact);
+        assert!(found.contains(part), "{assignment}: {found}");
+    }
+    // The general solver is tried after the exact one, and says why it stops.
+    let found = stops(&["--set", "k_sp=1e300"]);
+    assert!(found.starts_with("warning: not solved exactly"), "{found}");
+    assert!(found.contains("at t = "), "{found}");
+}
+
+#[test]
+fn times_that_are_none_are_refused() {
+    for (option, value, part) in [
+        ("--until", "0", "after 0"),
+        ("--until", "-1", "after 0"),
+        ("--until", "nan", "after 0"),
+        ("--until", "inf", "after 0"),
+        ("--until", "soon", "invalid"),
+        ("--sample", "0", "above 0"),
+        ("--sample", "-1", "above 0"),
+        ("--sample", "nan", "above 0"),
+        ("--sample", "inf", "at most 0.01"),
+        ("--sample", "0.02", "at most 0.01"),
+        ("--sample", "1e-300", "too many rows"),
+        ("--sample", "1e-10", "too many rows"),
+        ("--tolerance", "0", "1e-14"),
+        ("--tolerance", "-1", "1e-14"),
+        ("--tolerance", "nan", "1e-14"),
+        ("--tolerance", "1", "0.1"),
+    ] {
+        let mut given = arguments("simulate", "pendulum", &[]);
+        given.retain(|argument| option != "--until" || !["--until", "0.01"].contains(&&**argument));
+        given.extend([option.to_owned(), value.to_owned()]);
+        let found = message(&given);
+        assert!(found.contains(part), "{option} {value}: {found}");
+    }
+    // Farther than the sine of the motor's ripple is known: the general solver has begun by
+    // the time it finds that out.
+    let arm = spec("planetary_arm");
+    for (solver, status, part) in [
+        ("exact", 2, "expected a shorter time"),
+        ("rk", 1, "the state diverged"),
+    ] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let far = ["--solver", solver, "--out", "a.csv", "--until", "1e300"];
+        let mut program = eomgen();
+        program.args(["simulate", &arm]).args(far);
+        let output = program.current_dir(folder.path()).output();
+        let output = output.expect("the program can be run");
+        assert_eq!(output.status.code(), Some(status), "{solver}");
+        let found = String::from_utf8_lossy(&output.stderr);
+        assert!(found.contains(part), "{solver}: {found}");
+    }
+}
+
+#[test]
+fn the_exact_solver_is_refused_what_is_not_linear_and_has_no_tolerance() {
+    let found = message(&arguments("simulate", "pendulum", &["--solver", "exact"]));
+    assert!(
+        found.contains("`") && found.contains("sin(theta)") && found.contains("--solver rk"),
+        "{found}"
+    );
+    let folder = tempfile::tempdir().expect("a folder");
+    let said = |solver: &str, name: &str, more: &[&str]| {
+        let mut given = arguments("simulate", name, &["--json", "--solver", solver]);
+        given.extend(more.iter().map(|argument| (*argument).to_owned()));
+        let output = eomgen().args(&given).current_dir(folder.path()).output();
+        let output = output.expect("the program can be run");
+        let text = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success(), "{given:?}: {text}");
+        let work: serde_json::Value = serde_json::from_slice(&output.stdout).expect("a document");
+        (work["solver"].clone(), text)
+    };
+    let tolerance = ["--tolerance", "1e-6"];
+    let (solver, text) = said("exact", "planetary_arm", &tolerance);
+    assert_eq!(solver, "exact");
+    assert!(text.contains("--tolerance has no effect"), "{text}");
+    assert_eq!(said("auto", "planetary_arm", &[]).0, "exact");
+    assert_eq!(
+        said("auto", "pendulum", &tolerance),
+        ("rk".into(), String::new())
+    );
+    assert_eq!(said("adams", "planetary_arm", &[]).0, "adams");
+}
+
+/// The README lists the commands that have no `--json`: `schema`, `completions` and `man`.
+#[test]
+fn every_command_on_a_specification_prints_one_json_document() {
+    for command in COMMANDS {
+        let folder = tempfile::tempdir().expect("a folder");
+        let mut program = eomgen();
+        program.args([command, &spec("pendulum"), "--json"]);
+        match command {
+            "generate" => program.args(["--out", "made"]),
+            "page" => program.args(["--out", "page.html"]),
+            "simulate" => program.args(["--out", "motion.csv", "--until", "0.01"]),
+            _ => &mut program,
+        };
+        let output = program.current_dir(folder.path()).output();
+        let output = output.expect("the program can be run");
+        assert_eq!(output.status.code(), Some(0), "{command}");
+        let document: serde_json::Value =
+            serde_json::from_slice(&output.stdout).expect("one document");
+        assert!(document.is_object(), "{command}");
+    }
+}

@@ -1,0 +1,58 @@
+//! LaTeX of every specification, set by LaTeX itself where it is installed. What can be told
+//! without it is told in `codegen`.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use eomgen_tests::models::{project, shipped};
+use eomgen_tests::program::accepted;
+
+/// The shipped specifications and those with one feature of the language each.
+fn specifications() -> Vec<PathBuf> {
+    let features = project().join("tests/features");
+    let entries = std::fs::read_dir(features).expect("the folder of the features");
+    let mut paths: Vec<PathBuf> = entries
+        .map(|entry| entry.expect("an entry").path())
+        .collect();
+    paths.sort();
+    shipped().into_iter().chain(paths).collect()
+}
+
+/// Runs LaTeX without writing any pages; its complaints if it stops.
+fn set(folder: &Path, name: &str) -> Result<(), String> {
+    let output = Command::new("pdflatex")
+        .args([
+            "-draftmode",
+            "-interaction=nonstopmode",
+            "-halt-on-error",
+            name,
+        ])
+        .current_dir(folder)
+        .output()
+        .map_err(|error| error.to_string())?;
+    if output.status.success() {
+        return Ok(());
+    }
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    let wrong = said
+        .split_once("\n!")
+        .map_or(said.as_str(), |(_, wrong)| wrong);
+    Err(wrong.chars().take(600).collect())
+}
+
+#[test]
+fn latex_compiles_for_every_specification() {
+    if Command::new("pdflatex").arg("--version").output().is_err() {
+        skips::skip(
+            "LaTeX was not set, for want of pdflatex (Debian: apt-get install texlive-latex-base)",
+        );
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    for path in specifications() {
+        let document = accepted(&["derive", &path.display().to_string(), "--format", "latex"]);
+        std::fs::write(folder.path().join("equations.tex"), document).expect("a file");
+        set(folder.path(), "equations.tex")
+            .unwrap_or_else(|wrong| panic!("{}: {wrong}", path.display()));
+    }
+}

@@ -1,0 +1,8 @@
+//! Reading specifications: grammar, units, ranges, every feature of the language.
+
+mod broken_specs;
+mod features;
+mod latex;
+mod ranges;
+mod right_models;
+mod schema;
