@@ -234,7 +234,7 @@ fn limits_of_sections_are_held_and_named() {
             2000,
             &independent_masses,
         ),
-        ("a chain of more than 100 frames", 100, &|count| {
+        ("the chain of frames is longer than 100", 100, &|count| {
             bodies(count, "xyz")
         }),
         (

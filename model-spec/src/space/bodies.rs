@@ -1,5 +1,5 @@
-//! The energies of a body: 1/2 m v.v + 1/2 omega.I omega with v the velocity of its centre of
-//! mass, and -m g.p by gravity with p the centre's position.
+//! Energies of a body: 1/2 m v.v + 1/2 omega.I omega, with v the velocity of the centre of
+//! mass, and -m g.p under gravity, with p its position.
 
 use super::definitions::Owner;
 use super::demands::{Inertia, UnitDemand};
@@ -17,10 +17,10 @@ use crate::rigid_tree::RigidBody;
 use crate::span::Span;
 use crate::table::Quantity;
 
-/// The pairs of axes of I_xx, I_yy, I_zz, I_xy, I_yz, I_xz.
+/// Pairs of axes of I_xx, I_yy, I_zz, I_xy, I_yz, I_xz.
 const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)];
 
-/// Adds the energies of all bodies to the document. The bodies, as they are declared.
+/// Adds the energies of all bodies to the document. Returns the declared bodies.
 pub fn expand(
     document: &mut Document,
     space: &mut Space,
@@ -36,7 +36,7 @@ pub fn expand(
             let name = quoted(&body.name.text);
             found.push(
                 Diagnostic::error(format!("the name {name} is taken"))
-                    .at(body.name.span, "a body gives its name to its energies")
+                    .at(body.name.span, "the energies of a body have its name")
                     .also(term.name.span, "here")
                     .help("choose another name"),
             );
@@ -79,7 +79,7 @@ pub fn expand(
     bodies
 }
 
-/// What a body is made of.
+/// Mass, centre of mass and inertia of a body.
 struct Parts {
     mass: Syntax,
     centre: Vector,
@@ -137,9 +137,9 @@ fn parts(body: &RawBody, space: &mut Space, found: &mut Diagnostics) -> Option<P
     for part in centre.iter().chain(&inertia).chain([&mass]) {
         if space.definitions.moving.holds(part) {
             found.push(
-                Diagnostic::error(format!("the body {} changes", quoted(&own.text)))
-                    .at(part.span, "this moves")
-                    .help("mass, centre and inertia are constant: what moves is a frame"),
+                Diagnostic::error(format!("the body {} is not constant", quoted(&own.text)))
+                    .at(part.span, "this changes with the motion")
+                    .help("give constant mass, centre and inertia; a frame describes the motion"),
             );
             return None;
         }

@@ -1,4 +1,4 @@
-//! What short forms ask of the quantities in them, checked where units and values are known.
+//! Requirements of short forms on their quantities, checked after units and values are known.
 
 use crate::ast::Syntax;
 use crate::dimension::Dimension;
@@ -6,39 +6,37 @@ use crate::rigid_tree::RigidTree;
 use crate::span::Span;
 use crate::table::{Name, Quantity};
 
-/// What the short forms ask of the quantities in them.
+/// Requirements of short forms on their quantities.
 #[derive(Default)]
 pub struct Demands {
-    /// Quantities with the unit they must have.
+    /// Quantities with a required unit.
     pub units: Vec<UnitDemand>,
-    /// Components of vectors, which must have one unit.
+    /// Components of vectors, which need one unit.
     pub alike: Vec<Vec<Quantity>>,
     /// Masses and inertias of bodies.
     pub inertias: Vec<Inertia<Quantity>>,
     /// Vectors that nothing refers to.
     pub unused: Vec<Name>,
-    /// The frames and the bodies, if there are bodies.
+    /// Frames and bodies, if there are bodies.
     pub rigid_tree: Option<RigidTree<Syntax>>,
 }
 
-/// A quantity that must have a unit.
+/// Quantity with a required unit.
 pub struct UnitDemand {
-    /// The quantity.
     pub value: Quantity,
-    /// Its unit.
+    /// Required unit.
     pub dimension: Dimension,
-    /// What it is, for a message.
+    /// Name of the quantity in messages.
     pub subject: String,
 }
 
-/// The mass and the inertia of a body.
+/// Mass and inertia of a body.
 pub struct Inertia<T> {
-    /// The body.
     pub body: Name,
-    /// The mass in kg, if it has one.
+    /// Mass in kg, if given.
     pub mass: Option<T>,
     /// None, three or all of I_xx, I_yy, I_zz, I_xy, I_yz, I_xz, in kg m^2.
     pub elements: Vec<T>,
-    /// Where they stand.
+    /// Position of the elements.
     pub span: Span,
 }

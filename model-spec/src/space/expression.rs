@@ -1,6 +1,6 @@
-//! From an expression with vectors in it to scalars: what each part is worth, and which parts do not
-//! go together. What is used more than once gets a name, so that products of products do not
-//! double with every level.
+//! Evaluates expressions with vectors to scalars, and reports operands of the wrong kind. An
+//! expression that is used several times gets a name, so that nested products do not double in
+//! size at every level.
 
 use super::definitions::Owner;
 use super::demands::UnitDemand;
@@ -16,7 +16,7 @@ use crate::span::Span;
 use crate::suggest::did_you_mean;
 use crate::table::Quantity;
 
-/// What belongs to every frame.
+/// Members of every frame.
 pub const MEMBERS: [&str; 7] = [
     "origin",
     "velocity",
@@ -27,21 +27,21 @@ pub const MEMBERS: [&str; 7] = [
     "z",
 ];
 
-/// How much may be repeated where nothing can be named: inside integrals and sums.
+/// Largest size of a repeated expression inside integrals and sums, which cannot be named.
 const MAX_REPEATED: usize = 10_000;
 
-/// Works out the expressions of one entry.
+/// Evaluates the expressions of one entry.
 pub struct Reader<'s> {
     pub(super) space: &'s mut Space,
     pub(super) owner: &'s Owner,
-    /// How many integrals, sums and places along fields are open.
+    /// Number of open integrals, sums and `at`.
     pub(super) inside: usize,
 }
 
 pub(super) type Read = Result<Value, Diagnostic>;
 
 impl<'s> Reader<'s> {
-    /// A reader for an entry.
+    /// Creates a reader for an entry.
     pub fn new(space: &'s mut Space, owner: &'s Owner) -> Self {
         Self {
             space,
@@ -50,10 +50,10 @@ impl<'s> Reader<'s> {
         }
     }
 
-    /// What an expression is worth.
+    /// Evaluates an expression.
     ///
     /// # Errors
-    /// Where scalars, vectors and rotations do not go together, and members that there are none of.
+    /// Operands of the wrong kind, and unknown members.
     pub fn value(&mut self, syntax: &Syntax) -> Read {
         let span = syntax.span;
         match &syntax.kind {
@@ -73,9 +73,11 @@ impl<'s> Reader<'s> {
                 Value::Vector(vector, dimensions) => {
                     Ok(Value::Vector(vector.map(negate), dimensions))
                 }
-                rotation @ Value::Rotation(..) => Err(Diagnostic::error("minus a rotation")
-                    .at(span, rotation.kind())
-                    .help("the rotation back is transpose(R)")),
+                rotation @ Value::Rotation(..) => {
+                    Err(Diagnostic::error("a rotation has no negative")
+                        .at(span, rotation.kind())
+                        .help("write transpose(R) for the inverse rotation"))
+                }
             },
             SyntaxKind::Binary(operator, left, right) => {
                 let (left, right) = (
@@ -92,10 +94,10 @@ impl<'s> Reader<'s> {
         }
     }
 
-    /// The scalar that an expression is worth.
+    /// Evaluates an expression to a scalar.
     ///
     /// # Errors
-    /// As `value`, and if it is none: `subject` says what it is.
+    /// Those of `value`, and a value of another kind, reported as `subject`.
     pub fn scalar(
         &mut self,
         quantity: &Quantity,
@@ -111,20 +113,20 @@ impl<'s> Reader<'s> {
         }
     }
 
-    /// The expression by a name, if it is more than one.
+    /// Returns the expression, or the name of a new definition if it is not plain.
     pub(super) fn named(&mut self, value: Syntax) -> Result<Syntax, Diagnostic> {
         if is_plain(&value) {
             return Ok(value);
         }
         if self.inside > 0 || self.is_reported(&value) {
-            // What is along a field has no name outside it, and what a constraint does none outside
-            // observables.
+            // An expression of the position has no name outside its field, and a multiplier or
+            // residual none outside observables.
             let mut size = 0;
             value.visit(&mut |_| size += 1);
             return match size > MAX_REPEATED {
-                true => Err(Diagnostic::error("this grows too large")
-                    .at(value.span, "repeated with every product")
-                    .help("name vectors that do not depend on the place in [definitions]")),
+                true => Err(Diagnostic::error("this expression becomes too large")
+                    .at(value.span, "each product repeats it")
+                    .help("move vectors that do not depend on the position to [definitions]")),
                 false => Ok(value),
             };
         }
@@ -157,10 +159,10 @@ impl<'s> Reader<'s> {
         }
         if self.space.frames.named(name).is_some() && !self.space.definitions.is_declared(name) {
             return Err(
-                Diagnostic::error(format!("the frame `{name}` is no quantity"))
+                Diagnostic::error(format!("the frame `{name}` is not a quantity"))
                     .at(syntax.span, "a frame")
                     .help(format!(
-                        "it has {}: write {name}.origin",
+                        "its members are {}: write for example {name}.origin",
                         MEMBERS.join(", ")
                     )),
             );
@@ -168,10 +170,10 @@ impl<'s> Reader<'s> {
         Ok(Value::Scalar(syntax.clone()))
     }
 
-    /// A vector of three components; whoever asks demands their units.
+    /// Evaluates a vector of three components; the caller adds the check of their units.
     ///
     /// # Errors
-    /// As `value`, and if it is none.
+    /// Those of `value`, and a value of another kind.
     pub fn in_space(&mut self, syntax: &Syntax, subject: &str) -> Result<Vector, Diagnostic> {
         let read = match &syntax.kind {
             SyntaxKind::Vector(components) => self.components(components, syntax.span)?,
@@ -185,10 +187,10 @@ impl<'s> Reader<'s> {
         }
     }
 
-    /// The components of a vector in space, which must have this unit.
+    /// Evaluates a vector of three components with this unit.
     ///
     /// # Errors
-    /// As `in_space`.
+    /// Those of `in_space`.
     pub fn demanded(
         &mut self,
         written: &Quantity,
@@ -221,11 +223,11 @@ impl<'s> Reader<'s> {
             3 => Dimensions::Three,
             count => {
                 let plural = if count == 1 { "" } else { "s" };
-                return Err(
-                    Diagnostic::error(format!("a vector of {count} component{plural}"))
-                        .at(span, "expected 2 or 3")
-                        .help("write [x, y, z], or [x, y] in the plane"),
-                );
+                return Err(Diagnostic::error(format!(
+                    "a vector cannot have {count} component{plural}"
+                ))
+                .at(span, "expected 2 or 3")
+                .help("write [x, y, z], or [x, y] in the plane"));
             }
         };
         let mut vector = zero(span);
@@ -233,15 +235,17 @@ impl<'s> Reader<'s> {
             *own = match self.value(component)? {
                 Value::Scalar(scalar) => scalar,
                 other => {
-                    return Err(Diagnostic::error("a component is a scalar")
-                        .at(component.span, format!("this is {}", other.kind())));
+                    return Err(
+                        Diagnostic::error("a component of a vector must be a scalar")
+                            .at(component.span, format!("this is {}", other.kind())),
+                    );
                 }
             };
         }
         Ok(Value::Vector(vector, dimensions))
     }
 
-    /// Demands that components have one unit.
+    /// Requires that components have one unit.
     pub(super) fn alike(&mut self, vector: &Vector) {
         if self.inside == 0 {
             let components = vector.iter().map(|c| expansion(c.clone()));
@@ -290,7 +294,7 @@ impl<'s> Reader<'s> {
             .help_if(did_you_mean(name, known))
     }
 
-    /// What a frame has, along the fixed axes.
+    /// Returns a member of a frame, along the fixed axes.
     fn of_frame(&mut self, name: &str, member: &str, place: Span, span: Span) -> Read {
         let Space {
             frames,
@@ -316,12 +320,13 @@ impl<'s> Reader<'s> {
                     rows.map(|row| row[axis].clone())
                 }
                 None => {
-                    let known = format!("a frame has {}", MEMBERS.join(", "));
-                    return Err(
-                        Diagnostic::error(format!("a frame has no {}", quoted(member)))
-                            .at(place, "not known")
-                            .help(did_you_mean(member, MEMBERS).unwrap_or(known)),
-                    );
+                    let known = format!("the members of a frame are {}", MEMBERS.join(", "));
+                    return Err(Diagnostic::error(format!(
+                        "a frame has no member {}",
+                        quoted(member)
+                    ))
+                    .at(place, "not known")
+                    .help(did_you_mean(member, MEMBERS).unwrap_or(known)));
                 }
             },
         };
@@ -329,7 +334,7 @@ impl<'s> Reader<'s> {
     }
 }
 
-/// A vector of three components that is used at this place.
+/// Returns a vector of three components with this position in the text.
 fn spatial(vector: Vector, span: Span) -> Value {
     let at = |component| placed(component, span);
     Value::Vector(vector.map(at), Dimensions::Three)

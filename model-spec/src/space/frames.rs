@@ -1,4 +1,4 @@
-//! How frames move: angular velocity, velocity of the origin and the direction of gravity, from
+//! Motion of frames: angular velocity, velocity of the origin and direction of gravity, from
 //! frame to frame along each frame's own axes.
 
 use std::collections::HashMap;
@@ -14,54 +14,54 @@ use crate::span::Span;
 use crate::suggest::did_you_mean;
 use crate::table::Written;
 
-/// The longest chain of frames; beyond it the energies would be nested too deep.
+/// Longest chain of frames; the energies of a longer one would exceed the depth of expressions.
 const MAX_CHAIN: usize = 100;
 
-/// How a frame moves, along its own axes.
+/// Motion of a frame, along its own axes.
 #[derive(Clone)]
 pub struct Motion {
     /// Angular velocity, in 1/s.
     pub omega: Vector,
     /// Velocity of the origin, in m/s.
     pub velocity: Vector,
-    /// The direction of gravity, of length 1 if `strength` is there, else in m/s^2.
+    /// Direction of gravity: a unit vector if `strength` is set, else the acceleration in m/s^2.
     pub down: Vector,
-    /// The origin's way along `down` from that of the fixed axes.
+    /// Displacement of the origin along `down`, from the origin of the fixed axes.
     pub depth: Syntax,
 }
 
-/// A frame of a specification.
+/// Frame of a specification.
 #[derive(Clone)]
 pub struct Frame {
-    /// Its entry.
+    /// Entry of the frame.
     pub owner: Owner,
-    /// The frame that it is placed in; the fixed axes if there is none.
+    /// Parent frame; `None` for the fixed axes.
     pub parent: Option<String>,
-    /// Its origin along that frame's axes, in m.
+    /// Origin along the parent's axes, in m.
     pub origin: Vector,
-    /// From that frame's axes to its own.
+    /// Rotations from the parent's axes to the frame's.
     pub turns: Vec<Turn>,
-    /// How it moves.
+    /// Motion of the frame.
     pub motion: Motion,
-    /// Its place among the frames, in the order in which they are placed.
+    /// Index among the frames, in dependency order.
     pub id: FrameId,
-    /// How many frames it is away from the fixed axes.
+    /// Number of frames up to the fixed axes.
     level: usize,
 }
 
-/// The frames of a specification.
+/// Frames of a specification.
 pub struct Frames {
     frames: HashMap<String, Frame>,
-    /// The fixed axes, which do not move.
+    /// Motion of the fixed axes: zero.
     fixed: Motion,
-    /// By how much `down` is short of gravity, in m/s^2.
+    /// Factor from `down` to the acceleration of free fall, in m/s^2.
     pub strength: Option<Syntax>,
-    /// Whether there is gravity.
+    /// True if gravity is given.
     pub gravity: bool,
 }
 
 impl Frames {
-    /// No frame yet but the fixed axes.
+    /// Creates the list of frames under a gravity, with only the fixed axes.
     pub fn under(gravity: Option<Vector>, place: Span) -> Self {
         let is_given = gravity.is_some();
         let (down, strength) = gravity.map_or((zero(place), None), direction);
@@ -78,19 +78,19 @@ impl Frames {
         }
     }
 
-    /// The frame of this name.
+    /// Returns the frame of this name, if any.
     pub fn named(&self, name: &str) -> Option<&Frame> {
         self.frames.get(name)
     }
 
-    /// All frames, each after the one it is placed in.
+    /// Returns all frames, each after its parent.
     pub fn in_order(&self) -> Vec<&Frame> {
         let mut frames: Vec<&Frame> = self.frames.values().collect();
         frames.sort_by_key(|frame| frame.id);
         frames
     }
 
-    /// Gravity along the fixed axes, in m/s^2; 0 if there is none.
+    /// Returns the acceleration of free fall along the fixed axes, in m/s^2.
     pub fn acceleration_of_free_fall(&self) -> Vector {
         match &self.strength {
             Some(strength) => scaled(&self.fixed.down, strength),
@@ -98,24 +98,24 @@ impl Frames {
         }
     }
 
-    /// The names of all frames.
+    /// Returns the names of all frames.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.frames.keys().map(String::as_str)
     }
 
-    /// The frame of this name.
+    /// Returns the frame of this name.
     ///
     /// # Errors
-    /// If there is none, with the nearest.
+    /// An unknown name, with the nearest known one.
     pub fn get(&self, written: &Written) -> Result<&Frame, Diagnostic> {
         self.named(&written.text)
             .ok_or_else(|| unknown(written, self.names()))
     }
 
-    /// Places a frame whose parent is placed.
+    /// Adds a frame after its parent.
     ///
     /// # Errors
-    /// A chain of too many.
+    /// A chain of more than [`MAX_CHAIN`] frames.
     pub fn place(
         &mut self,
         owner: Owner,
@@ -126,10 +126,10 @@ impl Frames {
         let before = parent.and_then(|name| self.frames.get(name));
         let level = before.map_or(0, |frame| frame.level) + 1;
         if level > MAX_CHAIN {
-            return Err(
-                Diagnostic::error(format!("a chain of more than {MAX_CHAIN} frames"))
-                    .at(owner.name.span, "one too many"),
-            );
+            return Err(Diagnostic::error(format!(
+                "the chain of frames is longer than {MAX_CHAIN}"
+            ))
+            .at(owner.name.span, "one frame too many"));
         }
         let motion = before.map_or(&self.fixed, |frame| &frame.motion).clone();
         let motion = moved(motion, &origin, &owner, definitions);
@@ -148,15 +148,16 @@ impl Frames {
     }
 }
 
-/// The finding that there is no frame of this name.
+/// Reports an unknown frame.
 pub fn unknown<'n>(written: &Written, known: impl Iterator<Item = &'n str>) -> Diagnostic {
-    let help = "frames are declared as [frames.NAME]";
+    let help = "declare a frame as [frames.NAME]";
     Diagnostic::error(format!("unknown frame {}", quoted(&written.text)))
         .at(written.span, "not in [frames]")
         .help(did_you_mean(&written.text, known).unwrap_or(help.to_owned()))
 }
 
-/// Gravity along one axis is a strength times a direction, which keeps it out of the turning.
+/// Splits gravity along one axis into a magnitude and a direction: the rotations then transform
+/// only numbers.
 fn direction(gravity: Vector) -> (Vector, Option<Syntax>) {
     let mut along = gravity.iter().enumerate().filter(|(_, g)| !is(g, 0.0));
     let (Some((axis, strength)), None) = (along.next(), along.next()) else {
@@ -167,7 +168,7 @@ fn direction(gravity: Vector) -> (Vector, Option<Syntax>) {
     (down, Some(strength.clone()))
 }
 
-/// The motion of a frame with this origin, along its parent's axes.
+/// Returns the motion of a frame with this origin, along its parent's axes.
 fn moved(
     mut motion: Motion,
     origin: &Vector,
@@ -187,7 +188,7 @@ fn moved(
     motion
 }
 
-/// The motion along the axes that turns make.
+/// Returns the motion along rotated axes.
 fn turned(
     mut motion: Motion,
     turns: &[Turn],
@@ -209,7 +210,7 @@ fn turned(
     motion
 }
 
-/// What the names behind each of some turns begin with; behind the last, nothing.
+/// Returns the prefixes of the names after each of `count` rotations; empty after the last.
 pub fn stems(count: usize) -> impl Iterator<Item = String> {
     (1..=count).map(move |turn| match turn == count {
         true => String::new(),

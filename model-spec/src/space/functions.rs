@@ -1,4 +1,4 @@
-//! Functions of vectors and rotations, and which functions take scalars alone.
+//! Functions of vectors and rotations.
 
 use super::expression::{Read, Reader};
 use super::operations::{scalar_product, standing};
@@ -12,7 +12,7 @@ use crate::functions::VECTOR_FUNCTIONS;
 use crate::span::Span;
 
 impl Reader<'_> {
-    /// What a call is worth.
+    /// Evaluates a call.
     pub(super) fn call(
         &mut self,
         (function, place): (&str, Span),
@@ -25,9 +25,9 @@ impl Reader<'_> {
                 Value::Vector(vector, dimensions) => Value::Vector(self.rates(vector)?, dimensions),
                 Value::Scalar(operand) => Value::Scalar(rebuilt(function, place, vec![operand])),
                 rotation @ Value::Rotation(..) => {
-                    return Err(Diagnostic::error("the rate of a rotation")
+                    return Err(Diagnostic::error("a rotation has no rate")
                         .at(operand.span, rotation.kind())
-                        .help("a frame turns with FRAME.angular_velocity"));
+                        .help("write FRAME.angular_velocity for the rotation rate of a frame"));
                 }
             },
             ("cross", [a, b]) => self.cross_product(a, b)?,
@@ -57,7 +57,7 @@ impl Reader<'_> {
         Ok(standing(made, span))
     }
 
-    /// A function that takes scalars, with its arguments worked out.
+    /// Evaluates the arguments of a function of scalars.
     fn of_scalars(
         &mut self,
         (function, place): (&str, Span),
@@ -71,10 +71,10 @@ impl Reader<'_> {
                 Value::Scalar(scalar) => scalars.push(scalar),
                 other => {
                     let help = match function {
-                        "abs" | "sqrt" => "the length of a vector is norm(v)",
-                        _ => "take a component, v.x, the length, norm(v), or a product, dot(a, b)",
+                        "abs" | "sqrt" => "write norm(v) for the length of a vector",
+                        _ => "use a component, v.x, the length, norm(v), or a product, dot(a, b)",
                     };
-                    let message = format!("{} takes scalars", quoted(function));
+                    let message = format!("{} accepts only scalars", quoted(function));
                     return Err(Diagnostic::error(message)
                         .at(argument.span, format!("this is {}", other.kind()))
                         .help(help));
@@ -129,9 +129,9 @@ impl Reader<'_> {
                 let vector = self.name_each(vector)?;
                 Ok(call("sqrt", scalar_product(vector.clone(), vector)))
             }
-            other => Err(Diagnostic::error("`norm` takes a vector")
+            other => Err(Diagnostic::error("`norm` accepts only a vector")
                 .at(of.span, format!("this is {}", other.kind()))
-                .help("the magnitude of a scalar is abs(x)")),
+                .help("write abs(x) for the magnitude of a scalar")),
         }
     }
 
@@ -141,17 +141,17 @@ impl Reader<'_> {
                 let back = factors.into_iter().rev().map(Factor::transposed);
                 Ok(Value::Rotation(back.collect(), dimensions))
             }
-            other => Err(Diagnostic::error("`transpose` takes a rotation")
+            other => Err(Diagnostic::error("`transpose` accepts only a rotation")
                 .at(of.span, format!("this is {}", other.kind()))
                 .help(
-                    "for example transpose(FRAME.rotation)*v, the components of v along the frame",
+                    "for example transpose(FRAME.rotation)*v gives the components of v along the axes of the frame",
                 )),
         }
     }
 
     fn turn(&mut self, axis: usize, angle: &Syntax) -> Result<Factor, Diagnostic> {
         let mut angle = self.angle(angle)?;
-        // A constant angle may be a quarter turn, which is exact.
+        // A constant angle keeps its form: a quarter turn is then exact.
         if self.space.definitions.moving.holds(&angle) {
             angle = self.named(angle)?;
         }
@@ -161,20 +161,22 @@ impl Reader<'_> {
     fn angle(&mut self, angle: &Syntax) -> Result<Syntax, Diagnostic> {
         match self.value(angle)? {
             Value::Scalar(scalar) => Ok(scalar),
-            other => Err(Diagnostic::error("an angle is a scalar")
+            other => Err(Diagnostic::error("an angle must be a scalar")
                 .at(angle.span, format!("this is {}", other.kind()))
                 .help("write rotation_z(ANGLE), or rotation(AXIS, ANGLE)")),
         }
     }
 
-    /// The rotation about a direction, which may have any length but 0.
+    /// Returns the rotation about a direction of any length but 0.
     fn about(&mut self, axis: &Syntax, angle: &Syntax) -> Result<Factor, Diagnostic> {
         let direction = match self.value(axis)? {
             Value::Vector(direction, Dimensions::Three) => direction,
             other => {
-                return Err(Diagnostic::error("an axis is a vector")
-                    .at(axis.span, format!("this is {}", other.kind()))
-                    .help("for example rotation([0, 0, 1], ANGLE)"));
+                return Err(
+                    Diagnostic::error("an axis must be a vector of 3 components")
+                        .at(axis.span, format!("this is {}", other.kind()))
+                        .help("for example rotation([0, 0, 1], ANGLE)"),
+                );
             }
         };
         let angle = self.angle(angle)?;
@@ -184,7 +186,7 @@ impl Reader<'_> {
         Ok(Factor::About(Box::new((direction, cosine, sine))))
     }
 
-    /// The vector divided by its length.
+    /// Divides a vector by its length.
     fn unit(&mut self, vector: Vector, span: Span) -> Result<Vector, Diagnostic> {
         let numbers = vector.each_ref().map(|component| match &component.kind {
             SyntaxKind::Number(value) => Some(*value),
@@ -198,7 +200,7 @@ impl Reader<'_> {
             let length = x.hypot(y).hypot(z);
             if length == 0.0 {
                 return Err(
-                    Diagnostic::error("an axis without a direction").at(span, "its length is 0")
+                    Diagnostic::error("an axis must not be zero").at(span, "its length is 0")
                 );
             }
             return Ok([x, y, z].map(|component| number(component / length, span)));
@@ -219,7 +221,7 @@ impl Reader<'_> {
         }))
     }
 
-    /// The rates of components.
+    /// Returns the rates of the components.
     fn rates(&mut self, [x, y, z]: Vector) -> Result<Vector, Diagnostic> {
         Ok([self.rate(x)?, self.rate(y)?, self.rate(z)?])
     }
@@ -255,13 +257,15 @@ fn two_vectors(
     (right, right_place): (&Value, Span),
     span: Span,
 ) -> Diagnostic {
-    let finding = Diagnostic::error(format!("{what} takes two vectors of as many components"));
+    let finding = Diagnostic::error(format!(
+        "{what} needs two vectors with the same number of components"
+    ));
     let help = match (left, right) {
-        (Value::Scalar(_), Value::Scalar(_)) => "the product of scalars is a*b",
-        _ => "take vectors on both sides, [x, y, z] or [x, y]",
+        (Value::Scalar(_), Value::Scalar(_)) => "write a*b for the product of scalars",
+        _ => "give two vectors [x, y, z], or two vectors [x, y]",
     };
     finding
-        .at(span, "not of these")
+        .at(span, "expected two vectors")
         .also(left_place, left.kind())
         .also(right_place, right.kind())
         .help(help)
@@ -273,12 +277,12 @@ fn usage(function: &str, arguments: &[Syntax], span: Span) -> Diagnostic {
         "norm" => "norm(v)",
         "transpose" => "transpose(R)",
         "rotation" => "rotation(AXIS, ANGLE), or rotation(ANGLE) in the plane",
-        _ => "one angle, as rotation_z(q)",
+        _ => "one angle, for example rotation_z(q)",
     };
     let count = arguments.len();
     let plural = if count == 1 { "" } else { "s" };
     Diagnostic::error(format!(
-        "`{function}` does not take {count} argument{plural}"
+        "`{function}` does not accept {count} argument{plural}"
     ))
     .at(span, "here")
     .help(format!("write {written}"))

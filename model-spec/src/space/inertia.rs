@@ -1,23 +1,23 @@
-//! Whether a body can be: its mass is more than 0; the matrix of its inertia is positive
-//! semidefinite, or no motion has its energy, and no principal moment exceeds the sum of the other
-//! two, as follows from I_xx + I_yy - I_zz = 2 times the integral of z^2 over the mass.
+//! Checks that a body is physically possible. Its mass is positive and its inertia matrix
+//! positive semidefinite. No principal moment exceeds the sum of the other two, because I_xx +
+//! I_yy - I_zz is twice the integral of z^2 over the mass.
 
 use super::demands::Inertia;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::evaluate::evaluate;
 use crate::model::Expr;
 
-/// How far rounding of published numbers may carry a matrix beyond a limit, as a fraction of its
-/// trace.
+/// Tolerance for the rounding of published inertia matrices, as a fraction of the trace.
 const ROUNDING: f64 = 1e-9;
 
-/// How far errors of measurement may carry the principal moments beyond the triangle inequality,
-/// as a fraction of the trace: those that Armstrong, Khatib and Burdick (1986) measured on the PUMA
-/// 560 break it by 0.046.
+/// Tolerance of the triangle inequality for measured principal moments, as a fraction of the
+/// trace. The moments of the PUMA 560 measured by Armstrong, Khatib and Burdick (1986) violate
+/// it by 0.046.
 const MEASURED: f64 = 0.05;
 
-/// Checks masses and inertias at these values of the parameters: refuses a mass that is not more
-/// than 0, an inertia that is not positive semidefinite and one that no mass distribution has.
+/// Checks masses and inertias at these values of the parameters. Reports a mass that is not
+/// positive, an inertia that is not positive semidefinite, and an inertia that no mass
+/// distribution has.
 pub fn check(inertias: &[Inertia<Expr>], parameters: &[f64], found: &mut Diagnostics) {
     for inertia in inertias {
         let value = |index: usize| {
@@ -30,8 +30,8 @@ pub fn check(inertias: &[Inertia<Expr>], parameters: &[f64], found: &mut Diagnos
                 let name = &inertia.body.text;
                 found.push(
                     Diagnostic::error(format!("the mass of `{name}` is {kilograms} kg"))
-                        .at(mass.span, "not more than 0")
-                        .help("leave out `mass` where a body has inertia only"),
+                        .at(mass.span, "not greater than 0")
+                        .help("remove `mass` if the body has only inertia"),
                 );
                 continue;
             }
@@ -46,7 +46,7 @@ pub fn check(inertias: &[Inertia<Expr>], parameters: &[f64], found: &mut Diagnos
                     "the inertia of `{body}` is not positive semidefinite"
                 ))
                 .at(inertia.span, "some rotation has negative energy")
-                .help("the order is I_xx, I_yy, I_zz, I_xy, I_yz, I_xz"),
+                .help("check the order: I_xx, I_yy, I_zz, I_xy, I_yz, I_xz"),
             );
         } else if !semidefinite([xx, yy, zz].map(|own| half_trace - own), [-xy, -yz, -xz]) {
             found.push(
@@ -55,13 +55,13 @@ pub fn check(inertias: &[Inertia<Expr>], parameters: &[f64], found: &mut Diagnos
                         inertia.span,
                         "a principal moment exceeds the sum of the other two",
                     )
-                    .help("moments are about the centre of mass"),
+                    .help("give the moments about the centre of mass"),
             );
         }
     }
 }
 
-/// Whether all principal minors of a symmetric matrix are at least 0.
+/// Returns true if all principal minors of a symmetric matrix are at least 0, within rounding.
 fn semidefinite([xx, yy, zz]: [f64; 3], [xy, yz, xz]: [f64; 3]) -> bool {
     let scale = xx.abs().max(yy.abs()).max(zz.abs());
     let scale = scale.max(xy.abs()).max(yz.abs()).max(xz.abs());

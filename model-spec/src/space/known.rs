@@ -1,4 +1,4 @@
-//! What is known while a specification is worked out, and which expressions have to be.
+//! State of the expansion of vectors, and the expressions that need it.
 
 use std::collections::{HashMap, HashSet};
 
@@ -10,28 +10,28 @@ use super::value::Value;
 use crate::ast::{Syntax, SyntaxKind};
 use crate::functions::VECTOR_FUNCTIONS;
 
-/// What is known while a specification is worked out.
+/// State of the expansion of a specification.
 pub struct Space {
-    /// Vectors and rotations by their names.
+    /// Vectors and rotations by name.
     pub vectors: HashMap<String, Value>,
-    /// The frames that are placed.
+    /// Frames added so far.
     pub frames: Frames,
-    /// The names of all frames, placed or not yet.
+    /// Names of all frames, added or not.
     pub frame_names: HashSet<String>,
-    /// Where they are, as far as somebody asked.
+    /// Positions of frames computed so far.
     pub placements: Placements,
-    /// The definitions that are written.
+    /// Generated definitions.
     pub definitions: Definitions,
-    /// What is checked later.
+    /// Requirements checked later.
     pub demands: Demands,
-    /// Multipliers and residuals of constraints.
+    /// Names of multipliers and residuals of constraints.
     pub reported: HashSet<String>,
-    /// Definitions and frames with mistakes, which are said once.
+    /// Definitions and frames with errors, which are not reported again.
     pub broken: HashSet<String>,
 }
 
 impl Space {
-    /// Whether an expression has to be worked out: it holds vectors, by themselves or by name.
+    /// Returns true if an expression contains vectors, directly or by name.
     pub fn touches(&self, syntax: &Syntax) -> bool {
         let mut touches = is_spatial(syntax);
         syntax.visit(&mut |part| {
@@ -44,7 +44,7 @@ impl Space {
         touches
     }
 
-    /// Whether an expression refers to what is wrong already.
+    /// Returns true if an expression refers to an entry with an error.
     pub fn is_broken(&self, syntax: &Syntax) -> bool {
         let mut broken = false;
         syntax.visit(&mut |part| {
@@ -56,7 +56,7 @@ impl Space {
     }
 }
 
-/// Whether an expression is written with vectors.
+/// Returns true if an expression contains vector syntax.
 pub fn is_spatial(syntax: &Syntax) -> bool {
     let mut spatial = false;
     syntax.visit(&mut |part| {

@@ -1,17 +1,17 @@
-//! Bodies in space as a short form: vectors, `[frames]`, `[bodies]` and `gravity` become definitions,
-//! energies, forces, constraints and observables of scalars before any name is looked up, so that all that follows sees
-//! scalars. Every part of what is written here bears the place of the text it stands for.
+//! Expands vectors, `[frames]`, `[bodies]` and `gravity` to definitions, energies, forces,
+//! constraints and observables of scalars, before names are resolved. Later steps see only
+//! scalars. Every generated expression has the position of the text that it replaces.
 //!
-//! Velocities go from frame to frame, each along the frame's own axes, as in the outward
-//! recursion of Luh, Walker and Paul (1980): J. Dyn. Sys. Meas. Control 102, 69-76, eqs. (6)
-//! to (10). The text they make grows with the number of frames and not with its square.
+//! Velocities are computed from frame to frame, along each frame's own axes, as in the outward
+//! recursion of Luh, Walker and Paul (1980), J. Dyn. Sys. Meas. Control 102, 69-76, Eq. (6) to
+//! (10). The size of the generated text is linear in the number of frames, not quadratic.
 //!
-//! `scalar` and `vector` write sums and products, `rotation` reads rotations, `moving` says what
-//! has a rate, `definitions` gives names; `frames` says how frames move and `placement` where they
-//! are; `expression`, with `operations` and `functions`, works out what is written, of a kind that
-//! `value` lists. `references` says in which order, `sections` does so entry by entry, and `bodies`
-//! writes energies, beside which `tree` keeps what they are of; `known` has what is known on the way, `demands` what is checked later, and
-//! `inertia` asks whether a body can be.
+//! Modules: `scalar` and `vector` (sums and products), `rotation`, `moving` (names with a
+//! rate), `definitions` (generated definitions), `frames` (motion of frames), `placement`
+//! (positions of frames), `expression`, `operations` and `functions` (evaluation to the kinds
+//! in `value`), `references` (order of evaluation), `sections` and `terms` (expansion entry by
+//! entry), `bodies` (energies), `tree` (declared bodies), `known` (state of the expansion),
+//! `demands` (checks for later steps), `inertia` (admissible masses and inertias).
 
 mod bodies;
 mod definitions;
@@ -43,8 +43,8 @@ pub use inertia::check as check_inertias;
 /// Replaces vectors, frames, bodies and gravity by scalars.
 ///
 /// # Errors
-/// Frames in a circle, unknown frames, rotations that are none, bodies that change, scalars where
-/// vectors have to be and the other way round.
+/// Cyclic or unknown frames, invalid rotations, bodies with variable mass or inertia, scalars
+/// in place of vectors and vectors in place of scalars.
 pub fn expand(document: &mut Document, source: &Source) -> Result<Demands, Diagnostics> {
     if !sections::are_spatial(document) {
         return Ok(Demands::default());

@@ -1,18 +1,17 @@
-//! Which names have a rate: coordinates, inputs, states, fields, the time, and definitions that hold one
-//! of these.
+//! Names with a rate: coordinates, inputs, states, fields, the time, and definitions of these.
 
 use std::collections::HashSet;
 
 use crate::ast::{Syntax, SyntaxKind};
 use crate::raw::Document;
 
-/// The names that have a rate.
+/// Names with a rate.
 pub struct Moving {
     names: HashSet<String>,
 }
 
 impl Moving {
-    /// Those of a specification but for its definitions, which are learnt one after the other.
+    /// Collects the names of a specification, without its definitions.
     pub fn of(document: &Document) -> Self {
         let mut names: HashSet<String> = ["t".to_owned()].into();
         names.extend(document.coordinates.iter().map(|c| c.name.text.clone()));
@@ -24,14 +23,14 @@ impl Moving {
         Self { names }
     }
 
-    /// Takes a definition in, after those that it refers to.
+    /// Adds a definition, after those that it refers to.
     pub fn learn(&mut self, name: &str, value: &Syntax) {
         if self.holds(value) {
             self.names.insert(name.to_owned());
         }
     }
 
-    /// Whether an expression has a rate.
+    /// Returns true if an expression has a rate.
     pub fn holds(&self, syntax: &Syntax) -> bool {
         let mut holds = false;
         syntax.visit(&mut |part| {

@@ -9,15 +9,15 @@ use crate::ast::{BinaryOperator, Syntax, SyntaxKind};
 use crate::diagnostic::Diagnostic;
 use crate::span::Span;
 
-/// Most factors of a rotation that a definition keeps: three turns make any rotation, and with more a
-/// matrix takes fewer products.
+/// Largest number of factors kept in a named rotation. Three turns reach any rotation; beyond
+/// that a matrix needs fewer products.
 const MAX_FACTORS: usize = 3;
 
-/// An operand and where it stands.
+/// Operand and its position.
 type Operand = (Value, Span);
 
 impl Reader<'_> {
-    /// What two operands make.
+    /// Evaluates a binary operation.
     pub(super) fn binary(
         &mut self,
         operator: BinaryOperator,
@@ -78,18 +78,18 @@ impl Reader<'_> {
                 Ok(Value::Vector(self.rotated(&factors, vector)?, one))
             }
             (left @ (Value::Vector(..), _), right @ (Value::Vector(..), _)) => {
-                Err(Diagnostic::error("which product of two vectors?")
-                    .at(span, "`*` is of scalars")
+                Err(Diagnostic::error("`*` of two vectors is ambiguous")
+                    .at(span, "`*` needs a scalar operand")
                     .also(left.1, left.0.kind())
                     .also(right.1, right.0.kind())
                     .help("write dot(a, b) for the scalar product, cross(a, b) for the vector product"))
             }
             (left @ (Value::Vector(..), _), right @ (Value::Rotation(..), _)) => {
                 Err(mismatch(&left, &right)
-                    .help("a rotation stands before the vector that it turns: R*v"))
+                    .help("write the rotation before the vector: R*v"))
             }
             (left, right) => Err(mismatch(&left, &right)
-                .help("a rotation turns a vector, R*v, or another rotation, R*S")),
+                .help("multiply a rotation by a vector, R*v, or by another rotation, R*S")),
         }
     }
 
@@ -101,13 +101,13 @@ impl Reader<'_> {
                 Ok(Value::Vector(divided, dimensions))
             }
             (left, right) => {
-                Err(mismatch(&left, &right).help("a vector is divided by a scalar: v/m"))
+                Err(mismatch(&left, &right).help("divide a vector only by a scalar: v/m"))
             }
         }
     }
 
-    /// The rotation that a definition names. A long product is kept as its matrix, whose elements are
-    /// named: what refers to it then holds one factor, however many rotations went into it.
+    /// Returns the factors of a named rotation. A long product is replaced by its matrix with named
+    /// elements, so that references have one factor.
     ///
     /// # Errors
     /// Those of naming.
@@ -131,7 +131,7 @@ impl Reader<'_> {
         Ok(vec![Factor::Frame(Box::new(rows))])
     }
 
-    /// The vector turned by all factors, the last first.
+    /// Rotates a vector by all factors, the last first.
     pub(super) fn rotated(
         &mut self,
         factors: &[Factor],
@@ -145,7 +145,7 @@ impl Reader<'_> {
     }
 }
 
-/// What was made stands where the operation is written.
+/// Sets the position of a value to that of the operation.
 pub fn standing(value: Value, span: Span) -> Value {
     let here = |component: Syntax| Syntax { span, ..component };
     match value {
@@ -167,15 +167,13 @@ fn divided(component: Syntax, by: &Syntax, span: Span) -> Syntax {
     Syntax { kind, span }
 }
 
-/// The finding that these cannot be added.
+/// Reports operands that cannot be added.
 pub fn mixed(left: &Operand, right: &Operand) -> Diagnostic {
     let message = format!("{} and {} cannot be added", left.0.kind(), right.0.kind());
     let help = match (&left.0, &right.0) {
-        (Value::Vector(..), Value::Vector(..)) => {
-            "both have 2 components or both have 3: write [x, y, 0]"
-        }
-        (Value::Rotation(..), _) | (_, Value::Rotation(..)) => "rotations are multiplied: R*S",
-        _ => "write the scalar as a vector, such as [x, 0, 0], or take a component, v.x",
+        (Value::Vector(..), Value::Vector(..)) => "give both vectors 3 components: write [x, y, 0]",
+        (Value::Rotation(..), _) | (_, Value::Rotation(..)) => "multiply rotations: R*S",
+        _ => "write the scalar as a vector, for example [x, 0, 0], or use a component, v.x",
     };
     Diagnostic::error(message)
         .at(right.1, format!("this is {}", right.0.kind()))
@@ -185,7 +183,7 @@ pub fn mixed(left: &Operand, right: &Operand) -> Diagnostic {
 
 fn mismatch(left: &Operand, right: &Operand) -> Diagnostic {
     let message = format!(
-        "{} and {} do not go together here",
+        "{} and {} are not valid operands here",
         left.0.kind(),
         right.0.kind()
     );
@@ -199,12 +197,12 @@ fn power(left: &Operand, right: &Operand) -> Diagnostic {
         Value::Scalar(_) => right,
         _ => left,
     };
-    Diagnostic::error(format!("{} in a power", value.kind()))
-        .at(*place, "a power is of scalars")
-        .help("the square of a vector is dot(v, v), its length norm(v)")
+    Diagnostic::error(format!("{} cannot be raised to a power", value.kind()))
+        .at(*place, "expected a scalar")
+        .help("write dot(v, v) for the square of a vector, norm(v) for its length")
 }
 
-/// `a_x b_x + ...`, with a square where both are the same name.
+/// Returns `a_x b_x + ...`, with a square for two equal names.
 pub fn scalar_product([ax, ay, az]: Vector, [bx, by, bz]: Vector) -> Syntax {
     let product = |a: Syntax, b: Syntax| match a.kind == b.kind && is_name(&a) {
         true => super::scalar::square(a),

@@ -1,5 +1,5 @@
-//! Where frames are, along the fixed axes: the directions of their axes, the positions of their
-//! origins and how these move. Worked out for frames that are asked, and for those they stand in.
+//! Directions of frames' axes, and positions and velocities of their origins, along the fixed
+//! axes. Computed on demand, for a frame and its ancestors.
 
 use std::collections::HashMap;
 
@@ -9,7 +9,7 @@ use super::scalar::{add, number};
 use super::vector::{AXES, Rows, Vector, turned, zero};
 use crate::span::Span;
 
-/// What was worked out so far.
+/// Results so far.
 #[derive(Default)]
 pub struct Placements {
     rows: HashMap<String, Rows>,
@@ -17,7 +17,7 @@ pub struct Placements {
     motions: HashMap<(String, &'static str), Vector>,
 }
 
-/// The rows of the fixed axes themselves.
+/// Returns the rows of the identity.
 fn identity(span: Span) -> Rows {
     [0, 1, 2].map(|axis| {
         let mut row = zero(span);
@@ -27,7 +27,7 @@ fn identity(span: Span) -> Rows {
 }
 
 impl Placements {
-    /// The directions of a frame's axes.
+    /// Returns the directions of a frame's axes.
     pub fn rows(&mut self, frame: &Frame, frames: &Frames, definitions: &mut Definitions) -> Rows {
         let owner = &frame.owner;
         if let Some(rows) = self.rows.get(&owner.name.text) {
@@ -38,7 +38,7 @@ impl Placements {
             rows = rows.map(|row| turn.of(&row));
             for (row, fixed) in rows.iter_mut().zip(AXES) {
                 for (element, own) in row.iter_mut().zip(AXES) {
-                    // The frame's axis has components along the fixed axes.
+                    // Component of the frame's axis along a fixed axis.
                     let what = format!("{stem}{own}_{fixed}");
                     *element = definitions.named(owner, &what, element.clone());
                 }
@@ -48,7 +48,7 @@ impl Placements {
         rows
     }
 
-    /// The position of a frame's origin, in m.
+    /// Returns the position of a frame's origin, in m.
     pub fn origin(
         &mut self,
         frame: &Frame,
@@ -73,7 +73,7 @@ impl Placements {
         origin
     }
 
-    /// The velocity of a frame's origin, in m/s.
+    /// Returns the velocity of a frame's origin, in m/s.
     pub fn velocity(
         &mut self,
         frame: &Frame,
@@ -84,7 +84,7 @@ impl Placements {
         self.motion("velocity", own, frame, frames, definitions)
     }
 
-    /// The angular velocity of a frame, in 1/s.
+    /// Returns the angular velocity of a frame, in 1/s.
     pub fn angular_velocity(
         &mut self,
         frame: &Frame,

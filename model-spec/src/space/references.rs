@@ -1,5 +1,5 @@
-//! What definitions and frames refer to, and in which order they can be worked out. A definition may
-//! hold what a frame has, and a frame may stand where a definition says.
+//! References between definitions and frames, and their order of evaluation. A definition may
+//! use members of a frame, and the position of a frame may use a definition.
 
 use std::collections::{HashMap, HashSet};
 
@@ -12,24 +12,22 @@ use crate::span::Span;
 use super::definitions::declared;
 use super::frames::unknown;
 
-/// The expressions of a frame.
+/// Expressions of a frame.
 pub struct FrameExpressions {
-    /// Its origin.
     pub origin: Option<Syntax>,
-    /// Its rotation.
     pub rotation: Option<Syntax>,
 }
 
-/// The expressions that are worked out one after the other.
+/// Expressions that are evaluated in dependency order.
 pub struct Expressions {
-    /// Those of `[definitions]`.
+    /// Expressions of `[definitions]`.
     pub definitions: Vec<Syntax>,
-    /// Those of `[frames]`.
+    /// Expressions of `[frames]`.
     pub frames: Vec<FrameExpressions>,
 }
 
 impl Expressions {
-    /// Reads the expressions of definitions and frames; none if one cannot be read.
+    /// Parses the expressions of definitions and frames; `None` after an error.
     pub fn read(document: &Document, found: &mut Diagnostics) -> Option<Self> {
         let before = found.list().len();
         let definitions = document.definitions.iter();
@@ -48,16 +46,16 @@ impl Expressions {
     }
 }
 
-/// A definition or a frame.
+/// Definition or frame.
 #[derive(Clone, Copy)]
 pub enum Entry {
-    /// The definition at this place of its section.
+    /// Index into `[definitions]`.
     Definition(usize),
-    /// The frame at this place of its section.
+    /// Index into `[frames]`.
     Frame(usize),
 }
 
-/// Definitions and frames such that each comes after those that it refers to.
+/// Returns definitions and frames in dependency order.
 pub fn in_order(
     document: &Document,
     expressions: &Expressions,
@@ -102,7 +100,7 @@ pub fn in_order(
     Some(sorted.ok()?.into_iter().map(entry).collect())
 }
 
-/// Where definitions and frames stand in their sections.
+/// Indices of definitions and frames by name.
 struct Names<'d> {
     definitions: HashMap<&'d str, usize>,
     frames: HashMap<&'d str, usize>,
@@ -126,7 +124,7 @@ impl<'d> Names<'d> {
         let mut list = Vec::new();
         let count = self.definitions.len();
         let mut see = |name: &str, is_member: bool, span: Span| {
-            // A frame may have the name of a scalar, and is meant where a member is.
+            // A frame may share the name of a scalar; a member access then means the frame.
             let is_frame = is_member || !self.declared.contains(name);
             let frame = self.frames.get(name).filter(|_| is_frame);
             list.extend(frame.map(|index| (count + index, span)));
@@ -162,8 +160,8 @@ fn placed_in_itself(circle: &[Reference], first: usize, document: &Document) -> 
         .map_or(Span::default(), |(_, place)| *place);
     let own = named.first().copied().unwrap_or_default();
     let help = match circle.iter().all(|(index, _)| frame(*index).is_some()) {
-        true => "one of them must be placed in the fixed axes: leave out `in`",
-        false => "one of them must be known without the others",
+        true => "place one of them in the fixed axes: remove its `in`",
+        false => "one of them must not depend on the others",
     };
     Diagnostic::error(format!("the frame `{own}` is placed in itself"))
         .at(place, format!("here: {} -> ...", named.join(" -> ")))

@@ -1,6 +1,6 @@
-//! Rotations: of frames a product of turns about the axes, `rotation_x(pi/2)*rotation_z(q)`, each about an
-//! axis of the frame that those before it have made; of vectors also turns about any axis and the
-//! matrices of frames.
+//! Rotations. A rotation of a frame is a product of turns about coordinate axes,
+//! `rotation_x(pi/2)*rotation_z(q)`, each about an axis that the turns before it have rotated.
+//! A rotation of vectors may also contain turns about any axis and the matrices of frames.
 
 use super::scalar::{add, call, multiply, negate, number};
 use super::vector::{Rows, Vector, cross, inner, scaled, sum, turned};
@@ -8,30 +8,30 @@ use crate::ast::{BinaryOperator, Syntax, SyntaxKind};
 use crate::diagnostic::Diagnostic;
 use crate::span::Span;
 
-/// A turn about an axis.
+/// Turn about a coordinate axis.
 #[derive(Clone, Debug)]
 pub struct Turn {
     /// 0, 1, 2 for x, y, z.
     pub axis: usize,
-    /// The angle, by the right hand.
+    /// Angle, right-handed.
     pub angle: Syntax,
 }
 
-/// One factor of a rotation of vectors.
+/// Factor of a rotation of vectors.
 #[derive(Clone, Debug)]
 pub enum Factor {
-    /// A turn about a fixed axis.
+    /// Turn about a coordinate axis.
     Turn(Turn),
-    /// A turn about a direction, a vector of length 1, with the cosine and the sine of the angle.
+    /// Turn about a unit vector, with the cosine and the sine of the angle.
     About(Box<(Vector, Syntax, Syntax)>),
-    /// From a frame's axes to the fixed ones.
+    /// Rotation from a frame's axes to the fixed axes.
     Frame(Box<Rows>),
-    /// From the fixed axes to a frame's.
+    /// Rotation from the fixed axes to a frame's.
     IntoFrame(Box<Rows>),
 }
 
 impl Factor {
-    /// The rotation back.
+    /// Returns the inverse rotation.
     pub fn transposed(self) -> Self {
         match self {
             Self::Turn(turn) => Self::Turn(turn.back()),
@@ -44,7 +44,7 @@ impl Factor {
         }
     }
 
-    /// The vector turned; `name` gives a name to what is used more than once.
+    /// Rotates a vector; `name` names an expression that is used several times.
     ///
     /// # Errors
     /// Those of `name`.
@@ -60,7 +60,7 @@ impl Factor {
             }
             Self::About(about) => {
                 let (n, cosine, sine) = about.as_ref();
-                // The formula of Rodrigues: v cos + n x v sin + n (n.v)(1 - cos).
+                // Rodrigues' formula: v cos + n x v sin + n (n.v)(1 - cos).
                 let rest = add(number(1.0, cosine.span), negate(cosine.clone()));
                 let along = name(multiply(inner(n, &vector), rest))?;
                 let across = sum(scaled(&vector, cosine), scaled(&cross(n, &vector), sine));
@@ -70,13 +70,13 @@ impl Factor {
     }
 }
 
-/// Gives a name to an expression.
+/// Function that names an expression.
 pub type Naming<'n> = dyn FnMut(Syntax) -> Result<Syntax, Diagnostic> + 'n;
 
-/// The turns of a rotation, from the parent's axes on.
+/// Returns the turns of a frame's rotation, starting at the parent's axes.
 ///
 /// # Errors
-/// What is no product of turns.
+/// An expression that is not a product of turns.
 pub fn turns(syntax: &Syntax) -> Result<Vec<Turn>, Diagnostic> {
     let mut turns = Vec::new();
     let mut rest = syntax;
@@ -90,10 +90,10 @@ pub fn turns(syntax: &Syntax) -> Result<Vec<Turn>, Diagnostic> {
 }
 
 fn turn(syntax: &Syntax) -> Result<Turn, Diagnostic> {
-    let help = "a rotation is a product of rotation_x(ANGLE), rotation_y(ANGLE) and \
+    let help = "write a product of rotation_x(ANGLE), rotation_y(ANGLE) and \
                 rotation_z(ANGLE)";
     let refused = |span: Span, why: &str| {
-        Diagnostic::error("this is no rotation")
+        Diagnostic::error("this is not a rotation of a frame")
             .at(span, why)
             .help(help)
     };
@@ -116,12 +116,12 @@ fn turn(syntax: &Syntax) -> Result<Turn, Diagnostic> {
             axis,
             angle: angle.clone(),
         }),
-        _ => Err(refused(syntax.span, "it takes one angle")),
+        _ => Err(refused(syntax.span, "expected one angle")),
     }
 }
 
 impl Turn {
-    /// The turn back.
+    /// Returns the inverse turn.
     pub fn back(&self) -> Self {
         Self {
             axis: self.axis,
@@ -129,7 +129,7 @@ impl Turn {
         }
     }
 
-    /// The components of a vector along the turned axes.
+    /// Returns the components of a vector along the rotated axes.
     pub fn of(&self, vector: &Vector) -> Vector {
         let (k, i, j) = (self.axis, (self.axis + 1) % 3, (self.axis + 2) % 3);
         let (cosine, sine) = self.cosine_and_sine();
@@ -142,7 +142,8 @@ impl Turn {
         turned
     }
 
-    /// Quarter turns are exact, so that axes that coincide do so in the equations.
+    /// Returns cosine and sine of the angle, exact for quarter turns: axes that coincide then
+    /// coincide in the equations.
     pub fn cosine_and_sine(&self) -> (Syntax, Syntax) {
         let span = self.angle.span;
         let quarters = quarters(&self.angle).filter(|q| q.fract() == 0.0 && q.abs() < 1e9);
@@ -168,7 +169,7 @@ impl Turn {
     }
 }
 
-/// How many quarter turns a constant angle has.
+/// Returns the number of quarter turns of a constant angle.
 fn quarters(angle: &Syntax) -> Option<f64> {
     match &angle.kind {
         SyntaxKind::Number(value) if *value == 0.0 => Some(0.0),

@@ -1,15 +1,15 @@
-//! Sums and products of expressions as written, without what is 0 and without factors of 1.
+//! Sums and products of expressions; terms that are 0 and factors that are 1 are dropped.
 
 use crate::ast::{BinaryOperator, Syntax, SyntaxKind};
 use crate::span::Span;
 use crate::table::Quantity;
 
-/// What stands for a quantity that the file does not write.
+/// Returns a generated expression as a quantity.
 pub fn expansion(syntax: Syntax) -> Quantity {
     Quantity::Expansion(Box::new(syntax))
 }
 
-/// A literal.
+/// Returns a literal.
 pub fn number(value: f64, span: Span) -> Syntax {
     Syntax {
         kind: SyntaxKind::Number(value),
@@ -17,7 +17,7 @@ pub fn number(value: f64, span: Span) -> Syntax {
     }
 }
 
-/// A name.
+/// Returns a name as an expression.
 pub fn name(text: &str, span: Span) -> Syntax {
     Syntax {
         kind: SyntaxKind::Name(text.to_owned()),
@@ -25,7 +25,7 @@ pub fn name(text: &str, span: Span) -> Syntax {
     }
 }
 
-/// The same expression, said to stand elsewhere.
+/// Returns the expression with another position.
 pub fn placed(mut syntax: Syntax, span: Span) -> Syntax {
     syntax.span = span;
     match &mut syntax.kind {
@@ -45,7 +45,7 @@ pub fn placed(mut syntax: Syntax, span: Span) -> Syntax {
     syntax
 }
 
-/// A function of one argument.
+/// Returns a call with one argument.
 pub fn call(function: &str, argument: Syntax) -> Syntax {
     let span = argument.span;
     let kind = SyntaxKind::Call {
@@ -69,12 +69,12 @@ pub fn is_plain(value: &Syntax) -> bool {
     }
 }
 
-/// Whether this is the literal.
+/// Returns true if the expression is this literal.
 pub fn is(syntax: &Syntax, value: f64) -> bool {
     syntax.kind == SyntaxKind::Number(value)
 }
 
-/// `-a`
+/// Returns `-a`.
 pub fn negate(a: Syntax) -> Syntax {
     let span = a.span;
     match a.kind {
@@ -87,7 +87,7 @@ pub fn negate(a: Syntax) -> Syntax {
     }
 }
 
-/// `a + b`
+/// Returns `a + b`.
 pub fn add(a: Syntax, b: Syntax) -> Syntax {
     if is(&a, 0.0) {
         return b;
@@ -102,7 +102,7 @@ pub fn add(a: Syntax, b: Syntax) -> Syntax {
     }
 }
 
-/// `a * b`
+/// Returns `a * b`.
 pub fn multiply(a: Syntax, b: Syntax) -> Syntax {
     if is(&a, 0.0) || is(&b, 1.0) {
         return a;
@@ -132,12 +132,12 @@ pub fn multiply(a: Syntax, b: Syntax) -> Syntax {
     }
 }
 
-/// `0*a`, which has the unit of `a`
+/// Returns `0*a`, which has the unit of `a`.
 pub fn zero_times(a: &Syntax, span: Span) -> Syntax {
     binary(BinaryOperator::Multiply, number(0.0, span), a.clone(), span)
 }
 
-/// `a^2`
+/// Returns `a^2`.
 pub fn square(a: Syntax) -> Syntax {
     let span = a.span;
     match a.kind {
@@ -147,7 +147,7 @@ pub fn square(a: Syntax) -> Syntax {
     }
 }
 
-/// `a / 2`
+/// Returns `a / 2`.
 pub fn half(a: Syntax) -> Syntax {
     let span = a.span;
     multiply(number(0.5, span), a)

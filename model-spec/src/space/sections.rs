@@ -1,5 +1,5 @@
-//! A specification section by section: definitions and frames in their order, then all that uses
-//! them.
+//! Expands a specification entry by entry: definitions and frames in dependency order, then
+//! everything that uses them.
 
 use std::collections::HashSet;
 
@@ -22,15 +22,15 @@ use crate::dimension::Dimension;
 use crate::raw::{Document, RawFrame, RawTerm};
 use crate::table::{Name, Quantity};
 
-/// Whether a specification has vectors, frames or bodies.
+/// Returns true if a specification has vectors, frames or bodies.
 pub fn are_spatial(document: &Document) -> bool {
     let has_frames = !document.frames.is_empty() || !document.bodies.is_empty();
-    // What cannot be read is reported where names are looked up.
+    // `resolve` reports syntax errors.
     let mut read = quantities(document).filter_map(|quantity| quantity.syntax().ok());
     has_frames || document.gravity.is_some() || read.any(|syntax| is_spatial(&syntax))
 }
 
-/// The expressions that may hold vectors.
+/// Returns the expressions that may contain vectors.
 fn quantities(document: &Document) -> impl Iterator<Item = &Quantity> {
     let terms = document.definitions.iter().chain(&document.kinetic);
     let terms = terms
@@ -45,7 +45,7 @@ fn quantities(document: &Document) -> impl Iterator<Item = &Quantity> {
     terms.map(|term| &term.value).chain(forces).chain(rates)
 }
 
-/// Replaces all vectors, frames and bodies; none where definitions cannot be put in order.
+/// Replaces all vectors, frames and bodies; `None` if definitions cannot be sorted.
 pub fn expand(document: &mut Document, found: &mut Diagnostics) -> Option<Demands> {
     let expressions = Expressions::read(document, found)?;
     let order = in_order(document, &expressions, found)?;
@@ -108,7 +108,7 @@ pub fn expand(document: &mut Document, found: &mut Diagnostics) -> Option<Demand
     Some(space.demands)
 }
 
-/// All names that expressions hold.
+/// Returns all names in expressions.
 fn mentioned(document: &Document) -> HashSet<String> {
     let mut names = HashSet::new();
     let frames = document.frames.iter();
@@ -127,7 +127,7 @@ fn mentioned(document: &Document) -> HashSet<String> {
     names
 }
 
-/// The definitions of scalars that stand for a definition.
+/// Returns the scalar definitions that replace a definition.
 fn definition(
     space: &mut Space,
     document: &mut Document,
@@ -175,7 +175,7 @@ fn definition(
     if let Some(frame) = document.frames.iter().find(|f| f.name.text == *name) {
         found.push(
             Diagnostic::error(format!("the name `{name}` is taken"))
-                .at(term.name.span, "a frame has it, and both have members")
+                .at(term.name.span, "used by a frame, and both have members")
                 .also(frame.name.span, "here")
                 .help("choose another name"),
         );
@@ -188,7 +188,7 @@ fn definition(
     written
 }
 
-/// The definitions of a vector's components, and the vector by their names.
+/// Returns the definitions of a vector's components, and the vector of their names.
 fn by_components(
     space: &mut Space,
     term: &RawTerm,
@@ -227,7 +227,7 @@ fn by_components(
     (written, vector)
 }
 
-/// Places a frame; a mistake in it is reported.
+/// Adds a frame, or reports an error in it.
 fn frame(
     space: &mut Space,
     raw: &RawFrame,
@@ -285,7 +285,7 @@ fn placement(
         let written = expansion(turn.angle.clone());
         let mut reader = Reader::new(space, owner);
         let subject = format!("an angle of `{}`", name.text);
-        turn.angle = reader.scalar(&written, &subject, "an angle is a scalar")?;
+        turn.angle = reader.scalar(&written, &subject, "give a scalar")?;
         space.demands.units.push(UnitDemand {
             value: expansion(turn.angle.clone()),
             dimension: Dimension::NONE,

@@ -1,4 +1,4 @@
-//! Energies, forces, constraints and observables with vectors in them, by their components.
+//! Replaces vectors in energies, forces, constraints and observables by components.
 
 use super::definitions::Owner;
 use super::expression::Reader;
@@ -13,9 +13,9 @@ use crate::raw::{Document, RawTerm};
 use crate::span::Span;
 use crate::table::{Name, Quantity};
 
-/// Replaces what holds vectors in all sections but definitions and frames.
+/// Replaces vectors in all sections other than definitions and frames.
 pub fn expand(document: &mut Document, space: &mut Space, found: &mut Diagnostics) {
-    let product = "an energy is a scalar: for example 1/2*m*dot(v, v)";
+    let product = "give a scalar, for example 1/2*m*dot(v, v)";
     for (terms, subject) in [
         (&mut document.kinetic, "this term of the kinetic energy"),
         (&mut document.potential, "this term of the potential energy"),
@@ -29,12 +29,12 @@ pub fn expand(document: &mut Document, space: &mut Space, found: &mut Diagnostic
     for state in &mut document.states {
         let owner = Owner::new(&state.name, &state.doc);
         let subject = format!("the rate of `{}`", state.name.text);
-        let help = "a state is a scalar: take a component, v.x";
+        let help = "give a scalar, for example a component, v.x";
         scalar(space, &owner, &mut state.rate, (&subject, help), found);
     }
     for (impact, _) in &mut document.impacts {
         let owner = Owner::new(&impact.name, &impact.doc);
-        let help = "a distance is a scalar: for example dot(n, r), or norm(r)";
+        let help = "give a scalar, for example dot(n, r), or norm(r)";
         scalar(
             space,
             &owner,
@@ -66,7 +66,7 @@ pub fn expand(document: &mut Document, space: &mut Space, found: &mut Diagnostic
     }
 }
 
-/// The worth of an expression with vectors in it; none where it holds none or is wrong.
+/// Evaluates an expression; `None` without vectors or after an error.
 fn read(
     space: &mut Space,
     owner: &Owner,
@@ -77,9 +77,9 @@ fn read(
     found.keep(Reader::new(space, owner).value(&syntax))
 }
 
-/// The expression, if it holds vectors and nothing in it is wrong already.
+/// Returns the expression if it contains vectors and refers to no entry with an error.
 fn touched(space: &Space, quantity: &Quantity) -> Option<Syntax> {
-    // What cannot be read is reported where names are looked up.
+    // `resolve` reports syntax errors.
     let syntax = quantity.syntax().ok()?;
     (space.touches(&syntax) && !space.is_broken(&syntax)).then_some(syntax)
 }
@@ -100,7 +100,7 @@ fn scalar(
     }
 }
 
-/// A component of a term.
+/// Returns a component of a term.
 fn component(term: &RawTerm, axis: &str, value: Syntax) -> RawTerm {
     RawTerm {
         name: Name {
@@ -120,7 +120,7 @@ fn of_components(term: &RawTerm, vector: Vector, dimensions: Dimensions) -> Vec<
         .collect()
 }
 
-/// Observables of a vector are its components: three columns.
+/// Replaces a vector by one observable per component.
 fn observables(space: &mut Space, term: RawTerm, found: &mut Diagnostics) -> Vec<RawTerm> {
     let owner = Owner::new(&term.name, &term.doc);
     let place = term.value.span();
@@ -136,16 +136,17 @@ fn observables(space: &mut Space, term: RawTerm, found: &mut Diagnostics) -> Vec
         }
         Some(Value::Rotation(..)) => {
             found.push(
-                Diagnostic::error("an observable is a scalar or a vector")
+                Diagnostic::error("an observable must be a scalar or a vector")
                     .at(place, "this is a rotation")
-                    .help("report what it makes of a vector, R*v, or an axis of a frame, FRAME.x"),
+                    .help("report a rotated vector, R*v, or an axis of a frame, FRAME.x"),
             );
             vec![]
         }
     }
 }
 
-/// Constraints of a vector are those of its components; what is 0 as it is written constrains nothing.
+/// Replaces a vector by one constraint per component. A component that is the literal 0 gives
+/// no constraint.
 fn constraints(space: &mut Space, term: RawTerm, found: &mut Diagnostics) -> Vec<RawTerm> {
     let owner = Owner::new(&term.name, &term.doc);
     let place = term.value.span();
@@ -174,17 +175,17 @@ fn constraints(space: &mut Space, term: RawTerm, found: &mut Diagnostics) -> Vec
             terms.retain(|_| components.next().is_none_or(|c| !is(c, 0.0)));
             if terms.is_empty() {
                 found.push(
-                    Diagnostic::error(format!("the constraint `{}` holds nothing", term.name.text))
-                        .at(place, "this is 0 whatever moves"),
+                    Diagnostic::error(format!("the constraint `{}` has no effect", term.name.text))
+                        .at(place, "this is identically 0"),
                 );
             }
             terms
         }
         Some(Value::Rotation(..)) => {
             found.push(
-                Diagnostic::error("a rotation is not zero")
+                Diagnostic::error("a constraint cannot be a rotation")
                     .at(place, "this is a rotation")
-                    .help("axes stay along each other by products: dot(A.x, B.y) and so on"),
+                    .help("keep axes parallel by scalar products: dot(A.x, B.y) and so on"),
             );
             vec![]
         }
@@ -193,8 +194,8 @@ fn constraints(space: &mut Space, term: RawTerm, found: &mut Diagnostics) -> Vec
 
 type Force = (RawTerm, Quantity);
 
-/// A force vector at a point does the work of its components; a torque that of forces on the
-/// ends of axes.
+/// Replaces a force vector at a point by its components, and a torque by forces on the ends of
+/// axes.
 fn forces(space: &mut Space, (term, on): Force, found: &mut Diagnostics) -> Vec<Force> {
     let owner = Owner::new(&term.name, &term.doc);
     if touched(space, &term.value).is_none() && touched(space, &on).is_none() {
@@ -232,7 +233,8 @@ fn forces(space: &mut Space, (term, on): Force, found: &mut Diagnostics) -> Vec<
     }
 }
 
-/// Forces on what moves; the first if nothing does, which is refused later.
+/// Keeps the forces on points that move; the first if none moves, for the error in a later
+/// step.
 fn moving(space: &Space, mut forces: Vec<(RawTerm, Syntax)>) -> Vec<Force> {
     let moves = |(_, on): &&(RawTerm, Syntax)| space.definitions.moving.holds(on);
     if forces.iter().any(|force| moves(&force)) {
@@ -244,8 +246,8 @@ fn moving(space: &Space, mut forces: Vec<(RawTerm, Syntax)>) -> Vec<Force> {
     kept.map(|(term, on)| (term, expansion(on))).collect()
 }
 
-/// The torque t on axes e_k that turn by a small angle d: their ends move by d x e_k, and the sum of
-/// 1/2 (t x e_k).(d x e_k) over three axes is t.d.
+/// Expands a torque t on axes e_k. A small rotation d moves their ends by d x e_k, and the sum
+/// of 1/2 (t x e_k).(d x e_k) over three axes is t.d.
 fn torques(
     space: &mut Space,
     owner: &Owner,
@@ -257,7 +259,7 @@ fn torques(
     let mut reader = Reader::new(space, owner);
     let torque = reader.name_each(torque)?;
     let halves = reader.name_each(torque.map(half))?;
-    // What is wrong with the torque is said where it is written.
+    // An error in the torque is reported at its own position.
     let value_span = term.value.span();
     let mut forces = Vec::with_capacity(9);
     for (axis, own) in AXES.into_iter().enumerate() {
@@ -280,14 +282,16 @@ fn torques(
 fn work(value: &Value, place: Span, on: &Value, on_place: Span) -> Diagnostic {
     let message = format!("{} does no work on {}", value.kind(), on.kind());
     let help = match (value, on) {
-        (Value::Scalar(_), Value::Vector(..)) => "a force at a point is a vector: [F_x, F_y, F_z]",
+        (Value::Scalar(_), Value::Vector(..)) => {
+            "give a force at a point as a vector: [F_x, F_y, F_z]"
+        }
         (Value::Vector(..), Value::Scalar(_)) => {
-            "a force vector works on the point where it acts, such as on = \"FRAME.origin\""
+            "give the point at which the force acts, for example on = \"FRAME.origin\""
         }
         (Value::Scalar(_), Value::Rotation(..)) => {
-            "a torque on a frame is a vector: [M_x, M_y, M_z]"
+            "give a torque on a frame as a vector: [M_x, M_y, M_z]"
         }
-        _ => "both have 2 components or both have 3",
+        _ => "give both the same number of components",
     };
     Diagnostic::error(message)
         .at(place, format!("this is {}", value.kind()))

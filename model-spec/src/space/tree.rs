@@ -1,11 +1,11 @@
-//! The frames and the bodies as they are declared, kept beside the energies that they stand for.
+//! Frames and bodies as declared, next to their energies.
 
 use super::frames::{Frame, Frames};
 use super::rotation::Turn;
 use crate::ast::Syntax;
 use crate::rigid_tree::{AxisTurn, PlacedFrame, RigidBody, RigidTree};
 
-/// The tree of all frames with these bodies; none without a body.
+/// Returns the tree of all frames and bodies; `None` without a body.
 pub fn tree(frames: &Frames, bodies: Vec<RigidBody<Syntax>>) -> Option<RigidTree<Syntax>> {
     if bodies.is_empty() {
         return None;

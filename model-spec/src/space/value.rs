@@ -1,20 +1,20 @@
-//! What an expression of a specification is worth: a scalar, a vector or a rotation.
+//! Kinds of values: scalars, vectors and rotations.
 
 use super::rotation::Factor;
 use super::vector::Vector;
 use crate::ast::Syntax;
 
-/// How many components a vector has.
+/// Number of components of a vector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dimensions {
-    /// x and y; z is kept as 0.
+    /// x and y; z is stored as 0.
     Two,
     /// x, y and z.
     Three,
 }
 
 impl Dimensions {
-    /// As a number.
+    /// Returns the number of components.
     pub fn count(self) -> usize {
         match self {
             Self::Two => 2,
@@ -23,19 +23,19 @@ impl Dimensions {
     }
 }
 
-/// What an expression is worth.
+/// Value of an expression.
 #[derive(Clone, Debug)]
 pub enum Value {
-    /// A number.
+    /// Scalar.
     Scalar(Syntax),
     /// Components along the fixed axes.
     Vector(Vector, Dimensions),
-    /// A product of rotations, the first on the left.
+    /// Product of rotations, the first on the left.
     Rotation(Vec<Factor>, Dimensions),
 }
 
 impl Value {
-    /// What it is, for a message.
+    /// Returns the kind, for a message.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Scalar(_) => "a scalar",

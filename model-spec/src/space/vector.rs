@@ -7,19 +7,20 @@ use crate::span::Span;
 /// Components along x, y, z.
 pub type Vector = [Syntax; 3];
 
-/// The fixed axes x, y and z, each along a frame's axes: the rows of the matrix that turns
-/// components along the frame into those along the fixed axes.
+/// Components of the fixed axes x, y and z along a frame's axes: the rows of the rotation
+/// matrix from the frame's axes to the fixed axes.
 pub type Rows = [Vector; 3];
 
-/// The axes, as names end.
+/// Suffixes of the axes in names.
 pub const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Zero.
+/// Returns the zero vector.
 pub fn zero(span: Span) -> Vector {
     [0, 1, 2].map(|_| number(0.0, span))
 }
 
-/// A component as a scalar by itself: one that is 0 keeps the unit of another, as 0 times that.
+/// Returns a component for use as a scalar. A component that is 0 becomes 0 times another one,
+/// to keep its unit.
 pub fn component(vector: &Vector, axis: usize) -> Syntax {
     let own = &vector[axis];
     let other = vector
@@ -31,19 +32,19 @@ pub fn component(vector: &Vector, axis: usize) -> Syntax {
     }
 }
 
-/// `a + b`
+/// Returns `a + b`.
 pub fn sum([ax, ay, az]: Vector, [bx, by, bz]: Vector) -> Vector {
     [add(ax, bx), add(ay, by), add(az, bz)]
 }
 
-/// `by * a`
+/// Returns `by * a`.
 pub fn scaled(vector: &Vector, by: &Syntax) -> Vector {
     vector
         .clone()
         .map(|component| multiply(by.clone(), component))
 }
 
-/// The vector product.
+/// Returns the vector product.
 pub fn cross([ax, ay, az]: &Vector, [bx, by, bz]: &Vector) -> Vector {
     let minor = |a: &Syntax, d: &Syntax, c: &Syntax, b: &Syntax| {
         let left = multiply(a.clone(), d.clone());
@@ -56,13 +57,13 @@ pub fn cross([ax, ay, az]: &Vector, [bx, by, bz]: &Vector) -> Vector {
     ]
 }
 
-/// The scalar product.
+/// Returns the scalar product.
 pub fn inner([ax, ay, az]: &Vector, [bx, by, bz]: &Vector) -> Syntax {
     let product = |a: &Syntax, b: &Syntax| multiply(a.clone(), b.clone());
     add(add(product(ax, bx), product(ay, by)), product(az, bz))
 }
 
-/// A vector along a frame's axes, along the fixed axes.
+/// Rotates a vector from a frame's axes to the fixed axes.
 pub fn turned(rows: &Rows, vector: &Vector) -> Vector {
     [0, 1, 2].map(|axis| inner(&rows[axis], vector))
 }

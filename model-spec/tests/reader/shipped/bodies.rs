@@ -297,7 +297,7 @@ fn mistakes_are_refused_where_they_stand() {
         (
             frame.to_owned()
                 + "[bodies]\nb = { frame = \"f\", mass = \"m\", centre = [\"l*cos(q)\", 0, 0] }",
-            "the body `b` changes",
+            "the body `b` is not constant",
             "l*cos(q)",
         ),
         (
