@@ -1,16 +1,16 @@
-//! The exponential and what is made of it: `exp`, `exp_minus_one`, `sinh`, `cosh`, `tanh`.
+//! Exponential functions: `exp`, `exp_minus_one`, `sinh`, `cosh`, `tanh`.
 //!
-//! `x = k ln 2 + r`, `|r| <= ln(2)/2`, with the remainder as a pair; a polynomial for `e^r`; then
-//! the scaling by `2^k`, in two steps where the result may be subnormal. The hyperbolic functions
-//! use a quarter of `e^x - 1` so that nothing overflows before the result does.
+//! `x = k ln 2 + r`, `|r| <= ln(2)/2`, with the remainder as a pair; a polynomial for `e^r`; then a scaling
+//! by `2^k`, in two steps if the result can be subnormal. The hyperbolic functions use a quarter of `e^x -
+//! 1`, so that nothing overflows before the result.
 
 use crate::approximation::{clamp, nearest_integer, polynomial, scale_by_power_of_two};
 use crate::pair::{Pair, exact_sum, ordered_sum, quotient};
 use crate::real::Real;
 
-/// `ln 2` rounded to a multiple of 2^-42: times an integer of 11 bits it is exact.
+/// `ln 2` rounded to a multiple of 2^-42, so that its product with an integer of 11 bits is exact.
 pub(crate) const LN_2_HIGH: f64 = 0.693_147_180_559_890_3;
-/// What [`LN_2_HIGH`] misses.
+/// Rounding error of [`LN_2_HIGH`].
 pub(crate) const LN_2_LOW: f64 = 5.497_923_018_708_371e-14;
 
 /// `(e^r - 1 - r)/r^2`, `|r| <= ln(2)/2`: `e^r - 1` to 2^-61.6.
@@ -28,12 +28,12 @@ const EXPONENTIAL: [f64; 11] = [
     2.091_996_652_279_279_6e-9,
 ];
 
-/// From here on `e^x` is infinite.
+/// Smallest argument whose exponential is infinite.
 const OVERFLOW: f64 = 710.0;
-/// From here down `e^x` is zero.
+/// Largest argument whose exponential is zero.
 const UNDERFLOW: f64 = -746.0;
 
-/// `e^x`.
+/// Computes `e^x`.
 ///
 /// Largest error measured: 0.76 ulp.
 #[inline]
@@ -44,7 +44,7 @@ pub fn exp<R: Real>(x: R) -> R {
     })
 }
 
-/// `e^(high + low)` for `high` in `[-746, 710]` and `low` no more than its last place.
+/// Computes `e^(high + low)` for `high` in `[-746, 710]` and `low` at most its last place.
 #[inline(always)]
 pub(crate) fn exponential_of_pair<R: Real>(x: Pair<R>) -> R {
     let (k, r, rest) = reduce(x);
@@ -52,19 +52,19 @@ pub(crate) fn exponential_of_pair<R: Real>(x: Pair<R>) -> R {
     scale_by_power_of_two(value, k)
 }
 
-/// `e^x - 1`, accurate for small `x` too.
+/// Computes `e^x - 1`, accurate also for small `x`.
 ///
 /// Largest error measured: 1.10 ulp.
 #[inline]
 pub fn exp_minus_one<R: Real>(x: R) -> R {
     let value = quarter_exp_minus_one(clamp(x, -40.0, OVERFLOW)).round();
     let value = value * R::constant(4.0);
-    // Below this the function is its argument, signed zero and subnormals included.
+    // For smaller arguments the function equals its argument, signed zero and subnormals included.
     let tiny = R::constant(f64::EPSILON / 4.0);
     R::select_less(x.abs(), tiny, x, value)
 }
 
-/// The hyperbolic sine.
+/// Computes the hyperbolic sine.
 ///
 /// Largest error measured: 1.15 ulp.
 #[inline]
@@ -79,14 +79,14 @@ pub fn sinh<R: Real>(x: R) -> R {
     let decaying = w.high / denominator.high;
     let relative_rest = (denominator.low + w.low * four) * inverse;
     let rest = w.low + (w.low * inverse - decaying * relative_rest);
-    // An infinite denominator makes this rest NaN; the decaying part is nothing long before.
+    // An infinite denominator makes this remainder NaN; the decaying part is negligible long before.
     let rest = R::select_less(growth, R::constant(1e300), rest, w.low);
     let sum = ordered_sum(w.high, decaying).plus_low(rest);
     let magnitude = sum.round() * R::constant(2.0);
     odd_extension(x, magnitude)
 }
 
-/// The hyperbolic cosine.
+/// Computes the hyperbolic cosine.
 ///
 /// Largest error measured: 0.88 ulp.
 #[inline]
@@ -103,30 +103,30 @@ pub fn cosh<R: Real>(x: R) -> R {
     (high + (low + decaying)) * R::constant(2.0)
 }
 
-/// The hyperbolic tangent.
+/// Computes the hyperbolic tangent.
 ///
 /// Largest error measured: 0.91 ulp.
 #[inline]
 pub fn tanh<R: Real>(x: R) -> R {
-    // With w = (e^(2|x|) - 1)/4: tanh|x| = w/(w + 1/2). Beyond 22 it is 1 to the last bit.
+    // With w = (e^(2|x|) - 1)/4: tanh|x| = w/(w + 1/2). Above 22 it is 1 to the last bit.
     let doubled = clamp(x.abs(), 0.0, 22.0) * R::constant(2.0);
     let w = quarter_exp_minus_one(doubled).normalised();
     let denominator = exact_sum(w.high, R::constant(0.5)).plus_low(w.low);
     odd_extension(x, quotient(w, denominator).round())
 }
 
-/// Above this both hyperbolic functions are infinite, while `k` still fits.
+/// Argument above which both hyperbolic functions are infinite, with a `k` that still fits.
 const LARGEST_HYPERBOLIC: f64 = 710.5;
 
-/// An odd function from its values for positive arguments; `x` itself where that is exact to less
-/// than 2^-56, signed zero and subnormals included.
+/// Extends an odd function from its values for positive arguments. Returns `x` itself if that is exact to
+/// less than 2^-56, signed zero and subnormals included.
 #[inline(always)]
 fn odd_extension<R: Real>(x: R, magnitude: R) -> R {
     let tiny = R::constant(1.0 / (1_u64 << 28) as f64);
     R::select_less(x.abs(), tiny, x, magnitude.copysign(x))
 }
 
-/// `(e^x - 1)/4` for `x` in `[-40, 711]`, as a pair yet to be normalised.
+/// Computes `(e^x - 1)/4` for `x` in `[-40, 711]`, as a pair that is not normalised.
 #[inline(always)]
 fn quarter_exp_minus_one<R: Real>(x: R) -> Pair<R> {
     let (k, r, rest) = reduce(Pair {
@@ -135,11 +135,11 @@ fn quarter_exp_minus_one<R: Real>(x: R) -> Pair<R> {
     });
     let quarter = (k - R::constant(2.0)).power_of_two();
     let offset = exact_sum(quarter, R::constant(-0.25));
-    // |offset| exceeds |r| quarter unless k = 0, where it is zero.
+    // |offset| is larger than |r| quarter unless k = 0; then it is zero.
     ordered_sum(offset.high, r * quarter).plus_low(offset.low + rest * quarter)
 }
 
-/// `k`, `r` and a small rest with `e^(x.high + x.low) = 2^k (1 + r + rest)`.
+/// Returns `k`, `r` and a small remainder with `e^(x.high + x.low) = 2^k (1 + r + remainder)`.
 #[inline(always)]
 fn reduce<R: Real>(x: Pair<R>) -> (R, R, R) {
     let k = nearest_integer(x.high * R::constant(core::f64::consts::LOG2_E));

@@ -1,10 +1,10 @@
-//! The functions by name: their arity, native value and kernel.
+//! Functions by name: arity, native value and kernel.
 
 use crate::kernel::Kernel;
 use crate::real::Real;
 use crate::record::record;
 
-/// An elementary function.
+/// Elementary function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Function {
     /// [`crate::abs`].
@@ -71,7 +71,7 @@ impl Function {
         Function::Pow,
     ];
 
-    /// The name of the generic function in this crate.
+    /// Returns the name of the generic function in this crate.
     pub fn name(self) -> &'static str {
         match self {
             Function::Abs => "abs",
@@ -96,7 +96,7 @@ impl Function {
         }
     }
 
-    /// The number of arguments.
+    /// Returns the number of arguments.
     pub fn arity(self) -> usize {
         match self {
             Function::Min | Function::Max | Function::Atan2 | Function::Pow => 2,
@@ -104,7 +104,7 @@ impl Function {
         }
     }
 
-    /// The function's primitive operations, as many inputs as its arity, one output.
+    /// Returns the primitive operations of the function, with one output.
     pub fn kernel(self) -> Kernel {
         record(self.arity(), |arguments| match *arguments {
             [first] => vec![self.of(first, first)],
@@ -113,13 +113,13 @@ impl Function {
         })
     }
 
-    /// The value, computed natively: bit for bit the kernel's. A missing argument reads as NaN.
+    /// Computes the value natively, with the same bits as the kernel. A missing argument is NaN.
     pub fn apply(self, arguments: &[f64]) -> f64 {
         let argument = |i: usize| arguments.get(i).copied().unwrap_or(f64::NAN);
         self.of(argument(0), argument(1))
     }
 
-    /// The generic function; those of one argument ignore the second.
+    /// Calls the generic function; functions of one argument ignore the second.
     fn of<R: Real>(self, first: R, second: R) -> R {
         match self {
             Function::Abs => crate::abs(first),
@@ -145,8 +145,8 @@ impl Function {
     }
 }
 
-/// Sine and cosine of one argument sharing all their work: outputs `sin`, `cos`, the very bits of
-/// the two kernels.
+/// Returns the joint kernel of sine and cosine, with outputs `sin` and `cos`, which have the bits of the two
+/// kernels.
 pub fn sin_cos_kernel() -> Kernel {
     record(1, |arguments| match *arguments {
         [x] => {

@@ -1,8 +1,8 @@
 //! Arc tangent (of a number and of a point), arc sine and arc cosine.
 //!
-//! Arc tangents go through one core: the angle of a point `(d, n)` with `0 <= n <= d` is that of a
-//! centre (0, atan 1/2 or pi/4) plus the arc tangent of a small ratio. Arc sine and cosine use
-//! a polynomial up to 1/2 and the half-angle formula, with the root as a pair, beyond.
+//! All arc tangents use one core: the angle of a point `(d, n)` with `0 <= n <= d` is a centre (0, atan 1/2
+//! or pi/4) plus the arc tangent of a small ratio. Arc sine and cosine use a polynomial up to 1/2, and the
+//! half-angle formula with the root as a pair above it.
 
 use crate::approximation::polynomial;
 use crate::pair::{Pair, ordered_sum};
@@ -27,9 +27,9 @@ const ARCTAN_HALF: Pair<f64> = Pair {
     low: 2.269_877_745_296_168_7e-17,
 };
 
-/// Ratios below this use the polynomial directly.
+/// Ratio below which the polynomial is used directly.
 const FIRST_BREAK: f64 = 0.406_25;
-/// Ratios above this are referred to pi/4, those between to `atan(1/2)`.
+/// Ratio above which the centre is pi/4; between the two breaks it is `atan(1/2)`.
 const SECOND_BREAK: f64 = 0.6875;
 
 /// `(1 - atan(t)/t)/z`, `z = t^2`, `|t| <= 13/32`: arc tangent to 2^-60.0.
@@ -64,13 +64,13 @@ const ARC_SINE: [f64; 13] = [
     0.032_678_452_646_137_02,
 ];
 
-/// The arc tangent, in `[-pi/2, pi/2]` radians.
+/// Computes the arc tangent, in `[-pi/2, pi/2]` radians.
 ///
 /// Largest error measured: 0.75 ulp.
 #[inline]
 pub fn atan<R: Real>(x: R) -> R {
     let one = R::constant(1.0);
-    // Steeper than this makes no difference, and an infinite slope would make NaN.
+    // Larger slopes give the same result, and an infinite one would give NaN.
     let steepest = R::constant(1e300);
     let magnitude = R::select_less(steepest, x.abs(), steepest, x.abs());
     let steep = |then: R, otherwise: R| R::select_less(one, magnitude, then, otherwise);
@@ -82,11 +82,11 @@ pub fn atan<R: Real>(x: R) -> R {
     value.copysign(x)
 }
 
-/// The angle of the point `(x, y)` from the positive x axis, in `[-pi, pi]` radians, with the
-/// customary values at zeros and infinities: `atan2(+-0, x < 0 or -0) = +-pi`,
-/// `atan2(+-0, x > 0 or +0) = +-0`, multiples of pi/4 at infinity.
+/// Computes the angle of the point `(x, y)` from the positive x axis, in `[-pi, pi]` radians, with the usual
+/// values at zeros and infinities: `atan2(+-0, x < 0 or -0) = +-pi`, `atan2(+-0, x > 0 or +0) = +-0`,
+/// multiples of pi/4 at infinity.
 ///
-/// Largest error measured: 1.45 ulp, where the ratio is just above 1/16, 1/8 or 1/4.
+/// Largest error measured: 1.45 ulp, for ratios just above 1/16, 1/8 or 1/4.
 #[inline]
 pub fn atan2<R: Real>(y: R, x: R) -> R {
     let (zero, one) = (R::constant(0.0), R::constant(1.0));
@@ -105,7 +105,7 @@ pub fn atan2<R: Real>(y: R, x: R) -> R {
     R::select_equal(y, y, value, y)
 }
 
-/// The arc sine, in `[-pi/2, pi/2]` radians; NaN beyond `[-1, 1]`.
+/// Computes the arc sine, in `[-pi/2, pi/2]` radians; NaN outside `[-1, 1]`.
 ///
 /// Largest error measured: 0.63 ulp.
 #[inline]
@@ -118,7 +118,7 @@ pub fn asin<R: Real>(x: R) -> R {
     R::select_less(R::constant(0.5), x.abs(), outer, inner).copysign(x)
 }
 
-/// The arc cosine, in `[0, pi]` radians; NaN beyond `[-1, 1]`.
+/// Computes the arc cosine, in `[0, pi]` radians; NaN outside `[-1, 1]`.
 ///
 /// Largest error measured: 0.60 ulp.
 #[inline]
@@ -156,14 +156,14 @@ fn select_pair<R: Real>(select: impl Fn(R, R) -> R, then: Pair<R>, otherwise: Pa
     }
 }
 
-/// An eighth of the plane: angles `base + direction * a` with `a` in `[0, pi/4]`.
+/// Octant of the plane: angles `base + direction * a` with `a` in `[0, pi/4]`.
 struct Octant<R> {
     base: Pair<R>,
     direction: R,
 }
 
 impl<R: Real> Octant<R> {
-    /// `base + direction * atan(n/d)` for `0 <= n <= d`, `d > 0`.
+    /// Computes `base + direction * atan(n/d)` for `0 <= n <= d`, `d > 0`.
     #[inline(always)]
     fn plus_arctan(self, n: R, d: R) -> R {
         let (zero, one) = (R::constant(0.0), R::constant(1.0));
@@ -196,13 +196,13 @@ impl<R: Real> Octant<R> {
     }
 }
 
-/// `2^-30`, enough that three times the largest double stays finite.
+/// Factor `2^-30`, for which three times the largest double stays finite.
 const DOWN: f64 = 1.0 / (1_u64 << 30) as f64;
-/// `2^120`, enough to make any subnormal normal.
+/// Factor `2^120`, which makes any subnormal normal.
 const UP: f64 = (1_u128 << 120) as f64;
 
-/// `(n, d)`, `0 <= n <= d`, brought where products with small constants neither overflow nor
-/// lose bits, with the same ratio; the ratio of infinities is 1, that of zeros 0.
+/// Scales `(n, d)`, `0 <= n <= d`, to a range in which products with small constants neither overflow nor
+/// lose bits. The ratio is unchanged; that of infinities becomes 1, that of zeros 0.
 #[inline(always)]
 fn comparable<R: Real>(n: R, d: R) -> (R, R) {
     let (zero, one) = (R::constant(0.0), R::constant(1.0));
@@ -218,7 +218,7 @@ fn comparable<R: Real>(n: R, d: R) -> (R, R) {
     )
 }
 
-/// `asin(|x|)` where `|x| <= 1/2`, `asin(sqrt((1 - |x|)/2))` beyond, as `sine + rest`.
+/// `asin(|x|)` if `|x| <= 1/2`, else `asin(sqrt((1 - |x|)/2))`, as `sine + rest`.
 struct HalfAngle<R> {
     sine: R,
     rest: R,

@@ -1,16 +1,15 @@
-//! A function as a straight line of primitive operations: what code generators print or compile.
-//!
-//! Holds the data and its evaluation in plain `f64`; how it comes to be is in `record`.
+//! Kernel of a function: a sequence of primitive operations that code generators print or compile, and its
+//! evaluation in `f64`. `record` builds kernels.
 
 use crate::real::Real;
 
-/// One primitive operation. Every `usize` but [`Operation::Input`]'s is the index of an earlier
-/// operation. The meaning of each is that of the method of [`Real`] of the same name.
+/// Primitive operation, with the meaning of the method of [`Real`] with the same name. Every `usize` except
+/// that of [`Operation::Input`] is the index of an earlier operation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Operation {
-    /// The argument with this number.
+    /// Argument with this index.
     Input(usize),
-    /// A literal, to be printed with all its bits (infinities and NaN occur).
+    /// Literal, to be printed with all its bits; infinities and NaN occur.
     Constant(f64),
     /// `a + b`.
     Add(usize, usize),
@@ -20,37 +19,37 @@ pub enum Operation {
     Mul(usize, usize),
     /// `a / b`.
     Div(usize, usize),
-    /// The sign bit flipped.
+    /// `a` with the sign bit flipped.
     Neg(usize),
-    /// The sign bit cleared.
+    /// `a` with the sign bit cleared.
     Abs(usize),
-    /// A magnitude with the sign bit of another value.
+    /// Magnitude with the sign bit of another value.
     CopySign {
-        /// Gives all bits but the sign.
+        /// Source of all bits except the sign.
         magnitude: usize,
-        /// Gives the sign bit.
+        /// Source of the sign bit.
         sign: usize,
     },
     /// `then` if `left < right`, else `otherwise`.
     SelectLess {
-        /// Left of the comparison.
+        /// Left side of the comparison.
         left: usize,
-        /// Right of the comparison.
+        /// Right side of the comparison.
         right: usize,
-        /// The result if it holds.
+        /// Result if the comparison is true.
         then: usize,
-        /// The result if not, or if either side is NaN.
+        /// Result otherwise, also if either side is NaN.
         otherwise: usize,
     },
     /// `then` if `left == right`, else `otherwise`.
     SelectEqual {
-        /// Left of the comparison.
+        /// Left side of the comparison.
         left: usize,
-        /// Right of the comparison.
+        /// Right side of the comparison.
         right: usize,
-        /// The result if it holds.
+        /// Result if the comparison is true.
         then: usize,
-        /// The result if not, or if either side is NaN.
+        /// Result otherwise, also if either side is NaN.
         otherwise: usize,
     },
     /// [`Real::power_of_two`].
@@ -62,7 +61,7 @@ pub enum Operation {
 }
 
 impl Operation {
-    /// The operation with `change` applied to the index of each operand, in order.
+    /// Applies `change` to the index of each operand, in order.
     pub fn map_operands(self, mut change: impl FnMut(usize) -> usize) -> Operation {
         use Operation::*;
         match self {
@@ -105,12 +104,12 @@ impl Operation {
         }
     }
 
-    /// Whether this computes anything (an input or a constant does not).
+    /// Returns false for an input or a constant.
     pub fn is_computed(self) -> bool {
         !matches!(self, Operation::Input(_) | Operation::Constant(_))
     }
 
-    /// The value, with `operand` giving those of earlier operations and `input` the arguments.
+    /// Computes the value; `operand` returns the values of earlier operations, `input` the arguments.
     fn value(self, operand: impl Fn(usize) -> f64, input: impl Fn(usize) -> f64) -> f64 {
         use Operation::*;
         match self {
@@ -154,19 +153,19 @@ impl Operation {
 
 /// Straight-line code in single-assignment form: operation `i` defines value `i`.
 ///
-/// No operation is repeated, none is without use, and none refers to a later one.
+/// No operation is repeated or unused, and none refers to a later one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kernel {
-    /// The number of arguments.
+    /// Number of arguments.
     pub inputs: usize,
-    /// The operations, in an order in which they can be carried out.
+    /// Operations in the order of execution.
     pub operations: Vec<Operation>,
-    /// The operations whose values are the results.
+    /// Indices of the results.
     pub outputs: Vec<usize>,
 }
 
 impl Kernel {
-    /// Carries the operations out in order. An argument that is not there reads as NaN.
+    /// Executes the operations. A missing argument is NaN.
     pub fn evaluate(&self, arguments: &[f64]) -> Vec<f64> {
         let read = |values: &[f64], i: usize| values.get(i).copied().unwrap_or(f64::NAN);
         let mut values: Vec<f64> = Vec::with_capacity(self.operations.len());
@@ -177,7 +176,7 @@ impl Kernel {
         self.outputs.iter().map(|&i| read(&values, i)).collect()
     }
 
-    /// The number of operations, inputs and constants not counted.
+    /// Returns the number of operations without inputs and constants.
     pub fn operation_count(&self) -> usize {
         self.operations.iter().filter(|o| o.is_computed()).count()
     }

@@ -1,4 +1,4 @@
-//! Elementary functions as plain floating-point operations: the same bits everywhere.
+//! Elementary functions as plain floating-point operations, with the same bits on every machine.
 //!
 //! ```
 //! use eomgen_elementary::{Function, exp, sin_cos};
@@ -6,35 +6,33 @@
 //! let (sine, cosine) = sin_cos(0.5);
 //! assert!((sine * sine + cosine * cosine - 1.0).abs() < 1e-15);
 //!
-//! // The operations of the exponential as data: run, they give its very bits.
+// The operations of the exponential as data give the same bits.
 //! let kernel = Function::Exp.kernel();
 //! assert_eq!(kernel.evaluate(&[0.5]), [exp(0.5)]);
 //! ```
 //!
-//! `core` has no sine, not even a square root, and the last bit of those in system libraries differs
-//! from one to the next. Here each function is written once, as a branch-free straight line of
-//! IEEE 754 double-precision operations in a fixed order, generic over [`Real`]:
+//! `core` lacks these functions, even the square root, and system libraries differ in the last bit. Each
+//! function here is a branch-free sequence of IEEE 754 double-precision operations in a fixed order, generic
+//! over [`Real`]:
 //!
-//! * on `f64` it is an ordinary function, without allocation or the standard library;
-//! * with the feature `trace`, `Function::kernel` gives the operations as data (a `Kernel`) for
-//!   code generators to print or compile. Native value and kernel agree in every bit.
+//! * for `f64` it is an ordinary function without allocation or standard library;
+//! * with the feature `trace`, `Function::kernel` returns the operations as data (a `Kernel`), which code
+//!   generators print or compile. Native value and kernel agree in every bit.
 //!
-//! There is no fused multiply-add, no conversion or rounding instruction, no table and no branch: a
-//! compiler may vectorise the code but cannot change a result. NaN is NaN everywhere, but its sign
-//! and payload are not specified. The rounding mode must be to nearest and subnormals must not be
-//! flushed, as Rust presumes.
+//! There is no fused multiply-add, no conversion or rounding instruction, no table and no branch: a compiler
+//! can vectorise the code but cannot change a result. The sign and payload of NaN are not specified. The
+//! rounding mode must be to nearest, and subnormals must not be flushed; Rust assumes both.
 //!
 //! # The pipeline
-//! `real` (the primitive operations) -> `approximation`, `pair` (polynomials, reductions, error-free
-//! sums and products) -> `sine`, `exponential`, `logarithm`, `root`, `inverse_trigonometric`,
-//! `power`, `trivial` (the functions) -> `record` -> `kernel` -> `function` (tracing).
+//! `real` (the primitive operations) -> `approximation`, `pair` (polynomials, reductions, error-free sums and
+//! products) -> `sine`, `exponential`, `logarithm`, `root`, `inverse_trigonometric`, `power`, `trivial` (the
+//! functions) -> `record` -> `kernel` -> `function` (tracing).
 //!
 //! # Accuracy and size
-//! Errors are the largest measured, in units in the last place of the result, against 128-bit
-//! arithmetic over 150 000 pseudo-random arguments per range (all magnitudes, and densely where
-//! a method changes) together with the hard cases: doubles nearest to multiples of pi/2, results near
-//! overflow and in the subnormal range, arguments next to 1. Operations are those of the kernel; a
-//! selection counts as one.
+//! Errors are the largest measured, in units in the last place of the result, compared with 128-bit
+//! arithmetic: 150 000 pseudo-random arguments per range (all magnitudes, dense near changes of method) and
+//! hard cases (doubles nearest to multiples of pi/2, results near overflow and in the subnormal range,
+//! arguments next to 1). Operations are those of the kernel; a selection counts as one.
 //!
 //! | function | domain | largest error (ulp) | operations |
 //! | --- | --- | --- | --- |

@@ -1,4 +1,4 @@
-//! The natural logarithm: rounded, and as a pair of doubles for powers.
+//! Natural logarithm, rounded, and as a pair of doubles for powers.
 //!
 //! `x = 2^k m` with `m` in `[sqrt(1/2), sqrt 2)`, `f = m - 1`, `s = f/(2 + f)`:
 //! `ln x = k ln 2 + 2 artanh s`.
@@ -36,7 +36,7 @@ const ONE_THIRD: Pair<f64> = Pair {
     low: 1.850_371_707_708_594e-17,
 };
 
-/// The natural logarithm; minus infinity at zero, NaN below.
+/// Computes the natural logarithm; minus infinity at zero, NaN for negative arguments.
 ///
 /// Largest error measured: 0.81 ulp.
 #[inline]
@@ -53,8 +53,8 @@ pub fn ln<R: Real>(x: R) -> R {
     with_special_cases(x, value)
 }
 
-/// The natural logarithm of a positive finite `x` with a relative error below 2^-64; a finite pair
-/// of no meaning for any other argument.
+/// Computes the natural logarithm of a positive finite `x` with a relative error below 2^-64; a meaningless
+/// finite pair for any other argument.
 #[inline(always)]
 pub(crate) fn logarithm_pair<R: Real>(x: R) -> Pair<R> {
     let one = R::constant(1.0);
@@ -78,7 +78,7 @@ pub(crate) fn logarithm_pair<R: Real>(x: R) -> Pair<R> {
         .normalised()
 }
 
-/// `artanh(s) - s` as a pair.
+/// Computes `artanh(s) - s` as a pair.
 #[inline(always)]
 fn cubic_part<R: Real>(s: Pair<R>) -> Pair<R> {
     let square = exact_square(s.high);
@@ -89,13 +89,13 @@ fn cubic_part<R: Real>(s: Pair<R>) -> Pair<R> {
     product(s, product(square, factor))
 }
 
-/// The product of two pairs, without the product of their low parts.
+/// Multiplies two pairs without the product of their low parts.
 #[inline(always)]
 fn product<R: Real>(a: Pair<R>, b: Pair<R>) -> Pair<R> {
     exact_product(a.high, b.high).plus_low(a.high * b.low + a.low * b.high)
 }
 
-/// `(k, m)` with `x = 2^k m`, `m` in `(sqrt(1/2), sqrt 2]`.
+/// Returns `(k, m)` with `x = 2^k m`, `m` in `(sqrt(1/2), sqrt 2]`.
 #[inline(always)]
 fn centred<R: Real>(x: R) -> (R, R) {
     let (zero, one) = (R::constant(0.0), R::constant(1.0));
@@ -106,7 +106,7 @@ fn centred<R: Real>(x: R) -> (R, R) {
     (k + raised, m * factor)
 }
 
-/// `value` for positive finite `x`, the limits and NaN elsewhere.
+/// Returns `value` for positive finite `x`, else the limits and NaN.
 #[inline(always)]
 fn with_special_cases<R: Real>(x: R, value: R) -> R {
     let zero = R::constant(0.0);

@@ -1,34 +1,34 @@
-//! Numbers held as an unevaluated sum of two doubles, and the error-free operations that make them.
+//! Numbers as an unevaluated sum of two doubles, with error-free operations.
 //!
-//! Only what the elementary functions need to carry a rounding error along; not a double-double
-//! arithmetic. There is no fused multiply-add: products are split in halves (Dekker 1971).
+//! These operations carry the rounding errors of the elementary functions; they are no complete double-double
+//! arithmetic. Without fused multiply-add, products are split in halves (Dekker 1971).
 
 use crate::real::Real;
 
 /// The value `high + low`, with `low` a correction to `high`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pair<R> {
-    /// The leading part.
+    /// Leading part.
     pub high: R,
-    /// What `high` misses.
+    /// Rounding error of `high`.
     pub low: R,
 }
 
 impl<R: Real> Pair<R> {
-    /// The pair rounded to one double.
+    /// Rounds the pair to one double.
     #[inline(always)]
     pub fn round(self) -> R {
         self.high + self.low
     }
 
-    /// The same value with the leading part rounded from it all, for a low part that has grown
-    /// (but not beyond the leading part).
+    /// Rounds the leading part from the whole value, after the low part has grown (but not beyond the leading
+    /// part).
     #[inline(always)]
     pub fn normalised(self) -> Self {
         ordered_sum(self.high, self.low)
     }
 
-    /// The pair plus a small correction to its low part.
+    /// Adds a small correction to the low part.
     #[inline(always)]
     pub fn plus_low(self, correction: R) -> Self {
         Pair {
@@ -38,8 +38,8 @@ impl<R: Real> Pair<R> {
     }
 }
 
-/// `a + b` and its rounding error, exact if `a` is zero or a multiple of the last place of `b`
-/// (in particular if `|a| >= |b|`).
+/// Returns `a + b` and its rounding error. It is exact if `a` is zero or a multiple of the last place of `b`,
+/// in particular if `|a| >= |b|`.
 #[inline(always)]
 pub(crate) fn ordered_sum<R: Real>(a: R, b: R) -> Pair<R> {
     let high = a + b;
@@ -49,7 +49,7 @@ pub(crate) fn ordered_sum<R: Real>(a: R, b: R) -> Pair<R> {
     }
 }
 
-/// `a + b` and its rounding error, exact whatever their order (Knuth).
+/// Returns `a + b` and its rounding error, exact for any order of magnitudes (Knuth).
 #[inline(always)]
 pub(crate) fn exact_sum<R: Real>(a: R, b: R) -> Pair<R> {
     let high = a + b;
@@ -61,7 +61,6 @@ pub(crate) fn exact_sum<R: Real>(a: R, b: R) -> Pair<R> {
     }
 }
 
-/// `2^27 + 1`.
 const SPLITTER: f64 = ((1_u64 << 27) + 1) as f64;
 
 /// Splits `a` into halves of at most 26 bits each (Veltkamp); `|a| < 2^996`.
@@ -75,7 +74,7 @@ fn halves<R: Real>(a: R) -> Pair<R> {
     }
 }
 
-/// `a b` and its rounding error, exact while nothing overflows or underflows.
+/// Returns `a b` and its rounding error, exact without overflow and underflow.
 #[inline(always)]
 pub(crate) fn exact_product<R: Real>(a: R, b: R) -> Pair<R> {
     let (x, y) = (halves(a), halves(b));
@@ -87,7 +86,7 @@ pub(crate) fn exact_product<R: Real>(a: R, b: R) -> Pair<R> {
     }
 }
 
-/// `a^2` and its rounding error, exact while nothing overflows or underflows.
+/// Returns `a^2` and its rounding error, exact without overflow and underflow.
 #[inline(always)]
 pub(crate) fn exact_square<R: Real>(a: R) -> Pair<R> {
     let x = halves(a);
@@ -99,10 +98,10 @@ pub(crate) fn exact_square<R: Real>(a: R) -> Pair<R> {
     }
 }
 
-/// `numerator / denominator` to about 100 bits: the quotient of the leading parts by reciprocal,
+/// Computes `numerator / denominator` to about 100 bits: the quotient of the leading parts by a reciprocal,
 /// then one step with the exact remainder.
 ///
-/// A zero or tiny numerator keeps its sign: the correction is subtracted.
+/// The correction is subtracted, so that a zero or tiny numerator keeps its sign.
 #[inline(always)]
 pub(crate) fn quotient<R: Real>(numerator: Pair<R>, denominator: Pair<R>) -> Pair<R> {
     let reciprocal = R::constant(1.0) / denominator.high;

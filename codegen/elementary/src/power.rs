@@ -1,5 +1,5 @@
-//! Powers with a real exponent: `x^y = e^(y ln|x|)`, with the logarithm and the product as pairs,
-//! and the special cases of IEEE 754's `pow`.
+//! Powers with a real exponent: `x^y = e^(y ln|x|)`, with logarithm and product as pairs, and the special
+//! cases of IEEE 754's `pow`.
 
 use crate::approximation::clamp;
 use crate::exponential::exponential_of_pair;
@@ -7,17 +7,16 @@ use crate::logarithm::logarithm_pair;
 use crate::pair::{Pair, exact_product};
 use crate::real::Real;
 
-/// Beyond this magnitude of the exponent every power of a double other than one overflows or
-/// vanishes.
+/// Magnitude of the exponent above which every power of a double other than one overflows or vanishes.
 const LARGEST_EXPONENT: f64 = (1_u128 << 65) as f64;
-/// From here on every double is an integer.
+/// Magnitude from which every double is an integer.
 const TWO_TO_52: f64 = (1_u64 << 52) as f64;
 
-/// `x^y`.
+/// Computes `x^y`.
 ///
-/// `x^0 = 1` and `1^y = 1` whatever the other argument, NaN included; otherwise NaN gives NaN.
-/// A negative `x` gives NaN unless `y` is an integer (odd: the power is negative). Powers of zero
-/// and infinity are zero or infinity, negative for a negative `x` and an odd `y`.
+/// `x^0 = 1` and `1^y = 1` for any other argument, NaN included; otherwise NaN gives NaN. A negative `x`
+/// gives NaN unless `y` is an integer; the power is negative if `y` is odd. Powers of zero and infinity are
+/// zero or infinity, negative for a negative `x` and an odd `y`.
 ///
 /// Largest error measured: 0.76 ulp.
 #[inline]
@@ -41,14 +40,14 @@ pub fn pow<R: Real>(x: R, y: R) -> R {
     R::select_equal(y, zero, one, value)
 }
 
-/// `a^y` for `a >= 0`; of no meaning for NaN.
+/// Computes `a^y` for `a >= 0`; meaningless for NaN.
 #[inline(always)]
 fn power_of_magnitude<R: Real>(a: R, y: R) -> R {
     let (zero, infinity) = (R::constant(0.0), R::constant(f64::INFINITY));
     let logarithm = logarithm_pair(a);
     let limited = clamp(y, -LARGEST_EXPONENT, LARGEST_EXPONENT);
     let product = exact_product(limited, logarithm.high).plus_low(limited * logarithm.low);
-    // Where the leading part is far outside the range, its correction is too large to be one.
+    // If the leading part is far out of range, its correction is larger than a rounding error.
     let near = R::constant(800.0);
     let value = exponential_of_pair(Pair {
         high: clamp(product.high, -746.0, 710.0),
@@ -60,7 +59,7 @@ fn power_of_magnitude<R: Real>(a: R, y: R) -> R {
     R::select_equal(a, zero, limit, value)
 }
 
-/// 1 if `y` is an integer (or infinite), else 0.
+/// Returns 1 if `y` is an integer (or infinite), else 0.
 #[inline(always)]
 fn is_integral<R: Real>(y: R) -> R {
     let (zero, one) = (R::constant(0.0), R::constant(1.0));
@@ -71,7 +70,7 @@ fn is_integral<R: Real>(y: R) -> R {
     R::select_equal(rounded, magnitude, one, zero)
 }
 
-/// 1 if `y` is an odd integer, else 0.
+/// Returns 1 if `y` is an odd integer, else 0.
 #[inline(always)]
 fn is_odd<R: Real>(y: R) -> R {
     is_integral(y) - is_integral(y * R::constant(0.5))

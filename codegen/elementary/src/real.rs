@@ -1,16 +1,16 @@
-//! The primitive operations every elementary function is written in, and their meaning on `f64`.
+//! Primitive operations of the elementary functions, and their implementation for `f64`.
 //!
-//! Four arithmetic operations, two sign operations, two selections and three accesses to the
-//! exponent and mantissa fields: nothing else. Each has one possible result on any IEEE 754
-//! machine, in scalar registers, in lanes and in software, so a sequence of them has the same bits
-//! everywhere. (NaN is NaN everywhere; its sign and payload are the one thing left open.)
+//! Four arithmetic operations, two sign operations, two selections and three operations on the exponent and
+//! mantissa fields. Each has one possible result on any IEEE 754 machine, in scalar registers, in SIMD lanes
+//! and in software, so that a sequence of them has the same bits everywhere (except for the sign and payload
+//! of NaN).
 //!
-//! Deliberately absent: fused multiply-add, square root, rounding and conversion instructions,
-//! which targets lack or do differently. The functions themselves live in the sibling modules.
+//! Fused multiply-add, square root, rounding and conversion instructions are excluded, because some targets
+//! lack them or compute them differently.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A double-precision quantity that is either computed (`f64`) or recorded (a traced value).
+/// Double-precision number that is computed (`f64`) or recorded (a traced value).
 ///
 /// Arithmetic is IEEE 754 binary64, rounded to nearest even, never contracted.
 pub trait Real:
@@ -21,35 +21,34 @@ pub trait Real:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// The literal `value`.
+    /// Returns the literal `value`.
     fn constant(value: f64) -> Self;
 
-    /// The magnitude: clears the sign bit, also of NaN.
+    /// Clears the sign bit, also for NaN.
     fn abs(self) -> Self;
 
-    /// The magnitude of `self` with the sign bit of `sign`.
+    /// Returns the magnitude of `self` with the sign bit of `sign`.
     fn copysign(self, sign: Self) -> Self;
 
-    /// `then` if `left < right`, else `otherwise` (also when either is NaN). Both branches are
-    /// evaluated; the one not taken leaves no trace in the result, whatever its value.
+    /// Returns `then` if `left < right`, else `otherwise`, also if either is NaN. Both branches are
+    /// evaluated; the unused one has no effect on the result, whatever its value.
     fn select_less(left: Self, right: Self, then: Self, otherwise: Self) -> Self;
 
-    /// `then` if `left == right`, else `otherwise` (also when either is NaN); `-0 == 0`.
+    /// Returns `then` if `left == right`, else `otherwise`, also if either is NaN; `-0 == 0`.
     fn select_equal(left: Self, right: Self, then: Self, otherwise: Self) -> Self;
 
-    /// `2^self` for an integral value in `-1022..=1023`, and infinity for `1024`.
+    /// Returns `2^self` for an integral value in `-1022..=1023`, and infinity for `1024`.
     ///
-    /// Defined for every argument as: add `2^52 + 1023`, take the bits, shift left by 52. Outside
-    /// the stated range the value is of no use.
+    /// Defined for every argument: add `2^52 + 1023`, shift the bits left by 52. Outside the stated range the
+    /// value is meaningless.
     fn power_of_two(self) -> Self;
 
-    /// The unbiased exponent field of a positive normal number `significand * 2^exponent`, as an
-    /// integral value. The sign bit is ignored; zero and subnormals give -1023, infinity and NaN
-    /// give 1024.
+    /// Returns the unbiased exponent field of a positive normal number `significand * 2^exponent`, as an
+    /// integral value. The sign bit is ignored; zero and subnormals give -1023, infinity and NaN 1024.
     fn exponent(self) -> Self;
 
-    /// The mantissa field under the exponent of one: in `[1, 2)` for every argument. The sign bit
-    /// is ignored.
+    /// Returns the mantissa field with the exponent of one: in `[1, 2)` for every argument. The sign bit is
+    /// ignored.
     fn significand(self) -> Self;
 }
 

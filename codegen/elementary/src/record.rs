@@ -1,7 +1,7 @@
-//! Recording: running a generic function on handles that write down what is done to them.
+//! Recording of a generic function by running it on handles.
 //!
-//! Repeated operations and constants are merged as they arrive (same operation, same operands,
-//! same bits); what no output needs is dropped at the end. Nothing is rewritten.
+//! Repeated operations and constants (same operation, same operands, same bits) are merged during the
+//! recording; unused ones are removed at the end. Nothing else is changed.
 
 use crate::kernel::{Kernel, Operation};
 use crate::real::Real;
@@ -9,7 +9,7 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A value of the recording under way on this thread, by the number of its operation.
+/// Value of the current recording on this thread, by the index of its operation.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Traced(usize);
 
@@ -32,7 +32,7 @@ struct Recorder {
     known: HashMap<Key, usize>,
 }
 
-/// What makes two operations the same: constants compare by their bits.
+/// Key of an operation; constants are compared by their bits.
 #[derive(PartialEq, Eq, Hash)]
 struct Key {
     kind: std::mem::Discriminant<Operation>,
@@ -60,7 +60,7 @@ impl Key {
     }
 }
 
-/// The handle of `operation`, recorded if it is new.
+/// Records `operation` if it is new, and returns its handle.
 fn emit(operation: Operation) -> Traced {
     RECORDER.with_borrow_mut(|recorder| {
         let Recorder { operations, known } = recorder;
@@ -72,7 +72,7 @@ fn emit(operation: Operation) -> Traced {
     })
 }
 
-/// Keeps what the outputs need, renumbered in the same order.
+/// Removes unused operations and renumbers the others in the same order.
 fn without_dead_operations(inputs: usize, all: &[Operation], outputs: &[usize]) -> Kernel {
     let mut needed = vec![false; all.len()];
     for &output in outputs {

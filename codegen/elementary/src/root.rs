@@ -1,8 +1,7 @@
-//! The square root, correctly rounded: the very bits of a hardware square root.
+//! Square root, correctly rounded, with the same bits as a hardware square root.
 //!
-//! `x = 4^h m` with `m` in `[1, 4)`; a polynomial for `1/sqrt m`, two Newton steps, one step with
-//! the exact remainder, and a last comparison of the exact remainder with half a unit in the last
-//! place.
+//! `x = 4^h m` with `m` in `[1, 4)`; a polynomial for `1/sqrt m`, two Newton steps, one step with the exact
+//! remainder, and a final comparison of the exact remainder with half a unit in the last place.
 
 use crate::approximation::{nearest_integer, polynomial, take_apart};
 use crate::pair::{Pair, exact_square};
@@ -19,10 +18,10 @@ const INVERSE_ROOT: [f64; 7] = [
     0.001_215_380_137_694_336,
 ];
 
-/// One unit in the last place of a number in `[1, 2)`.
+/// Unit in the last place of a number in `[1, 2)`.
 const LAST_PLACE: f64 = f64::EPSILON;
 
-/// The square root, correctly rounded; NaN for negative arguments, `-0` for `-0`.
+/// Computes the square root, correctly rounded; NaN for negative arguments, `-0` for `-0`.
 #[inline]
 pub fn sqrt<R: Real>(x: R) -> R {
     let zero = R::constant(0.0);
@@ -33,7 +32,7 @@ pub fn sqrt<R: Real>(x: R) -> R {
     R::select_equal(x, zero, x, root)
 }
 
-/// The square root of a finite `x` as a pair, to some 90 bits; NaN for negative `x`.
+/// Computes the square root of a finite `x` as a pair, to about 90 bits; NaN for negative `x`.
 #[inline(always)]
 pub(crate) fn root_pair<R: Real>(x: R) -> Pair<R> {
     let zero = R::constant(0.0);
@@ -46,7 +45,7 @@ pub(crate) fn root_pair<R: Real>(x: R) -> Pair<R> {
     }
 }
 
-/// A positive finite number `m scale^2` with `m` in `[1, 4)`, and half of `1/sqrt m`.
+/// Positive finite number `m scale^2` with `m` in `[1, 4)`, and half of `1/sqrt m`.
 struct Centred<R> {
     m: R,
     scale: R,
@@ -69,7 +68,7 @@ impl<R: Real> Centred<R> {
         }
     }
 
-    /// The root of `m`: a value right to 2^-46 and its correction, to 2^-91.
+    /// Computes the root of `m`: a value accurate to 2^-46 and its correction, to 2^-91.
     #[inline(always)]
     fn root(&self) -> Pair<R> {
         let high = self.m * (self.half_inverse + self.half_inverse);
@@ -79,11 +78,11 @@ impl<R: Real> Centred<R> {
         }
     }
 
-    /// The correctly rounded root of `m`.
+    /// Computes the correctly rounded root of `m`.
     ///
-    /// The rounded pair may be on the wrong side of a tie it nearly hits. Its remainder is exact,
-    /// and the root lies more than half a last place above it just if the remainder exceeds
-    /// it times the last place; below likewise.
+    /// The rounded pair can be on the wrong side of a near tie. Its remainder is exact. The root is more than
+    /// half a last place above it if and only if the remainder exceeds it times the last place; the same
+    /// applies below.
     #[inline(always)]
     fn rounded_root(&self) -> R {
         let root = self.root().round();
@@ -94,7 +93,7 @@ impl<R: Real> Centred<R> {
         R::select_less(threshold, left, root + last_place, not_above)
     }
 
-    /// `m - root^2`.
+    /// Computes `m - root^2`.
     #[inline(always)]
     fn remainder(&self, root: R) -> R {
         let square = exact_square(root);
@@ -102,7 +101,7 @@ impl<R: Real> Centred<R> {
     }
 }
 
-/// One Newton step for `1/sqrt m`.
+/// Computes one Newton step for `1/sqrt m`.
 #[inline(always)]
 fn newton<R: Real>(m: R, inverse: R) -> R {
     let defect = R::constant(1.0) - (m * inverse) * inverse;

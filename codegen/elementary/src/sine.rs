@@ -1,19 +1,19 @@
 //! Sine, cosine and tangent.
 //!
-//! One reduction serves all three: `x = k pi/2 + r`, `|r| <= pi/4`, with the remainder as a pair
-//! of doubles. `pi/2` is split in four parts of 23 bits and a rest, so that `k` (at most 30 bits up
-//! to [`LARGEST_ANGLE`]) times each of the four is exact. The doubles closest to a multiple of
-//! `pi/2` below 1e9 miss it by 2^-60 or so: the parts hold 145 bits, enough for those too.
+//! One reduction serves all three: `x = k pi/2 + r`, `|r| <= pi/4`, with the remainder as a pair of doubles.
+//! `pi/2` is split into four parts of 23 bits and a remainder, so that the product of `k` (at most 30 bits up
+//! to [`LARGEST_ANGLE`]) with each of the four is exact. Doubles below 1e9 differ from a multiple of `pi/2`
+//! by at least about 2^-60; the parts have 145 bits, which suffices for these too.
 
 use crate::approximation::{nearest_integer, polynomial};
 use crate::pair::{Pair, ordered_sum, quotient};
 use crate::real::Real;
 
-/// The largest magnitude, in radians, for which sine, cosine and tangent are computed; beyond it
-/// (and for infinities and NaN) they are NaN.
+/// Largest magnitude, in radians, of an argument of sine, cosine and tangent; they are NaN for larger
+/// arguments, infinities and NaN.
 pub const LARGEST_ANGLE: f64 = 1e9;
 
-/// `pi/2` in parts: multiples of 2^-22, 2^-45, 2^-68, 2^-91, and the rest.
+/// `pi/2` in parts: multiples of 2^-22, 2^-45, 2^-68, 2^-91, and the remainder.
 const HALF_PI_PARTS: [f64; 5] = [
     1.570_796_251_296_997,
     7.549_789_415_861_596e-8,
@@ -42,17 +42,17 @@ const COSINE: [f64; 6] = [
     -1.135_873_832_348_000_3e-11,
 ];
 
-/// What the reduction leaves: the remainder's sine and cosine and the quadrant.
+/// Result of the reduction: sine and cosine of the remainder, and the quadrant.
 struct Reduced<R> {
-    /// `sin(r)`, to be rounded.
+    /// `sin(r)`, not rounded.
     sine: Pair<R>,
-    /// `cos(r)`, to be rounded.
+    /// `cos(r)`, not rounded.
     cosine: Pair<R>,
-    /// `k` modulo 4, as one of -2, -1, 0, 1, 2; NaN beyond the largest angle.
+    /// `k` modulo 4, as one of -2, -1, 0, 1, 2; NaN above the largest angle.
     quadrant: R,
 }
 
-/// The sine of `x` radians; NaN beyond [`LARGEST_ANGLE`].
+/// Computes the sine of `x` radians; NaN above [`LARGEST_ANGLE`].
 ///
 /// Largest error measured: 0.76 ulp.
 #[inline]
@@ -60,7 +60,7 @@ pub fn sin<R: Real>(x: R) -> R {
     sin_cos(x).0
 }
 
-/// The cosine of `x` radians; NaN beyond [`LARGEST_ANGLE`].
+/// Computes the cosine of `x` radians; NaN above [`LARGEST_ANGLE`].
 ///
 /// Largest error measured: 0.77 ulp.
 #[inline]
@@ -68,8 +68,8 @@ pub fn cos<R: Real>(x: R) -> R {
     sin_cos(x).1
 }
 
-/// Sine and cosine of `x` radians, each the very bits of [`sin`] and [`cos`], at little more than
-/// the price of one.
+/// Computes sine and cosine of `x` radians, with the bits of [`sin`] and [`cos`], at little more than the
+/// cost of one.
 #[inline]
 pub fn sin_cos<R: Real>(x: R) -> (R, R) {
     let one = R::constant(1.0);
@@ -87,7 +87,7 @@ pub fn sin_cos<R: Real>(x: R) -> (R, R) {
     )
 }
 
-/// The tangent of `x` radians; NaN beyond [`LARGEST_ANGLE`].
+/// Computes the tangent of `x` radians; NaN above [`LARGEST_ANGLE`].
 ///
 /// Largest error measured: 0.94 ulp.
 #[inline]
@@ -112,12 +112,12 @@ pub fn tan<R: Real>(x: R) -> R {
     };
     let ratio = quotient(numerator, denominator);
     let tangent = ratio.high - (-ratio.low);
-    // The quadrant carries the NaN of angles beyond the largest.
+    // The quadrant is NaN for angles above the largest.
     R::select_equal(quadrant, quadrant, tangent, quadrant)
 }
 
-/// Sine, cosine and quadrant of the remainder. The sine's low part is to be *subtracted*: so a
-/// negative zero keeps its sign.
+/// Computes sine, cosine and quadrant of the remainder. The low part of the sine must be *subtracted*, so
+/// that a negative zero keeps its sign.
 #[inline(always)]
 fn reduce<R: Real>(x: R) -> Reduced<R> {
     let k = nearest_integer(x * R::constant(core::f64::consts::FRAC_2_PI));
@@ -137,10 +137,10 @@ fn reduce<R: Real>(x: R) -> Reduced<R> {
     }
 }
 
-/// `x - k pi/2` as `r - excess`.
+/// Returns `x - k pi/2` as `r - excess`.
 ///
-/// The first two subtractions are exact (the results are multiples of 2^-53 below one, or of the
-/// last place of `x`), so is the third with its rounding error (see [`ordered_sum`]).
+/// The first two subtractions are exact, because the results are multiples of 2^-53 below one, or of the last
+/// place of `x`. The third is exact together with its rounding error (see [`ordered_sum`]).
 #[inline(always)]
 fn remainder<R: Real>(x: R, k: R) -> (R, R) {
     let [first, second, third, fourth, rest] = HALF_PI_PARTS.map(R::constant);
@@ -151,7 +151,7 @@ fn remainder<R: Real>(x: R, k: R) -> (R, R) {
     (r, tail.low - lost)
 }
 
-/// `k` modulo 4 between -2 and 2, NaN where `x` is beyond the largest angle.
+/// Returns `k` modulo 4 between -2 and 2, NaN if `x` is above the largest angle.
 #[inline(always)]
 fn quadrant<R: Real>(x: R, k: R) -> R {
     let turns = nearest_integer(k * R::constant(0.25));

@@ -1,27 +1,27 @@
-//! Kernels of single numbers with branches: where an arm of a selection is long and used
-//! nowhere else, only the arm taken is computed. Motions change arms rarely, so that
-//! branches are foreseen. Two lanes may want different arms and compute both.
+//! Branches in kernels of single numbers. A long arm of a selection without other uses is computed only if it
+//! is taken. Motions change arms rarely, so that the processor predicts the branches. SIMD lanes can need
+//! different arms and compute both.
 
 use cranelift_codegen::ir::condcodes::FloatCC;
 use eomgen_elementary::{Kernel, Operation};
 
-/// The fewest operations worth a branch.
+/// Smallest number of operations in an arm with a branch.
 const WORTH: usize = 8;
 
-/// An arm of the selection at this place.
+/// Arm of the selection with this index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Arm {
     pub(crate) selection: usize,
     pub(crate) taken: bool,
 }
 
-/// Which operations belong to an arm alone; the innermost one.
+/// Innermost arm that each operation belongs to, if any.
 pub struct Branches {
     pub(crate) owners: Vec<Option<Arm>>,
 }
 
 impl Branches {
-    /// Looks for arms worth a branch.
+    /// Finds arms that are long enough for a branch.
     pub fn of(kernel: &Kernel) -> Self {
         let count = kernel.operations.len();
         let mut users = vec![Vec::new(); count];
@@ -57,7 +57,7 @@ impl Branches {
     }
 }
 
-/// The operations that only `root`, as an arm of `selection`, needs.
+/// Returns the operations with no other use than `root`, an arm of `selection`.
 fn alone(kernel: &Kernel, users: &[Vec<usize>], selection: usize, root: usize) -> Vec<usize> {
     let mut inside = vec![false; selection];
     for place in (0..=root).rev() {
@@ -72,7 +72,7 @@ fn alone(kernel: &Kernel, users: &[Vec<usize>], selection: usize, root: usize) -
     (0..selection).filter(|place| inside[*place]).collect()
 }
 
-/// A selection.
+/// Selection.
 pub(crate) struct Choice {
     pub(crate) condition: FloatCC,
     pub(crate) left: usize,

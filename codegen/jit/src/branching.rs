@@ -1,4 +1,4 @@
-//! Kernels of single numbers written with branches: only the arm taken is computed.
+//! Code of kernels of single numbers with branches: only the arm that is taken is computed.
 
 use cranelift_codegen::ir::{BlockArg, InstBuilder, Value, types};
 use eomgen_elementary::{Kernel, Operation};
@@ -7,15 +7,13 @@ use crate::branches::{Arm, Branches, Choice};
 use crate::lanes::Lanes;
 use crate::stage::Writer;
 
-/// A kernel being written.
+/// Kernel under construction.
 struct Written<'k> {
-    /// Its operations.
     kernel: &'k Kernel,
-    /// Where it branches.
     branches: &'k Branches,
-    /// Its arguments, in both lanes.
+    /// Arguments, in both lanes.
     arguments: &'k [Value],
-    /// Values by now; the first argument where there is none yet.
+    /// Computed values; the first argument as a placeholder before.
     values: Vec<Value>,
 }
 
@@ -37,7 +35,7 @@ impl Writer<'_, '_, '_> {
         self.known(&written, kernel.outputs[0])
     }
 
-    /// Writes what belongs to an arm, or to none.
+    /// Writes the operations of an arm, or those of no arm.
     fn owned_by(&mut self, written: &mut Written<'_>, owner: Option<Arm>) {
         for place in 0..written.kernel.operations.len() {
             let operation = written.kernel.operations[place];
@@ -61,7 +59,7 @@ impl Writer<'_, '_, '_> {
         }
     }
 
-    /// A value by now. Literals are read anew: one read in an arm is not known outside.
+    /// Returns a computed value. Literals are read again: one read in an arm is unknown outside.
     fn known(&mut self, written: &Written<'_>, place: usize) -> Value {
         match written.kernel.operations[place] {
             Operation::Constant(number) => self.literal(number, Lanes::Two),

@@ -1,9 +1,9 @@
-//! Literals, each stored twice in a row so that one lane or both can be read from memory:
-//! loads fold into the operations that use them, where literals in the code would not.
+//! Literals, each stored twice in a row, so that one lane or both can be read from memory. Loads are part of
+//! the instructions that use them; literals in the code would not be.
 
 use std::collections::HashMap;
 
-/// The literals of all stages, in the room behind a program's values.
+/// Literals of all stages, in memory after a program's values.
 #[derive(Default)]
 pub struct Constants {
     places: HashMap<u64, usize>,
@@ -11,7 +11,7 @@ pub struct Constants {
 }
 
 impl Constants {
-    /// The place of a literal among [`Constants::numbers`]: there and one further.
+    /// Returns the index of a literal in [`Constants::numbers`]; the next number is its copy.
     pub fn place(&mut self, value: f64) -> usize {
         *self.places.entry(value.to_bits()).or_insert_with(|| {
             self.numbers.extend([value; 2]);
@@ -19,7 +19,7 @@ impl Constants {
         })
     }
 
-    /// All literals, each twice.
+    /// Returns all literals, each twice.
     pub fn numbers(&self) -> &[f64] {
         &self.numbers
     }

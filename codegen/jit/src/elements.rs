@@ -1,5 +1,4 @@
-//! Elements of values: numbers from registers and memory, and the operations that give each
-//! element from the operands' elements of the same index.
+//! Elements of values: numbers from registers and memory, and elementwise operations.
 
 use cranelift_codegen::ir::{InstBuilder, MemFlagsData, Opcode, Value, types};
 use eomgen_codegen::program::{Extent, Op, PARTIAL_SUMS, ValueId};
@@ -7,10 +6,10 @@ use eomgen_codegen::program::{Extent, Op, PARTIAL_SUMS, ValueId};
 use crate::lanes::{Array, At, Lanes, SHORT, pairs};
 use crate::stage::Writer;
 
-/// How memory is accessed: every address lies within what the caller lends.
+/// Returns the flags of a memory access; every address is inside the caller's memory.
 fn flags(lanes: Lanes, constant: bool) -> MemFlagsData {
     let flags = MemFlagsData::new().with_notrap();
-    // Two lanes need not begin at a multiple of their size.
+    // Two lanes can begin at an address that is no multiple of their size.
     let flags = match lanes {
         Lanes::One => flags.with_aligned(),
         Lanes::Two => flags,
@@ -23,7 +22,6 @@ fn flags(lanes: Lanes, constant: bool) -> MemFlagsData {
 }
 
 impl Writer<'_, '_, '_> {
-    /// Reads numbers.
     pub fn load(&mut self, array: Array, at: At) -> Value {
         let address = self.moved(array.base, at);
         let offset = self.bytes(array.start + at.element);
@@ -31,7 +29,6 @@ impl Writer<'_, '_, '_> {
         self.ins().load(at.lanes.kind(), flags, address, offset)
     }
 
-    /// Writes numbers.
     pub fn store(&mut self, value: Value, array: Array, at: At) {
         let address = self.moved(array.base, at);
         let offset = self.bytes(array.start + at.element);
@@ -40,7 +37,7 @@ impl Writer<'_, '_, '_> {
     }
 
     fn bytes(&self, numbers: usize) -> i32 {
-        // `compile` refuses programs whose memory would not fit.
+        // `compile` rejects programs whose memory would not fit.
         (numbers * 8) as i32
     }
 
@@ -51,7 +48,7 @@ impl Writer<'_, '_, '_> {
         }
     }
 
-    /// A literal in every lane.
+    /// Returns a literal in every lane.
     pub fn literal(&mut self, value: f64, lanes: Lanes) -> Value {
         if lanes == Lanes::One && value.to_bits() == 0 {
             return self.ins().f64const(0.0);
@@ -68,7 +65,7 @@ impl Writer<'_, '_, '_> {
         self.load(array, at)
     }
 
-    /// A number known by now.
+    /// Returns a bound number.
     pub fn number(&self, id: ValueId, lanes: Lanes) -> Value {
         let numbers = match lanes {
             Lanes::One => &self.numbers,
@@ -77,14 +74,14 @@ impl Writer<'_, '_, '_> {
         numbers[&id]
     }
 
-    /// Makes a number known from here on, in one lane and in both.
+    /// Binds a number, in one lane and in both.
     pub fn bind(&mut self, id: ValueId, value: Value) {
         let both = self.ins().splat(types::F64X2, value);
         self.numbers.insert(id, value);
         self.broadcast.insert(id, both);
     }
 
-    /// An element of a value; a scalar stands for every element.
+    /// Returns an element of a value; a scalar is repeated.
     pub fn element(&mut self, id: ValueId, at: At) -> Value {
         if self.program.value(id).extent == Extent::Scalar {
             return self.number(id, at.lanes);
@@ -98,7 +95,7 @@ impl Writer<'_, '_, '_> {
         }
     }
 
-    /// An element from those of the operands.
+    /// Computes an element from those of the operands.
     pub fn computed(&mut self, id: ValueId, at: At) -> Value {
         let lanes = at.lanes;
         let of = |writer: &mut Self, operand: ValueId| writer.element(operand, at);
@@ -145,33 +142,34 @@ impl Writer<'_, '_, '_> {
                 let a = of(self, a);
                 self.pivot_reciprocal(a, lanes)
             }
-            // Leaves and matrix operations, which `stage` binds.
+            // Leaves and matrix operations, which `stage` must bind.
             other => self.misplaced(id, &other, lanes),
         }
     }
 
-    /// Notes a value that cannot be computed where it is asked for, so that the function is
-    /// not compiled.
+    /// Records a value that cannot be computed by elements, so that the compilation fails.
     fn misplaced(&mut self, id: ValueId, op: &Op, lanes: Lanes) -> Value {
         let place = id.index();
-        self.defect = Some(format!("value {place}, {op:?}, is asked for by elements"));
+        self.defect = Some(format!(
+            "value {place}, {op:?}, cannot be computed by elements"
+        ));
         self.literal(0.0, lanes)
     }
 
-    /// a + b
+    /// Computes a + b.
     pub fn add(&mut self, a: Value, b: Value) -> Value {
         let (a, b) = self.load_last(a, b);
         self.ins().fadd(a, b)
     }
 
-    /// a b
+    /// Computes a b.
     pub fn multiply(&mut self, a: Value, b: Value) -> Value {
         let (a, b) = self.load_last(a, b);
         self.ins().fmul(a, b)
     }
 
-    /// The same two, one that is read from memory last: it is then read where it is used,
-    /// and no register holds it while the other is computed.
+    /// Orders two operands so that one read from memory is last: it is then read when it is used and occupies
+    /// no register while the other is computed.
     fn load_last(&self, a: Value, b: Value) -> (Value, Value) {
         let graph = &self.builder.func.dfg;
         let is_load = |value| {
@@ -181,7 +179,7 @@ impl Writer<'_, '_, '_> {
         if is_load(a) { (b, a) } else { (a, b) }
     }
 
-    /// The sign bit flipped.
+    /// Flips the sign bit.
     pub fn negate(&mut self, a: Value, lanes: Lanes) -> Value {
         match lanes {
             Lanes::One => self.ins().fneg(a),
@@ -210,8 +208,8 @@ impl Writer<'_, '_, '_> {
         self.registers.insert(id, registers);
     }
 
-    /// The sum of a vector's elements, in the order that `Op::Total` defines: neighbouring
-    /// partial sums share a register.
+    /// Sums a vector's elements in the order that `Op::Total` defines; neighbouring partial sums share a
+    /// register.
     pub fn total(&mut self, vector: ValueId) -> Value {
         let length = self.program.value(vector).extent.length();
         let first = length.min(PARTIAL_SUMS);
@@ -242,7 +240,7 @@ impl Writer<'_, '_, '_> {
         self.sum_of_pairs(&partial, first)
     }
 
-    /// Neighbours of the first `count` lanes added until one number is left.
+    /// Adds neighbours of the first `count` lanes until one number is left.
     fn sum_of_pairs(&mut self, registers: &[Value], count: usize) -> Value {
         let mut sums: Vec<Value> = Vec::new();
         for (register, at) in registers.iter().zip(pairs(0, count)) {

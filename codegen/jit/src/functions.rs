@@ -1,8 +1,8 @@
-//! Functions of numbers: elementary functions from their kernels, the laws of meshes and
-//! selections, without a branch.
+//! Functions of numbers: elementary functions from their kernels, piecewise functions and selections, without
+//! branches.
 //!
-//! All of it works on two lanes, where comparisons are masks of bits; a single number
-//! stands in both. A division by 0 or a NaN in a lane leaves no trace elsewhere.
+//! All functions work on two lanes with bit masks as comparisons; a single number is in both. A division by 0
+//! or a NaN in one lane has no effect on the other.
 
 use std::rc::Rc;
 
@@ -17,17 +17,15 @@ use crate::branches::Branches;
 use crate::lanes::Lanes;
 use crate::stage::Writer;
 
-/// The sign bit.
 const SIGN: u64 = 1 << 63;
-/// The mantissa field.
 const MANTISSA: u64 = (1 << 52) - 1;
-/// The exponent field, moved to the right.
+/// Exponent field, shifted to the right.
 const EXPONENT: u64 = 0x7ff;
-/// 2^52: a whole number k below it, in its mantissa, makes 2^52 + k.
+/// 2^52. An integer k below it, written into its mantissa, gives 2^52 + k.
 const ALIGNER: f64 = (1_u64 << 52) as f64;
 
 impl Writer<'_, '_, '_> {
-    /// A function of the expression language.
+    /// Computes a function of the expression language.
     pub fn call(&mut self, function: Function, arguments: Arguments<Value>, lanes: Lanes) -> Value {
         match arguments {
             Arguments::One(one) => self.in_two_lanes(one, lanes, |writer, [a]| {
@@ -39,7 +37,7 @@ impl Writer<'_, '_, '_> {
         }
     }
 
-    /// The same in both lanes: of two numbers, which are one for a function of one.
+    /// Computes a function of one or two numbers, each in both lanes; with one argument, p and b are equal.
     fn law(
         &mut self,
         function: Function,
@@ -55,14 +53,14 @@ impl Writer<'_, '_, '_> {
         }
     }
 
-    /// a^b
+    /// Computes a^b.
     pub fn power(&mut self, base_and_exponent: [Value; 2], lanes: Lanes) -> Value {
         self.in_two_lanes(base_and_exponent, lanes, |writer, both| {
             writer.elementary(Elementary::Pow, &both, lanes)
         })
     }
 
-    /// The square root where a > 0, NaN elsewhere; one number.
+    /// Computes the square root of one number if a > 0, else NaN.
     pub fn positive_root(&mut self, a: Value) -> Value {
         self.in_two_lanes([a], Lanes::One, |writer, [a]| {
             let root = writer.elementary(Elementary::Sqrt, &[a], Lanes::One);
@@ -70,7 +68,7 @@ impl Writer<'_, '_, '_> {
         })
     }
 
-    /// 1/a where a > 0, NaN elsewhere.
+    /// Computes 1/a if a > 0, else NaN.
     pub fn pivot_reciprocal(&mut self, a: Value, lanes: Lanes) -> Value {
         self.in_two_lanes([a], lanes, |writer, [a]| {
             let one = writer.literal(1.0, Lanes::Two);
@@ -79,7 +77,7 @@ impl Writer<'_, '_, '_> {
         })
     }
 
-    /// `if a > b { then } else { otherwise }`
+    /// Computes `if a > b { then } else { otherwise }`.
     pub fn select(&mut self, operands: [Value; 4], lanes: Lanes) -> Value {
         self.in_two_lanes(operands, lanes, |writer, [a, b, then, otherwise]| {
             let mask = writer.compare(FloatCC::GreaterThan, a, b);
@@ -109,7 +107,7 @@ impl Writer<'_, '_, '_> {
         self.ins().extractlane(value, 0)
     }
 
-    /// All bits of a lane set where the comparison holds.
+    /// Sets all bits of a lane if the comparison is true.
     fn compare(&mut self, condition: FloatCC, a: Value, b: Value) -> Value {
         let mask = self.ins().fcmp(condition, a, b);
         self.as_numbers(mask)
@@ -129,7 +127,7 @@ impl Writer<'_, '_, '_> {
         self.literal(f64::from_bits(bits), Lanes::Two)
     }
 
-    /// f_k of Eq. (7).
+    /// Computes f_k of Eq. (7).
     fn deadzone(&mut self, p: Value, b: Value) -> Value {
         let sign = self.bits(SIGN);
         let minus_b = self.ins().bxor(b, sign);
@@ -140,7 +138,7 @@ impl Writer<'_, '_, '_> {
         self.ins().fsub(p, held)
     }
 
-    /// 1 where |p| > b, 0 elsewhere, Eq. (8).
+    /// Computes the indicator of |p| > b, Eq. (8).
     fn contact(&mut self, p: Value, b: Value) -> Value {
         let [above, below] = self.beyond(p, b);
         let either = self.ins().bor(above, below);
@@ -148,7 +146,7 @@ impl Writer<'_, '_, '_> {
         self.ins().band(either, one)
     }
 
-    /// 1 where p > 0, 0 elsewhere.
+    /// Computes the indicator of p > 0.
     fn above(&mut self, p: Value) -> Value {
         let zero = self.literal(0.0, Lanes::Two);
         let one = self.literal(1.0, Lanes::Two);
@@ -156,7 +154,7 @@ impl Writer<'_, '_, '_> {
         self.ins().band(positive, one)
     }
 
-    /// Where p > b, and where p < -b.
+    /// Returns the masks of p > b and of p < -b.
     fn beyond(&mut self, p: Value, b: Value) -> [Value; 2] {
         let sign = self.bits(SIGN);
         let minus_b = self.ins().bxor(b, sign);
@@ -166,8 +164,7 @@ impl Writer<'_, '_, '_> {
         ]
     }
 
-    /// An elementary function, operation by operation, of numbers in both lanes; `lanes`
-    /// says whether they are two numbers or one.
+    /// Computes an elementary function operation by operation; `lanes` is the number of different numbers.
     fn elementary(&mut self, function: Elementary, arguments: &[Value], lanes: Lanes) -> Value {
         let kernels = &mut self.shared.kernels;
         let entry = kernels.entry(function).or_insert_with(|| {
@@ -192,7 +189,7 @@ impl Writer<'_, '_, '_> {
         values[kernel.outputs[0]]
     }
 
-    /// One operation of a kernel; `value` gives those before it.
+    /// Writes one operation of a kernel; `value` returns the results of the operations before it.
     pub fn primitive(
         &mut self,
         operation: Operation,
@@ -255,7 +252,7 @@ impl Writer<'_, '_, '_> {
         self.ins().band(a, mask)
     }
 
-    /// The exponent field as a number, by way of the mantissa of 2^52: exact.
+    /// Converts the exponent field exactly to a number, through the mantissa of 2^52.
     fn exponent(&mut self, a: Value) -> Value {
         let bits = self.as_bits(a);
         let field = self.ins().ushr_imm_u(bits, 52);

@@ -1,33 +1,30 @@
-//! Which elements an instruction is about: one or two neighbours, in registers or in memory.
+//! Elements that an instruction processes: one or two neighbours, in registers or in memory.
 
 use cranelift_codegen::ir::{Type, Value, types};
 
-/// Vectors up to this length are written out and live in registers: four of the sixteen
-/// that there are.
+/// Largest length of an unrolled vector in registers: it uses four of the sixteen registers.
 pub const SHORT: usize = 8;
 
-/// How many neighbouring elements one register holds.
+/// Number of neighbouring elements in one register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lanes {
-    /// One.
     One,
-    /// Two.
     Two,
 }
 
-/// Which element, or two neighbouring ones.
+/// One element, or two neighbouring ones.
 #[derive(Clone, Copy, Debug)]
 pub struct At {
     /// Bytes that a loop adds.
     pub moving: Option<Value>,
-    /// The element where the loop stands at 0.
+    /// Element in the first turn of the loop.
     pub element: usize,
-    /// How many.
+    /// Number of elements.
     pub lanes: Lanes,
 }
 
 impl At {
-    /// Element number `element`.
+    /// Refers to one element.
     pub fn one(element: usize) -> Self {
         Self {
             moving: None,
@@ -36,7 +33,7 @@ impl At {
         }
     }
 
-    /// Elements number `element` and the next.
+    /// Refers to an element and the next one.
     pub fn two(moving: Option<Value>, element: usize) -> Self {
         Self {
             moving,
@@ -46,7 +43,7 @@ impl At {
     }
 }
 
-/// The elements `from..to` in pairs, a single one last.
+/// Returns the elements `from..to` in pairs, with a single one at the end if the count is odd.
 pub fn pairs(from: usize, to: usize) -> impl Iterator<Item = At> {
     (from..to).step_by(2).map(move |element| {
         if element + 1 < to {
@@ -58,7 +55,7 @@ pub fn pairs(from: usize, to: usize) -> impl Iterator<Item = At> {
 }
 
 impl Lanes {
-    /// The type of a register's content.
+    /// Returns the type of a register's content.
     pub fn kind(self) -> Type {
         match self {
             Self::One => types::F64,
@@ -70,10 +67,10 @@ impl Lanes {
 /// Numbers in memory.
 #[derive(Clone, Copy, Debug)]
 pub struct Array {
-    /// Where they are counted from.
+    /// Base address.
     pub base: Value,
-    /// Which number from there is the first.
+    /// Index of the first number from there.
     pub start: usize,
-    /// Whether nothing in this function writes them.
+    /// True if nothing in this function writes them.
     pub constant: bool,
 }

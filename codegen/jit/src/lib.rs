@@ -1,5 +1,5 @@
-//! Compiles programs of equations of motion to machine code in this process, with no
-//! compiler installed: the same bits as the interpreter and as emitted Rust.
+//! Compilation of programs to machine code within the process, without an installed compiler. The results
+//! have the same bits as the interpreter and the emitted Rust.
 //!
 //! ```
 //! use eomgen_codegen::program::evaluator::{Evaluator, Point};
@@ -39,16 +39,14 @@
 //! # }
 //! ```
 //!
-//! The pipeline, file by file: `compile` takes a `Program`; `plan` divides a stage into functions of
-//! bounded length; `stage` walks the values of one of them and decides which live in registers and which in memory; `loops` writes loops
-//! over modes; `elements` writes an element of a vector, or two neighbouring ones in one
-//! register; `functions` the elementary functions from their kernels,
-//! those of one number with `branching` where `branches` finds it worth it; `matrices` the
-//! matrix operations; `constants` collects literals; `machine` hands all of it to Cranelift
-//! and holds the code that comes back.
+//! `compile` compiles a `Program`. `plan` divides a stage into functions of bounded length. `stage` writes
+//! the values of a function and decides which are in registers and which in memory; `loops` writes loops over
+//! modes, `elements` one or two elements of a vector, `functions` elementary functions from their kernels
+//! (for single numbers `branching`, if `branches` finds long arms), `matrices` matrix operations, and
+//! `constants` collects literals. `machine` compiles with Cranelift and holds the code.
 //!
-//! No operation is changed and no sum reordered. Two lanes compute two elements of a
-//! vector, each as it would be alone.
+//! No operation is changed and no sum reordered. Each of two lanes computes an element as a single lane
+//! would.
 
 use std::sync::Arc;
 
@@ -81,7 +79,7 @@ mod stage;
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 pub use machine::{CompileError, Machine, compile};
 
-/// Machine code of a program, if this kind of machine is known.
+/// Returns the machine code of a program, if this processor architecture is supported.
 pub fn code(program: &Program) -> Option<Arc<dyn MachineCode>> {
     #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
     if let Ok(machine) = compile(program) {
@@ -91,8 +89,8 @@ pub fn code(program: &Program) -> Option<Arc<dyn MachineCode>> {
     None
 }
 
-/// An evaluator of a program that runs machine code if this kind of machine is known, and
-/// interprets elsewhere. The numbers are the same.
+/// Returns an evaluator that runs machine code if this processor architecture is supported, and interprets
+/// otherwise. The results are equal.
 pub fn evaluator(program: Program) -> Evaluator {
     match code(&program) {
         Some(code) => Evaluator::with_code(program, code),

@@ -1,5 +1,4 @@
-//! Loops: over the elements of vectors, two lanes at a time and unrolled, and over the rows
-//! and columns of matrices.
+//! Loops over the elements of vectors, unrolled with two lanes, and over the rows and columns of matrices.
 
 use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::{BlockArg, InstBuilder, Value, types};
@@ -7,11 +6,11 @@ use cranelift_codegen::ir::{BlockArg, InstBuilder, Value, types};
 use crate::lanes::{At, SHORT, pairs};
 use crate::stage::Writer;
 
-/// Elements per turn of a loop.
+/// Number of elements in a turn of a loop.
 const TURN: usize = 4;
 
 impl Writer<'_, '_, '_> {
-    /// Goes through the elements `0..length`.
+    /// Writes `step` for the elements `0..length`.
     pub fn each(&mut self, length: usize, mut step: impl FnMut(&mut Self, At)) {
         let turns = if length > SHORT { length / TURN } else { 0 };
         self.turns(turns, TURN, Vec::new(), |writer, moving, _| {
@@ -25,8 +24,8 @@ impl Writer<'_, '_, '_> {
         }
     }
 
-    /// A loop of `turns` turns, each of `turn` elements, carrying pairs of numbers; `body`
-    /// takes the bytes passed so far.
+    /// Writes a loop of `turns` turns over `turn` elements each, which carries pairs of numbers. An argument
+    /// of `body` is the number of bytes passed so far.
     pub fn turns(
         &mut self,
         turns: usize,
@@ -57,7 +56,7 @@ impl Writer<'_, '_, '_> {
         carried
     }
 
-    /// A loop of an index over `from..to`, possibly not once, carrying numbers.
+    /// Writes a loop over the index range `from..to`, which can be empty; it carries numbers.
     pub fn range(
         &mut self,
         (from, to): (Value, Value),
@@ -87,7 +86,7 @@ impl Writer<'_, '_, '_> {
         carried
     }
 
-    /// A loop of an index over `0..count`, carrying numbers.
+    /// Writes a loop over `0..count`, which carries numbers.
     pub fn count(
         &mut self,
         count: usize,
@@ -98,7 +97,6 @@ impl Writer<'_, '_, '_> {
         self.range(bounds, first, body)
     }
 
-    /// The index `value`.
     pub fn index(&mut self, value: usize) -> Value {
         self.ins().iconst(types::I64, value as i64)
     }

@@ -1,5 +1,4 @@
-//! The compiler at work: the functions of every stage through Cranelift, and the code that comes
-//! back, called through the evaluator. The only place with `unsafe`.
+//! Compilation of all stages with Cranelift, and calls of the compiled code. The only file with `unsafe`.
 
 use std::collections::HashMap;
 use std::fmt;
@@ -19,7 +18,7 @@ use crate::constants::Constants;
 use crate::plan::{Plan, Task};
 use crate::stage::{Call, Shared, Writer};
 
-/// Why a program has no machine code here.
+/// Reason why a program cannot be compiled.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CompileError {
     message: String,
@@ -41,31 +40,31 @@ impl fmt::Display for CompileError {
 
 impl std::error::Error for CompileError {}
 
-/// `(memory, t, state, out)`
+/// Function with the arguments `(memory, t, state, out)`.
 type Function = unsafe extern "C" fn(*mut f64, f64, *const f64, *mut f64);
 
 /// Machine code of every stage of one program.
 pub struct Machine {
-    /// The pieces of the preparation.
+    /// Pieces of the preparation.
     prepare: Vec<Function>,
-    /// The pieces of each stage, in the order of [`Stage::ALL`].
+    /// Pieces of each stage, in the order of [`Stage::ALL`].
     stages: [Vec<Function>; Stage::ALL.len()],
-    /// Room for the inputs, then literals.
+    /// Memory for the inputs, then literals.
     room: Vec<f64>,
-    /// Numbers that the functions reach from `memory` on.
+    /// Count of numbers that the functions access from `memory` on.
     reach: usize,
-    /// Where the inputs are among them, and how many.
+    /// Indices of the inputs in memory.
     inputs: std::ops::Range<usize>,
     states: usize,
-    /// Owns the code. In a lock because it cannot be shared, only handed on.
+    /// Owner of the code. It is in a lock because it is `Send` but not `Sync`.
     module: Mutex<Option<JITModule>>,
 }
 
 /// Compiles every stage of a program.
 ///
 /// # Errors
-/// If this machine's kind is not known to Cranelift, or a value of the program does not stand
-/// where it can be computed.
+/// A processor architecture that Cranelift does not support, a program that is too large, and a value that
+/// cannot be computed in its place.
 pub fn compile(program: &Program) -> Result<Machine, CompileError> {
     let places = Places::of(program);
     let mut shared = Shared {
@@ -88,7 +87,7 @@ pub fn compile(program: &Program) -> Result<Machine, CompileError> {
             .collect::<Result<Vec<FuncId>, CompileError>>()
     };
     let prepare = define(&mut module, Task::Prepare)?;
-    // Most programs lack the stages on request: what has no roots costs no function.
+    // Most programs lack requested outputs: a stage without roots needs no function.
     let mut stages = [const { Vec::new() }; Stage::ALL.len()];
     for (slot, stage) in stages.iter_mut().zip(Stage::ALL) {
         if stage == Stage::Rates || !stage.roots(program).is_empty() {
@@ -117,7 +116,7 @@ fn new_module() -> Result<JITModule, CompileError> {
         ("opt_level", "speed"),
         ("is_pic", "false"),
         ("use_colocated_libcalls", "false"),
-        // Tests compile with debug assertions, or compare every number.
+        // Tests run with debug assertions, or compare every number.
         (
             "enable_verifier",
             if cfg!(debug_assertions) {
@@ -145,7 +144,6 @@ fn signature(module: &JITModule) -> Signature {
     signature
 }
 
-/// Writes and compiles the function of one piece of a stage.
 fn define(
     module: &mut JITModule,
     (context, builders): &mut (Context, FunctionBuilderContext),
@@ -185,7 +183,7 @@ fn define(
     Ok(id)
 }
 
-/// The code of a finished function.
+/// Returns the code of a finished function.
 #[allow(unsafe_code)]
 fn function(module: &JITModule, id: FuncId) -> Function {
     let address = module.get_finalized_function(id);
@@ -195,7 +193,7 @@ fn function(module: &JITModule, id: FuncId) -> Function {
 }
 
 impl Machine {
-    /// Calls the functions in their order. `out` may be empty for all functions but the rates.
+    /// Calls the functions in order. `out` may be empty except for the rates.
     #[allow(unsafe_code)]
     fn run(&self, functions: &[Function], memory: &mut [f64], point: &Point<'_>, out: &mut [f64]) {
         let memory = &mut memory[..self.reach];
@@ -229,7 +227,7 @@ impl MachineCode for Machine {
     }
 
     fn compute(&self, stage: Stage, memory: &mut [f64], point: &Point<'_>) {
-        // The rates go to `out`; the interpreter's way of them is not this one.
+        // The rates are written to `out`, not to their places in memory.
         assert_ne!(stage, Stage::Rates);
         let point = Point {
             state: &point.state[..self.states],

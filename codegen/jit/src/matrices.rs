@@ -1,5 +1,5 @@
-//! Matrix operations, in memory, in the order of summation that the program defines. A loop
-//! over elements carries the sum of one element or of two neighbouring ones.
+//! Matrix operations in memory, with the order of summation that the program defines. A loop carries the sum
+//! of one element or of two neighbouring ones.
 
 use cranelift_codegen::ir::{InstBuilder, Value, types};
 use eomgen_codegen::program::{Extent, Op, ScaledValue, ValueId};
@@ -8,7 +8,7 @@ use crate::lanes::Array;
 use crate::lanes::{At, Lanes};
 use crate::stage::Writer;
 
-/// A matrix in memory, row by row; a scalar stands for every element.
+/// Matrix in memory, row by row; a scalar is repeated.
 #[derive(Clone, Copy, Debug)]
 struct Matrix {
     array: Array,
@@ -43,8 +43,8 @@ impl Writer<'_, '_, '_> {
             } => self.assemble(out, *diagonal, outer, matrices),
             Op::Cholesky(matrix) => self.cholesky(out, *matrix),
             Op::CholeskySolve(factor, right) => self.cholesky_solve(out, *factor, *right),
-            // All others are written element by element.
-            other => self.defect = Some(format!("{other:?} is no matrix operation")),
+            // All others are computed by elements.
+            other => self.defect = Some(format!("{other:?} is not a matrix operation")),
         }
     }
 
@@ -65,13 +65,13 @@ impl Writer<'_, '_, '_> {
         self.shaped(id, array)
     }
 
-    /// Element (row, column), in one lane or with its right neighbour.
+    /// Returns element (row, column), in one lane or with its right neighbour.
     fn entry(&mut self, matrix: Matrix, row: Value, column: At) -> Value {
         let array = self.row(matrix, row);
         self.load(array, column)
     }
 
-    /// A row of a matrix.
+    /// Returns a row of a matrix.
     fn row(&mut self, matrix: Matrix, row: Value) -> Array {
         let bytes = self.ins().imul_imm_u(row, (matrix.columns * 8) as i64);
         let base = self.ins().iadd(matrix.array.base, bytes);
@@ -81,7 +81,7 @@ impl Writer<'_, '_, '_> {
         }
     }
 
-    /// Element number `index`.
+    /// Refers to element `index`.
     fn indexed(&mut self, index: Value) -> At {
         let moving = self.ins().imul_imm_u(index, 8);
         At {
@@ -90,7 +90,7 @@ impl Writer<'_, '_, '_> {
         }
     }
 
-    /// Element `index` of a vector; a scalar stands for every element.
+    /// Returns element `index` of a vector; a scalar is repeated.
     fn vector_element(&mut self, id: ValueId, index: Value, lanes: Lanes) -> Value {
         if self.program.value(id).extent == Extent::Scalar {
             return self.number(id, lanes);
@@ -104,7 +104,7 @@ impl Writer<'_, '_, '_> {
         }
     }
 
-    /// The sum of `count` summands from 0, the first first.
+    /// Sums `count` summands in order, beginning with 0.
     fn sum(
         &mut self,
         count: usize,
@@ -234,7 +234,7 @@ impl Writer<'_, '_, '_> {
         });
     }
 
-    /// (row_r * matrix_rc) * column_c
+    /// Computes (row_r * matrix_rc) * column_c.
     fn scaled(&mut self, scaled: &ScaledValue, r: Value, c: Value) -> Value {
         let matrix = self.matrix(scaled.matrix);
         let (row, column) = if scaled.transposed { (c, r) } else { (r, c) };
@@ -246,7 +246,7 @@ impl Writer<'_, '_, '_> {
         self.ins().fmul(product, right)
     }
 
-    /// Row by row, L L^T = matrix; the upper part of its place is 0 and stays so.
+    /// Computes L of L L^T = matrix row by row; the upper part of its place is always 0.
     fn cholesky(&mut self, out: Matrix, matrix: ValueId) {
         let matrix = self.matrix(matrix);
         self.count(out.rows, &[], |writer, r, _| {
@@ -271,7 +271,7 @@ impl Writer<'_, '_, '_> {
         });
     }
 
-    /// rest - left_k right_k for every k in turn.
+    /// Computes rest - left_k right_k for every k in order.
     fn less_products(
         &mut self,
         rest: Value,
@@ -317,7 +317,7 @@ impl Writer<'_, '_, '_> {
         });
     }
 
-    /// out_r = (rest - sum of factor entries times out_k) / factor_rr
+    /// Computes out_r = (rest - sum of factor entries times out_k) / factor_rr.
     fn substitute(
         &mut self,
         out: Matrix,

@@ -1,8 +1,8 @@
-//! What one stage computes, and how it is divided into functions.
+//! Plan of one stage, and its division into functions.
 //!
-//! A register allocator takes time that grows with the square of a function's length. So a long stage
-//! becomes several functions of at most [`MAX_PIECE`] values, called one after the other. A value that
-//! a later piece reads is stored in its place in memory.
+//! The time of register allocation grows with the square of a function's length. A long stage therefore
+//! becomes several functions of at most [`MAX_PIECE`] values, called one after the other. Values that a later
+//! piece reads are stored in memory.
 
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
@@ -10,29 +10,29 @@ use std::ops::Range;
 use eomgen_codegen::program::evaluator::Stage;
 use eomgen_codegen::program::{Op, Program, ValueId};
 
-/// The most values that one function computes.
+/// Largest number of values computed by one function.
 const MAX_PIECE: usize = 512;
 
-/// What a function computes.
+/// Task of a function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Task {
-    /// The prepared values.
+    /// Computation of the prepared values.
     Prepare,
-    /// What is computed per call.
+    /// Computation of a stage in each call.
     PerCall(Stage),
 }
 
-/// The values of one stage, operands first, and where they have to be.
+/// Values of one stage, operands first, with their storage.
 pub struct Plan {
-    /// The stage.
+    /// Task.
     pub task: Task,
-    /// The values that the stage answers with.
+    /// Results of the stage.
     pub roots: Vec<ValueId>,
-    /// How often each value is read.
+    /// Number of uses of each value.
     pub uses: HashMap<ValueId, usize>,
-    /// Values that something reads from memory.
+    /// Values that must be in memory.
     pub wanted: HashSet<ValueId>,
-    /// The values that the stage computes, operands first.
+    /// Values computed by the stage, operands first.
     pub steps: Vec<ValueId>,
 }
 
@@ -62,7 +62,7 @@ impl Plan {
         plan
     }
 
-    /// The pieces, in the order in which they are called: ranges of [`Plan::steps`]. At least one.
+    /// Returns the pieces in the order of their calls, as ranges of [`Plan::steps`]; at least one.
     pub fn pieces(&self) -> Vec<Range<usize>> {
         let starts = (0..self.steps.len().max(1)).step_by(MAX_PIECE);
         starts
@@ -91,7 +91,7 @@ impl Plan {
         }
     }
 
-    /// Wants in memory what another piece reads. The last piece writes the rates.
+    /// Marks values that another piece reads. The last piece writes the rates.
     fn store_across_pieces(&mut self, program: &Program) {
         let piece = |place: usize| place / MAX_PIECE;
         let places = self.steps.iter().enumerate();
@@ -110,7 +110,7 @@ impl Plan {
     }
 }
 
-/// Whether each element depends on the operands' elements of the same index alone.
+/// Returns true if each element depends only on the operands' elements with the same index.
 pub fn is_elementwise(op: &Op) -> bool {
     !matches!(
         op,
@@ -134,7 +134,7 @@ mod tests {
 
     use super::*;
 
-    /// A chain of so many masses on springs whose forces are not linear.
+    /// Returns the program of a chain of masses on springs with nonlinear forces.
     fn chain(masses: usize) -> Program {
         let mut text =
             "[model]\nname = \"chain\"\n[parameters]\nm = { value = 2, unit = \"kg\" }\n\
@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn pieces_of_a_long_stage_are_bounded_and_give_the_same_numbers() {
+    fn long_stage_has_bounded_pieces_and_matches_interpreter() {
         let program = chain(150);
         let plan = Plan::new(&program, Task::PerCall(Stage::Rates));
         let pieces = plan.pieces();

@@ -1,8 +1,8 @@
-//! One piece of a stage as one function: where each of its values lives.
+//! Function of one piece of a stage, and the storage of its values.
 //!
-//! Numbers live in registers. A vector that is used once is computed where it is used; a
-//! short one that is used more often lives in registers, a long one in its place in
-//! memory. Operands and results of matrix operations are in memory, and so is whatever the
+//! Numbers are in registers. A vector with one use is computed at that use; a short vector with more uses is
+//! in registers, a long one in memory. Operands and results of matrix operations are in memory, as are values
+//! that the evaluator or a later piece reads.
 //! evaluator or a later piece reads afterwards.
 
 use std::collections::{HashMap, HashSet};
@@ -21,68 +21,67 @@ use crate::constants::Constants;
 use crate::lanes::{Array, At, Lanes, SHORT};
 use crate::plan::{Plan, Task, is_elementwise};
 
-/// What the functions of a program share.
+/// Data shared by the functions of a program.
 pub struct Shared<'a> {
-    /// The program.
     pub program: &'a Program,
-    /// Where its values are.
+    /// Places of the values in memory.
     pub places: &'a Places,
     /// Literals so far.
     pub constants: Constants,
-    /// Kernels recorded so far, and where they branch.
+    /// Recorded kernels with their branches.
     pub kernels: HashMap<Elementary, Rc<(Kernel, Branches)>>,
 }
 
 impl Shared<'_> {
-    /// Where the inputs are: right behind the values.
+    /// Returns the index of the first input, after the values.
     pub fn inputs(&self) -> usize {
         self.places.size()
     }
 
-    /// Where the literals begin: at an even place, as pairs that lie in one line of a cache.
+    /// Returns the index of the first literal; it is even, so that a pair is in one cache line.
     pub fn first_constant(&self) -> usize {
         (self.inputs() + self.program.inputs.len()).next_multiple_of(2)
     }
 }
 
-/// What a function is called with.
+/// Arguments of a function.
 #[derive(Clone, Copy, Debug)]
 pub struct Call {
-    /// The evaluator's memory.
+    /// Memory of the evaluator.
     pub memory: Value,
-    /// The time.
+    /// Time.
     pub t: Value,
-    /// The state.
+    /// State.
     pub state: Value,
-    /// Where the rates go.
+    /// Array for the rates.
     pub out: Value,
 }
 
-/// Writes the function of one stage.
+/// Writer of the function of one piece.
 pub struct Writer<'a, 'p, 'f> {
     pub(crate) builder: FunctionBuilder<'f>,
     pub(crate) shared: &'a mut Shared<'p>,
     pub(crate) program: &'p Program,
     pub(crate) call: Call,
-    /// Numbers by now, in one lane.
+    /// Bound numbers, in one lane.
     pub(crate) numbers: HashMap<ValueId, Value>,
-    /// The same in both lanes.
+    /// Bound numbers, in both lanes.
     pub(crate) broadcast: HashMap<ValueId, Value>,
-    /// Short vectors by now: their elements in pairs, a single one last.
+    /// Short vectors in registers: elements in pairs, with a single one last.
     pub(crate) registers: HashMap<ValueId, Vec<Value>>,
     plan: &'a Plan,
-    /// Which of the plan's steps this function computes.
+    /// Range of the plan's steps that this function computes.
     piece: Range<usize>,
-    /// Values of this stage that are in memory by now.
+    /// Values of this stage that are stored in memory.
     stored: HashSet<ValueId>,
     /// Values of earlier pieces that this one reads.
     earlier: HashSet<ValueId>,
-    /// What of the program makes no sense, if anything does not.
+    /// Defect of the program, if one was found.
     pub(crate) defect: Option<String>,
 }
 
 impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
-    /// Begins a function, its entry block being current.
+    /// Starts a function; its entry block must be current.
     pub fn new(
         builder: FunctionBuilder<'f>,
         shared: &'a mut Shared<'p>,
@@ -105,12 +104,12 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
         }
     }
 
-    /// The next instruction.
+    /// Returns the inserter of the next instruction.
     pub(crate) fn ins(&mut self) -> FuncInstBuilder<'_, 'f> {
         self.builder.ins()
     }
 
-    /// Writes the function's body, up to its return.
+    /// Writes the body of the function without its return.
     pub fn write(&mut self) {
         let steps = &self.plan.steps[self.piece.clone()];
         let writes_rates = self.plan.task == Task::PerCall(Stage::Rates)
@@ -131,23 +130,23 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
         }
     }
 
-    /// The values that these steps read or compute.
+    /// Returns the values that these steps read or compute.
     fn reads(&self, steps: &[ValueId]) -> Vec<ValueId> {
         let operands = |id: &ValueId| self.program.value(*id).op.operands();
         let operands = steps.iter().flat_map(operands);
         operands.chain(steps.iter().copied()).collect()
     }
 
-    /// Finds which of these values an earlier piece has computed and stored.
+    /// Finds the values that an earlier piece has computed and stored.
     fn find_earlier(&mut self, read: &[ValueId]) {
         let before = &self.plan.steps[..self.piece.start];
-        // Steps are in ascending order, as operands come first.
+        // Steps are in ascending order, because operands come first.
         let is_earlier = |id: &&ValueId| before.binary_search(id).is_ok();
         self.earlier = read.iter().filter(is_earlier).copied().collect();
         self.stored.extend(&self.earlier);
     }
 
-    /// Binds the numbers that are not computed here, before any loop begins.
+    /// Binds the numbers that are not computed here, before any loop.
     fn bind_leaves(&mut self, read: &[ValueId]) {
         for id in read {
             if self.program.value(*id).extent == Extent::Scalar
@@ -158,7 +157,7 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
         }
     }
 
-    /// A number that is not computed here.
+    /// Loads a number that is not computed here.
     fn leaf(&mut self, id: ValueId) -> Option<Value> {
         let program = self.program;
         let value = program.value(id);
@@ -193,7 +192,7 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
         Some(self.load(array, At::one(0)))
     }
 
-    /// Where a value's numbers are in memory by now, if they are.
+    /// Returns the array of a value that is in memory.
     pub(crate) fn array(&self, id: ValueId) -> Option<Array> {
         let program = self.program;
         let value = program.value(id);
@@ -220,7 +219,7 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
         }
     }
 
-    /// A value's place in memory.
+    /// Returns the place of a value in memory.
     pub(crate) fn place(&self, id: ValueId) -> Array {
         Array {
             base: self.call.memory,
@@ -241,7 +240,7 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
             | Op::State(_)
             | Op::Input(_)
             | Op::Time => self.store_leaf(id),
-            // In its place by the evaluator.
+            // The evaluator has stored it.
             Op::Argument(..) => {}
             Op::ModeCoordinates(_) | Op::ModeRates(_) => self.copy_vector(id, length),
             Op::Total(vector) => {
@@ -264,7 +263,7 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
         }
     }
 
-    /// A leaf of the state that the evaluator reads from its place in memory.
+    /// Stores a leaf of the state that the evaluator reads from memory.
     fn store_leaf(&mut self, id: ValueId) {
         if self.plan.task != Task::Prepare && self.plan.wanted.contains(&id) {
             let number = self.number(id, Lanes::One);
@@ -292,7 +291,7 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
         }
     }
 
-    /// A vector computed element by element.
+    /// Computes a vector element by element.
     fn vector(&mut self, id: ValueId, length: usize) {
         let (wanted, used_once) = (
             self.plan.wanted.contains(&id),
@@ -317,7 +316,7 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
         }
     }
 
-    /// The rates: velocities from the state, then accelerations.
+    /// Writes the rates: velocities from the state, then accelerations and first-order rates.
     fn write_rates(&mut self) {
         let degrees = self.program.degrees_of_freedom();
         let velocities = Array {

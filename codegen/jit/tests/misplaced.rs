@@ -1,4 +1,4 @@
-//! A program that makes no sense has no machine code, instead of code that gives NaN.
+//! A program with a misplaced value is rejected; it must not compile to code that returns NaN.
 #![cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 
 use std::path::Path;
@@ -8,7 +8,7 @@ use eomgen_codegen::variant::Variant;
 use eomgen_model_spec::ids::CoordinateId;
 
 #[test]
-fn a_leaf_that_is_asked_for_by_elements_is_refused() {
+fn leaf_computed_by_elements_is_rejected() {
     let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../model-spec/models");
     let checked = eomgen_model_spec::load(&models.join("hub_beam_tip_mass.toml"));
     let model = checked

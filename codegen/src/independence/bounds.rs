@@ -37,7 +37,7 @@ fn never_zero(constraint: &Constraint, end: &str, bound: f64) -> Diagnostic {
             constraint.zero.span,
             format!("is at {end} {bound:.3e} {unit} at any state"),
         )
-        .help("correct its expression, for example a sign: the expression of a constraint must be able to reach zero")
+        .help("correct its expression, for example a sign, so that it can be zero")
 }
 
 /// Returns the bounds of `nodes` (operands first), indexed by node.

@@ -46,7 +46,7 @@ pub(crate) fn translated(translator: &mut Translator, force: &Force) -> Derived<
         return Err(DeriveError {
             span: force.on.span,
             message: "a force acts on an expression that contains a rate".into(),
-            help: Some("let it act on a coordinate or an expression of coordinates".into()),
+            help: Some("use a coordinate or an expression of coordinates for `on`".into()),
         });
     }
     Ok((value, on))

@@ -1,12 +1,12 @@
-//! Accuracy of the exponential, the logarithm and the hyperbolic functions. The bounds are those of
-//! the crate's table.
+//! Accuracy of the exponential, the logarithm and the hyperbolic functions, with the bounds of the crate's
+//! table.
 
 use crate::oracle::{Exact, assert_within, magnitudes, uniform};
 use eomgen_elementary::{cosh, exp, exp_minus_one, ln, sinh, tanh};
 
-/// The largest argument whose exponential is finite.
+/// Largest argument with a finite exponential.
 const LARGEST: f64 = 709.782_712_893_384;
-/// The largest argument whose hyperbolic sine and cosine are finite.
+/// Largest argument with a finite hyperbolic sine and cosine.
 const LARGEST_HYPERBOLIC: f64 = 710.475_860_073_943_9;
 
 fn exponents() -> Vec<f64> {

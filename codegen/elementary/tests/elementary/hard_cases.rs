@@ -1,10 +1,10 @@
-//! Arguments on which a careless reduction or rounding shows, found by number theory.
+//! Arguments for which an inaccurate reduction or rounding fails, found by number theory.
 
 /// `floor(2/pi * 2^127)`.
 const TWO_OVER_PI: u128 = 0x517c_c1b7_2722_0a94_fe13_abe8_fa9a_6ee0;
 
-/// Doubles up to 1e9 that come closest to a multiple of pi/2: with `2/pi 2^(e-52) = p/q + ...` a
-/// convergent of the continued fraction, `q 2^(e-52)` is nearly `p pi/2`.
+/// Returns the doubles up to 1e9 that are closest to a multiple of pi/2. If `p/q` is a convergent of the
+/// continued fraction of `2/pi 2^(e-52)`, then `q 2^(e-52)` is nearly `p pi/2`.
 pub fn near_multiples_of_half_pi() -> Vec<f64> {
     let mut found = Vec::new();
     for exponent in 0..=29_u32 {
@@ -20,7 +20,7 @@ pub fn near_multiples_of_half_pi() -> Vec<f64> {
     found
 }
 
-/// The convergents `p/q`, `q < 2^53`, of `numerator/denominator`.
+/// Returns the convergents `p/q`, `q < 2^53`, of `numerator/denominator`.
 fn convergents(mut numerator: u128, mut denominator: u128) -> Vec<(u128, u128)> {
     let (mut previous, mut current) = ((0, 1), (1, 0));
     let mut found = Vec::new();
@@ -42,8 +42,8 @@ fn step(quotient: u128, previous: (u128, u128), current: (u128, u128)) -> Option
     (q < 1 << 53).then_some((p, q))
 }
 
-/// Doubles in `[1, 4)` whose square root all but hits the middle between two doubles: for an odd
-/// `s` of 54 bits, `s^2 = offset (mod 2^bits)` with a small `offset`, and the double `s^2 - offset`.
+/// Returns doubles in `[1, 4)` whose square root is almost halfway between two doubles: for an odd `s` of 54
+/// bits with `s^2 = offset (mod 2^bits)` and a small `offset`, the double is `s^2 - offset`.
 pub fn roots_near_a_tie() -> Vec<f64> {
     let mut found = Vec::new();
     for bits in [54, 55] {
@@ -64,7 +64,7 @@ pub fn roots_near_a_tie() -> Vec<f64> {
     found
 }
 
-/// The odd `s < 2^54` with `s^2 = square (mod 2^bits)`, for `square = 1 (mod 8)`: bit by bit.
+/// Returns the odd `s < 2^54` with `s^2 = square (mod 2^bits)`, for `square = 1 (mod 8)`, bit by bit.
 fn square_roots_modulo(square: i128, bits: u32) -> Vec<i128> {
     let mut root = 1_i128;
     for bit in 3..bits {

@@ -1,11 +1,11 @@
-//! Kernels against native values, bit for bit; their structure; their sizes.
+//! Kernels: comparison with native values bit for bit, structure, and size.
 
 use crate::hard_cases::near_multiples_of_half_pi;
 use crate::oracle::Random;
 use eomgen_elementary::{Function, Kernel, sin_cos_kernel};
 use std::collections::HashSet;
 
-/// Zeros, ones, edges of every function's domain, infinities, NaN; both signs.
+/// Returns zeros, ones, ends of every function's domain, infinities and NaN, with both signs.
 fn special_arguments() -> Vec<f64> {
     let magnitudes = [
         0.0,
@@ -58,7 +58,7 @@ fn assert_same_bits(function: Function, kernel: &Kernel, arguments: &[f64]) {
 }
 
 #[test]
-fn kernels_have_the_bits_of_the_native_functions_at_special_arguments() {
+fn kernels_match_native_bits_at_special_arguments() {
     let specials = special_arguments();
     for function in Function::ALL {
         let kernel = function.kernel();
@@ -75,7 +75,7 @@ fn kernels_have_the_bits_of_the_native_functions_at_special_arguments() {
 }
 
 #[test]
-fn kernels_have_the_bits_of_the_native_functions_everywhere() {
+fn kernels_match_native_bits_at_random_arguments() {
     for function in Function::ALL {
         let kernel = function.kernel();
         let mut random = Random(function as u64);
@@ -109,7 +109,7 @@ fn sine_and_cosine_share_one_kernel() {
 }
 
 #[test]
-fn kernels_are_straight_lines_without_repetition_or_waste() {
+fn kernels_have_no_repeated_or_unused_operations() {
     let kernels = Function::ALL.map(Function::kernel);
     for kernel in kernels.iter().chain([&sin_cos_kernel()]) {
         let mut used: HashSet<usize> = kernel.outputs.iter().copied().collect();
@@ -143,7 +143,7 @@ fn tracing_is_reproducible() {
     }
 }
 
-/// A change here is a change of every program that calls the function: intended or a regression.
+// A change of these numbers changes every program that calls the function: it is intended or a regression.
 #[test]
 fn operation_counts_are_as_documented() {
     let counted: Vec<(&str, usize)> = Function::ALL

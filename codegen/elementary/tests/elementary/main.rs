@@ -1,4 +1,4 @@
-//! Accuracy against 128-bit arithmetic, special values, and native values against kernels.
+//! Accuracy compared with 128-bit arithmetic, special values, and native values compared with kernels.
 
 mod exponential;
 mod hard_cases;

@@ -1,27 +1,25 @@
-//! The oracle: correctly rounded functions in 128 bits, errors in units in the last place, and
-//! deterministic arguments.
+//! Reference: functions in 128 bits, errors in units in the last place, and deterministic arguments.
 
 use dashu_float::{FBig, round::mode::HalfEven};
 
-/// A number of 128 bits.
+/// Number of 128 bits.
 pub type Exact = FBig<HalfEven, 2>;
 
 const PRECISION: usize = 128;
 
-/// Arguments per group. The arguments are the same in every run, so a maximum asserted here is
-/// reproduced exactly, not met by luck.
+/// Number of arguments in each group. They are equal in every run, so that an asserted maximum is reproduced
+/// exactly.
 pub const SAMPLES: usize = 1000;
 
-/// `x` with room for 128 bits; `None` for infinities and NaN.
+/// Converts `x` to 128 bits; `None` for infinities and NaN.
 pub fn exact(x: f64) -> Option<Exact> {
     let value = Exact::try_from(x).ok()?;
     x.is_finite()
         .then(|| value.with_precision(PRECISION).value())
 }
 
-/// `|result - expected|` in units in the last place of a double of `expected`'s magnitude
-/// (the subnormal spacing below the normal range). An infinite result counts as 2^1024; NaN gives
-/// infinity.
+/// Returns `|result - expected|` in units in the last place of a double of `expected`'s magnitude (the
+/// subnormal spacing below the normal range). An infinite result counts as 2^1024; NaN gives infinity.
 pub fn ulps(result: f64, expected: &Exact) -> f64 {
     let Some(result) = exact_or_overflowed(result) else {
         return f64::INFINITY;
@@ -39,7 +37,7 @@ fn exact_or_overflowed(x: f64) -> Option<Exact> {
     exact(x)
 }
 
-/// The exponent of the leading bit; of zero, that of the smallest subnormal.
+/// Returns the exponent of the leading bit; for zero, that of the smallest subnormal.
 fn leading_exponent(x: &Exact) -> isize {
     let repr = x.repr();
     match repr.digits() {
@@ -48,7 +46,7 @@ fn leading_exponent(x: &Exact) -> isize {
     }
 }
 
-/// The largest error of `function` over the arguments, asserted to be at most `bound`.
+/// Asserts that the largest error of `function` over the arguments is at most `bound`.
 #[track_caller]
 pub fn assert_within(
     bound: f64,
@@ -70,7 +68,7 @@ pub fn assert_within(
     assert!(worst <= bound, "{worst} ulp at {at:e}, more than {bound}");
 }
 
-/// [`assert_within`] for two arguments.
+/// Applies [`assert_within`] to functions of two arguments.
 #[track_caller]
 pub fn assert_pairs_within(
     bound: f64,
@@ -96,7 +94,6 @@ pub fn assert_pairs_within(
 pub struct Random(pub u64);
 
 impl Random {
-    /// 64 random bits.
     pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
@@ -105,36 +102,36 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// Uniform in `[low, high)`.
+    /// Returns a number uniformly distributed in `[low, high)`.
     pub fn uniform(&mut self, low: f64, high: f64) -> f64 {
         let unit = (self.bits() >> 11) as f64 / (1u64 << 53) as f64;
         low + (high - low) * unit
     }
 
-    /// Random mantissa and sign, exponent uniform in `low..=high` (down to -1074).
+    /// Returns a random mantissa and sign with an exponent uniform in `low..=high` (at least -1074).
     pub fn magnitude(&mut self, low: i32, high: i32) -> f64 {
         let span = (high - low + 1) as u64;
         let exponent = low + (self.bits() % span) as i32;
         let significand = f64::from_bits((self.bits() >> 12) | 1f64.to_bits());
         let sign = if self.bits() & 1 == 0 { 1.0 } else { -1.0 };
-        // Two factors: 2^-1074 itself is out of reach of a single power for the largest exponents.
+        // Two factors, because a single power cannot represent 2^-1074 with the largest exponents.
         let half = exponent / 2;
         sign * significand * 2f64.powi(half) * 2f64.powi(exponent - half)
     }
 }
 
-/// [`SAMPLES`] arguments made by `draw`.
+/// Draws [`SAMPLES`] arguments.
 pub fn sample<T>(mut draw: impl FnMut(&mut Random) -> T) -> Vec<T> {
     let mut random = Random(1);
     (0..SAMPLES).map(|_| draw(&mut random)).collect()
 }
 
-/// Arguments uniform in `[low, high)`.
+/// Draws arguments uniformly from `[low, high)`.
 pub fn uniform(low: f64, high: f64) -> Vec<f64> {
     sample(|random| random.uniform(low, high))
 }
 
-/// Arguments of either sign with exponents uniform in `low..=high`.
+/// Draws arguments of either sign with exponents uniform in `low..=high`.
 pub fn magnitudes(low: i32, high: i32) -> Vec<f64> {
     sample(|random| random.magnitude(low, high))
 }

@@ -4,7 +4,7 @@ use crate::hard_cases::roots_near_a_tie;
 use crate::oracle::{Random, assert_pairs_within, sample};
 use eomgen_elementary::{pow, sqrt};
 
-/// A basis and an exponent whose power is anywhere between underflow and overflow.
+/// Returns a basis and an exponent whose power is anywhere between underflow and overflow.
 fn with_any_power(random: &mut Random, basis: f64) -> (f64, f64) {
     let logarithm = random.uniform(-745.1, 709.78);
     (basis, logarithm / basis.ln())
@@ -34,7 +34,7 @@ fn power_is_accurate() {
 }
 
 #[test]
-fn powers_that_are_doubles_are_exact() {
+fn powers_representable_as_doubles_are_exact() {
     for x in sample(|random| random.magnitude(-500, 500)) {
         assert_eq!(pow(x, 1.0), x);
         assert_eq!(pow(x.abs(), -0.0), 1.0);
@@ -60,7 +60,7 @@ fn powers_that_are_doubles_are_exact() {
     }
 }
 
-/// The standard library's square root is correctly rounded by IEEE 754: equality, not a tolerance.
+// IEEE 754 requires a correctly rounded square root of the standard library, so the results must be equal.
 #[test]
 fn square_root_is_correctly_rounded() {
     let mut random = Random(3);

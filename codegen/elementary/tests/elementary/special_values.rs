@@ -1,4 +1,4 @@
-//! Zeros, infinities, NaN and the edges of domains, as tables.
+//! Zeros, infinities, NaN and the ends of domains, as tables.
 
 use eomgen_elementary::Function::{self, *};
 
@@ -9,7 +9,7 @@ const HALF_PI: f64 = std::f64::consts::FRAC_PI_2;
 const QUARTER_PI: f64 = std::f64::consts::FRAC_PI_4;
 const SMALLEST: f64 = f64::from_bits(1);
 
-/// Every bit must agree; any NaN stands for NaN.
+/// Asserts equal bits; any NaN equals any other NaN.
 #[track_caller]
 fn assert_value(function: Function, arguments: &[f64], expected: f64) {
     let value = function.apply(arguments);
@@ -241,7 +241,7 @@ fn sign_magnitude_minimum_and_maximum() {
 }
 
 #[test]
-fn a_missing_argument_reads_as_nan() {
+fn missing_argument_is_nan() {
     assert_value(Sin, &[], NAN);
     assert_value(Atan2, &[1.0], NAN);
     assert!(Sin.kernel().evaluate(&[])[0].is_nan());

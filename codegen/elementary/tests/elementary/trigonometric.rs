@@ -1,11 +1,11 @@
-//! Accuracy of sine, cosine, tangent and their inverses. The bounds are those of the crate's table.
+//! Accuracy of sine, cosine, tangent and their inverses, with the bounds of the crate's table.
 
 use crate::hard_cases::near_multiples_of_half_pi;
 use crate::oracle::{Exact, assert_pairs_within, assert_within, magnitudes, sample, ulps, uniform};
 use eomgen_elementary::{LARGEST_ANGLE, acos, asin, atan, atan2, cos, sin, sin_cos, tan};
 use std::f64::consts::FRAC_PI_4;
 
-/// From the smallest subnormal to 1e9, and dense where angles usually are.
+/// Returns angles from the smallest subnormal to 1e9, dense in the usual range.
 fn angles() -> Vec<f64> {
     let mut angles = uniform(-FRAC_PI_4, FRAC_PI_4);
     angles.extend(uniform(-10.0, 10.0));
@@ -38,7 +38,7 @@ fn multiples_of_half_pi_are_reduced_accurately() {
         .iter()
         .map(|&x| sin(x).abs().min(cos(x).abs()))
         .fold(1.0, f64::min);
-    // Doubles near multiples of pi/2 are no hard cases unless some come as close as chance allows.
+    // The doubles near multiples of pi/2 are hard cases only if some are as close as chance allows.
     assert!(closest < 2f64.powi(-58), "the closest is {closest:e} away");
     assert_within(0.76, arguments.clone(), sin, Exact::sin);
     assert_within(0.77, arguments.clone(), cos, Exact::cos);
@@ -110,7 +110,7 @@ fn arc_cosine_is_accurate() {
 }
 
 #[test]
-fn the_measure_of_errors_counts_last_places() {
+fn ulps_counts_last_places() {
     let one = crate::oracle::exact(1.0).expect("finite");
     assert_eq!(ulps(1.0, &one), 0.0);
     assert_eq!(ulps(1.0 + f64::EPSILON, &one), 1.0);
