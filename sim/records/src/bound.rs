@@ -1,4 +1,4 @@
-//! What a dataset file says, bound to a model: names looked up, units and numbers checked.
+//! Binding of a dataset file to a model: names are looked up, units and numbers are checked.
 
 use crate::description::Description;
 use crate::description::columns::{ChannelColumn, Column, InputColumn, Prior};
@@ -18,39 +18,37 @@ use crate::dataset::{
     Channel, Expected, Initial, InputPriors, Quantity, TransducerPriors, Uncertain,
 };
 
-/// What is taken for the relative standard deviation of a parameter: a smaller one is exact, a
-/// larger one says nothing.
+/// Range of a parameter's relative standard deviation. A smaller one means exact, a larger one
+/// unknown.
 const RELATIVE: (f64, f64) = (1e-9, 1e6);
 
-/// A dataset file for a model.
+/// Dataset file bound to a model.
 pub struct Bound<'d> {
-    /// The unit of the time's column.
+    /// Unit of the time column.
     pub time: Unit,
-    /// For each input of the model its column and the column's unit.
+    /// Column and unit of each input of the model.
     pub inputs: Vec<Option<(&'d Column, Unit)>>,
-    /// What is known of how inputs act, where the file says so.
+    /// Priors of the inputs, if the file gives them.
     pub input_priors: Vec<InputPriors>,
-    /// For each coordinate of the model its column, if the motion is given.
+    /// Column of each coordinate of the model, if [motion] gives the motion.
     pub(crate) motion: Vec<GivenColumn<'d>>,
-    /// The channels.
     pub channels: Vec<Channel>,
-    /// The unit of each channel's column.
+    /// Unit of each channel's column.
     pub channel_units: Vec<Unit>,
-    /// What is known of the first state.
+    /// Initial state.
     pub initial: Initial,
-    /// Which parameters may be refitted.
+    /// Parameters that may be refitted.
     pub uncertain: Vec<Uncertain>,
-    /// Within what bounds the next experiment may be played.
+    /// Bounds of the next experiment.
     pub experiment: ExperimentBounds,
-    /// How it is written down.
+    /// Units of the next experiment's columns.
     pub played: Played,
 }
 
 /// Binds a dataset file to a model.
 ///
 /// # Errors
-/// All names that the model does not have, units of other dimensions, and numbers that make no
-/// sense.
+/// All unknown names, units of other dimensions and invalid numbers.
 pub fn bound<'d>(description: &'d Description, model: &Model) -> Result<Bound<'d>, Diagnostics> {
     let mut found = Diagnostics::new(description.source.clone());
     lists(description, &mut found);
@@ -98,15 +96,15 @@ pub fn bound<'d>(description: &'d Description, model: &Model) -> Result<Bound<'d
     }
 }
 
-/// The unit of the time's column.
+/// Returns the unit of the time column.
 ///
 /// # Errors
-/// What is no unit of time.
+/// A unit that is not a unit of time.
 pub fn time_unit(description: &Description) -> Result<Unit, Diagnostic> {
     unit(&description.time.column.unit, "s")
 }
 
-/// For each input of the model its column and the column's unit.
+/// Returns the column and the unit of each input of the model.
 pub fn inputs<'d>(
     description: &'d Description,
     model: &Model,
@@ -114,7 +112,7 @@ pub fn inputs<'d>(
 ) -> Vec<Option<(&'d Column, Unit)>> {
     let of = |input: &eomgen_model_spec::model::Input| {
         let mut columns = description.inputs.iter();
-        // Rates of prescribed motion are those of the curve through its samples.
+        // Rates of prescribed motion are computed from the spline through its samples.
         if input.rate_of.is_some() {
             return None;
         }
@@ -125,7 +123,7 @@ pub fn inputs<'d>(
     model.inputs.iter().map(of).collect()
 }
 
-/// What is known of how inputs act. Their columns are checked elsewhere.
+/// Returns the priors of the inputs. Their columns are checked elsewhere.
 fn input_priors(
     description: &Description,
     model: &Model,
@@ -135,12 +133,13 @@ fn input_priors(
         column.gain.is_some() || column.bias.is_some() || column.delay.is_some()
     };
     for column in &description.inputs {
-        // Sensors show it as theirs, and all inputs' alike.
+        // A delay of one input is equivalent to a delay of the sensors only if the model has one
+        // input.
         if let (Some(delay), true) = (column.delay, model.inputs.len() > 1) {
             found.push(
-                Diagnostic::error("the delay of one of several inputs is not estimated".to_owned())
-                    .at(delay.sd.span, "the model has more inputs")
-                    .help("a delay that all inputs have is one of all channels; shift the column of one that is late"),
+                Diagnostic::error("a delay of a single input is only estimated if the model has one input".to_owned())
+                    .at(delay.sd.span, "the model has several inputs")
+                    .help("write a delay that all inputs share as a delay of the channels, or shift the late column in the record"),
             );
         }
     }
@@ -164,22 +163,22 @@ fn input_priors(
         .collect()
 }
 
-/// There are records of both kinds and channels.
+/// Checks that records of both kinds and channels are given.
 fn lists(description: &Description, found: &mut Diagnostics) {
     let records = &description.records;
     for (kind, files) in [("train", &records.train), ("test", &records.test)] {
         if files.is_empty() {
             found.push(
                 Diagnostic::error(format!("[records] lists no {kind} record"))
-                    .at(records.span, "both kinds are needed")
+                    .at(records.span, "train and test are both required")
                     .help(format!("write {kind} = [\"{kind}.csv\"]")),
             );
         }
     }
     if description.channels.is_empty() {
         found.push(
-            Diagnostic::error("there is no [channels.NAME]: nothing would be compared")
-                .at(records.span, "of these records")
+            Diagnostic::error("there is no [channels.NAME], so there is nothing to compare")
+                .at(records.span, "no channel of these records")
                 .help("describe at least one measured quantity, with column, unit and noise"),
         );
     }
@@ -214,7 +213,7 @@ fn channel(
             },
             quoted(asked)
         ))
-        .at(span, "this channel measures nothing")
+        .at(span, "not a quantity of the model")
         .help(did_you_mean(asked, known()).unwrap_or(listed))
     })?;
     given_motion::admitted(quantity, !description.motion.is_empty(), asked, span)?;
@@ -224,7 +223,7 @@ fn channel(
         return Err(
             Diagnostic::error(format!("noise cannot be {}", entry.noise.value)).at(
                 entry.noise.span,
-                "expected its standard deviation, greater than 0",
+                "expected a standard deviation greater than 0",
             ),
         );
     }
@@ -250,7 +249,7 @@ fn channel(
     Ok((channel, unit))
 }
 
-/// What is known of a part of a sensor, SI.
+/// Converts a prior to SI.
 fn known_before(prior: Prior, unit: &Unit) -> Expected {
     Expected {
         mean: prior.mean.map(|mean| unit.to_si(mean.value)),
@@ -258,7 +257,7 @@ fn known_before(prior: Prior, unit: &Unit) -> Expected {
     }
 }
 
-/// A quantity of the model by name, and its SI unit.
+/// Returns a quantity of the model by name, with its SI unit.
 fn quantity(model: &Model, name: &str) -> Option<(Quantity, String)> {
     if let Some(place) = model.observables.iter().position(|o| o.name == name) {
         let unit = model.observables[place].unit.text.clone();
@@ -306,7 +305,7 @@ fn initial(written: &InitialState, model: &Model, found: &mut Diagnostics) -> In
             let listed = format!("its states are {}", names.join(", "));
             found.push(
                 Diagnostic::error(format!("the model has no state {}", quoted(&name.text)))
-                    .at(name.span, "not known here")
+                    .at(name.span, "not a state of the model")
                     .help(did_you_mean(&name.text, known).unwrap_or(listed)),
             );
         }
@@ -319,29 +318,31 @@ fn initial(written: &InitialState, model: &Model, found: &mut Diagnostics) -> In
     )
 }
 
-/// A parameter that may be refitted.
 fn doubted(name: &Name, relative: Number, model: &Model) -> Result<Uncertain, Diagnostic> {
     let parameter = model.parameters.iter().find(|p| p.name == name.text);
     let wrong = |message: &str| Diagnostic::error(format!("{} {message}", quoted(&name.text)));
     match parameter.map(|parameter| &parameter.value) {
         None => {
             let known = model.parameters.iter().map(|p| p.name.as_str());
-            Err(wrong("is no parameter: the model has no such parameter")
-                .at(name.span, "not known here")
+            Err(wrong("is not a parameter of the model")
+                .at(name.span, "not in the model")
                 .help_if(did_you_mean(&name.text, known)))
         }
-        Some(ParameterValue::Expression(_)) => Err(wrong("is given by an expression")
-            .at(name.span, "follows from others")
-            .help("list what the expression is made of")),
+        Some(ParameterValue::Expression(_)) => Err(wrong("is defined by an expression")
+            .at(name.span, "computed from other parameters")
+            .help("list the parameters in the expression")),
         Some(ParameterValue::Number(0.0)) => Err(wrong("is 0 in the specification")
-            .at(name.span, "a part of 0 is 0: it could not be refitted")
-            .help("give it the value that is expected, or leave it out")),
+            .at(
+                name.span,
+                "a relative standard deviation of 0 is 0, so it cannot be refitted",
+            )
+            .help("set its expected value in the specification, or remove it here")),
         Some(ParameterValue::Number(_)) => {
             if !(RELATIVE.0..=RELATIVE.1).contains(&relative.value) {
                 let (least, most) = RELATIVE;
-                return Err(wrong("has no standard deviation").at(
+                return Err(wrong("has an invalid standard deviation").at(
                     relative.span,
-                    format!("expected a part of its value, greater than 0: {least:e} to {most:e}"),
+                    format!("expected a fraction of its value, from {least:e} to {most:e}"),
                 ));
             }
             Ok(Uncertain {

@@ -1,5 +1,5 @@
-//! Whether a record can be used: what makes an answer impossible is refused, what only
-//! weakens it is noted. Units are checked where they are read, in [`crate::dataset`].
+//! Checks of the records. Records that make a result impossible are rejected; others that make it
+//! less reliable are noted. Units are checked in [`crate::dataset`].
 
 use crate::description::Description;
 
@@ -11,31 +11,31 @@ use crate::samples::{JITTER, span, typical_step};
 use crate::windows::{LONGEST_DELAY, LONGEST_LEAD};
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 
-/// A channel of which more than this part is missing is refused.
+/// Largest fraction of missing samples of a channel.
 const MOST_MISSING: f64 = 0.5;
 
-/// A channel that spans more standard deviations of its noise has a wrong unit or a wrong noise:
-/// no sensor resolves so much.
+/// Range of a channel, in standard deviations of its noise, beyond the resolution of any sensor.
+/// The unit or the noise is then wrong.
 const MOST_STANDARD_DEVIATIONS: f64 = 1e10;
 
-/// A channel that stands at its largest or smallest value for this part of the samples, more
-/// than once in a row, is clipped.
+/// Fraction of samples at the largest or smallest value, with equal neighbours, beyond which a
+/// channel counts as clipped.
 const CLIPPED: f64 = 0.02;
 
-/// Records that differ by less than this many standard deviations of the noise (root mean square)
-/// are one record: two measurements of the same motion differ by the square root of two.
+/// RMS difference of two records, in standard deviations of the noise, below which they are the
+/// same record. Two measurements of the same motion differ by the square root of two.
 const SAME: f64 = 0.3;
 
-/// A channel that spans fewer standard deviations cannot tell records apart.
+/// Minimum range of a channel, in standard deviations, to compare records.
 const MOVES: f64 = 20.0;
 
-/// Samples that are compared first when records are laid on each other.
+/// Number of samples to compare first when one record is shifted along another.
 const PROBES: usize = 16;
 
-/// Checks all records; returns what is worth a remark.
+/// Checks all records and returns notes.
 ///
 /// # Errors
-/// The first thing that makes an answer impossible.
+/// The first problem that makes a result impossible.
 pub fn examine(dataset: &Dataset, description: &Description) -> Result<Vec<String>, Refusal> {
     let mut notes = Vec::new();
     for record in dataset.train.iter().chain(&dataset.test) {
@@ -56,7 +56,7 @@ pub fn examine(dataset: &Dataset, description: &Description) -> Result<Vec<Strin
     Ok(notes)
 }
 
-/// Expected delays are within what windows leave room for.
+/// Checks that expected delays are within the margins of windows.
 fn delays(dataset: &Dataset, description: &Description) -> Result<(), Refusal> {
     let step = typical_step(&dataset.train[0].times);
     let channels = description.channels.iter().map(|channel| channel.delay);
@@ -75,14 +75,14 @@ fn delays(dataset: &Dataset, description: &Description) -> Result<(), Refusal> {
                 mean.span,
                 format!("expected {} to {LONGEST_DELAY} samples", -LONGEST_LEAD),
             )
-            .help("shift the column in the record, or keep fewer samples: [time] every");
+            .help("shift the column in the record, or keep fewer samples with `every` in [time]");
             return Err(Diagnostics::one(description.source.clone(), wrong).into());
         }
     }
     Ok(())
 }
 
-/// Remarks on the times of a record.
+/// Returns a note on uneven time steps.
 fn timing(record: &Record) -> Option<String> {
     let step = typical_step(&record.times);
     let steps = record.times.windows(2).map(|pair| pair[1] - pair[0]);
@@ -97,19 +97,18 @@ fn timing(record: &Record) -> Option<String> {
     })
 }
 
-/// Remarks on inputs of which samples are missing.
+/// Returns a note on missing samples of inputs.
 pub(crate) fn held_inputs(record: &Record) -> Option<String> {
     let missing = |column: &&Vec<f64>| column.iter().any(|value| !value.is_finite());
     let count = record.input_columns.iter().filter(missing).count();
     (count > 0).then(|| {
         format!(
-            "{}: samples of {count} inputs are missing; the one before is held",
+            "{}: samples of {count} inputs are missing; the last known value is held",
             record.name
         )
     })
 }
 
-/// A channel of one record.
 fn values(record: &Record, name: &str, noise: f64, column: &[f64]) -> Result<Vec<String>, Refusal> {
     let mut notes = Vec::new();
     let known: Vec<f64> = column.iter().copied().filter(|v| v.is_finite()).collect();
@@ -117,13 +116,13 @@ fn values(record: &Record, name: &str, noise: f64, column: &[f64]) -> Result<Vec
     let refuse = |message: String| Err(Refusal::file(&record.path, message));
     if missing as f64 > MOST_MISSING * column.len() as f64 {
         return refuse(format!(
-            "channel `{name}`: {missing} of {} samples are missing; expected most of them",
+            "channel `{name}`: {missing} of {} samples are missing; expected at most half of them",
             column.len()
         ));
     }
     if missing > 0 {
         notes.push(format!(
-            "{}: {missing} samples of `{name}` are missing and left out",
+            "{}: {missing} samples of `{name}` are missing and are ignored",
             record.name
         ));
     }
@@ -131,19 +130,19 @@ fn values(record: &Record, name: &str, noise: f64, column: &[f64]) -> Result<Vec
     let high = known.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     if low == high {
         return refuse(format!(
-            "channel `{name}` is {low} throughout: the sensor is dead or the column another; \
-             expected one that moves, or a dataset without it"
+            "channel `{name}` is {low} throughout: the sensor is dead or the column is wrong; \
+             correct `column`, or remove the channel"
         ));
     }
     if (high - low) / noise >= MOST_STANDARD_DEVIATIONS {
         return refuse(format!(
-            "channel `{name}` goes from {low:.3e} to {high:.3e} with a noise of {noise:.1e}, in SI; \
-             expected its unit and its noise to be right"
+            "channel `{name}` ranges from {low:.3e} to {high:.3e} with a noise of {noise:.1e} (SI); \
+             no sensor resolves this: correct its `unit` or its `noise`"
         ));
     }
     if high - low < STILL * noise {
         notes.push(format!(
-            "{}: `{name}` moves by less than two standard deviations of its noise",
+            "{}: `{name}` varies by less than two standard deviations of its noise",
             record.name
         ));
     }
@@ -154,7 +153,7 @@ fn values(record: &Record, name: &str, noise: f64, column: &[f64]) -> Result<Vec
             .count();
         if at as f64 > CLIPPED * known.len() as f64 {
             notes.push(format!(
-                "{}: `{name}` is exactly {limit} (SI) for {at} samples: it may be clipped; leave the channel out, or cut the record there",
+                "{}: `{name}` is exactly {limit} (SI) for {at} samples: it may be clipped; remove the channel, or exclude that part with `from` and `to`",
                 record.name
             ));
         }
@@ -162,7 +161,7 @@ fn values(record: &Record, name: &str, noise: f64, column: &[f64]) -> Result<Vec
     Ok(notes)
 }
 
-/// No channel is another one, of either sign.
+/// Checks that no two channels are equal, up to the sign.
 fn different_channels(dataset: &Dataset, record: &Record) -> Result<(), Refusal> {
     for (a, first) in record.channels.iter().enumerate() {
         for (b, second) in record.channels.iter().enumerate().skip(a + 1) {
@@ -173,7 +172,7 @@ fn different_channels(dataset: &Dataset, record: &Record) -> Result<(), Refusal>
                     return Err(Refusal::file(
                         &record.path,
                         format!(
-                            "the channels `{}` and `{}` are one column; expected one each",
+                            "the channels `{}` and `{}` have the same values up to the sign; give each another column",
                             dataset.channels[a].name, dataset.channels[b].name
                         ),
                     ));
@@ -184,7 +183,7 @@ fn different_channels(dataset: &Dataset, record: &Record) -> Result<(), Refusal>
     Ok(())
 }
 
-/// A test record is not a training record again, later or earlier, of either sign.
+/// Checks that a test record does not repeat a training record, up to a time shift and the sign.
 fn different_records(dataset: &Dataset, train: &Record, test: &Record) -> Result<(), Refusal> {
     let file = |record: &Record| record.path.canonicalize().ok();
     let ends = |record: &Record| (record.times[0], record.times[record.times.len() - 1]);
@@ -193,12 +192,12 @@ fn different_records(dataset: &Dataset, train: &Record, test: &Record) -> Result
         return Err(Refusal::file(
             &test.path,
             format!(
-                "{} and {} are one file; expected another measurement, or stretches that do not overlap",
+                "{} and {} overlap in one file; expected another measurement, or parts that do not overlap",
                 test.name, train.name
             ),
         ));
     }
-    // The channel that moves most tells records apart best.
+    // Use the channel with the largest range in units of its noise.
     let deviations = |place: usize| span(&train.channels[place]) / dataset.channels[place].noise;
     let Some(channel) =
         (0..dataset.channels.len()).max_by(|a, b| deviations(*a).total_cmp(&deviations(*b)))
@@ -218,7 +217,7 @@ fn different_records(dataset: &Dataset, train: &Record, test: &Record) -> Result
                 return Err(Refusal::file(
                     &test.path,
                     format!(
-                        "{} is {} again{}{}; expected another measurement",
+                        "{} repeats {}{}{}; expected another measurement",
                         test.name,
                         train.name,
                         if lag == 0 {
@@ -227,7 +226,7 @@ fn different_records(dataset: &Dataset, train: &Record, test: &Record) -> Result
                             format!(", {lag} samples later")
                         },
                         if sign < 0.0 {
-                            ", with the other sign"
+                            ", with the opposite sign"
                         } else {
                             ""
                         }
@@ -239,7 +238,7 @@ fn different_records(dataset: &Dataset, train: &Record, test: &Record) -> Result
     Ok(())
 }
 
-/// Whether one column laid on another with a lag is the same to less than noise.
+/// Returns true if two columns are equal to less than the noise, after a shift by `lag` samples.
 fn is_same(a: &[f64], b: &[f64], lag: isize, sign: f64, noise: f64) -> bool {
     let begin = (-lag).max(0) as usize;
     let end = a.len().min((b.len() as isize - lag).max(0) as usize);
@@ -260,7 +259,7 @@ fn is_same(a: &[f64], b: &[f64], lag: isize, sign: f64, noise: f64) -> bool {
             return false;
         }
     }
-    // What is laid on each other must be enough, and must move.
+    // The overlap must be long enough and must vary.
     let low = a[begin..end].iter().copied().fold(f64::INFINITY, f64::min);
     let high = a[begin..end]
         .iter()
@@ -275,7 +274,7 @@ mod tests {
     use super::is_same;
 
     #[test]
-    fn a_record_laid_on_itself_is_found_at_its_lag_and_sign() {
+    fn shifted_and_negated_record_is_recognised() {
         let motion: Vec<f64> = (0..500).map(|i| (0.01 * f64::from(i * i)).sin()).collect();
         let later: Vec<f64> = motion[100..].iter().map(|v| -v).collect();
         assert!(is_same(&motion, &later, -100, -1.0, 1e-3));

@@ -1,4 +1,4 @@
-//! Columns of numbers from a file of text or Parquet. What the columns mean is not known here.
+//! Columns of numbers from a text or Parquet file.
 
 use std::path::Path;
 
@@ -9,15 +9,14 @@ use crate::header::Table;
 use crate::parquet_file;
 use crate::refusal::Refusal;
 
-/// The largest record read, in bytes.
+/// Largest record, in bytes.
 const LARGEST_RECORD: u64 = 256 << 20;
 
-/// Reads these columns of a file; a missing number, `NaN`, an infinity or an empty cell is
-/// NaN.
+/// Reads columns of a file. A missing number, `NaN`, an infinity or an empty cell becomes NaN.
 ///
 /// # Errors
-/// A file that cannot be read or is too large, a column that is not there, a cell that is no
-/// number, with file, line and column.
+/// A file that cannot be read or is too large, a missing column, or a cell that is not a number,
+/// with file, line and column.
 pub fn read(path: &Path, format: &Format, wanted: &[&ColumnKey]) -> Result<Table, Refusal> {
     let bytes = bytes(path)?;
     if path.extension().is_some_and(|e| e == "parquet") {
@@ -27,10 +26,10 @@ pub fn read(path: &Path, format: &Format, wanted: &[&ColumnKey]) -> Result<Table
     }
 }
 
-/// The bytes of a record.
+/// Reads the bytes of a record.
 ///
 /// # Errors
-/// A file that cannot be read, is too large, or holds nothing.
+/// A file that cannot be read, is too large or is empty.
 pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, Refusal> {
     let metadata = std::fs::metadata(path)
         .map_err(|error| Refusal::file(path, format!("cannot be read: {error}")))?;
@@ -47,15 +46,15 @@ pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, Refusal> {
     if ["npz", "mat"].into_iter().any(ends_in) {
         return Err(Refusal::file(
             path,
-            "holds arrays of NumPy or MATLAB; expected text or Parquet: in Python, \
-             eomgen.record_to_csv(source, out) writes one as the other",
+            "contains NumPy or MATLAB arrays; expected text or Parquet: convert it with \
+             eomgen.record_to_csv(source, out) in Python",
         ));
     }
     if metadata.len() > LARGEST_RECORD {
         return Err(Refusal::file(
             path,
             format!(
-                "has {} bytes; at most {LARGEST_RECORD} are read: cut the record, or sample it less often",
+                "has {} bytes, more than the limit of {LARGEST_RECORD}: split the record, or reduce its sampling rate",
                 metadata.len()
             ),
         ));

@@ -1,5 +1,5 @@
-//! Whether anything is compared: windows that records hold, samples inside of them, and channels
-//! that move by more than noise. A verdict on nothing would be that nothing is missing.
+//! Checks that there is something to compare: windows with samples, and channels that vary by more
+//! than their noise. Otherwise the verdict would be that nothing is missing.
 
 use crate::description::Description;
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
@@ -11,19 +11,19 @@ use crate::refusal::Refusal;
 use crate::samples::{span, typical_step};
 use crate::windows::{Windows, judged};
 
-/// A window with fewer samples says nothing of what happens inside it.
+/// Minimum number of samples in a window.
 const FEWEST_IN_WINDOW: f64 = 4.0;
 
-/// A channel of which fewer samples are compared in all windows of a set is not compared.
+/// Minimum number of samples of a channel in all windows of a set.
 const FEWEST_COMPARED: usize = 10;
 
-/// A channel that spans fewer standard deviations of its noise shows noise alone.
+/// Range of a channel, in standard deviations of its noise, below which it contains only noise.
 pub(crate) const STILL: f64 = 2.0;
 
-/// Checks both sets of records; returns what is worth a remark.
+/// Checks both sets of records and returns notes.
 ///
 /// # Errors
-/// Why a set compares nothing.
+/// A set without anything to compare.
 pub(crate) fn check(dataset: &Dataset, description: &Description) -> Result<Vec<String>, Refusal> {
     let wrong = |diagnostic: Diagnostic| Diagnostics::one(description.source.clone(), diagnostic);
     let mut notes = Vec::new();
@@ -37,10 +37,10 @@ pub(crate) fn check(dataset: &Dataset, description: &Description) -> Result<Vec<
     Ok(notes)
 }
 
-/// A record, before it is parted at what was lost, can be cut into windows.
+/// Checks that a record can be split into windows, before it is split at gaps.
 ///
 /// # Errors
-/// Windows that hold hardly a sample, a record of which most is missing.
+/// Windows with too few samples, or a record with most samples missing.
 pub(crate) fn can_be_cut(record: &Record, description: &Description) -> Result<(), Refusal> {
     let wrong = |diagnostic: Diagnostic| Diagnostics::one(description.source.clone(), diagnostic);
     match description.windows.length {
@@ -52,15 +52,14 @@ pub(crate) fn can_be_cut(record: &Record, description: &Description) -> Result<(
     }
 }
 
-/// A window holds some samples.
 fn long_enough(length: Number, record: &Record) -> Result<(), Diagnostic> {
     let step = typical_step(&record.times);
-    // A part of a sample less, so that rounding does not decide.
+    // The small margin prevents a decision by rounding.
     if length.value >= (FEWEST_IN_WINDOW - 1e-6) * step {
         return Ok(());
     }
     Err(Diagnostic::error(format!(
-        "a window of {} s holds less than {FEWEST_IN_WINDOW} samples of {}",
+        "a window of {} s contains fewer than {FEWEST_IN_WINDOW} samples of {}",
         length.value, record.name
     ))
     .at(
@@ -69,7 +68,7 @@ fn long_enough(length: Number, record: &Record) -> Result<(), Diagnostic> {
     ))
 }
 
-/// A record has not many more windows than samples.
+/// Checks that a record has at least as many samples as windows.
 fn holes(length: Number, record: &Record) -> Result<(), Refusal> {
     let (span, step) = (duration(record), typical_step(&record.times));
     if span / length.value <= record.times.len() as f64 {
@@ -78,27 +77,28 @@ fn holes(length: Number, record: &Record) -> Result<(), Refusal> {
     Err(Refusal::file(
         &record.path,
         format!(
-            "{} samples span {span:.3e} s: most of the record is missing; expected samples at the pace of {step:.3e} s",
+            "{} samples span {span:.3e} s: most of the record is missing; expected a sample every {step:.3e} s",
             record.times.len(),
         ),
     ))
 }
 
-/// The time from a record's first sample to its last, s.
+/// Returns the time from a record's first sample to its last, in s.
 fn duration(record: &Record) -> f64 {
     record.times[record.times.len() - 1] - record.times[0]
 }
 
-/// A record of a set lasts a window or longer, from its first sample to the one after its last.
+/// Checks that a record of a set is as long as one window, from its first sample to the one after
+/// its last.
 fn whole_window(length: Number, set: &str, records: &[Record]) -> Result<(), Diagnostic> {
-    // Half a sample more, so that rounding does not decide.
+    // The extra half sample prevents a decision by rounding.
     let holds = |record: &Record| duration(record) + 1.5 * typical_step(&record.times);
     if records.iter().any(|record| holds(record) >= length.value) {
         return Ok(());
     }
     let longest = records.iter().map(duration).fold(0.0, f64::max);
     Err(Diagnostic::error(format!(
-        "no {set} record lasts one window of {} s: nothing would be compared",
+        "no {set} record is as long as one window of {} s, so there is nothing to compare",
         length.value
     ))
     .at(
@@ -106,11 +106,11 @@ fn whole_window(length: Number, set: &str, records: &[Record]) -> Result<(), Dia
         format!("the longest {set} record lasts {longest:.6} s"),
     )
     .help(format!(
-        "expected a length of {longest:.6} at most, or \"record\" for one window per record"
+        "write a length of at most {longest:.6}, or \"record\" for one window per record"
     )))
 }
 
-/// Every channel is compared in some window of a set; records of which nothing is are noted.
+/// Checks that every channel is in some window of a set, and returns notes on unused records.
 fn compared(dataset: &Dataset, set: &str, records: &[Record]) -> Result<Vec<String>, Refusal> {
     let windows = Windows::cut(records, dataset.window);
     let count = dataset.channels.len();
@@ -128,7 +128,7 @@ fn compared(dataset: &Dataset, set: &str, records: &[Record]) -> Result<Vec<Stri
             return Err(Refusal::file(
                 &records[0].path,
                 format!(
-                    "channel `{}`: of all {set} records {samples} samples lie inside of windows and are not missing; expected {FEWEST_COMPARED} or more",
+                    "channel `{}` has {samples} samples in the windows of all {set} records; expected {FEWEST_COMPARED} or more",
                     channel.name
                 ),
             ));
@@ -142,7 +142,7 @@ fn compared(dataset: &Dataset, set: &str, records: &[Record]) -> Result<Vec<Stri
     Ok(unused
         .map(|(_, record)| {
             format!(
-                "{}: it lasts {:.6} s, less than half a window, and is not used",
+                "{}: the record lasts {:.6} s, less than half a window, and is ignored",
                 record.name,
                 duration(record)
             )
@@ -150,7 +150,7 @@ fn compared(dataset: &Dataset, set: &str, records: &[Record]) -> Result<Vec<Stri
         .collect())
 }
 
-/// Some channel shows more than noise in some record of a set.
+/// Checks that a channel varies by more than its noise in some record of a set.
 fn moving(
     dataset: &Dataset,
     description: &Description,
@@ -170,15 +170,15 @@ fn moving(
     };
     let entry = &description.channels[place];
     Err(Diagnostic::error(format!(
-        "the {set} records show nothing but noise: no channel moves by {STILL} standard deviations of its noise"
+        "the {set} records contain only noise: no channel varies by {STILL} standard deviations of its noise"
     ))
     .at(
         entry.noise.span,
         format!(
-            "`{}` moves by {:.1e} of these",
+            "`{}` varies by {:.1e} standard deviations",
             entry.name.text,
             deviations(place)
         ),
     )
-    .help("expected one standard deviation of the sensor's noise, in the column's unit"))
+    .help("write one standard deviation of the sensor's noise, in the column's unit"))
 }

@@ -1,4 +1,4 @@
-//! Columns of numbers from a text file, with the line that each fault is on.
+//! Columns of numbers from a text file, with line numbers for error messages.
 
 use std::borrow::Cow;
 use std::path::Path;
@@ -11,16 +11,16 @@ use crate::description::format::{Format, Separator};
 use crate::header::{MOST_SAMPLES, Table, places, too_many};
 use crate::refusal::Refusal;
 
-/// What parts the cells where runs of spaces did: the ASCII unit separator.
+/// Separator of cells after runs of spaces are replaced: the ASCII unit separator.
 const UNIT_SEPARATOR: u8 = 0x1f;
 
-/// What a text file begins with where its encoding is not UTF-8.
+/// Byte order marks of UTF-16.
 const UTF_16: [&[u8]; 2] = [&[0xff, 0xfe], &[0xfe, 0xff]];
 
-/// Reads these columns; a missing number is NaN.
+/// Reads columns; a missing number becomes NaN.
 ///
 /// # Errors
-/// A column that is not there, and a line or a cell that is none, with its place.
+/// A missing column, or an invalid line or cell, with its place.
 pub fn read(
     path: &Path,
     bytes: &[u8],
@@ -47,24 +47,24 @@ pub fn read(
     Ok(table)
 }
 
-/// A text file behind its lines of names and units.
+/// Text file after its lines of names and units.
 pub(crate) struct TextFile<'t> {
     path: &'t Path,
     reader: Reader<&'t [u8]>,
-    /// The columns' names; numbers where there are none.
+    /// Names of the columns; their numbers if the file has no names.
     pub header: Vec<String>,
-    /// The line that the names stand on.
+    /// Number of the line with the names.
     pub first_line: u64,
-    /// What stands in the line of units, if there is one.
+    /// Cells of the line of units, if any.
     pub units: Vec<String>,
     skipped: u64,
     record: ByteRecord,
-    /// The first line, where it holds numbers and is not handed out yet.
+    /// True before the first line is returned, if it contains numbers.
     is_pending: bool,
 }
 
 impl<'t> TextFile<'t> {
-    /// Reads names and units. `text`: what lies behind the skipped lines.
+    /// Reads names and units. `text` is the file after the skipped lines.
     pub fn new(path: &'t Path, text: &'t [u8], format: &Format) -> Result<Self, Refusal> {
         let reader = ReaderBuilder::new()
             .flexible(true)
@@ -99,7 +99,7 @@ impl<'t> TextFile<'t> {
             return Err(Refusal::line(
                 path,
                 file.first_line,
-                "numbers stand where the columns' names are expected; write names = false in [format], and columns by their numbers",
+                "found numbers, expected the names of the columns; write names = false in [format], and give columns by number",
             ));
         }
         if !format.names {
@@ -117,7 +117,6 @@ impl<'t> TextFile<'t> {
         Ok(file)
     }
 
-    /// The cells of the present line as text.
     fn cells(&self) -> Vec<String> {
         let cells = self.record.iter();
         cells
@@ -125,12 +124,11 @@ impl<'t> TextFile<'t> {
             .collect()
     }
 
-    /// The number of the present line, from 1.
+    /// Returns the number of the current line, from 1.
     fn line(&self) -> u64 {
         self.record.position().map_or(0, Position::line) + self.skipped
     }
 
-    /// Returns true if all cells of the present line are blank.
     fn is_blank(&self) -> bool {
         let mut cells = self.record.iter();
         cells.all(|cell| cell.trim_ascii().is_empty())
@@ -141,10 +139,10 @@ impl<'t> TextFile<'t> {
         read.map_err(|error| Refusal::file(self.path, error.to_string()))
     }
 
-    /// The next line of samples with its number.
+    /// Returns the next line of samples with its number.
     pub fn next(&mut self) -> Result<Option<(u64, &ByteRecord)>, Refusal> {
         let mut is_pending = std::mem::take(&mut self.is_pending);
-        // Spreadsheets leave lines of spaces or separators behind the last sample.
+        // Spreadsheets write lines of spaces or separators after the last sample.
         while !is_pending || self.is_blank() {
             is_pending = self.advance()?;
             if !is_pending {
@@ -153,14 +151,14 @@ impl<'t> TextFile<'t> {
         }
         let line = self.line();
         let (cells, expected) = (self.record.len(), self.header.len());
-        // Some programs end lines of numbers with a separator, but not that of the names.
+        // Some programs end lines of numbers, but not the line of names, with a separator.
         let is_open = cells == expected + 1 && self.record[expected].trim_ascii().is_empty();
         if cells != expected && !is_open {
             return Err(Refusal::line(
                 self.path,
                 line,
                 format!(
-                    "has {cells} cells where the first line has {expected}; the file may be cut off"
+                    "has {cells} cells, but the first line has {expected}; the file may be truncated"
                 ),
             ));
         }
@@ -168,7 +166,7 @@ impl<'t> TextFile<'t> {
     }
 }
 
-/// What lies behind the skipped lines, as UTF-8 with one character between cells.
+/// Returns the text after the skipped lines, as UTF-8 with one character between cells.
 pub(crate) fn behind_skipped<'b>(
     path: &Path,
     bytes: &'b [u8],
@@ -182,7 +180,10 @@ pub(crate) fn behind_skipped<'b>(
         let Some(end) = text.iter().position(|byte| *byte == b'\n') else {
             return Err(Refusal::file(
                 path,
-                format!("has no more than {} lines, which are skipped", format.skip),
+                format!(
+                    "has no line after the {} skipped lines; reduce skip in [format]",
+                    format.skip
+                ),
             ));
         };
         text = &text[end + 1..];
@@ -205,7 +206,7 @@ pub(crate) fn behind_skipped<'b>(
     Ok(Cow::Owned(parted))
 }
 
-/// The number of a cell.
+/// Parses a cell.
 fn number(path: &Path, line: u64, cell: &[u8], place: usize, decimal: u8) -> Result<f64, Refusal> {
     let cell = String::from_utf8_lossy(cell.trim_ascii());
     if cell.is_empty() {
@@ -217,10 +218,10 @@ fn number(path: &Path, line: u64, cell: &[u8], place: usize, decimal: u8) -> Res
     let other = if decimal == b'.' { ',' } else { '.' };
     let is_other = parsed(&cell, other as u8).is_some();
     let help = match (is_other, other) {
-        (true, ',') => "; write decimal = \",\" in [format] if commas begin its fractions",
-        (true, _) => ": decimal = \",\" stands in [format], so a point has no place in it",
+        (true, ',') => "; write decimal = \",\" in [format] if its decimal sign is a comma",
+        (true, _) => ": [format] sets decimal = \",\", so a point is not allowed",
         (false, _) if Unit::parse(&cell).is_ok() => {
-            "; write units = true in [format] where a line of units stands behind that of the names"
+            "; write units = true in [format] if a line of units follows the names"
         }
         (false, _) => "",
     };
@@ -228,11 +229,11 @@ fn number(path: &Path, line: u64, cell: &[u8], place: usize, decimal: u8) -> Res
     Err(Refusal::line(
         path,
         line,
-        format!("column {}: \"{shown}\" is no number{help}", place + 1),
+        format!("column {}: \"{shown}\" is not a number{help}", place + 1),
     ))
 }
 
-/// A number with this decimal sign; none if it is no such number.
+/// Parses a number with this decimal sign.
 pub(crate) fn parsed(cell: &str, decimal: u8) -> Option<f64> {
     if decimal == b'.' {
         return cell.parse().ok();

@@ -1,4 +1,4 @@
-//! Measured records and what their dataset file says of them. Everything is in SI.
+//! Measured records with their descriptions, in SI.
 
 use std::path::PathBuf;
 
@@ -7,98 +7,97 @@ use eomgen_model_spec::model::ObservedRate;
 use crate::experiment::{ExperimentBounds, Played};
 use crate::record::Record;
 
-/// What a channel measures.
+/// Quantity of the model that a channel measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
-    /// An observable, by its place.
+    /// Index of an observable.
     Observable(usize),
-    /// A coordinate, by its place.
+    /// Index of a coordinate.
     Coordinate(usize),
-    /// The rate of a coordinate, by the coordinate's place.
+    /// Index of the coordinate whose rate is measured.
     Rate(usize),
-    /// The acceleration of a coordinate, by the coordinate's place.
+    /// Index of the coordinate whose acceleration is measured.
     Acceleration(usize),
-    /// The rate or the acceleration of an observable.
+    /// Rate or acceleration of an observable.
     ObservedRate(ObservedRate),
-    /// A state of first order, by its place among these.
+    /// Index of a first-order state.
     State(usize),
-    /// An input, by its place: what the motion takes, where that is given.
+    /// Index of an input: a force that a given motion requires.
     Input(usize),
 }
 
-/// A measured channel.
+/// Measured channel.
 #[derive(Clone, Debug)]
 pub struct Channel {
-    /// Its name in the dataset.
+    /// Name in the dataset.
     pub name: String,
-    /// What it measures, as the model calls it.
+    /// Name of the quantity in the model.
     pub observable: String,
-    /// What it measures.
+    /// Measured quantity.
     pub quantity: Quantity,
-    /// The quantity's SI unit.
+    /// SI unit of the quantity.
     pub unit: String,
-    /// One standard deviation of its noise, SI.
+    /// Standard deviation of the noise, in SI.
     pub noise: f64,
-    /// What the dataset says of the sensor.
+    /// Priors of the sensor.
     pub priors: TransducerPriors,
 }
 
-/// What a dataset says of a sensor: measured(t) = gain * quantity(t - delay) + bias. None where it
-/// says nothing, and the usual holds.
+/// Priors of a sensor: measured(t) = gain * quantity(t - delay) + bias. `None` means the default
+/// prior.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TransducerPriors {
-    /// Of the gain.
+    /// Prior of the gain.
     pub gain: Option<Expected>,
-    /// Of the bias, SI.
+    /// Prior of the bias, in SI.
     pub bias: Option<Expected>,
-    /// Of the delay, s.
+    /// Prior of the delay, in s.
     pub delay: Option<Expected>,
 }
 
-/// What a dataset says of an input: what acts at t is gain * (recorded(t - delay) + bias). None where it
-/// says nothing, and what is recorded acts.
+/// Priors of an input: gain * (recorded(t - delay) + bias) acts at time t. `None` means exact.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InputPriors {
-    /// The input's name.
+    /// Name of the input.
     pub name: String,
-    /// Of the gain.
+    /// Prior of the gain.
     pub gain: Option<Expected>,
-    /// Of the bias, SI.
+    /// Prior of the bias, in SI.
     pub bias: Option<Expected>,
-    /// Of the delay, s.
+    /// Prior of the delay, in s.
     pub delay: Option<Expected>,
 }
 
-/// What is expected of a number, SI.
+/// Prior of a number, in SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Expected {
-    /// Its mean, where the dataset says it.
+    /// Mean; `None` for the default.
     pub mean: Option<f64>,
-    /// One standard deviation; 0 where it is known.
+    /// Standard deviation; 0 if the number is known.
     pub sd: f64,
 }
 
-/// A parameter of the model that may be refitted.
+/// Parameter of the model that may be refitted.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Uncertain {
-    /// Its name.
+    /// Name of the parameter.
     pub name: String,
-    /// One standard deviation of its prior, relative to the specification's value.
+    /// Standard deviation of its prior, relative to the specification's value.
     pub relative: f64,
 }
 
-/// What is known of a record's first state.
+/// Information on the initial state of a record.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Initial {
-    /// As the model's own initial values say, at rest.
+    /// Initial values of the model, at rest.
     Rest,
-    /// Nothing.
+    /// Unknown.
     Estimate,
-    /// These states, by name, SI.
+    /// Values of states by name, in SI.
     Given(Vec<(String, f64)>),
 }
 
-/// Where a window's initial state comes from.
+/// Source of a window's initial state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
     /// Estimated inside the window.
@@ -107,42 +106,42 @@ pub enum Start {
     Smoothed,
 }
 
-/// Records with their description.
+/// Records with their descriptions.
 #[derive(Clone, Debug)]
 pub struct Dataset {
-    /// The dataset's file.
+    /// Path of the dataset file.
     pub path: PathBuf,
-    /// One line for people.
+    /// Title for reports.
     pub title: String,
-    /// Records to learn from.
+    /// Training records.
     pub train: Vec<Record>,
-    /// Records to be judged by.
+    /// Test records.
     pub test: Vec<Record>,
-    /// Inputs of which the dataset says how they act.
+    /// Inputs with priors.
     pub inputs: Vec<InputPriors>,
-    /// What was measured.
+    /// Measured channels.
     pub channels: Vec<Channel>,
-    /// What is known of the first state.
+    /// Initial state of the records.
     pub initial: Initial,
-    /// The length of a window, s; none if every record is one window.
+    /// Length of a window, in s; `None` for one window per record.
     pub window: Option<f64>,
-    /// Where a window's initial state comes from.
+    /// Source of a window's initial state.
     pub start: Start,
-    /// Which parameters may be refitted.
+    /// Parameters that may be refitted.
     pub uncertain: Vec<Uncertain>,
-    /// Within what bounds the next experiment may be played.
+    /// Bounds of the next experiment.
     pub experiment: ExperimentBounds,
-    /// How it is written down.
+    /// Units of the next experiment's columns.
     pub played: Played,
-    /// Where the records give the motion the coordinates, all that the model has: channels measure the
-    /// inputs that it takes. None where the motion is the model's.
+    /// All coordinates of the model if the records give the motion. Channels then measure the
+    /// inputs that the motion requires. Empty if the model computes the motion.
     pub motion: Vec<String>,
-    /// What is worth a remark.
+    /// Notes for the user.
     pub notes: Vec<String>,
 }
 
 impl Dataset {
-    /// Whether the records give the motion.
+    /// Returns true if the records give the motion.
     pub fn gives_motion(&self) -> bool {
         !self.motion.is_empty()
     }

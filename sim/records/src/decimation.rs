@@ -1,29 +1,28 @@
-//! One of several samples: channels by a low-pass without delay first, so that nothing is folded
-//! into what is kept; inputs by their mean over the time for which they are held from then on.
+//! Decimation of samples. Channels pass a zero-phase low-pass filter first, which prevents
+//! aliasing. Inputs become their mean over the time for which they are held.
 
 use std::f64::consts::PI;
 
-/// Where the low-pass lets half of the amplitude through, in rates of the samples that are kept:
-/// four fifths of their Nyquist frequency.
+/// Frequency with half of the amplitude, relative to the new sampling rate: four fifths of the new
+/// Nyquist frequency.
 const CUT_OFF: f64 = 0.4;
 
-/// How many kept samples the low-pass looks to either side. With Hamming's window it passes up to
-/// three fifths of the new Nyquist frequency, and from that on leaves less than a two-hundredth.
+/// Half length of the low-pass filter, in kept samples. With a Hamming window it passes up to three
+/// fifths of the new Nyquist frequency. Above that frequency less than 1/200 remains.
 const REACH: usize = 8;
 
-/// A sample of which more than this part of the filter's weights is missing is missing.
+/// Fraction of the filter weights with missing samples above which a sample is missing.
 const MOST_MISSING: f64 = 0.5;
 
-/// How one of several samples is kept.
 #[derive(Clone, Debug)]
 pub(crate) struct Decimation {
     every: usize,
-    /// The low-pass's weights from its middle on; none where samples are taken as they are.
+    /// Weights of the low-pass filter from its middle on; `None` without a filter.
     low_pass: Option<Vec<f64>>,
 }
 
 impl Decimation {
-    /// One of `every` samples, the channels low-passed before or not.
+    /// Keeps one of `every` samples, with or without a low-pass filter of the channels.
     pub fn new(every: usize, filter: bool) -> Self {
         Self {
             every,
@@ -31,17 +30,16 @@ impl Decimation {
         }
     }
 
-    /// Whether samples stay as they are.
     pub fn is_idle(&self) -> bool {
         self.every == 1
     }
 
-    /// Whether it takes samples for evenly spaced.
+    /// Returns true if a filter requires evenly spaced samples.
     pub fn is_filtered(&self) -> bool {
         self.low_pass.is_some()
     }
 
-    /// What becomes of the standard deviation of white noise.
+    /// Returns the factor of the standard deviation of white noise.
     pub fn noise(&self) -> f64 {
         let Some(weights) = &self.low_pass else {
             return 1.0;
@@ -50,12 +48,12 @@ impl Decimation {
         (2.0 * squares.sum::<f64>() - weights[0] * weights[0]).sqrt()
     }
 
-    /// Samples that are kept as they are, as times are.
+    /// Keeps samples without a filter, for example times.
     pub fn taken<T: Copy>(&self, column: &[T]) -> Vec<T> {
         column.iter().step_by(self.every).copied().collect()
     }
 
-    /// A measured column.
+    /// Decimates a measured column.
     pub fn measured(&self, column: &[f64]) -> Vec<f64> {
         match &self.low_pass {
             None => self.taken(column),
@@ -66,7 +64,8 @@ impl Decimation {
         }
     }
 
-    /// A column that is held from sample to sample: the mean of what is held until the next one.
+    /// Decimates a column that is held between samples: returns the means until the next kept
+    /// sample.
     pub fn held(&self, column: &[f64]) -> Vec<f64> {
         if !self.is_filtered() {
             return self.taken(column);
@@ -80,7 +79,8 @@ impl Decimation {
     }
 }
 
-/// A windowed sinc (Hamming), from its middle on, whose weights sum to 1.
+/// Returns the weights of a Hamming-windowed sinc from its middle on. All weights together sum to
+/// 1.
 fn low_pass(every: usize) -> Vec<f64> {
     let reach = (REACH * every) as f64;
     let weight = |k: usize| {
@@ -94,7 +94,8 @@ fn low_pass(every: usize) -> Vec<f64> {
     weights.into_iter().map(|weight| weight / sum).collect()
 }
 
-/// A column at a sample, low-passed; beyond its ends it goes on reflected through them.
+/// Returns the filtered column at a sample. Beyond its ends the column continues by point
+/// reflection.
 fn passed(column: &[f64], sample: usize, weights: &[f64]) -> f64 {
     let last = column.len() - 1;
     let at = |place: isize| match usize::try_from(place) {
@@ -123,13 +124,13 @@ fn passed(column: &[f64], sample: usize, weights: &[f64]) -> f64 {
 mod tests {
     use super::Decimation;
 
-    /// A wave of so many periods per kept sample, ten times as many samples.
+    /// Returns a wave with ten samples per kept sample; `frequency` is in periods per kept sample.
     fn wave(frequency: f64) -> Vec<f64> {
         let phase = |k: usize| 2.0 * std::f64::consts::PI * frequency * k as f64 / 10.0;
         (0..4000).map(|k| (phase(k) + 0.3).sin()).collect()
     }
 
-    /// How far two columns differ in the middle of them.
+    /// Returns the largest difference of two columns, without their ends.
     fn apart(a: &[f64], b: &[f64]) -> f64 {
         let middle = a.len() / 10..a.len() - a.len() / 10;
         let pairs = a[middle.clone()].iter().zip(&b[middle]);
@@ -137,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_slow_passes_without_delay_and_what_would_be_folded_does_not() {
+    fn low_pass_has_no_delay_and_prevents_aliasing() {
         let kept = Decimation::new(10, true);
         for frequency in [0.01, 0.1, 0.3] {
             let slow = wave(frequency);
@@ -155,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_stays_a_line_to_its_ends_and_a_missing_sample_is_bridged() {
+    fn low_pass_keeps_lines_and_bridges_missing_samples() {
         let mut line: Vec<f64> = (0..1000).map(|k| 3.0 + 0.5 * f64::from(k)).collect();
         let kept = Decimation::new(7, true);
         let pairs = |column: &[f64]| apart(&kept.measured(column), &kept.taken(column));
@@ -168,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn white_noise_shrinks_as_is_said() {
+    fn low_pass_reduces_white_noise_by_stated_factor() {
         let mut state = 1u64;
         let mut uniform = || {
             state = state
@@ -187,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn an_input_keeps_its_impulse() {
+    fn decimated_input_keeps_its_impulse() {
         let kept = Decimation::new(4, true);
         let held = kept.held(&[1.0, 2.0, 3.0, 6.0, 8.0, f64::NAN, 8.0, 8.0, 5.0]);
         assert_eq!(held, [3.0, 8.0, 5.0]);

@@ -1,4 +1,4 @@
-//! What a dataset file says of the next experiment, in SI, and how that is written down.
+//! Bounds of the next experiment in SI, and the units of its columns.
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
 use eomgen_model_spec::model::Model;
@@ -8,43 +8,43 @@ use eomgen_model_spec::unit::Unit;
 use crate::description::Description;
 use crate::description::experiment::NumberRange;
 
-/// The most samples of an experiment: as many as a record may have.
+/// Maximum number of samples of an experiment, the same as of a record.
 const MOST_SAMPLES: f64 = 1e6;
 
-/// Within what bounds the next experiment may be played, SI; none where a dataset file says nothing.
+/// Bounds of the next experiment, in SI; `None` if the dataset file does not give them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ExperimentBounds {
-    /// How long it may last, s.
+    /// Maximum duration, in s.
     pub duration: Option<f64>,
-    /// The time between its samples, s.
+    /// Sample time, in s.
     pub sample: Option<f64>,
-    /// One for each input of the model.
+    /// Bounds of each input of the model.
     pub inputs: Vec<InputBounds>,
-    /// One for each channel: the least and the greatest value.
+    /// Minimum and maximum of each channel.
     pub limits: Vec<Option<(f64, f64)>>,
 }
 
-/// The bounds of one input, SI.
+/// Bounds of one input, in SI.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct InputBounds {
-    /// The least and the greatest value.
+    /// Minimum and maximum value.
     pub range: Option<(f64, f64)>,
-    /// How fast it may change, per s.
+    /// Maximum rate of change, per s.
     pub rate: Option<f64>,
-    /// The lowest and the highest frequency, Hz.
+    /// Lowest and highest frequency, in Hz.
     pub band: Option<(f64, f64)>,
 }
 
-/// The columns of an experiment that is to be played.
+/// Units of the columns of an experiment to run.
 #[derive(Clone, Debug)]
 pub struct Played {
-    /// The unit of the time's column.
+    /// Unit of the time column.
     pub time: Unit,
-    /// For each input of the model the unit of its column; none where it has no column, and is 0.
+    /// Unit of each input's column; `None` if the input has no column and is 0.
     pub inputs: Vec<Option<Unit>>,
 }
 
-/// The bounds of a dataset file for a model. `units`: of the inputs' and of the channels' columns.
+/// Returns the bounds in a dataset file, given the units of the input and channel columns.
 pub(crate) fn bound(
     description: &Description,
     model: &Model,
@@ -63,11 +63,11 @@ pub(crate) fn bound(
     {
         found.push(
             Diagnostic::error(format!(
-                "an experiment of {:.0} samples is no record",
+                "an experiment of {:.0} samples is too long",
                 duration.value / sample.value
             ))
             .at(duration.span, format!("expected at most {MOST_SAMPLES:.0}"))
-            .also(sample.span, "of this time each"),
+            .also(sample.span, "sample time"),
         );
     }
     for input in &said.inputs {
@@ -81,10 +81,10 @@ pub(crate) fn bound(
             let known = known.map(|column| column.name.text.as_str());
             found.push(
                 Diagnostic::error(format!(
-                    "no record drives an input {}",
+                    "no record has a column for an input {}",
                     quoted(&input.name.text)
                 ))
-                .at(input.name.span, "expected an input that has a column")
+                .at(input.name.span, "expected one of [inputs]")
                 .help_if(did_you_mean(&input.name.text, known)),
             );
             continue;

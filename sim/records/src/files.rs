@@ -1,4 +1,4 @@
-//! The files of records: by their number in a dataset file, and never outside its folder.
+//! Paths of records, never outside the dataset's folder.
 
 use std::path::{Component, Path, PathBuf};
 
@@ -8,15 +8,15 @@ use eomgen_model_spec::table::Written;
 use crate::description::Description;
 use crate::description::records::Stretch;
 
-/// The file of `train[0]`.
+/// Returns the file of a record such as `train[0]`.
 ///
 /// # Errors
-/// There is no such record.
+/// A message if there is no such record.
 pub fn numbered<'d>(description: &'d Description, record: &str) -> Result<&'d Stretch, String> {
     let records = &description.records;
     let none = || {
         format!(
-            "{}: there is no record `{record}`; it lists {} as train[..] and {} as test[..], numbered from 0",
+            "{}: there is no record `{record}`; the file lists {} as train[..] and {} as test[..], numbered from 0",
             description.source.path,
             records.train.len(),
             records.test.len()
@@ -32,8 +32,7 @@ pub fn numbered<'d>(description: &'d Description, record: &str) -> Result<&'d St
     list.get(index).ok_or_else(none)
 }
 
-/// A record's file, in the dataset's folder or below. Links are followed: where they lead
-/// counts.
+/// Returns the path of a record in the dataset's folder or below. Symbolic links are resolved.
 ///
 /// # Errors
 /// A name that leads out of that folder.
@@ -45,7 +44,7 @@ pub fn beside(dataset: &Path, file: &Written) -> Result<PathBuf, Diagnostic> {
         _ => Path::new("."),
     };
     let place = folder.join(relative);
-    // What is not there is said by whoever reads it.
+    // A missing file is reported by the reader.
     let leads_out = match (place.canonicalize(), folder.canonicalize()) {
         (Ok(place), Ok(folder)) => !place.starts_with(folder),
         _ => false,
@@ -53,11 +52,11 @@ pub fn beside(dataset: &Path, file: &Written) -> Result<PathBuf, Diagnostic> {
     if leads_out || !relative.components().all(inside) {
         let name = &file.text;
         return Err(Diagnostic::error(format!(
-            "the record \"{name}\" lies outside the dataset's folder"
+            "the record \"{name}\" is outside the dataset's folder"
         ))
         .at(
             file.span,
-            "expected a file beside the dataset file or below",
+            "expected a file in the folder of the dataset file or below",
         ));
     }
     Ok(dataset.parent().unwrap_or(Path::new(".")).join(relative))

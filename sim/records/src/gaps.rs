@@ -1,14 +1,14 @@
-//! Stretches of a record that were lost: nothing is known of what drove the machine there, so what
-//! lies before and behind are records of their own.
+//! Gaps in a record. The inputs in a gap are unknown, so the parts before and after become separate
+//! records.
 
 use crate::record::Record;
 use crate::samples::{FEWEST_SAMPLES, LOST, typical_step};
 
-/// A record that more gaps part is taken as it is: its steps differ, nothing was lost.
+/// Number of gaps above which a record has uneven steps and is not split.
 const MOST: usize = 20;
 
-/// The parts of a record between lost stretches, those with few samples left out; the record where
-/// nothing was lost. `notes` are told where that was.
+/// Splits a record at gaps and drops short parts. Returns the record itself if it has no gap. Adds
+/// the gaps to `notes`.
 pub(crate) fn unbroken(record: Record, notes: &mut Vec<String>) -> Vec<Record> {
     let step = typical_step(&record.times);
     let steps = record.times.windows(2).enumerate();
@@ -28,8 +28,8 @@ pub(crate) fn unbroken(record: Record, notes: &mut Vec<String>) -> Vec<Record> {
     for gap in &gaps {
         let (before, behind) = (record.times[gap - 1], record.times[*gap]);
         notes.push(format!(
-            "{}: nothing was recorded from {before:.6} s to {behind:.6} s, where {:.0} samples would be: \
-             what lies before and behind is taken for two records",
+            "{}: {:.0} samples are missing between {before:.6} s and {behind:.6} s: \
+             the parts before and after are used as separate records",
             record.name,
             (behind - before) / step - 1.0
         ));
@@ -39,7 +39,7 @@ pub(crate) fn unbroken(record: Record, notes: &mut Vec<String>) -> Vec<Record> {
         let begin = record.times[part.start];
         if part.len() < FEWEST_SAMPLES {
             notes.push(format!(
-                "{}: {} samples from {begin:.6} s on are too few and not used",
+                "{}: the {} samples from {begin:.6} s on are too few and are ignored",
                 record.name,
                 part.len()
             ));

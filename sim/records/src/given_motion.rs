@@ -1,5 +1,5 @@
-//! Records that give the motion, with the torques and forces that it takes among the channels: what a
-//! dataset file must say of them. What a motion takes is computed elsewhere.
+//! Requirements on dataset files that give the motion, with measured forces and torques as
+//! channels.
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
 use eomgen_model_spec::model::Model;
@@ -14,7 +14,7 @@ use crate::description::motion::InitialState;
 use crate::motion_rates::{GivenColumn, GivenKind};
 use crate::units::unit;
 
-/// For each coordinate of the model its column; none if no motion is given.
+/// Returns the column of each coordinate of the model; empty if no motion is given.
 pub(crate) fn columns<'d>(
     description: &'d Description,
     model: &Model,
@@ -41,21 +41,21 @@ pub(crate) fn columns<'d>(
     for name in more {
         found.push(
             Diagnostic::error(format!(
-                "the motion of {} is not given by coordinates",
+                "[motion] cannot give the motion of {}",
                 quoted(name)
             ))
             .at(
                 first.name.span,
-                "[motion] gives the whole motion of a model of coordinates",
+                "[motion] requires a model with coordinates only",
             )
-            .help("leave [motion] out, with the torques as [inputs] and what moves as [channels]"),
+            .help("remove [motion]; list forces as [inputs] and measured quantities as [channels]"),
         );
     }
     if !matches!(description.initial, InitialState::Estimate) {
         found.push(
-            Diagnostic::error("[initial] says nothing where the motion is given")
-                .at(first.name.span, "here it is")
-                .help("leave [initial] out"),
+            Diagnostic::error("[initial] is not used if the motion is given")
+                .at(first.name.span, "the motion is given here")
+                .help("remove [initial]"),
         );
     }
     let mut columns = Vec::with_capacity(model.coordinates.len());
@@ -71,7 +71,7 @@ pub(crate) fn columns<'d>(
                     "the motion of {} is not given",
                     quoted(&coordinate.name)
                 ))
-                .at(first.name.span, "this one is, and so must be all")
+                .at(first.name.span, "give either all coordinates or none")
                 .help(format!("write [motion.{}]", coordinate.name)),
             ),
             None => {}
@@ -80,8 +80,9 @@ pub(crate) fn columns<'d>(
     columns
 }
 
-/// The column of a coordinate in this unit. Its own unit shows whether it holds the position or the speed.
-/// `initial`: the position at the first sample if the file does not give it.
+/// Returns the column of a coordinate with the unit `own`. The column's unit determines if it
+/// contains the position or the speed. `initial` is the position at the first sample if the file
+/// does not give it.
 fn given_column<'d>(
     given: &'d MotionColumn,
     own: &Unit,
@@ -100,7 +101,7 @@ fn given_column<'d>(
             return Err(
                 Diagnostic::error("`wrap` is not used: a speed does not wrap around")
                     .at(written.span, "this is the unit of a speed")
-                    .help("leave `wrap` out, or give the unit of the position"),
+                    .help("remove `wrap`, or give the unit of a position"),
             );
         }
         let initial = given.initial.map_or(initial, |number| number.value);
@@ -110,18 +111,18 @@ fn given_column<'d>(
         .map_err(|wrong| wrong.help(format!("a position is in {own}, a speed in {of_speed}")))?;
     match given.initial {
         Some(number) => Err(Diagnostic::error(
-            "`initial` is not used: the column holds the position",
+            "`initial` is not used: the column contains the position",
         )
-        .at(number.span, "this is for a column of speeds")
+        .at(number.span, "only for a column of speeds")
         .also(written.span, "this is the unit of a position")
         .help(format!(
-            "leave `initial` out, or give the unit of a speed, as {of_speed}"
+            "remove `initial`, or give the unit of a speed, such as {of_speed}"
         ))),
         None => Ok(kind_and_unit(GivenKind::Position, unit)),
     }
 }
 
-/// The specification's initial position of a coordinate, SI; 0 if it gives none.
+/// Returns the initial position of a coordinate in the specification, in SI; 0 by default.
 fn initial_position(model: &Model, coordinate: &str) -> f64 {
     let place = model.coordinates.iter().position(|c| c.name == coordinate);
     let orders: Vec<usize> = model.fields.iter().map(|field| field.order).collect();
@@ -131,7 +132,7 @@ fn initial_position(model: &Model, coordinate: &str) -> f64 {
         .unwrap_or(0.0)
 }
 
-/// Notes on motions that are given as speeds, at an initial position that the dataset file does not state.
+/// Returns notes on motions that are given as speeds without an initial position.
 pub(crate) fn notes_of_speeds(
     columns: &[GivenColumn<'_>],
     description: &Description,
@@ -144,7 +145,7 @@ pub(crate) fn notes_of_speeds(
     let note = |column: &GivenColumn<'_>| match column.kind {
         GivenKind::Position => None,
         GivenKind::Speed { initial } => Some(format!(
-            "the position of `{name}` is integrated from its speed and begins at {initial} (SI) in every file; if the \
+            "the position of `{name}` is integrated from its speed and starts at {initial} (SI) in every file; if the \
              model depends on the position, set initial in [motion.{name}]",
             name = column.name
         )),
@@ -152,10 +153,11 @@ pub(crate) fn notes_of_speeds(
     unstated.filter_map(note).collect()
 }
 
-/// Where the motion is given channels measure what it takes, or what a model shows along it.
+/// Checks that a channel is admissible. With a given motion, channels measure inputs or quantities
+/// along the motion.
 ///
 /// # Errors
-/// A channel of what is given, and one of an input that is not sought.
+/// A channel of a given quantity, or of an input if the motion is not given.
 pub(crate) fn admitted(
     quantity: Quantity,
     gives_motion: bool,
@@ -164,29 +166,29 @@ pub(crate) fn admitted(
 ) -> Result<(), Diagnostic> {
     let wrong = match (quantity, gives_motion) {
         (Quantity::Input(_), false) => Diagnostic::error(format!(
-            "{} is an input of the model: it is measured where the motion is given",
+            "{} is an input of the model: it can be a channel only if the motion is given",
             quoted(asked)
         ))
-        .at(span, "this channel measures nothing that the model computes")
+        .at(span, "the model does not compute this quantity")
         .help(
-            "give the motion of every coordinate, [motion.NAME], or list the column under [inputs]",
+            "give the motion of every coordinate in [motion.NAME], or list the column under [inputs]",
         ),
         (Quantity::State(_), true) => {
-            Diagnostic::error(format!("{} follows from the motion of no coordinate", quoted(asked)))
-                .at(span, "states of first order are not followed where the motion is given")
-                .help("leave [motion] out, and take the coordinates as channels")
+            Diagnostic::error(format!("{} does not follow from the motion of the coordinates", quoted(asked)))
+                .at(span, "first-order states are not computed along a given motion")
+                .help("remove [motion], and list the coordinates as channels")
         }
         (Quantity::Coordinate(_) | Quantity::Rate(_) | Quantity::Acceleration(_), true) => {
             Diagnostic::error(format!("{} is given by [motion]", quoted(asked)))
-                .at(span, "a channel measures what is not given")
-                .help("leave the channel out; the torques and forces that move the machine are channels")
+                .at(span, "a channel cannot measure a given quantity")
+                .help("remove the channel; list the torques and forces that drive the machine as channels")
         }
         _ => return Ok(()),
     };
     Err(wrong)
 }
 
-/// As many inputs are measured as there are coordinates, none of them is given as well.
+/// Checks that one input per coordinate is measured, and that none of these is also given.
 pub(crate) fn required_inputs(
     description: &Description,
     channels: &[Channel],
@@ -206,14 +208,14 @@ pub(crate) fn required_inputs(
         if measured.iter().any(is_measured) {
             found.push(
                 Diagnostic::error(format!(
-                    "{} is an input here and a channel as well",
+                    "{} is both an input and a channel",
                     quoted(&column.name.text)
                 ))
                 .at(
                     column.name.span,
-                    "the motion is given: what it takes is computed",
+                    "this input is computed from the given motion",
                 )
-                .help("leave it out here"),
+                .help("remove it from [inputs]"),
             );
         }
     }
@@ -224,11 +226,11 @@ pub(crate) fn required_inputs(
     {
         found.push(
             Diagnostic::error(format!(
-                "inputs that are measured: {inputs}, coordinates: {coordinates}; what a motion takes is known where \
-                 there are as many"
+                "measured inputs: {inputs}, coordinates: {coordinates}; a given motion requires one measured \
+                 input per coordinate"
             ))
             .at(first.name.span, "the motion is given here")
-            .help("list a channel for each torque or force that moves the machine, with observable = its input"),
+            .help("add a channel for each torque or force that drives the machine, with observable = \"INPUT\""),
         );
     }
 }

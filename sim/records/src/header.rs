@@ -1,4 +1,4 @@
-//! What the columns of any format have in common: their names and how many samples are read.
+//! Column names and the maximum number of samples, for all file formats.
 
 use std::path::Path;
 
@@ -7,22 +7,24 @@ use eomgen_model_spec::visible::visible;
 use crate::description::columns::ColumnKey;
 use crate::refusal::Refusal;
 
-/// The most samples of a record: some hundred times as many as are searched in minutes.
+/// Maximum number of samples of a record, about a hundred times more than a search handles in
+/// minutes.
 pub const MOST_SAMPLES: usize = 1_000_000;
 
-/// Columns of numbers, NaN where one is missing.
+/// Columns of numbers; NaN for a missing one.
 #[derive(Clone, Debug, Default)]
 pub struct Table {
-    /// The columns.
+    /// Columns of the table.
     pub columns: Vec<Vec<f64>>,
-    /// The line of each row, from 1; of files without lines as if names stood on the first.
+    /// Line number of each row, from 1. Files without lines count as if the first line had the
+    /// names.
     pub lines: Vec<u64>,
 }
 
-/// What lines often begin with that say nothing.
+/// Usual first character of comment lines.
 const COMMENT: char = '#';
 
-/// Where the wanted columns stand among those that are there. `line`: that of the names.
+/// Returns the indices of the wanted columns. `line` is the line number of the names.
 pub fn places(
     path: &Path,
     line: u64,
@@ -38,7 +40,7 @@ pub fn places(
                 return Err(Refusal::line(
                     path,
                     line,
-                    format!("there is no column {number}; there are {count}"),
+                    format!("there is no column {number}; the file has {count}"),
                 ));
             }
         };
@@ -48,9 +50,7 @@ pub fn places(
             (Some(_), Some(_)) => Err(Refusal::line(
                 path,
                 line,
-                format!(
-                    "there are two columns `{name}`; give each a name of its own, or call it by its number"
-                ),
+                format!("there are two columns `{name}`; rename one, or give the column's number"),
             )),
             (None, _) => {
                 let list = there.join(", ");
@@ -58,16 +58,16 @@ pub fn places(
                 let shown = visible(&shown);
                 let parted = match parted(there) {
                     _ if there[0].starts_with(COMMENT) => format!(
-                        ": that line says nothing of columns; write comment = \"{COMMENT}\" in [format], or skip = how many lines stand \
+                        ": this line is a comment; write comment = \"{COMMENT}\" in [format], or set skip to the number of lines \
                          above the names"
                     ),
-                    Some(by) => format!(": its columns are parted by {by}"),
+                    Some(by) => format!(": its columns are separated by {by}"),
                     None => String::new(),
                 };
                 Err(Refusal::line(
                     path,
                     line,
-                    format!("there is no column `{name}`; there are {shown}{parted}"),
+                    format!("there is no column `{name}`; the file has {shown}{parted}"),
                 ))
             }
         }
@@ -75,7 +75,7 @@ pub fn places(
     wanted.iter().map(place).collect()
 }
 
-/// By what else the names of one column are parted, with what to write.
+/// Returns the likely separator of names that were read as one column, with a cure.
 fn parted(there: &[String]) -> Option<String> {
     let [one] = there else { return None };
     let by = [
@@ -89,12 +89,12 @@ fn parted(there: &[String]) -> Option<String> {
     Some(format!("{name}; write separator = \"{word}\" in [format]"))
 }
 
-/// A record with more samples than are read.
+/// Returns the error for a record with more than [`MOST_SAMPLES`] samples.
 pub fn too_many(path: &Path) -> Refusal {
     Refusal::file(
         path,
         format!(
-            "has more than {MOST_SAMPLES} samples, the most that are read: cut the record, or sample it less often"
+            "has more than {MOST_SAMPLES} samples, the maximum: split the record, or reduce its sampling rate"
         ),
     )
 }

@@ -1,4 +1,4 @@
-//! The inputs of a record alone, for a simulation that is driven by them.
+//! Inputs of a record, for a simulation with these inputs.
 
 use std::path::Path;
 
@@ -16,12 +16,11 @@ use crate::record::Columns;
 use crate::refusal::Refusal;
 use crate::samples::FEWEST_OF_INPUTS;
 
-/// The inputs of `model` from a record of a dataset, and what is worth a warning.
-///
-/// `record` is `train[0]`, `test[1]`, ... Channels are not read.
+/// Reads the inputs of `model` from a record of a dataset and returns them with warnings. `record`
+/// is `train[0]`, `test[1]`, ... Channels are not read.
 ///
 /// # Errors
-/// What is wrong with the dataset file or with the record.
+/// A problem of the dataset file or of the record.
 pub fn read_inputs(
     dataset: &Path,
     record: &str,
@@ -32,9 +31,9 @@ pub fn read_inputs(
     let mut found = Diagnostics::new(description.source.clone());
     if let Some(given) = description.motion.first() {
         found.push(
-            Diagnostic::error("the records give the motion, and no inputs that would make it")
+            Diagnostic::error("the records give the motion, but no inputs to simulate it")
                 .at(given.name.span, "here")
-                .help("`compare` and `discover` compute what such a motion takes"),
+                .help("use `compare` or `discover`: they compute the forces that such a motion requires"),
         );
     }
     let time = found.keep(bound::time_unit(&description));
@@ -60,9 +59,9 @@ pub fn read_inputs(
     Ok((record.inputs, warnings))
 }
 
-/// Notes on columns of inputs that the model does not have, and on inputs that are not driven.
+/// Returns notes on input columns that the model does not have, and on inputs without a column.
 pub fn notes_of_inputs(description: &Description, model: &Model) -> Vec<String> {
-    // Rates of prescribed motion are those of the curve through its samples.
+    // Rates of prescribed motion are computed from the spline through its samples.
     let own = || model.inputs.iter().filter(|input| input.rate_of.is_none());
     let inputs = || own().map(|input| input.name.as_str());
     let undriven = model.typical_inputs(0.0).unwrap_or_default();

@@ -1,11 +1,20 @@
-//! Measured records: what a dataset file says of them, their columns, and whether they can be
-//! used.
+//! Measured records: dataset files, columns of records, and checks of both.
 //!
-//! The pipeline: a [`description`] is the dataset file by itself, `bound` its names and units
-//! looked up in a model; `files` and `columns` (text by `csv_file`, Parquet by `parquet_file`) bring
-//! the numbers of a [`record`], unwrapped by `wrapped_columns` (`unwrapping`, `wrap_detection`), of which `decimation` may leave some, checked by [`samples`] and parted by `gaps`, with `motion_rates` and without `rest` where the motion is given (`given_motion`); all records are a [`dataset`], examined by
-//! [`checks`] and `coverage`, cut into [`windows`]. [`inputs`] are read alone for a simulation, [`mod@noise`] is estimated from a column alone.
-//! A [`proposal`] is a dataset file for a record that has none. What is wrong is a [`refusal`]. Nothing here is simulated or fitted.
+//! Pipeline:
+//!
+//! - a [`description`] is the parsed dataset file; `bound` looks up its names and units in a model;
+//! - `files` and `columns` (text by `csv_file`, Parquet by `parquet_file`) read the numbers of a
+//!   [`record`];
+//! - `wrapped_columns` (`unwrapping`, `wrap_detection`, `wrap_period`) unwraps columns,
+//!   `decimation` reduces samples, [`samples`] checks them, and `gaps` splits records;
+//! - if the records give the motion (`given_motion`), `motion_rates` adds rates and `rest` removes
+//!   samples at rest;
+//! - a [`dataset`] contains all records; [`checks`] and `coverage` examine it, and [`windows`]
+//!   split it.
+//!
+//! [`inputs`] are read separately for a simulation. [`mod@noise`] is estimated from a single
+//! column. A [`proposal`] is a dataset file for a record that has none. A [`refusal`] is an error.
+//! This crate does not simulate or fit anything.
 //!
 //! ```
 //! use eomgen_records::read_dataset;
@@ -19,7 +28,7 @@
 //! }
 //! let dataset = folder.join("dataset.toml");
 //! std::fs::write(&dataset, r#"
-//! title = "a pendulum, let go"
+//! title = "Pendulum, released from rest"
 //! [records]
 //! train = ["small.csv"]
 //! test = ["large.csv"]
@@ -33,7 +42,7 @@
 //! "#)?;
 //! let model = eomgen_model_spec::check(eomgen_model_spec::models::PENDULUM.source())?.model;
 //! let read = read_dataset(&dataset, &model)?;
-//! // Everything is in SI.
+//! // All values are in SI.
 //! assert_eq!(read.channels[0].noise, 1e-4);
 //! assert_eq!(read.train[0].channels[0][0], 0.1);
 //! # std::fs::remove_dir_all(&folder)?;

@@ -1,36 +1,30 @@
-//! Position, rate and second rate of a motion that records give by its positions or its speeds.
+//! Position, rate and second rate of a given motion, from its positions or its speeds.
 
 use eomgen_model_spec::unit::Unit;
 use eomgen_sim::cubic_spline::CubicSpline;
 
 use crate::description::columns::Column;
 
-/// The column of a coordinate whose motion is given.
+/// Column of a coordinate with a given motion.
 pub(crate) struct GivenColumn<'d> {
-    /// The coordinate.
     pub name: &'d str,
-    /// Its column.
     pub column: &'d Column,
-    /// The column's unit.
     pub unit: Unit,
-    /// What the column holds.
     pub kind: GivenKind,
 }
 
-/// What the column of a given motion holds.
+/// Content of the column of a given motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum GivenKind {
-    /// The position.
     Position,
-    /// The speed, and the position at the first sample, SI.
+    /// Speed, with the position at the first sample in SI.
     Speed {
-        /// That position.
         initial: f64,
     },
 }
 
-/// A coordinate's samples with their rates and second rates, on the cubic spline through those that are
-/// known; none if nothing is.
+/// Returns a coordinate's samples, rates and second rates, from the cubic spline through the known
+/// samples; `None` without any.
 pub(crate) fn with_rates(times: &[f64], column: &[f64]) -> Option<[Vec<f64>; 3]> {
     let samples = times.iter().zip(column);
     let known = samples.filter(|(_, value)| value.is_finite());
@@ -45,9 +39,9 @@ pub(crate) fn with_rates(times: &[f64], column: &[f64]) -> Option<[Vec<f64>; 3]>
     Some(found)
 }
 
-/// A coordinate's positions, rates and second rates from samples of its speed: the speed is the cubic
-/// spline through the known samples, the position its integral from `initial` at the first sample, and the
-/// second rate its derivative. None if no sample is known.
+/// Returns positions, rates and second rates from samples of the speed; `None` without a known
+/// sample. The speed is the cubic spline through the known samples. Its integral from `initial` at
+/// the first sample is the position, its derivative the second rate.
 pub(crate) fn integrated(times: &[f64], speeds: &[f64], initial: f64) -> Option<[Vec<f64>; 3]> {
     let [rates, second, bends] = with_rates(times, speeds)?;
     let mut position = initial;
@@ -55,7 +49,7 @@ pub(crate) fn integrated(times: &[f64], speeds: &[f64], initial: f64) -> Option<
     positions.push(position);
     for k in 1..times.len() {
         let h = times[k] - times[k - 1];
-        // The exact integral of a cubic.
+        // Exact integral of a cubic.
         position +=
             0.5 * h * (rates[k - 1] + rates[k]) - h.powi(3) / 24.0 * (bends[k - 1] + bends[k]);
         positions.push(position);
@@ -68,7 +62,7 @@ mod tests {
     use super::integrated;
 
     #[test]
-    fn positions_rates_and_accelerations_of_a_speed_belong_together() {
+    fn motion_from_speed_is_consistent() {
         let times: Vec<f64> = (0..=300).map(|k| 0.01 * f64::from(k)).collect();
         let speed = |t: f64| 2.0 + 3.0 * (4.0 * t).cos();
         let mut speeds: Vec<f64> = times.iter().map(|t| speed(*t)).collect();

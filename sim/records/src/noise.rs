@@ -1,17 +1,18 @@
-//! How much noise a column holds, from what differs from sample to sample.
+//! Noise of a column, estimated from differences between samples.
 
 use crate::unwrapping::median;
 
-/// Orders of differences that are tried: what moves slowly leaves those of a high order, noise does
+/// Orders of the differences. Slow motion vanishes from differences of a high order, noise does
 /// not.
 const ORDERS: std::ops::RangeInclusive<usize> = 2..=8;
 
-/// The median of the absolute value of a normal number, in standard deviations.
+/// Median absolute value of a normal distribution, in standard deviations.
 const MEDIAN: f64 = 0.674_489_750_196_081_7;
 
-/// One standard deviation of the white noise of an evenly sampled column, at least that of its
-/// resolution; none if nothing differs. Differences of order n of white noise have the variance
-/// binomial(2n, n); the order that leaves least is taken, because motion only adds.
+/// Returns the standard deviation of the white noise of an evenly sampled column, at least that of
+/// its resolution; `None` for a constant column. Differences of order n of white noise have the
+/// variance binomial(2n, n). The smallest estimate of all orders applies, because motion only
+/// increases it.
 pub fn estimated(column: &[f64]) -> Option<f64> {
     let mut differences: Vec<f64> = column.to_vec();
     let mut least = f64::INFINITY;
@@ -21,7 +22,7 @@ pub fn estimated(column: &[f64]) -> Option<f64> {
             .windows(2)
             .map(|pair| pair[1] - pair[0])
             .collect();
-        // binomial(2n, n) from the one before.
+        // Recurrence of binomial(2n, n).
         let n = order as f64;
         variance *= 2.0 * (2.0 * n - 1.0) / n;
         if ORDERS.contains(&order)
@@ -34,7 +35,7 @@ pub fn estimated(column: &[f64]) -> Option<f64> {
     (found > 0.0 && found.is_finite()).then_some(found)
 }
 
-/// The median of the absolute values that are known.
+/// Returns the median of the known absolute values.
 fn median_size(differences: &[f64]) -> Option<f64> {
     let known = differences
         .iter()
@@ -43,12 +44,12 @@ fn median_size(differences: &[f64]) -> Option<f64> {
     median(&known.collect::<Vec<f64>>())
 }
 
-/// The smallest step between values that a column takes.
+/// Returns the smallest step between values of a column.
 fn resolution(column: &[f64]) -> Option<f64> {
     let mut values: Vec<f64> = column.iter().copied().filter(|v| v.is_finite()).collect();
     values.sort_by(f64::total_cmp);
     let largest = values.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
-    // What rounding of doubles makes is no step.
+    // Steps in the last digits of a double are rounding.
     let steps = values.windows(2).map(|pair| pair[1] - pair[0]);
     let steps = steps.filter(|step| *step > 1e-12 * largest);
     steps.min_by(f64::total_cmp)
@@ -58,7 +59,7 @@ fn resolution(column: &[f64]) -> Option<f64> {
 mod tests {
     use super::estimated;
 
-    /// Numbers of mean 0 and standard deviation 1, nearly normal.
+    /// Returns nearly normal numbers with mean 0 and standard deviation 1.
     fn normal(count: usize) -> Vec<f64> {
         let mut state = 7u64;
         let mut uniform = || {
@@ -73,7 +74,7 @@ mod tests {
     }
 
     #[test]
-    fn noise_is_told_from_motion_and_never_below_the_resolution() {
+    fn noise_ignores_motion_and_is_at_least_resolution() {
         let motion = |k: usize| 0.3 * (0.02 * k as f64).sin() + 0.05 * (0.21 * k as f64).cos();
         let noisy = |sd: f64| -> Vec<f64> {
             let noise = normal(4000).into_iter().enumerate();

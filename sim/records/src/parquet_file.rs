@@ -13,12 +13,12 @@ use crate::description::columns::ColumnKey;
 use crate::header::{MOST_SAMPLES, Table, places, too_many};
 use crate::refusal::Refusal;
 
-/// Reads these columns; a missing number is NaN.
+/// Reads columns; a missing number becomes NaN.
 ///
 /// # Errors
-/// A file that is not whole, a column that is not there or holds no numbers.
+/// A damaged file, or a column that is missing or not numeric.
 pub fn read(path: &Path, bytes: Vec<u8>, wanted: &[&ColumnKey]) -> Result<Table, Refusal> {
-    // Some damage that the crate does not look for makes it panic.
+    // The parquet crate panics on some damaged files.
     let said = std::panic::take_hook();
     std::panic::set_hook(Box::new(|_| {}));
     let columns = std::panic::catch_unwind(|| decoded(path, bytes, wanted));
@@ -26,22 +26,18 @@ pub fn read(path: &Path, bytes: Vec<u8>, wanted: &[&ColumnKey]) -> Result<Table,
     columns.unwrap_or_else(|_| {
         Err(Refusal::file(
             path,
-            "is not a Parquet file that can be read: it is damaged",
+            "cannot be read as Parquet: it is damaged",
         ))
     })
 }
 
-/// The names of a file's columns of numbers, in their order, with their numbers from 1.
+/// Returns names and numbers (from 1) of a file's numeric columns, in their order.
 ///
 /// # Errors
-/// A file that is not whole.
+/// A damaged file.
 pub(crate) fn names(path: &Path, bytes: Vec<u8>) -> Result<Vec<(usize, String)>, Refusal> {
-    let reader = SerializedFileReader::new(Bytes::from(bytes)).map_err(|error| {
-        Refusal::file(
-            path,
-            format!("is not a Parquet file that can be read: {error}"),
-        )
-    })?;
+    let reader = SerializedFileReader::new(Bytes::from(bytes))
+        .map_err(|error| Refusal::file(path, format!("cannot be read as Parquet: {error}")))?;
     let schema = reader.metadata().file_metadata().schema_descr_ptr();
     let columns = (1..).zip(schema.columns());
     let numbers = columns.filter(|(_, column)| is_number(column.physical_type()));
@@ -58,18 +54,14 @@ fn is_number(kind: Physical) -> bool {
 }
 
 fn decoded(path: &Path, bytes: Vec<u8>, wanted: &[&ColumnKey]) -> Result<Table, Refusal> {
-    let broken = |error: ParquetError| {
-        Refusal::file(
-            path,
-            format!("is not a Parquet file that can be read: {error}"),
-        )
-    };
+    let broken =
+        |error: ParquetError| Refusal::file(path, format!("cannot be read as Parquet: {error}"));
     let length = bytes.len();
     let reader = SerializedFileReader::new(Bytes::from(bytes)).map_err(broken)?;
     if !is_whole(reader.metadata(), length) {
         return Err(Refusal::file(
             path,
-            "is not a Parquet file that can be read: it tells of columns outside itself",
+            "cannot be read as Parquet: it refers to columns outside of the file",
         ));
     }
     let metadata = reader.metadata().file_metadata();
@@ -81,7 +73,7 @@ fn decoded(path: &Path, bytes: Vec<u8>, wanted: &[&ColumnKey]) -> Result<Table, 
     if columns.iter().any(|column| column.path().parts().len() > 1) {
         return Err(Refusal::file(
             path,
-            "has columns inside columns; expected one number per column and row",
+            "has nested columns; expected one number per column and row",
         ));
     }
     let there = columns.iter().map(|column| column.name().to_owned());
@@ -93,7 +85,7 @@ fn decoded(path: &Path, bytes: Vec<u8>, wanted: &[&ColumnKey]) -> Result<Table, 
             let name = &there[*place];
             return Err(Refusal::file(
                 path,
-                format!("the column `{name}` holds {kind}; expected numbers"),
+                format!("the column `{name}` contains {kind}; expected numbers"),
             ));
         }
     }
@@ -118,7 +110,7 @@ fn decoded(path: &Path, bytes: Vec<u8>, wanted: &[&ColumnKey]) -> Result<Table, 
     })
 }
 
-/// Whether all that a file tells of lies inside it: the reader takes that for granted.
+/// Returns true if all offsets are inside the file. The reader does not check this.
 fn is_whole(metadata: &ParquetMetaData, length: usize) -> bool {
     let inside = |offset: i64, size: i64| {
         let end = offset.checked_add(size);
@@ -156,7 +148,7 @@ fn number(path: &Path, name: &str, field: &Field) -> Result<f64, Refusal> {
         _ => {
             return Err(Refusal::file(
                 path,
-                format!("the column `{name}` holds dates or texts; expected numbers"),
+                format!("the column `{name}` contains dates or text; expected numbers"),
             ));
         }
     };
@@ -183,7 +175,7 @@ mod tests {
         names.map(|name| ColumnKey::Name(Written::inferred(name, Span::default())))
     }
 
-    /// Columns `t` (double, compressed) and `n` (integers, some missing).
+    /// Returns a file with the columns `t` (double, compressed) and `n` (integers, some missing).
     fn file(rows: i64) -> Vec<u8> {
         let field = |name: &str, kind: Physical, repetition: Repetition| {
             let field = Type::primitive_type_builder(name, kind).with_repetition(repetition);
@@ -232,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn no_damage_makes_it_panic() {
+    fn damaged_files_do_not_panic() {
         let whole = file(40);
         let [t, n] = named(["t", "n"]);
         for place in 0..whole.len() {

@@ -1,4 +1,4 @@
-//! A dataset file with its records, read, checked and bound to a model.
+//! Reading, checking and binding of a dataset file with its records.
 
 use std::path::Path;
 
@@ -23,8 +23,7 @@ use crate::samples::FEWEST_SAMPLES;
 /// Reads a dataset for a model.
 ///
 /// # Errors
-/// What is wrong with the dataset file, or the first thing that is wrong with a record, each with
-/// its place.
+/// Problems of the dataset file, or the first problem of a record, with its place.
 pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
     let description = Description::read(path)?;
     if let Some(refused) = prescribed_column(&description, model) {
@@ -32,7 +31,7 @@ pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
     }
     if let Some(constraint) = model.constraints.first() {
         return Err(Refusal::Record(format!(
-            "{}: the model has constraints (`{}`), which `compare` and `discover` do not follow yet; \
+            "{}: the model has constraints (`{}`), which `compare` and `discover` do not support yet; \
              `simulate` does",
             path.display(),
             constraint.name
@@ -40,7 +39,7 @@ pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
     }
     if let Some(impact) = model.impacts.first() {
         return Err(Refusal::Record(format!(
-            "{}: the model has impacts (`{}`), which `compare` and `discover` do not follow yet; \
+            "{}: the model has impacts (`{}`), which `compare` and `discover` do not support yet; \
              `simulate` does",
             path.display(),
             impact.name
@@ -112,7 +111,8 @@ pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
     Ok(dataset)
 }
 
-/// Refuses the column of a prescribed motion: `compare` and `discover` hold inputs between samples.
+/// Rejects a column of a prescribed motion, because `compare` and `discover` hold inputs constant
+/// between samples.
 fn prescribed_column(description: &Description, model: &Model) -> Option<Diagnostic> {
     let is_prescribed = |name: &str| {
         let mut inputs = model.inputs.iter();
@@ -123,15 +123,15 @@ fn prescribed_column(description: &Description, model: &Model) -> Option<Diagnos
     let name = &column.name;
     Some(
         Diagnostic::error(format!(
-            "input `{}` is a prescribed motion (rates = 2), whose record `compare` and `discover` do not take",
+            "input `{}` is a prescribed motion (rates = 2), which `compare` and `discover` do not support",
             name.text
         ))
-        .at(name.span, "inputs are held between samples here")
-        .help("leave this section out: the input then rests; `simulate --record` takes the motion from its record"),
+        .at(name.span, "these commands hold inputs constant between samples")
+        .help("remove this section to keep the input at rest, or use `simulate --record`, which supports prescribed motion"),
     )
 }
 
-/// The values of channels at a record's beginning, SI: those of coordinates, if the initial state is known.
+/// Returns the initial value of each channel in SI, for coordinates with a known initial state.
 fn starts(dataset: &Dataset, model: &Model) -> Vec<Option<f64>> {
     let orders: Vec<usize> = model.fields.iter().map(|field| field.order).collect();
     let state = model.initial_state(&orders).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! One record: its columns of time, inputs and channels, in SI.
+//! Record: columns of time, inputs and channels, in SI.
 
 use std::path::{Path, PathBuf};
 
@@ -21,33 +21,35 @@ use crate::refusal::Refusal;
 use crate::samples::{JITTER, check_known, check_times, typical_step};
 use crate::wrapped_columns::{ReadColumn, unwrap_columns};
 
-/// A record in SI.
+/// Record in SI.
 #[derive(Clone, Debug)]
 pub struct Record {
-    /// `train[0]`, `test[1]`, ...
+    /// Name, for example `train[0]`.
     pub name: String,
-    /// Its file.
+    /// Path of its file.
     pub path: PathBuf,
-    /// The times of the samples, s.
+    /// Times of the samples, in s.
     pub times: Vec<f64>,
-    /// The model's inputs, held from sample to sample. Where the motion is given, all coordinates stand
-    /// behind them in a sample's row, then all rates, then all second rates.
+    /// Inputs of the model, held between samples. If the motion is given, each row also contains
+    /// all coordinates, then all rates, then all second rates.
     pub inputs: HeldInputs,
-    /// The inputs as columns, NaN where a sample is missing.
+    /// Columns of the inputs; NaN for a missing sample.
     pub input_columns: Vec<Vec<f64>>,
-    /// One column per channel, NaN where a sample is missing.
+    /// Columns of the channels; NaN for a missing sample.
     pub channels: Vec<Vec<f64>>,
-    /// Whether it begins behind a lost stretch: what is known of first states does not hold.
+    /// True if it starts after a gap, so that the initial state is unknown.
     pub is_continued: bool,
 }
 
 impl Record {
-    /// A coordinate at the samples, where the motion is given, of a model of so many inputs.
+    /// Returns the samples of a coordinate with a given motion; `inputs` is the number of the
+    /// model's inputs.
     pub fn given(&self, coordinate: usize, inputs: usize) -> Vec<f64> {
         self.column(inputs + coordinate)
     }
 
-    /// Its rate, one of so many coordinates.
+    /// Returns the rate of a coordinate with a given motion; `coordinates` is the number of
+    /// coordinates.
     pub fn given_rate(&self, coordinate: usize, coordinates: usize, inputs: usize) -> Vec<f64> {
         self.column(inputs + coordinates + coordinate)
     }
@@ -58,30 +60,27 @@ impl Record {
     }
 }
 
-/// Which columns of a record are what.
+/// Columns of a record and their units.
 pub(crate) struct Columns<'d> {
     pub description: &'d Description,
-    /// The dataset file.
     pub path: &'d Path,
-    /// The time's unit.
     pub time: &'d Unit,
-    /// For each input of the model its column and unit, if there is one.
+    /// Column and unit of each input of the model, if any.
     pub inputs: &'d [Option<(&'d Column, Unit)>],
-    /// For each coordinate of the model its column, if the motion is given.
+    /// Column of each coordinate of the model, if the motion is given.
     pub motion: &'d [GivenColumn<'d>],
-    /// The unit of each channel's column.
+    /// Unit of each channel's column.
     pub channels: &'d [Unit],
-    /// The value of each channel at the beginning of a record, SI, if it is known.
+    /// Known initial value of each channel, in SI.
     pub starts: &'d [Option<f64>],
     pub model: &'d Model,
-    /// How one of several samples is kept.
     pub decimation: &'d Decimation,
-    /// The fewest samples of a record.
+    /// Minimum number of samples of a record.
     pub fewest: usize,
 }
 
 impl Columns<'_> {
-    /// Reads one record. What is worth a remark goes to `notes`.
+    /// Reads one record and adds to `notes`.
     pub fn record(
         &self,
         name: &str,
@@ -121,7 +120,7 @@ impl Columns<'_> {
         })
     }
 
-    /// Columns besides the time, in the order in which they are read.
+    /// Returns the columns after the time, in the order of reading.
     fn read(&self) -> Vec<ReadColumn<'_>> {
         let fed = self.model.inputs.iter().zip(self.inputs);
         let inputs = fed.filter_map(|(input, fed)| {
@@ -139,8 +138,7 @@ impl Columns<'_> {
         inputs.chain(motion).chain(channels).collect()
     }
 
-    /// Time, the inputs that have columns, the motion where that is given, and the channels, in SI and
-    /// unwrapped.
+    /// Reads time, input columns, given motion and channels, in SI and unwrapped.
     fn table(
         &self,
         place: &Path,
@@ -157,7 +155,7 @@ impl Columns<'_> {
         let mut table = columns::read(place, &self.description.format, &wanted)?;
         for (column, unit) in table.columns.iter_mut().zip(units) {
             for value in column.iter_mut() {
-                // What is too large for a number in SI is as good as missing.
+                // A number that overflows in SI counts as missing.
                 *value = Some(unit.to_si(*value))
                     .filter(|v| v.is_finite())
                     .unwrap_or(f64::NAN);
@@ -171,7 +169,7 @@ impl Columns<'_> {
         Ok(table)
     }
 
-    /// The first time of a stretch and the one behind its last, s.
+    /// Returns the first time of a part and the time after its last, in s.
     fn ends(&self, stretch: &Stretch) -> (f64, f64) {
         let end = |number: Option<Number>, open: f64| {
             number.map_or(open, |number| self.time.to_si(number.value))
@@ -182,9 +180,8 @@ impl Columns<'_> {
         )
     }
 
-    /// Puts rates and second rates behind a motion that is given. They are taken before samples are left
-    /// out, and go the same way as what is measured: a low-pass of both changes nothing of how they belong
-    /// together.
+    /// Appends rates and second rates to a given motion, before decimation. A low-pass filter of
+    /// all columns keeps them consistent.
     fn add_rates(&self, place: &Path, table: &mut Table) -> Result<(), Refusal> {
         if self.motion.is_empty() {
             return Ok(());
@@ -214,8 +211,7 @@ impl Columns<'_> {
         Ok(())
     }
 
-    /// Leaves what lies between two times, where a dataset file gives them; whether something lay
-    /// before.
+    /// Keeps the samples between two times, if given. Returns true if samples before were dropped.
     fn cut(&self, stretch: &Stretch, table: &mut Table) -> Result<bool, Refusal> {
         if stretch.from.is_none() && stretch.to.is_none() {
             return Ok(false);
@@ -252,7 +248,7 @@ impl Columns<'_> {
         Ok(kept.start > 0)
     }
 
-    /// Leaves one of several samples, where a dataset file says so.
+    /// Keeps one of several samples, if requested.
     fn decimate(&self, place: &Path, table: &mut Table) -> Result<(), Refusal> {
         let decimation = self.decimation;
         if decimation.is_idle() {
@@ -265,8 +261,8 @@ impl Columns<'_> {
             return Err(Refusal::line(
                 place,
                 table.lines[sample + 1],
-                "the low-pass of [time] every takes even steps of time, and this one is another; \
-                 expected filter = \"none\", or stretches that are even",
+                "the low-pass filter of `every` in [time] requires even time steps, and this one differs; \
+                 write filter = \"none\", or use parts with even steps",
             ));
         }
         let inputs = 1 + self.inputs.iter().flatten().count();
@@ -283,7 +279,8 @@ impl Columns<'_> {
         Ok(())
     }
 
-    /// Whether the input of a column is prescribed motion: no samples of it are held.
+    /// Returns true if the input of a column is a prescribed motion, which is not held between
+    /// samples.
     fn is_prescribed(&self, column: usize) -> bool {
         let fed = self.model.inputs.iter().zip(self.inputs);
         let mut fed = fed.filter(|(_, column)| column.is_some());
@@ -291,8 +288,8 @@ impl Columns<'_> {
             .is_some_and(|(input, _)| input.rate.is_some())
     }
 
-    /// Inputs held from sample to sample, prescribed motion on a spline through its samples; behind them
-    /// the columns of a motion that is given.
+    /// Returns the inputs: held between samples, or a spline for prescribed motion. Columns of a
+    /// given motion follow.
     fn driving(&self, times: &[f64], columns: &[Vec<f64>], motion: Vec<Vec<f64>>) -> HeldInputs {
         let mut inputs = match motion.is_empty() {
             true => held(times, columns),
@@ -314,7 +311,7 @@ impl Columns<'_> {
     }
 }
 
-/// Inputs held from sample to sample, over missing ones too.
+/// Holds inputs between samples and over missing ones.
 fn held(times: &[f64], columns: &[Vec<f64>]) -> HeldInputs {
     let mut last = vec![0.0; columns.len()];
     let mut values = Vec::with_capacity(times.len() * columns.len());

@@ -1,25 +1,25 @@
-//! Why records are not taken.
+//! Errors of dataset files and records.
 
 use std::path::Path;
 
 use eomgen_model_spec::diagnostic::Diagnostics;
 
-/// Why records are not taken: where they are wrong, what is wrong and what would be right.
+/// Error of a dataset: place, cause and cure.
 #[derive(Clone, Debug)]
 pub enum Refusal {
-    /// The dataset file is wrong.
+    /// Error in the dataset file.
     Description(Diagnostics),
-    /// A record is wrong: a sentence that names its file, and line where there is one.
+    /// Error in a record: a sentence with its file, and with the line if there is one.
     Record(String),
 }
 
 impl Refusal {
-    /// A record that is wrong as a whole.
+    /// Creates an error of a whole record.
     pub fn file(path: &Path, message: impl std::fmt::Display) -> Self {
         Self::Record(format!("{}: {message}", path.display()))
     }
 
-    /// A record that is wrong on a line.
+    /// Creates an error in a line of a record.
     pub fn line(path: &Path, line: u64, message: impl std::fmt::Display) -> Self {
         Self::Record(format!("{}, line {line}: {message}", path.display()))
     }

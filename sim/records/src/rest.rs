@@ -1,4 +1,4 @@
-//! Where a motion that records give rests or turns back, and what was measured there.
+//! Removal of samples at rest and at reversals of a given motion.
 
 use eomgen_model_spec::ids::{CoordinateId, DefinitionId};
 use eomgen_model_spec::model::{Expr, ExprKind, Model};
@@ -7,15 +7,14 @@ use crate::dataset::{Dataset, Quantity};
 use crate::noise;
 use crate::record::Record;
 
-/// A rate of fewer standard deviations of its noise is rest.
+/// Rate below which a coordinate is at rest, in standard deviations of its noise.
 const AT_REST: f64 = 4.0;
 
-/// A rate below this part of the record's largest is rest, whatever its noise.
+/// Rate below which a coordinate is at rest, relative to the record's largest, without noise.
 const LEAST_RATE: f64 = 1e-9;
 
-/// Leaves out of the channels what was measured at rest: friction may hold any load there, and which
-/// one it is no model says. An input is left out where a coordinate that it works on rests. Returns
-/// what is worth a remark.
+/// Removes samples of inputs at rest of a coordinate on which they act, and returns notes. Static
+/// friction at rest is not determined by the model.
 pub(crate) fn without_rest(dataset: &mut Dataset, model: &Model) -> Vec<String> {
     let mut notes = Vec::new();
     for place in 0..dataset.channels.len() {
@@ -35,7 +34,7 @@ pub(crate) fn without_rest(dataset: &mut Dataset, model: &Model) -> Vec<String> 
             }
             if count > 0 {
                 notes.push(format!(
-                    "{}: {count} of {} samples of `{name}` are left out: at rest and beside it friction may hold any load",
+                    "{}: {count} of {} samples of `{name}` are ignored: the friction force at rest and at reversals is unknown",
                     record.name,
                     record.times.len()
                 ));
@@ -45,7 +44,7 @@ pub(crate) fn without_rest(dataset: &mut Dataset, model: &Model) -> Vec<String> 
     notes
 }
 
-/// The coordinates on which an input works.
+/// Returns the coordinates on which an input acts.
 fn worked_on(model: &Model, input: usize) -> Vec<usize> {
     let mut found = Vec::new();
     for force in &model.forces {
@@ -66,7 +65,7 @@ fn worked_on(model: &Model, input: usize) -> Vec<usize> {
     found
 }
 
-/// Whether an expression holds such a part, through definitions.
+/// Returns true if an expression contains such a part, directly or in a definition.
 fn holds(model: &Model, expr: &Expr, is: &dyn Fn(&ExprKind) -> bool) -> bool {
     let mut found = false;
     let mut definitions: Vec<DefinitionId> = Vec::new();
@@ -89,8 +88,8 @@ fn holds(model: &Model, expr: &Expr, is: &dyn Fn(&ExprKind) -> bool) -> bool {
     found
 }
 
-/// For each sample of a record whether one of these coordinates rests, or turns back beside it: which
-/// way friction acts there is not known.
+/// Returns true for each sample at which one of these coordinates is at rest or reverses nearby.
+/// The direction of friction is unknown there.
 fn at_rest(record: &Record, model: &Model, coordinates: &[usize]) -> Vec<bool> {
     let (inputs, count) = (model.inputs.len(), model.coordinates.len());
     let mut resting = vec![false; record.times.len()];

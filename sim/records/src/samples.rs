@@ -1,28 +1,30 @@
-//! What one column of samples must be before anything is done with it.
+//! Checks of single columns.
 
 use std::path::Path;
 
 use crate::refusal::Refusal;
 
-/// A record with fewer samples says nothing of a model.
+/// Minimum number of samples of a record.
 pub const FEWEST_SAMPLES: usize = 50;
 
-/// Fewer samples of inputs are no motion to be driven through.
+/// Minimum number of samples of inputs for a simulation.
 pub const FEWEST_OF_INPUTS: usize = 2;
 
-/// An input is held over what is missing of it, a motion goes on as a spline; more than this part is refused.
+/// Maximum fraction of missing samples of an input, which is held over them, or of a given motion,
+/// which is interpolated.
 const MOST_HELD: f64 = 0.1;
 
-/// So many of the usual steps without a sample are a lost stretch; fewer are jitter.
+/// Step, relative to the usual one, above which there is a gap. Smaller deviations are jitter.
 pub(crate) const LOST: f64 = 5.0;
 
-/// Steps that differ from the usual one by more than this part of it are jitter.
+/// Relative deviation of a step from the usual one that counts as jitter.
 pub(crate) const JITTER: f64 = 0.1;
 
-/// Times are finite and ascend, and are `fewest` or more. `lines`: that of each sample.
+/// Checks that times are finite and increasing, with at least `fewest` samples. `lines` are the
+/// line numbers of the samples.
 ///
 /// # Errors
-/// The first line where they do not.
+/// The first invalid line.
 pub fn check_times(
     path: &Path,
     times: &[f64],
@@ -46,23 +48,24 @@ pub fn check_times(
     if times.len() < fewest {
         return Err(Refusal::file(
             path,
-            format!("holds {} samples; expected {fewest} or more", times.len()),
+            format!("has {} samples; expected {fewest} or more", times.len()),
         ));
     }
     Ok(())
 }
 
-/// An input, or a motion that is given, is known nearly everywhere.
+/// Checks that an input or a given motion has few missing samples. `what` is its name in the
+/// message.
 ///
 /// # Errors
-/// One of which much is missing. `what` it is, for people.
+/// A column with too many missing samples.
 pub fn check_known(path: &Path, what: &str, column: &[f64]) -> Result<(), Refusal> {
     let missing = column.iter().filter(|value| !value.is_finite()).count();
     if missing as f64 > MOST_HELD * column.len() as f64 {
         return Err(Refusal::file(
             path,
             format!(
-                "{what}: {missing} of {} samples are missing; expected nearly all of them",
+                "{what}: {missing} of {} samples are missing; expected at most a tenth of them",
                 column.len()
             ),
         ));
@@ -70,14 +73,14 @@ pub fn check_known(path: &Path, what: &str, column: &[f64]) -> Result<(), Refusa
     Ok(())
 }
 
-/// The median of the steps between samples, s.
+/// Returns the median step between samples, in s.
 pub fn typical_step(times: &[f64]) -> f64 {
     let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     steps.sort_by(f64::total_cmp);
     steps.get(steps.len() / 2).copied().unwrap_or(0.0)
 }
 
-/// From a column's smallest value to its largest.
+/// Returns the difference of a column's largest and smallest value.
 pub(crate) fn span(column: &[f64]) -> f64 {
     let known = || column.iter().copied().filter(|v| v.is_finite());
     known().fold(f64::NEG_INFINITY, f64::max) - known().fold(f64::INFINITY, f64::min)

@@ -1,13 +1,13 @@
-//! Units of a dataset file.
+//! Units in a dataset file.
 
 use eomgen_model_spec::diagnostic::Diagnostic;
 use eomgen_model_spec::table::Written;
 use eomgen_model_spec::unit::Unit;
 
-/// A unit of a dataset file that has the dimension of the expected one.
+/// Parses a unit and checks that it has the dimension of the expected one.
 ///
 /// # Errors
-/// What is no unit, or another quantity's.
+/// An unknown unit, or a unit of another dimension.
 pub fn unit(written: &Written, expected: &str) -> Result<Unit, Diagnostic> {
     let wrong = |message: String| Diagnostic::error(message);
     let text = &written.text;

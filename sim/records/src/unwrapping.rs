@@ -1,28 +1,29 @@
-//! Unwrapping: the continuous motion behind values that are known only up to whole periods, as those of
-//! an angle between -180 and 180 degrees or of a counter that rolls over.
+//! Unwrapping: recovers the continuous motion from values that are known up to whole periods, for
+//! example an angle from -180 to 180 degrees or a counter that overflows.
 
 use crate::samples::typical_step;
 
-/// A step longer than this many usual ones has a gap in it.
+/// Step, relative to the usual one, above which there is a gap.
 const GAP: f64 = 1.5;
 
-/// The largest difference, in periods, between the motions that the speeds before and after a gap make of it.
+/// Largest difference, in periods, between extrapolations over a gap with the speeds before and
+/// after it.
 const MOST_UNKNOWN: f64 = 0.25;
 
-/// Number of steps whose median rate predicts the next value. A single outlier does not move the median.
+/// Number of steps whose median rate predicts the next value. A single outlier does not change the
+/// median.
 const RECENT: usize = 5;
 
-/// An unwrapped column.
 pub(crate) struct Unwrapped {
-    /// The values; NaN where a sample is missing.
+    /// Values; NaN for a missing sample.
     pub values: Vec<f64>,
-    /// Gaps over which the number of periods is not known: the times of the samples before and after.
+    /// Gaps with an unknown number of periods, as times of the samples before and after.
     pub unknown: Vec<(f64, f64)>,
 }
 
-/// Unwraps a column with missing samples as NaN. The first sample keeps its value. Of the values that a
-/// sample can stand for, the one nearest to the extrapolated motion is taken: the motion may turn by more
-/// than half a period from sample to sample if its rate changes by less.
+/// Unwraps a column with NaN for missing samples. The first sample keeps its value. Each further
+/// sample gets the number of periods that is nearest to the extrapolated motion. The motion may
+/// exceed half a period per sample if its rate changes by less.
 pub(crate) fn unwrapped(times: &[f64], column: &[f64], period: f64) -> Unwrapped {
     let samples: Vec<usize> = (0..column.len())
         .filter(|sample| column[*sample].is_finite())
@@ -59,29 +60,31 @@ pub(crate) fn unwrapped(times: &[f64], column: &[f64], period: f64) -> Unwrapped
     Unwrapped { values, unknown }
 }
 
-/// The samples of a column that are not missing.
+/// Known samples of a column.
 struct Wrapped {
     times: Vec<f64>,
     values: Vec<f64>,
     period: f64,
-    /// The longest step without a gap.
+    /// Longest step without a gap.
     longest: f64,
 }
 
 impl Wrapped {
-    /// The periods to add at a sample, relative to the sample before, for a motion at this rate.
+    /// Returns the periods to add at a sample, relative to the sample before, for a motion with
+    /// this rate.
     fn turns(&self, k: usize, rate: f64) -> f64 {
         let expected = rate * (self.times[k] - self.times[k - 1]);
         ((expected - (self.values[k] - self.values[k - 1])) / self.period).round()
     }
 
-    /// The rate up to a sample, with these periods added.
+    /// Returns the rate up to a sample after these periods are added.
     fn rate(&self, k: usize, turns: f64) -> f64 {
         let step = self.values[k] - self.values[k - 1] + self.period * turns;
         step / (self.times[k] - self.times[k - 1])
     }
 
-    /// The rate from a sample on, if steps without a gap follow. `guess` is an approximate rate.
+    /// Returns the rate after a sample, if steps without a gap follow. `guess` is an approximate
+    /// rate.
     fn rate_from(&self, first: usize, guess: f64) -> Option<f64> {
         let mut rates = Vec::new();
         for k in first + 1..self.times.len().min(first + 1 + RECENT) {
@@ -95,7 +98,6 @@ impl Wrapped {
     }
 }
 
-/// Appends a rate and drops the oldest one.
 fn remember(recent: &mut Vec<f64>, rate: f64) {
     if recent.len() == RECENT {
         recent.remove(0);
@@ -103,7 +105,6 @@ fn remember(recent: &mut Vec<f64>, rate: f64) {
     recent.push(rate);
 }
 
-/// The median; none of no numbers.
 pub(crate) fn median(numbers: &[f64]) -> Option<f64> {
     let mut sorted = numbers.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -120,13 +121,13 @@ mod tests {
         (0..count).map(|k| STEP * k as f64).collect()
     }
 
-    /// The values in 0..360, rounded to what a counter of 4096 per turn shows.
+    /// Returns values in 0..360, rounded to the counts of a sensor with 4096 per turn.
     fn wrapped(motion: &[f64]) -> Vec<f64> {
         let counter = |v: &f64| (v.rem_euclid(360.0) / 360.0 * 4096.0).floor() / 4096.0 * 360.0;
         motion.iter().map(counter).collect()
     }
 
-    /// The largest error of an unwrapped motion that begins between 0 and 360.
+    /// Returns the largest error of an unwrapped motion that starts between 0 and 360.
     fn error(motion: &[f64], column: &[f64]) -> f64 {
         let found = unwrapped(&times(motion.len()), column, 360.0);
         assert!(found.unknown.is_empty(), "{:?}", found.unknown);
@@ -136,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn motion_is_recovered_up_to_nearly_half_a_turn_per_sample_and_beyond() {
+    fn unwrapping_recovers_fast_motion() {
         for per_sample in [0.3, 90.0, 175.0] {
             for sign in [1.0, -1.0] {
                 let motion: Vec<f64> = (0..500)
@@ -151,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn noise_beside_the_wrap_and_outliers_leave_no_turn_behind() {
+    fn unwrapping_tolerates_noise_and_outliers() {
         let motion: Vec<f64> = (0..600)
             .map(|k| 360.0 + 30.0 * (0.05 * f64::from(k)).sin() + 5.0 * (2.7 * f64::from(k)).sin())
             .collect();
@@ -165,12 +166,12 @@ mod tests {
     }
 
     #[test]
-    fn turns_in_a_gap_follow_from_the_speed_around_it_or_are_unknown() {
+    fn turns_in_gap_follow_from_speed_or_are_unknown() {
         let motion: Vec<f64> = (0..400).map(|k| 5.0 + 100.0 * f64::from(k)).collect();
         let mut column = wrapped(&motion);
         column[200..230].fill(f64::NAN);
         assert!(error(&motion, &column) < 0.1);
-        // Twice as fast behind the gap.
+        // Twice as fast after the gap.
         let motion: Vec<f64> = (0..400)
             .map(|k| 50.0 * f64::from(k.min(215)) + 100.0 * f64::from((k - 215).max(0)))
             .collect();

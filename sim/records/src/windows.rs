@@ -1,58 +1,57 @@
-//! Records cut into windows, each simulated from a state of its own. How that state is found
-//! is decided elsewhere.
+//! Windows of records. Each window is simulated from a separate initial state.
 
 use eomgen_sim::inputs::HeldInputs;
 
 use crate::record::Record;
 use crate::samples::typical_step;
 
-/// Samples at a window's beginning and end that sensors which are late, or early, may see from
-/// outside of it.
+/// Samples at a window's start and end that a delayed, or early, sensor can read from outside of
+/// it.
 const MARGIN: (usize, usize) = (LONGEST_DELAY as usize, LONGEST_LEAD as usize);
 
-/// The longest delay that a sensor may have, in samples: what a filter of a few samples and a
-/// bus make together. So many samples at the beginning of each window cannot be judged.
+/// Largest delay of a sensor, in samples: a short filter and a bus together. As many samples at the
+/// start of each window are ignored.
 pub const LONGEST_DELAY: f64 = 8.0;
 
-/// How far a sensor may seem to see ahead, in samples: four standard deviations of its prior.
+/// Largest lead of a sensor, in samples: four standard deviations of its prior.
 pub const LONGEST_LEAD: f64 = 2.0;
 
-/// Which of so many samples of a window are compared: not those that a sensor which is late, or
-/// early, may see from outside of it, unless these are most of the window.
+/// Returns the samples of a window to compare. Margins for delayed or early sensors are excluded,
+/// unless they are most of the window.
 pub fn judged(samples: usize) -> std::ops::Range<usize> {
     let (begin, end) = MARGIN;
     begin.min(samples / 4)..samples - end.min(samples / 4)
 }
 
-/// A window shorter than this part of the wanted length is not used.
+/// Minimum length of a window, relative to the requested length.
 const SHORTEST: f64 = 0.5;
 
-/// A part of a record.
+/// Part of a record.
 #[derive(Clone, Debug)]
 pub struct Window {
-    /// The record's place in the list.
+    /// Index of the record.
     pub record: usize,
-    /// Its first sample in the record.
+    /// Index of its first sample in the record.
     pub first: usize,
-    /// The times of its samples, s.
+    /// Times of its samples, in s.
     pub times: Vec<f64>,
-    /// What was measured: a row per sample, a number per channel, NaN where missing.
+    /// Measurements, with a row per sample and a number per channel; NaN if missing.
     pub measured: Vec<f64>,
-    /// The window that ends where this one begins.
+    /// Index of the window that ends at the start of this one.
     pub follows: Option<usize>,
 }
 
-/// Windows and the records they are cut from.
+/// Windows and their records.
 #[derive(Clone, Debug)]
 pub struct Windows<'d> {
-    /// The records.
+    /// Records that are split.
     pub records: &'d [Record],
-    /// The windows, record by record, in order of time.
+    /// Windows, by record and time.
     pub list: Vec<Window>,
 }
 
 impl<'d> Windows<'d> {
-    /// Cuts records into windows of this length, s, or takes each as one.
+    /// Splits records into windows of this length in s, or uses each record as one window.
     pub fn cut(records: &'d [Record], length: Option<f64>) -> Self {
         let mut list: Vec<Window> = Vec::new();
         for (place, record) in records.iter().enumerate() {
@@ -97,13 +96,13 @@ impl<'d> Windows<'d> {
         Self { records, list }
     }
 
-    /// How many numbers all windows hold, one per sample and channel.
+    /// Returns the number of measurements in all windows, missing ones included.
     pub fn numbers(&self) -> f64 {
         let counts = self.list.iter().map(|window| window.measured.len());
         counts.sum::<usize>() as f64
     }
 
-    /// The inputs of a window's record.
+    /// Returns the inputs of a window's record.
     pub fn inputs(&self, window: &Window) -> &HeldInputs {
         &self.records[window.record].inputs
     }

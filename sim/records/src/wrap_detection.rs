@@ -1,63 +1,62 @@
-//! Detection of wrapped columns. A motion that crosses the end of a sensor's range jumps to the other
-//! end and goes on at the same speed, against the jump. A square wave jumps as far, but rests at its
-//! levels; what rests proves nothing.
+//! Detection of wrapped columns. A motion that leaves a sensor's range at one end jumps to the
+//! other end and continues at the same speed, opposite to the jump. A square wave has similar
+//! jumps, but rests at its levels, and rest proves nothing.
 
 use crate::noise;
 use crate::unwrapping::{median, unwrapped};
 use crate::wrap_period::{ColumnUnit, estimate_period};
 
-/// The fewest samples that are examined.
+/// Minimum number of samples.
 const FEWEST: usize = 10;
 
-/// The largest relative difference between the jumps of one column, of the range from the period, and of a
-/// declared period from the one that is seen.
+/// Largest relative difference between the jumps of a column, between range and period, and between
+/// a declared and a detected period.
 pub(crate) const ALIKE: f64 = 0.1;
 
-/// Motion beyond this many standard deviations of the noise is motion.
+/// Minimum motion, in standard deviations of the noise.
 const MOVES: f64 = 5.0;
 
-/// Jumps forth and back within this many samples are one crossing with noise.
+/// Number of samples within which jumps back and forth are one crossing with noise.
 const CHATTER: usize = 20;
 
-/// Number of samples beside a crossing in which the motion must leave its noise.
+/// Number of samples around a crossing within which the motion must exceed its noise.
 const REACH: usize = 1000;
 
-/// The part of all crossings that must continue at the same speed.
+/// Minimum fraction of crossings that continue at the same speed.
 const MOST: f64 = 0.8;
 
-/// Number of steps beside a jump that give its speed.
+/// Number of steps around a jump that determine its speed.
 const BESIDE: usize = 5;
 
-/// Jumps of one common size in a column.
+/// Jumps of equal size in a column.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WrapPattern {
-    /// Their size, in the unit of the values: a usual period exactly if it is within the uncertainty.
+    /// Size in the unit of the values. A usual period within the uncertainty is exact.
     pub period: f64,
-    /// Half the width of the interval in which the jumps place the period; none if they give it as closely
-    /// as the sensor does.
+    /// Half width of the interval of the period; `None` if the jumps determine it to the resolution
+    /// of the sensor.
     pub uncertainty: Option<f64>,
-    /// True if the period is a usual one.
     pub is_usual: bool,
-    /// The time of the first.
+    /// Time of the first jump.
     pub first: f64,
-    /// How many there are.
+    /// Number of jumps.
     pub count: usize,
-    /// Whether the period is a full turn.
+    /// True if the period is a full turn.
     pub is_turn: bool,
-    /// Whether the motion goes on in one direction from one jump to the next: between these it travels
-    /// through the whole range.
+    /// True if the motion travels through the whole range, in one direction from one jump to the
+    /// next.
     pub travels: bool,
 }
 
 impl WrapPattern {
-    /// Whether it shows that the column is wrapped. An input may have any shape: only jumps of a full turn
-    /// show that one is.
+    /// Returns true if the column is wrapped. An input can have any shape, so only jumps of a full
+    /// turn prove it.
     pub fn is_wrapped(&self, is_input: bool) -> bool {
         self.is_turn || (self.travels && !is_input)
     }
 
-    /// Returns the period as a dataset file states it, from the number in a unit: a usual one in full,
-    /// others to a digit beyond their uncertainty.
+    /// Returns the number for a dataset file: a usual period in full, others to one digit beyond
+    /// their uncertainty.
     pub fn written(&self, period: f64) -> String {
         if self.is_turn {
             return format!("{period}");
@@ -72,19 +71,19 @@ impl WrapPattern {
         format!("{}", rounded.unwrap_or(period))
     }
 
-    /// Returns the uncertainty of the period in its unit, as a remark; none if the jumps give it as closely as
-    /// the sensor does.
+    /// Returns the uncertainty of the period as a remark; `None` if it is below the resolution of
+    /// the sensor.
     pub fn doubt(&self, period: f64) -> Option<String> {
         let own = self.uncertainty? / self.period * period;
         let rounded = format!("{own:.0e}").parse::<f64>().unwrap_or(own);
         Some(format!(
-            "uncertain by {rounded}: the data sheet of the sensor has it exactly"
+            "uncertain by {rounded}; the exact value is in the sensor's data sheet"
         ))
     }
 }
 
-/// The pattern of a wrapped column; none if it has no jumps or they do not look like crossings of a
-/// range's end.
+/// Returns the pattern of a wrapped column; `None` without jumps, or if they do not look like
+/// crossings of the range's ends.
 pub(crate) fn wrap_pattern(times: &[f64], column: &[f64], unit: ColumnUnit) -> Option<WrapPattern> {
     let samples: Vec<usize> = (0..column.len())
         .filter(|sample| column[*sample].is_finite())
@@ -119,8 +118,8 @@ pub(crate) fn wrap_pattern(times: &[f64], column: &[f64], unit: ColumnUnit) -> O
     })
 }
 
-/// Returns the samples before the jumps of a column; none if the sizes of the jumps, less the motion at
-/// each, differ or are not that of the range.
+/// Returns the samples before the jumps of a column. Returns `None` if the sizes of the jumps,
+/// minus the motion at each, differ from each other or from the range.
 fn common_jumps(values: &[f64]) -> Option<Vec<usize>> {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -148,19 +147,19 @@ fn common_jumps(values: &[f64]) -> Option<Vec<usize>> {
     (fills && alike as f64 >= MOST * sizes.len() as f64).then_some(jumps)
 }
 
-/// A crossing of the range's end: one jump, or several forth and back by noise.
+/// Crossing of the range's end: one jump, or several back and forth by noise.
 struct Crossing {
-    /// The last sample before its first jump.
+    /// Last sample before its first jump.
     before: usize,
-    /// The first sample after its last jump.
+    /// First sample after its last jump.
     after: usize,
-    /// The sign of the motion.
+    /// Sign of the motion.
     direction: f64,
 }
 
 impl Crossing {
-    /// Whether the motion goes through the crossing in its direction, on both sides of it; none if it does
-    /// not leave its noise on one of them.
+    /// Returns true if the motion continues in its direction on both sides of the crossing. Returns
+    /// `None` if it stays within the noise on one side.
     fn is_continued(&self, motion: &[f64], threshold: f64) -> Option<bool> {
         let level = 0.5 * (motion[self.before] + motion[self.after]);
         let away = |value: &&f64| (**value - level).abs() > threshold;
@@ -172,7 +171,7 @@ impl Crossing {
     }
 }
 
-/// The crossings that jumps make. Those that end where they began are left out.
+/// Returns the crossings of all jumps, without those that end at their start.
 fn crossings(jumps: &[usize], values: &[f64]) -> Vec<Crossing> {
     let mut found: Vec<(Crossing, f64)> = Vec::new();
     for jump in jumps {
@@ -202,16 +201,14 @@ mod tests {
     use super::{WrapPattern, wrap_pattern};
     use crate::wrap_period::ColumnUnit;
 
-    /// Degrees.
     const UNIT: ColumnUnit = ColumnUnit {
         size: 1.0,
         turn: Some(360.0),
     };
 
-    /// Values by sample.
     type Motion<'a> = &'a dyn Fn(usize) -> f64;
 
-    /// Reproducible numbers between -1 and 1.
+    /// Returns reproducible numbers between -1 and 1.
     fn noise(k: usize) -> f64 {
         2.0 * ((k as f64 * 12.9898).sin() * 43_758.545).fract().abs() - 1.0
     }
@@ -227,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn wrapped_angles_are_found_with_their_turn() {
+    fn wrapped_angles_are_detected() {
         let swing = |k: usize| 170.0 + 40.0 * (0.03 * k as f64).sin() + 0.5 * noise(k);
         let fast = |k: usize| 130.0 * k as f64 + 0.2 * noise(k);
         let slow = |k: usize| 0.4 * k as f64 + 0.5 * noise(k);
@@ -251,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn a_counter_that_rolls_over_is_found_with_its_size() {
+    fn counter_overflow_is_detected_with_its_period() {
         let found = pattern(|k| (between(0.0, 4096.0, 61.3 * k as f64)).floor());
         let found = found.expect("a counter");
         assert!((found.period - 4096.0).abs() < 10.0, "{}", found.period);
@@ -261,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn jumps_that_are_real_are_no_wrapping() {
+    fn real_jumps_are_not_wrapping() {
         let square = |k: usize| {
             if (k / 70).is_multiple_of(2) {
                 180.0

@@ -1,54 +1,53 @@
-//! The period of a wrapped column, estimated from its jumps. A jump is the period less the motion of one
-//! sample; the steps beside it give that motion, and the scatter of regular steps about the steps beside
-//! them gives the uncertainty.
+//! Period of a wrapped column, estimated from its jumps. A jump is the period minus the motion of
+//! one sample, which follows from the steps around it. The scatter of regular steps gives the
+//! uncertainty.
 
 use crate::unwrapping::median;
 
-/// Number of steps on each side of a jump that give the motion of one sample there.
+/// Number of steps on each side of a jump that determine the motion of one sample.
 const BESIDE: usize = 5;
 
 /// Uncertainty of the period, in standard errors.
 const STANDARD_ERRORS: f64 = 4.0;
 
-/// Least uncertainty of the period, in standard deviations of one jump.
-/// The noise of a slow motion decides when it jumps, and that error does not average out.
+/// Minimum uncertainty of the period, in standard deviations of one jump. Noise determines the time
+/// of a jump in slow motion, and that error does not average out.
 const DEVIATIONS: f64 = 2.0;
 
-/// The largest uncertainty, relative to the period, with which a usual period is named.
+/// Largest uncertainty, relative to the period, with which a usual period is proposed.
 const MOST_UNCERTAIN: f64 = 0.01;
 
-/// Changes of the steps below this part of the range are rounding, not the resolution of the sensor.
+/// Fraction of the range below which changes of the steps are rounding, not the resolution of the
+/// sensor.
 const ROUNDING: f64 = 1e-5;
 
-/// Powers of two at which counters roll over.
+/// Powers of two at which counters overflow.
 const BITS: std::ops::RangeInclusive<i32> = 3..=32;
 
-/// Leading digits of usual decimal periods, as of 1000, 2500 or 3600.
+/// Leading digits of usual decimal periods, for example 1000, 2500 or 3600.
 const DECIMALS: [f64; 6] = [1.0, 2.0, 2.5, 3.6, 4.0, 5.0];
 
 /// Half a turn in degrees.
 const HALF_TURN_DEG: f64 = 180.0;
 
-/// The unit of a column.
+/// Unit of a column.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ColumnUnit {
-    /// The unit, in that of the values.
+    /// Size of the unit, in the unit of the values.
     pub size: f64,
-    /// A full turn, in the unit of the values, if the column holds an angle or a number.
+    /// Full turn in the unit of the values, for an angle or a dimensionless number.
     pub turn: Option<f64>,
 }
 
-/// An estimated period, in the unit of the values.
+/// Estimated period, in the unit of the values.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Period {
-    /// A usual period exactly, if just one is within the uncertainty.
+    /// Exact if a single usual period is within the uncertainty.
     pub value: f64,
-    /// Half the width of the interval in which the jumps place it; none for a full turn, and for a usual one
-    /// that they give to the resolution of the sensor.
+    /// Half width of the interval of the period; `None` for a full turn, and for a usual period
+    /// that the jumps determine to the resolution of the sensor.
     pub uncertainty: Option<f64>,
-    /// True for a usual period.
     pub is_usual: bool,
-    /// True for a full turn.
     pub is_turn: bool,
 }
 
@@ -99,7 +98,7 @@ pub(crate) fn estimate_period(values: &[f64], jumps: &[usize], unit: ColumnUnit)
     })
 }
 
-/// Returns usual periods of the order of the one seen.
+/// Returns usual periods near `seen`.
 fn usual_periods(seen: f64, unit: ColumnUnit) -> Vec<f64> {
     let order = (seen / unit.size).log10().floor() as i32;
     let decimals =
@@ -119,7 +118,7 @@ fn is_whole_number(value: f64) -> bool {
     (value - value.round()).abs() <= 1e-9 * value.abs().max(1.0)
 }
 
-/// The steps from sample to sample of a column with jumps.
+/// Steps between samples of a column with jumps.
 struct Steps<'v> {
     values: &'v [f64],
     jumps: &'v [usize],
@@ -140,7 +139,7 @@ impl Steps<'_> {
         near.filter(move |other| *other != k && self.is_regular(*other))
     }
 
-    /// Returns the step at `k` less the mean of the regular steps near it.
+    /// Returns the step at `k` minus the mean of the regular steps near it.
     fn excess(&self, k: usize) -> f64 {
         let (sum, count) = self.near(k).fold((0.0, 0.0), |(sum, count), other| {
             (sum + self.step(other), count + 1.0)
@@ -157,8 +156,8 @@ impl Steps<'_> {
         f64::sqrt(sum / f64::max(count, 1.0))
     }
 
-    /// Returns the least change from one regular step to the next, 0 if there is none: the resolution of a
-    /// sensor whose values are multiples of it.
+    /// Returns the smallest change between regular steps, 0 without any: the resolution of a sensor
+    /// with quantised values.
     fn resolution(&self) -> f64 {
         let low = self.values.iter().copied().fold(f64::INFINITY, f64::min);
         let high = self

@@ -1,5 +1,4 @@
-//! What is done about columns whose values wrap around: those that the dataset file declares are unwrapped,
-//! others that look wrapped are refused.
+//! Unwraps columns with a declared period and rejects other columns that look wrapped.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -17,28 +16,26 @@ use crate::unwrapping::unwrapped;
 use crate::wrap_detection::{ALIKE, WrapPattern, wrap_pattern};
 use crate::wrap_period::ColumnUnit;
 
-/// A period that differs from a full or a half turn by less than this part is one that was rounded.
+/// Relative difference below which a period is a rounded full or half turn.
 const ROUNDED: f64 = 1e-3;
 
-/// A wrapped column spans at most this many periods, its noise included.
+/// Largest range of a wrapped column in periods, noise included.
 const MOST_PERIODS: f64 = 1.1;
 
-/// A column that is read.
+/// Column to read.
 pub(crate) struct ReadColumn<'d> {
-    /// The table that describes it: `inputs`, `motion` or `channels`.
+    /// Table of the dataset file: `inputs`, `motion` or `channels`.
     table: &'static str,
-    /// The table's entry.
+    /// Name of the table's entry.
     name: &'d str,
-    /// What the dataset file says of it.
     pub column: &'d Column,
-    /// Its unit.
     pub unit: &'d Unit,
-    /// Its value at the beginning of a file, SI, if that is known.
+    /// Known value at the start of a file, in SI.
     start: Option<f64>,
 }
 
 impl<'d> ReadColumn<'d> {
-    /// The column of an entry of a table, of which no value is known.
+    /// Creates the column of a table's entry, without a known value.
     pub fn of(table: &'static str, name: &'d str, column: &'d Column, unit: &'d Unit) -> Self {
         Self {
             table,
@@ -49,12 +46,11 @@ impl<'d> ReadColumn<'d> {
         }
     }
 
-    /// The same column with its value at the beginning of a file, SI.
+    /// Sets its value at the start of a file, in SI.
     pub fn starting_at(self, start: Option<f64>) -> Self {
         Self { start, ..self }
     }
 
-    /// Returns the unit, in SI.
     fn column_unit(&self) -> ColumnUnit {
         ColumnUnit {
             size: self.unit.to_si(1.0) - self.unit.to_si(0.0),
@@ -62,13 +58,13 @@ impl<'d> ReadColumn<'d> {
         }
     }
 
-    /// A full turn in SI, if the column may hold angles.
+    /// Returns a full turn in SI, if the column can contain angles.
     fn turn(&self) -> Option<f64> {
         full_turn(self.unit).map(|turn| self.unit.to_si(turn))
     }
 
-    /// The declared period, SI. One that is a rounded full or half turn is that turn: its error would grow
-    /// with every turn.
+    /// Returns the declared period in SI. A rounded full or half turn becomes exact, because its
+    /// error would accumulate with every turn.
     fn period(&self, number: Number) -> f64 {
         let period = self.unit.to_si(number.value);
         let turns = self.turn().into_iter().flat_map(|turn| [turn, 0.5 * turn]);
@@ -77,12 +73,12 @@ impl<'d> ReadColumn<'d> {
     }
 }
 
-/// A full turn in a unit of angles or of pure numbers.
+/// Returns a full turn in a unit of angles or in a dimensionless unit.
 fn full_turn(unit: &Unit) -> Option<f64> {
     (unit.dimension == Dimension::NONE).then(|| unit.from_si(TAU))
 }
 
-/// Returns the unit of a column whose values are in that unit.
+/// Returns the unit of a column with values in that unit.
 pub(crate) fn own_unit(unit: &Unit) -> ColumnUnit {
     ColumnUnit {
         size: 1.0,
@@ -90,17 +86,17 @@ pub(crate) fn own_unit(unit: &Unit) -> ColumnUnit {
     }
 }
 
-/// Whether a quantity of this unit can wrap around: angles, counts and lengths can.
+/// Returns true for angles, counts and lengths, which can wrap around.
 pub(crate) fn can_wrap(unit: &Unit) -> bool {
     [Dimension::NONE, Dimension::LENGTH].contains(&unit.dimension)
 }
 
-/// Unwraps the declared columns behind the times of a table; returns remarks. `range`: the file and the
-/// stretch of time that is used of it.
+/// Unwraps the declared columns after the times of a table and returns notes. `range` is the file
+/// and the time range in use.
 ///
 /// # Errors
-/// A column that is wrapped and not declared so, a period that is not the column's, and a gap inside the
-/// stretch over which the number of periods is not known.
+/// A wrapped column without `wrap`, a wrong period, or a gap inside the range with an unknown
+/// number of periods.
 pub(crate) fn unwrap_columns(
     read: &[ReadColumn<'_>],
     (file, range): (&Path, Range<f64>),
@@ -127,7 +123,7 @@ pub(crate) fn unwrap_columns(
     Ok(notes)
 }
 
-/// Checks that a declared period is the column's.
+/// Checks a declared period.
 fn check_period(
     column: &ReadColumn<'_>,
     number: Number,
@@ -136,7 +132,7 @@ fn check_period(
 ) -> Result<(), Diagnostic> {
     let (name, unit, period) = (column.name, column.unit, column.period(number));
     let wrong = |message: String, help: String| {
-        let wrong = Diagnostic::error(message).at(number.span, "this is not its period");
+        let wrong = Diagnostic::error(message).at(number.span, "not the period of the column");
         Err(wrong.help(help))
     };
     let spanned = span(values);
@@ -147,7 +143,7 @@ fn check_period(
                 "the column of `{name}` spans {}, more than one period",
                 with_unit(spanned, unit)
             ),
-            "expected how far the sensor counts before it starts again; leave `wrap` out if it does not"
+            "write the range of the sensor, or remove `wrap` if the values do not wrap around"
                 .to_owned(),
         );
     }
@@ -166,7 +162,7 @@ fn check_period(
     }
 }
 
-/// Returns a size in a unit, as messages give it.
+/// Returns a size with its unit, for messages.
 fn with_unit(size: f64, unit: &Unit) -> String {
     match unit.to_string().as_str() {
         "1" => format!("{size:.4}"),
@@ -174,7 +170,7 @@ fn with_unit(size: f64, unit: &Unit) -> String {
     }
 }
 
-/// Returns the key to write for a period in its unit, at a place, with the uncertainty of the period.
+/// Returns the key to write for a period, with the uncertainty of the period.
 fn proposed_key(pattern: &WrapPattern, period: f64, place: &str) -> String {
     let key = format!("write wrap = {}{place}", pattern.written(period));
     match pattern.doubt(period) {
@@ -183,7 +179,6 @@ fn proposed_key(pattern: &WrapPattern, period: f64, place: &str) -> String {
     }
 }
 
-/// Unwraps one column.
 fn unwrap_column(
     column: &ReadColumn<'_>,
     number: Number,
@@ -206,7 +201,7 @@ fn unwrap_column(
                 "`{name}` is missing {place}, and its speed changes there: the number of turns is not known"
             ))
             .at(column.column.column.span(), "in this column")
-            .help("list the parts of the file before and after it, with from and to"));
+            .help("list the parts of the file before and after the gap, with from and to"));
         }
     }
     *values = found.values;
@@ -218,7 +213,7 @@ fn unwrap_column(
     Ok(notes)
 }
 
-/// Refuses a column that is wrapped and not declared so; returns a remark if it only may be wrapped.
+/// Rejects a wrapped column without `wrap`; returns a note if it is uncertain.
 fn refuse_wrapped(
     column: &ReadColumn<'_>,
     file: &Path,

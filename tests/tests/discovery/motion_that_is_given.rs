@@ -204,7 +204,7 @@ fn what_a_joint_takes_beyond_the_model_is_named() {
     let found = found(0.6, 0.0, DATASET);
     is_friction(&found, 0.01);
     let notes = found["notes"].to_string();
-    let said = "of 1500 samples of `tau_2` are left out: at rest and beside it";
+    let said = "of 1500 samples of `tau_2` are ignored: the friction force at rest";
     assert!(notes.contains(said), "{notes}");
     // The masses are two percent off, and their gravity shows it.
     let masses = found["refitted"].to_string();

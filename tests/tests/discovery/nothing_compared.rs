@@ -65,7 +65,10 @@ fn a_set_whose_records_are_all_shorter_than_a_window_is_refused() {
     let sound = record(0.0, 1.0);
     let lines: Vec<&str> = sound.lines().take(61).collect();
     measured.write("test.csv", (lines.join("\n") + "\n").as_bytes());
-    let parts = ["no test record lasts one window of 0.5 s", "lasts 0.295"];
+    let parts = [
+        "no test record is as long as one window of 0.5 s",
+        "lasts 0.295",
+    ];
     refuses(&measured, "length = 0.25", "length = 0.5", &parts);
 }
 
@@ -80,7 +83,7 @@ fn a_record_shorter_than_half_a_window_is_noted() {
         .replacen("0.25", "0.8", 1);
     measured.write("dataset.toml", description.as_bytes());
     let (result, warned) = measured.answered("compare", "short");
-    let note = "train[1]: it lasts 0.295000 s, less than half a window, and is not used";
+    let note = "train[1]: the record lasts 0.295000 s, less than half a window, and is ignored";
     assert!(warned.contains(note), "{warned}");
     assert!(result["notes"].to_string().contains(note), "{result:#}");
 }
@@ -95,7 +98,7 @@ fn windows_of_which_nothing_is_measured_are_refused() {
     };
     measured.write("train.csv", with(2, holes).as_bytes());
     let parts = [
-        "channel `q`: of all training records 0 samples lie inside of windows",
+        "channel `q` has 0 samples in the windows of all training records",
         "train.csv",
     ];
     refuses(&measured, "length = 0.25", "length = 0.02", &parts);
@@ -132,7 +135,7 @@ fn a_model_that_does_not_run_through_its_windows_is_refused() {
 #[test]
 fn a_noise_larger_than_every_motion_is_refused() {
     let measured = Measured::stage(3.0);
-    let parts = ["dataset.toml:18:9", "nothing but noise"];
+    let parts = ["dataset.toml:18:9", "contain only noise"];
     refuses(&measured, "noise = 1e-6", "noise = 10", &parts);
     refuses(&measured, "noise = 1e-6", "noise = 1e300", &parts);
 }
@@ -163,7 +166,7 @@ fn records_that_are_too_short_or_empty_are_refused() {
             let measured = Measured::stage(0.0);
             measured.write(file, (lines.join("\n") + "\n").as_bytes());
             let message = refused(&measured);
-            let part = format!("holds {samples} samples");
+            let part = format!("has {samples} samples");
             assert!(
                 message.contains(file) && message.contains(&part),
                 "{message}"
@@ -189,7 +192,7 @@ fn channels_and_records_that_are_not_there_are_refused_with_their_place() {
         &measured,
         channel,
         "",
-        &["dataset.toml:2:2", "nothing would be compared"],
+        &["dataset.toml:2:2", "there is nothing to compare"],
     );
     for (from, to, parts) in [
         (

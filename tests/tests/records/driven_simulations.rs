@@ -174,9 +174,9 @@ fn a_record_can_be_cut_short_and_begin_late() {
 fn records_that_are_none_are_refused() {
     for (record, part) in [
         ("", "is empty"),
-        ("time,f\n", "holds 0 samples"),
-        ("time,f\n0,1\n", "holds 1 samples; expected 2 or more"),
-        ("time,g\n0,1\n1,2\n", "no column `f`; there are time, g"),
+        ("time,f\n", "has 0 samples"),
+        ("time,f\n0,1\n", "has 1 samples; expected 2 or more"),
+        ("time,g\n0,1\n1,2\n", "no column `f`; the file has time, g"),
         ("t,f\n0,1\n1,2\n", "no column `time`"),
         (
             "time,f\n0,1\n1,nan\n",
@@ -192,7 +192,7 @@ fn records_that_are_none_are_refused() {
         ),
         (
             "time,f\n0,1\none,2\n",
-            "line 3: column 1: \"one\" is no number",
+            "line 3: column 1: \"one\" is not a number",
         ),
         ("time,f\n0,1\n1,2,3\n", "line 3: has 3 cells"),
         ("time,f,f\n0,1,1\n1,2,2\n", "two columns `f`"),

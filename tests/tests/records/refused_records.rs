@@ -38,7 +38,7 @@ fn training_records_that_are_none_are_refused() {
     let cases: Vec<(Vec<u8>, &str)> = vec![
         (Vec::new(), "is empty"),
         (b"\n\n\n".to_vec(), "train.csv"),
-        (b"t,force,q\n".to_vec(), "holds 0 samples"),
+        (b"t,force,q\n".to_vec(), "has 0 samples"),
         (sound.as_bytes()[..700].to_vec(), "train.csv"),
         (
             sound.as_bytes()[..whole - 20].to_vec(),
@@ -50,10 +50,13 @@ fn training_records_that_are_none_are_refused() {
         ),
         (vec![0; 5000], "train.csv"),
         (b"PAR1 and no more".to_vec(), "no column `t`"),
-        (sound.replace(',', ";").into_bytes(), "parted by semicolons"),
+        (
+            sound.replace(',', ";").into_bytes(),
+            "separated by semicolons",
+        ),
         (
             sound.replacen("force", "torque", 1).into_bytes(),
-            "no column `force`; there are t, torque, q",
+            "no column `force`; the file has t, torque, q",
         ),
         (sound.replacen("t,", "q,", 1).into_bytes(), "no column `t`"),
         (
@@ -86,7 +89,7 @@ fn training_records_that_are_none_are_refused() {
         ),
         (
             replaced(2, 7, |_, _| "oops".to_owned()).into_bytes(),
-            "line 8: column 3: \"oops\" is no number",
+            "line 8: column 3: \"oops\" is not a number",
         ),
         (
             replaced(2, 1, |_, _| "0.25".to_owned()).into_bytes(),
@@ -94,7 +97,7 @@ fn training_records_that_are_none_are_refused() {
         ),
         (
             replaced(2, 1, |i, cell| format!("{cell}e{}", i % 40)).into_bytes(),
-            "expected its unit and its noise",
+            "correct its `unit` or its `noise`",
         ),
         (
             replaced(0, 390, |i, _| format!("{i}e9")).into_bytes(),
@@ -107,7 +110,7 @@ fn training_records_that_are_none_are_refused() {
                 .map(|line| format!("{line}\n"))
                 .collect::<String>()
                 .into_bytes(),
-            "holds 29 samples",
+            "has 29 samples",
         ),
     ];
     let measured = Measured::stage(0.0);
@@ -130,7 +133,11 @@ fn datasets_that_say_something_else_are_refused() {
         ("unit = \"s\"", "unit = \"m\"", "expected s"),
         ("noise = 1e-6", "noise = 0", "greater than 0"),
         ("noise = 1e-6", "noise = nan", "not a finite number"),
-        ("noise = 1e-6", "noise = 1e-30", "its noise to be right"),
+        (
+            "noise = 1e-6",
+            "noise = 1e-30",
+            "correct its `unit` or its `noise`",
+        ),
         ("noise = 1e-6", "", "noise"),
         (
             "[channels.q]",
@@ -140,15 +147,19 @@ fn datasets_that_say_something_else_are_refused() {
         (
             "length = 0.25",
             "length = 1e-9",
-            "holds less than 4 samples",
+            "contains fewer than 4 samples",
         ),
         ("length = 0.25", "length = -1", "expected seconds"),
         ("length = 0.25", "length = \"all\"", "expected \"record\""),
         ("\"rest\"", "\"asleep\"", "expected \"rest\" or"),
-        ("F_v", "F_w", "no such parameter"),
-        ("relative = 0.05", "relative = -1", "greater than 0"),
+        ("F_v", "F_w", "is not a parameter of the model"),
+        (
+            "relative = 0.05",
+            "relative = -1",
+            "expected a fraction of its value",
+        ),
         ("[\"test.csv\"]", "[]", "lists no test record"),
-        ("[\"test.csv\"]", "[\"train.csv\"]", "one file"),
+        ("[\"test.csv\"]", "[\"train.csv\"]", "in one file"),
         ("[\"test.csv\"]", "[\"none.csv\"]", "none.csv"),
         ("[\"test.csv\"]", "[\".\"]", "is not a file"),
         (
@@ -165,7 +176,7 @@ fn datasets_that_say_something_else_are_refused() {
         (
             "[windows]",
             "[experiment]\ninputs.force = { range = [1, -1] }\n[windows]",
-            "nothing lies between 1 and -1",
+            "the range from 1 to -1 is empty",
         ),
         (
             "[windows]",
@@ -175,7 +186,7 @@ fn datasets_that_say_something_else_are_refused() {
         (
             "[windows]",
             "[experiment]\ninputs.force = { band = [-1, 1] }\n[windows]",
-            "no frequency is -1",
+            "a frequency cannot be -1",
         ),
         (
             "[windows]",
@@ -195,7 +206,7 @@ fn datasets_that_say_something_else_are_refused() {
         (
             "[windows]",
             "[experiment]\nduration = 1e9\nsample = 1e-3\n[windows]",
-            "is no record",
+            "is too long",
         ),
     ] {
         let description = DESCRIPTION.replacen(from, to, 1);
@@ -230,10 +241,10 @@ fn a_test_record_that_is_the_training_record_is_refused() {
         }
     });
     for (text, part) in [
-        (sound.clone(), "test[0] is train[0] again;"),
+        (sound.clone(), "test[0] repeats train[0];"),
         (later, "samples later"),
-        (negative, "with the other sign"),
-        (holed, "test[0] is train[0] again;"),
+        (negative, "with the opposite sign"),
+        (holed, "test[0] repeats train[0];"),
     ] {
         measured.write("test.csv", text.as_bytes());
         let message = measured.refused();
@@ -247,7 +258,11 @@ fn two_channels_that_are_one_column_are_refused() {
     let other = "[channels.again]\ncolumn = \"q\"\nobservable = \"q\"\nunit = \"m\"\nnoise = 1e-6\n\n[initial]";
     let description = DESCRIPTION.replacen("[initial]", other, 1);
     measured.write("dataset.toml", description.as_bytes());
-    assert!(measured.refused().contains("are one column"));
+    assert!(
+        measured
+            .refused()
+            .contains("have the same values up to the sign")
+    );
 }
 
 #[test]
@@ -291,7 +306,10 @@ fn huge_records_are_refused_before_they_are_read() {
     // A hole: a gigabyte that takes no room.
     file.set_len(1 << 30).expect("a long file");
     let message = measured.refused();
-    assert!(message.contains("1073741824 bytes; at most"), "{message}");
+    assert!(
+        message.contains("1073741824 bytes, more than the limit"),
+        "{message}"
+    );
     let mut long = "t,force,q\n".to_owned();
     for sample in 0..1_000_002 {
         long += &format!("{sample},0,0\n");
@@ -314,7 +332,7 @@ fn what_weakens_a_record_is_noted() {
     measured.write("train.csv", replaced(2, 1, holes).as_bytes());
     let (result, warned) = measured.answered("compare", "holes");
     assert!(
-        warned.contains("40 samples of `q` are missing and left out"),
+        warned.contains("40 samples of `q` are missing and are ignored"),
         "{warned}"
     );
     assert!(

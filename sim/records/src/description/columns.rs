@@ -1,5 +1,5 @@
-//! `[time]`, `[inputs.NAME]`, `[motion.NAME]` and `[channels.NAME]`: columns of the records, and what is known of
-//! the sensors behind them.
+//! Tables `[time]`, `[inputs.NAME]`, `[motion.NAME]` and `[channels.NAME]`: columns of the records
+//! and priors of the sensors.
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::span::Span;
@@ -8,20 +8,20 @@ use eomgen_model_spec::table::{Entry, Name, Number, Record, Written};
 use super::keys;
 use super::required::required;
 
-/// The least and the most samples of which one is kept.
+/// Allowed values of `every`.
 const EVERY: std::ops::RangeInclusive<i64> = 1..=1_000_000;
 
-/// Which column of the records.
+/// Identification of a column.
 #[derive(Clone, Debug)]
 pub enum ColumnKey {
-    /// The one of this name.
+    /// Name of the column.
     Name(Written),
-    /// The one of this number, from 1 on.
+    /// Number of the column, from 1.
     Number(usize, Span),
 }
 
 impl ColumnKey {
-    /// Where the dataset file says it.
+    /// Returns its place in the dataset file.
     pub fn span(&self) -> Span {
         match self {
             Self::Name(written) => written.span,
@@ -30,96 +30,96 @@ impl ColumnKey {
     }
 }
 
-/// A column of the records.
+/// Column of the records.
 #[derive(Debug)]
 pub struct Column {
-    /// Which one.
+    /// Name or number.
     pub column: ColumnKey,
-    /// Its unit.
+    /// Unit of the values.
     pub unit: Written,
-    /// Whether its values wrap around, if the file says it.
+    /// Wrapping of the values, if declared.
     pub wrap: Option<Wrap>,
 }
 
-/// What a dataset file says of values that jump from one end of a range to the other.
+/// Declaration of jumps from one end of a range to the other.
 #[derive(Clone, Copy, Debug)]
 pub enum Wrap {
-    /// They wrap around after this much, in the column's unit.
+    /// Period of wrapped values, in the column's unit.
     Period(Number),
-    /// Jumps are real.
+    /// The jumps are real.
     Never,
 }
 
-/// `[time]`
+/// Table `[time]`.
 #[derive(Debug)]
 pub struct Time {
-    /// The column.
+    /// Column of the time.
     pub column: Column,
-    /// One of so many samples is kept.
+    /// Number of samples that become one.
     pub every: usize,
-    /// Whether the channels are low-passed before.
+    /// True if the channels pass a low-pass filter first.
     pub filter: bool,
 }
 
-/// `[inputs.NAME]`
+/// Table `[inputs.NAME]`.
 #[derive(Debug)]
 pub struct InputColumn {
-    /// The input.
+    /// Name of the input.
     pub name: Name,
-    /// Its column.
+    /// Column of the input.
     pub column: Column,
-    /// What is known of the gain of what it acts through.
+    /// Prior of the actuator's gain.
     pub gain: Option<Prior>,
-    /// What is known of its bias, in its unit.
+    /// Prior of the bias, in the column's unit.
     pub bias: Option<Prior>,
-    /// What is known of its delay, s.
+    /// Prior of the delay, in s.
     pub delay: Option<Prior>,
 }
 
-/// `[motion.NAME]`
+/// Table `[motion.NAME]`.
 #[derive(Debug)]
 pub struct MotionColumn {
-    /// The coordinate.
+    /// Name of the coordinate.
     pub name: Name,
-    /// Its column: the position or, by its unit, the speed.
+    /// Column of the position or, by its unit, of the speed.
     pub column: Column,
-    /// The position at a file's first sample, in SI, beside a speed.
+    /// Position at a file's first sample, in SI, for a speed.
     pub initial: Option<Number>,
 }
 
-/// `[channels.NAME]`
+/// Table `[channels.NAME]`.
 #[derive(Debug)]
 pub struct ChannelColumn {
-    /// The channel.
+    /// Name of the channel.
     pub name: Name,
-    /// Its column.
+    /// Column of the channel.
     pub column: Column,
-    /// One standard deviation of its noise, in its unit.
+    /// Standard deviation of the noise, in the column's unit.
     pub noise: Number,
-    /// What it measures, where that is not its name.
+    /// Measured quantity, if it is not the channel's name.
     pub observable: Option<Written>,
-    /// What is known of its gain.
+    /// Prior of the gain.
     pub gain: Option<Prior>,
-    /// What is known of its bias, in its unit.
+    /// Prior of the bias, in the column's unit.
     pub bias: Option<Prior>,
-    /// What is known of its delay, s.
+    /// Prior of the delay, in s.
     pub delay: Option<Prior>,
 }
 
 impl ChannelColumn {
-    /// What it measures, as the file calls it.
+    /// Returns the name of the measured quantity.
     pub fn measures(&self) -> &str {
         let observable = self.observable.as_ref();
         observable.map_or(&self.name.text, |written| &written.text)
     }
 }
 
-/// What is known of a gain, a bias or a delay.
+/// Prior of a gain, a bias or a delay.
 #[derive(Clone, Copy, Debug)]
 pub struct Prior {
-    /// What is expected, where that is not the usual.
+    /// Mean; `None` for the default.
     pub mean: Option<Number>,
-    /// One standard deviation; 0 where it is known.
+    /// Standard deviation; 0 if the value is known.
     pub sd: Number,
 }
 
@@ -136,7 +136,7 @@ fn column(record: &Record<'_>, found: &mut Diagnostics) -> Option<Column> {
     })
 }
 
-/// What the file says of wrapping; none if that is wrong.
+/// Reads `wrap`; `None` after an error.
 fn wrap(record: &Record<'_>, found: &mut Diagnostics) -> Option<Option<Wrap>> {
     let Some(entry) = record.get("wrap") else {
         return Some(None);
@@ -158,7 +158,7 @@ fn wrap(record: &Record<'_>, found: &mut Diagnostics) -> Option<Option<Wrap>> {
     Some(Some(Wrap::Period(period)))
 }
 
-/// A column by its name, or by its number.
+/// Reads the name or the number of a column.
 fn key(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<ColumnKey> {
     let Ok((number, span)) = entry.whole() else {
         return found.keep(entry.written()).map(ColumnKey::Name);
@@ -175,17 +175,16 @@ fn key(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<ColumnKey> {
     }
 }
 
-/// Reads `[time]`.
 pub(super) fn time(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Time> {
     let record = entry.record(&keys::TIME, "{ column = \"t\", unit = \"s\" }", found)?;
     let every = match record.get("every") {
         Some(every) => {
             let (count, span) = found.keep(every.whole())?;
             if !EVERY.contains(&count) {
-                found.push(
-                    Diagnostic::error(format!("one of {count} samples cannot be kept"))
-                        .at(span, "expected how many samples become one, from 1 on"),
-                );
+                found.push(Diagnostic::error(format!("`every` cannot be {count}")).at(
+                    span,
+                    "expected the number of samples that become one, from 1 on",
+                ));
             }
             usize::try_from(count).unwrap_or(1).max(1)
         }
@@ -202,7 +201,6 @@ pub(super) fn time(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Time> {
     })
 }
 
-/// Reads an entry of `[inputs]`.
 pub(super) fn input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<InputColumn> {
     let example = "{ column = \"u\", unit = \"N\" }";
     let record = entry.record(&keys::INPUT, example, found)?;
@@ -219,7 +217,6 @@ pub(super) fn input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<InputC
     })
 }
 
-/// Reads an entry of `[motion]`.
 pub(super) fn motion(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<MotionColumn> {
     let record = entry.record(&keys::MOTION, "{ column = \"q\", unit = \"rad\" }", found)?;
     let initial = record.number("initial", found);
@@ -230,7 +227,6 @@ pub(super) fn motion(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Motio
     })
 }
 
-/// Reads an entry of `[channels]`.
 pub(super) fn channel(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<ChannelColumn> {
     let example = "{ column = \"x\", unit = \"m\", noise = 1e-6 }";
     let record = entry.record(&keys::CHANNEL, example, found)?;
@@ -249,7 +245,7 @@ pub(super) fn channel(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Chan
     })
 }
 
-/// What is known of a gain, a bias or a delay, if anything is said; none if that is wrong.
+/// Reads an optional prior; `None` after an error.
 fn prior(record: &Record<'_>, key: &str, found: &mut Diagnostics) -> Option<Option<Prior>> {
     let Some(entry) = record.get(key) else {
         return Some(None);
@@ -262,7 +258,7 @@ fn prior(record: &Record<'_>, key: &str, found: &mut Diagnostics) -> Option<Opti
     let sd = required(
         &record,
         "sd",
-        "0.02, one standard deviation, or 0 where it is known",
+        "0.02, one standard deviation, or 0 if it is known",
         found,
     )?;
     let sd = found.keep(sd.number())?;

@@ -1,46 +1,45 @@
-//! `[experiment]`: within what bounds the next experiment may be played.
+//! Table `[experiment]`: bounds of the next experiment.
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::table::{Entry, Name, Number};
 
 use super::keys;
 
-/// `[experiment]`
+/// Table `[experiment]`.
 #[derive(Debug, Default)]
 pub struct Experiment {
-    /// How long it may last, s.
+    /// Maximum duration, in s.
     pub duration: Option<Number>,
-    /// The time between its samples, s.
+    /// Sample time, in s.
     pub sample: Option<Number>,
-    /// What is said of inputs.
+    /// Bounds of inputs.
     pub inputs: Vec<InputBounds>,
-    /// Channels and between what values they must stay, in their columns' units.
+    /// Ranges of channels, in the units of their columns.
     pub limits: Vec<(Name, NumberRange)>,
 }
 
-/// `[experiment.inputs.NAME]`
+/// Table `[experiment.inputs.NAME]`.
 #[derive(Debug)]
 pub struct InputBounds {
-    /// The input.
+    /// Name of the input.
     pub name: Name,
-    /// Between what values it must stay, in its column's unit.
+    /// Range of values, in the unit of its column.
     pub range: Option<NumberRange>,
-    /// How fast it may change, in its column's unit per s.
+    /// Maximum rate of change, in the unit of its column per s.
     pub rate: Option<Number>,
-    /// Between what frequencies it may swing, Hz.
+    /// Range of frequencies, in Hz.
     pub band: Option<NumberRange>,
 }
 
-/// Two numbers, the first below the second.
+/// Range of two numbers, in ascending order.
 #[derive(Clone, Copy, Debug)]
 pub struct NumberRange {
-    /// The lower.
+    /// Lower end.
     pub low: Number,
-    /// The higher.
+    /// Upper end.
     pub high: Number,
 }
 
-/// Reads the table.
 pub(super) fn read(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Experiment> {
     let record = entry.record(&keys::EXPERIMENT, "{ duration = 10 }", found)?;
     let mut experiment = Experiment {
@@ -63,7 +62,6 @@ pub(super) fn read(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Experim
     Some(experiment)
 }
 
-/// Reads an entry of `inputs`.
 fn input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<InputBounds> {
     let example = "{ range = [-1, 1], band = [0.1, 10] }";
     let record = entry.record(&keys::EXPERIMENT_INPUT, example, found)?;
@@ -74,7 +72,7 @@ fn input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<InputBounds> {
     let (values, band) = (pair("range")?, pair("band")?);
     if let Some(band) = band.filter(|band| band.low.value < 0.0) {
         found.push(
-            Diagnostic::error(format!("no frequency is {}", band.low.value))
+            Diagnostic::error(format!("a frequency cannot be {}", band.low.value))
                 .at(band.low.span, "expected Hz, 0 or greater"),
         );
     }
@@ -86,7 +84,6 @@ fn input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<InputBounds> {
     })
 }
 
-/// A list of two numbers, the first below the second.
 fn range(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<NumberRange> {
     let elements = found.keep(entry.list("[-1, 1]"))?;
     let [low, high] = &elements[..] else {
@@ -105,7 +102,7 @@ fn range(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<NumberRange> {
     if low.value >= high.value {
         found.push(
             Diagnostic::error(format!(
-                "nothing lies between {} and {}",
+                "the range from {} to {} is empty",
                 low.value, high.value
             ))
             .at(entry.span(), "expected two numbers, the lower one first"),
@@ -115,7 +112,6 @@ fn range(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<NumberRange> {
     Some(NumberRange { low, high })
 }
 
-/// A number that must be greater than 0.
 fn positive(number: Option<Number>, key: &str, found: &mut Diagnostics) -> Option<Number> {
     if let Some(number) = number.filter(|number| number.value <= 0.0) {
         found.push(

@@ -1,4 +1,4 @@
-//! `[format]`: how the numbers of a record stand in its file, where that is text.
+//! Table `[format]`: layout of a text file with numbers.
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
 use eomgen_model_spec::span::Span;
@@ -6,16 +6,16 @@ use eomgen_model_spec::table::{Entry, Record};
 
 use super::keys;
 
-/// What parts the cells of a line.
+/// Separator of the cells in a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Separator {
     /// One character.
     Character(u8),
-    /// Spaces and tabs, as many as there are.
+    /// Any number of spaces and tabs.
     Spaces,
 }
 
-/// The words for separators.
+/// Separators with their names.
 pub const SEPARATORS: [(&str, Separator); 5] = [
     (",", Separator::Character(b',')),
     (";", Separator::Character(b';')),
@@ -24,26 +24,26 @@ pub const SEPARATORS: [(&str, Separator); 5] = [
     ("spaces", Separator::Spaces),
 ];
 
-/// The decimal signs.
+/// Decimal signs with their names.
 pub const DECIMALS: [(&str, u8); 2] = [(".", b'.'), (",", b',')];
 
-/// The most lines that are skipped.
+/// Maximum number of skipped lines.
 const MOST_SKIPPED: i64 = 1000;
 
-/// How a text file of numbers is written.
+/// Layout of a text file with numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Format {
-    /// Between the cells.
+    /// Separator of the cells.
     pub separator: Separator,
-    /// Before the digits of fractions.
+    /// Decimal sign.
     pub decimal: u8,
-    /// Lines before everything else.
+    /// Number of lines to skip at the start.
     pub skip: usize,
-    /// What a line that says nothing begins with.
+    /// First character of comment lines, if any.
     pub comment: Option<u8>,
-    /// Whether the first line has the columns' names.
+    /// True if the first line contains the names of the columns.
     pub names: bool,
-    /// Whether a line of units stands before the numbers.
+    /// True if a line of units precedes the numbers.
     pub units: bool,
 }
 
@@ -83,9 +83,9 @@ pub fn read(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Format> {
     if separator == Separator::Character(decimal) {
         let decimal = record.get("decimal").map_or(entry.span(), Entry::span);
         found.push(
-            Diagnostic::error("a comma cannot both part columns and begin fractions")
-                .at(decimal, "this is the separator too")
-                .help("write separator = \";\", or what the file has between its columns"),
+            Diagnostic::error("a comma cannot be both the separator and the decimal sign")
+                .at(decimal, "this is also the separator")
+                .help("write separator = \";\", or the separator of the file"),
         );
     }
     Some(format)
@@ -116,13 +116,12 @@ fn skipped(record: &Record<'_>, found: &mut Diagnostics) -> Option<usize> {
 }
 
 fn lines(count: i64, span: Span) -> Diagnostic {
-    Diagnostic::error(format!("{count} lines cannot be skipped")).at(
+    Diagnostic::error(format!("`skip` cannot be {count}")).at(
         span,
-        format!("expected how many lines stand before the columns: 0 to {MOST_SKIPPED}"),
+        format!("expected the number of lines before the columns, 0 to {MOST_SKIPPED}"),
     )
 }
 
-/// The first character of lines that say nothing.
 fn comment(record: &Record<'_>, found: &mut Diagnostics) -> Option<Option<u8>> {
     let Some(entry) = record.get("comment") else {
         return Some(None);
@@ -132,11 +131,8 @@ fn comment(record: &Record<'_>, found: &mut Diagnostics) -> Option<Option<u8>> {
         [one] if one.is_ascii_punctuation() => Some(Some(*one)),
         _ => {
             found.push(
-                Diagnostic::error(format!(
-                    "no line of comment begins with {}",
-                    quoted(&written.text)
-                ))
-                .at(written.span, "expected one character, as \"#\""),
+                Diagnostic::error(format!("`comment` cannot be {}", quoted(&written.text)))
+                    .at(written.span, "expected one character, such as \"#\""),
             );
             None
         }

@@ -1,8 +1,7 @@
-//! The tables and keys of a dataset file: what the reader takes, and what its documentation and
-//! its schema must list.
+//! Tables and keys of a dataset file, for the reader, its documentation and its schema.
 
-/// Tables with their keys; of those that hold entries by name, the keys of an entry. `title` and
-/// `source` stand outside of all tables.
+/// Tables with their keys. For tables with named entries, the keys of an entry. `title` and
+/// `source` are outside of all tables.
 pub const TABLES: [(&str, &[&str]); 10] = [
     ("records", &RECORDS),
     ("format", &FORMAT),
@@ -19,25 +18,25 @@ pub const TABLES: [(&str, &[&str]); 10] = [
 /// Keys outside of all tables.
 pub const TEXTS: [&str; 2] = ["title", "source"];
 
-/// `[records]`
+/// Keys of `[records]`.
 pub const RECORDS: [&str; 2] = ["train", "test"];
 
-/// An entry of a list of `[records]` that is a table.
+/// Keys of a table in a list of `[records]`.
 pub const STRETCH: [&str; 3] = ["file", "from", "to"];
 
-/// `[format]`
+/// Keys of `[format]`.
 pub const FORMAT: [&str; 6] = ["separator", "decimal", "skip", "comment", "names", "units"];
 
-/// `[time]`
+/// Keys of `[time]`.
 pub const TIME: [&str; 4] = ["column", "unit", "every", "filter"];
 
-/// `[inputs.NAME]`
+/// Keys of `[inputs.NAME]`.
 pub const INPUT: [&str; 7] = ["column", "unit", "wrap", "hold", "gain", "bias", "delay"];
 
-/// `[motion.NAME]`
+/// Keys of `[motion.NAME]`.
 pub const MOTION: [&str; 4] = ["column", "unit", "wrap", "initial"];
 
-/// `[channels.NAME]`
+/// Keys of `[channels.NAME]`.
 pub const CHANNEL: [&str; 8] = [
     "column",
     "unit",
@@ -49,25 +48,25 @@ pub const CHANNEL: [&str; 8] = [
     "delay",
 ];
 
-/// What is known of a gain, a bias or a delay.
+/// Keys of the prior of a gain, a bias or a delay.
 pub const PRIOR: [&str; 2] = ["mean", "sd"];
 
-/// `[initial]`
+/// Keys of `[initial]`.
 pub const INITIAL: [&str; 2] = ["state", "values"];
 
-/// `[uncertain]`
+/// Keys of an entry of `[uncertain]`.
 pub const UNCERTAIN: [&str; 1] = ["relative"];
 
-/// `[windows]`
+/// Keys of `[windows]`.
 pub const WINDOWS: [&str; 2] = ["length", "start"];
 
-/// `[experiment]`
+/// Keys of `[experiment]`.
 pub const EXPERIMENT: [&str; 4] = ["duration", "sample", "inputs", "limits"];
 
-/// `[experiment.inputs.NAME]`
+/// Keys of `[experiment.inputs.NAME]`.
 pub const EXPERIMENT_INPUT: [&str; 3] = ["range", "rate", "band"];
 
-/// All keys of the first level.
+/// Returns all keys of the first level.
 pub fn first_level() -> Vec<&'static str> {
     let tables = TABLES.iter().map(|(name, _)| *name);
     TEXTS.into_iter().chain(tables).collect()

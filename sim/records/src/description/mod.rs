@@ -1,5 +1,5 @@
-//! A dataset file: its tables and keys, each with its place. Names of a model, units and numbers
-//! are checked by whoever takes them over.
+//! Dataset file: tables and keys with their places. Names of a model, units and numbers are checked
+//! elsewhere.
 
 pub mod columns;
 pub mod experiment;
@@ -24,35 +24,35 @@ use self::motion::{InitialState, Windows};
 use self::records::Records;
 use self::required::required;
 
-/// The largest dataset file accepted, in bytes.
+/// Largest dataset file, in bytes.
 const LARGEST: u64 = 1 << 20;
 
-/// A dataset file.
+/// Parsed dataset file.
 #[derive(Debug)]
 pub struct Description {
-    /// The file's text.
+    /// Text of the file.
     pub source: Source,
-    /// One line for people.
+    /// Title for reports.
     pub title: String,
-    /// `[records]`
+    /// Table `[records]`.
     pub records: Records,
-    /// `[format]`
+    /// Table `[format]`.
     pub format: Format,
-    /// `[time]`
+    /// Table `[time]`.
     pub time: Time,
-    /// `[inputs.NAME]`; each is held from sample to sample.
+    /// Tables `[inputs.NAME]`. Inputs are held between samples.
     pub inputs: Vec<InputColumn>,
-    /// `[motion.NAME]`
+    /// Tables `[motion.NAME]`.
     pub motion: Vec<MotionColumn>,
-    /// `[channels.NAME]`
+    /// Tables `[channels.NAME]`.
     pub channels: Vec<ChannelColumn>,
-    /// `[initial]`
+    /// Table `[initial]`.
     pub initial: InitialState,
-    /// `[uncertain]`: parameters and the relative standard deviation of each.
+    /// Table `[uncertain]`: parameters with their relative standard deviations.
     pub uncertain: Vec<(Name, Number)>,
-    /// `[windows]`
+    /// Table `[windows]`.
     pub windows: Windows,
-    /// `[experiment]`
+    /// Table `[experiment]`.
     pub experiment: Experiment,
 }
 
@@ -60,20 +60,19 @@ impl Description {
     /// Reads a dataset file.
     ///
     /// # Errors
-    /// A file that cannot be read, and all that is wrong with its grammar, tables and keys.
+    /// A file that cannot be read, and all errors of grammar, tables and keys.
     pub fn read(path: &Path) -> Result<Self, Diagnostics> {
         Self::of(toml_file::source(path, LARGEST)?)
     }
 
-    /// Reads the text of a dataset file.
+    /// Parses the text of a dataset file.
     ///
     /// # Errors
-    /// All that is wrong with its grammar, tables and keys.
+    /// All errors of grammar, tables and keys.
     pub fn of(source: Source) -> Result<Self, Diagnostics> {
         toml_file::read(&source, |entries, found| described(&source, entries, found))
     }
 
-    /// All columns that are read.
     fn columns(&self) -> impl Iterator<Item = &ColumnKey> {
         let inputs = self.inputs.iter().map(|input| &input.column.column);
         let motion = self
@@ -89,7 +88,7 @@ impl Description {
     }
 }
 
-/// All tables of a file; none where one that is needed is missing or wrong.
+/// Reads all tables of a file; `None` if a required one is missing or invalid.
 fn described(
     source: &Source,
     entries: &[Entry<'_>],
@@ -148,7 +147,7 @@ fn described(
     Some(description)
 }
 
-/// Columns of records without names are called by their numbers.
+/// Checks that columns without names are identified by number.
 fn nameless(description: &Description, found: &mut Diagnostics) {
     if description.format.names {
         return;
@@ -157,8 +156,11 @@ fn nameless(description: &Description, found: &mut Diagnostics) {
         if let ColumnKey::Name(name) = column {
             let number = name.text.parse::<usize>().unwrap_or(2);
             found.push(
-                Diagnostic::error(format!("no column is called \"{}\"", name.text))
-                    .at(name.span, "[format] says that the columns have no names")
+                Diagnostic::error(format!("there is no column \"{}\"", name.text))
+                    .at(
+                        name.span,
+                        "the columns have no names: names = false in [format]",
+                    )
                     .help(format!(
                         "give the column's number, from 1 on: column = {number}"
                     )),
@@ -167,14 +169,13 @@ fn nameless(description: &Description, found: &mut Diagnostics) {
     }
 }
 
-/// An entry of `[uncertain]`.
 fn uncertain(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<(Name, Number)> {
     let record = entry.record(&keys::UNCERTAIN, "{ relative = 0.05 }", found)?;
     let relative = required(&record, "relative", "0.05", found)?;
     Some((entry.name.clone(), found.keep(relative.number())?))
 }
 
-/// The entries of a table, each read by `of`.
+/// Reads the entries of a table with `of`.
 fn each<T>(
     top: &Record<'_>,
     name: &str,

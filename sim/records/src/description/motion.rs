@@ -1,4 +1,4 @@
-//! `[initial]` and `[windows]`: where motions begin, and how records are cut.
+//! Tables `[initial]` and `[windows]`: initial states and windows of the records.
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::table::{Entry, Name, Number};
@@ -6,27 +6,27 @@ use eomgen_model_spec::table::{Entry, Name, Number};
 use super::keys;
 use super::required::required;
 
-/// `[initial]`
+/// Table `[initial]`.
 #[derive(Debug)]
 pub enum InitialState {
-    /// As the model says, at rest.
+    /// Initial values of the model, at rest.
     Rest,
-    /// Not known.
+    /// Unknown initial state.
     Estimate,
-    /// These states, by name.
+    /// Values of states by name.
     Given(Vec<(Name, Number)>),
 }
 
-/// `[windows]`
+/// Table `[windows]`.
 #[derive(Debug, Default)]
 pub struct Windows {
-    /// The length of a window, s; none if every record is one.
+    /// Length of a window in s; `None` for one window per record.
     pub length: Option<Number>,
-    /// Whether initial states are read from the smoothed record.
+    /// True if initial states are read from the smoothed record.
     pub smoothed: bool,
 }
 
-/// The words of `initial.state`.
+/// Values of `initial.state`.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Word {
     Rest,
@@ -60,9 +60,9 @@ pub(super) fn initial(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Init
         (_, Some(values)) => {
             found.push(
                 Diagnostic::error("`values` are not used")
-                    .at(values.name.span, "these say nothing")
+                    .at(values.name.span, "only used with state = \"given\"")
                     .also(state.span(), "beside this")
-                    .help("write state = \"given\", or leave the values out"),
+                    .help("write state = \"given\", or remove the values"),
             );
             None
         }
@@ -76,8 +76,8 @@ fn given(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<InitialState> {
     if values.is_empty() {
         found.push(
             Diagnostic::error("no state is given")
-                .at(entry.span(), "this is empty")
-                .help("give states by name, in SI, as x = 0.1"),
+                .at(entry.span(), "empty table")
+                .help("give states by name in SI, such as x = 0.1"),
         );
     }
     let mut given = Vec::with_capacity(values.len());

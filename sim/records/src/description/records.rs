@@ -1,4 +1,4 @@
-//! `[records]`: the files to learn from and to be judged by, or stretches of them.
+//! Table `[records]`: files, or parts of files, for training and testing.
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::span::Span;
@@ -7,29 +7,28 @@ use eomgen_model_spec::table::{Entry, Number, Written};
 use super::keys;
 use super::required::required;
 
-/// `[records]`
+/// Table `[records]`.
 #[derive(Debug)]
 pub struct Records {
-    /// Files to learn from, relative to the dataset's folder.
+    /// Training files, relative to the dataset's folder.
     pub train: Vec<Stretch>,
-    /// Files to be judged by.
+    /// Test files, relative to the dataset's folder.
     pub test: Vec<Stretch>,
-    /// Where the table stands.
+    /// Place of the table.
     pub span: Span,
 }
 
-/// A file, or the part of it between two times.
+/// File, or the part of it between two times.
 #[derive(Clone, Debug)]
 pub struct Stretch {
-    /// The file.
+    /// Path of the file.
     pub file: Written,
-    /// Its first time, in the unit of the time's column.
+    /// First time, in the unit of the time column.
     pub from: Option<Number>,
-    /// The time that is its end, and no part of it.
+    /// End time, which is not included.
     pub to: Option<Number>,
 }
 
-/// Reads the table.
 pub(super) fn read(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Records> {
     let example = "{ train = [\"train.csv\"], test = [\"test.csv\"] }";
     let record = entry.record(&keys::RECORDS, example, found)?;
@@ -70,7 +69,7 @@ fn stretch(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Stretch> {
     {
         found.push(
             Diagnostic::error(format!(
-                "nothing lies between {} and {}",
+                "the part from {} to {} is empty",
                 from.value, to.value
             ))
             .at(to.span, "expected a later time")

@@ -1,9 +1,9 @@
-//! Keys that a table of a dataset file cannot do without.
+//! Required keys of a dataset file's tables.
 
 use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_model_spec::table::{Entry, Record};
 
-/// The entry of a key that cannot be left out.
+/// Returns the entry of a required key.
 pub(super) fn required<'r, 'd>(
     record: &'r Record<'d>,
     key: &str,

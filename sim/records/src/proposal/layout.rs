@@ -1,30 +1,29 @@
-//! How the numbers of a text file stand, found by trying: which separator and decimal sign make
-//! the longest block of lines with as many numbers each.
+//! Detection of a text file's layout: the separator and decimal sign that give the longest block of
+//! lines with equally many numbers.
 
 use crate::csv_file::parsed;
 use crate::description::format::{DECIMALS, Format, SEPARATORS, Separator};
 use eomgen_model_spec::unit::Unit;
 
-/// The lines that are looked at, from the beginning of the file.
+/// Number of lines to examine from the start of the file.
 const LINES: usize = 400;
 
-/// Characters that lines of comment begin with.
+/// First characters of comment lines.
 const COMMENTS: [char; 3] = ['#', '%', '!'];
 
-/// How a file is written, and what it calls its columns.
+/// Layout and column names of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Layout {
-    /// How it is to be read.
     pub format: Format,
-    /// The columns' names, "" where there are none.
+    /// Names of the columns; "" without a name.
     pub names: Vec<String>,
-    /// What stands for their units, "" where nothing does.
+    /// Units of the columns; "" without a unit.
     pub units: Vec<String>,
-    /// Which columns hold numbers.
+    /// True for columns of numbers.
     pub are_numbers: Vec<bool>,
 }
 
-/// The layout of a text; none if it holds no two columns of numbers.
+/// Detects the layout of a text; `None` without two columns of numbers.
 pub(crate) fn found(text: &str) -> Option<Layout> {
     let lines: Vec<&str> = text.lines().take(LINES).collect();
     let comment = COMMENTS.into_iter().find(|sign| {
@@ -49,20 +48,21 @@ pub(crate) fn found(text: &str) -> Option<Layout> {
     Some(layout)
 }
 
-/// Lines of as many cells each, nearly all of them numbers.
+/// Lines with equally many cells, nearly all of them numbers.
 struct Block<'t> {
     lines: &'t [&'t str],
     separator: Separator,
     decimal: u8,
-    /// Its first line.
+    /// Index of its first line.
     first: usize,
     cells: usize,
-    /// How many numbers it holds, in parts of all cells; 0 if it is none.
+    /// Number of numbers, weighted by their fraction of all cells; 0 without a block.
     score: f64,
 }
 
 impl<'t> Block<'t> {
-    /// The block that ends with the last line, or with the last but one: that may be cut off.
+    /// Returns the block up to the last line or the one before, because the last line can be
+    /// truncated.
     fn of(lines: &'t [&'t str], separator: Separator, decimal: u8, comment: Option<char>) -> Self {
         let mut block = Self {
             lines,
@@ -95,13 +95,13 @@ impl<'t> Block<'t> {
                 break;
             }
             (block.first, block.cells) = (place, cells.len());
-            // Cells that are no numbers may come from the wrong separator.
+            // Cells that are not numbers can result from a wrong separator.
             block.score += (numbers * numbers) as f64 / cells.len() as f64;
         }
         block
     }
 
-    /// Which of its columns hold numbers, and nothing else but gaps.
+    /// Returns true for the columns that contain only numbers and gaps.
     fn are_numbers(&self, comment: Option<char>) -> Vec<bool> {
         let mut numbers = vec![0; self.cells];
         let mut texts = vec![0; self.cells];
@@ -126,7 +126,7 @@ impl<'t> Block<'t> {
             .collect()
     }
 
-    /// What stands above the block.
+    /// Returns the layout from the lines above the block.
     fn layout(&self, comment: Option<char>) -> Layout {
         let unknown = vec![String::new(); self.cells];
         let row_above = |place: usize| {
@@ -162,7 +162,7 @@ impl<'t> Block<'t> {
             };
         };
         if is_comment(nearest) {
-            // Names behind a sign of comment are read here, but not by who reads the records.
+            // Names after a comment sign are read only here. The reader of records skips that line.
             format.comment = comment.map(|sign| sign as u8);
             let line = self.lines[nearest]
                 .trim_start()
@@ -211,7 +211,7 @@ impl<'t> Block<'t> {
         }
     }
 
-    /// The format with so many lines skipped; comments among them need no sign.
+    /// Returns the format with this number of skipped lines; comments among them need no sign.
     fn skipping(&self, mut format: Format, lines: usize) -> Format {
         format.skip = lines;
         let sign = format.comment.map(char::from);
@@ -223,12 +223,12 @@ impl<'t> Block<'t> {
     }
 }
 
-/// The cells of a line without quotes; a separator at its end adds none.
+/// Splits a line into cells without quotes; a separator at its end adds no cell.
 fn cells(line: &str, separator: Separator) -> Vec<String> {
     row(line, separator, None)
 }
 
-/// The same of a line with so many cells, of which the last may be blank.
+/// Splits a line into `count` cells; the last one can be blank.
 fn row(line: &str, separator: Separator, count: Option<usize>) -> Vec<String> {
     let bare = |cell: &str| cell.trim().trim_matches('"').trim().to_owned();
     let mut cells: Vec<String> = match separator {
@@ -242,7 +242,7 @@ fn row(line: &str, separator: Separator, count: Option<usize>) -> Vec<String> {
     cells
 }
 
-/// Whether a cell of a line may be a unit.
+/// Returns true if a cell can be a unit.
 fn is_unit(cell: &str) -> bool {
     let bare = super::matching::bare_unit(cell);
     bare.is_empty() || bare == "-" || Unit::parse(&bare).is_ok()
@@ -252,13 +252,13 @@ fn is_unit(cell: &str) -> bool {
 mod tests {
     use super::{Format, Separator, found};
 
-    /// A text of a head and forty rows.
+    /// Returns a text with a header and forty rows.
     fn text(head: &str, row: &str) -> String {
         head.to_owned() + &row.repeat(40)
     }
 
     #[test]
-    fn layouts_are_found_by_the_numbers_they_make() {
+    fn layouts_are_detected() {
         let usual = Format::default();
         let semicolon = Separator::Character(b';');
         let cases = [

@@ -1,10 +1,10 @@
-//! Which column of a record is which quantity of a model, by their names and units.
+//! Matching of a record's columns with the quantities of a model, by names and units.
 
 use eomgen_model_spec::model::{Model, ObservedRate};
 use eomgen_model_spec::suggest::nearest;
 use eomgen_model_spec::unit::Unit;
 
-/// How people write units that are written otherwise here.
+/// Common spellings of units.
 const UNITS: [(&str, &str); 6] = [
     ("degree", "deg"),
     ("degrees", "deg"),
@@ -14,23 +14,23 @@ const UNITS: [(&str, &str); 6] = [
     ("N*m", "N m"),
 ];
 
-/// A column as its file describes it.
+/// Column with its description in the file.
 #[derive(Clone, Debug)]
 pub(crate) struct FileColumn {
-    /// Its number, from 1.
+    /// Number of the column, from 1.
     pub number: usize,
-    /// Its name, as it stands there; "" where there is none.
+    /// Name in the file; "" without a name.
     pub name: String,
-    /// The name without a unit in it.
+    /// Name without its unit.
     pub stem: String,
-    /// Its unit, if the file states one that is known.
+    /// Known unit in the file, if any.
     pub unit: Option<Unit>,
-    /// What the file states as its unit, if that is not known.
+    /// Unknown unit in the file, if any.
     pub unknown_unit: Option<String>,
 }
 
 impl FileColumn {
-    /// A column of a file by its name and by what stands in its line of units.
+    /// Creates a column from its name and its cell in the line of units.
     pub fn of(number: usize, name: &str, unit: &str) -> Self {
         let (stem, inside) = parted(name);
         let stated: Vec<String> = [unit, inside]
@@ -48,7 +48,7 @@ impl FileColumn {
         }
     }
 
-    /// Takes the end of a name for a unit, as in `time_ms`, if it is one and none is known.
+    /// Reads the unit from the end of the name, for example `time_ms`, if none is known.
     pub fn take_suffix(&mut self) {
         let Some((stem, unit)) = self.stem.rsplit_once('_') else {
             return;
@@ -61,20 +61,18 @@ impl FileColumn {
     }
 }
 
-/// A quantity of a model.
+/// Quantity of a model.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Quantity {
-    /// Its name.
     pub name: String,
-    /// Its unit.
     pub unit: Unit,
-    /// Whether it is an input.
     pub is_input: bool,
-    /// True if a unit may identify it without a name; derivatives of observables need theirs.
+    /// True if a unit without a name can identify it. Derivatives of observables need their name.
     is_found_by_unit: bool,
 }
 
-/// Inputs, observables and coordinates with their rates and accelerations, and states of first order.
+/// Returns inputs, observables, coordinates with their rates and accelerations, and first-order
+/// states.
 pub(crate) fn quantities(model: &Model) -> Vec<Quantity> {
     let quantity = |name: &str, unit: &Unit, is_input: bool| Quantity {
         name: name.to_owned(),
@@ -106,7 +104,7 @@ pub(crate) fn quantities(model: &Model) -> Vec<Quantity> {
     let moving = coordinates.chain(derivatives).chain(states).chain(observed);
     let mut all: Vec<Quantity> = Vec::new();
     for quantity in inputs.chain(observables).chain(moving) {
-        // An observable may have the name of a coordinate.
+        // An observable can have the name of a coordinate.
         if all.iter().all(|known| known.name != quantity.name) {
             all.push(quantity);
         }
@@ -114,7 +112,8 @@ pub(crate) fn quantities(model: &Model) -> Vec<Quantity> {
     all
 }
 
-/// Rates and accelerations of observables. The acceleration of an observable that holds a rate does not exist.
+/// Returns rates and accelerations of observables. An observable with a rate in it has no
+/// acceleration.
 fn derivatives_of_observables(model: &Model) -> impl Iterator<Item = ObservedRate> {
     (1..=2).flat_map(move |times| {
         let observables = model.observables.iter().enumerate();
@@ -126,40 +125,40 @@ fn derivatives_of_observables(model: &Model) -> impl Iterator<Item = ObservedRat
     })
 }
 
-/// A column that was matched, and why.
+/// Matched column with the reason.
 #[derive(Clone, Debug)]
 pub(crate) struct Match {
-    /// The column's place among the columns.
+    /// Index of the column.
     pub column: usize,
-    /// The quantity's place among the quantities.
+    /// Index of the quantity.
     pub quantity: usize,
-    /// Why.
+    /// Reason of the match.
     pub why: &'static str,
 }
 
-/// A rule by which a column may be a quantity.
+/// Rule that matches a column with a quantity.
 type Rule = fn(&FileColumn, &Quantity) -> bool;
 
-/// The rules, the surest first.
+/// Rules in the order of their reliability.
 const RULES: [(Rule, &str); 5] = [
     (|c, q| c.name == q.name, "the same name"),
-    (|c, q| c.stem == q.name, "the same name beside a unit"),
+    (|c, q| c.stem == q.name, "the same name with a unit"),
     (
         |c, q| plain(&c.stem) == plain(&q.name),
-        "the same name but for capitals and signs",
+        "the same name except for case and signs",
     ),
     (
         |c, q| nearest(&plain(&c.stem), [plain(&q.name).as_str()]).is_some() && c.stem.len() > 3,
-        "a name that is nearly the same: please check",
+        "a similar name: please check",
     ),
     (
         |c, q| c.unit.is_some() && !q.unit.dimension.is_none() && q.is_found_by_unit,
-        "the only one left with this unit: please check",
+        "the only remaining column with this unit: please check",
     ),
 ];
 
-/// Matches columns and quantities, each once. Where several would do, none is taken. What is left
-/// is tried with the end of its name as a unit.
+/// Matches columns and quantities, each once. Ambiguous candidates are not matched. Remaining
+/// columns are tried again with the end of their name as a unit.
 pub(crate) fn matched(columns: &mut [FileColumn], quantities: &[Quantity]) -> Vec<Match> {
     let mut matches = Vec::new();
     by_rules(columns, quantities, &mut matches);
@@ -173,12 +172,12 @@ pub(crate) fn matched(columns: &mut [FileColumn], quantities: &[Quantity]) -> Ve
     matches
 }
 
-/// Adds what the rules find among columns and quantities that are free.
+/// Adds the matches of all rules among free columns and quantities.
 fn by_rules(columns: &[FileColumn], quantities: &[Quantity], matches: &mut Vec<Match>) {
     for (rule, why) in RULES {
         let may = |column: usize, quantity: usize| {
             let (c, q) = (&columns[column], &quantities[quantity]);
-            // A unit that is not known may be of any dimension.
+            // An unknown unit can have any dimension.
             let of_unit = match (&c.unit, &c.unknown_unit) {
                 (Some(unit), _) => unit.dimension == q.unit.dimension,
                 (None, unknown) => unknown.is_none(),
@@ -211,7 +210,7 @@ fn by_rules(columns: &[FileColumn], quantities: &[Quantity], matches: &mut Vec<M
     }
 }
 
-/// A name and the unit in it: `u [N m]`, `u (N m)` or `u / N`.
+/// Splits a name and its unit: `u [N m]`, `u (N m)` or `u / N`.
 fn parted(name: &str) -> (&str, &str) {
     for (opening, closing) in [('[', ']'), ('(', ')')] {
         if let Some((stem, rest)) = name.split_once(opening)
@@ -226,7 +225,7 @@ fn parted(name: &str) -> (&str, &str) {
     (name, "")
 }
 
-/// A unit without brackets, as it is written here.
+/// Returns a unit without brackets, in the notation of specifications.
 pub(crate) fn bare_unit(text: &str) -> String {
     let bare = text.trim().trim_matches(['[', ']', '(', ')']).trim();
     let known = UNITS.iter().find(|(theirs, _)| *theirs == bare);
@@ -245,7 +244,7 @@ pub(crate) fn bare_unit(text: &str) -> String {
     )
 }
 
-/// A unit with `^` before its exponents, which others write as `m/s2`, `m/s²` or `m s⁻²`.
+/// Returns a unit with `^` before its exponents, from `m/s2`, `m/s²` or `m s⁻²`.
 fn with_exponents(text: &str) -> String {
     const RAISED: &str = "⁰¹²³⁴⁵⁶⁷⁸⁹";
     let mut found = String::new();
@@ -265,7 +264,7 @@ fn with_exponents(text: &str) -> String {
     found
 }
 
-/// A name without what people write differently.
+/// Returns a name without differences of spelling.
 fn plain(name: &str) -> String {
     const GREEK: [(char, &str); 9] = [
         ('θ', "theta"),
@@ -294,7 +293,7 @@ mod tests {
     use super::{FileColumn, matched, quantities};
 
     #[test]
-    fn columns_are_matched_by_name_and_unit_and_never_against_a_unit() {
+    fn columns_match_by_name_and_compatible_unit() {
         let source = eomgen_model_spec::models::PLANETARY_ARM_RIG.source();
         let model = eomgen_model_spec::check(source).expect("a model").model;
         let all = quantities(&model);
@@ -330,14 +329,14 @@ mod tests {
                 pair("TIP_mm", "tip")
             ]
         );
-        // Accelerations are neither positions nor rates, however their unit is written.
+        // Accelerations do not match positions or rates in any notation of their unit.
         for unit in ["m/s2", "m/s²", "m·s⁻²", "m s-2"] {
             assert_eq!(names(&[("x_c", unit)]), [], "{unit}");
             assert_eq!(names(&[("x_c_ddot", unit)]), [pair("x_c_ddot", "x_c_ddot")]);
         }
         assert_eq!(names(&[("x_c [furlong]", ""), ("x_c_dot", "knots")]), []);
         assert_eq!(names(&[("x_c_ddot", "")]), [pair("x_c_ddot", "x_c_ddot")]);
-        // Derivatives of observables are found only by their names.
+        // Derivatives of observables match only by name.
         assert_eq!(
             names(&[("tip_ddot", "m/s2"), ("Theta_s_dot", "deg/s")]),
             [
@@ -346,7 +345,7 @@ mod tests {
             ]
         );
         assert_eq!(names(&[("a", "m/s2")]), []);
-        // Two columns that would do are none.
+        // Ambiguous columns do not match.
         assert!(names(&[("thetas", "m"), ("note", "")]).is_empty());
         assert!(names(&[("THETA_S", ""), ("theta s", "")]).is_empty());
     }

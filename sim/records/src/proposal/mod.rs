@@ -1,6 +1,5 @@
-//! A dataset file proposed for a record and a model: how the record's numbers stand
-//! (`layout`), which columns are what (`matching`), how much noise they hold (`noise`), and the
-//! text with everything that was guessed and why (`written`).
+//! Proposal of a dataset file for a record and a model: `layout` of the file, `matching` of its
+//! columns, their `noise`, and the text with the reason for every guess (`written`).
 
 mod layout;
 mod matching;
@@ -25,31 +24,30 @@ use crate::wrapped_columns::{can_wrap, own_unit};
 
 use self::matching::{FileColumn, Match, Quantity, matched, quantities};
 
-/// The part of the record that is to be learnt from; the rest judges.
+/// Fraction of the record for training; the rest is for testing.
 const TRAIN: f64 = 0.6;
 
-/// How many windows the part to learn from is cut into.
+/// Number of windows in the training part.
 const WINDOWS: f64 = 20.0;
 
-/// The fewest samples of a window.
+/// Minimum number of samples in a window.
 const FEWEST_IN_WINDOW: f64 = 100.0;
 
-/// More samples than this take a search long: fewer are kept.
+/// Number of samples above which the record is decimated, because a search would take long.
 const MANY: usize = 100_000;
 
-/// What a column of time may be called.
+/// Usual names of a time column.
 const TIMES: [&str; 6] = ["t", "time", "zeit", "timestamp", "seconds", "sec"];
 
-/// What was found in a record.
+/// Detected properties of a record.
 struct Found<'m> {
     model: &'m Model,
-    /// How the file is written.
     format: Format,
     /// All columns of numbers.
     columns: Vec<FileColumn>,
-    /// Their numbers.
+    /// Values of the columns.
     values: Vec<Vec<f64>>,
-    /// The place of the time among them, and its unit.
+    /// Index of the time column, and its unit.
     time: usize,
     time_unit: Unit,
     quantities: Vec<Quantity>,
@@ -61,7 +59,7 @@ impl Found<'_> {
         &self.values[self.time]
     }
 
-    /// The unit of a matched column and its origin: the file, or a guess.
+    /// Returns the unit of a matched column and its source: the file or a guess.
     fn unit(&self, matched: &Match) -> (Unit, &'static str) {
         let own = &self.quantities[matched.quantity].unit;
         let degree = || {
@@ -70,31 +68,28 @@ impl Found<'_> {
                 .filter(|unit| self.turns_in(matched, unit))
         };
         match &self.columns[matched.column].unit {
-            Some(unit) => (unit.clone(), "as the file says"),
+            Some(unit) => (unit.clone(), "from the file"),
             None => match Some(own)
                 .filter(|own| own.text == "rad")
                 .and_then(|_| degree())
             {
-                Some(degree) => (
-                    degree,
-                    "guessed: it jumps by 360, as an angle in degrees does",
-                ),
+                Some(degree) => (degree, "guessed: it jumps by 360, like an angle in degrees"),
                 None => (
                     own.clone(),
-                    "guessed: the model's, because the file says none",
+                    "guessed: the unit in the model, because the file has none",
                 ),
             },
         }
     }
 
-    /// True if a matched column jumps by full turns of this unit.
+    /// Returns true if a matched column jumps by full turns of this unit.
     fn turns_in(&self, matched: &Match, unit: &Unit) -> bool {
         let values = &self.values[matched.column];
         let pattern = wrap_pattern(self.times(), values, own_unit(unit));
         pattern.is_some_and(|pattern| pattern.is_turn)
     }
 
-    /// The pattern of a matched column that looks wrapped, in the column's unit.
+    /// Returns the pattern of a matched column that looks wrapped, in the column's unit.
     fn wrap_pattern(&self, matched: &Match) -> Option<WrapPattern> {
         let (unit, _) = self.unit(matched);
         let values = &self.values[matched.column];
@@ -102,30 +97,30 @@ impl Found<'_> {
         can_wrap(&unit).then(pattern).flatten()
     }
 
-    /// The usual time from sample to sample, s.
+    /// Returns the usual time between samples, in s.
     fn step(&self) -> f64 {
         self.time_unit.to_si(typical_step(self.times()))
     }
 
-    /// Whether steps differ.
+    /// Returns true if time steps are uneven.
     fn is_uneven(&self) -> bool {
         let step = typical_step(self.times());
         let mut steps = self.times().windows(2).map(|pair| pair[1] - pair[0]);
         steps.any(|s| (s - step).abs() > JITTER * step)
     }
 
-    /// One of how many samples is kept.
+    /// Returns the number of samples that become one.
     fn every(&self) -> usize {
         self.times().len().div_ceil(MANY)
     }
 
-    /// The time at which the part that judges begins, in its column's unit.
+    /// Returns the start of the test part, in the unit of the time column.
     fn split(&self) -> f64 {
         let times = self.times();
         times[(TRAIN * times.len() as f64) as usize]
     }
 
-    /// A window's length, s; none if the record is better left whole.
+    /// Returns the length of a window in s; `None` if the record is too short to split.
     fn window(&self) -> Option<f64> {
         let step = self.step() * self.every() as f64;
         let train = self.time_unit.to_si(self.split() - self.times()[0]);
@@ -137,7 +132,7 @@ impl Found<'_> {
     }
 }
 
-/// The largest of 1, 2 and 5 times a power of ten that is not larger.
+/// Rounds down to 1, 2 or 5 times a power of ten.
 fn round_down(value: f64) -> f64 {
     let exponent = value.log10().floor() as i32;
     let part = |digit: i32, exponent: i32| -> f64 {
@@ -150,12 +145,11 @@ fn round_down(value: f64) -> f64 {
     fitting.unwrap_or(part(1, exponent))
 }
 
-/// A dataset file for a record of a model, as text, with what was guessed and why as comments.
-/// `name`: the record's path from the folder of the dataset file.
+/// Returns the text of a dataset file for a record of a model. Comments give the reason for every
+/// guess. `name` is the record's path relative to the folder of the dataset file.
 ///
 /// # Errors
-/// A record that cannot be read or holds no time, and one of which nothing is a quantity of the
-/// model.
+/// A record that cannot be read, has no time, or has no column that is a quantity of the model.
 pub fn proposed(record: &Path, name: &str, model: &Model) -> Result<String, Refusal> {
     let bytes = columns::bytes(record)?;
     let (format, mut columns) = match record.extension().is_some_and(|e| e == "parquet") {
@@ -178,7 +172,7 @@ pub fn proposed(record: &Path, name: &str, model: &Model) -> Result<String, Refu
         return Err(Refusal::file(
             record,
             format!(
-                "holds {} samples; expected {fewest} or more: {FEWEST_SAMPLES} to learn from and as many to be judged by",
+                "has {} samples; expected {fewest} or more: at least {FEWEST_SAMPLES} each for training and testing",
                 table.lines.len()
             ),
         ));
@@ -206,15 +200,15 @@ pub fn proposed(record: &Path, name: &str, model: &Model) -> Result<String, Refu
     Ok(written::text(&found, name))
 }
 
-/// How a text file is written, and its columns of numbers.
+/// Detects the layout of a text file and its columns of numbers.
 fn described(record: &Path, bytes: &[u8]) -> Result<(Format, Vec<FileColumn>), Refusal> {
-    // What is no text that can be read is said by who reads it.
+    // The reader reports a file that is not text.
     let text = csv_file::behind_skipped(record, bytes, &Format::default())?;
     let text = String::from_utf8_lossy(&text);
     let layout = layout::found(&text).ok_or_else(|| {
         Refusal::file(
             record,
-            "no two columns of numbers are found; expected lines of numbers, parted by commas, \
+            "no two columns of numbers are found; expected lines of numbers, separated by commas, \
              semicolons, bars, tabs or spaces",
         )
     })?;
@@ -224,7 +218,7 @@ fn described(record: &Path, bytes: &[u8]) -> Result<(Format, Vec<FileColumn>), R
     Ok((layout.format, columns.collect()))
 }
 
-/// Which column is the time, and its unit.
+/// Returns the index of the time column and its unit.
 fn time(
     record: &Path,
     columns: &mut [FileColumn],
@@ -263,14 +257,14 @@ fn time(
             record,
             match called {
                 Some(column) if !is_of_time(&columns[column]) => format!(
-                    "column {}, `{}`, is not in a unit of time, and no other column increases; expected a time, as in s",
+                    "column {}, `{}`, is not in a unit of time, and no other column increases; expected a column of time, for example in s",
                     columns[column].number, columns[column].name
                 ),
                 Some(column) => format!(
                     "the time does not increase in column {}, `{}`; expected samples in order, each once",
                     columns[column].number, columns[column].name
                 ),
-                None => "no column that can be a time increases from line to line; expected one"
+                None => "no column that can be a time increases from line to line; expected a column of time"
                     .to_owned(),
             },
         ));
@@ -304,7 +298,7 @@ fn nothing_measured(record: &Path, found: &Found<'_>) -> Refusal {
 #[cfg(test)]
 mod tests {
     #[test]
-    fn lengths_are_rounded_down_to_numbers_that_people_write() {
+    fn lengths_are_rounded_down_to_one_two_or_five() {
         for (value, expected) in [
             (0.12, 0.1),
             (0.5, 0.5),

@@ -1,4 +1,4 @@
-//! The text of a proposed dataset file.
+//! Text of a proposed dataset file.
 
 use std::fmt::Write;
 
@@ -13,13 +13,14 @@ use crate::samples::span;
 use crate::unwrapping::unwrapped;
 use crate::wrap_detection::WrapPattern;
 
-/// A channel whose noise cannot be seen gets this part of its span.
+/// Noise of a channel without visible noise, relative to its range.
 const UNSEEN: f64 = 1e-6;
 
-/// A dataset file; what was guessed stands beside it as a comment.
+/// Returns the text of a dataset file; comments mark guesses.
 pub(super) fn text(found: &Found<'_>, name: &str) -> String {
     let mut text =
-        "# Proposed by `eomgen dataset`. What was guessed says so: look at it once.\n".to_owned();
+        "# Proposed by `eomgen dataset`. Check the entries that are marked as guessed.\n"
+            .to_owned();
     text += &format!(
         "title = {}\n",
         quoted(&format!("{name}, {}", found.model.name))
@@ -34,17 +35,16 @@ pub(super) fn text(found: &Found<'_>, name: &str) -> String {
         };
     }
     text += &unmatched(found);
-    text +=
-        "\n[initial]\nstate = \"estimate\"\u{1}\"rest\" where the machine stands still at first\n";
+    text += "\n[initial]\nstate = \"estimate\"\u{1}or \"rest\" if the machine is at rest at the start\n";
     text += &uncertain(found);
     text += &windows(found);
     aligned(&text)
 }
 
-/// Where comments begin beside short lines.
+/// Column at which comments of short lines start.
 const COMMENTS: usize = 30;
 
-/// The text with what stands behind marks as comments below each other.
+/// Aligns the comments after marks.
 fn aligned(text: &str) -> String {
     let line = |line: &str| match line.split_once('\u{1}') {
         Some((code, comment)) => format!("{code:<COMMENTS$} # {comment}\n"),
@@ -53,7 +53,7 @@ fn aligned(text: &str) -> String {
     text.lines().map(line).collect()
 }
 
-/// A TOML string without hidden characters.
+/// Returns a TOML string without hidden characters.
 fn quoted(text: &str) -> String {
     if !text.contains(is_hidden) {
         return toml_edit::Value::from(text).to_string();
@@ -70,13 +70,13 @@ fn quoted(text: &str) -> String {
 fn records(found: &Found<'_>, name: &str) -> String {
     let (file, at) = (quoted(name), found.split());
     format!(
-        "\n[records]\u{1}the first 60 % to learn from, the rest to be judged by;\n\
-         train = [{{ file = {file}, to = {at:?} }}]\u{1}better is another measurement: test = [\"other.csv\"]\n\
+        "\n[records]\u{1}the first 60 % for training, the rest for testing;\n\
+         train = [{{ file = {file}, to = {at:?} }}]\u{1}better: another measurement, test = [\"other.csv\"]\n\
          test = [{{ file = {file}, from = {at:?} }}]\n"
     )
 }
 
-/// What differs from the usual format.
+/// Returns the keys that differ from the default format.
 fn format(format: &Format) -> String {
     let usual = Format::default();
     let mut keys = String::new();
@@ -110,11 +110,11 @@ fn format(format: &Format) -> String {
     );
     key(
         !format.names,
-        "names = false\u{1}columns are called by their numbers".to_owned(),
+        "names = false\u{1}columns are identified by number".to_owned(),
     );
     key(
         format.units,
-        "units = true\u{1}behind the line of names".to_owned(),
+        "units = true\u{1}after the line of names".to_owned(),
     );
     match keys.is_empty() {
         true => String::new(),
@@ -122,7 +122,7 @@ fn format(format: &Format) -> String {
     }
 }
 
-/// How a column is called.
+/// Returns the name or the number that identifies a column.
 fn key(found: &Found<'_>, column: &FileColumn) -> String {
     let mut all = found
         .columns
@@ -138,9 +138,9 @@ fn key(found: &Found<'_>, column: &FileColumn) -> String {
 fn time(found: &Found<'_>) -> String {
     let column = &found.columns[found.time];
     let why = match (&column.unit, &column.unknown_unit) {
-        (Some(_), _) => "as the file says".to_owned(),
-        (None, Some(unknown)) => format!("guessed: {} is no known unit", quoted(unknown)),
-        (None, None) => "guessed: the file says none".to_owned(),
+        (Some(_), _) => "from the file".to_owned(),
+        (None, Some(unknown)) => format!("guessed: {} is not a known unit", quoted(unknown)),
+        (None, None) => "guessed: the file has none".to_owned(),
     };
     let mut text = format!(
         "\n[time]\ncolumn = {}\nunit = {}\u{1}{why}; samples are {:.6} s apart\n",
@@ -152,17 +152,17 @@ fn time(found: &Found<'_>) -> String {
     if every > 1 {
         let _ = writeln!(
             text,
-            "every = {every}\u{1}of {} samples, behind a low-pass",
+            "every = {every}\u{1}of {} samples, after a low-pass filter",
             found.times().len()
         );
         if found.is_uneven() {
-            text += "filter = \"none\"\u{1}steps are uneven: no low-pass\n";
+            text += "filter = \"none\"\u{1}time steps are uneven: no low-pass filter\n";
         }
     }
     text
 }
 
-/// A column's unit, and where it comes from.
+/// Returns a column's unit with its source.
 fn unit(found: &Found<'_>, matched: &Match) -> String {
     let (unit, why) = found.unit(matched);
     format!("unit = {}\u{1}{why}", quoted(&unit.to_string()))
@@ -181,7 +181,7 @@ fn input(found: &Found<'_>, matched: &Match) -> String {
     )
 }
 
-/// The key of a column that wraps around.
+/// Returns the key of a wrapped column.
 fn wrap(pattern: Option<WrapPattern>) -> String {
     pattern.map_or_else(String::new, |pattern| {
         let doubt = pattern.doubt(pattern.period);
@@ -206,13 +206,13 @@ fn channel(found: &Found<'_>, matched: &Match) -> String {
     let span = span(&values);
     if span.is_nan() || span <= 0.0 {
         return format!(
-            "\n# `{name}` does not move in column {}: it is left out.\n",
+            "\n# `{name}` is constant in column {}: it is omitted.\n",
             column.number
         );
     }
     let (noise, why) = match estimated(&values) {
-        Some(noise) => (noise, "guessed from what differs from sample to sample"),
-        None => (UNSEEN * span, "guessed: none can be seen"),
+        Some(noise) => (noise, "guessed from the differences between samples"),
+        None => (UNSEEN * span, "guessed: no noise is visible"),
     };
     format!(
         "\n[channels.{name}]\u{1}{}\ncolumn = {}\n{}\n{}noise = {noise:.1e}\u{1}{why}\n",
@@ -223,7 +223,7 @@ fn channel(found: &Found<'_>, matched: &Match) -> String {
     )
 }
 
-/// Columns and inputs that nothing was found for.
+/// Returns comments on unmatched columns and inputs.
 fn unmatched(found: &Found<'_>) -> String {
     let is_used = |place: usize| {
         place == found.time || found.matches.iter().any(|matched| matched.column == place)
@@ -238,7 +238,7 @@ fn unmatched(found: &Found<'_>) -> String {
         let unknown = column.unknown_unit.as_ref();
         unknown.map_or_else(
             || name.clone(),
-            |unit| format!("{name} ({} is no known unit)", quoted(unit)),
+            |unit| format!("{name} ({} is not a known unit)", quoted(unit)),
         )
     });
     let named: Vec<String> = named.collect();
@@ -265,7 +265,7 @@ fn unmatched(found: &Found<'_>) -> String {
     text
 }
 
-/// Which parameters could be declared uncertain.
+/// Returns a comment on parameters that can be declared uncertain.
 fn uncertain(found: &Found<'_>) -> String {
     let parameters = found.model.parameters.iter();
     let numbers = parameters.filter(|p| matches!(p.value, ParameterValue::Number(v) if v != 0.0));
@@ -274,8 +274,8 @@ fn uncertain(found: &Found<'_>) -> String {
         return String::new();
     };
     format!(
-        "\n[uncertain]\u{1}what is not known well, by one standard deviation of it, as\n\
-# {first} = {{ relative = 0.05 }}\u{1}of {}\n",
+        "\n[uncertain]\u{1}parameters that are not known well, with a relative standard deviation:\n\
+# {first} = {{ relative = 0.05 }}\u{1}parameters: {}\n",
         names.join(", ")
     )
 }
@@ -283,8 +283,8 @@ fn uncertain(found: &Found<'_>) -> String {
 fn windows(found: &Found<'_>) -> String {
     match found.window() {
         Some(length) => format!(
-            "\n[windows]\nlength = {length:?}\u{1}s; each is simulated from a state of its own\n"
+            "\n[windows]\nlength = {length:?}\u{1}s; each window has a separate initial state\n"
         ),
-        None => "\n[windows]\nlength = \"record\"\u{1}too short to be cut\n".to_owned(),
+        None => "\n[windows]\nlength = \"record\"\u{1}too short to split\n".to_owned(),
     }
 }

@@ -1,4 +1,4 @@
-//! What docs/discovery.md says of dataset files, and the records in examples/measured.
+//! Tests of the dataset files in docs/discovery.md and of the records in examples/measured.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -7,7 +7,7 @@ use eomgen_model_spec::source::Source;
 use eomgen_records::description::keys;
 use eomgen_records::read_dataset;
 
-/// A file of the project.
+/// Returns the path of a file in the repository.
 fn project(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../..")
@@ -19,7 +19,7 @@ fn text(path: &str) -> String {
 }
 
 #[test]
-fn every_table_and_key_stands_in_the_reference() {
+fn reference_lists_every_table_and_key() {
     let page = text("docs/discovery.md");
     let (_, reference) = page
         .split_once("### Tables and keys")
@@ -72,7 +72,7 @@ fn every_table_and_key_stands_in_the_reference() {
 }
 
 #[test]
-fn the_dataset_file_of_the_page_is_that_of_the_example_and_is_read() {
+fn dataset_file_of_page_matches_example_and_is_read() {
     let file = text("examples/measured/dataset.toml");
     assert!(text("docs/discovery.md").contains(&file));
     let source = Source::new("stage.toml", text("examples/measured/stage.toml"));
@@ -85,14 +85,14 @@ fn the_dataset_file_of_the_page_is_that_of_the_example_and_is_read() {
 }
 
 #[test]
-fn the_records_of_the_example_are_what_its_script_makes() {
+fn example_records_match_their_script() {
     let folder = tempfile::tempdir().expect("a folder");
     let made = Command::new("python3")
         .arg(project("examples/measured/make.py"))
         .arg(folder.path())
         .output();
     let Some(made) = made.ok().filter(|output| output.status.code() != Some(127)) else {
-        skips::skip("the records of examples/measured were not made anew, for want of python3");
+        skips::skip("the records of examples/measured were not regenerated: python3 is missing");
         return;
     };
     assert!(
@@ -110,7 +110,7 @@ fn the_records_of_the_example_are_what_its_script_makes() {
         };
         let (anew, shipped) = (numbers(&anew), numbers(&shipped));
         assert_eq!(anew.len(), shipped.len());
-        // The last digit may be another where a library rounds a cosine otherwise.
+        // The last digit can differ between implementations of the cosine.
         let pairs = anew.iter().zip(&shipped);
         assert!(
             pairs.into_iter().all(|(a, b)| (a - b).abs() < 2e-3),

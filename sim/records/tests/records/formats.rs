@@ -1,6 +1,6 @@
-//! Records as people have them: separators, decimal signs, lines that are no samples, columns
-//! without names, parts of a file, fewer samples. Each is read to the numbers that were written,
-//! or refused with its place and what to write.
+//! Tests of record formats: separators, decimal signs, comments, columns without names, parts of a
+//! file, decimation. Each is read to the numbers that were written, or rejected with place and
+//! cure.
 
 mod wrapped;
 
@@ -12,7 +12,7 @@ use eomgen_records::dataset::Dataset;
 use eomgen_records::{Refusal, proposed, read_dataset};
 use tempfile::TempDir;
 
-/// A dataset file of a pendulum; `format` stands for further tables.
+/// Dataset file of a pendulum; `format` is the place of further tables.
 const DESCRIPTION: &str = r#"
 [records]
 train = ["train.csv"]
@@ -28,7 +28,7 @@ unit = "mrad"
 noise = 0.1
 "#;
 
-/// Samples of a record, and the time between them, s.
+/// Number of samples of a record, and the sample time in s.
 const SAMPLES: usize = 400;
 const STEP: f64 = 0.01;
 
@@ -37,19 +37,19 @@ fn pendulum() -> Model {
     eomgen_model_spec::check(source).expect("a model").model
 }
 
-/// The angle at a sample, mrad; `turn` makes another record.
+/// Returns the angle at a sample, in mrad; `turn` selects another record.
 fn angle(sample: usize, turn: f64) -> f64 {
     100.0 * (1.3 * STEP * sample as f64 + turn).cos() + 20.0 * (3.1 * STEP * sample as f64).sin()
 }
 
-/// A record, line by line as `line` writes time and angle.
+/// Returns a record with the lines that `line` writes for time and angle.
 fn record(head: &str, turn: f64, line: impl Fn(f64, f64) -> String) -> String {
     let samples = 0..SAMPLES;
     let lines = samples.map(|sample| line(STEP * sample as f64, angle(sample, turn)));
     head.to_owned() + &lines.collect::<String>()
 }
 
-/// A folder with a dataset file and its records.
+/// Creates a folder with a dataset file and its records.
 fn folder(description: &str, head: &str, line: impl Fn(f64, f64) -> String) -> TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     write(folder.path(), "dataset.toml", description);
@@ -78,7 +78,7 @@ fn plain(t: f64, angle: f64) -> String {
     format!("{t:.2},{angle:.6}\n")
 }
 
-/// Asserts that a dataset holds what was written.
+/// Asserts that a dataset contains the written numbers.
 fn holds(dataset: &Dataset) {
     for (record, turn) in [(&dataset.train[0], 0.0), (&dataset.test[0], 1.0)] {
         assert_eq!(record.times.len(), SAMPLES);
@@ -90,11 +90,11 @@ fn holds(dataset: &Dataset) {
     }
 }
 
-/// A line of a file, from its time and its angle.
+/// Writer of a line, given time and angle.
 type Line = Box<dyn Fn(f64, f64) -> String>;
 
 #[test]
-fn every_format_is_read_to_the_numbers_that_were_written() {
+fn every_format_is_read_exactly() {
     let comma = |number: f64| format!("{number:.6}").replace('.', ",");
     let by_number = DESCRIPTION
         .replace("column = \"t\"", "column = 1")
@@ -151,7 +151,7 @@ fn every_format_is_read_to_the_numbers_that_were_written() {
 }
 
 #[test]
-fn what_a_format_does_not_fit_is_refused_with_what_to_write() {
+fn wrong_formats_are_rejected_with_cure() {
     let with = |format: &str| format!("{DESCRIPTION}\n[format]\n{format}\n");
     let cases = [
         (with(""), "t;angle\n", "separator = \";\" in [format]"),
@@ -159,24 +159,28 @@ fn what_a_format_does_not_fit_is_refused_with_what_to_write() {
         (
             with("decimal = \",\""),
             "t,angle\n",
-            "cannot both part columns",
+            "cannot be both the separator",
         ),
         (
             with("decimal = \",\"\nseparator = \";\""),
             "t;angle\n0.01;3\n",
-            "line 2: column 1: \"0.01\" is no number: decimal = \",\" stands in [format]",
+            "line 2: column 1: \"0.01\" is not a number: [format] sets decimal = \",\"",
         ),
         (
             with("separator = \";\""),
             "t;angle\n0,01;3\n",
-            "column 1: \"0,01\" is no number; write decimal = \",\" in [format]",
+            "column 1: \"0,01\" is not a number; write decimal = \",\" in [format]",
         ),
-        (with("skip = 2"), "one line", "has no more than 2 lines"),
+        (
+            with("skip = 2"),
+            "one line",
+            "has no line after the 2 skipped lines",
+        ),
         (with("skip = -1"), "t,angle\n", "0 to 1000"),
         (
             with("skip = 2"),
             "a\nb\nt,angle\n0,x\n",
-            "line 4: column 2: \"x\" is no number",
+            "line 4: column 2: \"x\" is not a number",
         ),
         (
             with("comment = \"rem\""),
@@ -198,7 +202,7 @@ fn what_a_format_does_not_fit_is_refused_with_what_to_write() {
         (
             DESCRIPTION.replace("\"angle\"", "3"),
             "t,angle\n",
-            "line 1: there is no column 3; there are 2",
+            "line 1: there is no column 3; the file has 2",
         ),
         (
             DESCRIPTION.replace("\"angle\"", "0"),
@@ -217,7 +221,7 @@ fn what_a_format_does_not_fit_is_refused_with_what_to_write() {
 }
 
 #[test]
-fn a_file_is_parted_by_its_times() {
+fn file_is_split_by_times() {
     let parted = DESCRIPTION
         .replace("[\"train.csv\"]", "[{ file = \"train.csv\", to = 2500 }]")
         .replace(
@@ -234,19 +238,15 @@ fn a_file_is_parted_by_its_times() {
     assert_eq!(ends(&dataset.test[0].times), (2.5, 3.49));
     assert_eq!(dataset.test[0].channels[0].len(), 100);
     for (from, to, part) in [
-        (
-            "from = 2500",
-            "from = 2000",
-            "stretches that do not overlap",
-        ),
+        ("from = 2500", "from = 2000", "parts that do not overlap"),
         (
             "from = 2500",
             "from = 3600",
-            "nothing lies between 3600 and 3500",
+            "the part from 3600 to 3500 is empty",
         ),
         ("to = 2500", "to = -1", "its times are 0 to 3990 ms"),
         ("to = 2500", "until = 2500", "the keys are file, from, to"),
-        ("to = 2500", "to = 100", "holds 10 samples; expected 50"),
+        ("to = 2500", "to = 100", "has 10 samples; expected 50"),
     ] {
         write(folder.path(), "dataset.toml", &parted.replacen(from, to, 1));
         let message = refused(&folder);
@@ -255,8 +255,8 @@ fn a_file_is_parted_by_its_times() {
 }
 
 #[test]
-fn fewer_samples_are_kept_behind_a_low_pass_or_as_they_are() {
-    // A wave far above what the samples that are kept can show.
+fn decimation_works_with_and_without_low_pass() {
+    // Ripple far above the new Nyquist frequency.
     let ripple = |t: f64| 5.0 * (2.0 * std::f64::consts::PI * 19.0 * t + 0.4).sin();
     let line = move |t: f64, a: f64| format!("{t:.2},{:.6}\n", a + ripple(t));
     let every = |more: &str| DESCRIPTION.replace("\"s\"", &format!("\"s\"\nevery = 5\n{more}"));
@@ -269,7 +269,7 @@ fn fewer_samples_are_kept_behind_a_low_pass_or_as_they_are() {
     let smooth = folder(&every(""), "t,angle\n", line);
     let dataset = read(&smooth).unwrap_or_else(|refusal| panic!("{refusal}"));
     assert!(furthest(&dataset) < 5e-5, "{}", furthest(&dataset));
-    // White noise shrinks with its band.
+    // The noise decreases with the bandwidth.
     assert!((dataset.channels[0].noise / 1e-4 - 0.4).abs() < 0.03);
     let plain = folder(&every("filter = \"none\""), "t,angle\n", line);
     let dataset = read(&plain).unwrap_or_else(|refusal| panic!("{refusal}"));
@@ -293,7 +293,7 @@ fn fewer_samples_are_kept_behind_a_low_pass_or_as_they_are() {
 }
 
 #[test]
-fn what_is_known_of_a_sensor_is_taken_in_its_units() {
+fn sensor_priors_are_converted_to_si() {
     let said = format!(
         "{DESCRIPTION}gain = {{ mean = 2, sd = 0.5 }}\nbias = {{ sd = 3 }}\ndelay = {{ mean = 0.02, sd = 0 }}\n"
     );
@@ -326,9 +326,9 @@ fn what_is_known_of_a_sensor_is_taken_in_its_units() {
 }
 
 #[test]
-fn a_dataset_file_is_proposed_that_reads_what_was_written() {
+fn proposed_dataset_file_reads_original_numbers() {
     let comma = |number: f64| format!("{number:.6}").replace('.', ",");
-    // Noise that repeats, of about one standard deviation.
+    // Repeatable noise with about one standard deviation.
     let noise = |t: f64| 3.4 * ((t * 7919.123).sin() * 43_758.545).fract().abs() - 1.7;
     let cases: [(&str, Line, &[&str]); 4] = [
         (
@@ -417,7 +417,7 @@ fn proposals_never_match_another_dimension() {
 }
 
 #[test]
-fn hidden_characters_of_names_are_escaped_in_proposals_and_read_again() {
+fn hidden_characters_in_names_survive_proposals() {
     let head = "t,theta,force\u{1b}[31m\u{202e}\"x\\\n";
     let folder = folder("", &head.replace(['"', '\\'], "'"), |t, a| {
         format!("{t:.2},{:.6},{a:.6}\n", 1e-3 * a)
@@ -434,7 +434,7 @@ fn hidden_characters_of_names_are_escaped_in_proposals_and_read_again() {
 }
 
 #[test]
-fn records_for_which_nothing_can_be_proposed_are_refused() {
+fn records_without_possible_proposal_are_rejected() {
     let cases = [
         ("a,b\nno,numbers\n", "no two columns of numbers"),
         ("", "is empty"),
@@ -459,13 +459,13 @@ fn records_for_which_nothing_can_be_proposed_are_refused() {
     let message = proposed(&folder.path().join("train.csv"), "train.csv", &pendulum());
     let message = message.expect_err("too few").to_string();
     assert!(
-        message.contains("holds 90 samples; expected 125"),
+        message.contains("has 90 samples; expected 125"),
         "{message}"
     );
 }
 
 #[test]
-fn a_lost_stretch_is_named_and_parts_the_record() {
+fn gap_is_noted_and_splits_record() {
     let folder = folder(DESCRIPTION, "t,angle\n", plain);
     let whole = record("t,angle\n", 0.0, plain);
     let lost = |from: usize, to: usize| -> String {
@@ -482,12 +482,10 @@ fn a_lost_stretch_is_named_and_parts_the_record() {
     assert!((dataset.train[1].channels[0][0] - 1e-3 * angle(180, 0.0)).abs() < 1e-9);
     let notes = dataset.notes.join("\n");
     assert!(
-        notes.contains(
-            "train[0]: nothing was recorded from 1.190000 s to 1.800000 s, where 60 samples"
-        ),
+        notes.contains("train[0]: 60 samples are missing between 1.190000 s and 1.800000 s"),
         "{notes}"
     );
-    // Too few samples to say anything are left out, a few that are missing part nothing.
+    // Parts with too few samples are dropped. A few missing samples do not split a record.
     write(folder.path(), "train.csv", &lost(31, 181));
     let dataset = read(&folder).unwrap_or_else(|refusal| panic!("{refusal}"));
     assert_eq!(dataset.train.len(), 1);
@@ -528,7 +526,7 @@ fn rates_and_accelerations_are_channels_in_their_units() {
 }
 
 #[test]
-fn a_state_of_first_order_is_a_channel() {
+fn first_order_state_is_a_channel() {
     let description = DESCRIPTION.replace("[channels.theta]", "[channels.i]");
     let description = description.replace("\"mrad\"", "\"mA\"");
     let of_current = folder(&description, "t,angle\n", plain);
@@ -551,7 +549,7 @@ fn a_state_of_first_order_is_a_channel() {
     assert!(refused.to_string().contains("`i_2`"), "{refused}");
 }
 
-/// A slide whose force is measured along a motion that is given.
+/// Slide with a force that is measured along a given motion.
 const SLIDE: &str = r#"
 [model]
 name = "slide"
@@ -609,7 +607,7 @@ fn along(description: &str) -> Result<Dataset, Refusal> {
 }
 
 #[test]
-fn a_motion_that_is_given_has_its_rates() {
+fn given_motion_has_rates() {
     for (every, decimated) in [(1, ""), (4, "unit = \"s\"\nevery = 4")] {
         let description = match every {
             1 => ALONG.to_owned(),
@@ -619,7 +617,7 @@ fn a_motion_that_is_given_has_its_rates() {
         assert_eq!(dataset.motion, ["x", "y"]);
         let record = &dataset.train[0];
         for (place, t) in record.times.iter().enumerate() {
-            // Three inputs, then coordinates, rates and second rates of the two.
+            // Three inputs, then coordinates, rates and second rates of both.
             let row = record.inputs.held_at(*t);
             assert_eq!(row.len(), 3 + 6);
             let (sine, cosine) = (3.0 * t).sin_cos();
@@ -644,9 +642,8 @@ fn a_motion_that_is_given_has_its_rates() {
     }
 }
 
-/// Of a motion that is given as a speed the position is integrated, and all three belong together.
 #[test]
-fn a_motion_is_given_by_its_speed_and_a_start() {
+fn given_speed_is_integrated_from_initial_position() {
     let y = "[motion.y]\ncolumn = \"x\"\nunit = \"m\"\n";
     let speed = "[motion.y]\ncolumn = \"G\"\nunit = \"m/min\"\ninitial = 0.25\n";
     let given = ALONG.replace(y, speed);
@@ -678,7 +675,7 @@ fn a_motion_is_given_by_its_speed_and_a_start() {
     for (wrong, part) in [
         (
             ALONG.replace("[motion.y]", "[motion.y]\ninitial = 1"),
-            "the column holds the position",
+            "the column contains the position",
         ),
         (
             given.replace("initial = 0.25", "wrap = 1"),
@@ -694,7 +691,7 @@ fn a_motion_is_given_by_its_speed_and_a_start() {
 }
 
 #[test]
-fn what_a_motion_takes_is_left_out_where_it_turns_back() {
+fn samples_at_reversals_are_ignored() {
     let dataset = along(ALONG).unwrap_or_else(|refusal| panic!("{refusal}"));
     let left_out = dataset.train[0].channels[0]
         .iter()
@@ -702,10 +699,7 @@ fn what_a_motion_takes_is_left_out_where_it_turns_back() {
         .count();
     assert!((4..40).contains(&left_out), "{left_out}");
     let notes = dataset.notes.join("\n");
-    assert!(
-        notes.contains("samples of `second` are left out"),
-        "{notes}"
-    );
+    assert!(notes.contains("samples of `second` are ignored"), "{notes}");
     assert!(
         notes.contains("input `H` is not driven") && !notes.contains("input `F`"),
         "{notes}"
@@ -713,7 +707,7 @@ fn what_a_motion_takes_is_left_out_where_it_turns_back() {
 }
 
 #[test]
-fn a_motion_that_is_given_drives_no_simulation_and_must_move() {
+fn given_motion_cannot_drive_simulation_and_must_move() {
     let folder = folder(ALONG, "t,x,F,G\n", |t, angle| {
         format!("{t},3,{angle},{t}\n")
     });
@@ -729,12 +723,12 @@ fn a_motion_that_is_given_drives_no_simulation_and_must_move() {
     );
     let driven = eomgen_records::read_inputs(&path, "train[0]", &model);
     let driven = driven.err().map(|refusal| refusal.to_string());
-    let said = "the records give the motion, and no inputs that would make it";
+    let said = "the records give the motion, but no inputs to simulate it";
     assert!(driven.is_some_and(|driven| driven.contains(said)));
 }
 
 #[test]
-fn half_a_motion_and_what_is_given_twice_are_refused() {
+fn incomplete_and_duplicate_motions_are_rejected() {
     let without = |part: &str| ALONG.replace(part, "");
     let y = "[motion.y]\ncolumn = \"x\"\nunit = \"m\"\n";
     let both =
@@ -748,19 +742,13 @@ fn half_a_motion_and_what_is_given_twice_are_refused() {
         (without(y), "the motion of `y` is not given"),
         (
             without(both),
-            "`F` is an input of the model: it is measured where the motion is given",
+            "`F` is an input of the model: it can be a channel only if the motion is given",
         ),
-        (
-            without(second),
-            "inputs that are measured: 1, coordinates: 2",
-        ),
-        (
-            ALONG.to_owned() + fed,
-            "`F` is an input here and a channel as well",
-        ),
+        (without(second), "measured inputs: 1, coordinates: 2"),
+        (ALONG.to_owned() + fed, "`F` is both an input and a channel"),
         (
             ALONG.to_owned() + rest,
-            "[initial] says nothing where the motion is given",
+            "[initial] is not used if the motion is given",
         ),
         (ALONG.to_owned() + third, "`x` is given by [motion]"),
         (
@@ -783,7 +771,7 @@ fn half_a_motion_and_what_is_given_twice_are_refused() {
 }
 
 #[test]
-fn what_a_newcomer_forgets_is_told_with_what_to_write() {
+fn common_mistakes_are_reported_with_cure() {
     let refused_with = |description: &str, head: &str, line: &dyn Fn(f64, f64) -> String| {
         let folder = folder(description, head, line);
         refused(&folder)
@@ -813,7 +801,7 @@ fn what_a_newcomer_forgets_is_told_with_what_to_write() {
 }
 
 #[test]
-fn blank_lines_behind_the_samples_are_no_samples() {
+fn blank_lines_after_samples_are_ignored() {
     for blank in ["", "\n", "   \n\t\n", ",\n , \n", "\r\n \r\n"] {
         let folder = folder(DESCRIPTION, "t,angle\n", |t, a| format!("{t:.2},{a:.6}\n"));
         let path = folder.path().join("train.csv");
@@ -825,7 +813,7 @@ fn blank_lines_behind_the_samples_are_no_samples() {
 }
 
 #[test]
-fn a_missing_last_cell_does_not_hide_the_names_of_columns() {
+fn missing_last_cell_keeps_column_names() {
     let folder = folder("", "t,theta\n", |t, a| match (t / STEP).round() {
         50.0 => format!("{t:.2},\n"),
         _ => format!("{t:.2},{:.6}\n", 1e-3 * a),
@@ -835,7 +823,7 @@ fn a_missing_last_cell_does_not_hide_the_names_of_columns() {
     assert!(text.contains("column = \"theta\""), "{text}");
 }
 
-/// A trolley whose position is prescribed, and a rope whose length is.
+/// Trolley with prescribed position and rope with prescribed length.
 const CRANE: &str = r#"[model]
 name = "crane"
 [parameters]
@@ -853,7 +841,7 @@ load = "-m*g*l*cos(theta)"
 "#;
 
 #[test]
-fn prescribed_motion_without_a_record_rests() {
+fn prescribed_motion_without_record_is_at_rest() {
     let source = eomgen_model_spec::source::Source::new("crane.toml", CRANE);
     let model = eomgen_model_spec::check(source).expect("a model").model;
     let folder = folder(DESCRIPTION, "t,angle\n", |t, a| format!("{t:.2},{a:.6}\n"));

@@ -1,5 +1,5 @@
-//! Columns that wrap around: refused with what to write, unwrapped by `wrap`, and told from jumps that are
-//! real.
+//! Tests of wrapped columns: rejected with a cure, unwrapped by `wrap`, and distinguished from real
+//! jumps.
 
 use std::fmt::Write;
 
@@ -46,13 +46,13 @@ fn rotor() -> Model {
     eomgen_model_spec::check(source).expect("a model").model
 }
 
-/// The angle in degrees: over many turns, with reversals.
+/// Returns the angle in degrees, over many turns with reversals.
 fn angle(k: usize, turn: f64) -> f64 {
     let t = 0.01 * k as f64;
     900.0 * (1.1 * t + turn).sin() + 700.0 * t
 }
 
-/// A folder with records of an angle, as a sensor shows it, and of an input.
+/// Creates a folder with records of an angle, as measured by a sensor, and of an input.
 fn folder(description: &str, sensor: impl Fn(f64) -> f64, u: impl Fn(usize) -> f64) -> TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     write(folder.path(), "dataset.toml", description);
@@ -82,16 +82,17 @@ fn refused(folder: &TempDir) -> String {
         .to_string()
 }
 
-/// With further keys of the channel.
+/// Returns the description with further keys of the channel.
 fn with(keys: &str) -> String {
     format!("{DESCRIPTION}{keys}\n")
 }
 
-/// The largest difference of a channel from the angle, degrees, but for one offset of whole turns.
+/// Returns the largest difference of a channel from the angle in degrees, up to a constant number
+/// of turns.
 fn error(values: &[f64], turn: f64, every: usize) -> f64 {
     let degrees = |k: usize| values[k].to_degrees() - angle(k * every, turn);
     let offset = (degrees(0) / 360.0).round() * 360.0;
-    // The low-pass of `every` reaches over the ends.
+    // The low-pass filter of `every` extends over the ends.
     let inside = 10 * (every - 1)..values.len() - 10 * (every - 1);
     inside
         .map(|k| (degrees(k) - offset).abs())
@@ -99,7 +100,7 @@ fn error(values: &[f64], turn: f64, every: usize) -> f64 {
 }
 
 #[test]
-fn a_wrapped_channel_is_refused_with_the_key_to_write() {
+fn wrapped_channel_is_rejected_with_key_to_write() {
     let said = refused(&folder(DESCRIPTION, wrapped, |_| 0.0));
     for part in [
         "train.csv: `phi` jumps ",
@@ -114,7 +115,7 @@ fn a_wrapped_channel_is_refused_with_the_key_to_write() {
     assert!(read(&folder(&with("wrap = \"none\""), wrapped, |_| 0.0)).is_ok());
 }
 
-/// The message about a counter with this period that a motion in turns drives.
+/// Returns the message for a counter with this period and a motion in turns.
 fn refused_counter(period: f64, mut turns: impl FnMut(usize) -> f64) -> String {
     let counts = DESCRIPTION
         .replace("\"deg\"", "\"1\"")
@@ -131,7 +132,7 @@ fn refused_counter(period: f64, mut turns: impl FnMut(usize) -> f64) -> String {
 }
 
 #[test]
-fn the_period_of_a_counter_is_proposed_in_full() {
+fn usual_counter_period_is_proposed_exactly() {
     let mut noise = 12345_u64;
     let mut uniform = move || {
         noise = noise
@@ -157,7 +158,7 @@ fn the_period_of_a_counter_is_proposed_in_full() {
 }
 
 #[test]
-fn an_unusual_period_is_proposed_with_its_uncertainty() {
+fn unusual_period_is_proposed_with_uncertainty() {
     let said = refused_counter(5003.0, |k| 0.4 + 0.0017 * k as f64);
     assert!(
         said.contains("write wrap = 5003 in [channels.phi] (uncertain by 1"),
@@ -171,7 +172,7 @@ fn an_unusual_period_is_proposed_with_its_uncertainty() {
 }
 
 #[test]
-fn a_declared_channel_is_unwrapped_before_samples_are_left_out() {
+fn declared_channel_is_unwrapped_before_decimation() {
     for (unit, keys, scale) in [
         ("deg", "wrap = 360", 1.0),
         ("rad", "wrap = 6.283", 1f64.to_radians()),
@@ -194,7 +195,7 @@ fn a_declared_channel_is_unwrapped_before_samples_are_left_out() {
 }
 
 #[test]
-fn parts_of_a_file_keep_its_turns_and_a_known_start_decides_the_first() {
+fn parts_of_file_keep_turns_from_known_start() {
     let parts =
         "train = [{ file = \"train.csv\", to = 2 }]\ntest = [{ file = \"train.csv\", from = 2 }]";
     let whole = "train = [\"train.csv\"]\ntest = [\"test.csv\"]";
@@ -206,7 +207,7 @@ fn parts_of_a_file_keep_its_turns_and_a_known_start_decides_the_first() {
         (step - angle(200, 0.0) + angle(199, 0.0)).abs() < 1e-3,
         "{step}"
     );
-    // A sensor from 0 to 360 degrees shows 359.9 at rest.
+    // A sensor from 0 to 360 degrees reads 359.9 at rest.
     let resting = with("wrap = 360\n[initial]\nstate = \"rest\"");
     let from_zero = folder(&resting, |v| (v - 0.1).rem_euclid(360.0), |_| 0.0);
     let dataset = read(&from_zero).unwrap_or_else(|refusal| panic!("{refusal}"));
@@ -215,7 +216,7 @@ fn parts_of_a_file_keep_its_turns_and_a_known_start_decides_the_first() {
 }
 
 #[test]
-fn a_period_that_is_not_the_columns_is_refused() {
+fn wrong_period_is_rejected() {
     for (keys, part) in [
         ("wrap = 100", "spans 357."),
         ("wrap = 720", "jumps by about 360.0000 deg"),
@@ -228,12 +229,12 @@ fn a_period_that_is_not_the_columns_is_refused() {
 }
 
 #[test]
-fn a_gap_with_an_unknown_number_of_turns_is_refused_inside_a_part_only() {
+fn gap_with_unknown_turns_is_rejected_only_inside_part() {
     let with_gap = |description: &str| {
         let folder = folder(description, wrapped, |_| 0.0);
         let mut text = "t,u,phi\n".to_owned();
         for k in 0..COUNT {
-            // Stands still up to the gap, turns by 90 degrees per sample after it.
+            // At rest up to the gap, 90 degrees per sample after it.
             let phi = wrapped(90.0 * k.saturating_sub(215) as f64 + 0.01 * k as f64);
             let phi = if (200..230).contains(&k) {
                 String::new()
@@ -258,7 +259,7 @@ fn a_gap_with_an_unknown_number_of_turns_is_refused_inside_a_part_only() {
 }
 
 #[test]
-fn a_square_wave_is_no_wrapped_input_and_a_wrapped_one_is() {
+fn square_wave_input_is_not_wrapped() {
     let fed = "[inputs.u]\ncolumn = \"u\"\nunit = \"rad\"\n";
     let model = ROTOR.replace("u = { unit = \"N m\" }", "u = { unit = \"rad\" }");
     let model = model.replace("value = \"u\"", "value = \"k*u\"");
@@ -292,7 +293,7 @@ fn a_square_wave_is_no_wrapped_input_and_a_wrapped_one_is() {
 }
 
 #[test]
-fn the_proposed_file_declares_the_wrap() {
+fn proposed_file_declares_wrap() {
     let folder = folder("", |v| wrapped(v).to_radians(), |k| (0.1 * k as f64).sin());
     let text = proposed(&folder.path().join("train.csv"), "train.csv", &rotor());
     let text = text.unwrap_or_else(|refusal| panic!("{refusal}"));
@@ -304,7 +305,7 @@ fn the_proposed_file_declares_the_wrap() {
 }
 
 #[test]
-fn angle_without_a_unit_that_jumps_by_360_is_in_degrees() {
+fn angle_with_jumps_of_360_and_no_unit_is_in_degrees() {
     let folder = folder("", wrapped, |k| (0.1 * k as f64).sin());
     let text = proposed(&folder.path().join("train.csv"), "train.csv", &rotor());
     let text = text.unwrap_or_else(|refusal| panic!("{refusal}"));
