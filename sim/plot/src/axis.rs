@@ -1,40 +1,38 @@
-//! One axis of a frame: where its values lie in pixels and where its ticks are.
+//! Axis of a frame: positions of values in pixels, and ticks.
 
 use super::quantity::superscript;
 
-/// How values are spaced along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Scale {
     Linear,
     Logarithmic,
 }
 
-/// The values an axis covers; on a logarithmic axis their decimal logarithms.
+/// Range of an axis; decimal logarithms for a logarithmic axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Range {
     pub low: f64,
     pub high: f64,
 }
 
-/// A labelled mark.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Tick {
-    /// Where, in the coordinate of the [`Range`].
+    /// Position in the coordinate of the [`Range`].
     pub place: f64,
     pub label: String,
 }
 
-/// A range laid along pixels.
+/// Axis with its range and pixels.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Axis {
     pub scale: Scale,
     pub range: Range,
-    /// The pixels at the low and the high end.
+    /// Pixels of the low and the high end.
     pub pixels: (f64, f64),
 }
 
 impl Scale {
-    /// The coordinate along the axis: the value or its logarithm; not a number if there is none.
+    /// Returns the coordinate along the axis: the value or its logarithm, NaN if there is none.
     pub fn place(self, value: f64) -> f64 {
         match self {
             Self::Linear => value,
@@ -45,7 +43,7 @@ impl Scale {
 }
 
 impl Range {
-    /// The span of what is finite in `places`; none if nothing is.
+    /// Returns the range of the finite places; `None` without any.
     pub fn of(places: impl Iterator<Item = f64>) -> Option<Self> {
         places
             .filter(|place| place.is_finite())
@@ -61,7 +59,7 @@ impl Range {
             })
     }
 
-    /// Widened so that it is no point: rounding noise around a constant is not magnified.
+    /// Widens a range that is a point, so that rounding noise of a constant is not magnified.
     pub fn opened(self) -> Self {
         let magnitude = self.low.abs().max(self.high.abs());
         let least = if magnitude < 1e-100 {
@@ -84,7 +82,7 @@ impl Range {
         }
     }
 
-    /// With a margin of this share of the span on both sides.
+    /// Adds a margin on both sides, as a fraction of the span.
     pub fn padded(self, share: f64) -> Self {
         let margin = share * (self.high - self.low);
         Self {
@@ -93,7 +91,7 @@ impl Range {
         }
     }
 
-    /// With this share of the whole free above what was there.
+    /// Adds space at the top, as a fraction of the new span.
     pub fn raised(self, share: f64) -> Self {
         Self {
             low: self.low,
@@ -103,7 +101,6 @@ impl Range {
 }
 
 impl Axis {
-    /// The pixel of a place.
     pub fn pixel(&self, place: f64) -> f64 {
         let (start, end) = self.pixels;
         let share = (place - self.range.low) / (self.range.high - self.range.low);
@@ -111,7 +108,7 @@ impl Axis {
     }
 }
 
-/// About `count` ticks in a range.
+/// Returns about `count` ticks in a range.
 pub(super) fn ticks(scale: Scale, range: Range, count: usize) -> Vec<Tick> {
     match scale {
         Scale::Linear => linear_ticks(range, count),
@@ -119,7 +116,7 @@ pub(super) fn ticks(scale: Scale, range: Range, count: usize) -> Vec<Tick> {
     }
 }
 
-/// Multiples of 1, 2 or 5 times a power of ten, all with the same decimals.
+/// Returns multiples of 1, 2 or 5 times a power of ten, with equal numbers of decimals.
 fn linear_ticks(range: Range, count: usize) -> Vec<Tick> {
     let step = round_step((range.high - range.low) / count.max(1) as f64);
     let decimals = (-(step.log10() + 1e-9).floor()).clamp(0.0, 12.0) as usize;
@@ -131,15 +128,16 @@ fn linear_ticks(range: Range, count: usize) -> Vec<Tick> {
         .collect()
 }
 
-/// The multiples of `step` in a range; a rounding error does not lose one at an end.
+/// Returns the multiples of `step` in a range. A tolerance keeps those at the ends in spite of
+/// rounding.
 fn multiples(range: Range, step: f64) -> impl Iterator<Item = f64> {
     let first = (range.low / step - 1e-6).ceil();
     let last = (range.high / step + 1e-6).floor();
-    // A range is at least 1e-9 of its magnitude and a step a fair share of it.
+    // Cannot overflow: a range is at least 1e-9 of its magnitude, and a step is a fraction of it.
     (first as i64..=last as i64).map(move |multiple| multiple as f64 * step)
 }
 
-/// The nearest of 1, 2, 5 times a power of ten, by ratio.
+/// Returns the nearest of 1, 2, 5 times a power of ten, by ratio.
 fn round_step(rough: f64) -> f64 {
     let power = 10f64.powi(rough.log10().floor() as i32);
     let mantissa = match rough / power {
@@ -151,7 +149,7 @@ fn round_step(rough: f64) -> f64 {
     mantissa * power
 }
 
-/// Powers of ten; over less than two decades also 2 and 5 times these.
+/// Returns powers of ten; below two decades also 2 and 5 times these.
 fn decade_ticks(range: Range, count: usize) -> Vec<Tick> {
     let decades = range.high.floor() - range.low.ceil();
     if decades < 1.0 {
@@ -186,7 +184,7 @@ fn fine_label(mantissa: i32, decade: i32) -> String {
     }
 }
 
-/// A minus sign instead of a hyphen, and none before zero.
+/// Replaces a hyphen by a minus sign, and removes it before zero.
 fn with_minus_sign(number: &str) -> String {
     match number.strip_prefix('-') {
         Some(digits) if digits.chars().all(|c| matches!(c, '0' | '.')) => digits.to_owned(),
@@ -231,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn a_constant_gets_a_range_of_its_own() {
+    fn constant_gets_range_around_it() {
         let point = |value| {
             Range {
                 low: value,
@@ -262,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_logarithm_has_no_place() {
+    fn value_without_logarithm_has_no_place() {
         assert!(Scale::Logarithmic.place(0.0).is_nan() && Scale::Logarithmic.place(-1.0).is_nan());
         assert_eq!(Range::of([f64::NAN, f64::INFINITY].into_iter()), None);
     }

@@ -1,4 +1,4 @@
-//! Counts as columns side by side, and shares of a whole as bars one below the other.
+//! Histograms of counts, and shares of a whole as stacked bars.
 
 use super::PlotError;
 use super::axis::{Axis, Range, Scale, Tick, ticks};
@@ -7,41 +7,41 @@ use super::figure::Reference;
 use super::layout::{LABEL_SIZE, TICK_SIZE, TITLE_SIZE};
 use super::lettering::width;
 
-/// How often each whole number from 0 on was counted.
+/// Histogram of numbers from 0 on.
 #[derive(Clone, Debug, Default)]
 pub struct Histogram<'a> {
-    /// Written above the frame.
+    /// Title above the frame.
     pub title: String,
-    /// What was counted up: the label below.
+    /// Label of the horizontal axis.
     pub number: String,
-    /// What there are so many of: the label to the left.
+    /// Label of the vertical axis.
     pub count: String,
-    /// The counts of 0, 1, 2, ...
+    /// Counts of 0, 1, 2, ...
     pub counts: &'a [usize],
-    /// Numbers with a name, ascending: dashed upright lines.
+    /// Named numbers in ascending order, drawn as dashed vertical lines.
     pub marks: Vec<Reference>,
 }
 
-/// Wholes, each divided into the same parts.
+/// Wholes with shares of the same parts.
 #[derive(Clone, Debug, Default)]
 pub struct Shares {
-    /// Written above the frame.
+    /// Title above the frame.
     pub title: String,
-    /// The names of the parts, from left to right; at most four.
+    /// Names of the parts, from left to right; at most four.
     pub parts: Vec<String>,
-    /// From top to bottom: a name and the parts' shares, 1 in all. The first two parts
-    /// together are written beside the bar, in per cent.
+    /// Name and shares of each whole, from top to bottom; the shares sum to 1. The sum of the first
+    /// two parts is written next to the bar, in per cent.
     pub rows: Vec<(String, Vec<f64>)>,
 }
 
 const WIDTH: f64 = 720.0;
 const HEIGHT: f64 = 330.0;
-/// Left and right of the frame, above and below it, px.
+/// Margins left and right, above and below the frame, in px.
 const MARGINS: ((f64, f64), (f64, f64)) = ((78.0, 24.0), (54.0, 62.0));
-/// The height of a row of shares and of the bar in it, px.
+/// Height of a row of shares and of its bar, in px.
 const ROW: (f64, f64) = (20.0, 14.0);
 pub(super) const COLUMN: &str = "#56a0d3";
-/// Two strong colours for what counts, grey and a pale one for the rest; all differ in
+/// Two strong colours for the parts of interest, grey and a pale one for the rest. All differ in
 /// lightness too.
 const PARTS: [&str; 4] = ["#0b4f86", "#56a0d3", "#c4c4c4", "#f2cfae"];
 
@@ -57,11 +57,11 @@ const fn line(colour: &'static str, dashes: &'static str) -> Stroke {
     }
 }
 
-/// Draws a histogram as an SVG document, 720 px wide.
+/// Draws a histogram as an SVG document with a width of 720 px.
 ///
 /// # Errors
 ///
-/// Nothing counted.
+/// [`PlotError`] if all counts are 0.
 pub fn histogram(of: &Histogram<'_>) -> Result<String, PlotError> {
     let most = of.counts.iter().copied().max().unwrap_or(0);
     if most == 0 {
@@ -100,11 +100,11 @@ pub fn histogram(of: &Histogram<'_>) -> Result<String, PlotError> {
     Ok(canvas.document(&of.title, WIDTH, HEIGHT))
 }
 
-/// Draws shares as an SVG document, 720 px wide.
+/// Draws shares as an SVG document with a width of 720 px.
 ///
 /// # Errors
 ///
-/// No row.
+/// [`PlotError`] without rows.
 pub fn shares(of: &Shares) -> Result<String, PlotError> {
     let names = of.rows.iter().map(|(name, _)| width(name, TICK_SIZE));
     let widest = names.fold(0.0, f64::max);
@@ -158,7 +158,8 @@ pub(super) fn draw_level(canvas: &mut Canvas, tick: &Tick, up: &Axis, (left, rig
     write(canvas, &tick.label, at, Anchor::End);
 }
 
-/// Upright lines with their names above the frame, each beginning where the last has ended.
+/// Draws vertical lines with their names above the frame, each name after the end of the previous
+/// one.
 pub(super) fn draw_marks(canvas: &mut Canvas, marks: &[Reference], along: &Axis, up: &Axis) {
     let mut free_from = along.pixels.0;
     for mark in marks {
@@ -230,7 +231,7 @@ mod tests {
 
     use super::*;
 
-    /// Position along `axis` and extent of the rectangles of a colour.
+    /// Returns the position along `axis` and the extent of the rectangles of a colour.
     fn rectangles(svg: &str, colour: &str, [at, extent]: [&str; 2]) -> Vec<(f64, f64)> {
         let document = Document::parse(svg).unwrap();
         let number = |node: roxmltree::Node<'_, '_>, name| {
@@ -245,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_are_as_high_as_their_counts() {
+    fn column_heights_match_counts() {
         let svg = histogram(&Histogram {
             counts: &[2, 0, 8, 4],
             marks: vec![Reference {
@@ -256,7 +257,7 @@ mod tests {
         })
         .unwrap();
         let found = rectangles(&svg, COLUMN, ["y", "height"]);
-        // None for a count of 0; all stand on one line. Pixels have two decimals.
+        // No column for a count of 0, one base line for all. Pixels have two decimals.
         let [two, eight, four] = found[..] else {
             panic!("{found:?}")
         };
@@ -266,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn parts_lie_end_to_end_and_fill_the_bar() {
+    fn parts_are_adjacent_and_fill_bar() {
         let row = |parts: &[f64]| ("a claim".to_owned(), parts.to_vec());
         let svg = shares(&Shares {
             rows: vec![row(&[0.25, 0.25, 0.0, 0.5]), row(&[1.0])],
@@ -286,7 +287,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_to_draw_is_an_error() {
+    fn empty_input_is_an_error() {
         let none = Histogram {
             counts: &[0, 0],
             ..Histogram::default()

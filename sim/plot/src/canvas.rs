@@ -1,12 +1,11 @@
-//! SVG elements, written one after another. Attributes are numbers and constants from this
-//! module's callers; only text comes from outside and is escaped.
+//! Writer of SVG elements. Attributes are numbers and constants of the callers. Text is escaped.
 
 use std::fmt::Write;
 
 use super::decimate::Point;
 use super::lettering::{escaped, spans};
 
-/// Where a text stands relative to its point.
+/// Alignment of a text relative to its point.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Anchor {
     Start,
@@ -14,16 +13,14 @@ pub(super) enum Anchor {
     End,
 }
 
-/// The look of a line.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stroke {
     pub colour: &'static str,
     pub width: f64,
-    /// Lengths of dashes and gaps, empty for a full line.
+    /// Lengths of dashes and gaps; empty for a solid line.
     pub dashes: &'static str,
 }
 
-/// A text with its place.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Text<'a> {
     pub text: &'a str,
@@ -33,14 +30,12 @@ pub(super) struct Text<'a> {
     pub bold: bool,
 }
 
-/// A drawing in the making.
 #[derive(Debug, Default)]
 pub(super) struct Canvas {
     body: String,
 }
 
 impl Canvas {
-    /// Straight lines in one look.
     pub fn segments(&mut self, segments: &[(Point, Point)], stroke: Stroke) {
         let data: String = segments
             .iter()
@@ -49,7 +44,7 @@ impl Canvas {
         self.path(&data, stroke);
     }
 
-    /// Lines through points; a line of one point is a dot.
+    /// Draws lines through points; a line of one point is a dot.
     pub fn lines(&mut self, lines: &[Vec<Point>], stroke: Stroke) {
         let mut data = String::new();
         for line in lines {
@@ -64,7 +59,7 @@ impl Canvas {
         self.path(&data, stroke);
     }
 
-    /// A filled rectangle from its upper left corner; none where it has no extent.
+    /// Draws a filled rectangle from its upper left corner; nothing if it has no extent.
     pub fn rectangle(&mut self, (x, y): Point, (width, height): Point, colour: &str) {
         if width > 0.0 && height > 0.0 {
             self.element(format_args!(
@@ -92,7 +87,7 @@ impl Canvas {
         ));
     }
 
-    /// Another drawing, moved.
+    /// Adds another drawing at an offset.
     pub fn place(&mut self, drawing: Self, (x, y): Point) {
         self.element(format_args!(
             "<g transform=\"translate({x} {y})\">\n{}</g>",
@@ -100,12 +95,11 @@ impl Canvas {
         ));
     }
 
-    /// A level text.
     pub fn text(&mut self, text: Text<'_>) {
         self.turned_text(text, 0.0);
     }
 
-    /// A text turned about its point by an angle in degrees, clockwise.
+    /// Draws a text that is rotated about its point, in degrees clockwise.
     pub fn turned_text(&mut self, text: Text<'_>, angle: f64) {
         let (x, y) = text.at;
         let anchor = match text.anchor {
@@ -131,11 +125,10 @@ impl Canvas {
     }
 
     fn element(&mut self, element: std::fmt::Arguments<'_>) {
-        // Writing to a string cannot fail.
         let _ = writeln!(self.body, "{element}");
     }
 
-    /// The finished document.
+    /// Returns the SVG document.
     pub fn document(self, title: &str, width: f64, height: f64) -> String {
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" \
@@ -149,7 +142,7 @@ impl Canvas {
     }
 }
 
-/// A point to a hundredth of a pixel, without needless zeros.
+/// Formats a point to 1/100 px without trailing zeros.
 fn pair((x, y): Point) -> String {
     format!("{},{}", hundredths(x), hundredths(y))
 }

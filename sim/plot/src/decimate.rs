@@ -1,15 +1,15 @@
-//! Many samples to few points that look the same: of the samples over one column of pixels
-//! only the first, the lowest, the highest and the last are kept.
+//! Decimation of many samples without a visible difference. For each column of pixels only the
+//! first, the lowest, the highest and the last sample remain.
 
 use std::collections::BTreeSet;
 
-/// A point in pixels.
+/// Point in pixels.
 pub(super) type Point = (f64, f64);
 
-/// A run of samples over one column.
+/// Consecutive samples in one column.
 struct Column {
     index: i64,
-    /// First, lowest, highest, last, each with its number in the series.
+    /// First, lowest, highest and last sample, each with its index in the series.
     kept: [(usize, Point); 4],
 }
 
@@ -42,10 +42,10 @@ impl Column {
     }
 }
 
-/// The lines through the samples, at most four points for each column of `width` pixels.
+/// Returns the lines through the samples, with at most four points per column of `width` pixels.
 ///
-/// A sample with a coordinate that is not finite interrupts the line. A gap inside one
-/// column cannot be seen and is not kept, so that the bound holds for every series.
+/// A sample with a coordinate that is not finite interrupts the line. A gap inside one column is
+/// invisible and is dropped, so that the bound holds for every series.
 pub(super) fn polylines(samples: impl Iterator<Item = Point>, width: f64) -> Vec<Vec<Point>> {
     let mut lines = Vec::new();
     let mut line = Vec::new();
@@ -56,7 +56,7 @@ pub(super) fn polylines(samples: impl Iterator<Item = Point>, width: f64) -> Vec
             interrupted = true;
             continue;
         }
-        // In pixels, thus small.
+        // Pixels are small, so the cast cannot overflow.
         let index = (point.0 / width).floor() as i64;
         match &mut column {
             Some(current) if current.index == index => current.include((number, point)),
@@ -77,13 +77,13 @@ pub(super) fn polylines(samples: impl Iterator<Item = Point>, width: f64) -> Vec
     lines
 }
 
-/// How far a line in a plane goes from point to point at least, px.
+/// Minimum distance between points of an orbit, in px.
 const STEP: f64 = 1.0;
-/// Points nearer to each other than this cannot be told apart, px.
+/// Distance below which points are indistinguishable, in px.
 const APART: f64 = 0.5;
 
-/// The lines through samples that lead anywhere, without those that are next to the last one kept. A
-/// sample with a coordinate that is not finite interrupts the line.
+/// Returns the lines through samples in a plane, without samples near the last one kept. A sample
+/// with a coordinate that is not finite interrupts the line.
 pub(super) fn thinned(samples: impl Iterator<Item = Point>) -> Vec<Vec<Point>> {
     let mut lines: Vec<Vec<Point>> = Vec::new();
     let mut line: Vec<Point> = Vec::new();
@@ -102,10 +102,10 @@ pub(super) fn thinned(samples: impl Iterator<Item = Point>) -> Vec<Vec<Point>> {
     lines
 }
 
-/// Each sample by itself, one of those that cannot be told apart.
+/// Returns separate samples, one of each group of indistinguishable ones.
 pub(super) fn apart(samples: impl Iterator<Item = Point>) -> Vec<Vec<Point>> {
     let mut taken = BTreeSet::new();
-    // In pixels, thus small.
+    // Pixels are small, so the cast cannot overflow.
     let cell = |at: f64| (at / APART).round() as i64;
     samples
         .filter(|(x, y)| x.is_finite() && y.is_finite())
@@ -119,13 +119,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn few_samples_are_kept_as_they_are() {
+    fn few_samples_are_unchanged() {
         let samples = [(0.0, 1.0), (2.0, 3.0), (4.0, -1.0)];
         assert_eq!(polylines(samples.into_iter(), 1.0), [samples.to_vec()]);
     }
 
     #[test]
-    fn a_column_keeps_its_extremes_in_order() {
+    fn column_keeps_extremes_in_order() {
         let heights = [0.0, 5.0, 1.0, -7.0, 2.0, 3.0];
         let samples = heights
             .iter()
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn an_orbit_leaves_out_what_is_next_to_what_is_kept() {
+    fn orbit_drops_samples_near_the_last_one() {
         let samples = [
             (0.0, 0.0),
             (0.3, 0.3),
@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn points_that_look_alike_are_drawn_once() {
+    fn indistinguishable_points_are_drawn_once() {
         let samples = [
             (1.0, 1.0),
             (1.01, 1.0),
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn a_gap_splits_the_line() {
+    fn gap_splits_line() {
         let samples = [
             (0.0, 1.0),
             (1.0, f64::NAN),
@@ -185,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn the_points_are_bounded_even_if_every_other_sample_is_missing() {
+    fn number_of_points_is_bounded_with_gaps() {
         let samples = (0..100_000).map(|i| {
             let y = if i % 2 == 0 {
                 f64::from(i * 7919 % 1000)

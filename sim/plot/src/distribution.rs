@@ -1,4 +1,4 @@
-//! How numbers are spread: columns over their range and the share that lies below each value.
+//! Distributions of numbers: a histogram and the cumulative share.
 
 use super::PlotError;
 use super::axis::{Axis, Range, Scale, ticks};
@@ -11,25 +11,25 @@ use super::quantity::Quantity;
 /// Numbers and their statistics.
 #[derive(Clone, Debug, Default)]
 pub struct Distribution<'a> {
-    /// Written above the frame.
+    /// Title above the frame.
     pub title: String,
-    /// What the numbers are of.
+    /// Name of the quantity.
     pub quantity: String,
-    /// Their SI unit; empty for a number.
+    /// SI unit; empty for a dimensionless number.
     pub unit: String,
-    /// The numbers in ascending order.
+    /// Numbers in ascending order.
     pub sorted: &'a [f64],
-    /// Numbers with a name, ascending: dashed upright lines.
+    /// Named numbers in ascending order, drawn as dashed vertical lines.
     pub marks: Vec<Reference>,
 }
 
 const WIDTH: f64 = 720.0;
 const HEIGHT: f64 = 360.0;
-/// Left and right of the frame, above and below it, px.
+/// Margins left and right, above and below the frame, in px.
 const MARGINS: ((f64, f64), (f64, f64)) = ((78.0, 70.0), (58.0, 62.0));
-/// The fewest and the most columns.
+/// Minimum and maximum number of columns.
 const COLUMNS: (usize, usize) = (5, 60);
-/// Points of the curve: more are not told apart.
+/// Points of the curve; more would be indistinguishable.
 const POINTS: usize = 400;
 
 const CURVE: Stroke = Stroke {
@@ -38,11 +38,11 @@ const CURVE: Stroke = Stroke {
     dashes: "",
 };
 
-/// Draws a distribution as an SVG document, 720 px wide.
+/// Draws a distribution as an SVG document with a width of 720 px.
 ///
 /// # Errors
 ///
-/// No number, or one that is not finite.
+/// [`PlotError`] without numbers, or with one that is not finite.
 pub fn distribution(of: &Distribution<'_>) -> Result<String, PlotError> {
     if of.sorted.is_empty() || !of.sorted.iter().copied().all(is_drawable) {
         return Err(PlotError::Empty {
@@ -81,7 +81,7 @@ pub fn distribution(of: &Distribution<'_>) -> Result<String, PlotError> {
     Ok(canvas.document(&of.title, WIDTH, HEIGHT))
 }
 
-/// Along the numbers, up their counts and the share below.
+/// Axes of the numbers, of their counts and of the cumulative share.
 struct Axes {
     along: Axis,
     up: Axis,
@@ -106,7 +106,7 @@ impl Axes {
     }
 }
 
-/// Ticks of two axes, all names, and the frame.
+/// Draws ticks, names and the frame.
 fn draw_names(canvas: &mut Canvas, Axes { along, up, share }: &Axes, quantity: &str) {
     for tick in ticks(along.scale, along.range, 8) {
         let at = (along.pixel(tick.place), up.pixels.0 + 19.0);
@@ -121,7 +121,7 @@ fn draw_names(canvas: &mut Canvas, Axes { along, up, share }: &Axes, quantity: &
     label(canvas, quantity, (middle, up.pixels.0 + 44.0), 0.0);
     let middle = (up.pixels.0 + up.pixels.1) / 2.0;
     label(canvas, "samples", (19.0, middle), -90.0);
-    let share = "share below [%], orange";
+    let share = "cumulative share [%], orange";
     label(canvas, share, (WIDTH - 14.0, middle), -90.0);
 }
 
@@ -132,8 +132,8 @@ fn scaled(mark: &Reference, scale: f64) -> Reference {
     }
 }
 
-/// How many values lie in each of some columns of one width, which is that of D. Freedman and P. Diaconis
-/// (1981), twice the distance of the quartiles by the cube root of the number.
+/// Returns the number of values in each column. The width of the columns follows D. Freedman and P.
+/// Diaconis (1981): twice the interquartile range divided by the cube root of the number of values.
 fn counts(sorted: &[f64], range: Range) -> Vec<usize> {
     let at = |part: f64| sorted[(part * (sorted.len() - 1) as f64).round() as usize];
     let width = 2.0 * (at(0.75) - at(0.25)) / (sorted.len() as f64).cbrt();
@@ -164,7 +164,7 @@ fn draw_columns(canvas: &mut Canvas, counts: &[usize], range: Range, axes: &Axes
     }
 }
 
-/// The share of values up to each, as a staircase of few steps.
+/// Returns the cumulative share as a staircase with few steps.
 fn curve(sorted: &[f64], Axes { along, share, .. }: &Axes) -> Vec<(f64, f64)> {
     let count = sorted.len();
     let part = |number: usize| share.pixel(100.0 * number as f64 / count as f64);
@@ -185,7 +185,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_number_is_in_one_column() {
+    fn columns_contain_every_number_once() {
         for values in [
             vec![2.0],
             vec![2.0; 9],
@@ -197,7 +197,7 @@ mod tests {
             assert_eq!(counts.iter().sum::<usize>(), values.len());
             assert!((COLUMNS.0..=COLUMNS.1).contains(&counts.len()));
         }
-        // A thousand even numbers: 2 * 499/10 wide at most, which are eleven columns.
+        // Even spacing: columns are at most 2 * 499/10 wide, so there are eleven.
         let even: Vec<f64> = (0..1000).map(f64::from).collect();
         let whole = Range {
             low: 0.0,
@@ -209,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_drawn_is_an_error() {
+    fn invalid_numbers_are_an_error() {
         for sorted in [&[][..], &[f64::NAN], &[1.0, f64::INFINITY]] {
             let of = Distribution {
                 sorted,

@@ -1,43 +1,43 @@
-//! Drawings that are no graphs: lines, circles, arrows and words in places that the caller says.
+//! Drawings of lines, circles, arrows and words at given places.
 
 use super::canvas::{Anchor, Canvas, Stroke, Text};
 use super::decimate::Point;
 use super::layout::{TICK_SIZE, TITLE_SIZE};
 
-/// A drawing of a given size.
+/// Drawing of a given size.
 #[derive(Clone, Debug, Default)]
 pub struct Drawing {
-    /// What it shows, for those who cannot see it; not drawn.
+    /// Description for screen readers; not drawn.
     pub title: String,
-    /// Width and height, px.
+    /// Width and height, in px.
     pub size: (f64, f64),
-    /// One over the other.
+    /// Parts; later ones cover earlier ones.
     pub parts: Vec<Part>,
 }
 
-/// A part of a drawing; places in px from the upper left corner.
+/// Part of a drawing, with places in px from the upper left corner.
 #[derive(Clone, Debug)]
 pub enum Part {
-    /// A line through points.
+    /// Line through points.
     Line(Look, Vec<Point>),
-    /// A line through points that ends in a head.
+    /// Line through points with a head at its end.
     Arrow(Look, Vec<Point>),
-    /// A word or a sentence: its place, and whether it begins, stands in the middle or ends there (-1, 0, 1).
+    /// Text at a place; -1, 0 or 1 aligns its start, its middle or its end.
     Words(Point, i8, String),
-    /// The same, larger and bold.
+    /// Larger bold text.
     Heading(Point, String),
 }
 
-/// The look of a line.
+/// Style of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Look {
-    /// Of a body.
+    /// Outline of a body.
     Body,
-    /// Of what moves out of its place, thicker.
+    /// Displaced body, thicker.
     Moved,
-    /// Of a measure or a direction.
+    /// Dimension or direction.
     Measure,
-    /// Of what is not there: an axis, a place at rest.
+    /// Imaginary line: an axis or a rest position.
     Thought,
 }
 
@@ -57,13 +57,13 @@ impl Look {
     }
 }
 
-/// A point of a circle, with the angle in degrees against the clock from the right.
+/// Returns a point of a circle; the angle is in degrees counter-clockwise from the right.
 pub fn on_circle(centre: Point, radius: f64, degrees: f64) -> Point {
     let (sin, cos) = degrees.to_radians().sin_cos();
     (centre.0 + radius * cos, centre.1 - radius * sin)
 }
 
-/// Points of an arc from an angle to another, in degrees against the clock from the right.
+/// Returns points of an arc between two angles, in degrees counter-clockwise from the right.
 pub fn arc(centre: Point, radius: f64, (from, to): (f64, f64)) -> Vec<Point> {
     let steps = ((to - from).abs() / 4.0).ceil().max(1.0) as usize;
     let angle = |step: usize| from + (to - from) * step as f64 / steps as f64;
@@ -72,7 +72,7 @@ pub fn arc(centre: Point, radius: f64, (from, to): (f64, f64)) -> Vec<Point> {
         .collect()
 }
 
-/// Draws it as an SVG document.
+/// Returns the drawing as an SVG document.
 pub fn drawing(of: &Drawing) -> String {
     let mut canvas = Canvas::default();
     for part in &of.parts {
@@ -112,7 +112,7 @@ pub fn drawing(of: &Drawing) -> String {
     canvas.document(&of.title, of.size.0, of.size.1)
 }
 
-/// The head of an arrow: a line over its last point.
+/// Returns the head of an arrow as a line over its last point.
 fn head(points: &[Point]) -> Vec<Point> {
     let [.., before, end] = points else {
         return Vec::new();
@@ -137,7 +137,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn angles_go_against_the_clock_and_arcs_end_where_they_should() {
+    fn angles_are_counter_clockwise_and_arcs_end_at_given_angle() {
         let (x, y) = on_circle((10.0, 20.0), 5.0, 90.0);
         assert!((x - 10.0).abs() < 1e-12 && (y - 15.0).abs() < 1e-12);
         let arc = arc((0.0, 0.0), 1.0, (0.0, 180.0));
@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn a_head_lies_behind_its_point() {
+    fn arrow_head_is_behind_its_point() {
         let head = head(&[(0.0, 0.0), (50.0, 0.0)]);
         assert_eq!(head.len(), 3);
         assert_eq!(head[1], (50.0, 0.0));

@@ -1,65 +1,65 @@
-//! Why a figure could not be drawn, and the checks made before drawing.
+//! Errors of figures, and checks before drawing.
 
 use std::fmt;
 
 use super::figure::{Drawn, Panel, Series};
 
-/// Why a figure could not be drawn. Panels and samples are counted from 0.
+/// Error of a figure. Panels and samples are counted from 0.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PlotError {
-    /// There are no panels.
+    /// A figure without panels.
     NoPanels,
-    /// A panel has no series.
+    /// A panel without series.
     NoSeries {
-        /// Which panel.
+        /// Index of the panel.
         panel: usize,
     },
-    /// A series has no sample that can be drawn.
+    /// A series without a drawable sample.
     Empty {
-        /// Which panel.
+        /// Index of the panel.
         panel: usize,
-        /// The label of the series.
+        /// Label of the series.
         series: String,
     },
-    /// A series has more or fewer values than abscissae.
+    /// A series with different numbers of values and abscissae.
     Lengths {
-        /// Which panel.
+        /// Index of the panel.
         panel: usize,
-        /// The label of the series.
+        /// Label of the series.
         series: String,
-        /// The number of abscissae.
+        /// Number of abscissae.
         abscissae: usize,
-        /// The number of values.
+        /// Number of values.
         values: usize,
     },
-    /// An abscissa is not finite, or smaller than the one before.
+    /// An abscissa that is not finite, or smaller than the previous one.
     Abscissa {
-        /// Which panel.
+        /// Index of the panel.
         panel: usize,
-        /// The label of the series.
+        /// Label of the series.
         series: String,
-        /// Which sample.
+        /// Index of the sample.
         sample: usize,
     },
-    /// A map has more or fewer values than cells.
+    /// A map with different numbers of values and cells.
     Cells {
-        /// The number of values along the horizontal axis.
+        /// Number of values along the horizontal axis.
         columns: usize,
-        /// The number of values along the vertical axis.
+        /// Number of values along the vertical axis.
         rows: usize,
-        /// The number of values in the cells.
+        /// Number of values in the cells.
         values: usize,
     },
-    /// The values along an axis of a map do not ascend, or one has no place on it.
+    /// Values along an axis of a map that do not ascend, or cannot be drawn on it.
     Grid {
-        /// The name of the quantity along the axis.
+        /// Name of the quantity along the axis.
         axis: String,
-        /// Which value.
+        /// Index of the value.
         index: usize,
     },
-    /// The picture could not be encoded.
+    /// A picture that could not be encoded.
     Encoding {
-        /// What the encoder says.
+        /// Message of the encoder.
         reason: String,
     },
 }
@@ -81,7 +81,7 @@ impl fmt::Display for PlotError {
             } => write!(
                 f,
                 "the series `{series}` in panel {panel} of the figure has {values} values \
-                 for {abscissae} abscissae"
+                 but {abscissae} abscissae"
             ),
             Self::Abscissa {
                 panel,
@@ -89,8 +89,8 @@ impl fmt::Display for PlotError {
                 sample,
             } => write!(
                 f,
-                "the series `{series}` in panel {panel} of the figure: the abscissa of sample \
-                 {sample} is not finite or smaller than the one before"
+                "the series `{series}` in panel {panel} of the figure: abscissa \
+                 {sample} is not finite or is smaller than the previous one"
             ),
             Self::Cells {
                 columns,
@@ -102,8 +102,8 @@ impl fmt::Display for PlotError {
             ),
             Self::Grid { axis, index } => write!(
                 f,
-                "the values of `{axis}` along an axis of the map: value {index} is not above \
-                 the one before, or has no place on the axis"
+                "value {index} of `{axis}` along an axis of the map is not greater than \
+                 the previous one, or cannot be drawn on the axis"
             ),
             Self::Encoding { reason } => write!(f, "the picture could not be encoded: {reason}"),
         }
@@ -112,12 +112,12 @@ impl fmt::Display for PlotError {
 
 impl std::error::Error for PlotError {}
 
-/// Whether a value is so far from overflow that axes can be computed from it.
+/// Returns true if a value is small enough to compute axes from it without overflow.
 pub(super) fn is_drawable(value: f64) -> bool {
     value.abs() < 1e100
 }
 
-/// Checks all that can be said before the axes are known; `drawn` says it of each panel.
+/// Checks panels before the axes are known; `drawn` returns the kind of each panel.
 pub(super) fn check(panels: &[Panel<'_>], drawn: impl Fn(usize) -> Drawn) -> Result<(), PlotError> {
     if panels.is_empty() {
         return Err(PlotError::NoPanels);

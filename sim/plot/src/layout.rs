@@ -1,5 +1,5 @@
-//! Where the frames, labels and legends of a figure go. All frames have the same left and
-//! right edge, so that one time lies on one vertical line through all of them.
+//! Positions of frames, labels and legends. All frames of a figure have the same left and right
+//! edge, so that equal times are on one vertical line.
 
 use super::axis::{Axis, Range, Scale, Tick, ticks};
 use super::error::{PlotError, is_drawable};
@@ -7,13 +7,13 @@ use super::figure::{Drawn, Panel, Series};
 use super::lettering::{fitted, width};
 use super::quantity::Quantity;
 
-/// The width of a figure of stacked panels, px.
+/// Width of a figure of stacked panels, in px.
 pub(super) const WIDTH: f64 = 900.0;
-/// Font sizes, px.
+/// Font sizes, in px.
 pub(super) const TICK_SIZE: f64 = 14.0;
 pub(super) const LABEL_SIZE: f64 = 15.0;
 pub(super) const TITLE_SIZE: f64 = 16.0;
-/// The length of the line beside a legend's label, px.
+/// Length of the line in a legend entry, in px.
 pub(super) const LEGEND_LINE: f64 = 22.0;
 pub(super) const LEGEND_ROW: f64 = 20.0;
 
@@ -21,12 +21,12 @@ const TITLE_ROW: f64 = 24.0;
 const LEFT_OF_TICKS: f64 = 36.0;
 const LARGEST_REFERENCE_LABEL: f64 = 110.0;
 const LARGEST_LEGEND_LABEL: f64 = 260.0;
-/// A bound on the characters in the curves of one figure, and those of one column of pixels:
-/// four points such as `888.88,1555.55 `.
+/// Maximum number of characters for the curves of one figure, and for one column of pixels (four
+/// points such as `888.88,1555.55 `).
 const CURVE_CHARACTERS: f64 = 180_000.0;
 const COLUMN_CHARACTERS: f64 = 60.0;
 
-/// The shared axis as the kind of figure has it.
+/// Shared horizontal axis of a kind of figure.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Abscissa {
     pub symbol: &'static str,
@@ -34,27 +34,26 @@ pub(super) struct Abscissa {
     pub scale: Scale,
 }
 
-/// How large frames are and about how many ticks they have room for.
+/// Sizes of frames and approximate numbers of ticks.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Format {
-    /// The width of the whole, px.
+    /// Width of the figure, in px.
     pub width: f64,
-    /// The height of a frame, px.
+    /// Height of a frame, in px.
     pub frame: f64,
-    /// Ticks along and up.
+    /// Ticks along the horizontal and the vertical axis.
     pub ticks: (usize, usize),
-    /// What is left free at least to the left and to the right of the frame, px.
+    /// Minimum margins to the left and right of the frame, in px.
     pub margins: (f64, f64),
-    /// The share of a frame's height that is left free at its top for the names of marks.
+    /// Fraction of a frame's height that is reserved at the top for names of marks.
     pub headroom: f64,
-    /// Whether later curves are dashed, so that what is below them shows.
+    /// True if later curves are dashed, so that covered curves are visible.
     pub overlaid: bool,
-    /// What is drawn through the samples.
     pub drawn: Drawn,
 }
 
 impl Format {
-    /// That of so many panels stacked over one axis.
+    /// Returns the format of panels that are stacked over one axis.
     pub fn stacked(panels: usize) -> Self {
         let (frame, up) = match panels {
             1 => (300.0, 7),
@@ -73,7 +72,7 @@ impl Format {
     }
 }
 
-/// Where a figure's parts are, px.
+/// Positions of a figure's parts, in px.
 #[derive(Debug)]
 pub(super) struct Layout {
     pub abscissa: Axis,
@@ -81,27 +80,26 @@ pub(super) struct Layout {
     pub abscissa_ticks: Vec<Tick>,
     pub places: Vec<Place>,
     pub height: f64,
-    /// The width of the columns that curves are decimated to.
+    /// Width of the columns for the decimation of curves.
     pub column: f64,
-    /// Whether later curves are dashed.
+    /// True if later curves are dashed.
     pub overlaid: bool,
-    /// What is drawn through the samples.
     pub drawn: Drawn,
 }
 
-/// Where a panel's parts are, px.
+/// Positions of a panel's parts, in px.
 #[derive(Debug)]
 pub(super) struct Place {
     pub ordinate: Axis,
     pub quantity: Quantity,
     pub ticks: Vec<Tick>,
-    /// The base line of the title.
+    /// Base line of the title.
     pub title: f64,
-    /// Where each legend entry begins, with its text; empty for one series.
+    /// Start and text of each legend entry; empty for one series.
     pub legend: Vec<((f64, f64), String)>,
 }
 
-/// A panel's vertical axis before its place is known.
+/// Vertical axis of a panel, without its position.
 #[derive(Debug)]
 struct Ordinate {
     range: Range,
@@ -110,7 +108,7 @@ struct Ordinate {
 }
 
 impl Layout {
-    /// Places checked panels.
+    /// Computes the positions of checked panels.
     pub fn new(
         panels: &[Panel<'_>],
         abscissa: &Abscissa,
@@ -160,8 +158,8 @@ impl Layout {
 }
 
 impl Ordinate {
-    /// The vertical axis of a panel, given both scales, how many ticks there may be, and the
-    /// share that is left free at the top.
+    /// Returns the vertical axis of a panel, given both scales, the number of ticks and the
+    /// fraction to reserve at the top.
     fn new(
         index: usize,
         panel: &Panel<'_>,
@@ -208,7 +206,8 @@ impl Ordinate {
 }
 
 impl Place {
-    /// A panel between the heights `(top, frame height)` and the left and right `edges`.
+    /// Computes the positions of a panel, given `(top, frame height)` and the left and right
+    /// `edges`.
     fn new(
         panel: &Panel<'_>,
         ordinate: Ordinate,
@@ -240,7 +239,7 @@ impl Place {
     }
 }
 
-/// The values of a series that have a place on both axes.
+/// Returns the values of a series that can be drawn on both axes.
 fn drawable_values(series: &Series<'_>, along: Scale, scale: Scale) -> impl Iterator<Item = f64> {
     series
         .abscissa
@@ -290,12 +289,12 @@ fn right_edge(panels: &[Panel<'_>], format: Format) -> f64 {
     format.width - (widest + 10.0).max(format.margins.1)
 }
 
-/// A reference line's label as it is drawn.
+/// Returns a reference line's label, truncated to its space.
 pub(super) fn reference_label(label: &str) -> String {
     fitted(label, TICK_SIZE, LARGEST_REFERENCE_LABEL)
 }
 
-/// The legend's entries in rows below `top`.
+/// Returns the legend's entries in rows below `top`.
 fn legend(panel: &Panel<'_>, top: f64, edges: (f64, f64)) -> Vec<((f64, f64), String)> {
     if panel.series.len() < 2 {
         return Vec::new();

@@ -1,17 +1,17 @@
-//! Text in a figure: how wide it is about, what fits, and its SVG with subscripts. The fonts
-//! of the reader are not known here, so widths are estimates on the wide side.
+//! Text in a figure: estimated width, truncation, and SVG with subscripts. The fonts of the reader
+//! are unknown, so widths are conservative estimates.
 
 use eomgen_model_spec::visible::visible;
 use maud::html;
 
 use super::symbol::Symbol;
 
-/// The width of a character in units of the font size: that of a digit in a wide sans serif.
+/// Width of a character relative to the font size: a digit in a wide sans serif font.
 const CHARACTER: f64 = 0.62;
-/// The share of the font size at which subscripts are set.
+/// Font size of subscripts, relative to the text.
 pub(super) const SUBSCRIPT: f64 = 0.8;
 
-/// The width of a text, in pixels.
+/// Returns the width of a text, in px.
 pub(super) fn width(text: &str, size: f64) -> f64 {
     runs(text)
         .map(|run| run.text.chars().count() as f64 * if run.lowered { SUBSCRIPT } else { 1.0 })
@@ -20,7 +20,7 @@ pub(super) fn width(text: &str, size: f64) -> f64 {
         * CHARACTER
 }
 
-/// As much of a text as fits into a width, with an ellipsis if it is not all.
+/// Truncates a text to a width, with an ellipsis.
 pub(super) fn fitted(text: &str, size: f64, available: f64) -> String {
     let room = (available / (size * CHARACTER)).max(1.0) as usize;
     if text.chars().count() <= room || width(text, size) <= available {
@@ -30,7 +30,7 @@ pub(super) fn fitted(text: &str, size: f64, available: f64) -> String {
     format!("{}…", kept.trim_end())
 }
 
-/// Text as SVG character data, with subscripts as spans.
+/// Returns text as SVG character data, with subscripts as spans.
 pub(super) fn spans(text: &str, size: f64) -> String {
     let mut svg = String::new();
     let mut lowered = false;
@@ -54,13 +54,13 @@ pub(super) fn spans(text: &str, size: f64) -> String {
     svg
 }
 
-/// Text as XML character data on one line, with hidden characters made visible.
+/// Returns text as XML character data on one line, with visible escapes of hidden characters.
 pub(super) fn escaped(text: &str) -> String {
     let shown: String = visible(text)
         .chars()
         .map(|c| match c {
             '\n' | '\t' => ' ',
-            // Not allowed in XML, not even escaped.
+            // XML forbids these characters, even escaped.
             '\u{fffe}' | '\u{ffff}' => '\u{fffd}',
             c => c,
         })
@@ -68,14 +68,12 @@ pub(super) fn escaped(text: &str) -> String {
     html! { (shown) }.into_string()
 }
 
-/// A stretch of text on one line.
 pub(super) struct Run {
     pub text: String,
     pub lowered: bool,
 }
 
-/// Text cut into words and what is between them; words that are names are cut into head and
-/// subscript.
+/// Splits text into words and separators. Names are split into head and subscript.
 pub(super) fn runs(text: &str) -> impl Iterator<Item = Run> {
     let in_word = |c: char| c.is_alphanumeric() || c == '_';
     let mut rest = text;
@@ -107,7 +105,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn subscripts_become_spans_and_the_line_comes_back() {
+    fn subscripts_become_spans_and_base_line_returns() {
         assert_eq!(
             spans("x_sp [µm]", 10.0),
             "x<tspan dy=\"2.2\" font-size=\"8.0\">sp</tspan>\
@@ -117,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn long_text_is_cut() {
+    fn long_text_is_truncated() {
         let long = "word ".repeat(1000);
         let cut = fitted(&long, 14.0, 200.0);
         assert!(cut.ends_with('…') && width(&cut, 14.0) <= 200.0);
@@ -125,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn hidden_characters_are_escaped_and_what_xml_forbids_is_replaced() {
+    fn hidden_characters_are_escaped_and_forbidden_ones_replaced() {
         assert_eq!(
             escaped("a\0b\u{1b}c\nd\u{ffff}"),
             "a\\u{0}b\\u{1b}c d\u{fffd}"

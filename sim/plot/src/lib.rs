@@ -1,5 +1,4 @@
-//! Figures: time histories and power spectra as self-contained SVG, maps over parameters as
-//! PNG.
+//! Figures: time histories and power spectra as self-contained SVG, maps over parameters as PNG.
 //!
 //! ```
 //! use eomgen_plot::{Panel, Series, TimeHistory, time_history};
@@ -17,23 +16,23 @@
 //!     references: Vec::new(),
 //! };
 //! let figure = TimeHistory {
-//!     title: "A second of motion".to_owned(),
+//!     title: "Deflection over one second".to_owned(),
 //!     panels: vec![panel],
 //! };
 //! assert!(time_history(&figure)?.contains("<svg"));
 //! # Ok::<(), eomgen_plot::PlotError>(())
 //! ```
 //!
-//! A figure goes through these files: [`figure`] (what the caller states), `quantity` (SI
-//! prefixes and axis labels), `axis` (positions and ticks), `decimate` (many samples to few
-//! points), `layout` (where everything goes), `panel` (drawing it), `canvas` (SVG elements);
-//! `symbol` and `lettering` write names and text. [`mod@plate`] sets frames with axes of their
-//! own side by side. [`bars`] has histograms and shares, [`mod@distribution`] how numbers are spread, [`mod@modes`] shapes of natural modes, [`map`] the pictures made of pixels, and [`mod@drawing`] draws what is no graph.
-//! What is drawn, and why, is the caller's business: nothing here knows of a model.
+//! Modules in the order of drawing a figure: [`figure`] (content), `quantity` (SI prefixes and axis
+//! labels), `axis` (positions and ticks), `decimate` (fewer points), `layout` (positions of all
+//! parts), `panel` (drawing), `canvas` (SVG elements). `symbol` and `lettering` write names and
+//! text. [`mod@plate`] arranges frames with separate axes. [`bars`] contains histograms and shares,
+//! [`mod@distribution`] distributions of numbers, [`mod@modes`] shapes of natural modes, [`map`]
+//! pictures of pixels, and [`mod@drawing`] free drawings. This crate does not depend on models.
 //!
-//! The SVG has no script, no style sheet, no identifiers and refers to nothing outside, so
-//! that it can stand in a page as often as wanted. It is written directly: plotting crates
-//! round points to whole pixels or leave the frames of stacked panels misaligned.
+//! The SVG has no script, style sheet, identifier or external reference, so a page can contain it
+//! several times. The crate writes it directly: plotting crates round points to whole pixels or
+//! misalign the frames of stacked panels.
 
 mod axis;
 pub mod bars;
@@ -64,15 +63,13 @@ pub use quantity::scaled_unit;
 use axis::Scale;
 use layout::{Abscissa, Format, Layout};
 
-/// Draws quantities over time, the panels stacked over one time axis.
-///
-/// Returns an SVG document, 900 px wide and below 200 kB of curves however many samples
-/// there are.
+/// Draws quantities over time, with the panels stacked over one time axis. Returns an SVG document
+/// with a width of 900 px. Its curves have less than 200 kB for any number of samples.
 ///
 /// # Errors
 ///
-/// No panels, a panel or a series with nothing to draw, times that are not finite or go
-/// back, a series with as many values as times.
+/// [`PlotError`] without panels, for a panel or a series without anything to draw, for times that
+/// are not finite or that decrease, and for different numbers of values and times.
 pub fn time_history(plot: &TimeHistory<'_>) -> Result<String, PlotError> {
     let abscissa = Abscissa {
         symbol: "t",
@@ -82,14 +79,12 @@ pub fn time_history(plot: &TimeHistory<'_>) -> Result<String, PlotError> {
     draw(&plot.title, &plot.panels, &abscissa, Scale::Linear)
 }
 
-/// Draws power spectral densities over frequency, the densities on a logarithmic axis.
-///
-/// Frequencies and densities that have no place on a logarithmic axis are left out: they
-/// leave a gap. Returns an SVG document as [`time_history`] does.
+/// Draws power spectral densities over frequency, with a logarithmic axis for the densities.
+/// Returns an SVG document like [`time_history`]. Values without a logarithm leave a gap.
 ///
 /// # Errors
 ///
-/// As for [`time_history`].
+/// Same as [`time_history`].
 pub fn spectrum(plot: &Spectrum<'_>) -> Result<String, PlotError> {
     let abscissa = Abscissa {
         symbol: "f",

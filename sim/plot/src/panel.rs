@@ -1,5 +1,5 @@
-//! Drawing one panel into its place: grid, reference lines, curves, frame, ticks and text,
-//! and the axis that all panels share.
+//! Drawing of one panel (grid, reference lines, curves, frame, ticks and text) and of the shared
+//! horizontal axis.
 
 use super::axis::{Axis, Scale, Tick};
 use super::canvas::{Anchor, Canvas, Stroke, Text};
@@ -11,12 +11,12 @@ use super::layout::{
 };
 use super::lettering::{fitted, width};
 
-/// Okabe and Ito's colours, told apart by colour-blind readers; without the yellow, which is
-/// too pale for thin lines.
+/// Okabe and Ito's colours for colour-blind readers, without the yellow, which is too pale for thin
+/// lines.
 const COLOURS: [&str; 7] = [
     "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000",
 ];
-/// When the colours are used up, or where curves lie on each other, dashes.
+/// Dashes distinguish curves after all colours are used, and overlapping curves.
 const DASHES: [&str; 3] = ["", "7 3", "2 3"];
 
 const GRID: Stroke = full("#e6e6e6", 0.8);
@@ -40,7 +40,6 @@ const fn full(colour: &'static str, width: f64) -> Stroke {
     }
 }
 
-/// Draws a panel.
 pub(super) fn draw(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, layout: &Layout) {
     draw_grid(canvas, place, layout);
     draw_references(canvas, panel, place, layout);
@@ -57,7 +56,7 @@ pub(super) fn draw(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, layout
     draw_text(canvas, panel, place, layout);
 }
 
-/// Draws upright lines.
+/// Draws vertical lines.
 pub(super) fn draw_marks(canvas: &mut Canvas, marks: &[Reference], place: &Place, layout: &Layout) {
     let (bottom, top) = place.ordinate.pixels;
     for (x, _) in marked(marks, layout) {
@@ -65,7 +64,7 @@ pub(super) fn draw_marks(canvas: &mut Canvas, marks: &[Reference], place: &Place
     }
 }
 
-/// Writes the names of upright lines beside them at the top, where there is room.
+/// Writes the names of vertical lines at the top, if there is space.
 pub(super) fn name_marks(canvas: &mut Canvas, marks: &[Reference], place: &Place, layout: &Layout) {
     let (_, top) = place.ordinate.pixels;
     let mut free_from = f64::NEG_INFINITY;
@@ -84,7 +83,7 @@ pub(super) fn name_marks(canvas: &mut Canvas, marks: &[Reference], place: &Place
     }
 }
 
-/// Where the marks that the axis reaches are, px, with their names.
+/// Returns the pixels and names of the marks within the axis.
 fn marked<'a>(marks: &'a [Reference], layout: &'a Layout) -> impl Iterator<Item = (f64, &'a str)> {
     let (axis, unit) = (&layout.abscissa, layout.abscissa_quantity.scale);
     let places = marks
@@ -95,7 +94,7 @@ fn marked<'a>(marks: &'a [Reference], layout: &'a Layout) -> impl Iterator<Item 
     reached.map(|(place, name)| (axis.pixel(place), name))
 }
 
-/// Draws the labels of the axis that all panels share, below the last of them.
+/// Draws the labels of the shared axis below the last panel.
 pub(super) fn draw_abscissa(canvas: &mut Canvas, layout: &Layout) {
     let Some(last) = layout.places.last() else {
         return;
@@ -137,7 +136,7 @@ fn curve(index: usize, layout: &Layout) -> Stroke {
     }
 }
 
-/// A series in pixels; what cannot be drawn is not a number.
+/// Returns a series in pixels, with NaN for values that cannot be drawn.
 fn samples(series: &Series<'_>, place: &Place, layout: &Layout) -> impl Iterator<Item = Point> {
     let (x, y) = (layout.abscissa, place.ordinate);
     let (along, up) = (layout.abscissa_quantity.scale, place.quantity.scale);
@@ -195,7 +194,7 @@ fn draw_references(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, layout
     let mut free_from = f64::NEG_INFINITY;
     for (y, label) in lines {
         canvas.segments(&[((left, y), (right, y))], REFERENCE);
-        // Labels of lines close together are moved down, one below the other.
+        // Move the labels of close lines down, so that they do not overlap.
         let base = (y + 0.35 * TICK_SIZE).max(free_from);
         free_from = base + TICK_SIZE + 2.0;
         canvas.text(Text {
@@ -208,7 +207,7 @@ fn draw_references(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, layout
     }
 }
 
-/// The frame with its ticks pointing inwards.
+/// Draws the frame with inward ticks.
 fn draw_frame(canvas: &mut Canvas, place: &Place, layout: &Layout) {
     let (left, right) = layout.abscissa.pixels;
     let (bottom, top) = place.ordinate.pixels;
@@ -235,7 +234,7 @@ fn draw_frame(canvas: &mut Canvas, place: &Place, layout: &Layout) {
     canvas.segments(&marks, FRAME);
 }
 
-/// The pixels of 2 to 9 times each power of ten, if there is room for them.
+/// Returns the pixels of 2 to 9 times each power of ten, if there is space.
 fn minor_marks(axis: &Axis) -> impl Iterator<Item = f64> {
     let (low, high) = (axis.range.low, axis.range.high);
     let (start, end) = axis.pixels;

@@ -1,5 +1,5 @@
-//! Plates: frames side by side in rows, each with axes of its own, as journals set a time
-//! history beside its power spectrum.
+//! Plates: frames in rows, each with separate axes, for example a time history next to its
+//! spectrum.
 
 use super::axis::Scale;
 use super::canvas::Canvas;
@@ -8,7 +8,7 @@ use super::figure::{Drawn, Panel, Reference};
 use super::layout::{Abscissa, Format, Layout};
 use super::panel;
 
-/// Margins are wide enough for the usual labels, so that the frames of a column align.
+/// The margins fit the usual labels, so that the frames of a column align.
 const FORMAT: Format = Format {
     width: 580.0,
     frame: 210.0,
@@ -18,53 +18,52 @@ const FORMAT: Format = Format {
     overlaid: false,
     drawn: Drawn::Curve,
 };
-/// The share of a frame with marks that their names take.
+/// Fraction of a frame's height for the names of marks.
 const NAMES_OF_MARKS: f64 = 0.09;
 
 /// Frames in rows.
 #[derive(Clone, Debug, Default)]
 pub struct Plate<'a> {
-    /// What the plate shows, for those who cannot see it; not drawn.
+    /// Description for screen readers; not drawn.
     pub title: String,
-    /// How many frames stand side by side; at least one.
+    /// Number of frames in a row, at least one.
     pub columns: usize,
-    /// Row by row.
+    /// Frames, row by row.
     pub frames: Vec<Frame<'a>>,
 }
 
-/// A panel with its own axes.
+/// Panel with separate axes.
 #[derive(Clone, Debug, Default)]
 pub struct Frame<'a> {
-    /// What is drawn.
+    /// Content of the frame.
     pub panel: Panel<'a>,
-    /// What it is drawn over, and how.
+    /// Kind of the axes.
     pub axes: Axes,
-    /// Upright lines with their names, natural frequencies say; abscissae in SI, ascending.
+    /// Vertical lines with names, for example natural frequencies; abscissae in SI, ascending.
     pub marks: Vec<Reference>,
-    /// Whether curves may lie on each other: then each later one is dashed, and what is below
-    /// shows through.
+    /// True if curves can overlap: later ones are then dashed.
     pub overlaid: bool,
-    /// What is drawn through the samples.
+    /// Style of the series.
     pub drawn: Drawn,
 }
 
-/// The axes of a frame.
+/// Axes of a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Axes {
-    /// A quantity over time in s.
+    /// Quantity over time in s.
     #[default]
     Time,
-    /// The logarithm of a positive quantity over time in s.
+    /// Logarithm of a positive quantity over time in s.
     Growth,
-    /// A density over frequency in Hz, both logarithmic.
+    /// Density over frequency in Hz, both logarithmic.
     Frequency,
-    /// The logarithm of a positive quantity over a number with this name.
+    /// Logarithm of a positive quantity over a number with this name.
     Count(&'static str),
-    /// A quantity over another.
+    /// Quantity over another quantity.
     Quantity {
-        /// The other's name.
+        /// Name of the other quantity.
         symbol: &'static str,
-        /// Its SI unit; empty for a number.
+        /// SI unit of the other quantity; empty for a dimensionless number.
         unit: &'static str,
     },
 }
@@ -87,11 +86,11 @@ impl Axes {
     }
 }
 
-/// Draws a plate as an SVG document, 580 px wide for each column.
+/// Draws a plate as an SVG document with 580 px per column.
 ///
 /// # Errors
 ///
-/// As for [`super::time_history`], panels counted row by row.
+/// Same as [`super::time_history`], with panels counted row by row.
 pub fn plate(plate: &Plate<'_>) -> Result<String, PlotError> {
     let panels: Vec<Panel<'_>> = plate.frames.iter().map(|f| f.panel.clone()).collect();
     check(&panels, |place| {
@@ -113,7 +112,7 @@ pub fn plate(plate: &Plate<'_>) -> Result<String, PlotError> {
     Ok(canvas.document(&plate.title, width, top))
 }
 
-/// A frame by itself, and its height.
+/// Draws a single frame; returns it with its height.
 fn draw(frame: &Frame<'_>) -> Result<(Canvas, f64), PlotError> {
     let (abscissa, scale) = frame.axes.scales();
     let panels = std::slice::from_ref(&frame.panel);

@@ -1,16 +1,15 @@
-//! Axis labels with SI prefixes: from the largest magnitude on an axis to the factor its
-//! values are multiplied by and the unit that goes with it.
+//! Axis labels with SI prefixes: factor and unit for the largest magnitude on an axis.
 
-/// The name of an axis, with the unit its ticks are written in.
+/// Label of an axis and the unit of its ticks.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Quantity {
-    /// What SI values are divided by.
+    /// Divisor of SI values.
     pub scale: f64,
-    /// Name and unit: `x_sp [µm]`.
+    /// Name and unit, for example `x_sp [µm]`.
     pub label: String,
 }
 
-/// Prefixes by their exponents.
+/// Prefixes with their exponents.
 const PREFIXES: [(i32, &str); 10] = [
     (-15, "f"),
     (-12, "p"),
@@ -24,7 +23,7 @@ const PREFIXES: [(i32, &str); 10] = [
     (12, "T"),
 ];
 
-/// Units that take a prefix, and whether they take one above 1: nobody writes ks or krad.
+/// Units with prefixes; true if prefixes above 1 are usual (not for ks or krad).
 const PREFIXED: [(&str, bool); 10] = [
     ("m", true),
     ("N", true),
@@ -39,7 +38,7 @@ const PREFIXED: [(&str, bool); 10] = [
 ];
 
 impl Quantity {
-    /// Ticks without a prefix, for logarithmic axes.
+    /// Creates a label without a prefix, for logarithmic axes.
     pub fn plain(name: &str, unit: &str) -> Self {
         Self {
             scale: 1.0,
@@ -47,7 +46,8 @@ impl Quantity {
         }
     }
 
-    /// Ticks that run to between 1 and 1000, whatever the `largest` magnitude in SI.
+    /// Creates a label with a prefix, so that ticks are between 1 and 1000 for the `largest`
+    /// magnitude in SI.
     pub fn scaled(name: &str, unit: &str, largest: f64) -> Self {
         let (scale, unit) = scaled_unit(unit, largest);
         Self {
@@ -57,9 +57,9 @@ impl Quantity {
     }
 }
 
-/// In which multiple of a unit a magnitude reads as a number between 1 and 1000: how much that
-/// multiple is in the unit, and how it is written, `µm` or, where a unit takes no prefix,
-/// `10⁻⁶ kg`; empty for a plain number.
+/// Returns the multiple of a unit in which a magnitude is between 1 and 1000, and its notation. The
+/// notation is for example `µm`, or `10⁻⁶ kg` for a unit without prefixes; empty for a
+/// dimensionless number.
 pub fn scaled_unit(unit: &str, largest: f64) -> (f64, String) {
     let exponent = engineering_exponent(largest);
     let unit = unit.trim();
@@ -79,17 +79,18 @@ fn label(name: &str, unit: &str) -> String {
     }
 }
 
-/// The multiple of 3 that leaves a magnitude between 1 and 1000; 0 for what is next to none.
+/// Returns the exponent, a multiple of 3, with which a magnitude is between 1 and 1000; 0 for
+/// magnitudes near 0.
 fn engineering_exponent(largest: f64) -> i32 {
     if !(1e-100..1e100).contains(&largest) {
         return 0;
     }
     let exponent = (largest.log10() / 3.0 + 1e-12).floor();
-    // Between -34 and 34 by the test above.
+    // Between -34 and 34 after the test above.
     exponent as i32 * 3
 }
 
-/// The prefix before a unit, if the unit can take the one needed.
+/// Returns the prefix, if the unit allows it.
 fn prefix(unit: &str, exponent: i32) -> Option<&'static str> {
     if exponent == 0 {
         return Some("");
@@ -108,7 +109,7 @@ fn prefix(unit: &str, exponent: i32) -> Option<&'static str> {
         .map(|(_, prefix)| *prefix)
 }
 
-/// `N m/s^2` as `N·m/s²`.
+/// Formats a unit, for example `N m/s^2` as `N·m/s²`.
 fn pretty_unit(unit: &str) -> String {
     let mut pretty = String::new();
     let mut raised = false;
@@ -124,7 +125,7 @@ fn pretty_unit(unit: &str) -> String {
     if pretty == "1" { String::new() } else { pretty }
 }
 
-/// An integer above the line; nothing for 1, as in 10.
+/// Formats an exponent as superscript digits; empty for 1.
 pub(super) fn superscript(exponent: i32) -> String {
     exponent.to_string().chars().map(raise).collect()
 }
@@ -179,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn a_plain_quantity_keeps_its_unit() {
+    fn plain_quantity_keeps_its_unit() {
         assert_eq!(Quantity::plain("S", "m^2/Hz").label, "S [m²/Hz]");
         assert_eq!(Quantity::plain("S", "s^-1").label, "S [s⁻¹]");
     }

@@ -1,12 +1,11 @@
-//! Names as a reader of the paper expects them: `theta_s_dot` as a dotted Greek letter with
-//! a subscript. Only the parts of the name; SVG and HTML are written elsewhere.
+//! Names in the notation of the paper: `theta_s_dot` is a dotted Greek letter with a subscript.
 
-/// The parts of a name.
+/// Parts of a name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Symbol {
-    /// The letter or word, with the dots of a rate or an acceleration.
+    /// Letter or word, with the dots of a rate or an acceleration.
     pub head: String,
-    /// What stands below the line, or nothing.
+    /// Subscript; empty for none.
     pub subscript: String,
 }
 
@@ -41,8 +40,8 @@ pub(super) const DOT_ABOVE: char = '\u{307}';
 pub(super) const TWO_DOTS_ABOVE: char = '\u{308}';
 
 impl Symbol {
-    /// The parts of an identifier: what follows the first underscore is a subscript, with
-    /// commas for further underscores.
+    /// Splits an identifier. The part after the first underscore is the subscript, with commas for
+    /// further underscores.
     pub fn parse(name: &str) -> Self {
         if let Some(stem) = name.strip_suffix("_ddot").filter(|stem| !stem.is_empty()) {
             return Self::parse(stem).marked(TWO_DOTS_ABOVE);
@@ -83,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn names_fall_into_head_and_subscript() {
+    fn names_split_into_head_and_subscript() {
         for (name, head, subscript) in [
             ("t", "t", ""),
             ("x_sp", "x", "sp"),

@@ -1,4 +1,4 @@
-//! Whole figures: well-formed, small, and labelled as they should be.
+//! Tests of complete figures: well-formed, small and correctly labelled.
 
 use roxmltree::{Document, Node};
 
@@ -56,7 +56,7 @@ fn texts(document: &Document<'_>) -> Vec<String> {
     nodes.map(text_of).collect()
 }
 
-/// The data of the paths in a colour.
+/// Returns the data of the paths with a colour.
 fn curves<'a>(document: &'a Document<'_>, colour: &str) -> Vec<&'a str> {
     document
         .descendants()
@@ -66,7 +66,7 @@ fn curves<'a>(document: &'a Document<'_>, colour: &str) -> Vec<&'a str> {
 }
 
 #[test]
-fn many_samples_give_a_small_well_formed_figure() -> Result<(), Box<dyn std::error::Error>> {
+fn many_samples_give_small_well_formed_figure() -> Result<(), Box<dyn std::error::Error>> {
     let t = times();
     let values = noisy(&t, 2e-5);
     for curves_per_panel in [1, 9] {
@@ -124,7 +124,7 @@ fn samples_that_are_not_finite_leave_gaps() -> Result<(), Box<dyn std::error::Er
 }
 
 #[test]
-fn a_legend_is_drawn_only_if_there_is_a_choice() -> Result<(), Box<dyn std::error::Error>> {
+fn legend_is_drawn_only_for_several_series() -> Result<(), Box<dyn std::error::Error>> {
     let t = [0.0, 1.0];
     let one = history(vec![panel("x", "m", vec![series("first", &t, &t)])])?;
     let two = vec![series("first", &t, &t), series("second", &t, &t)];
@@ -159,7 +159,7 @@ fn reference_lines_are_dashed_labelled_and_in_the_frame() -> Result<(), Box<dyn 
 }
 
 #[test]
-fn hostile_text_stays_text() -> Result<(), Box<dyn std::error::Error>> {
+fn markup_in_text_is_escaped() -> Result<(), Box<dyn std::error::Error>> {
     let t = [0.0, 1.0];
     let hostile = "</text><script>alert(1)</script> & \" ' \0 \u{1b}";
     let mut panel = panel(
@@ -185,7 +185,7 @@ fn hostile_text_stays_text() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 #[test]
-fn a_spectrum_leaves_out_what_has_no_logarithm() -> Result<(), Box<dyn std::error::Error>> {
+fn spectrum_omits_values_without_logarithm() -> Result<(), Box<dyn std::error::Error>> {
     let frequencies = [0.0, 1.0, 10.0, 100.0, 1000.0];
     let densities = [1.0, 1e-8, 1e-10, 0.0, 1e-12];
     let content = panel("S_x", "m^2/Hz", vec![series("", &frequencies, &densities)]);
@@ -230,7 +230,7 @@ fn extreme_values_are_drawn_without_overflow() -> Result<(), Box<dyn std::error:
 }
 
 #[test]
-fn what_cannot_be_drawn_is_an_error() {
+fn invalid_figures_are_an_error() {
     let t = [0.0, 1.0];
     let nothing = [f64::NAN, f64::NAN];
     let series_of = |abscissa: &'static [f64], values: &'static [f64]| {
@@ -264,7 +264,7 @@ fn what_cannot_be_drawn_is_an_error() {
 }
 
 #[test]
-fn overlaid_curves_let_what_is_below_show() -> Result<(), Box<dyn std::error::Error>> {
+fn overlaid_curves_are_dashed() -> Result<(), Box<dyn std::error::Error>> {
     let t = [1.0, 10.0, 100.0];
     let values = [1.0, 2.0, 3.0];
     let dashes = |overlaid| -> Result<Vec<bool>, Box<dyn std::error::Error>> {
@@ -296,7 +296,7 @@ fn overlaid_curves_let_what_is_below_show() -> Result<(), Box<dyn std::error::Er
             .map(|n| n.has_attribute("stroke-dasharray"))
             .collect())
     };
-    // Each curve, then each line of the legend.
+    // Curves, then lines of the legend.
     assert_eq!(dashes(true)?, [false, true, false, true]);
     assert_eq!(dashes(false)?, [false; 4]);
     Ok(())

@@ -1,4 +1,4 @@
-//! The frame of a picture: where its axes lie, their ticks, grid and labels.
+//! Frame of a picture: axes, ticks, grid and labels.
 
 use super::super::axis::{Axis, Range, Scale, Tick, ticks};
 use super::super::error::{PlotError, is_drawable};
@@ -7,7 +7,7 @@ use super::raster::{Colour, HEIGHT, Raster, WIDTH};
 use super::typeface::{Align, Direction, Line, TICK_SIZE, Typeface};
 use super::types::{Coordinate, largest};
 
-/// Font sizes, px.
+/// Font sizes, in px.
 pub const LABEL_SIZE: f64 = 17.0;
 const TITLE_SIZE: f64 = 18.0;
 pub const TICK_LENGTH: f64 = 5.0;
@@ -19,16 +19,16 @@ const BOTTOM: f64 = 690.0;
 const RIGHT_MARGIN: f64 = 28.0;
 const LABEL_ROOM: f64 = 46.0;
 
-/// Where the marks of the ticks are.
+/// Position of the tick marks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// On the paper around, so that they hide no cell.
+    /// Outside of the frame, so that they cover no cell.
     Outside,
-    /// Within the frame.
+    /// Inside the frame.
     Inside,
 }
 
-/// The unit an axis is written in.
+/// Unit of an axis.
 #[derive(Debug)]
 pub struct Units {
     quantity: Quantity,
@@ -49,7 +49,7 @@ struct Edge {
     ticks: Vec<Tick>,
 }
 
-/// The unit of a coordinate: with an SI prefix on a linear axis, plain on a logarithmic one.
+/// Returns the unit of a coordinate, with an SI prefix on a linear axis.
 pub fn units(coordinate: &Coordinate<'_>) -> Units {
     let scale = coordinate.spacing.scale();
     let (name, unit) = (&coordinate.name, &coordinate.unit);
@@ -61,7 +61,7 @@ pub fn units(coordinate: &Coordinate<'_>) -> Units {
 }
 
 impl Units {
-    /// Where a value in SI units lies along the axis; not a number if it has no place.
+    /// Returns the position of an SI value along the axis; NaN if it cannot be drawn.
     pub fn place(&self, value: f64) -> f64 {
         if is_drawable(value) {
             self.scale.place(value / self.quantity.scale)
@@ -71,8 +71,8 @@ impl Units {
     }
 }
 
-/// The limits of the cells around the values of a coordinate, one more than there are
-/// values, as places along the axis.
+/// Returns the edges of the cells around the values of a coordinate, one more than values, as
+/// positions along the axis.
 pub fn cell_edges(coordinate: &Coordinate<'_>) -> Result<Vec<f64>, PlotError> {
     let units = units(coordinate);
     let values = coordinate.values.iter();
@@ -97,7 +97,7 @@ pub fn cell_edges(coordinate: &Coordinate<'_>) -> Result<Vec<f64>, PlotError> {
     let Some(around) = Range::of(places.into_iter()) else {
         return Ok(Vec::new());
     };
-    // The outer cells reach as far outwards as inwards; a single one is as wide as it likes.
+    // The outer cells are symmetric; a single cell has an arbitrary width.
     let (first, last) = match middles.as_slice() {
         [] => (around.opened().low, around.opened().high),
         [first, .., last] => (2.0 * around.low - first, 2.0 * around.high - last),
@@ -108,7 +108,7 @@ pub fn cell_edges(coordinate: &Coordinate<'_>) -> Result<Vec<f64>, PlotError> {
 }
 
 impl Frame {
-    /// Lays out two axes, with room for `beside` px to the right of the frame.
+    /// Creates two axes with `beside` px of space to the right of the frame.
     pub fn new(
         horizontal: &Coordinate<'_>,
         vertical: &Coordinate<'_>,
@@ -127,17 +127,17 @@ impl Frame {
         }
     }
 
-    /// The right edge, px.
+    /// Returns the right edge, in px.
     pub fn right(&self) -> f64 {
         self.horizontal.axis.pixels.1
     }
 
-    /// The lower and the upper edge, px.
+    /// Returns the lower and the upper edge, in px.
     pub fn vertical_pixels(&self) -> (f64, f64) {
         self.vertical.axis.pixels
     }
 
-    /// The pixels inside, as columns and rows.
+    /// Returns the pixels inside, as columns and rows.
     pub fn pixels(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
         let (left, right) = self.horizontal.axis.pixels;
         let (bottom, top) = self.vertical.axis.pixels;
@@ -145,7 +145,7 @@ impl Frame {
             .flat_map(move |row| (left as usize..right as usize).map(move |column| (column, row)))
     }
 
-    /// The places along the axes at the middle of a pixel.
+    /// Returns the position along the axes of the middle of a pixel.
     pub fn place(&self, column: usize, row: usize) -> (f64, f64) {
         (
             self.horizontal.place(column as f64 + 0.5),
@@ -153,7 +153,7 @@ impl Frame {
         )
     }
 
-    /// The point, in px, of places along the axes.
+    /// Returns the point of a position along the axes, in px.
     pub fn pixel(&self, along: f64, up: f64) -> (f64, f64) {
         (
             self.horizontal.axis.pixel(along),
@@ -247,13 +247,11 @@ impl Edge {
         }
     }
 
-    /// The pixels of the ticks.
     fn marks(&self) -> impl Iterator<Item = usize> + '_ {
         let pixels = self.ticks.iter().map(|tick| self.axis.pixel(tick.place));
         pixels.map(|pixel| pixel.round().max(0.0) as usize)
     }
 
-    /// The place along the axis at a pixel.
     fn place(&self, pixel: f64) -> f64 {
         let (start, end) = self.axis.pixels;
         let Range { low, high } = self.axis.range;
@@ -261,7 +259,7 @@ impl Edge {
     }
 }
 
-/// A rectangle of one pixel's width just outside an area of whole pixels.
+/// Draws a rectangle with lines of one pixel just outside an area of pixels.
 pub fn outline(raster: &mut Raster, (left, right): (f64, f64), (bottom, top): (f64, f64)) {
     let corner = (left as usize - 1, top as usize - 1);
     let (width, height) = ((right - left) as usize + 2, (bottom - top) as usize + 2);

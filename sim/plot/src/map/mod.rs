@@ -1,11 +1,10 @@
-//! Pictures over parameters, as PNG: a quantity over two parameters in colours, and points
-//! over one parameter, as in a bifurcation diagram.
+//! Pictures over parameters as PNG: a quantity over two parameters in colours, and points over one
+//! parameter, as in a bifurcation diagram.
 //!
-//! [`map_png`] and [`scatter_png`] take what the caller states; `frame` lays out the axes,
-//! `shades` turns values into colours and draws their bar, `raster` holds the pixels and
-//! `typeface` writes on them. Pixels rather than SVG: a map has ten thousands of cells and a
-//! diagram a million points. The letters come from a font in the program, so a picture has
-//! the same bytes on every machine.
+//! [`map_png`] and [`scatter_png`] draw them. `frame` computes the axes, `shades` maps values to
+//! colours and draws their bar, `raster` contains the pixels and `typeface` writes text. Pixels are
+//! used because a map can have tens of thousands of cells and a diagram a million points. The font
+//! is part of the program, so a picture has the same bytes on every machine.
 
 mod frame;
 mod raster;
@@ -25,14 +24,13 @@ use typeface::Typeface;
 pub use types::{Coordinate, Map, Scatter, Shades, Spacing};
 use types::{GREY, INK, OPACITY, WHITE, empty};
 
-/// Draws a quantity over two parameters: a PNG, 1000 px wide and 760 px high.
-///
-/// Each cell reaches halfway to its neighbours on the axis.
+/// Draws a quantity over two parameters as a PNG of 1000 by 760 px. Each cell extends halfway to
+/// its neighbours on the axis.
 ///
 /// # Errors
 ///
-/// Not one value per cell, no finite value at all, parameters that are not finite or do not
-/// ascend or, on a logarithmic axis, are not positive.
+/// [`PlotError`] if the numbers of values and cells differ, if no value is finite, or if parameters
+/// do not ascend or cannot be drawn on their axis.
 pub fn map_png(map: &Map<'_>) -> Result<Vec<u8>, PlotError> {
     let (columns, rows) = (map.horizontal.values.len(), map.vertical.values.len());
     if columns.checked_mul(rows) != Some(map.values.len()) {
@@ -68,13 +66,12 @@ pub fn map_png(map: &Map<'_>) -> Result<Vec<u8>, PlotError> {
     raster.png(&map.title)
 }
 
-/// Draws points over a parameter: a PNG, 1000 px wide and 760 px high.
-///
-/// Where points lie upon each other the picture is darker; their order does not matter.
+/// Draws points over a parameter as a PNG of 1000 by 760 px. Overlapping points are darker,
+/// independent of their order.
 ///
 /// # Errors
 ///
-/// More or fewer ordinates than abscissae, no point that can be drawn.
+/// [`PlotError`] if the numbers of ordinates and abscissae differ, or if no point can be drawn.
 pub fn scatter_png(scatter: &Scatter<'_>) -> Result<Vec<u8>, PlotError> {
     let (horizontal, vertical) = (&scatter.horizontal, &scatter.vertical);
     if horizontal.values.len() != vertical.values.len() {
@@ -109,10 +106,10 @@ pub fn scatter_png(scatter: &Scatter<'_>) -> Result<Vec<u8>, PlotError> {
     raster.png(&scatter.title)
 }
 
-/// Dots that let what is below shine through, so that density shows.
+/// Draws translucent dots, so that density is visible.
 fn draw_points(raster: &mut Raster, frame: &Frame, points: &[(f64, f64)]) {
     let room = frame.pixels().count() as f64;
-    // So large that together they would cover a tenth of the frame, within reason.
+    // All dots together would cover a tenth of the frame, with limits on the radius.
     let radius = (0.1 * room / (points.len() as f64 * std::f64::consts::PI)).sqrt();
     let radius = radius.clamp(0.7, 3.0);
     let mut paper = vec![1.0; raster::WIDTH * raster::HEIGHT];
@@ -142,7 +139,7 @@ fn ends(edges: &[f64], map: &Map<'_>) -> Result<Range, PlotError> {
     }
 }
 
-/// Which cell a place lies in.
+/// Returns the index of the cell at a position.
 fn cell_of(edges: &[f64], place: f64) -> Option<usize> {
     let cell = edges
         .partition_point(|edge| *edge <= place)

@@ -1,34 +1,34 @@
-//! The pixels of a picture: setting, blending, rectangles and discs, and the PNG they become.
+//! Pixels of a picture: setting, blending, rectangles and discs, and encoding as PNG.
 
 use super::super::error::PlotError;
 
-/// The size of every picture, px.
+/// Size of every picture, in px.
 pub const WIDTH: usize = 1000;
 pub const HEIGHT: usize = 760;
 
 /// Red, green and blue.
 pub type Colour = [u8; 3];
 
-/// A picture; columns count from the left, rows from the top.
+/// Picture; columns count from the left, rows from the top.
 #[derive(Clone, Debug)]
 pub struct Raster {
     pixels: Vec<Colour>,
 }
 
 impl Raster {
-    /// A picture of one colour.
+    /// Creates a picture of one colour.
     pub fn new(colour: Colour) -> Self {
         Self {
             pixels: vec![colour; WIDTH * HEIGHT],
         }
     }
 
-    /// Colours a pixel; outside the picture nothing happens.
+    /// Colours a pixel; ignores pixels outside of the picture.
     pub fn set(&mut self, column: usize, row: usize, colour: Colour) {
         self.blend(column, row, colour, 1.0);
     }
 
-    /// Mixes a share of a colour, from 0 to 1, into a pixel.
+    /// Blends a fraction of a colour, from 0 to 1, into a pixel.
     pub fn blend(&mut self, column: usize, row: usize, colour: Colour, share: f64) {
         if column >= WIDTH {
             return;
@@ -38,7 +38,7 @@ impl Raster {
         }
     }
 
-    /// Fills whole pixels from (left, top) on, `size` px wide and high.
+    /// Fills pixels from (left, top); `size` is width and height, in px.
     pub fn fill(&mut self, (left, top): (usize, usize), size: (usize, usize), colour: Colour) {
         for row in top..top + size.1 {
             for column in left..left + size.0 {
@@ -47,7 +47,7 @@ impl Raster {
         }
     }
 
-    /// The picture as a PNG with its title.
+    /// Returns the picture as a PNG with its title.
     pub fn png(&self, title: &str) -> Result<Vec<u8>, PlotError> {
         let encoding = |error: png::EncodingError| PlotError::Encoding {
             reason: error.to_string(),
@@ -69,8 +69,7 @@ impl Raster {
     }
 }
 
-/// The pixels that a disc touches, with the share of each that it covers; to a tenth of a
-/// pixel, as the eye sees it.
+/// Visits the pixels of a disc with their covered fractions, computed to a tenth of a pixel.
 pub fn disc(x: f64, y: f64, radius: f64, mut cover: impl FnMut(usize, usize, f64)) {
     let reach = radius + 1.0;
     let pixels =
@@ -86,7 +85,7 @@ pub fn disc(x: f64, y: f64, radius: f64, mut cover: impl FnMut(usize, usize, f64
     }
 }
 
-/// A share of one colour, from 0 to 1, in another.
+/// Blends a fraction of one colour, from 0 to 1, into another.
 pub fn mixed(under: Colour, over: Colour, share: f64) -> Colour {
     let mut mixture = under;
     for (channel, over) in mixture.iter_mut().zip(over) {

@@ -1,4 +1,4 @@
-//! From values to colours, and the bar that says which colour is which value.
+//! Colours of values, and the colour bar.
 
 use super::super::axis::{Range, Scale, Tick, ticks};
 use super::super::error::{PlotError, is_drawable};
@@ -36,33 +36,32 @@ const BLUE_TO_RED: [Colour; 11] = [
     [0xb2, 0x18, 0x2b],
     [0x67, 0x00, 0x1f],
 ];
-/// A side that reaches less than this share of the other is rounding noise around zero.
+/// Ratio of the two sides of zero below which the smaller side is rounding noise.
 const NOISE: f64 = 1e-6;
-/// By how much one side must outreach the other to get shades of its own.
+/// Ratio of the two sides of zero above which each side has separate shades.
 const LOPSIDED: f64 = 3.0;
 
-/// From the frame to the bar, and from the bar to its labels, px.
+/// Distances from the frame to the bar and from the bar to its labels, in px.
 const GAP: f64 = 28.0;
 const LABEL_GAP: f64 = TICK_LENGTH + 6.0;
-/// The width of the bar, px.
+/// Width of the bar, in px.
 const BAR: usize = 24;
-/// The room that the name of the quantity needs beside the labels, px.
+/// Space for the name of the quantity next to the labels, in px.
 const LABEL: f64 = 34.0;
 
-/// The colours of a map.
+/// Colours of a map with their bar.
 #[derive(Debug)]
 pub struct Bar {
     shades: Shades,
     quantity: Quantity,
-    /// What the ends stand for, in the unit of the quantity; zero is in the middle of signed
-    /// shades, wherever the ends are.
+    /// Values at the ends, in the unit of the quantity. Zero is in the middle of signed shades.
     range: Range,
     ticks: Vec<Tick>,
     has_gaps: bool,
 }
 
 impl Bar {
-    /// The colours for the values of a map; an error if it has none that can be drawn.
+    /// Creates the colours for the values of a map; an error without a drawable value.
     pub fn new(map: &Map<'_>) -> Result<Self, PlotError> {
         let drawable = map.values.iter().filter(|value| is_drawable(**value));
         let found = Range::of(drawable.copied()).ok_or_else(|| empty(&map.quantity))?;
@@ -93,18 +92,18 @@ impl Bar {
         })
     }
 
-    /// The colour of a value in SI units; none if it cannot be drawn.
+    /// Returns the colour of a value in SI units; `None` if it cannot be drawn.
     pub fn colour(&self, value: f64) -> Option<Colour> {
         let share = self.share(value / self.quantity.scale);
         is_drawable(value).then(|| self.colour_at(share))
     }
 
-    /// How much room the bar and its labels need, px.
+    /// Returns the width of the bar with its labels, in px.
     pub fn width(&self, typeface: &Typeface) -> f64 {
         GAP + BAR as f64 + LABEL_GAP + typeface.widest(&self.ticks) + LABEL
     }
 
-    /// Where a value lies on the bar, from 0 at its lower end to 1.
+    /// Returns the position of a value on the bar, from 0 at its lower end to 1.
     fn share(&self, value: f64) -> f64 {
         let Range { low, high } = self.range;
         match self.shades {
@@ -151,7 +150,7 @@ impl Bar {
     }
 }
 
-/// What grey means.
+/// Draws the key of the grey cells.
 fn draw_gap_key(raster: &mut Raster, typeface: &Typeface, (left, top): (f64, f64)) {
     let side = 16;
     raster.fill((left as usize, top as usize), (BAR, side), GREY);
@@ -161,7 +160,7 @@ fn draw_gap_key(raster: &mut Raster, typeface: &Typeface, (left, top): (f64, f64
     typeface.write(raster, line, (right + LABEL_GAP, bottom - 3.0));
 }
 
-/// A range with zero inside: the same on both sides unless one reaches much farther.
+/// Returns a range around zero: symmetric, unless one side is much larger.
 fn around_zero(found: Range) -> Range {
     let (below, above) = (-found.low.min(0.0), found.high.max(0.0));
     let (less, more) = (below.min(above), below.max(above));
@@ -171,7 +170,7 @@ fn around_zero(found: Range) -> Range {
             high: 1.0,
         };
     }
-    // A side without values takes the other's reach: its half of the bar stays unused.
+    // A side without values gets the range of the other, so half of the bar is unused.
     if less < NOISE * more || more <= LOPSIDED * less {
         return Range {
             low: -more,
@@ -184,7 +183,7 @@ fn around_zero(found: Range) -> Range {
     }
 }
 
-/// Ticks of each half, with zero once.
+/// Returns ticks of both halves, with zero once.
 fn signed_ticks(range: Range) -> Vec<Tick> {
     let lower = Range { high: 0.0, ..range };
     let upper = Range { low: 0.0, ..range };

@@ -1,11 +1,11 @@
-//! Whole pictures: size, colours at known places, and what must not be drawn.
+//! Tests of complete pictures: size, colours at known places, and invalid input.
 
 use super::raster::Colour;
 use super::*;
 
 const NAN: f64 = f64::NAN;
 
-/// A picture decoded by the library's reader.
+/// Picture, decoded by the PNG library.
 struct Picture {
     width: usize,
     height: usize,
@@ -31,7 +31,7 @@ impl Picture {
         self.bytes[first..first + 3].try_into().unwrap()
     }
 
-    /// The colours along a row, without repetition.
+    /// Returns the colours along a row, without repetition.
     fn along(&self, row: usize) -> Vec<Colour> {
         let mut colours: Vec<Colour> = (0..self.width).map(|x| self.at(x, row)).collect();
         colours.dedup();
@@ -67,13 +67,13 @@ fn exponents<'a>(columns: &'a [f64], rows: &'a [f64], values: &'a [f64]) -> Map<
 
 #[test]
 fn cells_have_their_colours() -> Result<(), PlotError> {
-    // Bottom row: least, zero; top row: greatest, nothing.
+    // Bottom row: least, zero; top row: greatest, no value.
     let (columns, rows) = ([0.0, 1e-4], [10.0, 20.0]);
     let map = exponents(&columns, &rows, &[-8.0, 0.0, 8.0, NAN]);
     let picture = Picture::decode(&map_png(&map)?);
     assert_eq!((picture.width, picture.height), (1000, 760));
-    // The middles of the four quarters of the frame, whose left edge is near 85 px and right
-    // edge near 845 px.
+    // Middles of the four quarters of the frame; its left edge is near 85 px, its right edge near
+    // 845 px.
     let (left, right, low, high) = (280, 650, 530, 210);
     assert_eq!(picture.at(left, low), [0x05, 0x30, 0x61]);
     assert_eq!(picture.at(right, low), [0xff, 0xff, 0xff]);
@@ -83,11 +83,11 @@ fn cells_have_their_colours() -> Result<(), PlotError> {
 }
 
 #[test]
-fn a_lopsided_map_shows_both_signs() -> Result<(), PlotError> {
+fn map_with_unequal_sides_shows_both_signs() -> Result<(), PlotError> {
     let (columns, rows) = ([0.0, 1.0, 2.0], [1.0]);
     let strong = exponents(&columns, &rows, &[-2.0, 5.0, 100.0]);
     let picture = Picture::decode(&map_png(&strong)?);
-    // Row 600 lies within the only row of cells; the bar is of one colour along it.
+    // Row 600 is within the only row of cells; the bar has one colour along it.
     let colours = picture.along(600);
     for end in [[0x05, 0x30, 0x61], [0x67, 0x00, 0x1f]] {
         assert!(colours.contains(&end), "{end:?} in {colours:?}");
@@ -96,7 +96,7 @@ fn a_lopsided_map_shows_both_signs() -> Result<(), PlotError> {
     let even = exponents(&columns, &rows, &[-4.0, 4.0, 8.0]);
     let picture = Picture::decode(&map_png(&even)?);
     let colours = picture.along(600);
-    // Half way between the middle and an end of eleven colours: between two of them.
+    // Half way between the middle and an end of eleven colours, between two of them.
     let (blue, red) = ([0x6b, 0xac, 0xd1], [0xe5, 0x83, 0x68]);
     assert!(
         colours.contains(&blue) && colours.contains(&red),
@@ -106,7 +106,7 @@ fn a_lopsided_map_shows_both_signs() -> Result<(), PlotError> {
 }
 
 #[test]
-fn sequential_shades_run_from_least_to_greatest() -> Result<(), PlotError> {
+fn sequential_shades_go_from_least_to_greatest() -> Result<(), PlotError> {
     let (columns, rows) = ([1.0, 10.0, 100.0], [1.0]);
     let mut map = exponents(&columns, &rows, &[1e-6, 2e-6, 3e-6]);
     map.shades = Shades::Sequential;
@@ -116,7 +116,7 @@ fn sequential_shades_run_from_least_to_greatest() -> Result<(), PlotError> {
     for shade in [[0x44, 0x01, 0x54], [0x21, 0x91, 0x8c], [0xfd, 0xe7, 0x25]] {
         assert!(colours.contains(&shade), "{shade:02x?} in {colours:02x?}");
     }
-    // Equal ratios are equally wide: a third of the frame each.
+    // Equal ratios have equal widths: a third of the frame each.
     let width = |shade| (0..1000).filter(|x| picture.at(*x, 400) == shade).count();
     let (first, last) = (width([0x44, 0x01, 0x54]), width([0xfd, 0xe7, 0x25]));
     assert!(first > 200 && first.abs_diff(last) <= 1, "{first} {last}");
@@ -124,7 +124,7 @@ fn sequential_shades_run_from_least_to_greatest() -> Result<(), PlotError> {
 }
 
 #[test]
-fn points_lie_where_they_belong() -> Result<(), PlotError> {
+fn points_are_at_their_coordinates() -> Result<(), PlotError> {
     let (along, up) = ([0.0, 1.0, 2.0, NAN], [0.0, 1e-6, -1e-6, 5.0]);
     let scatter = Scatter {
         title: "Section".to_owned(),
@@ -138,13 +138,13 @@ fn points_lie_where_they_belong() -> Result<(), PlotError> {
     assert!((60..120).contains(&ink), "{ink}");
     let middle = (0..760).filter(|row| (450..600).any(|x| is_ink(picture.at(x, *row))));
     let rows: Vec<usize> = middle.collect();
-    // The middle abscissa has the greatest value: near the top, at 52 px, less its margin.
+    // The middle abscissa has the greatest value: near the top (52 px), below the margin.
     assert!(rows.iter().all(|row| (60..90).contains(row)), "{rows:?}");
     Ok(())
 }
 
 #[test]
-fn order_does_not_change_a_diagram_and_pictures_repeat() -> Result<(), PlotError> {
+fn diagram_is_independent_of_order_and_reproducible() -> Result<(), PlotError> {
     let along: Vec<f64> = (0..5000).map(|i| f64::from(i / 50)).collect();
     let up: Vec<f64> = (0..5000).map(|i| (f64::from(i) * 0.7).sin()).collect();
     let picture = |along: &[f64], up: &[f64]| {
@@ -159,7 +159,7 @@ fn order_does_not_change_a_diagram_and_pictures_repeat() -> Result<(), PlotError
     let reversed = |values: &[f64]| values.iter().rev().copied().collect::<Vec<_>>();
     let backwards = Picture::decode(&picture(&reversed(&along), &reversed(&up))?);
     let forwards = Picture::decode(&forwards);
-    // Products in another order differ in the last bit, which a rounding can show.
+    // Products in another order differ in the last bit, so a rounding can differ.
     let differing = forwards.bytes.iter().zip(&backwards.bytes);
     assert!(differing.into_iter().all(|(a, b)| a.abs_diff(*b) <= 1));
     Ok(())
@@ -188,7 +188,7 @@ fn extreme_maps_are_drawn() -> Result<(), PlotError> {
 }
 
 #[test]
-fn what_cannot_be_drawn_is_an_error() {
+fn invalid_pictures_are_an_error() {
     let attempt = |columns: &[f64], values: &[f64]| map_png(&exponents(columns, &[1.0], values));
     assert_eq!(
         attempt(&[1.0, 2.0], &[1.0]),

@@ -1,5 +1,5 @@
-//! Text in pixels: DejaVu Sans, which has the Greek letters, superscripts and dots that names
-//! and units need, smoothed at the edges.
+//! Text in pixels: DejaVu Sans with smooth edges. The font has the Greek letters, superscripts and
+//! dots of names and units.
 
 use ab_glyph::{Font, FontRef, Glyph, GlyphId, PxScale, ScaleFont, point};
 
@@ -9,11 +9,11 @@ use super::super::lettering::{SUBSCRIPT, runs};
 use super::super::symbol::{DOT_ABOVE, TWO_DOTS_ABOVE};
 use super::raster::{Colour, Raster};
 
-/// The size of a text if nothing else is said, px.
+/// Default size of a text, in px.
 pub const TICK_SIZE: f64 = 15.0;
 const TEXT: Colour = [26; 3];
 
-/// Where a text stands relative to its point.
+/// Alignment of a text relative to its point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Align {
     Start,
@@ -21,34 +21,34 @@ pub enum Align {
     End,
 }
 
-/// Which way a text runs.
+/// Direction of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
     Right,
     Up,
 }
 
-/// The letters.
+/// Regular and bold font.
 #[derive(Debug)]
 pub struct Typeface {
     regular: FontRef<'static>,
     bold: FontRef<'static>,
 }
 
-/// A text and how it is set.
+/// Text with its style.
 #[derive(Clone, Copy, Debug)]
 pub struct Line<'a> {
     pub text: &'a str,
-    /// The size of the font, px.
+    /// Font size, in px.
     pub size: f64,
-    /// Bold and as it stands: in other lines names get their subscripts and Greek letters.
+    /// True for bold text without subscripts and Greek letters of names.
     pub heading: bool,
     pub align: Align,
     pub direction: Direction,
 }
 
 impl<'a> Line<'a> {
-    /// A text from left to right at the size of a tick's label.
+    /// Creates a horizontal text with the size of a tick label.
     pub fn level(text: &'a str, align: Align) -> Self {
         Self {
             text,
@@ -61,7 +61,7 @@ impl<'a> Line<'a> {
 }
 
 impl Typeface {
-    /// The fonts that are in the program.
+    /// Loads the fonts in the program.
     pub fn new() -> Result<Self, PlotError> {
         let font = |bytes| {
             FontRef::try_from_slice(bytes).map_err(|error| PlotError::Encoding {
@@ -74,12 +74,12 @@ impl Typeface {
         })
     }
 
-    /// The width of a line, px.
+    /// Returns the width of a line, in px.
     pub fn width(&self, line: Line<'_>) -> f64 {
         f64::from(self.glyphs(line).1)
     }
 
-    /// The width of the widest label, px.
+    /// Returns the width of the widest label, in px.
     pub fn widest(&self, ticks: &[Tick]) -> f64 {
         let widths = ticks
             .iter()
@@ -87,12 +87,12 @@ impl Typeface {
         widths.fold(0.0, f64::max)
     }
 
-    /// Writes as much of a line as fits into a width, with an ellipsis if it is not all.
+    /// Writes a line, truncated to a width with an ellipsis.
     pub fn write_within(&self, raster: &mut Raster, line: Line<'_>, at: (f64, f64), room: f64) {
         if self.width(line) <= room {
             return self.write(raster, line, at);
         }
-        // No character is so narrow that more would fit.
+        // No character is narrow enough for more to fit.
         let mut kept: Vec<char> = line.text.chars().take(400).collect();
         while kept.pop().is_some() {
             let cut = format!("{}…", kept.iter().collect::<String>().trim_end());
@@ -103,7 +103,7 @@ impl Typeface {
         }
     }
 
-    /// Writes a line: its base line begins, is centred or ends at a point.
+    /// Writes a line; its base line starts, is centred or ends at a point.
     pub fn write(&self, raster: &mut Raster, line: Line<'_>, (x, y): (f64, f64)) {
         let font = self.font(line);
         let (glyphs, width) = self.glyphs(line);
@@ -139,7 +139,7 @@ impl Typeface {
         }
     }
 
-    /// The glyphs of a line from the origin on, and its width.
+    /// Returns the glyphs of a line from the origin, and its width.
     fn glyphs(&self, line: Line<'_>) -> (Vec<Glyph>, f32) {
         let font = self.font(line);
         let mut placed = Placed::default();
@@ -159,7 +159,7 @@ impl Typeface {
     }
 }
 
-/// Glyphs in a row, and where the next one goes.
+/// Glyphs in a row, and the position of the next one.
 #[derive(Default)]
 struct Placed {
     glyphs: Vec<Glyph>,
@@ -187,7 +187,7 @@ impl Placed {
     }
 }
 
-/// A mark centred above a letter, however tall that is.
+/// Returns a mark centred above a letter of any height.
 fn above(font: &FontRef<'static>, letter: &Glyph, mark: GlyphId) -> Glyph {
     let factor = font.as_scaled(letter.scale).scale_factor();
     let mut at = letter.position;
@@ -195,7 +195,7 @@ fn above(font: &FontRef<'static>, letter: &Glyph, mark: GlyphId) -> Glyph {
     if let (Some(letter), Some(mark)) = outlines {
         let (letter, mark) = (letter.bounds, mark.bounds);
         let aside = (letter.min.x + letter.max.x - mark.min.x - mark.max.x) / 2.0;
-        // Above the letter by the height of a dot; the font's units point upwards.
+        // The distance is the height of a dot; the font's units point upwards.
         let gap = (mark.max.y - mark.min.y).abs();
         let up = letter.min.y.max(letter.max.y) + gap - mark.min.y.min(mark.max.y);
         at.x += aside * factor.horizontal;
@@ -204,8 +204,8 @@ fn above(font: &FontRef<'static>, letter: &Glyph, mark: GlyphId) -> Glyph {
     mark.with_scale_and_position(letter.scale, at)
 }
 
-/// The height of a line whose letters have a size: from the lowest descender to the highest
-/// ascender.
+/// Returns the height of a line, from the lowest descender to the highest ascender, for a letter
+/// size.
 fn height(font: &FontRef<'static>, size: f64) -> PxScale {
     let em = font.units_per_em().unwrap_or(1000.0);
     PxScale::from(size as f32 * font.height_unscaled() / em)

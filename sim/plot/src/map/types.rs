@@ -1,80 +1,80 @@
-//! What the pictures show, as their callers state it, and their colours.
+//! Content of pictures, and their colours.
 
 use super::raster::Colour;
 use crate::error::{PlotError, is_drawable};
 
-/// A quantity over two parameters.
+/// Quantity over two parameters.
 #[derive(Clone, Debug, Default)]
 pub struct Map<'a> {
-    /// Written above the frame, as it stands.
+    /// Title above the frame, drawn without changes.
     pub title: String,
-    /// The parameter of the columns, its values ascending.
+    /// Parameter of the columns, with ascending values.
     pub horizontal: Coordinate<'a>,
-    /// The parameter of the rows, its values ascending upwards.
+    /// Parameter of the rows, with values that ascend upwards.
     pub vertical: Coordinate<'a>,
-    /// The name of the quantity.
+    /// Name of the quantity.
     pub quantity: String,
-    /// Its SI unit as specifications write it; empty for a number.
+    /// SI unit as in specifications; empty for a dimensionless number.
     pub unit: String,
-    /// Which colours it has.
+    /// Colour scale.
     pub shades: Shades,
-    /// Row by row: the value at column i and row j is `values[j * columns + i]`. One that is
-    /// not finite leaves its cell grey.
+    /// Values row by row: column i and row j have `values[j * columns + i]`. A cell is grey if its
+    /// value is not finite.
     pub values: &'a [f64],
 }
 
 /// Points in a plane.
 #[derive(Clone, Debug, Default)]
 pub struct Scatter<'a> {
-    /// Written above the frame, as it stands.
+    /// Title above the frame, drawn without changes.
     pub title: String,
-    /// The abscissae, in any order.
+    /// Abscissae, in any order.
     pub horizontal: Coordinate<'a>,
-    /// As many ordinates. A point that has no place on the axes is left out.
+    /// Ordinates, one per abscissa. Points that cannot be drawn on the axes are omitted.
     pub vertical: Coordinate<'a>,
 }
 
 /// Values along an axis.
 #[derive(Clone, Debug, Default)]
 pub struct Coordinate<'a> {
-    /// The name of the quantity, `b_sp` say.
+    /// Name of the quantity, for example `b_sp`.
     pub name: String,
-    /// Its SI unit as specifications write it; empty for a number.
+    /// SI unit as in specifications; empty for a dimensionless number.
     pub unit: String,
-    /// How values are spaced along the axis.
+    /// Scale of the axis.
     pub spacing: Spacing,
-    /// The values, in SI units.
+    /// Values in SI units.
     pub values: &'a [f64],
 }
 
-/// How values are spaced along an axis.
+/// Scale of an axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Spacing {
-    /// Equal differences look equal.
+    /// Linear scale.
     #[default]
     Linear,
-    /// Equal ratios look equal.
+    /// Logarithmic scale.
     Logarithmic,
 }
 
-/// Which colours values have.
+/// Colour scale of values.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shades {
     /// Dark blue over green to yellow (viridis), from the least value to the greatest.
     #[default]
     Sequential,
-    /// Blue below zero, white at zero, red above: for an exponent, say. The two sides have
-    /// the same shades for the same magnitudes unless one reaches more than three times as
-    /// far as the other; then each side has shades of its own, so that both can be read.
+    /// Blue below zero, white at zero, red above, for example for an exponent. Equal magnitudes
+    /// have equal shades, unless one side is more than three times as large as the other. Then each
+    /// side has separate shades, so that both are readable.
     Signed,
 }
 
 pub(super) const WHITE: Colour = [255; 3];
-/// Of cells without a value.
+/// Colour of cells without a value.
 pub(super) const GREY: Colour = [158; 3];
-/// Of the points of a diagram.
+/// Colour of the points of a diagram.
 pub(super) const INK: Colour = [0, 60, 110];
-/// What one point hides of the paper.
+/// Opacity of one point.
 pub(super) const OPACITY: f64 = 0.6;
 
 pub(super) fn empty(name: &str) -> PlotError {
@@ -84,7 +84,7 @@ pub(super) fn empty(name: &str) -> PlotError {
     }
 }
 
-/// The greatest magnitude of what can be drawn.
+/// Returns the largest drawable magnitude.
 pub(super) fn largest(values: &[f64]) -> f64 {
     let drawable = values.iter().filter(|value| is_drawable(**value));
     drawable.fold(0.0, |largest: f64, value| largest.max(value.abs()))

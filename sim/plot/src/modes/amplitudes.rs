@@ -9,14 +9,14 @@ use crate::layout::TICK_SIZE;
 use crate::lettering::{fitted, width};
 use crate::quantity::scaled_unit;
 
-/// The width of the bars with their names and numbers, px.
+/// Width of the bars with their names and numbers, in px.
 pub(super) const BARS: f64 = 420.0;
-/// The height of a bar with what is between it and the next, and of the bar alone, px.
+/// Distance between rows and height of a bar, in px.
 pub(super) const ROW: (f64, f64) = (21.0, 13.0);
-/// A smaller amplitude reads as 0.
+/// Amplitude below which the number is 0.
 const SHOWN: f64 = 5e-5;
 
-/// Draws bars from (left, top) on.
+/// Draws bars from (left, top).
 pub(super) fn draw(canvas: &mut Canvas, bars: &[Bar], later: bool, (left, top): (f64, f64)) {
     let names = bars.iter().map(|bar| width(&bar.name, TICK_SIZE));
     let widest = names.fold(0.0, f64::max).min(130.0);
@@ -56,14 +56,14 @@ pub(super) fn draw(canvas: &mut Canvas, bars: &[Bar], later: bool, (left, top): 
     outline(canvas, edges, (bottom, top));
 }
 
-/// What a full bar of a unit is.
+/// Returns the amplitude of a full bar with this unit.
 fn full(bars: &[Bar], unit: &str) -> f64 {
     let alike = bars.iter().filter(|bar| bar.unit == unit);
     let sizes = alike.map(|bar| bar.amplitude[0].hypot(bar.amplitude[1]));
     sizes.fold(1.0, f64::max)
 }
 
-/// A bar's size, with its phase where it is neither in step nor opposite.
+/// Returns a bar's size, with its phase unless that is 0 or 180 degrees.
 fn number(bar: &Bar) -> String {
     let [re, im] = bar.amplitude;
     let size = re.hypot(im);

@@ -1,4 +1,4 @@
-//! The shape of a field over its length.
+//! Shape of a field over its length.
 
 use super::look::{FRAME, GRID, IN_STEP, LATER, stroke};
 use super::types::Shape;
@@ -9,14 +9,13 @@ use crate::decimate::Point;
 use crate::layout::TICK_SIZE;
 use crate::quantity::Quantity;
 
-/// The width of a frame with its labels, px.
+/// Width of a frame with its labels, in px.
 pub(super) const FIELD: f64 = 400.0;
-/// Left and right of a field's frame, px.
+/// Margins to the left and right of a field's frame, in px.
 const MARGINS: (f64, f64) = (80.0, 24.0);
-/// A field that moves less is drawn at rest: beside amplitudes of 1 that is rounding.
+/// Amplitude below which a field is at rest; relative to amplitudes of 1 this is rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// The axes of a frame, with their names.
 struct Axes {
     x: Axis,
     y: Axis,
@@ -78,7 +77,7 @@ fn axes(shape: &Shape, (left, top, height): (f64, f64, f64)) -> Axes {
     }
 }
 
-/// Grid, ticks, names and the frame itself.
+/// Draws grid, ticks, names and the frame.
 fn draw_frame(canvas: &mut Canvas, Axes { x, y, along, up }: &Axes, left: f64) {
     let (edges, (bottom, top)) = (x.pixels, y.pixels);
     for tick in ticks(x.scale, x.range, 5) {

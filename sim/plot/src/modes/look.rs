@@ -2,7 +2,7 @@
 
 use crate::canvas::Stroke;
 
-/// At the largest amplitude, and a quarter of a period later.
+/// Colours at the largest amplitude, and a quarter of a period later.
 pub(super) const IN_STEP: &str = "#0072b2";
 pub(super) const LATER: &str = "#d55e00";
 pub(super) const GRID: Stroke = stroke("#e6e6e6", 0.8, "");

@@ -1,5 +1,5 @@
-//! Natural modes one below the other: the shape of every field over its length, and bars for what
-//! is no field. `types` states them, `field` and `amplitudes` draw the two, `look` has their colours.
+//! Figures of natural modes: the shape of every field over its length, and bars of the other
+//! coordinates.
 
 mod amplitudes;
 mod field;
@@ -17,18 +17,19 @@ use super::error::is_drawable;
 use super::layout::TICK_SIZE;
 use super::lettering::fitted;
 
-/// The least height of a frame, px, and what is above (a title) and below it (ticks and a label).
+/// Minimum height of a frame in px, and space above (title) and below it (ticks and a label).
 const FRAME_HEIGHT: f64 = 110.0;
 const ABOVE: f64 = 32.0;
 const BELOW: f64 = 50.0;
-/// An imaginary part is drawn from this share of the largest amplitude on.
+/// Relative imaginary part above which it is drawn.
 const OUT_OF_STEP: f64 = 0.02;
 
 /// Draws modes as an SVG document.
 ///
 /// # Errors
 ///
-/// No mode, one with nothing to draw, or numbers that cannot be drawn.
+/// [`PlotError`] without modes, for a mode without anything to draw, and for numbers that cannot be
+/// drawn.
 pub fn modes(of: &Modes) -> Result<String, PlotError> {
     let Some(first) = of.modes.first() else {
         return Err(PlotError::NoPanels);
@@ -53,7 +54,6 @@ pub fn modes(of: &Modes) -> Result<String, PlotError> {
     Ok(canvas.document(&of.title, whole, y.ceil() + 4.0))
 }
 
-/// What cannot be drawn.
 fn check(panel: usize, mode: &Mode) -> Result<(), PlotError> {
     let empty = |series: &str| PlotError::Empty {
         panel,
@@ -84,15 +84,16 @@ fn check(panel: usize, mode: &Mode) -> Result<(), PlotError> {
     }
 }
 
-/// The notes, and what the second colour is where there is one.
+/// Returns the notes, with a key of the colours if both are used.
 fn notes(of: &Modes) -> impl Iterator<Item = String> {
     let later = of.modes.iter().any(has_later);
-    let said = "blue where the largest amplitude is; orange, dashed, a quarter of a period later";
+    let said =
+        "blue: in phase with the largest amplitude; orange, dashed: a quarter of a period later";
     let said = later.then(|| said.to_owned());
     of.notes.iter().cloned().chain(said)
 }
 
-/// Whether some of a mode is out of step with its largest amplitude.
+/// Returns true if a part of a mode is out of phase with its largest amplitude.
 fn has_later(mode: &Mode) -> bool {
     let shapes = mode.fields.iter().flat_map(|shape| &shape.amplitudes);
     let all = || {
@@ -104,7 +105,7 @@ fn has_later(mode: &Mode) -> bool {
     all().any(|[_, im]| im.abs() > OUT_OF_STEP * largest)
 }
 
-/// Draws a mode below `top`; where the next begins.
+/// Draws a mode below `top` and returns the start of the next one.
 fn draw(canvas: &mut Canvas, mode: &Mode, top: f64) -> f64 {
     let later = has_later(mode);
     let bars = ROW.0 * mode.bars.len() as f64 + 8.0;
@@ -156,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bar_has_its_number_with_sign_or_phase() {
+    fn bar_has_number_with_sign_or_phase() {
         for (amplitude, number) in [
             ([0.25, 0.0], ">250 mrad<"),
             ([-0.25, 0.0], ">−250 mrad<"),
@@ -173,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_to_draw_is_an_error() {
+    fn empty_modes_are_an_error() {
         assert!(modes(&Modes::default()).is_err());
         assert!(drawn(Mode::default()).is_err());
         assert!(drawn(mode([f64::NAN, 0.0])).is_err());

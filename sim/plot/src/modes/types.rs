@@ -1,51 +1,51 @@
-//! What a figure of modes shows, as its caller states it.
+//! Content of a figure of modes.
 
 /// Natural modes.
 #[derive(Clone, Debug, Default)]
 pub struct Modes {
-    /// Written at the top.
+    /// Title at the top.
     pub title: String,
-    /// Lines below the title: where the modes are those of, say.
+    /// Lines below the title, for example the state of the linearisation.
     pub notes: Vec<String>,
-    /// From top to bottom.
+    /// Modes from top to bottom.
     pub modes: Vec<Mode>,
 }
 
-/// One mode. Amplitudes are complex, `[real, imaginary]`: the motion is the real part of each times
-/// exp(i omega t).
+/// Natural mode. Amplitudes are complex, `[real, imaginary]`: the motion is the real part of each
+/// times exp(i omega t).
 #[derive(Clone, Debug, Default)]
 pub struct Mode {
-    /// Its frequency and damping in words.
+    /// Text of frequency and damping.
     pub title: String,
-    /// As many in every mode.
+    /// Shapes of the fields; equally many in every mode.
     pub fields: Vec<Shape>,
-    /// As many in every mode.
+    /// Bars; equally many in every mode.
     pub bars: Vec<Bar>,
 }
 
-/// The shape of a field.
+/// Shape of a field.
 #[derive(Clone, Debug, Default)]
 pub struct Shape {
-    /// The field's name.
+    /// Name of the field.
     pub name: String,
-    /// Its SI unit.
+    /// SI unit.
     pub unit: String,
-    /// The name of the position.
+    /// Name of the position.
     pub along: String,
-    /// Positions, m, ascending.
+    /// Positions in m, ascending.
     pub positions: Vec<f64>,
-    /// As many amplitudes, in the unit.
+    /// Amplitudes in the unit, one per position.
     pub amplitudes: Vec<[f64; 2]>,
 }
 
-/// A coordinate's part in a mode.
+/// Amplitude of a coordinate in a mode.
 #[derive(Clone, Debug, Default)]
 pub struct Bar {
-    /// The coordinate's name.
+    /// Name of the coordinate.
     pub name: String,
-    /// Its SI unit.
+    /// SI unit.
     pub unit: String,
-    /// Its amplitude, in the unit. Bars reach from -1 to 1; where there is more, those of one unit
-    /// to its largest.
+    /// Amplitude in the unit. Bars range from -1 to 1, or to the largest amplitude with the same
+    /// unit if that is larger.
     pub amplitude: [f64; 2],
 }
