@@ -1,4 +1,4 @@
-//! Certificates with what was written by hand for a model beside the independent oracle.
+//! Certificates with hand-written reference equations.
 
 use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_codegen::rust::{Packaging, emit};
@@ -12,11 +12,10 @@ use eomgen_validate::of_model::certificate;
 
 use crate::reference_equations::reference_equations;
 
-/// The certificate of a model at the given orders, which are one for all fields, as it is
-/// emitted with `outputs`.
+/// Certifies a model as emitted with `outputs`. `orders` must be equal for all fields.
 ///
 /// # Errors
-/// What cannot be derived or emitted, and orders that differ.
+/// Models that cannot be derived or emitted, and orders that differ.
 pub fn certify(model: &Model, orders: &[usize], outputs: &[Output]) -> Result<Certificate, Error> {
     one_order(model, orders)?;
     let variant = Variant::derive_with(model, orders, outputs)?;
@@ -25,7 +24,7 @@ pub fn certify(model: &Model, orders: &[usize], outputs: &[Output]) -> Result<Ce
     certify_source(model, orders, outputs, emitted)
 }
 
-/// The certificate of a source that was emitted so.
+/// Certifies an emitted source.
 ///
 /// # Errors
 /// As [`certify`].
@@ -43,7 +42,7 @@ pub fn certify_source(
     Ok(certificate.map_err(refused)?)
 }
 
-/// The order of all fields.
+/// Returns the common order of all fields.
 fn one_order(model: &Model, orders: &[usize]) -> Result<usize, Error> {
     let order = orders.first().copied().unwrap_or(0);
     if orders.iter().any(|other| *other != order) {

@@ -1,10 +1,10 @@
-//! The paper's machine, a flexible arm behind a planetary gear reducer with backlash.
+//! Planetary arm of the paper: a flexible arm behind a planetary gear reducer with backlash.
 //!
-//! [`mod@reference`] holds equations written by hand, the errata among them; [`reference_equations`] says
-//! which belong to which model, by [`same_motion`], and [`certification`] brings them into certificates; [`studies`] repeat the paper's figures and
-//! judge its claims.
+//! [`mod@reference`] has hand-written equations and the errata. [`reference_equations`] assigns
+//! them to models with [`same_motion`], and [`certification`] adds them to certificates.
+//! [`studies`] reproduce the figures of the paper and judge its claims.
 //!
-//! The equations that were written by hand for a model, beside those that are derived:
+//! Reference equations of two models:
 //!
 //! ```
 //! use eomgen_paper::reference_equations::reference_equations;
@@ -12,7 +12,7 @@
 //! let arm = eomgen_model_spec::check(eomgen_model_spec::models::PLANETARY_ARM.source())?.model;
 //! let values = arm.parameter_values()?;
 //! let found = reference_equations(&arm, 0, &values);
-//! // Eq. (12) and Eq. (22) hold of the rigid arm.
+//! // Eq. (12) and Eq. (22) apply to the rigid arm.
 //! assert!(!found.references.is_empty());
 //!
 //! let emps = eomgen_model_spec::check(eomgen_model_spec::models::EMPS.source())?.model;

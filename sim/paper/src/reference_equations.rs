@@ -1,5 +1,4 @@
-//! Which hand-written equations belong to a model, as references for its certificate. The
-//! equations themselves are in [`crate::reference`].
+//! Assignment of the hand-written equations in [`crate::reference`] to models, for certificates.
 
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::models;
@@ -14,11 +13,11 @@ use eomgen_validate::certificate::Check;
 use eomgen_validate::certify::{Reference, ReferenceEquations};
 use eomgen_validate::checks::ROW_TOLERANCE;
 
-/// The paper's time scale omega_n = sqrt(k_sp/M_sp), in rad/s, and displacement scale b_c, in m.
+/// Time scale omega_n = sqrt(k_sp/M_sp), rad/s, and displacement scale b_c, m, of the paper.
 const PAPER_SCALES: (f64, f64) = (3.0885e4, 25e-6);
 
-/// The specifications that were written out by hand. A model of the same name may follow
-/// other conventions; only what has the very equations of one of them is the same machine.
+/// Specifications with hand-written equations. A model is compared by its equations and not by its
+/// name, because a model of the same name may follow other conventions.
 const SHIPPED: [&str; 14] = [
     models::PLANETARY_ARM.text,
     models::DOUBLE_PENDULUM.text,
@@ -36,10 +35,10 @@ const SHIPPED: [&str; 14] = [
     models::TWO_LINK_ARM.text,
 ];
 
-/// The arm's derived parameters that its hand-written equations take as they are.
+/// Derived parameters of the arm that its hand-written equations take as given.
 const GIVEN_OF_THE_ARM: [&str; 3] = ["I_s", "I_p", "I_c"];
 
-/// What was written by hand for `model` at `order`, with parameter values in SI.
+/// Returns the hand-written equations for `model` at `order`, with parameter values in SI.
 pub fn reference_equations(model: &Model, order: usize, values: &[f64]) -> ReferenceEquations {
     let known = match written(model) {
         Ok(known) => known,
@@ -67,7 +66,8 @@ fn absent(name: &str, reason: String) -> ReferenceEquations {
     }
 }
 
-/// The shipped specification with the equations of `model`, or why there is none.
+/// Returns the shipped specification with the equations of `model`, or the reason that none
+/// matches.
 fn written(model: &Model) -> Result<Model, String> {
     let mut reason = format!("nobody has written the equations of {} by hand", model.name);
     for text in SHIPPED {
@@ -92,7 +92,8 @@ fn written(model: &Model) -> Result<Model, String> {
     Err(reason)
 }
 
-/// Eq. (12) and Eq. (10) for the rigid arm; Eq. (22) in SI and in the paper's scales for the flexible one.
+/// Returns Eq. (12) and Eq. (10) for the rigid arm, or Eq. (22) in SI and in the scales of the
+/// paper for the flexible arm.
 fn arm(parameters: PlanetaryArmParameters, order: usize) -> ReferenceEquations {
     if order == 0 {
         return ReferenceEquations {
@@ -140,7 +141,7 @@ fn rigid_arm(parameters: PlanetaryArmParameters) -> Vec<Reference> {
     ]
 }
 
-/// The shafts' angles, rates and accelerations, Eq. (1) to (5).
+/// Computes angles, rates and accelerations of the shafts, Eq. (1) to (5).
 fn shaft_motion(
     parameters: &PlanetaryArmParameters,
     state: &[f64],
@@ -156,15 +157,15 @@ fn shaft_motion(
         ]
     };
     Some(ShaftMotion {
-        // Nothing depends on where the arm points. Angles of a turned arm would cost the mesh
-        // deflections, differences of a micrometre, six digits.
+        // The equations do not depend on the angle of the arm. Angles of a turned arm would cost
+        // six digits of the mesh deflections, which are differences of a micrometre.
         angle: shafts(state[0], state[1], 0.0),
         rate: shafts(state[3], state[4], state[5]),
         acceleration: shafts(a, b, c),
     })
 }
 
-/// Eq. (22) in dimensionless form; its order is fixed when it is compiled.
+/// Returns Eq. (22) in dimensionless form, for orders fixed at compile time.
 fn scaled(parameters: &PlanetaryArmParameters, order: usize) -> Option<Reference> {
     macro_rules! at_orders {
         ($($s:literal)*) => {
@@ -217,7 +218,8 @@ fn reference(
     }
 }
 
-/// The textbook equations of `known` with the values of `model`, or why they do not apply.
+/// Returns the textbook equations of `known` with the values of `model`, or the reason that they do
+/// not apply.
 fn closed_form(
     known: &Model,
     model: &Model,
@@ -225,7 +227,7 @@ fn closed_form(
     values: &[f64],
 ) -> Result<Reference, String> {
     let form = closed_forms::find(&known.name).ok_or("there is no closed form")?;
-    // A parameter that only this model has stands in none of the equations, whatever its name.
+    // A parameter of this model only is in none of the equations.
     let stands = |name: &str| known.parameters.iter().any(|own| own.name == name);
     let parameters: Vec<(String, f64)> = model
         .parameters
@@ -269,7 +271,7 @@ fn closed_form(
     ))
 }
 
-/// The arm's parameters by their names; `None` if one is missing.
+/// Returns the parameters of the arm by their names, or `None` if one is missing.
 pub fn arm_parameters(model: &Model, values: &[f64]) -> Option<PlanetaryArmParameters> {
     let value = |name: &str| {
         let place = model

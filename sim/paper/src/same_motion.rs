@@ -1,13 +1,15 @@
-//! Whether two models have the same equations of motion but for the values of their
-//! parameters. Names of coordinates, inputs and parameters count, and so do the forms of
-//! energies and forces and the numbers that stand in them; comments, names of terms,
-//! observables and how an expression is divided into definitions do not.
+//! Comparison of the equations of motion of two models, independent of parameter values.
+//!
+//! The comparison includes the names of coordinates, inputs and parameters, the forms of energies
+//! and forces, and the numbers in them. It ignores comments, names of terms, observables, and the
+//! division of expressions into definitions.
 
 use eomgen_model_spec::model::{Expr, ExprKind, Field, Force, Model, ParameterValue, Term};
 
-/// What keeps `model` from having the equations of motion of `known`; none if it has them.
-/// A parameter that `known` derives from others may have any value if its name is among
-/// `given`; any other must be derived in the same way.
+/// Returns the first difference between the equations of motion of `model` and `known`, or `None`.
+///
+/// A parameter that `known` derives from others may have any value if it is among `given`. Other
+/// derived parameters must be derived in the same way.
 pub fn difference(model: &Model, known: &Model, given: &[&str]) -> Option<String> {
     let pair = Pair { model, known };
     pair.coordinates()
@@ -80,7 +82,7 @@ impl Pair<'_> {
         matched("forces", forces, known, same, |force| &force.name)
     }
 
-    /// A derived parameter that the equations do not take as given.
+    /// Returns a difference in a derived parameter that is not among `given`.
     fn derived_parameters(&self, given: &[&str]) -> Option<String> {
         let derived = self.known.parameters.iter().filter_map(|known| {
             let ParameterValue::Expression(value) = &known.value else {
@@ -101,8 +103,8 @@ impl Pair<'_> {
         None
     }
 
-    /// Whether two expressions are the same, definitions written out. The walk ends with the
-    /// known expression, however often this model's definitions share others.
+    /// Compares two expressions with definitions expanded. The recursion is bounded by the size of
+    /// the known expression, even if the definitions of this model share parts.
     fn same(&self, left: &Expr, right: &Expr) -> bool {
         use ExprKind as K;
         if let K::Definition(index) = left.kind {
@@ -132,12 +134,12 @@ impl Pair<'_> {
                     && arguments.len() == others.len()
                     && arguments.iter().zip(others).all(|(a, b)| self.same(a, b))
             }
-            // What has no parts; coordinates, inputs, states and fields are known to be the same.
+            // Leaves. Coordinates, inputs, states and fields were compared before.
             (left, right) => left == right,
         }
     }
 
-    /// The same of what belongs to a field.
+    /// Compares expressions that belong to a field.
     fn same_in_field(&self, left: &ExprKind, right: &ExprKind) -> bool {
         use ExprKind as K;
         match (left, right) {
@@ -171,7 +173,7 @@ impl Pair<'_> {
         }
     }
 
-    /// What stands behind the names of the known model's definitions.
+    /// Follows references to definitions.
     fn written_out<'e>(&'e self, mut expression: &'e Expr) -> &'e Expr {
         while let ExprKind::Definition(index) = expression.kind {
             let Some(definition) = self.known.definitions.get(index.index()) else {
@@ -183,7 +185,7 @@ impl Pair<'_> {
     }
 }
 
-/// Whether two lists of names differ.
+/// Returns a difference between two lists of names.
 fn listed(what: &str, own: &[String], known: &[String]) -> Option<String> {
     (own != known).then(|| {
         let names = |names: &[String]| {
@@ -197,7 +199,7 @@ fn listed(what: &str, own: &[String], known: &[String]) -> Option<String> {
     })
 }
 
-/// The first entry of one list that has no partner in the other.
+/// Returns the first entry of one list without a partner in the other.
 fn matched<T>(
     section: &str,
     own: &[T],

@@ -1,5 +1,4 @@
-//! The paper's arm at any values of what the paper does not disclose: propagators by order,
-//! and the lengths that turn a state into the paper's quantities.
+//! Planetary arm with any values of the parameters that the paper does not disclose.
 
 use std::f64::consts::TAU;
 
@@ -13,26 +12,26 @@ use eomgen_analysis::natural_modes::{NaturalMode, natural_modes};
 use eomgen_compiled_model::{CompiledModel, Orders};
 use eomgen_sim::piecewise_linear::Propagator;
 
-/// The paper's arm as it is shipped.
+/// Shipped specification of the arm.
 const SPECIFICATION: &str = models::PLANETARY_ARM.text;
 
-/// What the paper does not disclose. Both meshes have the same damping.
+/// Parameters that the paper does not disclose. Both meshes have the same damping.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Undisclosed {
-    /// The arm's second moment of area I, m^4.
+    /// Second moment of area I of the arm, m^4.
     pub second_moment: f64,
-    /// The motor's constant torque a_m of Eq. (11), N m.
+    /// Constant motor torque a_m of Eq. (11), N m.
     pub a_m: f64,
-    /// The fall of the motor's torque with speed b_m, N m s.
+    /// Decrease of the motor torque with speed, b_m, N m s.
     pub b_m: f64,
-    /// The amplitude of the torque ripple F_w, N m.
+    /// Amplitude of the torque ripple F_w, N m.
     pub f_w: f64,
-    /// The damping of both meshes c_sp = c_pr, N s/m.
+    /// Damping of both meshes, c_sp = c_pr, N s/m.
     pub c: f64,
 }
 
 impl Undisclosed {
-    /// The values assumed throughout the project; a square section of 10 mm.
+    /// Assumed values of the shipped specification; the arm has a square section of 10 mm.
     pub const ASSUMED: Self = Self {
         second_moment: 8.333e-10,
         a_m: 2.0,
@@ -42,38 +41,38 @@ impl Undisclosed {
     };
 }
 
-/// One of the paper's cases.
+/// Case of the paper.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Case {
-    /// The modal truncation order S; 0 is the rigid arm.
+    /// Modal truncation order S; 0 is the rigid arm.
     pub order: usize,
-    /// Half the backlash of both meshes b, m.
+    /// Half the backlash b of both meshes, m.
     pub backlash: f64,
-    /// The frequency of the torque ripple, rad/s.
+    /// Frequency of the torque ripple, rad/s.
     pub omega: f64,
-    /// The rest.
+    /// Undisclosed parameters.
     pub undisclosed: Undisclosed,
 }
 
 impl Case {
-    /// The forcing period, s.
+    /// Returns the forcing period, s.
     pub fn period(&self) -> f64 {
         TAU / self.omega
     }
 }
 
-/// Which mode shapes the arm is derived with.
+/// Mode shapes of the arm.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shapes {
-    /// Those of a clamped-free beam.
+    /// Mode shapes of a clamped-free beam.
     #[default]
     Corrected,
-    /// Those that Eq. (18) and (19) print, with a root that is none and the wrong sign.
+    /// Printed Eq. (18) and (19): a value that is not a root, and a wrong sign.
     Printed,
 }
 
 impl Shapes {
-    /// The name of the basis in a specification.
+    /// Returns the name of the basis in a specification.
     fn basis(self) -> &'static str {
         match self {
             Self::Corrected => "\"clamped_free\"",
@@ -89,7 +88,7 @@ impl Shapes {
     }
 }
 
-/// The paper's arm, derived once for each order.
+/// Planetary arm, derived once per order.
 pub struct Arm {
     shapes: Shapes,
     model: Model,
@@ -102,7 +101,7 @@ impl Arm {
     /// Derives the shipped arm at these modal truncation orders.
     ///
     /// # Errors
-    /// If it cannot be derived at an order.
+    /// An order at which it cannot be derived.
     pub fn new(orders: &[usize]) -> Result<Self, StudyError> {
         Self::with(Shapes::Corrected, orders)
     }
@@ -110,7 +109,7 @@ impl Arm {
     /// Derives the shipped arm with these mode shapes.
     ///
     /// # Errors
-    /// If it cannot be derived at an order.
+    /// An order at which it cannot be derived.
     pub fn with(shapes: Shapes, orders: &[usize]) -> Result<Self, StudyError> {
         let text = SPECIFICATION.replace(Shapes::Corrected.basis(), shapes.basis());
         let source = Source::new("planetary_arm.toml", text);
@@ -136,20 +135,20 @@ impl Arm {
         })
     }
 
-    /// The specification's model.
+    /// Returns the model of the specification.
     pub fn model(&self) -> &Model {
         &self.model
     }
 
-    /// The mode shapes it is derived with.
+    /// Returns the mode shapes of the derivation.
     pub fn shapes(&self) -> Shapes {
         self.shapes
     }
 
-    /// A propagator of a case.
+    /// Creates the propagator of a case.
     ///
     /// # Errors
-    /// An order that was not derived, or values that no machine has.
+    /// An order that was not derived, or inadmissible values.
     pub fn propagator(&self, case: &Case) -> Result<Propagator, StudyError> {
         Ok(self.compiled(case)?.with(&settings(case))?.propagator()?)
     }
@@ -165,22 +164,22 @@ impl Arm {
         Ok(compiled)
     }
 
-    /// The value that the specification gives a parameter, SI.
+    /// Returns the value of a parameter in the specification, SI.
     fn shipped(&self, name: &str) -> f64 {
         let place = self.names.iter().position(|known| known == name);
         let value = place.and_then(|place| self.values.get(place));
         value.copied().unwrap_or(f64::NAN)
     }
 
-    /// The natural frequencies of the machine with both meshes in contact on one side, Hz: what swings
-    /// while no tooth leaves its flank.
+    /// Computes the natural frequencies of the machine with both meshes in contact on one side, Hz.
     ///
     /// # Errors
-    /// An order that was not derived, or values that no machine has.
+    /// An order that was not derived, or inadmissible values.
     pub fn closed(&self, case: &Case) -> Result<Vec<f64>, StudyError> {
         let compiled = self.compiled(case)?;
         let instance = compiled.with(&settings(case))?;
-        // Beyond every backlash of the paper; where the point lies in the regime makes no difference.
+        // A point beyond every backlash of the paper; the linearisation is the same in the whole
+        // regime.
         let beyond = 2.0 * case.backlash + 1e-3;
         let at = instance.operating_point(&[("x_sp", beyond), ("x_pr", beyond)])?;
         let linear = instance.linearise(at.point())?;
@@ -189,7 +188,7 @@ impl Arm {
         Ok(swinging.map(NaturalMode::frequency).collect())
     }
 
-    /// The lengths of a case.
+    /// Returns the conversion factors of a case.
     pub fn lengths(&self, case: &Case) -> Lengths {
         let at = |name| self.shipped(name);
         let (rho, area, l) = (at("rho"), at("A"), at("l"));
@@ -216,7 +215,7 @@ impl Arm {
     }
 }
 
-/// The parameters that a case sets, in the specification's units, which are SI.
+/// Returns the parameters set by a case, in SI.
 fn settings(case: &Case) -> [(&'static str, f64); 9] {
     let Undisclosed {
         second_moment,
@@ -238,23 +237,21 @@ fn settings(case: &Case) -> [(&'static str, f64); 9] {
     ]
 }
 
-/// What turns a state into the paper's quantities.
+/// Factors that convert a state to the quantities of the paper, and scales of energy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lengths {
-    /// l dtheta/(x_sp + x_pr) of Eq. (23), (24): l/(r_s i_sH).
+    /// Ratio l dtheta/(x_sp + x_pr) of Eq. (23), (24): l/(r_s i_sH).
     pub transmission: f64,
     /// phi_i(l) of each mode.
     pub at_tip: Vec<f64>,
-    /// The rate x_c' with which the whole drive has the kinetic energy of the arm moving at
-    /// unit rate.
+    /// Rate x_c' at which the drive has the kinetic energy of the arm at unit rate.
     pub carrier_rate: f64,
-    /// The deflection of a mesh with the energy of the arm moving at unit rate.
+    /// Deflection of a mesh with the energy of the arm at unit rate.
     pub mesh_deflection: f64,
-    /// The rate of a mesh with that energy, carried by the sun.
+    /// Rate of a mesh with this energy, if the sun moves.
     pub mesh_rate: f64,
-    /// The natural frequencies of the clamped arm, Hz.
+    /// Natural frequencies of the clamped arm, Hz.
     pub natural: Vec<f64>,
-    /// The inertia of the whole drive with a rigid arm and tight meshes, seen from the sun,
-    /// kg m^2.
+    /// Inertia of the drive with a rigid arm and tight meshes, referred to the sun, kg m^2.
     pub inertia: f64,
 }

@@ -1,5 +1,5 @@
-//! The mesh and the arm's end once per forcing period over the backlash: where points lie on each other the motion has
-//! the forcing's period, where they scatter it has none.
+//! Stroboscopic points of mesh and arm over the backlash. Coincident points show a motion with the
+//! forcing period, scattered points a motion without a period.
 
 use std::f64::consts::PI;
 
@@ -13,28 +13,28 @@ use super::report::{Columns, Figure};
 use super::run::Run;
 use super::series::Record;
 
-/// Backlashes in um, from 0 on, one after the other.
+/// Half-backlashes, um.
 const MICROMETRES: std::ops::RangeInclusive<u32> = 0..=100;
-/// Forcing periods that are waited, and those that are shown.
+/// Numbers of forcing periods of the transient, and of the plot.
 const WAITED: usize = 160;
 const SHOWN: usize = 80;
 
-/// Stroboscopic points over the backlash; one entry in each list per point.
+/// Stroboscopic points over the backlash; each list has one entry per point.
 #[derive(Clone, Debug)]
 pub(super) struct Bifurcation {
-    /// The modal truncation order.
+    /// Modal truncation order.
     order: usize,
     omega: f64,
     /// Half the backlash of both meshes, m.
     b: Vec<f64>,
     x_sp: Vec<f64>,
-    /// How far x_sp is beyond the flank it drives with, m.
+    /// Compression x_sp - b of the driving flank, m.
     beyond: Vec<f64>,
     dr: Vec<f64>,
 }
 
 impl Bifurcation {
-    /// Runs every backlash from rest at zero.
+    /// Runs all backlashes, each from rest at zero.
     pub fn of(arm: &Arm, order: usize, omega: f64) -> Result<Self, StudyError> {
         let sections = MICROMETRES.into_par_iter().map(|micrometres| {
             let case = Case {
@@ -67,7 +67,7 @@ impl Bifurcation {
         Ok(found)
     }
 
-    /// The points as data.
+    /// Returns the points as a table.
     pub fn table(&self) -> Columns {
         let column = |name: &str, values: &[f64]| (name.to_owned(), values.to_vec());
         let multiple = (self.omega / PI).round();
@@ -88,7 +88,7 @@ impl Bifurcation {
         }
     }
 
-    /// What is beyond the flank, over b.
+    /// Returns a frame of the compression over b.
     fn mesh(&self, letter: &str) -> Frame<'_> {
         let title = format!(
             "{letter} mesh, {}, ω = {:.0}π rad/s",
@@ -125,7 +125,7 @@ fn frame<'a>(title: String, quantity: &str, b: &'a [f64], values: &'a [f64]) -> 
     }
 }
 
-/// Draws one arm's mesh and deflection, or the meshes of two.
+/// Draws mesh and deflection of one arm, or the meshes of two.
 pub(super) fn figure(found: &[Bifurcation]) -> Result<Figure, StudyError> {
     let letters = ["(a)", "(b)"];
     let meshes = found

@@ -1,9 +1,9 @@
-//! One case of the paper, measured after its transient: what kind of motion it is, how large
-//! the positioning error and its two components are, which mode bends the arm.
+//! Measurement of one case after its transient: kind of motion, positioning error with its two
+//! components, dominant mode.
 //!
-//! After the transient a_m has no part in the motion but the speed of rotation: the drive
-//! runs free, no force depends on its angle, and in the rotating frame the mean torque is
-//! zero. Only for b_m = 0, where the drive accelerates for ever, does a_m load the teeth.
+//! After the transient, a_m affects only the speed of rotation: no force depends on the angle of
+//! the drive, and in the rotating frame the mean torque is zero. Only for b_m = 0, when the drive
+//! keeps accelerating, does a_m load the teeth.
 
 use eomgen_analysis::classify::{Evidence, Verdict};
 use eomgen_analysis::modes::{BandPower, TipShares, band_power, tip_shares};
@@ -19,46 +19,45 @@ use super::run::Run;
 use super::series::extents;
 pub use super::series::{Amplitude, Record};
 
-/// Forcing periods in a segment of a spectrum: harmonics are then 20 steps apart.
+/// Forcing periods per segment of a spectrum: harmonics are then 20 steps apart.
 const SEGMENT: usize = 20;
-/// From fewer segments, which overlap by half, peaks of noise stand out as lines do.
+/// Smallest number of segments, overlapping by half, for which peaks of noise do not count as
+/// lines.
 const FEWEST_SEGMENTS: usize = 8;
-/// The band of a natural frequency reaches about this much above and below, by ratio.
+/// Approximate ratio of the limits of a band to its natural frequency.
 const BAND: f64 = 2.5;
-/// The least and the most samples per forcing period.
+/// Limits of the number of samples per forcing period.
 const LEAST_SAMPLES: usize = 64;
 const MOST_SAMPLES: usize = 16_384;
-/// How many of the drive's time constants J/b_m are waited for. The arm's first mode decays
-/// through the motor several times slower than the rotation (some six times, estimated from
-/// the power it takes out with the assumed values). From the second mode on the paper's arm,
-/// which has no damping of its own, is hardly damped at all: what is left of these modes
-/// after minutes makes a motion quasi-periodic that would be periodic in the end.
+/// Length of the transient in time constants J/b_m of the drive. The first mode of the arm decays
+/// through the motor about six times more slowly than the rotation (estimated from the extracted
+/// power, with the assumed values). From the second mode on, the arm is nearly undamped: remaining
+/// vibrations can make a motion quasi-periodic that would be periodic after minutes.
 const TIME_CONSTANTS: f64 = 30.0;
 
-/// How long a case is run.
+/// Lengths of the phases of a run, in forcing periods.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Length {
-    /// The least and the most forcing periods that are waited for the transient to pass.
-    /// Between the two it is 30 time constants J/b_m of the whole drive, with which the arm's
-    /// first mode decays too; `Measurement::trend` says whether that was enough.
+    /// Limits of the transient. Between them it is 30 time constants J/b_m of the drive, which also
+    /// determine the decay of the first mode. `Measurement::trend` shows a remaining transient.
     pub transient: (usize, usize),
-    /// How many forcing periods are recorded then; at least 100, as the 0-1 test needs.
+    /// Recorded forcing periods, at least 100 for the 0-1 test.
     pub periods: usize,
-    /// The least and the most forcing periods that a motion is followed to tell its kind: twice
-    /// as many each time, until it is decided. What is recorded does not grow with them. Chaos
-    /// that comes and goes has an exponent with an error from some 1000 on.
+    /// Limits of the periods used for the classification, doubled until it is decided. The record
+    /// does not grow with them. The exponent of intermittent chaos has a reliable error from about
+    /// 1000 on.
     pub followed: (usize, usize),
-    /// After how many recorded forcing periods a motion is let go whose neighbours part by
-    /// more than a factor e per forcing period, three standard errors deducted: such chaos
-    /// needs no second witness, and is the dearest to follow. None: never.
+    /// Recorded periods after which fast growth ends the classification: by more than a factor e
+    /// per period after three standard errors. Such chaos needs no second test and is the most
+    /// expensive to simulate. `None` disables this.
     pub strong: Option<usize>,
-    /// How many of the arm's modes the spectra shall show, with their bands: that sets the
-    /// sampling rate. The variance of a modal coordinate needs no such rate.
+    /// Number of modes whose bands the spectra resolve, which sets the sampling rate. The variance
+    /// of a modal coordinate does not need this rate.
     pub modes: usize,
 }
 
 impl Length {
-    /// For thousands of parameter sets.
+    /// Lengths for thousands of parameter sets.
     pub const SCREENING: Self = Self {
         transient: (20, 60),
         periods: 100,
@@ -67,7 +66,7 @@ impl Length {
         modes: 1,
     };
 
-    /// For the best of these.
+    /// Lengths for the best parameter sets.
     pub const CONFIRMING: Self = Self {
         transient: (100, 300),
         periods: 300,
@@ -76,7 +75,7 @@ impl Length {
         modes: 1,
     };
 
-    /// For the tables: the 0-1 test from 400 points, spectra with all modes.
+    /// Lengths for tables: 0-1 test with 400 points, spectra with all modes.
     pub const FULL: Self = Self {
         transient: (150, 1000),
         periods: 400,
@@ -85,7 +84,7 @@ impl Length {
         modes: 4,
     };
 
-    /// Samples per forcing period.
+    /// Returns the number of samples per forcing period.
     fn samples(&self, case: &Case, lengths: &Lengths) -> usize {
         let shown = self.modes.min(lengths.natural.len());
         let highest = shown
@@ -96,62 +95,62 @@ impl Length {
     }
 }
 
-/// A case as measured.
+/// Measured case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measurement {
-    /// What was run.
+    /// Case of the run.
     pub case: Case,
-    /// What speaks for the kind of motion of the gear reducer.
+    /// Evidence on the kind of motion of the reducer.
     pub evidence: Evidence,
-    /// The kind of motion.
+    /// Kind of motion.
     pub verdict: Verdict,
-    /// From how many forcing periods the kind was decided.
+    /// Forcing periods used for the classification.
     pub periods: usize,
-    /// The stroboscopic section: points of x_sp, x_pr and their rates, once per forcing
-    /// period; m and m/s.
+    /// Stroboscopic section: points of x_sp, x_pr and their rates once per forcing period; m and
+    /// m/s.
     pub section: Vec<f64>,
-    /// What the section looks like.
+    /// Properties of the section.
     pub shape: Shape,
     /// x_sp, m.
     pub x_sp: Amplitude,
-    /// f_la as printed, m.
+    /// f_la as printed in Eq. (24), m.
     pub f_la: Amplitude,
-    /// dr - l dtheta, m: dtheta is a lag and dr a lead, so this is the error of the end point.
+    /// dr - l dtheta, m: the error of the end point, because dtheta is a lag and dr a lead.
     pub f_la_signed: Amplitude,
     /// l dtheta, m.
     pub transmission: Amplitude,
     /// dr, m.
     pub dr: Amplitude,
-    /// What each mode contributes to the tip; empty for a rigid arm.
+    /// Contribution of each mode to the tip; empty for a rigid arm.
     pub shares: TipShares,
-    /// The mean square of phi_i(l) q_i faster than the first mode's band, m^2: what vibrates, as
-    /// against the deflection that follows the torque quasi-statically.
+    /// Mean square of phi_i(l) q_i above the band of the first mode, m^2, which excludes the
+    /// quasi-static deflection.
     pub vibration: Vec<f64>,
-    /// The power of dr about the natural frequencies of the clamped arm. Those of the arm on
-    /// the closed drive are higher, by 15 % for the first mode, and the bands reach from 0.4
-    /// to 2.5 times: it does not matter which are taken. None for a rigid arm and for
-    /// samples too few to show the highest mode.
+    /// Power of dr in bands around the natural frequencies of the clamped arm. With the closed
+    /// drive the first frequency is 15 % higher, which does not matter for bands from 0.4 to 2.5
+    /// times the frequency. `None` for a rigid arm, and if the samples do not resolve the highest
+    /// mode.
     pub bands: Option<BandPower>,
-    /// The logarithm of the ratio of the rms of f_la in the second half of the record to that
-    /// in the first: 0 once the transient has passed.
+    /// Logarithm of the ratio of the RMS of f_la in the second half of the record to that in the
+    /// first; 0 without a remaining transient.
     pub trend: f64,
-    /// How long was waited, s.
+    /// Length of the transient, s.
     pub transient: f64,
     /// Switches per second.
     pub switches: f64,
-    /// The series.
+    /// Recorded series.
     pub record: Record,
 }
 
 impl Measurement {
-    /// The number, from 1, of the mode that vibrates most at the arm's end.
+    /// Returns the number, from 1, of the mode with the largest vibration at the tip.
     pub fn dominant_mode(&self) -> Option<usize> {
         let most = self.vibration.iter().copied().fold(0.0, f64::max);
         let place = self.vibration.iter().position(|power| *power == most);
         place.filter(|_| most > 0.0).map(|mode| mode + 1)
     }
 
-    /// The number, from 1, of the mode whose band of frequencies holds most power of dr.
+    /// Returns the number, from 1, of the mode whose band has the most power of dr.
     pub fn dominant_band(&self) -> Option<usize> {
         let bands = self.bands.as_ref()?;
         bands.dominant().map(|mode| mode + 1)
@@ -161,7 +160,7 @@ impl Measurement {
 /// Runs and measures a case, from rest at zero.
 ///
 /// # Errors
-/// A length that is too short, values that no machine has, switches without end.
+/// A length that is too short, inadmissible values, an unbounded number of switches.
 pub fn measure(arm: &Arm, case: &Case, length: &Length) -> Result<Measurement, StudyError> {
     if length.periods < 100 || !(case.period() > 0.0 && case.period().is_finite()) {
         return Err(StudyError::Request(
@@ -216,7 +215,7 @@ pub fn measure(arm: &Arm, case: &Case, length: &Length) -> Result<Measurement, S
     })
 }
 
-/// Whether neighbours part so fast over the first periods that nothing else need be asked.
+/// Reports growth over the first periods that is fast enough to decide.
 fn parts_at_once(
     neighbours: &mut Neighbours,
     propagator: &mut Propagator,
@@ -227,7 +226,7 @@ fn parts_at_once(
     Ok(is_strong(&neighbours.exponent()?, case))
 }
 
-/// How many forcing periods are waited.
+/// Returns the length of the transient in forcing periods.
 fn waiting(case: &Case, length: &Length, lengths: &Lengths) -> usize {
     let (least, most) = length.transient;
     let b_m = case.undisclosed.b_m;
@@ -238,8 +237,8 @@ fn waiting(case: &Case, length: &Length, lengths: &Lengths) -> usize {
     ((time / case.period()).ceil() as usize).clamp(least, most.max(least))
 }
 
-/// The share in lines of what x_sp does beside the forcing's harmonics; none from a record so
-/// short that noise would pass for lines.
+/// Returns the share of spectral lines in the power of x_sp outside the forcing harmonics, or
+/// `None` if the record is so short that noise would count as lines.
 fn line_share(x_sp: &[f64], interval: f64, samples: usize) -> Result<Option<f64>, StudyError> {
     if x_sp.len() < FEWEST_SEGMENTS * SEGMENT * samples / 2 {
         return Ok(None);
@@ -250,9 +249,8 @@ fn line_share(x_sp: &[f64], interval: f64, samples: usize) -> Result<Option<f64>
     Ok(welch(&rest, interval, SEGMENT * samples, Trend::Mean)?.line_share())
 }
 
-/// Power above the first band, whichever frequency it is seen at: what is faster than half
-/// the sampling rate is folded down and keeps its power, all but the small part of it that
-/// falls below the band.
+/// Computes the power above the first band. Frequencies above half the sampling rate are aliased
+/// and keep their power, except for a small part aliased below the band.
 fn vibration(
     modal: &[Vec<f64>],
     interval: f64,

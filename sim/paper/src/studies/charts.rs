@@ -1,4 +1,4 @@
-//! The result of a search as figures: how many claims hold at once, and how often each does.
+//! Figures of a search: number of claims that hold at once, and share of sets for each claim.
 
 use eomgen_plot::bars::{Histogram, Shares, histogram, shares};
 use eomgen_plot::{PlotError, Reference};
@@ -10,10 +10,10 @@ use super::report::Figure;
 use super::search::Found;
 use super::tally;
 
-/// The figures of a search, with the claims as judged at the assumed values.
+/// Draws the figures of a search, with the claims judged at the assumed values.
 ///
 /// # Errors
-/// If nothing was judged.
+/// A search without judged sets.
 pub fn charts(found: &Found, assumed: &[Judgement]) -> Result<Vec<Figure>, StudyError> {
     let refused = |error: PlotError| StudyError::Request(error.to_string());
     Ok(vec![
@@ -22,7 +22,7 @@ pub fn charts(found: &Found, assumed: &[Judgement]) -> Result<Vec<Figure>, Study
     ])
 }
 
-/// How many of the sets have how many claims that hold.
+/// Draws the numbers of sets over the number of claims that hold.
 fn together(found: &Found, assumed: &[Judgement]) -> Result<Figure, PlotError> {
     let holds = |judgement: &&Judgement| judgement.holding == Holding::Holds;
     let mark = |label: &str, number: usize| Reference {
@@ -49,11 +49,11 @@ fn together(found: &Found, assumed: &[Judgement]) -> Result<Figure, PlotError> {
     Ok(figure("together.svg", caption, svg))
 }
 
-/// In what share of the sets each claim holds.
+/// Draws the share of the sets in which each claim holds.
 fn one_by_one(found: &Found) -> Result<Figure, PlotError> {
     let rows = CLAIMS.iter().zip(tally::shares(&found.screened));
     let rows = rows.map(|(claim, share)| {
-        // Underscores would set what follows as a subscript.
+        // An underscore would start a subscript.
         let parts = vec![
             share.holds_strictly,
             share.holds - share.holds_strictly,

@@ -1,63 +1,63 @@
-//! The claims of the paper's sections 3, 4.1 to 4.3 and 5 as data: what is said, where, the
-//! cases it needs and the rule that decides.
+//! Claims of sections 3, 4.1 to 4.3 and 5 of the paper as data: text, place, rule and cases.
 //!
-//! The paper calls every motion that is not chaotic quasi-periodic. A claim of that kind
-//! holds here for regular motion, periodic or quasi-periodic; the strict reading, under
-//! which a periodic motion contradicts it, is judged beside it and counted apart. So is the
-//! positioning error as printed, against that of the right sign.
+//! The paper calls every motion quasi-periodic that is not chaotic. In the generous reading, such a
+//! claim holds for regular motion, periodic or quasi-periodic. In the strict reading, which is
+//! counted separately, a periodic motion contradicts it. The positioning error also has two
+//! readings: with the correct sign, and as printed.
 
 use super::reading::{Forcing, Key};
 
-/// What a claim is about: which rule decides it, and on which cases.
+/// Rule that decides a claim, with its cases.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rule {
-    /// The motion is regular.
+    /// Regular motion.
     Regular(Key),
-    /// The motion is chaotic.
+    /// Chaotic motion.
     Chaotic(Key),
-    /// Regular at b = 10 um, chaotic at 100 um, and never back to regular in between.
+    /// Regular motion at b = 10 um, chaotic at 100 um, without a return to regular in between.
     Route(Forcing),
-    /// The greatest positioning error grows from each b to the next, 0 to 100 um, and by 5 %
-    /// in all; a step back of 1 % is forgiven. Strictly it is f_la as Eq. (24) prints it, a sum
-    /// whose parts oppose each other; else the error dr - l dtheta of the end point will do.
+    /// The greatest positioning error grows from each b to the next, 0 to 100 um, and by 5 % in
+    /// total; a decrease of 1 % is tolerated. The strict reading uses f_la of Eq. (24) as printed,
+    /// a sum of opposed parts. In the generous reading the error dr - l dtheta of the end point is
+    /// sufficient.
     ErrorGrows(Forcing),
-    /// dr is larger than l dtheta, peak to peak and in rms; undecided if these disagree.
+    /// dr exceeds l dtheta, peak to peak and in RMS; undecided if these disagree.
     DeflectionDominates(Key),
-    /// l dtheta is larger than dr, likewise.
+    /// l dtheta exceeds dr, peak to peak and in RMS; undecided if these disagree.
     TransmissionDominates(Key),
     /// The ratio of l dtheta to dr, peak to peak, grows from each b to the next.
     ShareGrows(Forcing),
-    /// This mode, counted from 1, vibrates most at the arm's end.
+    /// This mode, counted from 1, has the largest vibration at the tip.
     DominantMode(Key, usize),
-    /// Not the same mode vibrates most for all b > 0.
+    /// The mode with the largest vibration differs between the b > 0.
     ModeChanges(Forcing),
-    /// Between b = 10 and 100 um dr changes, peak to peak and in rms, by less than a factor
-    /// 1.5, and by less than l dtheta does.
+    /// Between b = 10 and 100 um, dr changes, peak to peak and in RMS, by less than a factor of 1.5
+    /// and by less than l dtheta.
     DeflectionSteady(Forcing),
-    /// For at least one b > 0 the motion is regular at one forcing frequency and chaotic at
-    /// the other.
+    /// For at least one b > 0 the motion is regular at one forcing frequency and chaotic at the
+    /// other.
     FrequencyMatters,
-    /// The rigid arm's motion is of the other kind than the flexible arm's.
+    /// The rigid and the flexible arm have different kinds of motion.
     FlexibilityMatters,
-    /// dr without backlash differs by less than 2 % between S = 4 and S = 5, peak to peak and
-    /// in rms.
+    /// dr without backlash differs by less than 2 % between S = 4 and S = 5, peak to peak and in
+    /// RMS.
     OrderSuffices,
 }
 
-/// A claim of the paper.
+/// Claim of the paper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Claim {
-    /// Its name in tables and files.
+    /// Name in tables and files.
     pub id: &'static str,
-    /// Where the paper makes it.
+    /// Section and figure of the paper.
     pub place: &'static str,
-    /// What it says, in other words.
+    /// Paraphrased claim.
     pub says: &'static str,
-    /// How it is decided.
+    /// Rule that decides it.
     pub rule: Rule,
 }
 
-/// The backlashes of the paper, micrometres.
+/// Half-backlashes of the paper, um.
 pub const BACKLASHES: [u32; 5] = [0, 10, 25, 50, 100];
 
 use Forcing::{FivePi, TenPi};
@@ -85,7 +85,7 @@ const fn claim(id: &'static str, place: &'static str, says: &'static str, rule: 
     }
 }
 
-/// The claims, in the order of the paper.
+/// Claims in the order of the paper.
 #[rustfmt::skip]
 pub const CLAIMS: [Claim; 30] = [
     claim("order", "Sec. 3, Fig. 4", "four modes are enough: five change the tip's motion little", Rule::OrderSuffices),
@@ -121,7 +121,7 @@ pub const CLAIMS: [Claim; 30] = [
 ];
 
 impl Rule {
-    /// The cases that the rule looks at.
+    /// Returns the cases of the rule.
     pub fn cases(self) -> Vec<Key> {
         let all = |forcing, backlashes: &[u32]| -> Vec<Key> {
             let keys = backlashes.iter().map(|b| Key::flexible(forcing, *b));
@@ -155,7 +155,7 @@ impl Rule {
     }
 }
 
-/// All cases that the claims need, each once, in a fixed order.
+/// Returns the cases of all claims, each once, in a fixed order.
 pub fn cases() -> Vec<Key> {
     let mut keys: Vec<Key> = CLAIMS.iter().flat_map(|claim| claim.rule.cases()).collect();
     keys.sort_unstable();

@@ -1,11 +1,11 @@
-//! The paper's claims as a Markdown table: what the paper says, what was found at the assumed
-//! values, and in what share of the searched sets each claim holds.
+//! Markdown table of the claims: paraphrase, verdicts at the assumed values, and shares of the
+//! searched sets.
 
 use super::claims::CLAIMS;
 use super::judge::{Holding, Judgement};
 use super::tally::Share;
 
-/// The table, with the claims judged at the assumed values and their shares in a search.
+/// Formats the table from the judgements at the assumed values and the shares of a search.
 pub fn markdown(assumed: &[Judgement], shares: &[Share]) -> String {
     let mut text = "| claim | where | the paper says | here | strictly | holds in | undecided in | evidence |\n\
                     | --- | --- | --- | --- | --- | --- | --- | --- |\n"

@@ -1,5 +1,5 @@
-//! A case as the paper's figures show it: densely sampled series and their spectra. What is
-//! measured of a case is another matter, see [`super::case`](mod@super::case).
+//! Densely sampled series and spectra of a case, for figures. [`super::case`](mod@super::case) has
+//! the measurements.
 
 use eomgen_analysis::spectrum::{PowerSpectrum, Trend, welch};
 use eomgen_sim::inputs::HeldInputs;
@@ -9,38 +9,38 @@ use super::case::Record;
 use super::error::StudyError;
 use super::series::{FIRST_MODE, X_SP};
 
-/// Samples per second: twice what the meshes' own vibration of 5 kHz needs.
+/// Sampling rate, Hz: twice the rate needed for the 5 kHz vibration of the meshes.
 const RATE: f64 = 20_480.0;
-/// How long a case is recorded for its spectra, s: a whole number of forcing periods.
+/// Recorded time for spectra, s: a whole number of forcing periods.
 const RECORDED: f64 = 40.0;
-/// Forcing periods in a segment of a spectrum, which is averaged over 19 segments and more.
+/// Forcing periods per segment of a spectrum, averaged over at least 19 segments.
 const SEGMENT: usize = 10;
-/// The time histories of the figures show so much, s: 5 or 10 forcing periods.
+/// Length of the time histories in figures, s: 5 or 10 forcing periods.
 pub(super) const WINDOW: f64 = 2.0;
-/// Numbers of a point of the section.
+/// Components of a point of the section.
 const SECTION: usize = 4;
-/// The spectra show this band, Hz: from below the forcing to above the meshes.
+/// Band of the spectra, Hz: from below the forcing to above the meshes.
 pub(super) const BAND: (f64, f64) = (1.0, 1e4);
 
-/// A case sampled after its transient.
+/// Case sampled after its transient.
 #[derive(Clone, Debug)]
 pub struct Display {
-    /// What was run.
+    /// Case of the run.
     pub case: Case,
-    /// The natural frequencies of the machine with both meshes closed, Hz.
+    /// Natural frequencies of the machine with both meshes closed, Hz.
     pub natural: Vec<f64>,
-    /// The series over the window that the figures show; times from the start at rest.
+    /// Series over the time window of the figures; times from the start at rest.
     pub history: Record,
-    /// The rate of x_sp over the same window, m/s.
+    /// Rate of x_sp over the same window, m/s.
     pub x_sp_dot: Vec<f64>,
-    /// The stroboscopic section: points of x_sp, x_pr and their rates, once per forcing period; m and
-    /// m/s. Empty where none was taken.
+    /// Stroboscopic section: points of x_sp, x_pr and their rates once per forcing period; m and
+    /// m/s. Empty if none was taken.
     pub section: Vec<f64>,
-    /// The spectrum of x_sp, m^2/Hz, over the band that the figures show.
+    /// Spectrum of x_sp over the band of the figures, m^2/Hz.
     pub x_sp: PowerSpectrum,
-    /// That of f_la.
+    /// Spectrum of f_la, m^2/Hz.
     pub f_la: PowerSpectrum,
-    /// That of dr.
+    /// Spectrum of dr, m^2/Hz.
     pub dr: PowerSpectrum,
 }
 
@@ -48,7 +48,7 @@ impl Display {
     /// Runs a case from rest at zero and records it from `transient` s on.
     ///
     /// # Errors
-    /// Values that no machine has, switches without end.
+    /// Inadmissible values, an unbounded number of switches.
     pub fn of(arm: &Arm, case: &Case, transient: f64) -> Result<Self, StudyError> {
         let per_period = samples_per_period(case);
         let step = case.period() / per_period;
@@ -74,7 +74,7 @@ impl Display {
 }
 
 impl Display {
-    /// A number of every point of the section: x_sp, x_pr, or their rates.
+    /// Returns one component of all points of the section: x_sp, x_pr, or their rates.
     pub(super) fn section_column(&self, place: usize) -> Vec<f64> {
         let points = self.section.chunks_exact(SECTION);
         points
@@ -82,7 +82,7 @@ impl Display {
             .collect()
     }
 
-    /// Samples in a forcing period.
+    /// Returns the number of samples per forcing period.
     pub(super) fn per_period(&self) -> usize {
         samples_per_period(&self.case) as usize
     }
@@ -92,17 +92,17 @@ fn samples_per_period(case: &Case) -> f64 {
     (RATE * case.period()).round()
 }
 
-/// Times `step` s apart.
+/// Returns times `step` s apart.
 pub(super) fn even_times(begin: f64, step: f64, steps: usize) -> Vec<f64> {
     (0..=steps).map(|n| begin + n as f64 * step).collect()
 }
 
-/// The series of a case, started from rest at zero, at these times in s.
+/// Simulates a case from rest at zero and returns its series at these times, s.
 pub(super) fn sampled(arm: &Arm, case: &Case, times: &[f64]) -> Result<Record, StudyError> {
     Ok(with_rate(arm, case, times)?.0)
 }
 
-/// The same with the rate of x_sp, m/s.
+/// Returns the series and the rate of x_sp, m/s.
 fn with_rate(arm: &Arm, case: &Case, times: &[f64]) -> Result<(Record, Vec<f64>), StudyError> {
     let mut propagator = arm.propagator(case)?;
     let end = times.last().copied().unwrap_or_default();
@@ -124,7 +124,7 @@ fn in_band(spectrum: PowerSpectrum) -> PowerSpectrum {
     PowerSpectrum { frequency, density }
 }
 
-/// The first samples of a record.
+/// Returns the first `count` samples of a record.
 fn first(mut record: Record, count: usize) -> Record {
     let series = [
         &mut record.times,

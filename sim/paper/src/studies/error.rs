@@ -1,4 +1,4 @@
-//! Why a study could not be made.
+//! Errors of studies.
 
 use std::fmt;
 
@@ -6,16 +6,16 @@ use eomgen_analysis::AnalysisError;
 use eomgen_compiled_model::Error;
 use eomgen_sim::piecewise_linear::ExactError;
 
-/// Why a study could not be made.
+/// Reason for a failed study.
 #[derive(Clone, Debug, PartialEq)]
 pub enum StudyError {
-    /// The request makes no sense: what is wrong and what would be right.
+    /// Invalid request, with the correction.
     Request(String),
-    /// The motion could not be propagated.
+    /// Failed simulation.
     Motion(ExactError),
-    /// The motion could not be analysed.
+    /// Failed analysis.
     Analysis(AnalysisError),
-    /// A file could not be read or written: which, and what the system says.
+    /// File that could not be read or written, with the message of the system.
     File(String),
 }
 

@@ -1,9 +1,9 @@
-//! What was found for a claim, in words and numbers.
+//! Evidence for a claim, as text.
 
 use super::claims::Rule;
 use super::reading::{Key, Reading};
 
-/// A sentence or several on the readings that a rule looks at.
+/// Formats the readings that decide a rule.
 pub(super) fn evidence(rule: Rule, keys: &[Key], found: &[&Reading]) -> String {
     let cases: Vec<(&Key, &&Reading)> = keys.iter().zip(found).collect();
     let each = |say: &dyn Fn(&Key, &Reading) -> String| -> String {
@@ -46,7 +46,7 @@ pub(super) fn evidence(rule: Rule, keys: &[Key], found: &[&Reading]) -> String {
 }
 
 fn kind(reading: &Reading) -> &str {
-    // The verdict stands before the first colon of its sentence.
+    // The verdict precedes the first colon.
     reading.sentence.split(':').next().unwrap_or_default()
 }
 
@@ -62,7 +62,7 @@ fn components(key: &Key, reading: &Reading) -> String {
     )
 }
 
-/// The share of each mode in the sum of the vibrations.
+/// Formats the share of each mode in the vibration.
 fn modes(key: &Key, reading: &Reading) -> String {
     let sum: f64 = reading.vibration.iter().sum();
     let shares: Vec<String> = reading

@@ -1,5 +1,4 @@
-//! The paper's figures from displayed cases: a time history on the left, its power spectrum
-//! on the right, one row for each quantity or case.
+//! Figures of the paper: each row has a time history and its power spectrum.
 
 use std::f64::consts::TAU;
 
@@ -11,11 +10,11 @@ use super::error::StudyError;
 use super::planes::{orbit, section};
 use super::report::{Figure, id};
 
-/// Densities below this part of the greatest are rounding or leakage of the window; they are
-/// drawn at it, so that lines stand on a level ground.
+/// Smallest density drawn, relative to the greatest. Smaller values are rounding or leakage of the
+/// window and are drawn at this level.
 const FLOOR: f64 = 1e-13;
 
-/// A quantity of the figures.
+/// Quantity of a figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Quantity {
     MeshDeflection,
@@ -23,19 +22,19 @@ pub(super) enum Quantity {
     ArmDeflection,
 }
 
-/// A row of a figure: one quantity of one or several cases, which are laid over each other.
+/// Row of a figure: one quantity of one or several cases in the same axes.
 pub(super) struct Row<'a> {
     pub title: String,
     pub quantity: Quantity,
-    /// With their names in the legend.
+    /// Cases with their names in the legend.
     pub cases: Vec<(String, &'a Display)>,
 }
 
-/// What a figure shows, from top to bottom.
+/// Row of a figure.
 pub(super) enum Shown<'a> {
-    /// A time history and its power spectrum.
+    /// Time history and power spectrum.
     Course(Row<'a>),
-    /// A phase plane of the mesh and its stroboscopic section, with their letter.
+    /// Phase plane and stroboscopic section of the mesh, with their letter.
     Planes(&'static str, &'a Display),
 }
 
@@ -65,10 +64,10 @@ impl Quantity {
     }
 }
 
-/// What a figure is called.
+/// Title of a figure.
 pub(super) struct Heading {
     pub file: String,
-    /// The paper's figure it corresponds to, or an empty text.
+    /// Corresponding figure of the paper, or empty.
     pub paper: String,
     pub caption: String,
 }
@@ -95,7 +94,7 @@ fn ids(row: &Shown<'_>) -> Vec<String> {
     }
 }
 
-/// The section's points as abscissae and ordinates.
+/// Returns the points of the section as abscissae and ordinates.
 fn section_columns(row: &Shown<'_>) -> [Vec<f64>; 2] {
     match row {
         Shown::Course(_) => [Vec::new(), Vec::new()],
@@ -103,7 +102,7 @@ fn section_columns(row: &Shown<'_>) -> [Vec<f64>; 2] {
     }
 }
 
-/// Draws frames, two side by side.
+/// Draws frames in two columns.
 pub(super) fn figure(
     Heading {
         file,
@@ -128,7 +127,7 @@ pub(super) fn figure(
     })
 }
 
-/// The densities of a row's cases as drawn.
+/// Returns the densities of a row's cases as drawn.
 fn densities(row: &Shown<'_>) -> Vec<Vec<f64>> {
     let Shown::Course(row) = row else {
         return Vec::new();
@@ -139,7 +138,7 @@ fn densities(row: &Shown<'_>) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// Densities with what is too small to mean anything raised to the floor.
+/// Raises densities below the floor to the floor.
 pub(super) fn above_floor(density: &[f64]) -> Vec<f64> {
     let floor = FLOOR * density.iter().copied().fold(0.0, f64::max);
     density.iter().map(|density| density.max(floor)).collect()
@@ -163,7 +162,7 @@ fn history<'a>(row: &Row<'a>) -> Frame<'a> {
     }
 }
 
-/// Where the flanks touch, in a time history of the mesh.
+/// Returns the positions of the flanks in a time history of the mesh.
 fn flanks(row: &Row<'_>) -> Vec<Reference> {
     let backlash = row.cases.first().map_or(0.0, |(_, d)| d.case.backlash);
     if row.quantity != Quantity::MeshDeflection || backlash == 0.0 {
@@ -192,7 +191,7 @@ fn spectrum<'a>(row: &Row<'a>, drawn: &'a [Vec<f64>]) -> Frame<'a> {
     }
 }
 
-/// A panel of power spectral densities of a length.
+/// Creates a panel of power spectral densities of a length.
 pub(super) fn density_panel<'a>(of: &str, series: Vec<Series<'a>>) -> Panel<'a> {
     Panel {
         title: format!("power spectrum of {of}"),
@@ -203,7 +202,7 @@ pub(super) fn density_panel<'a>(of: &str, series: Vec<Series<'a>>) -> Panel<'a> 
     }
 }
 
-/// The forcing and the natural frequencies of the machine with both meshes closed.
+/// Returns marks at the forcing frequency and at the natural frequencies with both meshes closed.
 pub(super) fn marks(display: &Display) -> Vec<Reference> {
     let forcing = Reference {
         label: "ω/2π".to_owned(),

@@ -1,47 +1,47 @@
-//! Whether a claim holds, from the readings of its cases, with its evidence.
+//! Verdicts on claims, with their evidence.
 
 use std::collections::BTreeMap;
 
 use super::claims::{Claim, Rule};
 use super::reading::{Key, Kind, Reading};
 
-/// The readings of a set of cases.
+/// Readings by case.
 pub type Readings = BTreeMap<Key, Reading>;
 
-/// A step back by so much still counts as growth: the extremes of a chaotic record scatter.
+/// Relative decrease that still counts as growth, because the extremes of a chaotic record scatter.
 const FORGIVEN: f64 = 0.01;
-/// What must have been gained in all for a growth.
+/// Smallest total growth.
 const GAINED: f64 = 0.05;
-/// The largest change by a factor that is little.
+/// Largest ratio of a little change.
 const LITTLE: f64 = 1.5;
-/// The largest difference between truncation orders that is little.
+/// Largest relative difference between converged truncation orders.
 const CONVERGED: f64 = 0.02;
 
-/// Whether a claim holds.
+/// Verdict on a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Holding {
-    /// It holds.
+    /// The claim holds.
     Holds,
-    /// It does not.
+    /// The claim fails.
     Fails,
-    /// The evidence does not decide, or there is none.
+    /// The evidence is missing or does not decide.
     Undecided,
 }
 
-/// A judged claim.
+/// Judged claim.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Judgement {
-    /// In the generous reading: any regular motion is taken for the paper's quasi-periodic
-    /// one, and the positioning error may have either sign.
+    /// Verdict in the generous reading: any regular motion counts as the paper's quasi-periodic
+    /// motion, and the positioning error may have either sign.
     pub holding: Holding,
-    /// With quasi-periodic motion and Eq. (24) taken at their word.
+    /// Verdict in the strict reading of quasi-periodic motion and of Eq. (24).
     pub strict: Holding,
-    /// What was found, for people.
+    /// Evidence as text.
     pub evidence: String,
 }
 
 impl Holding {
-    /// The letter in tables: H, F or U.
+    /// Returns the letter in tables: H, F or U.
     pub fn letter(self) -> char {
         match self {
             Self::Holds => 'H',
@@ -54,7 +54,7 @@ impl Holding {
         if holds { Self::Holds } else { Self::Fails }
     }
 
-    /// Holds if all do; fails if one does.
+    /// Holds if all hold, fails if one fails.
     fn all(parts: &[Self]) -> Self {
         if parts.contains(&Self::Fails) {
             Self::Fails
@@ -117,14 +117,14 @@ fn is_quasi_periodic(found: &[&Reading]) -> Holding {
     }
 }
 
-/// A motion may turn chaotic anywhere between the ends, but not back. Undecided is what could
-/// be either with the unknown cases in between.
+/// Judges a route: motion may become chaotic anywhere between the ends, but not regular again. It
+/// is undecided if the unknown cases permit both.
 fn route(found: &[&Reading]) -> Holding {
     let (Some(first), Some(last)) = (found.first(), found.last()) else {
         return Holding::Undecided;
     };
     let kinds: Vec<Kind> = found.iter().map(|reading| reading.kind).collect();
-    // Back if chaotic comes anywhere before regular; perhaps back if it may.
+    // A chaotic case before a regular one is a return; an unknown case may be one.
     let pairs = |before: &[Kind], after: &[Kind]| {
         let turns = |(place, kind): (usize, &Kind)| {
             before.contains(kind) && kinds.iter().skip(place + 1).any(|k| after.contains(k))
@@ -148,7 +148,7 @@ fn route(found: &[&Reading]) -> Holding {
     ])
 }
 
-/// With the least backlash the motion must be quasi-periodic in the strict sense.
+/// Requires quasi-periodic motion in the strict sense at the smallest backlash.
 fn strict_route(found: &[&Reading]) -> Holding {
     let first = found
         .first()
@@ -173,7 +173,7 @@ fn grows(sizes: &[f64]) -> Holding {
     }
 }
 
-/// With either sign of the transmission error, and as printed.
+/// Returns the verdicts with either sign of the transmission error, and as printed.
 fn error_grows(found: &[&Reading]) -> (Holding, Holding) {
     let printed = grows(&sizes(found, |r| r.f_la.largest));
     let signed = grows(&sizes(found, |r| r.f_la_signed.largest));
@@ -183,7 +183,7 @@ fn error_grows(found: &[&Reading]) -> (Holding, Holding) {
     }
 }
 
-/// Whether dr is larger than l dtheta (`sign` 1) or smaller (-1), by both measures.
+/// Compares dr with l dtheta by both measures: larger for `sign` 1, smaller for -1.
 fn dominates(found: &[&Reading], sign: f64) -> Holding {
     let [reading] = found else {
         return Holding::Undecided;
@@ -218,7 +218,7 @@ fn mode_changes(found: &[&Reading]) -> Holding {
     }
 }
 
-/// The greatest of some sizes by the least.
+/// Returns the ratio of the greatest to the least size.
 fn spread(sizes: &[f64]) -> f64 {
     let least = sizes.iter().copied().fold(f64::INFINITY, f64::min);
     sizes.iter().copied().fold(0.0, f64::max) / least
@@ -234,7 +234,7 @@ fn is_steady(found: &[&Reading]) -> Holding {
     Holding::of(spans < LITTLE && rms < LITTLE && spans < transmission)
 }
 
-/// The readings are those of the first frequency followed by those of the second.
+/// Expects the readings of the first frequency, then those of the second.
 fn frequency_matters(found: &[&Reading]) -> Holding {
     let (one, other) = found.split_at(found.len() / 2);
     let pairs: Vec<Holding> = one

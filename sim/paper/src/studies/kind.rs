@@ -1,4 +1,4 @@
-//! What kind of motion a case is: evidence from as many forcing periods as it takes.
+//! Kind of motion of a case, from as many forcing periods as needed.
 
 use eomgen_analysis::classify::{Evidence, Motion, SIGNIFICANCE, Verdict, classify};
 use eomgen_analysis::exponent::Exponent;
@@ -11,32 +11,32 @@ use super::error::StudyError;
 use super::neighbours::Neighbours;
 use super::series::{FIRST_MODE, X_PR, X_SP};
 
-/// Points of the section are equal within this share of the motion's extent: above what is
-/// left of a transient that decays over tens of periods, below what the eye sees.
+/// Tolerance for equal points of the section, relative to the extent of the motion: above the
+/// remains of a transient that decays over tens of periods, below visible differences.
 const TOLERANCE: f64 = 2e-3;
 
-/// The kind of a motion, and what speaks for it.
+/// Kind of a motion with its evidence.
 pub(super) struct Found {
     pub evidence: Evidence,
     pub verdict: Verdict,
-    /// Points of x_sp, x_pr and their rates, once per forcing period; m and m/s.
+    /// Points of x_sp, x_pr and their rates once per forcing period; m and m/s.
     pub section: Vec<f64>,
     pub shape: Shape,
-    /// How many forcing periods it is from.
+    /// Forcing periods used.
     pub periods: usize,
 }
 
-/// What is known of a motion beside its neighbours.
+/// Properties of a motion that do not come from neighbouring motions.
 pub(super) struct Known<'a> {
     pub case: &'a Case,
-    /// The extent of each number of the state.
+    /// Extent of each component of the state.
     pub extents: &'a [f64],
-    /// The share of the spectrum's power in lines.
+    /// Share of spectral lines in the power.
     pub line_share: Option<f64>,
 }
 
-/// Finds the kind from `periods` forcing periods, and from twice as many again and again, up
-/// to `most`, until it is decided.
+/// Classifies a motion from `periods` forcing periods, and doubles them up to `most` until the kind
+/// is decided.
 pub(super) fn find(
     neighbours: &mut Neighbours,
     propagator: &mut Propagator,
@@ -60,7 +60,7 @@ fn weigh(neighbours: &Neighbours, known: &Known<'_>, periods: usize) -> Result<F
         .iter()
         .flat_map(|state| places.map(|place| state.get(place).copied().unwrap_or_default()))
         .collect();
-    // A coordinate that does not move at all has any scale.
+    // The scale of a constant coordinate is arbitrary.
     let scale = places.map(|place| match known.extents.get(place) {
         Some(scale) if *scale > 0.0 => *scale,
         _ => 1.0,
@@ -95,12 +95,12 @@ impl Found {
     }
 }
 
-/// Whether neighbours part so fast that nothing else need be asked.
+/// Reports growth that is fast enough to decide without other evidence.
 pub(super) fn is_strong(exponent: &Exponent, case: &Case) -> bool {
     (exponent.value - SIGNIFICANCE * exponent.standard_error) * case.period() > 1.0
 }
 
-/// Places of x_sp, x_pr and their rates in the state.
+/// Returns the indices of x_sp, x_pr and their rates in the state.
 fn mesh_places(case: &Case) -> [usize; 4] {
     let rates = FIRST_MODE + case.order;
     [X_SP, X_PR, rates + X_SP, rates + X_PR]

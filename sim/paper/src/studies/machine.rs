@@ -1,31 +1,31 @@
-//! A drawing of the machine with its signs: which way every angle, deflection and error is positive.
-//! Radii and the arm's length have the proportions of Table I; deflections are drawn much too large.
+//! Drawing of the machine with the positive direction of every angle, deflection and error. Radii
+//! and the length of the arm are to scale (Table I); deflections are exaggerated.
 
 use eomgen_plot::drawing::{Drawing, Look, Part, arc, drawing, on_circle};
 
 use super::report::Figure;
 
-/// The centre of the sun, px.
+/// Centre of the sun, px.
 const CENTRE: (f64, f64) = (200.0, 236.0);
 /// Pixels per mm.
 const SCALE: f64 = 0.86;
-/// The module in mm and half of it times the teeth of sun, planet and ring: the pitch circles.
+/// Half the module, mm; times the teeth of sun, planet and ring, it gives the pitch radii.
 const HALF_MODULE: f64 = 1.5;
 const SUN: f64 = 27.0 * HALF_MODULE * SCALE;
 const PLANET: f64 = 36.0 * HALF_MODULE * SCALE;
 const RING: f64 = 99.0 * HALF_MODULE * SCALE;
-/// The arm's length.
+/// Length of the arm, px.
 const LENGTH: f64 = 500.0 * SCALE;
-/// Where the planets stand, degrees.
+/// Angles of the planets, degrees.
 const PLANETS: [f64; 3] = [90.0, 210.0, 330.0];
-/// The carrier's angle and the one it would have without backlash, degrees.
+/// Angles of the carrier with and without backlash, degrees.
 const CARRIER: f64 = 12.0;
 const AHEAD: f64 = 23.0;
-/// The deflection of the arm's end, px.
+/// Deflection of the tip, px.
 const TIP: f64 = 40.0;
 const PRESSURE: f64 = 24.6;
 
-/// Draws it.
+/// Draws the machine.
 pub(super) fn machine() -> Figure {
     let caption = "The arm on its planetary reducer, every quantity drawn in its positive direction: angles theta_s, \
                    theta_p and theta_c, mesh deflections x_sp and x_pr, the deflection w of the arm and that of its end, \
@@ -52,7 +52,7 @@ fn circle(centre: (f64, f64), radius: f64) -> Part {
     Part::Line(Look::Body, arc(centre, radius, (0.0, 360.0)))
 }
 
-/// Sun, planets, ring and carrier with their angles.
+/// Draws sun, planets, ring and carrier with their angles.
 fn gears() -> Vec<Part> {
     let mut parts = vec![
         circle(CENTRE, SUN),
@@ -80,8 +80,8 @@ fn gears() -> Vec<Part> {
     parts
 }
 
-/// The lines of action at the two meshes of the upper planet, with what is ahead where a deflection is
-/// positive.
+/// Draws the lines of action at both meshes of the upper planet, with the leading side of a
+/// positive deflection.
 fn meshes() -> Vec<Part> {
     let (sun, ring) = (on_circle(CENTRE, SUN, 90.0), on_circle(CENTRE, RING, 90.0));
     let along = |from: (f64, f64), angle: f64| {
@@ -91,20 +91,20 @@ fn meshes() -> Vec<Part> {
         ]
     };
     vec![
-        // The sun's teeth go to the left there and push the planet.
+        // The teeth of the sun move to the left there and push the planet.
         Part::Arrow(Look::Measure, along(sun, 180.0 - PRESSURE)),
         words((sun.0 - 48.0, sun.1 - 22.0), 1, "x_sp"),
-        // The planet's teeth go to the right there and push the ring.
+        // The teeth of the planet move to the right there and push the ring.
         Part::Arrow(Look::Measure, along(ring, -PRESSURE)),
         words((ring.0 + 48.0, ring.1 + 26.0), -1, "x_pr"),
     ]
 }
 
-/// The arm at rest on its carrier and bent.
+/// Draws the arm at rest on its carrier, and bent.
 fn arm() -> Vec<Part> {
     let bent = (0..=40).map(|step| {
         let s = f64::from(step) / 40.0;
-        // A load at the end bends a beam so: near enough to the first mode.
+        // Deflection by a load at the end, which is close to the first mode.
         let w = TIP * s * s * (3.0 - s) / 2.0;
         let along = on_circle(CENTRE, LENGTH * s, CARRIER);
         on_circle(along, w, CARRIER + 90.0)
@@ -134,7 +134,7 @@ fn arm() -> Vec<Part> {
     ]
 }
 
-/// What leads and what lags at the arm's end.
+/// Draws lead and lag at the end of the arm.
 fn errors() -> Vec<Part> {
     let end = on_circle(CENTRE, LENGTH, CARRIER);
     let ideal = on_circle(CENTRE, LENGTH + 36.0, AHEAD);
@@ -164,7 +164,7 @@ fn errors() -> Vec<Part> {
     ]
 }
 
-/// The force of a mesh over its deflection.
+/// Draws the force of a mesh over its deflection.
 fn law() -> Vec<Part> {
     let (x, y) = (200.0, 520.0);
     let (half, b, rise) = (130.0, 38.0, 56.0);
@@ -193,7 +193,7 @@ fn law() -> Vec<Part> {
     ]
 }
 
-/// The relations between them.
+/// Draws the relations between the quantities.
 fn formulas() -> Vec<Part> {
     let mut parts = vec![Part::Heading((470.0, 352.0), "signs".to_owned())];
     let lines = [

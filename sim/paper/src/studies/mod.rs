@@ -1,12 +1,14 @@
-//! The paper's numerical studies: its cases, its claims, and what this model says of them.
+//! Numerical studies of the paper: cases, claims, and their verdicts with this model.
 //!
-//! [`arm`] makes the paper's arm at any values of what the paper does not disclose, and
-//! [`case`](mod@case) measures one case: `run` follows its motion, `neighbours` says how
-//! fast neighbouring motions part, `kind` what kind of motion that makes it, `series` has the paper's quantities. [`reading`] is what the claims need of it, [`claims`]
-//! states them with their rules, [`judge`] decides, `evidence` says on what grounds.
-//! [`sets`] spreads the undisclosed values over plausible ranges, [`search`] judges all
-//! claims at each, [`tally`] counts what holds together, [`charts`] draws it. `display` samples cases for
-//! `figures` and `planes`, `bifurcation` goes over the backlash, `machine` draws what it is all about; [`responses`] and [`order`] are the paper's studies as `report` hands them out.
+//! - [`arm`] derives the arm with any undisclosed values. [`case`](mod@case) measures one case:
+//!   `run` simulates it, `neighbours` computes the Lyapunov exponent, `kind` classifies the motion,
+//!   `series` has the quantities of the paper.
+//! - [`reading`] extracts the numbers for the claims. [`claims`] has the claims with their rules,
+//!   [`judge`] the verdicts, `evidence` their reasons.
+//! - [`sets`] spreads the undisclosed values over plausible ranges, [`search`] judges all claims at
+//!   each, [`tally`] counts, [`charts`] draws.
+//! - [`responses`] and [`order`] are the studies, `report` their files. `display` samples cases for
+//!   `figures` and `planes`, `bifurcation` varies the backlash, `machine` draws the arm.
 
 pub mod arm;
 mod bifurcation;

@@ -1,11 +1,10 @@
-//! How fast neighbouring motions part: the largest Lyapunov exponent of the motion relative
-//! to the machine's free rotation.
+//! Largest Lyapunov exponent of the motion relative to the free rotation of the machine.
 //!
-//! A tangent vector is carried along the motion exactly and measured once per forcing period
-//! (G. Benettin, L. Galgani, A. Giorgilli, J.-M. Strelcyn, Meccanica 15 (1980) 9-30). The
-//! displacement of the carrier is left out: no force depends on it, so it would add an
-//! exponent that is zero and hide the negative ones; where nothing damps the rotation its
-//! rate is left out too, which would otherwise grow linearly and pass for a slow divergence.
+//! A tangent vector is propagated exactly along the motion and measured once per forcing period (G.
+//! Benettin, L. Galgani, A. Giorgilli, J.-M. Strelcyn, Meccanica 15 (1980) 9-30). The displacement
+//! of the carrier is excluded: no force depends on it, so its exponent is zero and would hide
+//! negative ones. If the rotation is undamped, its rate is excluded too, because its linear growth
+//! would appear as a slow divergence.
 
 use std::f64::consts::TAU;
 
@@ -18,23 +17,22 @@ use super::error::StudyError;
 use super::run::Run;
 use super::series::{FIRST_MODE, X_C, X_PR, X_SP};
 
-/// After these forcing periods a tangent vector has turned into the direction that grows
-/// fastest.
+/// Forcing periods after which the tangent vector has the direction of fastest growth.
 const TURNING: usize = 5;
 
-/// A motion with a tangent vector, seen once per forcing period.
+/// Motion with a tangent vector, once per forcing period.
 pub(super) struct Neighbours {
     carried: Carried,
     begin: f64,
     period: f64,
-    /// The logarithm of the vector's growth over each period.
+    /// Logarithm of the growth of the vector over each period.
     growths: Vec<f64>,
-    /// The state at the beginning and after each period.
+    /// State at the beginning and after each period.
     states: Vec<Vec<f64>>,
 }
 
 impl Neighbours {
-    /// Beside a recorded motion, from where its record begins.
+    /// Starts a tangent vector at the beginning of a recorded motion.
     pub fn beside(
         run: &Run,
         propagator: &mut Propagator,
@@ -53,7 +51,7 @@ impl Neighbours {
         })
     }
 
-    /// Follows the motion until so many forcing periods have been seen.
+    /// Propagates until `periods` forcing periods are available.
     pub fn extend(
         &mut self,
         propagator: &mut Propagator,
@@ -69,21 +67,21 @@ impl Neighbours {
         Ok(())
     }
 
-    /// The states once per forcing period.
+    /// Returns the states once per forcing period.
     pub fn states(&self) -> &[Vec<f64>] {
         &self.states
     }
 
-    /// The largest exponent so far.
+    /// Computes the largest exponent so far.
     pub fn exponent(&self) -> Result<Exponent, StudyError> {
         let turned = self.growths.get(TURNING..).unwrap_or_default();
         Ok(mean_exponent(turned, self.period)?)
     }
 }
 
-/// Weights with which a free vibration of the arm on the closed drive keeps its length, as it
-/// keeps its energy: otherwise the phase of the vibration would pass for growth. What is free
-/// has none.
+/// Returns weights for which a free vibration of the arm on the closed drive keeps its norm, as it
+/// keeps its energy. Otherwise the phase of the vibration would appear as growth. Excluded
+/// components have weight 0.
 fn weights(case: &Case, lengths: &Lengths) -> Vec<f64> {
     let rates = FIRST_MODE + case.order;
     let mut weights = vec![1.0; 2 * rates];

@@ -1,16 +1,16 @@
-//! The mesh in its plane: the motion over a forcing period, and where it is once per period.
+//! Phase plane and stroboscopic section of the sun-planet mesh.
 
 use eomgen_plot::{Axes, Drawn, Frame, Panel, Reference, Series};
 
 use super::display::Display;
 
-/// x_sp and its rate.
+/// Axes x_sp and its rate.
 const PLANE: Axes = Axes::Quantity {
     symbol: "x_sp",
     unit: "m",
 };
 
-/// The phase plane over the first forcing period that is displayed.
+/// Draws the phase plane over the first displayed forcing period.
 pub(super) fn orbit<'a>(letter: &str, display: &'a Display) -> Frame<'a> {
     let count = display.per_period() + 1;
     let first = |values: &'a [f64]| values.get(..count).unwrap_or(values);
@@ -22,7 +22,7 @@ pub(super) fn orbit<'a>(letter: &str, display: &'a Display) -> Frame<'a> {
     frame(panel, Drawn::Orbit, display)
 }
 
-/// The stroboscopic section, given as columns.
+/// Draws the stroboscopic section, given as columns.
 pub(super) fn section<'a>(display: &Display, [x_sp, x_sp_dot]: &'a [Vec<f64>; 2]) -> Frame<'a> {
     let title = format!("Poincaré section, {} forcing periods", x_sp.len());
     frame(panel(title, x_sp, x_sp_dot), Drawn::Points, display)

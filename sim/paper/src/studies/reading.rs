@@ -1,5 +1,4 @@
-//! What the claims need of a measured case, without its series, and how the kind of its
-//! motion is read.
+//! Numbers of a measured case that the claims use, without its series.
 
 use std::f64::consts::{PI, TAU};
 use std::fmt;
@@ -10,7 +9,7 @@ use super::arm::{Case, Undisclosed};
 use super::case::{Amplitude, Measurement};
 use super::kind::is_strong;
 
-/// One of the paper's two forcing frequencies.
+/// Forcing frequency of the paper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Forcing {
     /// omega = 5 pi rad/s.
@@ -19,19 +18,19 @@ pub enum Forcing {
     TenPi,
 }
 
-/// One of the paper's cases, whatever the undisclosed values.
+/// Case of the paper, independent of the undisclosed values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Key {
-    /// The modal truncation order; 0 is the rigid arm.
+    /// Modal truncation order; 0 is the rigid arm.
     pub order: usize,
-    /// The forcing frequency.
+    /// Forcing frequency.
     pub forcing: Forcing,
-    /// Half the backlash, micrometres.
+    /// Half the backlash, um.
     pub micrometres: u32,
 }
 
 impl Forcing {
-    /// In rad/s.
+    /// Returns the frequency in rad/s.
     pub fn omega(self) -> f64 {
         match self {
             Self::FivePi => 5.0 * PI,
@@ -41,7 +40,7 @@ impl Forcing {
 }
 
 impl Key {
-    /// The flexible arm of the paper's order.
+    /// Creates a case of the flexible arm with the order of the paper.
     pub const fn flexible(forcing: Forcing, micrometres: u32) -> Self {
         Self {
             order: 4,
@@ -50,7 +49,7 @@ impl Key {
         }
     }
 
-    /// The case at these undisclosed values.
+    /// Returns the case with these undisclosed values.
     pub fn case(self, undisclosed: Undisclosed) -> Case {
         Case {
             order: self.order,
@@ -75,27 +74,27 @@ impl fmt::Display for Key {
     }
 }
 
-/// The kind of a motion as the claims ask for it.
+/// Kind of motion in the sense of the claims.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Periodic, or quasi-periodic, which the paper does not tell apart.
+    /// Periodic or quasi-periodic motion, which the paper does not distinguish.
     Regular,
-    /// Chaotic.
+    /// Chaotic motion.
     Chaotic,
-    /// Not known.
+    /// Undecided kind.
     Unknown,
 }
 
-/// What the claims need of a case.
+/// Numbers of a case that the claims use.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reading {
-    /// The kind of motion.
+    /// Kind of motion.
     pub kind: Kind,
-    /// Whether it is quasi-periodic in the strict sense: regular, and no period was found.
+    /// Quasi-periodic in the strict sense: regular, without a period.
     pub quasi_periodic: bool,
-    /// The kind with its numbers, for people.
+    /// Sentence with the kind and its numbers.
     pub sentence: String,
-    /// f_la as printed, m.
+    /// f_la as printed in Eq. (24), m.
     pub f_la: Amplitude,
     /// dr - l dtheta, m.
     pub f_la_signed: Amplitude,
@@ -103,19 +102,19 @@ pub struct Reading {
     pub transmission: Amplitude,
     /// dr, m.
     pub dr: Amplitude,
-    /// The mean square of each mode's vibration at the tip, m^2.
+    /// Mean square of each mode's vibration at the tip, m^2.
     pub vibration: Vec<f64>,
 }
 
 impl Reading {
-    /// Of a measurement.
+    /// Reads a measurement.
     ///
-    /// The verdict of [`eomgen_analysis::classify`] is taken where it decides. Where it is undecided, the
-    /// exponent alone decides for regular motion if it is not positive and no growth of more
-    /// than 0.1 per forcing period can hide in its error: the 0-1 test takes the slow beat of
-    /// a nearly undamped mode with the forcing for diffusion unless the record is much longer
-    /// than the beat. It alone decides for chaos where neighbours part by more than a factor e
-    /// per forcing period and no period was found.
+    /// The verdict of [`eomgen_analysis::classify`] applies if it is decided. If it is undecided,
+    /// the exponent decides: the motion is regular if the exponent is not positive and its error
+    /// cannot hide growth of more than 0.1 per forcing period. The 0-1 test mistakes the slow beat
+    /// of a nearly undamped mode with the forcing for diffusion, unless the record is much longer
+    /// than the beat. The motion is chaotic if it grows by more than a factor e per forcing period
+    /// and no period was found.
     pub fn of(measurement: &Measurement) -> Self {
         let motion = measurement.verdict.motion;
         let kind = match motion {
@@ -142,7 +141,7 @@ impl Reading {
         }
     }
 
-    /// The number, from 1, of the mode that vibrates most.
+    /// Returns the number, from 1, of the mode with the largest vibration.
     pub fn dominant_mode(&self) -> Option<usize> {
         let most = self.vibration.iter().copied().fold(0.0, f64::max);
         let place = self.vibration.iter().position(|power| *power == most);
@@ -150,7 +149,7 @@ impl Reading {
     }
 }
 
-/// Whether neighbours part so fast that the 0-1 test is not needed.
+/// Reports growth that is fast enough to decide without the 0-1 test.
 fn grows_fast(measurement: &Measurement) -> bool {
     let Evidence {
         exponent, period, ..
@@ -159,7 +158,7 @@ fn grows_fast(measurement: &Measurement) -> bool {
     period.is_none() && exponent.is_some_and(|exponent| is_strong(&exponent, case))
 }
 
-/// Whether the exponent is zero or negative within its error, which is small.
+/// Reports an exponent that is not positive within a small error.
 fn does_not_grow(evidence: &Evidence) -> bool {
     let Some(exponent) = evidence.exponent else {
         return false;

@@ -1,5 +1,4 @@
-//! What a study leaves, ready to be written: figures, tables, and the document that says
-//! what they are and what was measured.
+//! Files of a study: figures, tables, and a document that describes them and the measurements.
 
 use serde_json::{Value, json};
 
@@ -11,45 +10,45 @@ use super::arm::Case;
 use super::case::{Amplitude, Measurement};
 use super::display::Display;
 
-/// A study's files and their description.
+/// Files of a study with their description.
 #[derive(Clone, Debug)]
 pub struct Study {
-    /// The figures.
+    /// Figures.
     pub figures: Vec<Figure>,
-    /// The data.
+    /// Tables of data.
     pub tables: Vec<Columns>,
-    /// The measured cases, each a JSON object.
+    /// Measured cases, each a JSON object.
     pub cases: Vec<Value>,
-    /// What else there is to say, by name.
+    /// Further entries of the document, by name.
     pub more: Vec<(&'static str, Value)>,
 }
 
-/// A drawn figure.
+/// Figure.
 #[derive(Clone, Debug)]
 pub struct Figure {
-    /// The file's name.
+    /// File name.
     pub file: String,
-    /// The paper's figure it corresponds to, or an empty text.
+    /// Corresponding figure of the paper, or empty.
     pub paper: String,
-    /// What it shows.
+    /// Caption.
     pub caption: String,
-    /// The cases it shows.
+    /// Cases in the figure.
     pub cases: Vec<String>,
-    /// The drawing.
+    /// SVG source.
     pub svg: String,
 }
 
-/// A table of data: named columns, SI.
+/// Table of data: named columns, SI.
 #[derive(Clone, Debug)]
 pub struct Columns {
-    /// The file's name.
+    /// File name.
     pub file: String,
-    /// Each column's name and values.
+    /// Name and values of each column.
     pub columns: Vec<(String, Vec<f64>)>,
 }
 
 impl Study {
-    /// The document of a study of this name.
+    /// Returns the document of a study.
     pub fn document(&self, name: &str, model: &Model) -> Value {
         let figures = self.figures.iter().map(|figure| {
             json!({
@@ -76,14 +75,14 @@ impl Study {
     }
 }
 
-/// A case's name in files: `b025_w10pi_s4`.
+/// Returns the name of a case in files: `b025_w10pi_s4`.
 pub(super) fn id(case: &Case) -> String {
     let micrometres = (case.backlash * 1e6).round();
     let multiple = (case.omega / std::f64::consts::PI).round();
     format!("b{micrometres:03}_w{multiple:02}pi_s{}", case.order)
 }
 
-/// The given numbers with where they come from; what a case sets is in the case.
+/// Returns the given parameters with their sources, except those set by the cases.
 fn parameters(model: &Model) -> Value {
     let values = model.parameter_values().unwrap_or_default();
     let given = model.parameters.iter().zip(values);
@@ -101,7 +100,7 @@ fn parameters(model: &Model) -> Value {
     Value::Object(entries.collect())
 }
 
-/// The data of a displayed case: its series and its spectra.
+/// Returns the series and the spectra of a displayed case as tables.
 pub(super) fn tables(display: &Display) -> [Columns; 2] {
     let id = id(&display.case);
     let history = &display.history;
@@ -137,7 +136,7 @@ pub(super) fn tables(display: &Display) -> [Columns; 2] {
     ]
 }
 
-/// A measured case with the files that show it.
+/// Returns a measured case with the names of its files.
 pub(super) fn case(measured: &Measurement) -> Value {
     let id = id(&measured.case);
     let evidence = &measured.evidence;

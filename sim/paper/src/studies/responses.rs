@@ -1,5 +1,5 @@
-//! The studies of backlash (Fig. 5-10) and of the forcing frequency (Fig. 11-15), and that
-//! of the arm's flexibility (Fig. 16-19).
+//! Studies of backlash (Fig. 5-10), forcing frequency (Fig. 11-15) and flexibility of the arm (Fig.
+//! 16-19).
 
 use std::f64::consts::PI;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -17,21 +17,21 @@ use super::figures::{Heading, Quantity, Row, Shown, rows};
 use super::machine::machine;
 use super::report::{Columns, Figure, Study, case, id, tables};
 
-/// The paper's truncation order.
+/// Truncation order of the paper.
 const ORDER: usize = 4;
 
-/// Called with the share of the work that is done.
+/// Callback with the completed share of the work.
 pub type Progress<'a> = &'a (dyn Fn(f64) + Sync);
 
-/// Fig. 5-10: omega = 5 pi, b = 0 to 100 um.
+/// Runs the cases of Fig. 5-10: omega = 5 pi, b = 0 to 100 um.
 ///
 /// # Errors
-/// If a case cannot be run or a figure not be drawn.
+/// A case that cannot be run, a figure that cannot be drawn.
 pub fn backlash(progress: Progress<'_>) -> Result<(Study, Arm), StudyError> {
     responses(5.0 * PI, 5, progress)
 }
 
-/// Fig. 11-15: omega = 10 pi, b = 0 to 100 um.
+/// Runs the cases of Fig. 11-15: omega = 10 pi, b = 0 to 100 um.
 ///
 /// # Errors
 /// As for [`backlash`].
@@ -39,8 +39,7 @@ pub fn frequency(progress: Progress<'_>) -> Result<(Study, Arm), StudyError> {
     responses(10.0 * PI, 11, progress)
 }
 
-/// Fig. 16-19: the rigid arm at omega = 10 pi, b = 10 to 100 um, with the flexible arm below
-/// it.
+/// Runs the cases of Fig. 16-19: rigid and flexible arm at omega = 10 pi, b = 10 to 100 um.
 ///
 /// # Errors
 /// As for [`backlash`].
@@ -82,7 +81,7 @@ pub fn flexibility(progress: Progress<'_>) -> Result<(Study, Arm), StudyError> {
     Ok((study, arm))
 }
 
-/// Adds what is over the backlash, and the drawing of the machine.
+/// Adds the bifurcation diagrams and the drawing of the machine.
 fn add(study: &mut Study, found: &[Bifurcation]) -> Result<(), StudyError> {
     study.figures.push(bifurcation_figure(found)?);
     study.figures.push(machine());
@@ -90,7 +89,7 @@ fn add(study: &mut Study, found: &[Bifurcation]) -> Result<(), StudyError> {
     Ok(())
 }
 
-/// A case of the paper at what is assumed.
+/// Returns a case of the paper with the assumed values.
 pub(super) fn paper_case(order: usize, micrometres: u32, omega: f64) -> Case {
     Case {
         order,
@@ -120,7 +119,7 @@ fn responses(
     Ok((study, arm))
 }
 
-/// x_sp and f_la of one case.
+/// Draws x_sp and f_la of one case.
 fn response(number: usize, display: &Display) -> Result<Figure, StudyError> {
     let row = |title: &str, quantity| Row {
         title: format!("{title}, {}", brief(&display.case)),
@@ -146,7 +145,7 @@ fn response(number: usize, display: &Display) -> Result<Figure, StudyError> {
     rows(heading, &drawn)
 }
 
-/// dr of several cases, one below the other.
+/// Draws dr of several cases, one below the other.
 fn deflections(paper: &str, file: &str, displays: &[Display]) -> Result<Figure, StudyError> {
     let letters = ["(a)", "(b)", "(c)", "(d)"];
     let mut drawn = Vec::with_capacity(displays.len());
@@ -170,7 +169,7 @@ fn deflections(paper: &str, file: &str, displays: &[Display]) -> Result<Figure, 
     rows(heading, &drawn)
 }
 
-/// The case in the title of a panel.
+/// Returns the description of a case in the title of a panel.
 fn brief(case: &Case) -> String {
     let (micrometres, multiple) = (case.backlash * 1e6, case.omega / PI);
     format!("b = {micrometres:.0} µm, ω = {multiple:.0}π rad/s")
@@ -195,7 +194,8 @@ pub(super) fn run(
     let whole = 2.0 * cases.len() as f64;
     let step = || progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / whole);
     let found = cases.par_iter().map(|each| {
-        // Only the wait and the numbers are kept of the long record: it is a hundred MB.
+        // The long record, 100 MB, is dropped; only the transient time, the section and the numbers
+        // are kept.
         let (transient, section, mut report) = measured(arm, each)?;
         step();
         let display = Display {
@@ -217,7 +217,7 @@ pub(super) fn run(
     Ok((displays, study))
 }
 
-/// The wait, the section and the numbers of a case.
+/// Returns the transient time, the section and the numbers of a case.
 fn measured(arm: &Arm, each: &Case) -> Result<(f64, Vec<f64>, Value), StudyError> {
     let measured = measure(arm, each, &Length::FULL)?;
     let mut report = case(&measured);
@@ -229,7 +229,7 @@ fn section_table(each: &Case) -> String {
     format!("{}_section.parquet", id(each))
 }
 
-/// The series, the spectra and the section of a case.
+/// Returns the series, the spectra and the section of a case as tables.
 fn all_tables(display: &Display) -> Vec<Columns> {
     let names = ["x_sp", "x_pr", "x_sp_dot", "x_pr_dot"]
         .into_iter()
@@ -242,7 +242,7 @@ fn all_tables(display: &Display) -> Vec<Columns> {
     tables(display).into_iter().chain([section]).collect()
 }
 
-/// What the numbers are.
+/// Definitions of the numbers in the document.
 const NOTES: [&str; 8] = [
     "lengths in m, times in s, exponents in 1/s, densities in m^2/Hz; t = 0 is the start at rest",
     "rms is about the mean; peak is the greatest magnitude",

@@ -1,4 +1,4 @@
-//! A motion after its transient, from rest at zero, that can be followed on.
+//! Motion after its transient, from rest at zero, that can be extended.
 
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::piecewise_linear::Propagator;
@@ -6,24 +6,24 @@ use eomgen_sim::piecewise_linear::Propagator;
 use super::arm::Case;
 use super::error::StudyError;
 
-/// A recorded motion.
+/// Recorded motion.
 pub(super) struct Run {
-    /// Times, s, evenly spaced.
+    /// Evenly spaced times, s.
     pub times: Vec<f64>,
-    /// The states there.
+    /// States at these times.
     pub states: Vec<Vec<f64>>,
-    /// When the record begins, s.
+    /// Start of the record, s.
     pub begin: f64,
-    /// Switches since then.
+    /// Number of switches in the record.
     pub switches: usize,
-    /// Samples per forcing period, and how many there are before the record.
+    /// Numbers of samples per forcing period and before the record.
     samples: usize,
     before: usize,
     step: f64,
 }
 
 impl Run {
-    /// Waits for so many forcing periods.
+    /// Simulates the transient of `waited` forcing periods.
     pub fn start(
         propagator: &mut Propagator,
         case: &Case,
@@ -46,7 +46,7 @@ impl Run {
         })
     }
 
-    /// Follows the motion until so many forcing periods are recorded.
+    /// Extends the record to `periods` forcing periods.
     pub fn extend(
         &mut self,
         propagator: &mut Propagator,
@@ -68,7 +68,7 @@ impl Run {
         Ok(())
     }
 
-    /// When the record ends, s.
+    /// Returns the end of the record, s.
     pub fn end(&self) -> f64 {
         self.times.last().copied().unwrap_or(self.begin)
     }

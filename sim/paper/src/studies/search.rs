@@ -1,9 +1,8 @@
-//! The search: all claims judged at thousands of parameter sets, the best again with longer
-//! runs, and the neighbourhood of the very best.
+//! Search: judges all claims at thousands of parameter sets, the best again with longer runs, and
+//! the neighbourhood of the best.
 //!
-//! Sets are judged in parallel, in chunks that are written beside their place and moved
-//! there when whole. A search that was killed goes on where it stopped, and gives the same
-//! bytes as one that was not.
+//! Sets are judged in parallel, in chunks. A complete chunk is written to a temporary name and
+//! renamed. An interrupted search resumes and gives the same bytes.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -18,55 +17,55 @@ use super::judge::{Holding, Judgement, Readings, judge};
 use super::reading::Reading;
 use super::sets::{neighbour, set};
 
-/// The edition of the rules: what was judged by other ones is not mixed in.
+/// Version of the rules; results of other versions are rejected.
 const RULES: u32 = 3;
 
-/// Sets in a chunk.
+/// Sets per chunk.
 const CHUNK: usize = 20;
 
-/// What is searched.
+/// Request of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Request {
-    /// How many sets are screened.
+    /// Number of screened sets.
     pub sets: usize,
-    /// Which sequence of sets.
+    /// Seed of the sequence of sets.
     pub seed: u64,
-    /// How many of the best are judged again with longer runs.
+    /// Number of the best sets that are judged again with longer runs.
     pub confirmed: usize,
-    /// How many sets around the best are judged, within 10 % in every parameter.
+    /// Number of judged neighbours of the best set, within 10 % in each parameter.
     pub neighbours: usize,
-    /// How long cases are run when screened.
+    /// Lengths of the runs for screening.
     pub screening: Length,
-    /// How long they are run when judged again.
+    /// Lengths of the runs for the best sets.
     pub confirming: Length,
 }
 
-/// A parameter set with its verdicts, one letter per claim: H, F or U.
+/// Parameter set with its verdicts, one letter per claim: H, F or U.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Judged {
-    /// Its place in the sequence.
+    /// Index in the sequence.
     pub index: usize,
-    /// The values.
+    /// Values of the undisclosed parameters.
     pub undisclosed: Undisclosed,
-    /// In the generous reading.
+    /// Verdicts in the generous reading.
     pub verdicts: Vec<char>,
-    /// In the strict reading.
+    /// Verdicts in the strict reading.
     pub strict: Vec<char>,
 }
 
-/// What a search found.
+/// Result of a search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
     /// All sets as screened, in the order of the sequence.
     pub screened: Vec<Judged>,
-    /// The best of these judged again, the best first.
+    /// Best sets judged again, the best first.
     pub confirmed: Vec<Judged>,
-    /// Sets around the best confirmed one.
+    /// Neighbours of the best set.
     pub neighbours: Vec<Judged>,
 }
 
 impl Judged {
-    /// How many claims hold.
+    /// Returns the number of claims that hold.
     pub fn holding(&self) -> usize {
         self.verdicts
             .iter()
@@ -74,12 +73,12 @@ impl Judged {
             .count()
     }
 
-    /// How many hold strictly.
+    /// Returns the number of claims that hold strictly.
     pub fn strictly_holding(&self) -> usize {
         self.strict.iter().filter(|letter| **letter == 'H').count()
     }
 
-    /// One line: index, values, counts, verdicts, strict verdicts.
+    /// Formats a line: index, values, counts, verdicts, strict verdicts.
     pub fn line(&self) -> String {
         let Undisclosed {
             second_moment,
@@ -98,7 +97,7 @@ impl Judged {
         )
     }
 
-    /// Reads what [`Judged::line`] wrote.
+    /// Parses a line of [`Judged::line`].
     pub fn parse(line: &str) -> Option<Self> {
         let fields: Vec<&str> = line.split(',').collect();
         let [index, i, a, b, f, c, _, _, letters, strict] = fields[..] else {
@@ -121,7 +120,7 @@ impl Judged {
     }
 }
 
-/// The orders that the claims need.
+/// Returns the orders of all claims.
 pub fn orders() -> Vec<usize> {
     let mut orders: Vec<usize> = cases().iter().map(|key| key.order).collect();
     orders.sort_unstable();
@@ -129,7 +128,7 @@ pub fn orders() -> Vec<usize> {
     orders
 }
 
-/// Measures all cases, in parallel, and judges all claims at one set. A case that cannot be measured
+/// Measures all cases in parallel and judges all claims at one set. A case that cannot be measured
 /// leaves its claims undecided.
 pub fn judge_all(
     arm: &Arm,
@@ -157,10 +156,10 @@ fn judged(arm: &Arm, index: usize, undisclosed: Undisclosed, length: &Length) ->
     }
 }
 
-/// Searches, in a folder of its own; `progress` is called with how many sets are done.
+/// Runs a search with its results in `folder`. `progress` receives the number of completed sets.
 ///
 /// # Errors
-/// A folder that cannot be written to, or that holds another search.
+/// A folder that cannot be written, or that contains another search.
 pub fn search(
     arm: &Arm,
     request: &Request,
@@ -201,7 +200,7 @@ pub fn search(
     })
 }
 
-/// By how many claims hold, then by how many hold strictly, then by place.
+/// Sorts by the number of claims that hold, then that hold strictly, then by index.
 pub fn ranked(judged: &[Judged]) -> Vec<&Judged> {
     let mut ranked: Vec<&Judged> = judged.iter().collect();
     ranked.sort_by_key(|judged| {
@@ -211,7 +210,7 @@ pub fn ranked(judged: &[Judged]) -> Vec<&Judged> {
     ranked
 }
 
-/// The folder of a search: one file for each finished chunk.
+/// Folder of a search, with one file per complete chunk.
 struct Store {
     folder: PathBuf,
 }
@@ -239,7 +238,7 @@ impl Store {
         Ok(store)
     }
 
-    /// Judges what is not yet there, chunk by chunk.
+    /// Judges the missing chunks.
     fn stage(
         &self,
         stage: &str,
@@ -265,7 +264,7 @@ impl Store {
         Ok(all)
     }
 
-    /// Writes a file beside its place and moves it there.
+    /// Writes a file to a temporary name and renames it.
     fn write(&self, path: &Path, text: &str) -> Result<(), StudyError> {
         let unfinished = path.with_extension("unfinished");
         fs::write(&unfinished, text)
@@ -274,7 +273,7 @@ impl Store {
     }
 }
 
-/// A finished chunk, if it is there and whole.
+/// Reads a chunk, or returns `None` if it is missing or incomplete.
 fn read(path: &Path, length: usize) -> Option<Vec<Judged>> {
     let text = fs::read_to_string(path).ok()?;
     let judged: Option<Vec<Judged>> = text.lines().map(Judged::parse).collect();

@@ -1,4 +1,4 @@
-//! What a search over claims found, as a table, a document for programs and a summary for people.
+//! Result of a search as table, JSON document and summary.
 
 use serde_json::{Value, json};
 
@@ -8,10 +8,10 @@ use super::search::{Found, Judged, Request, ranked};
 use super::sets::RANGES;
 use super::tally::{exclusive, histogram, share_with, shares, undecided};
 
-/// How many sets the document names.
+/// Number of sets listed in the document.
 const NAMED: usize = 20;
 
-/// Every judged set, one column per claim: H holds, F fails, U undecided.
+/// Formats every judged set, with one column per claim: H holds, F fails, U undecided.
 pub fn csv(found: &Found) -> String {
     let mut text = "stage,set,I,a_m,b_m,F_w,c,holding,strictly_holding".to_owned();
     for claim in &CLAIMS {
@@ -52,7 +52,7 @@ pub fn csv(found: &Found) -> String {
     text
 }
 
-/// What was searched and found, for programs.
+/// Returns request and result as JSON.
 pub fn document(request: &Request, assumed: &[Judgement], found: &Found) -> Value {
     let best = found.confirmed.first();
     let most = best.map_or(0, Judged::holding);
@@ -121,7 +121,7 @@ fn named(set: &Judged) -> Value {
     })
 }
 
-/// The claims at the assumed values and how many hold together, for people.
+/// Formats the verdicts at the assumed values and the number of claims that hold together.
 pub fn summary(assumed: &[Judgement], found: &Found) -> String {
     let mut text = String::new();
     for (claim, judged) in CLAIMS.iter().zip(assumed) {
@@ -147,7 +147,7 @@ pub fn summary(assumed: &[Judgement], found: &Found) -> String {
     text
 }
 
-/// How many claims hold at once, where, and how robustly.
+/// Formats the best set, its number of claims and its robustness.
 fn together(best: &Judged, found: &Found) -> String {
     let u = best.undisclosed;
     let sets = found.screened.len();

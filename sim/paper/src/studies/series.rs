@@ -1,28 +1,28 @@
-//! The recorded series of a case in the paper's quantities, and their sizes.
+//! Recorded series of a case in the quantities of the paper, and their sizes.
 
 use super::arm::Lengths;
 
-/// Places of the coordinates in the state; the modes follow, then the rates.
+/// Indices of the coordinates in the state; the modes follow, then the rates.
 pub(super) const X_SP: usize = 0;
 pub(super) const X_PR: usize = 1;
 pub(super) const X_C: usize = 2;
 pub(super) const FIRST_MODE: usize = 3;
 
-/// The size of a quantity over the recorded time, in its own unit.
+/// Size of a quantity over the record, in its unit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Amplitude {
-    /// The greatest magnitude.
+    /// Greatest magnitude.
     pub largest: f64,
-    /// The mean.
+    /// Mean.
     pub mean: f64,
-    /// The root of the mean square about the mean.
+    /// Standard deviation.
     pub rms: f64,
-    /// Peak to peak.
+    /// Difference of greatest and least value.
     pub span: f64,
 }
 
 impl Amplitude {
-    /// Of a series.
+    /// Computes the sizes of a series.
     pub fn of(values: &[f64]) -> Self {
         let count = values.len().max(1) as f64;
         let mean = values.iter().sum::<f64>() / count;
@@ -38,18 +38,18 @@ impl Amplitude {
     }
 }
 
-/// The recorded series, in SI units.
+/// Recorded series, SI.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Record {
     /// Times, s.
     pub times: Vec<f64>,
-    /// The deflection of the sun-planet mesh, m.
+    /// Deflection of the sun-planet mesh, m.
     pub x_sp: Vec<f64>,
-    /// The deflection of the planet-ring mesh, m.
+    /// Deflection of the planet-ring mesh, m.
     pub x_pr: Vec<f64>,
-    /// l dtheta, the transmission error's part in the positioning error, m.
+    /// l dtheta, the part of the transmission error in the positioning error, m.
     pub transmission: Vec<f64>,
-    /// dr = w(l, t), the arm's deflection at its end, m.
+    /// dr = w(l, t), the deflection of the arm at its end, m.
     pub dr: Vec<f64>,
     /// f_la of Eq. (24) as printed, m.
     pub f_la: Vec<f64>,
@@ -58,7 +58,7 @@ pub struct Record {
 }
 
 impl Record {
-    /// The series of these states.
+    /// Converts states to series.
     pub(super) fn of(times: &[f64], states: &[Vec<f64>], lengths: &Lengths) -> Self {
         let column = |place: usize| -> Vec<f64> {
             let values = states.iter().map(|state| state.get(place).copied());
@@ -91,7 +91,7 @@ impl Record {
     }
 }
 
-/// The extent of each number of the state over the record.
+/// Returns the extent of each component of the state.
 pub(super) fn extents(states: &[Vec<f64>]) -> Vec<f64> {
     let width = states.first().map_or(0, Vec::len);
     let mut limits = vec![(f64::INFINITY, f64::NEG_INFINITY); width];

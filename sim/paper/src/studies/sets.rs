@@ -1,21 +1,21 @@
-//! The undisclosed parameters, spread evenly over plausible ranges.
+//! Undisclosed parameters, spread evenly over plausible ranges.
 
 use super::arm::Undisclosed;
 
-/// A range of a parameter.
+/// Range of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
-    /// The parameter.
+    /// Name of the parameter.
     pub name: &'static str,
-    /// Its unit.
+    /// Unit.
     pub unit: &'static str,
-    /// The least and the greatest value.
+    /// Least and greatest value.
     pub bounds: (f64, f64),
-    /// Why these.
+    /// Reason for the range.
     pub reason: &'static str,
 }
 
-/// The ranges searched; values are spread evenly in their logarithms.
+/// Searched ranges; values are spread evenly in their logarithms.
 #[rustfmt::skip]
 pub const RANGES: [Range; 5] = [
     Range { name: "I", unit: "m^4", bounds: (1e-10, 1e-8), reason: "sections of 1e-4 m^2: a strip 3.5 mm thick (1e-10), a 10 mm square (8.3e-10), a bar 30 mm high (7.5e-9), a thin tube (1e-8)" },
@@ -25,14 +25,14 @@ pub const RANGES: [Range; 5] = [
     Range { name: "c", unit: "N s/m", bounds: (195.0, 1950.0), reason: "3 % to 30 % of critical damping of the sun-planet mesh; damping ratios of 3 % to 17 % are usual for gear meshes" },
 ];
 
-/// One set in so many has b_m = 0.
+/// Interval of the sets with b_m = 0.
 const UNDAMPED: usize = 4;
 
-/// The least root above 1 of x^6 = x + 1: powers of its inverse fill five dimensions evenly
-/// (M. Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018).
+/// Root above 1 of x^6 = x + 1. Powers of its inverse fill five dimensions evenly (M. Roberts, "The
+/// unreasonable effectiveness of quasirandom sequences", 2018).
 const HARMONIOUS: f64 = 1.134_724_138_401_519_5;
 
-/// The point `index` of a sequence that fills the unit cube evenly; seeds shift it.
+/// Returns point `index` of a sequence that fills the unit cube evenly; the seed shifts it.
 pub fn point(index: usize, seed: u64) -> [f64; 5] {
     let golden = 0.618_033_988_749_894_9;
     let mut inverse = 1.0;
@@ -43,7 +43,7 @@ pub fn point(index: usize, seed: u64) -> [f64; 5] {
     })
 }
 
-/// The parameter set `index` of a search.
+/// Returns parameter set `index` of a search.
 pub fn set(index: usize, seed: u64) -> Undisclosed {
     let mut values = point(index, seed);
     for (value, range) in values.iter_mut().zip(&RANGES) {
@@ -65,7 +65,7 @@ pub fn set(index: usize, seed: u64) -> Undisclosed {
     }
 }
 
-/// The set `index` within +-10 % of another in every parameter.
+/// Returns neighbour `index` of a set, within +-10 % in each parameter.
 pub fn neighbour(of: &Undisclosed, index: usize, seed: u64) -> Undisclosed {
     let [i, a, b, f, c] = point(index, seed).map(|share| 0.9 + 0.2 * share);
     Undisclosed {

@@ -1,23 +1,22 @@
-//! What a search found, counted: how often each claim holds, how many hold at once, which
-//! never do.
+//! Counts of a search: share of each claim, number of claims that hold at once, exclusive pairs.
 
 use super::claims::CLAIMS;
 use super::search::Judged;
 
-/// How often one claim holds.
+/// Shares of the verdicts on one claim.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Share {
-    /// The share of the sets where it holds.
+    /// Share of the sets in which it holds.
     pub holds: f64,
-    /// Where it fails.
+    /// Share of the sets in which it fails.
     pub fails: f64,
-    /// Where the evidence does not decide.
+    /// Share of the sets in which it is undecided.
     pub undecided: f64,
-    /// Where it holds strictly.
+    /// Share of the sets in which it holds strictly.
     pub holds_strictly: f64,
 }
 
-/// Each claim's share, in the order of [`CLAIMS`].
+/// Returns the shares of all claims, in the order of [`CLAIMS`].
 pub fn shares(judged: &[Judged]) -> Vec<Share> {
     let count = judged.len().max(1) as f64;
     let share = |verdicts: fn(&Judged) -> &[char], claim: usize, letter: char| {
@@ -35,14 +34,14 @@ pub fn shares(judged: &[Judged]) -> Vec<Share> {
         .collect()
 }
 
-/// The share of all verdicts that are undecided.
+/// Returns the share of undecided verdicts.
 pub fn undecided(judged: &[Judged]) -> f64 {
     let shares = shares(judged);
     let sum: f64 = shares.iter().map(|share| share.undecided).sum();
     sum / shares.len().max(1) as f64
 }
 
-/// How many sets have 0, 1, 2, ... claims that hold.
+/// Returns the number of sets with 0, 1, 2, ... claims that hold.
 pub fn histogram(judged: &[Judged]) -> Vec<usize> {
     let mut counts = vec![0; CLAIMS.len() + 1];
     for set in judged {
@@ -53,7 +52,7 @@ pub fn histogram(judged: &[Judged]) -> Vec<usize> {
     counts
 }
 
-/// Pairs of claims that each hold somewhere and never hold together.
+/// Returns pairs of claims that each hold in some set and never together.
 pub fn exclusive(judged: &[Judged]) -> Vec<(usize, usize)> {
     let holds = |set: &Judged, claim: usize| set.verdicts.get(claim) == Some(&'H');
     let somewhere: Vec<usize> = (0..CLAIMS.len())
@@ -73,7 +72,7 @@ pub fn exclusive(judged: &[Judged]) -> Vec<(usize, usize)> {
     pairs
 }
 
-/// The share of the sets with at least so many claims that hold.
+/// Returns the share of the sets with at least `holding` claims that hold.
 pub fn share_with(judged: &[Judged], holding: usize) -> f64 {
     let found = judged.iter().filter(|set| set.holding() >= holding).count();
     found as f64 / judged.len().max(1) as f64

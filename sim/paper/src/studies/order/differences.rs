@@ -1,5 +1,5 @@
-//! How far runs at different orders are from the one that stands for all modes: over time,
-//! in the mean, and in the statistics of a long time.
+//! Differences between truncation orders and the reference order: over time, as RMS, and in the
+//! statistics of a long time.
 
 use serde_json::{Value, json};
 
@@ -9,10 +9,10 @@ use crate::studies::report::{Columns, amplitude};
 
 use super::run::{OMEGA, REFERENCE, Run, STATISTICS, STEP, TRANSIENT};
 
-/// The differences' largest values are taken over pieces of this many samples: 5 ms.
+/// Samples per interval of the largest differences: 5 ms.
 const PIECE: usize = 102;
 
-/// The quantities compared.
+/// Names of the compared quantities.
 pub(super) const NAMES: [&str; 3] = ["x_sp", "f_la", "dr"];
 
 /// Differences of x_sp, f_la and dr, one value per order.
@@ -21,13 +21,13 @@ pub(super) struct Convergence {
     pub values: [Vec<f64>; 3],
 }
 
-/// The run at an order.
+/// Returns the run of an order.
 pub(super) fn at(runs: &[Run], order: usize) -> Result<&Run, StudyError> {
     let found = runs.iter().find(|run| run.order == order);
     found.ok_or_else(|| StudyError::Request(format!("order {order} was not run")))
 }
 
-/// The rms difference to the reference over so many seconds from the start, m.
+/// Computes the RMS difference from the reference over the first `seconds`, m.
 pub(super) fn convergence(runs: &[Run], seconds: f64) -> Result<Convergence, StudyError> {
     let reference = at(runs, REFERENCE)?;
     let count = (seconds / STEP) as usize;
@@ -40,7 +40,7 @@ pub(super) fn convergence(runs: &[Run], seconds: f64) -> Result<Convergence, Stu
     }))
 }
 
-/// The difference of the rms over a long time, relative to that of the reference.
+/// Computes the difference of the long-time RMS, relative to the reference.
 pub(super) fn statistics(runs: &[Run]) -> Result<Convergence, StudyError> {
     let reference = at(runs, REFERENCE)?;
     Ok(Convergence::of(runs, |run, which| {
@@ -58,12 +58,12 @@ impl Convergence {
     }
 }
 
-/// All runs but the reference.
+/// Returns all runs except the reference.
 fn compared(runs: &[Run]) -> impl Iterator<Item = &Run> {
     runs.iter().filter(|run| run.order != REFERENCE)
 }
 
-/// x_sp, f_la or dr.
+/// Returns x_sp, f_la or dr.
 fn series(record: &Record, which: usize) -> &[f64] {
     match which {
         0 => &record.x_sp,
@@ -77,7 +77,7 @@ fn rms(run: &Run, which: usize) -> f64 {
     amplitude.map_or(f64::NAN, |amplitude| amplitude.rms)
 }
 
-/// The largest difference of x_sp, m, in each 5 ms, with the times, s.
+/// Returns the times, s, and the largest difference of x_sp in each 5 ms, m.
 pub(super) fn largest(of: &Record, reference: &Record) -> (Vec<f64>, Vec<f64>) {
     let pieces = of.x_sp.chunks(PIECE).zip(reference.x_sp.chunks(PIECE));
     let greatest = pieces.map(|(a, b)| {
@@ -90,7 +90,7 @@ pub(super) fn largest(of: &Record, reference: &Record) -> (Vec<f64>, Vec<f64>) {
     )
 }
 
-/// The differences and the rms over a long time as data.
+/// Returns the differences and the long-time RMS as a table.
 pub(super) fn table(file: &str, runs: &[Run], of: &Convergence) -> Columns {
     let mut columns = vec![("S".to_owned(), of.orders.clone())];
     for (which, (name, values)) in NAMES.iter().zip(&of.values).enumerate() {
@@ -104,7 +104,7 @@ pub(super) fn table(file: &str, runs: &[Run], of: &Convergence) -> Columns {
     }
 }
 
-/// The same for the study's document.
+/// Returns the differences and the long-time RMS for the document of the study.
 pub(super) fn numbers(micrometres: u32, seconds: f64, runs: &[Run], of: &Convergence) -> Value {
     let statistics = runs.iter().map(|run| {
         let [x_sp, f_la, dr] = &run.statistics;

@@ -1,11 +1,10 @@
-//! The study of the modal truncation order: Fig. 4, S = 4 against S = 5 without backlash,
-//! and convergence over S = 1 to 16, without and with backlash.
+//! Study of the modal truncation order: Fig. 4 (S = 4 and S = 5 without backlash), and convergence
+//! over S = 1 to 16 without and with backlash.
 //!
-//! Without backlash the machine is linear and every quantity converges at every time. With
-//! backlash the motion is chaotic: two orders part exponentially, however small their
-//! difference is at first. There, differences are taken over a short time from the start,
-//! and over a long time only the statistics are compared. `differences` has the numbers,
-//! `plates` the figures.
+//! Without backlash the machine is linear, and every quantity converges at every time. With
+//! backlash the motion is chaotic, and two orders diverge exponentially. Differences are then taken
+//! over a short time from the start; over a long time, only statistics are compared. `differences`
+//! computes the numbers, `plates` draws the figures.
 
 mod differences;
 mod plates;
@@ -29,10 +28,10 @@ use run::{
     TRANSIENT,
 };
 
-/// Fig. 4 and convergence.
+/// Runs the study of Fig. 4 and of convergence.
 ///
 /// # Errors
-/// If a case cannot be run or a figure not be drawn.
+/// A case that cannot be run, a figure that cannot be drawn.
 pub fn order(progress: Progress<'_>) -> Result<(Study, Arm), StudyError> {
     let orders: Vec<usize> = (1..=HIGHEST).chain([REFERENCE]).collect();
     let arm = Arm::new(&orders)?;

@@ -1,4 +1,4 @@
-//! The figures of the study: Fig. 4, and convergence where the motion is chaotic.
+//! Figures of the study: Fig. 4, and convergence of chaotic motion.
 
 use crate::studies::display::{Display, WINDOW};
 use crate::studies::error::StudyError;
@@ -9,8 +9,8 @@ use eomgen_plot::{Axes, Frame, Panel, Series};
 use super::differences::{Convergence, NAMES, at, largest, statistics};
 use super::run::{BACKLASH, REFERENCE, Run, SHORT, SHOWN, STATISTICS, STEP, TRANSIENT};
 
-/// dr without backlash with four and with five modes, as the paper's Fig. 4, and how the
-/// series converge.
+/// Draws dr without backlash with four and five modes, as in Fig. 4, and the convergence of the
+/// series.
 pub(super) fn fig_4(
     runs: &[Run],
     displays: &[Display],
@@ -65,7 +65,7 @@ pub(super) fn fig_4(
     figure(heading, ids(displays), frames)
 }
 
-/// Convergence with backlash: over time, over a short and in the mean of a long time.
+/// Draws the convergence with backlash: over time, over a short time, and of long-time statistics.
 pub(super) fn chaotic(
     runs: &[Run],
     displays: &[Display],
@@ -169,7 +169,7 @@ fn over_order<'a>(title: &str, unit: &str, quantity: &str, of: &'a Convergence) 
     }
 }
 
-/// Spectra of dr or f_la, which have the same frequencies.
+/// Returns the spectra of dr or f_la, which have the same frequencies.
 fn spectra<'a>(
     letter: &str,
     displays: &'a [Display],

@@ -1,34 +1,34 @@
-//! What is run: orders, backlash, times, and what is kept of one order.
+//! Orders, backlash, times and recorded quantities of the study.
 
 use std::f64::consts::PI;
 
 use crate::studies::case::{Amplitude, Record};
 
-/// The orders compared, and the one that stands for all modes.
+/// Highest compared order, and the reference order.
 pub const HIGHEST: usize = 16;
 pub const REFERENCE: usize = 32;
-/// The forcing frequency, which the paper does not give for Fig. 4, and the backlash of the
-/// chaotic case in micrometres.
+/// Forcing frequency, rad/s, which the paper does not give for Fig. 4, and half-backlash of the
+/// chaotic case, um.
 pub const OMEGA: f64 = 10.0 * PI;
 pub const BACKLASH: u32 = 25;
-/// Time from one sample to the next, s; over a long time, where only amplitudes are wanted.
+/// Sampling intervals, s: for series, and for long-time statistics.
 pub const STEP: f64 = 1.0 / 20_480.0;
 pub const COARSE_STEP: f64 = 1.0 / 4_096.0;
-/// The motion from the start is kept over this time, s.
+/// Recorded time from the start, s.
 pub const START: f64 = 6.0;
-/// With backlash, differences are averaged over this time from the start, s.
+/// Time from the start for differences with backlash, s.
 pub const SHORT: f64 = 0.02;
-/// Statistics are taken over this time, s, after this transient, s.
+/// Time of the statistics and of the transient before them, s.
 pub const STATISTICS: f64 = 40.0;
 pub const TRANSIENT: f64 = 60.0;
-/// The orders whose differences are shown over time, and whose spectra are.
+/// Orders in the figures of differences and spectra.
 pub const SHOWN: [usize; 4] = [1, 4, 5, 16];
 
-/// One order's series at one backlash.
+/// Series of one order at one backlash.
 pub struct Run {
     pub order: usize,
-    /// From the start.
+    /// Series from the start.
     pub start: Record,
-    /// x_sp, f_la and dr over a long time after the transient.
+    /// Long-time statistics of x_sp, f_la and dr after the transient.
     pub statistics: [Amplitude; 3],
 }
