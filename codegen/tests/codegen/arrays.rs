@@ -1,5 +1,5 @@
-//! What every emitted file says of its parameters and inputs: how many there are, their names,
-//! and both as arrays, of any number type and of none at all.
+//! Parameters and inputs of emitted files: their numbers, their names, and the conversion of arrays of any
+//! number type.
 
 use std::process::Command;
 
@@ -7,7 +7,7 @@ use eomgen_codegen::rust::{Packaging, emit};
 
 use crate::support::{compile, emitted, folder, model, program, shipped};
 
-/// Assertions that `From` puts number k of an array into the field with name k.
+/// Returns assertions that `From` assigns number k of an array to the field with name k.
 fn assertions(kind: &str, count: &str, names: &[&str]) -> String {
     let numbers: Vec<String> = (1..=names.len()).map(|k| format!("{k}")).collect();
     let mut text = format!(
@@ -23,7 +23,7 @@ fn assertions(kind: &str, count: &str, names: &[&str]) -> String {
     text + "    let _ = of;\n"
 }
 
-/// A program that fails where an array does not come into the fields by their names.
+/// Returns a program that fails unless arrays are assigned to the fields by their names.
 fn checks(parameters: &[&str], inputs: &[&str]) -> String {
     format!(
         "#[allow(dead_code)]\nmod emitted;\n\nfn main() {{\n\
@@ -59,7 +59,7 @@ fn run(name: &str, module: &str, checks: &str) {
 }
 
 #[test]
-fn arrays_come_into_the_fields_by_their_names() {
+fn arrays_are_assigned_to_fields_by_name() {
     for name in ["hub_beam_tip_mass", "pendulum", "planetary_arm_rig"] {
         let program = program(&shipped(name), 1);
         let module = emit(&program, Packaging::Module).unwrap();
@@ -77,9 +77,9 @@ fn arrays_come_into_the_fields_by_their_names() {
     }
 }
 
-/// Nothing to name: the constants are 0, the arrays empty, and the file compiles all the same.
+// Without names the constants are 0, the arrays are empty, and the file compiles.
 #[test]
-fn a_model_without_parameters_and_inputs_has_empty_arrays() {
+fn model_without_parameters_and_inputs_has_empty_arrays() {
     let text = "[model]\nname = \"free\"\ntitle = \"Free\"\n\
                 [coordinates]\nx = { unit = \"m kg^(1/2)\" }\n\
                 [kinetic]\nfree = \"1/2*dot(x)^2\"\n";
@@ -89,9 +89,9 @@ fn a_model_without_parameters_and_inputs_has_empty_arrays() {
     run("arrays_of_nothing", &module, &checks(&[], &[]));
 }
 
-/// A field of no modes and no coordinate beside it: a state of no numbers.
+// A field without modes and no coordinate: the state has no numbers.
 #[test]
-fn a_model_without_a_state_compiles() {
+fn model_without_state_compiles() {
     let text = "[model]\nname = \"still\"\ntitle = \"Still\"\n\
                 [parameters]\nrho = { value = 2, unit = \"kg/m\" }\nl = { value = 1, unit = \"m\" }\n\
                 [fields.w]\nalong = \"x\"\nfrom = \"0\"\nto = \"l\"\nbasis = \"clamped_free\"\n\
@@ -108,9 +108,9 @@ fn a_model_without_a_state_compiles() {
     }
 }
 
-/// Parameters of which no coefficient comes, though the mass matrix has a pivot.
+// No coefficient depends on the parameters, but the mass matrix has a pivot.
 #[test]
-fn a_model_whose_parameters_nothing_needs_compiles() {
+fn model_with_unused_parameters_compiles() {
     let text = "[model]\nname = \"idle\"\ntitle = \"Idle\"\n\
                 [parameters]\nk = { value = 3, unit = \"N/m\" }\n\
                 [coordinates]\nx = { unit = \"m kg^(1/2)\" }\n\

@@ -1,10 +1,10 @@
-//! What emitted source says of a mass matrix that can lose its definiteness on the way.
+//! Documentation of emitted code for a mass matrix that can become indefinite.
 
 use eomgen_codegen::program::evaluator::Point;
 
 use crate::support::{emitted, evaluator, model, shipped};
 
-/// A table whose inertia vanishes where a slider comes to x = a.
+/// Table whose inertia vanishes if a slider is at x = a.
 const TABLE: &str = r#"
 [model]
 name = "table"
@@ -21,7 +21,7 @@ table = "1/2*J*(1 - x/a)*dot(phi)^2"
 "#;
 
 #[test]
-fn rates_say_where_they_are_no_numbers() {
+fn documentation_names_states_with_nan_rates() {
     let model = model(TABLE);
     let mut evaluator = evaluator(&model, 0);
     assert!(evaluator.pivots_are_positive());
@@ -49,7 +49,7 @@ fn rates_say_where_they_are_no_numbers() {
 }
 
 #[test]
-fn a_mass_matrix_that_does_not_vary_needs_no_such_word() {
+fn constant_mass_matrix_has_no_such_documentation() {
     let source = emitted(&shipped("pendulum"), 0);
     assert!(!source.contains("rates are NaN") && !source.contains("varies with the state"));
 }

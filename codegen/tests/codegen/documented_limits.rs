@@ -1,4 +1,5 @@
-//! Documented limits of a specification: a model at each limit, with counted work, and the refusal beyond it.
+//! Documented limits of a specification: a model at each limit, with counted work, and the rejection beyond
+//! it.
 
 use std::fmt::Write;
 
@@ -9,7 +10,7 @@ use eomgen_model_spec::{MAX_SIZE, check};
 
 use crate::support::{equations, model};
 
-/// A mass with this kinetic energy, and further lines.
+/// Returns a mass with this kinetic energy and further lines.
 fn mass(kinetic: &str, further: &str) -> String {
     format!(
         "[model]\nname = \"limited\"\n[parameters]\nm = {{ value = 2, unit = \"kg\" }}\n\
@@ -20,7 +21,7 @@ fn mass(kinetic: &str, further: &str) -> String {
 
 const KINETIC: &str = "1/2*m*dot(x)^2";
 
-/// A string of which a function of the position is integrated.
+/// Returns a string with an integral of a function of the position.
 fn string(integrand: &str) -> String {
     format!(
         "[model]\nname = \"string\"\n[parameters]\nmu = {{ value = 1, unit = \"kg/m\" }}\n\
@@ -29,13 +30,13 @@ fn string(integrand: &str) -> String {
     )
 }
 
-/// Number of nodes of an examination.
+/// Returns the number of nodes of an examination.
 fn nodes(text: &str) -> usize {
     let examined = examine(&model(text)).unwrap_or_else(|found| panic!("{}", found.message));
     examined.expect("no field").nodes
 }
 
-/// The message that refuses a text.
+/// Returns the error of a text.
 fn refusal(text: &str) -> String {
     match check(Source::new("limited.toml", text)) {
         Ok(checked) => {
@@ -47,7 +48,7 @@ fn refusal(text: &str) -> String {
     }
 }
 
-/// Takes the text at a limit with no more nodes than allowed and refuses that beyond it.
+/// Asserts that the text at a limit needs at most `allowed` nodes, and that the one beyond it is rejected.
 fn hold(said: &str, at: &str, allowed: usize, beyond: &str) {
     let nodes = nodes(at);
     assert!(nodes <= allowed, "{said}: {nodes} nodes");
@@ -137,7 +138,7 @@ fn integrands_have_4096_terms() {
     };
     let product = |one: usize, other: usize| string(&format!("{}*{}", sum(one), sum(other)));
     let at = equations(&model(&product(64, 64)), 2).graph.len();
-    // Some for each of the 127 powers.
+    // A few nodes for each of the 127 powers.
     assert!(at < 2000, "{at} nodes");
     let said = refusal(&product(65, 64));
     assert!(

@@ -1,5 +1,5 @@
-//! The emitted source: as kept in `golden/`, the same at every emission, compiled by plain
-//! `rustc`, without a panic left in the optimised code.
+//! Emitted source: comparison with `golden/`, reproducibility, compilation by plain `rustc`, and absence of
+//! panics in the optimised code.
 
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use eomgen_codegen::variant::Variant;
 
 use crate::support::{compile, emitted, emitted_with_all, models, shipped};
 
-/// Compares with a file in `golden/`; with EOMGEN_REFRESH set, writes it instead.
+/// Compares with a file in `golden/`, or writes it if EOMGEN_REFRESH is set.
 fn compare(name: &str, source: &str) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("tests/codegen/golden")
@@ -24,7 +24,7 @@ fn compare(name: &str, source: &str) {
         .position(|(kept, now)| kept != now);
     assert!(
         kept == source,
-        "{name} differs from line {}; if that is meant, EOMGEN_REFRESH=1 cargo test -p eomgen-codegen",
+        "{name} differs from line {}; if this is intended, run EOMGEN_REFRESH=1 cargo test -p eomgen-codegen",
         first.map_or(kept.lines().count().min(source.lines().count()), |line| {
             line
         }) + 1
@@ -32,31 +32,31 @@ fn compare(name: &str, source: &str) {
 }
 
 #[test]
-fn the_pendulum_is_emitted_as_kept() {
+fn pendulum_matches_golden_file() {
     compare("pendulum.rs", &emitted(&shipped("pendulum"), 0));
 }
 
-/// The beam with a tip mass has two interfaces, tables and an input.
+// The beam with a tip mass has two interfaces, tables and an input.
 #[test]
-fn the_beam_with_a_tip_mass_is_emitted_as_kept() {
+fn beam_with_tip_mass_matches_golden_file() {
     compare(
         "hub_beam_tip_mass_order_2.rs",
         &emitted(&shipped("hub_beam_tip_mass"), 2),
     );
 }
 
-/// Everything that can be requested, of a model with an input.
+// All requestable outputs of a model with an input.
 #[test]
-fn the_beam_with_everything_requested_is_emitted_as_kept() {
+fn beam_with_all_outputs_matches_golden_file() {
     compare(
         "hub_beam_tip_mass_order_2_with_all.rs",
         &emitted_with_all(&shipped("hub_beam_tip_mass"), 2),
     );
 }
 
-/// A basis that is not orthogonal needs the Cholesky factor.
+// A basis that is not orthogonal needs the Cholesky factor.
 #[test]
-fn the_printed_basis_is_emitted_as_kept() {
+fn printed_basis_matches_golden_file() {
     let arm = shipped("planetary_arm")
         .source
         .text
@@ -71,9 +71,9 @@ fn the_printed_basis_is_emitted_as_kept() {
     compare("planetary_arm_printed_order_2.rs", &source);
 }
 
-/// A regime's kernel asks for no contact; the rest of the file is that of any other.
+// The function for a regime contains no contact; the rest of the file is ordinary.
 #[test]
-fn the_regimes_of_the_arm_are_emitted_as_kept() {
+fn regimes_of_the_arm_match_golden_file() {
     let model = shipped("planetary_arm");
     let Ok(variant) = Variant::derive_with(&model, &[2], &[Output::Regimes]) else {
         panic!("the arm has regimes");
@@ -101,9 +101,9 @@ fn names() -> Vec<String> {
     names
 }
 
-/// Two derivations from the text on: hash maps are seeded anew in each.
+// Two derivations from text: hash maps have a new seed in each.
 #[test]
-fn the_same_bytes_every_time() {
+fn emission_is_reproducible() {
     for name in names() {
         assert_eq!(
             emitted(&shipped(&name), 3),
@@ -113,10 +113,9 @@ fn the_same_bytes_every_time() {
     }
 }
 
-/// The layout is that of a formatter that parses the source and prints it from its syntax
-/// tree; it sets no empty lines.
+// The reference is a formatter that prints the parsed source from its syntax tree, without empty lines.
 #[test]
-fn the_layout_is_that_of_a_formatter() {
+fn layout_matches_formatter() {
     let printed = shipped("planetary_arm")
         .source
         .text
@@ -169,7 +168,7 @@ fn every_shipped_model_compiles_without_a_warning() {
     }
 }
 
-/// The rates as code: what is generic is compiled where it is called.
+/// Instances of the rates and of the preparation; generic code is compiled where it is called.
 const INSTANCE: &str = "
 pub fn rates_of_numbers(state: &[f64; STATES], c: &Coefficients) -> [f64; STATES] {
     rates(0.0, state, &Inputs::default(), c)
@@ -179,8 +178,7 @@ pub fn prepared_numbers(parameters: &Parameters) -> Coefficients {
 }
 ";
 
-/// Bounds are checked by the compiler, once and for all: no call into the panic machinery
-/// is left, whatever the order.
+// The compiler checks all bounds: no order leaves a call of the panic machinery.
 #[test]
 fn optimised_code_cannot_panic() {
     for (name, order) in [

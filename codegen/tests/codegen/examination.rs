@@ -1,4 +1,4 @@
-//! Refusals of a model that need no equations, and the growth of their work.
+//! Rejections of a model without its equations, and the growth of their work.
 
 use eomgen_codegen::examination::{Examination, examine};
 use eomgen_codegen::variant::Variant;
@@ -6,7 +6,7 @@ use eomgen_model_spec::source::Source;
 
 use crate::support::model;
 
-/// The head of a model with so many coordinates of a unit.
+/// Returns the head of a model with `count` coordinates of a unit.
 fn coordinates(count: usize, unit: &str, gravity: &str) -> String {
     let head = format!(
         "[model]\nname = \"grown\"\n{gravity}[parameters]\nm = {{ value = 1, unit = \"kg\" }}\n\
@@ -17,7 +17,7 @@ fn coordinates(count: usize, unit: &str, gravity: &str) -> String {
     head + &names.collect::<String>()
 }
 
-/// One line for each of so many places, the first by itself.
+/// Returns `count` lines, the first of them given separately.
 fn lines(count: usize, first: &str, line: &dyn Fn(usize) -> String) -> String {
     let others = (1..count).map(|place| line(place) + "\n");
     format!("{first}\n{}", others.collect::<String>())
@@ -43,7 +43,7 @@ fn masses_that_carry_each_other(count: usize) -> String {
     coordinates(count, "m", "") + "[kinetic]\n" + &lines(count, "T0 = \"1/2*m*dot(q0)^2\"", &mass)
 }
 
-/// A chain of bodies whose joints turn about these axes in turn.
+/// Returns a chain of bodies whose joints rotate about these axes in turn.
 fn bodies(count: usize, axes: &str) -> String {
     let axis = |place: usize| axes.as_bytes()[place % axes.len()] as char;
     let frame = |place: usize| {
@@ -66,7 +66,7 @@ fn bodies(count: usize, axes: &str) -> String {
         + &lines(count, &body(0), &body)
 }
 
-/// A chain of points in the plane, each by the one before.
+/// Returns a chain of points in the plane, each relative to the one before.
 fn points(count: usize) -> String {
     let point = |place: usize| {
         format!(
@@ -82,7 +82,7 @@ fn points(count: usize) -> String {
         + &lines(count, &energy(0), &energy)
 }
 
-/// Points in space, each turned further by a rotation that the one before has made.
+/// Returns points in space with accumulated rotations.
 fn turned_points(count: usize) -> String {
     let axis = |place: usize| ["x", "y", "z"][place % 3];
     let point = |place: usize| {
@@ -105,14 +105,14 @@ fn turned_points(count: usize) -> String {
         + &lines(count, &energy(0), &energy)
 }
 
-/// Masses that fall on a floor each.
+/// Returns masses that each fall on a floor.
 fn falling_masses(count: usize) -> String {
     let impact =
         |place: usize| format!("i{place} = {{ when = \"q{place}\", restitution = \"1/2\" }}");
     independent_masses(count) + "[impacts]\n" + &lines(count, &impact(0), &impact)
 }
 
-/// Twice as many masses between springs, two and two of them held together.
+/// Returns 2 `count` masses between springs, coupled in pairs by constraints.
 fn masses_held_together(count: usize) -> String {
     let constraint = |place: usize| {
         format!(
@@ -126,7 +126,7 @@ fn masses_held_together(count: usize) -> String {
         + &lines(count, &constraint(0), &constraint)
 }
 
-/// A chain of points in the plane on rods, each point with two coordinates.
+/// Returns a chain of points in the plane on rods, each point with two coordinates.
 fn points_on_rods(count: usize) -> String {
     let text = independent_masses(2 * count);
     let begins = (0..count).map(|place| {
@@ -150,7 +150,7 @@ fn points_on_rods(count: usize) -> String {
     text + "[constraints]\n" + &lines(count, "c0 = { zero = \"q0^2 + q1^2 - l^2\" }", &rod)
 }
 
-/// Wheels that each roll along.
+/// Returns rolling wheels, each with a nonholonomic constraint.
 fn rolling_wheels(count: usize) -> String {
     let constraint = |place: usize| {
         format!(
@@ -162,13 +162,13 @@ fn rolling_wheels(count: usize) -> String {
     independent_masses(2 * count) + "[constraints]\n" + &lines(count, &constraint(0), &constraint)
 }
 
-/// A chain of springs with a named coefficient for each mass.
+/// Returns a chain of springs with a named coefficient for each mass.
 fn named_coefficients(count: usize) -> String {
     let named = |place: usize| format!("a{place} = {{ of = \"q{place}\", by = \"q{place}\" }}");
     masses_between_springs(count) + "[coefficients]\n" + &lines(count, &named(0), &named)
 }
 
-/// Masses pushed by forces that follow an input each.
+/// Returns masses with forces that each follow an input through a state of first order.
 fn masses_with_states(count: usize) -> String {
     let input = |place: usize| format!("u{place} = {{ unit = \"N\" }}");
     let state = |place: usize| {
@@ -186,10 +186,9 @@ fn masses_with_states(count: usize) -> String {
         + &lines(count, &force(0), &force)
 }
 
-/// A specification of a given size.
 type TextOfSize<'a> = &'a dyn Fn(usize) -> String;
 
-/// Examines a model, which needs no equations.
+/// Examines a model that needs no equations.
 fn examined(name: &str, text: &str) -> Examination {
     let examined =
         examine(&model(text)).unwrap_or_else(|found| panic!("{name}: {}", found.message));
@@ -197,7 +196,7 @@ fn examined(name: &str, text: &str) -> Examination {
 }
 
 #[test]
-fn an_examination_grows_as_its_specification_does() {
+fn examination_grows_linearly_with_specification() {
     let cases: [(&str, usize, TextOfSize<'_>); 13] = [
         ("masses", 1000, &independent_masses),
         ("springs", 1000, &masses_between_springs),
@@ -227,7 +226,7 @@ fn an_examination_grows_as_its_specification_does() {
 }
 
 #[test]
-fn limits_of_sections_are_held_and_named() {
+fn section_limits_are_enforced_and_named() {
     let cases: [(&str, usize, TextOfSize<'_>); 4] = [
         (
             "[coordinates] has more than 2000 entries",
@@ -246,7 +245,7 @@ fn limits_of_sections_are_held_and_named() {
     ];
     for (refusal, most, text) in cases {
         let found = examined(refusal, &text(most));
-        // A hundred or so for each frame.
+        // About a hundred nodes for each frame.
         assert!(found.nodes <= 300 * most, "{refusal}: {found:?}");
         let beyond = eomgen_model_spec::check(Source::new("grown.toml", text(most + 1)));
         let said = beyond.expect_err(refusal).render(false);
@@ -254,7 +253,7 @@ fn limits_of_sections_are_held_and_named() {
     }
 }
 
-/// A bead of which a constraint is refused.
+/// Returns a bead with this constraint.
 fn constrained(zero: &str) -> String {
     coordinates(2, "m", "")
         + "[kinetic]\nT = \"1/2*m*(dot(q0)^2 + dot(q1)^2)\"\n"
@@ -264,7 +263,7 @@ fn constrained(zero: &str) -> String {
 }
 
 #[test]
-fn constraints_that_are_never_zero_are_refused_with_their_bound() {
+fn constraints_that_are_never_zero_are_rejected_with_their_bound() {
     for (zero, bound) in [
         ("q0^2 + l^2", "at least 1.000e0 m^2"),
         ("q0^2 + (q1 - l)^2 + l^2/4", "at least 2.500e-1 m^2"),
@@ -296,7 +295,7 @@ fn constraints_that_are_never_zero_are_refused_with_their_bound() {
     }
 }
 
-/// Three joints that turn one body about one point, the first and the last about one axis.
+/// Returns three joints that rotate one body about one point, the first and the last about the same axis.
 fn gimbal(initial: f64) -> String {
     let text = bodies(3, "zxz").replace("[\"l\", 0, 0]", "[0, 0, 0]");
     let turned = format!("q1 = {{ unit = \"rad\", initial = {initial}");
@@ -308,7 +307,7 @@ fn gimbal(initial: f64) -> String {
 }
 
 #[test]
-fn an_examination_refuses_what_lacks_inertia_and_nothing_else() {
+fn examination_rejects_missing_inertia_only() {
     let masses = independent_masses(30);
     let carried = masses_that_carry_each_other(40);
     let own = "*m*dot(q7)^2";

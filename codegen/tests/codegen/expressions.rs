@@ -1,10 +1,9 @@
-//! Random expressions: their value, their slopes (as forces of a potential) and their rate
-//! along the motion, through the whole derivation, against dual numbers applied to the
-//! very tree that was written down.
+//! Random expressions: values, slopes (as forces of a potential) and rates along the motion through the whole
+//! derivation, compared with dual numbers applied to the original tree.
 //!
-//! A law of the graph may regroup, so the results differ by rounding. How much is allowed
-//! is found by disturbing every intermediate result of the reference at random by 1e-10:
-//! rounding disturbs by 1e-16, so a thousandth of the spread has a margin of 1e3.
+//! Laws of the graph regroup operations, so the results differ by rounding. The tolerance is found by random
+//! disturbances of 1e-10 of every intermediate result of the reference. Rounding disturbs by 1e-16; a
+//! thousandth of the spread therefore has a margin of 1e3.
 
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
@@ -13,7 +12,7 @@ use proptest::test_runner::RngSeed;
 use crate::support::{accelerations, evaluator, model, observables};
 use crate::trees::{COORDINATES, PARAMETERS, Tree, trees};
 
-/// A value with its slopes by x, y, z.
+/// Value with its derivatives by x, y, z.
 #[derive(Clone, Copy, Debug)]
 struct Dual {
     value: f64,
@@ -28,7 +27,7 @@ impl Dual {
         }
     }
 
-    /// f(self) where f has this value and slope; where f has no slope there is none.
+    /// Applies a function with this value and slope; an infinite or undefined slope gives NaN.
     fn chain(self, value: f64, slope: f64) -> Self {
         let times = |own: f64| {
             if slope.is_finite() {
@@ -50,7 +49,7 @@ impl Dual {
     }
 }
 
-/// Evaluates trees, disturbing every result by up to `size` of itself.
+/// Evaluator of trees with disturbances of every result up to `size` of itself.
 struct Reference {
     state: [f64; 3],
     size: f64,
@@ -66,7 +65,7 @@ impl Reference {
         (self.seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 
-    /// Results past 1e9, where sine and cosine are not defined, are not compared.
+    /// Disturbs a result. Results above 1e9, for which sine and cosine are undefined, become NaN.
     fn disturbed(&mut self, dual: Dual) -> Dual {
         let mut disturb = |value: f64| value * (1.0 + self.size * self.random());
         let value = if dual.value.abs() < 1e9 {
@@ -185,7 +184,7 @@ impl Reference {
                     b
                 }
             }
-            // On the cut the sign of a zero decides, and a law may change that.
+            // On the cut the sign of a zero decides, which a law can change.
             "atan2" if u == 0.0 && v <= 0.0 => Dual::constant(f64::NAN),
             "atan2" => {
                 let radius = u * u + v * v;
@@ -201,7 +200,7 @@ impl Reference {
     }
 }
 
-/// With sign(0) = 0.
+/// Returns the sign, with sign(0) = 0.
 fn sign(x: f64) -> f64 {
     if x == 0.0 { 0.0 } else { x.signum() }
 }
@@ -240,7 +239,7 @@ rate  = {{ value = "dot(random)", unit = "1/s" }}
     )
 }
 
-/// The reference and how far it may be missed.
+/// Returns the reference and its tolerances; `None` for huge or undefined results.
 fn expected(tree: &Tree, state: [f64; 3]) -> Option<(Dual, [f64; 4])> {
     let at = |size: f64, seed: u64| Reference { state, size, seed }.of(tree);
     let numbers = |dual: Dual| [dual.value, dual.slopes[0], dual.slopes[1], dual.slopes[2]];
@@ -271,7 +270,7 @@ proptest! {
     })]
 
     #[test]
-    fn values_slopes_and_rates_are_those_of_the_tree(
+    fn values_slopes_and_rates_match_the_tree(
         tree in trees(),
         state in prop::array::uniform3(prop_oneof![8 => -2.0..2.0_f64, 1 => Just(0.0), 1 => Just(1.0)]),
         rates in prop::array::uniform3(-1.0..1.0_f64),
@@ -281,7 +280,7 @@ proptest! {
         tree.write(&mut text);
         let mut evaluator = match eomgen_model_spec::check(eomgen_model_spec::source::Source::new("r", spec(&text))) {
             Ok(checked) => evaluator(&checked.model, 0),
-            // Refused where constants alone divide by zero or overflow.
+            // Rejected if constants divide by zero or overflow.
             Err(_) => return Ok(()),
         };
         let all: Vec<f64> = state.into_iter().chain(rates).collect();
@@ -298,7 +297,7 @@ proptest! {
     }
 }
 
-/// How often the generator gives something to compare is part of what the test is worth.
+// The test is valuable only if most random expressions can be compared.
 #[test]
 fn most_random_expressions_are_compared() {
     let mut runner = proptest::test_runner::TestRunner::deterministic();
@@ -312,9 +311,9 @@ fn most_random_expressions_are_compared() {
     assert!(compared > 150, "{compared} of 200");
 }
 
-/// Zero times the infinite slope of the branch not taken is no number.
+// Zero times the infinite slope of the unused branch would be NaN.
 #[test]
-fn a_branch_not_taken_does_not_spoil_the_slope() {
+fn unused_branch_does_not_affect_the_slope() {
     for choice in ["min(x, exp(700 + 10*x^2))", "-max(-x, -exp(700 + 10*x^2))"] {
         let mut evaluator = evaluator(&model(&spec(choice)), 0);
         let force = accelerations(&mut evaluator, &[3.0, 0.0, 0.0, 0.0, 0.0, 0.0])[0];
@@ -322,7 +321,7 @@ fn a_branch_not_taken_does_not_spoil_the_slope() {
     }
 }
 
-/// Laws that regroup exponents leave huge ones closed: a wrapped exponent once made this 1.
+// Laws that regroup exponents leave huge ones unchanged: an overflowing exponent once gave 1.
 #[test]
 fn nested_powers_do_not_overflow() {
     let nested = (0..7).fold("x".to_owned(), |inner, _| format!("({inner})^64"));

@@ -1,11 +1,11 @@
-//! Derivatives beside a switch that clips the argument of a root, a power, an inverse sine or a logarithm.
+//! Derivatives next to a switch that clips the argument of a root, a power, an inverse sine or a logarithm.
 
 use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_codegen::program::evaluator::Point;
 
 use crate::limits::{evaluator, gradient, jacobian, pushed};
 
-/// A force, a place where it is constant, another place and the slope there.
+/// Force, a position with a constant value, another position and the slope there.
 const CLIPPED: [(&str, f64, f64, f64); 15] = [
     ("sqrt(max(x/l - 0.5, 0))", 0.2, 1.5, 0.5),
     ("sqrt(max(0, x/l - 0.5))", 0.2, 1.5, 0.5),
@@ -29,7 +29,7 @@ const CLIPPED: [(&str, f64, f64, f64); 15] = [
     ("max(sqrt(max(x/l, 0)), 0.1)^0.5", -1.0, 0.0625, 2.0),
 ];
 
-/// The derivatives of the acceleration by x, forward and backward.
+/// Returns the derivatives of the acceleration by x, by forward and by reverse mode.
 fn slopes(text: &str, x: f64) -> [f64; 2] {
     let mut evaluator = evaluator(text, &[Output::Jacobians, Output::Products]);
     let state = [x, 0.0, 0.0, 0.0, 0.0, 0.0];
@@ -81,7 +81,7 @@ fn clipped_functions_have_finite_derivatives_by_parameters() {
         let weights = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0];
         let mut found = [f64::NAN; 5];
         assert!(evaluator.vector_jacobian_product_by_parameters(point, &weights, &mut found));
-        // By l and n: the force is constant.
+        // Derivatives by l and n vanish because the force is constant.
         assert_eq!([found[1], found[4]], [0.0; 2], "{force}: {found:?}");
         assert!(
             found.iter().all(|entry| entry.is_finite()),
@@ -104,7 +104,7 @@ fn forces_of_clipped_potentials_have_the_derivative_0_on_the_flat_side() {
     }
 }
 
-/// A string with a stop along it.
+/// String with a stop along it.
 const STOPPED: &str = r#"
 [model]
 name = "stopped_string"

@@ -1,11 +1,11 @@
-//! Gradients backward through branches: what is infinite or no number in a branch that is not
-//! taken does not come through.
+//! Gradients by reverse accumulation through branches: an infinite or NaN value in an unused branch has no
+//! effect.
 
 use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_codegen::variant::Variant;
 
-/// A mass that a constant force pushes, and farther out one with a slope that is infinite at 0.
+/// Mass pushed by a constant force, or farther out by one with an infinite slope at 0.
 const PUSHED: &str = r#"
 [model]
 name  = "pushed_mass"
@@ -27,7 +27,7 @@ mass = "1/2*m*dot(x)^2"
 push = { on = "x", value = "max(F, k*sqrt(x/l) + F*(x/l)^2)" }
 "#;
 
-/// The gradients of 11 times the acceleration by the state and by the parameters.
+/// Returns the gradients of 11 times the acceleration by the state and by the parameters.
 fn gradients(x: f64) -> ([f64; 2], [f64; 4]) {
     let model = crate::support::model(PUSHED);
     let variant = Variant::derive_with(&model, &[], &[Output::Products])
@@ -45,15 +45,15 @@ fn gradients(x: f64) -> ([f64; 2], [f64; 4]) {
 }
 
 #[test]
-fn an_infinite_slope_stays_in_the_branch_that_is_not_taken() {
+fn infinite_slope_of_unused_branch_has_no_effect() {
     let (state, parameters) = gradients(0.0);
     assert_eq!(state, [0.0, 0.0]);
-    // 11 F/m by m, F, k, l
+    // Derivatives of 11 F/m by m, F, k, l.
     assert_eq!(parameters, [-11.0 * 3.0 / 4.0, 11.0 / 2.0, 0.0, 0.0]);
 }
 
 #[test]
-fn the_branch_that_is_taken_counts() {
+fn gradient_of_used_branch_matches_formula() {
     // At x/l = 4 the second force is 2 k + 16 F.
     let (state, parameters) = gradients(28.0);
     let slope = 5.0 / 4.0 + 3.0 * 8.0;

@@ -1,4 +1,4 @@
-//! Switching surfaces: every place where the motion changes its law has one.
+//! Switching surfaces: every change of the equations has one.
 
 use eomgen_codegen::program::evaluator::Point;
 
@@ -32,7 +32,7 @@ two = {{ on = "y", value = "{forces}" }}
     )
 }
 
-/// The guards' values at a place.
+/// Returns the values of the guards at a position.
 fn guards(text: &str, x: f64, y: f64) -> Vec<f64> {
     let mut evaluator = evaluator(&model(text), 0);
     let mut values = vec![f64::NAN; evaluator.guard_count()];
@@ -67,9 +67,9 @@ fn each_function_has_its_surfaces() {
     assert_eq!(guards(&particle("F*b", "F/b*min(x, y)"), 1.0, 2.0), [-1.0]);
 }
 
-/// The slope of max(x, y) is 1 or 0: the function itself is gone from the force.
+// The slope of max(x, y) is 1 or 0; the force no longer contains the function itself.
 #[test]
-fn a_slope_that_jumps_has_a_surface() {
+fn jumping_slope_has_a_surface() {
     assert_eq!(guards(&particle("F*max(x, y)", "0*F"), 1.0, 2.0), [-1.0]);
     assert_eq!(guards(&particle("F*min(x, 0)", "0*F"), 1.0, 2.0).len(), 1);
     assert_eq!(guards(&particle("F*abs(x)", "0*F"), 1.0, 2.0), [1.0]);
@@ -79,10 +79,10 @@ fn a_slope_that_jumps_has_a_surface() {
     );
 }
 
-/// What jumps by a function that may be zero on a whole region has a surface for either side,
-/// and is on neither where that function is zero.
+// A function that jumps at a zero interval of another has a surface at either end, and is on neither inside
+// the interval.
 #[test]
-fn a_jump_by_what_may_rest_has_a_surface_for_either_side() {
+fn jump_at_zero_interval_has_a_surface_at_either_end() {
     let sign = particle("F*b", "F*sign(deadzone(x, b))");
     assert_eq!(guards(&sign, 1.0, 2.0), [0.5, 1.5, 0.5, -0.5]);
     assert_eq!(guards(&sign, 0.25, 2.0), [-0.25, 0.75, 0.0, 0.0]);
@@ -93,9 +93,8 @@ fn a_jump_by_what_may_rest_has_a_surface_for_either_side() {
     assert_eq!(guards(&smooth, 2.0, 2.0), [2.0, 2.0]);
 }
 
-/// A surface that several functions share stands once.
 #[test]
-fn no_surface_stands_twice() {
+fn shared_surfaces_occur_once() {
     assert_eq!(
         guards(
             &particle("F*max(x, y) - F*min(x, y)", "F*max(x, y)/b"),
@@ -117,7 +116,7 @@ fn no_surface_stands_twice() {
 }
 
 #[test]
-fn what_parameters_alone_decide_has_none() {
+fn parameter_only_switches_have_no_surface() {
     assert_eq!(
         guards(&particle("F*max(b, 2*b)*x/b", "F*sign(b)"), 1.0, 2.0),
         [0.0; 0]
@@ -125,6 +124,6 @@ fn what_parameters_alone_decide_has_none() {
 }
 
 #[test]
-fn the_arm_has_four() {
+fn planetary_arm_has_four_guards() {
     assert_eq!(evaluator(&shipped("planetary_arm"), 2).guard_count(), 4);
 }

@@ -1,8 +1,8 @@
-//! Constraints that depend on each other, told apart from singular positions, in every unit.
+//! Dependent constraints, distinguished from singular positions, in every unit.
 
 use eomgen_codegen::variant::{Variant, examine};
 
-/// A platform on three parallel rods of one length; the third holds nothing that the others do not.
+/// Platform on three parallel rods of one length; the third adds no restriction.
 const THREE_RODS: &str = r#"
 [model]
 name = "three_rods"
@@ -26,7 +26,7 @@ middle = { zero = "(x^2 + y^2 - l^2)/l" }
 right  = { zero = "((x + a*cos(phi) - a)^2 + (y + a*sin(phi))^2 - l^2)/l" }
 "#;
 
-/// A bead in space with these constraints.
+/// Returns a bead in space with these constraints.
 fn bead(initial: &str, constraints: &str) -> String {
     format!(
         r#"
@@ -47,22 +47,22 @@ bead = "1/2*m*(dot(x)^2 + dot(y)^2 + dot(z)^2)"
 
 const AWAY: &str = "x = { unit = \"m\", initial = 0.6 }\ny = { unit = \"m\", initial = 0.8 }\nz = { unit = \"m\" }";
 
-/// The refusal, if the model is refused.
+/// Returns the error of a model that is rejected.
 fn refusal(text: &str) -> Option<String> {
     let model = crate::support::model(text);
     let orders = vec![2; model.fields.len()];
     let found = Variant::derive_to_read(&model, &orders, &[]).err()?;
     let said = found.render(false);
-    let examined = examine(&model, &orders).expect_err("an examination finds the same");
+    let examined = examine(&model, &orders).expect_err("an examination reports the same");
     assert_eq!(examined.render(false), said);
     Some(said)
 }
 
 #[test]
-fn a_third_parallel_rod_is_redundant_wherever_the_platform_starts() {
+fn third_parallel_rod_is_redundant_for_every_start() {
     let starts = [
         ("l*sin(0.4)", "-l*cos(0.4)"),
-        // Off the constraints, where the rows are independent.
+        // Off the constraints, with independent rows.
         ("l*sin(0.4) + 0.03*l", "-l*cos(0.4)"),
         ("0*l", "-l"),
     ];
@@ -77,7 +77,7 @@ fn a_third_parallel_rod_is_redundant_wherever_the_platform_starts() {
             let said = refusal(&text).unwrap_or_else(|| panic!("{x} {y}: derived"));
             assert!(said.contains("`right` is redundant"), "{said}");
             assert!(
-                said.contains("`left`, `middle`") && said.contains("leave one of them out"),
+                said.contains("`left`, `middle`") && said.contains("remove one of them"),
                 "{said}"
             );
             assert!(said.contains("right  = { zero ="), "{said}");
@@ -86,7 +86,7 @@ fn a_third_parallel_rod_is_redundant_wherever_the_platform_starts() {
 }
 
 #[test]
-fn two_rods_are_accepted_also_where_the_start_is_singular() {
+fn two_rods_are_accepted_also_at_a_singular_start() {
     let two = THREE_RODS
         .lines()
         .filter(|line| !line.starts_with("middle"));
@@ -106,7 +106,7 @@ fn two_rods_are_accepted_also_where_the_start_is_singular() {
 }
 
 #[test]
-fn constraints_that_follow_from_others_are_refused_in_every_unit() {
+fn dependent_constraints_are_rejected_in_every_unit() {
     for (constraints, said) in [
         (
             "a = { zero = \"x^2 + y^2 - l^2\" }\nb = { zero = \"1e9*(x^2 + y^2 - l^2)\" }",
@@ -120,11 +120,11 @@ fn constraints_that_follow_from_others_are_refused_in_every_unit() {
             "a = { zero = \"x*dot(y) - y*dot(x)\" }\nb = { zero = \"1e-7*(y*dot(x) - x*dot(y))\" }",
             "`b` is redundant",
         ),
-        ("a = { zero = \"0*x\" }", "`a` holds nothing"),
+        ("a = { zero = \"0*x\" }", "`a` has no effect"),
         ("a = { zero = \"z\" }\nb = { zero = \"z^2\" }", "`b`"),
         (
             "a = { zero = \"(x - 0.6*l)^2 + z^2\" }",
-            "`a` holds nothing",
+            "`a` has no effect",
         ),
         (
             "a = { zero = \"x - l\" }\nb = { zero = \"2*x - 3*l\" }",
@@ -147,7 +147,7 @@ fn constraints_that_follow_from_others_are_refused_in_every_unit() {
 }
 
 #[test]
-fn independent_constraints_are_accepted_however_their_scales_differ() {
+fn independent_constraints_of_any_scale_are_accepted() {
     for constraints in [
         "a = { zero = \"x^2 + y^2 - l^2\" }\nb = { zero = \"1e-9*z\" }",
         "a = { zero = \"x^2 + y^2 - l^2\" }\nb = { zero = \"1e9*(x - y)\" }",

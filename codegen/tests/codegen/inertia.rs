@@ -1,12 +1,12 @@
-//! Inertia at the initial state: what lacks it is refused where it is declared, and right models
-//! are not.
+//! Inertia at the initial state: coordinates without it are rejected at their declaration, correct models are
+//! accepted.
 
 use eomgen_codegen::variant::Variant;
 use eomgen_model_spec::diagnostic::Record;
 
 use crate::support::{model, models};
 
-/// Two coordinates with this kinetic energy and these properties of the second.
+/// Returns two coordinates with this kinetic energy and these properties of the second.
 fn spec(kinetic: &str, second: &str) -> String {
     format!(
         "[model]\nname = \"mass\"\ntitle = \"Mass\"\n[parameters]\nm = {{ value = 2, unit = \"kg\" }}\n\
@@ -24,7 +24,7 @@ fn found(text: &str) -> Option<Record> {
 }
 
 #[test]
-fn inertia_that_is_missing_or_negative_is_refused_at_its_coordinate() {
+fn missing_or_negative_inertia_is_rejected_at_its_coordinate() {
     for (kinetic, line, message) in [
         (
             "1/2*m*(dot(x) + dot(y))^2",
@@ -82,7 +82,7 @@ fn inertia_that_is_missing_or_negative_is_refused_at_its_coordinate() {
 }
 
 #[test]
-fn inertia_that_vanishes_elsewhere_is_no_fault() {
+fn inertia_that_vanishes_elsewhere_is_accepted() {
     for (kinetic, second) in [
         ("1/2*m*dot(x)^2 + 1/2*m*(y/l)^2*dot(y)^2", ", initial = 1"),
         ("1/2*m*dot(x)^2 + 1/2*m*cos(y/l)^2*dot(y)^2", ""),
@@ -94,7 +94,7 @@ fn inertia_that_vanishes_elsewhere_is_no_fault() {
 }
 
 #[test]
-fn no_shipped_specification_and_no_feature_lacks_inertia() {
+fn shipped_specifications_and_features_have_inertia() {
     for folder in [models(), models().join("../../tests/features")] {
         for entry in std::fs::read_dir(folder).unwrap() {
             let text = std::fs::read_to_string(entry.unwrap().path()).unwrap();

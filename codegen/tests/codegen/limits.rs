@@ -1,10 +1,10 @@
-//! Derivatives where a root vanishes: their limits, and none where there is no limit.
+//! Derivatives at the zero of a root: their limits, and non-finite values without a limit.
 
 use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_codegen::variant::Variant;
 
-/// A mass in the plane that a force pushes along x.
+/// Returns a mass in space that a force pushes along x.
 pub(crate) fn pushed(force: &str) -> String {
     format!(
         r#"
@@ -40,7 +40,7 @@ pub(crate) fn evaluator(text: &str, outputs: &[Output]) -> Evaluator {
     Evaluator::new(variant.program)
 }
 
-/// The structural nonzeros of the Jacobian of the rates by the state.
+/// Returns the structural nonzeros of the Jacobian of the rates by the state.
 pub(crate) fn jacobian(evaluator: &mut Evaluator, state: &[f64]) -> Vec<f64> {
     let jacobians = &evaluator.program().outputs.jacobians;
     let place = jacobians
@@ -57,7 +57,7 @@ pub(crate) fn jacobian(evaluator: &mut Evaluator, state: &[f64]) -> Vec<f64> {
     nonzeros
 }
 
-/// The gradient of the acceleration of x by the state, backward.
+/// Returns the gradient of the acceleration of x by the state, by reverse accumulation.
 pub(crate) fn gradient(evaluator: &mut Evaluator, state: &[f64]) -> Vec<f64> {
     let mut weights = vec![0.0; state.len()];
     weights[state.len() / 2] = 1.0;
@@ -103,7 +103,7 @@ const SMOOTH_ENOUGH: [&str; 16] = [
 ];
 
 #[test]
-fn products_that_vanish_with_a_root_have_the_derivative_0_there() {
+fn products_that_vanish_with_a_root_have_zero_derivative() {
     for force in SMOOTH_ENOUGH {
         let mut evaluator = evaluator(&pushed(force), &[Output::Jacobians, Output::Products]);
         let found = jacobian(&mut evaluator, &[0.0; 6]);
@@ -117,7 +117,7 @@ fn products_that_vanish_with_a_root_have_the_derivative_0_there() {
             found.iter().all(|entry| *entry == 0.0),
             "{force}: {found:?}"
         );
-        // One speed or place alone at 0 needs no limit.
+        // A single zero speed or position needs no limit.
         for place in 0..6 {
             let mut state = [0.3, -0.2, 0.4, 0.5, 0.7, -0.6];
             state[place] = 0.0;
@@ -131,7 +131,7 @@ fn products_that_vanish_with_a_root_have_the_derivative_0_there() {
 }
 
 #[test]
-fn guarded_derivatives_are_those_of_differences_elsewhere() {
+fn guarded_derivatives_match_differences() {
     for force in SMOOTH_ENOUGH {
         let mut evaluator = evaluator(&pushed(force), &[Output::Products]);
         let state = [0.3, -0.2, 0.4, 0.5, 0.7, -0.6];
@@ -173,7 +173,7 @@ fn derivatives_without_a_limit_are_not_finite() {
     }
 }
 
-/// The Jacobian at 0 of the forces of a potential: its second derivatives.
+/// Returns the Jacobian at 0 of the forces of a potential: its second derivatives.
 fn second_derivatives(potential: &str) -> Vec<f64> {
     let forces = "[forces]\npush = { on = \"x\", value = \"F*(0)\" }\n";
     let potential = format!("[potential]\nv = \"F*l*({potential})\"\n");
@@ -195,13 +195,13 @@ fn second_derivatives_have_limits_one_order_later() {
         let found = second_derivatives(flat);
         assert!(found.iter().all(|entry| *entry == 0.0), "{flat}: {found:?}");
     }
-    // Of |r| x the second derivative by x differs from side to side.
+    // The second derivative of |r| x by x depends on the direction.
     let edged = second_derivatives("norm(r)*x/l^2");
     assert!(edged.iter().any(|entry| !entry.is_finite()), "{edged:?}");
 }
 
 #[test]
-fn the_exponent_of_a_power_has_a_derivative_where_the_base_is_0() {
+fn power_with_zero_base_has_derivative_by_exponent() {
     let mut evaluator = evaluator(&pushed("max(x/l, 0)^n"), &[Output::Products]);
     let mut weights = [0.0; 6];
     weights[3] = 1.0;
@@ -215,7 +215,7 @@ fn the_exponent_of_a_power_has_a_derivative_where_the_base_is_0() {
     assert_eq!(found, [0.0; 5]);
 }
 
-/// A string with drag by the speed of each of its points in space.
+/// String with drag that depends on the speed of each of its points in space.
 const DRAGGED: &str = r#"
 [model]
 name = "dragged_string"

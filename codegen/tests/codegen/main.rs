@@ -1,6 +1,6 @@
-//! The derivation against independent computations: mode tables, random expressions and
-//! their derivatives, guards and solved systems, and the emitted source. Specifications
-//! that exercise whole features are certified in the workspace's own tests.
+//! Comparison of the derivation with independent computations: mode tables, random expressions and their
+//! derivatives, guards, solved systems, and the emitted source. The workspace's tests certify specifications
+//! of whole features.
 
 mod arrays;
 mod definiteness;

@@ -1,12 +1,11 @@
-//! Programs that make no sense are refused, not emitted as NaN or as a matrix of zeros.
+//! Programs with misplaced values are rejected; they must not be emitted as NaN or as a matrix of zeros.
 
 use eomgen_codegen::program::{Extent, Op, Program, ValueId};
 use eomgen_codegen::rust::{EmitError, Packaging, emit};
 
 use crate::support::{program, shipped};
 
-/// The beam's program with the operation of one value per call replaced: the first that is
-/// `wanted`.
+/// Replaces the operation of the first `wanted` value in the beam's program.
 fn with(wanted: impl Fn(&Op, Extent) -> bool, op: impl Fn(ValueId) -> Op) -> Program {
     let mut program = program(&shipped("hub_beam_tip_mass"), 2);
     let found = program.ids().find(|id| {
@@ -28,7 +27,7 @@ fn refused(program: &Program) -> String {
 }
 
 #[test]
-fn a_matrix_operation_in_the_place_of_a_number_is_refused() {
+fn matrix_operation_as_number_is_rejected() {
     let number = |op: &Op, extent| matches!(op, Op::Multiply(..)) && extent == Extent::Scalar;
     let message = refused(&with(number, Op::Cholesky));
     assert!(
@@ -38,7 +37,7 @@ fn a_matrix_operation_in_the_place_of_a_number_is_refused() {
 }
 
 #[test]
-fn a_factor_in_the_place_of_a_vector_is_refused() {
+fn factor_as_vector_is_rejected() {
     let vector =
         |op: &Op, extent| matches!(op, Op::Multiply(..)) && matches!(extent, Extent::Vector(_));
     let message = refused(&with(vector, Op::Cholesky));
@@ -46,7 +45,7 @@ fn a_factor_in_the_place_of_a_vector_is_refused() {
 }
 
 #[test]
-fn an_operation_of_elements_in_the_place_of_a_matrix_is_refused() {
+fn elementwise_operation_as_matrix_is_rejected() {
     let block = |op: &Op, _| matches!(op, Op::Assemble { .. });
     let message = refused(&with(block, Op::Negate));
     assert!(message.contains("not a block of a matrix"), "{message}");

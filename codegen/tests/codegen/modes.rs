@@ -1,5 +1,5 @@
-//! Mode tables against published digits, against a reference to 25 digits, and against
-//! integrals by a rule that has nothing in common with the tables' own.
+//! Mode tables compared with published digits, with a reference of 25 digits, and with integrals by an
+//! independent rule.
 
 use eomgen_codegen::mechanics::fields::modes::table;
 use eomgen_codegen::symbolic::tables::TableKind;
@@ -22,10 +22,10 @@ fn own(power: u32, left: u8, right: u8) -> TableKind {
     TableKind::OwnMoment { power, left, right }
 }
 
-/// Eigenvalues and sigma = -1/xi of the clamped-free beam as R. D. Blevins, "Formulas for
-/// Natural Frequency and Mode Shape" (1979), Table 8-1, case 3, prints them.
+// Eigenvalues and sigma = -1/xi of the clamped-free beam in R. D. Blevins, "Formulas for Natural Frequency
+// and Mode Shape" (1979), Table 8-1, case 3.
 #[test]
-fn eigenvalues_are_the_published_ones() {
+fn eigenvalues_match_published_table() {
     let published = [
         (1.87510407, 0.734095514),
         (4.69409113, 1.018467319),
@@ -38,7 +38,7 @@ fn eigenvalues_are_the_published_ones() {
         table(&EXACT, 5, TableKind::Mixing),
     );
     for (r, (eigenvalue, sigma)) in published.into_iter().enumerate() {
-        // Half a unit of the last printed digit, and a little.
+        // Slightly more than half a unit of the last printed digit.
         assert!(
             (beta[r] - eigenvalue).abs() < 6e-9,
             "mode {}: {}",
@@ -54,7 +54,7 @@ fn eigenvalues_are_the_published_ones() {
     }
 }
 
-/// The printed Eq. (18) is 16 % low at the first root.
+// The printed Eq. (18) is 16 % low at the first root.
 #[test]
 fn printed_eigenvalues_are_not_the_roots() {
     let (exact, printed) = (
@@ -68,7 +68,7 @@ fn printed_eigenvalues_are_not_the_roots() {
 }
 
 #[test]
-fn tables_agree_with_the_reference_of_25_digits() {
+fn tables_match_reference_of_25_digits() {
     let text = include_str!("../../../tests/reference/clamped_free_modes.json");
     let rows: Vec<serde_json::Value> = serde_json::from_str(text).unwrap();
     assert_eq!(rows.len(), 128);
@@ -94,7 +94,7 @@ fn tables_agree_with_the_reference_of_25_digits() {
     let middle = shapes_in_the_middle(128);
     for (row, found) in rows.iter().zip(middle) {
         let expected: f64 = row["phi_mid"].as_str().unwrap().parse().unwrap();
-        // The phase beta l/2, up to 201, is rounded to 3e-14; shapes are of size 1.
+        // The phase beta l/2, up to 201, has a rounding error of 3e-14; shapes are of size 1.
         assert!(
             (found - expected).abs() < 1e-13,
             "phi_mid of mode {}: {found}",
@@ -103,7 +103,7 @@ fn tables_agree_with_the_reference_of_25_digits() {
     }
 }
 
-/// phi_r(1/2) by at(w, l/2).
+/// Returns phi_r(1/2), computed by at(w, l/2).
 fn shapes_in_the_middle(order: usize) -> Vec<f64> {
     let model = model(&beam(
         "clamped_free",
@@ -152,7 +152,7 @@ bending = "1/2*integral(B*diff(w, x, 2)^2, w)"
     )
 }
 
-/// phi_r^(a)(s) by hyperbolic functions: good to six digits and more for the first modes.
+/// Computes phi_r^(a)(s) by hyperbolic functions, accurate to at least six digits for the first modes.
 fn shape(beta: f64, xi: f64, derivative: u8, s: f64) -> f64 {
     let z = beta * s;
     let value = match derivative {
@@ -163,7 +163,7 @@ fn shape(beta: f64, xi: f64, derivative: u8, s: f64) -> f64 {
     value * beta.powi(i32::from(derivative))
 }
 
-/// Composite Simpson rule over 4000 intervals.
+/// Integrates by the composite Simpson rule with 4000 intervals.
 fn integral(function: impl Fn(f64) -> f64) -> f64 {
     let n = 4000;
     let h = 1.0 / f64::from(n);
@@ -183,11 +183,10 @@ fn integral(function: impl Fn(f64) -> f64) -> f64 {
         / 3.0
 }
 
-/// Every kind of moment, in both bases: closed forms, and those only quadrature knows.
-/// Simpson's error is (beta h)^4/180 of the integrand, 1e-12; the hyperbolic functions
-/// lose cosh(11) = 3e4 units in the last place.
+// Every kind of moment, in both bases, with and without a closed form. Simpson's error is (beta h)^4/180 of
+// the integrand, 1e-12; the hyperbolic functions lose cosh(11) = 3e4 units in the last place.
 #[test]
-fn moments_agree_with_a_composite_rule() {
+fn moments_match_composite_rule() {
     for basis in [&EXACT, &PRINTED] {
         for power in 0..4 {
             for a in 0..3 {
@@ -243,8 +242,7 @@ fn moments_of_pairs(basis: &Basis, power: u32, a: u8, b: u8) {
     }
 }
 
-/// Shapes and curvatures of different modes are orthogonal, to rounding of the largest
-/// product of two modes.
+// Shapes and curvatures of different modes are orthogonal up to rounding of the largest product of two modes.
 #[test]
 fn exact_modes_are_orthogonal_and_printed_ones_are_not() {
     let order = 64;
@@ -270,9 +268,9 @@ fn exact_modes_are_orthogonal_and_printed_ones_are_not() {
     );
 }
 
-/// No moment and no shear at the free end, which the printed Eq. (19) gives it.
+// A free end has no moment and no shear; the printed Eq. (19) has both.
 #[test]
-fn only_exact_modes_leave_the_end_free() {
+fn only_exact_modes_satisfy_free_end_conditions() {
     let fourth = |basis: &Basis, order: usize, a: u8| {
         let beta = table(basis, order, TableKind::Wavenumber);
         let at_end = table(basis, order, TableKind::ShapeAtEnd(a));
@@ -302,8 +300,8 @@ fn only_exact_modes_leave_the_end_free() {
     }
 }
 
-/// The shapes at quadrature nodes, with which everything but the closed forms is made,
-/// satisfy phi'''' = beta^4 phi, here as the integral of phi''^2 against that of phi^2.
+// Shapes at quadrature nodes, from which all tables without a closed form are computed, satisfy phi'''' =
+// beta^4 phi. The test compares the integral of phi''^2 with that of phi^2.
 #[test]
 fn shapes_at_nodes_keep_their_digits_at_high_orders() {
     let order = 128;

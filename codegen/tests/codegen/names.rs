@@ -1,9 +1,9 @@
-//! Names and prose of a specification that mean something in the emitted source: it must
-//! compile without a warning whatever they are.
+//! Names and prose of a specification that have a meaning in the emitted source, which must compile without a
+//! warning.
 
 use crate::support::{compile, emitted, model};
 
-/// A model that needs every emitted helper, with these names for its quantities.
+/// Returns a model that needs every emitted helper, with these names for its quantities.
 fn spec(
     parameter: &str,
     coordinate: &str,
@@ -68,9 +68,9 @@ fn compiles(folder: &str, text: &str) {
     }
 }
 
-/// Every name that the generator, the emitted file or Rust's prelude uses, in every role.
+// Every name used by the generator, the emitted file or Rust's prelude, in every role.
 #[test]
-fn names_that_emitted_code_uses_itself() {
+fn names_used_by_emitted_code_compile() {
     let names = [
         "pow",
         "cholesky",
@@ -153,7 +153,7 @@ fn names_that_emitted_code_uses_itself() {
     ];
     let mut source = String::new();
     for count in 0..names.len() {
-        // Every name comes into every role once.
+        // Every name has every role once.
         let [parameter, coordinate, input, definition, observable] =
             std::array::from_fn(|role| names[(count + role) % names.len()]);
         let model = model(&spec(parameter, coordinate, input, definition, observable));
@@ -170,9 +170,9 @@ fn names_that_emitted_code_uses_itself() {
     );
 }
 
-/// Terms and forces may be called what Rust, or a formula, gives another meaning.
+// Terms and forces can have names with another meaning in Rust or in a formula.
 #[test]
-fn names_of_terms_that_mean_something_else() {
+fn names_of_terms_with_other_meanings_compile() {
     for name in [
         "loop", "t", "energy", "fn", "sin", "pi", "state", "self", "rates",
     ] {
@@ -188,9 +188,9 @@ fn names_of_terms_that_mean_something_else() {
     }
 }
 
-/// The tables' own names, as names of quantities.
+// Names of the tables, as names of quantities.
 #[test]
-fn names_of_tables() {
+fn names_of_tables_compile() {
     let first = emitted(&model(&spec("kappa", "chi", "zeta", "eta", "xi")), 2);
     let tables: Vec<&str> = first
         .lines()
@@ -204,9 +204,9 @@ fn names_of_tables() {
     }
 }
 
-/// Tables are named after fields in capitals; two fields may differ in those alone.
+// Tables have the names of fields in capitals, which can be equal for two fields.
 #[test]
-fn names_of_fields_that_differ_in_capitals() {
+fn names_of_fields_that_differ_in_case_compile() {
     let text = spec("kappa", "chi", "zeta", "eta", "xi");
     let (start, end) = (
         text.find("[fields.w]").unwrap(),
@@ -222,9 +222,9 @@ fn names_of_fields_that_differ_in_capitals() {
     compiles("fields", &both.replace("[potential]", inertia));
 }
 
-/// Prose may hold anything a comment, a string or a page gives a meaning to.
+// Prose can contain characters with a meaning in a comment, a string or a page.
 #[test]
-fn prose_with_a_meaning_elsewhere() {
+fn prose_with_special_characters_compiles() {
     let texts = [
         r#"a "quoted" word"#,
         r"back\slash \n \u{41}",
@@ -262,7 +262,7 @@ fn prose_with_a_meaning_elsewhere() {
             assert!(spec.contains(from));
             spec = spec.replace(from, &to);
         }
-        // A checker that refuses the text is as good.
+        // The checker may also reject the text.
         if eomgen_model_spec::check(eomgen_model_spec::source::Source::new("p", spec.clone()))
             .is_ok()
         {

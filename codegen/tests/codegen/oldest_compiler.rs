@@ -1,4 +1,4 @@
-//! The oldest compiler that takes emitted code, as `docs/embedding.md` promises it.
+//! Compilation of emitted code with the oldest supported compiler, stated in `docs/embedding.md`.
 
 use std::process::Command;
 
@@ -8,10 +8,10 @@ use eomgen_model_spec::model::Model;
 
 use crate::support::{compile_by, program, program_with_all, shipped};
 
-/// As `rustup` names it.
+/// Name of the toolchain for `rustup`.
 const OLDEST: &str = "1.77";
 
-/// Whether `rustup` has that compiler here.
+/// Returns true if `rustup` has this toolchain.
 fn is_installed() -> bool {
     let listed = Command::new("rustup").args(["toolchain", "list"]).output();
     listed.is_ok_and(|output| {
@@ -25,11 +25,11 @@ fn emitted_code_compiles_with_the_oldest_compiler() {
     if !is_installed() {
         skips::skip(&format!(
             "emitted code was not compiled with Rust {OLDEST}, which is not installed; \
-             `rustup toolchain install {OLDEST} --profile minimal` gets it"
+             `rustup toolchain install {OLDEST} --profile minimal` installs it"
         ));
         return;
     }
-    // What is emitted on request, for two of them: it is made by the same code for all.
+    // All requested outputs, for two of the models: the same code emits them for all.
     std::thread::scope(|scope| {
         scope.spawn(|| {
             compiles("planetary_arm", "", program);

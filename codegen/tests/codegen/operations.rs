@@ -1,5 +1,5 @@
-//! How many operations a call of the accelerations takes, by the program: linear in the
-//! order, with the slope that the structure allows.
+//! Number of operations per call of the accelerations: linear in the order, with the slope that the structure
+//! permits.
 
 use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_codegen::variant::Variant;
@@ -7,13 +7,13 @@ use eomgen_model_spec::model::Model;
 
 use crate::support::{accelerations, chain_of_pendulums, evaluator, model, program, shipped};
 
-/// Operations of one call at an order.
+/// Returns the operations of one call.
 fn operations(name: &str, order: usize) -> usize {
     let program = program(&shipped(name), order);
     program.operations(&program.accelerations.all())
 }
 
-/// The same for each further mode (of every field) between any two orders.
+/// Returns the operations for each further mode (of every field), which must be equal between any two orders.
 fn operations_per_mode(name: &str) -> usize {
     let per_mode = operations(name, 5) - operations(name, 4);
     for (low, high) in [(8, 16), (16, 64), (64, 128)] {
@@ -23,20 +23,20 @@ fn operations_per_mode(name: &str) -> usize {
     per_mode
 }
 
-/// A product and its sum into the bending moment, and an acceleration of two products.
+// A product and its sum into the bending moment, and an acceleration of two products.
 #[test]
-fn the_planetary_arm_takes_five_operations_per_mode() {
+fn planetary_arm_takes_five_operations_per_mode() {
     assert_eq!(operations_per_mode("planetary_arm"), 5);
 }
 
 #[test]
-fn a_tip_mass_adds_eight_operations_per_mode() {
+fn tip_mass_adds_eight_operations_per_mode() {
     assert_eq!(operations_per_mode("hub_beam_tip_mass"), 13);
 }
 
-/// Two modes, one of each link. For each: deflections, slopes and moments with their
-/// rates, one product and one sum each; the free acceleration; its share in three
-/// interfaces; what the three interface forces add.
+// Two modes, one of each link. For each: deflections, slopes and moments with their rates, one product and
+// one sum each; the free acceleration; its share in three interfaces; the contributions of the three
+// interface forces.
 #[test]
 fn two_flexible_links_take_at_most_120_operations_per_order() {
     let per_order = operations_per_mode("two_link_arm");
@@ -44,7 +44,7 @@ fn two_flexible_links_take_at_most_120_operations_per_order() {
     assert_eq!(per_order, 62);
 }
 
-/// Operations of the velocity terms and of inverse dynamics of a model without fields.
+/// Returns the operations of the velocity terms and of inverse dynamics of a model without fields.
 fn operations_of_rows(model: &Model) -> (usize, usize) {
     let variant = Variant::derive_with(model, &[], &[Output::InverseDynamics]);
     let Ok(Variant { program, .. }) = variant else {
@@ -57,9 +57,9 @@ fn operations_of_rows(model: &Model) -> (usize, usize) {
     )
 }
 
-/// By sweeps along the chain, without a mass matrix.
+// Sweeps along the chain need no mass matrix.
 #[test]
-fn velocity_terms_and_inverse_dynamics_grow_with_the_length_of_a_chain() {
+fn velocity_terms_and_inverse_dynamics_grow_linearly_with_a_chain() {
     let of = |bobs| operations_of_rows(&model(&chain_of_pendulums(bobs)));
     let (velocity, inverse) = of(4);
     for bobs in [8, 16] {
@@ -68,15 +68,15 @@ fn velocity_terms_and_inverse_dynamics_grow_with_the_length_of_a_chain() {
     }
 }
 
-/// Velocities from frame to frame: for each joint some 150 operations, where Lagrange's terms, entry by entry,
-/// took 330. Inverse dynamics takes accelerations outward and forces inward.
+// Velocities from frame to frame take about 150 operations for each joint; Lagrange's terms, entry by entry,
+// took 330. Inverse dynamics propagates accelerations outward and forces inward.
 #[test]
 fn six_joints_take_fewer_than_a_thousand_operations() {
     assert_eq!(operations("puma_560", 0), 924);
     assert_eq!(operations_of_rows(&shipped("puma_560")).1, 345);
 }
 
-/// Two pendulums by the angle between them.
+/// Two pendulums, described by the angle between them.
 const BY_HAND: &str = r#"
 [model]
 name = "by_hand"
@@ -94,7 +94,7 @@ both = "-m*g*l*(2*cos(q_1) + cos(q_2))"
 "#;
 
 #[test]
-fn cartesian_positions_take_no_more_operations_than_energies_simplified_by_hand() {
+fn cartesian_positions_take_no_more_operations_than_manual_energies() {
     let (cartesian, by_hand) = (model(&chain_of_pendulums(2)), model(BY_HAND));
     let count = |model| {
         let program = program(model, 0);

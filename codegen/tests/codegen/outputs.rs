@@ -1,10 +1,10 @@
-//! Requests that a model refuses: what is said, and what it still answers.
+//! Requested outputs that a model rejects, and those that it still provides.
 
 use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_codegen::variant::Variant;
 
-/// A beam whose inertia grows where it bends: its modal mass matrix is dense and moves.
+/// Beam whose inertia grows with its deflection: its modal mass matrix is dense and depends on the state.
 const SWELLING: &str = r#"
 [model]
 name  = "swelling_beam"
@@ -31,7 +31,7 @@ beam = "1/2*integral(rho*(1 + (w/l)^2)*dot(w)^2, w)"
 bending = "1/2*integral(B*diff(w, x, 2)^2, w)"
 "#;
 
-/// A field's nonlinear spring and an inertia that grows where the beam bends, beside a coordinate.
+/// Coordinate and beam with a nonlinear spring and an inertia that grows with the deflection.
 const NONLINEAR: &str = r#"
 [model]
 name  = "nonlinear_beam"
@@ -59,7 +59,7 @@ bending = "1/2*integral(B*diff(w, x, 2)^2, w)"
 spring = "1/2*a*l*z^2 + integral(SPRING, w)"
 "#;
 
-/// Accelerations and Jacobians by differences, forward and backward, at a state.
+/// Compares the Jacobians by forward and reverse mode at a state with differences.
 fn compare_with_differences(inertia: &str, spring: &str) {
     let text = NONLINEAR
         .replace("INERTIA", inertia)
@@ -114,7 +114,7 @@ fn compare_with_differences(inertia: &str, spring: &str) {
     }
 }
 
-/// A column of the Jacobian of the rates by the state.
+/// Returns a column of the Jacobian of the rates by the state.
 fn dense_column(evaluator: &mut Evaluator, point: Point<'_>, column: usize) -> [f64; 6] {
     let jacobian = evaluator.program().outputs.jacobians[0].clone();
     assert_eq!(jacobian.name, "rates_by_state");
@@ -148,7 +148,7 @@ fn nonlinear_functions_of_a_field_have_jacobians() {
 }
 
 #[test]
-fn a_dense_mass_matrix_that_moves_has_derivatives() {
+fn dense_state_dependent_mass_matrix_has_derivatives() {
     let model = crate::support::model(SWELLING);
     for request in [Output::Jacobians, Output::Products, Output::Linearisation] {
         let found = Variant::derive_with(&model, &[2], &[request]);
@@ -157,7 +157,7 @@ fn a_dense_mass_matrix_that_moves_has_derivatives() {
 }
 
 #[test]
-fn a_sum_that_weighs_squares_of_modes_by_the_state_is_refused_at_its_place() {
+fn state_weighted_sum_of_squared_modes_is_rejected_at_its_place() {
     let losses = "1/2*c*sum(i, w, integral(exp(w/l)*phi[i]^2, w)*dot(q[i])^2)";
     let text = SWELLING
         .replace("rho*(1 + (w/l)^2)", "rho")
@@ -181,7 +181,7 @@ fn a_sum_that_weighs_squares_of_modes_by_the_state_is_refused_at_its_place() {
 }
 
 #[test]
-fn what_needs_no_derivative_of_it_is_derived() {
+fn outputs_without_derivatives_are_accepted() {
     let model = crate::support::model(SWELLING);
     for request in [
         Output::BiasForces,
@@ -192,7 +192,7 @@ fn what_needs_no_derivative_of_it_is_derived() {
     ] {
         assert!(
             Variant::derive_with(&model, &[2], &[request]).is_ok(),
-            "{request:?} was refused"
+            "{request:?} was rejected"
         );
     }
 }

@@ -1,5 +1,4 @@
-//! What is written for people: as long as the graph and no longer, the same formulas in every
-//! notation, and formulas that hold.
+//! Reports: their length, equal formulas in every notation, and the correctness of the formulas.
 
 use std::collections::HashMap;
 use std::fmt::Write;
@@ -13,7 +12,7 @@ use eomgen_model_spec::model::Model;
 
 use crate::support::{chain_of_pendulums, evaluator, model, models, observables, shipped};
 
-/// A report at the specification's own orders.
+/// Returns a report at the specification's own orders.
 fn report(model: &Model) -> Report {
     let orders = model.orders(None).unwrap();
     let variant = Variant::derive_to_read(model, &orders, &[])
@@ -21,7 +20,7 @@ fn report(model: &Model) -> Report {
     Report::new(model, &variant.equations, &Evaluator::new(variant.program))
 }
 
-/// Every shipped specification and every one with a feature of the language.
+/// Returns every shipped specification and every feature test.
 fn specifications() -> Vec<(String, Model)> {
     let features = models().join("../../tests/features");
     let paths = [models(), features].into_iter().flat_map(|folder| {
@@ -48,14 +47,14 @@ fn json(report: &Report) -> String {
     serde_json::to_string_pretty(report).unwrap()
 }
 
-/// A beam with a mass that a lever drives from two of its points: its tree is endless.
+/// Returns a beam with a mass on a lever between two of its points, whose expression tree is huge.
 fn lever_mass() -> Model {
     let path = models().join("../../tests/features/lever_mass.toml");
     model(&std::fs::read_to_string(path).unwrap())
 }
 
 #[test]
-fn long_equations_are_written_in_a_moment_and_less_than_a_megabyte() {
+fn long_equations_take_seconds_and_less_than_a_megabyte() {
     let chain = (
         "a chain of forty".to_owned(),
         model(&chain_of_pendulums(40)),
@@ -66,7 +65,7 @@ fn long_equations_are_written_in_a_moment_and_less_than_a_megabyte() {
         for text in [report.text(), report.latex(), json(&report)] {
             assert!(text.len() < 1_000_000, "{name}: {}", text.len());
         }
-        // A tenth of that where nothing else runs.
+        // A tenth of that on an idle machine.
         assert!(
             start.elapsed() < Duration::from_secs(10),
             "{name}: {:?}",
@@ -76,7 +75,7 @@ fn long_equations_are_written_in_a_moment_and_less_than_a_megabyte() {
 }
 
 #[test]
-fn short_reports_are_written_out() {
+fn short_reports_have_no_shared_lines() {
     for name in [
         "pendulum",
         "double_pendulum",
@@ -90,7 +89,7 @@ fn short_reports_are_written_out() {
 }
 
 #[test]
-fn shared_lines_need_none_but_those_before_them() {
+fn shared_lines_use_only_lines_before_them() {
     for model in [lever_mass(), model(&chain_of_pendulums(12))] {
         let report = report(&model);
         let names: Vec<String> = report
@@ -118,7 +117,7 @@ fn shared_lines_need_none_but_those_before_them() {
 }
 
 #[test]
-fn shared_lines_take_no_name_of_the_specification() {
+fn shared_lines_avoid_names_of_the_specification() {
     let text = chain_of_pendulums(12)
         .replace("l = {", "s_3 = {")
         .replace("l*", "s_3*");
@@ -126,10 +125,10 @@ fn shared_lines_take_no_name_of_the_specification() {
     assert_eq!(report.shared[0].name.to_string(), "z_1");
 }
 
-/// The plain notation is the language of specifications. Definitions made of the printed lines
-/// give the mass matrix and the velocity terms that the program gives.
+// The plain notation is the language of specifications. Definitions of the printed lines must give the mass
+// matrix and the velocity terms of the program.
 #[test]
-fn what_is_printed_reads_back_as_the_same_equations() {
+fn printed_equations_read_back_as_the_same_equations() {
     let count = 10;
     let text = chain_of_pendulums(count);
     let chain = model(&text);
@@ -194,8 +193,8 @@ fn what_is_printed_reads_back_as_the_same_equations() {
     }
 }
 
-/// Braces, environments and stretched parentheses are closed in order, no letter has two
-/// subscripts, and no command is unknown.
+// Braces, environments and stretched parentheses are closed in order, no letter has two subscripts, and every
+// command is known.
 #[test]
 fn latex_is_well_formed_for_every_specification() {
     for (name, model) in specifications() {
@@ -210,7 +209,7 @@ fn latex_is_well_formed_for_every_specification() {
     assert!(check_latex("sum_i(a)*b").is_err());
 }
 
-/// The commands of the document and of its formulas, of LaTeX itself or of amsmath.
+/// Commands of the document and of its formulas, from LaTeX itself or from amsmath.
 const COMMANDS: &str = "documentclass usepackage setlength parindent parskip emergencystretch raggedright everypar \
     everymath hangindent displaystyle frac tfrac sqrt dot ddot left right bigl bigr big \
     sum int varphi xi beta text mathrm mathsf operatorname cdot dots delta le sin cos tan sinh cosh tanh ln min max \
@@ -224,7 +223,7 @@ fn check_latex(text: &str) -> Result<(), String> {
         Some(found) if found == expected => Ok(()),
         found => Err(format!("{expected} is closed, {found:?} is open")),
     };
-    // Whether what stands before has a subscript, or a superscript, already.
+    // True for each base that already has a subscript, or a superscript.
     let mut scripts: Vec<(bool, bool)> = vec![(false, false)];
     let mut is_script = false;
     while let Some(c) = rest.chars().next() {
@@ -276,7 +275,7 @@ fn check_latex(text: &str) -> Result<(), String> {
                     return Err(format!("two of {c} before {}", &rest[..rest.len().min(40)]));
                 }
                 is_script = rest.starts_with('{');
-                // A letter as a script is no base of further ones.
+                // A letter in a script cannot have scripts.
                 if let Some(letter) = rest.chars().next().filter(|c| c.is_alphanumeric()) {
                     rest = &rest[letter.len_utf8()..];
                 }
@@ -293,7 +292,7 @@ fn check_latex(text: &str) -> Result<(), String> {
 }
 
 #[test]
-fn latex_sets_accelerations_and_piecewise_functions() {
+fn latex_contains_accelerations_and_piecewise_functions() {
     let latex = report(&shipped("planetary_arm")).latex();
     for part in [
         "% Needs the package amsmath",

@@ -1,12 +1,12 @@
-//! How the derivation and the emitted source grow: not with the order, and within bounds
-//! for large but legitimate models.
+//! Growth of the derivation and of the emitted source: independent of the order, and bounded for large
+//! models.
 
 use std::fmt::Write;
 use std::time::{Duration, Instant};
 
 use crate::support::{accelerations, emitted, equations, evaluator, model, shipped};
 
-/// Statements outside the tables.
+/// Counts the statements outside the tables.
 fn statements(source: &str) -> usize {
     source
         .lines()
@@ -15,7 +15,7 @@ fn statements(source: &str) -> usize {
 }
 
 #[test]
-fn the_derivation_and_the_statements_do_not_grow_with_the_order() {
+fn derivation_and_statements_do_not_grow_with_the_order() {
     for name in ["planetary_arm", "hub_beam_tip_mass"] {
         let model = shipped(name);
         assert_eq!(
@@ -24,12 +24,12 @@ fn the_derivation_and_the_statements_do_not_grow_with_the_order() {
             "{name}"
         );
         let (small, large) = (emitted(&model, 4), emitted(&model, 128));
-        // From nine modes on sums call another function than below; of an odd count the last
-        // number is copied by itself.
+        // From nine modes on, sums call another function; with an odd count the last number is copied
+        // separately.
         let statements_of_ten = statements(&emitted(&model, 10));
         assert_eq!(statements_of_ten, statements(&large), "{name}");
         assert!(statements(&small).abs_diff(statements_of_ten) < 5, "{name}");
-        // Six tables or so of 124 more numbers of 20 characters, and the names of the state.
+        // About six tables with 124 more numbers of 20 characters, and the names of the states.
         assert!(
             large.len() < small.len() + 40_000,
             "{name}: {} and {}",
@@ -39,9 +39,9 @@ fn the_derivation_and_the_statements_do_not_grow_with_the_order() {
     }
 }
 
-/// A chain of masses: the mass matrix is diagonal and must stay so.
+// The mass matrix of a chain of masses is diagonal and must remain so.
 #[test]
-fn a_chain_of_sixty_masses() {
+fn chain_of_sixty_masses_is_derived_in_seconds() {
     let count = 60;
     let mut text = String::from(
         "[model]\nname = \"chain\"\ntitle = \"A chain\"\n[parameters]\n\
@@ -55,7 +55,7 @@ fn a_chain_of_sixty_masses() {
     let start = Instant::now();
     let model = model(&text);
     let source = emitted(&model, 0);
-    // Measured: see the limit; a derivation that is cubic in the chain takes minutes.
+    // A derivation with cubic growth in the chain takes minutes.
     assert!(
         start.elapsed() < Duration::from_secs(10),
         "{:?}",
@@ -76,9 +76,9 @@ fn a_chain_of_sixty_masses() {
     );
 }
 
-/// A pendulum of twelve links: a full mass matrix that depends on the state.
+// The mass matrix is full and depends on the state.
 #[test]
-fn a_pendulum_of_twelve_links() {
+fn pendulum_of_twelve_links_is_derived_in_seconds() {
     let count = 12;
     let mut text = String::from(
         "[model]\nname = \"links\"\ntitle = \"Links\"\n[parameters]\nm = { value = 0.3, unit = \"kg\" }\n\
@@ -113,13 +113,12 @@ fn a_pendulum_of_twelve_links() {
         statements(&source),
         start.elapsed()
     );
-    // Hanging still it stays so; turned as a whole by a small angle the top link is not
-    // disturbed by the others: a_0'' = -g/l sin(a_0) for all links in line.
+    // At rest in the lowest position, the pendulum remains at rest.
     let still = accelerations(&mut evaluator(&model, 0), &vec![0.0; 2 * count]);
     assert!(still.iter().all(|a| a.abs() < 1e-12), "{still:?}");
 }
 
-/// A product of two hundred sums stays a product.
+// A product of 149 sums is not expanded.
 #[test]
 fn deep_products_stay_small() {
     let factors: Vec<String> = (1..150).map(|i| format!("(1 + x/{i}00)")).collect();
@@ -136,7 +135,7 @@ fn deep_products_stay_small() {
         "{:?}",
         start.elapsed()
     );
-    // A number is written with the type it is converted to.
+    // Each number is written with the conversion of its type.
     let length = source.replace("T::number(", "(").len();
     assert!(length < 200_000, "{length}");
     let (x, rate) = (0.3, 0.7);
@@ -149,9 +148,9 @@ fn deep_products_stay_small() {
     );
 }
 
-/// High powers of the position are integrated with the weights at the nodes.
+// High powers of the position are integrated with the weights at the nodes.
 #[test]
-fn nested_powers_of_the_position_take_no_time() {
+fn nested_powers_of_the_position_are_fast() {
     let nested = (0..6).fold("x/l".to_owned(), |inner, _| format!("({inner})^8"));
     let text = format!(
         "[model]\nname = \"nested\"\ntitle = \"Nested\"\n[parameters]\nmu = {{ value = 1, unit = \"kg/m\" }}\n\

@@ -1,6 +1,5 @@
-//! Accelerations of mass matrices whose structure was once solved wrongly or not at all,
-//! against elimination with pivoting of the dense matrix; and named coefficients against
-//! differences of the accelerations.
+//! Accelerations for mass matrices whose structure was once solved incorrectly, compared with pivoted
+//! elimination of the dense matrix; named coefficients compared with differences of the accelerations.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 
@@ -45,7 +44,7 @@ bending = "1/2*integral(B*diff(w, x, 2)^2, w)"
 
 const DISTRIBUTED: &str = "1/2*integral(mu*(x*dot(theta) + dot(w))^2, w)";
 
-/// M a - (f - c) at a state, relative to the largest product in each row.
+/// Returns M a - (f - c) at a state, relative to the largest product in each row.
 fn residual(evaluator: &mut Evaluator, state: &[f64]) -> f64 {
     let size = state.len() / 2;
     let point = Point {
@@ -67,7 +66,7 @@ fn residual(evaluator: &mut Evaluator, state: &[f64]) -> f64 {
                 .fold(right.abs(), |scale, p| scale.max(p.abs()));
             (products.iter().sum::<f64>() - right).abs() / scale
         })
-        // f64::max would let a NaN pass.
+        // f64::max would ignore a NaN.
         .fold(
             0.0,
             |worst, value| if value <= worst { worst } else { value },
@@ -95,10 +94,10 @@ fn solves(kinetic: &str, basis: &str, orders: &[usize]) {
     }
 }
 
-/// Two points of the beam move the mass: their weights are not diagonal, and the first
-/// minor of I + C G is negative at order 2 although M is positive definite.
+// Two points of the beam move the mass: their weights are not diagonal, and the first minor of I + C G is
+// negative at order 2 although M is positive definite.
 #[test]
-fn a_mass_on_a_lever_between_two_points() {
+fn mass_on_a_lever_between_two_points_is_solved() {
     for lever in [
         "1/2*M*(at(dot(w), l) + n*at(dot(w), l/2))^2",
         "1/2*M*(cos(theta)*at(dot(w), l) + n*sin(theta)*at(dot(w), l/2))^2",
@@ -112,9 +111,9 @@ fn a_mass_on_a_lever_between_two_points() {
     }
 }
 
-/// More interfaces than modes: some are combinations of the others.
+// With more interfaces than modes, some are combinations of the others.
 #[test]
-fn more_interfaces_than_modes() {
+fn more_interfaces_than_modes_are_solved() {
     let points = "1/2*M*(at(dot(w), l) + n*at(dot(w), l/2) - n*at(dot(w), l/3) + l*at(diff(dot(w), x, 1), l))^2";
     solves(
         &format!("{DISTRIBUTED} + {points}"),
@@ -123,9 +122,9 @@ fn more_interfaces_than_modes() {
     );
 }
 
-/// The only inertia of the mode is that of the mass.
+// The inertia of the mode is only that of the mass.
 #[test]
-fn a_beam_without_mass() {
+fn massless_beam_with_tip_mass_is_solved() {
     for tip in ["at(dot(w), l)", "sum(i, w, dot(q[i]))"] {
         solves(
             &format!("1/2*M*(l*dot(theta)/2 + {tip})^2"),
@@ -135,9 +134,9 @@ fn a_beam_without_mass() {
     }
 }
 
-/// The momentum of every mode is the same number.
+// The momentum of every mode is the same number.
 #[test]
-fn a_mass_that_moves_with_the_sum_of_the_modes() {
+fn mass_that_moves_with_the_sum_of_the_modes_is_solved() {
     for basis in ["clamped_free", "clamped_free_printed"] {
         let sum = "1/2*M*(l*dot(theta)/9 + sum(i, w, dot(q[i])))^2";
         solves(&format!("{DISTRIBUTED} + {sum}"), basis, &[1, 2, 3]);
@@ -145,7 +144,7 @@ fn a_mass_that_moves_with_the_sum_of_the_modes() {
 }
 
 #[test]
-fn two_modes_without_own_inertia_are_refused() {
+fn two_modes_without_separate_inertia_are_rejected() {
     let model = model(&beam(
         "1/2*M*(l*dot(theta)/2 + at(dot(w), l))^2",
         "clamped_free",
@@ -153,11 +152,11 @@ fn two_modes_without_own_inertia_are_refused() {
     assert!(!evaluator(&model, 2).pivots_are_positive());
 }
 
-/// a_1q, a_3q and a_qq of the arm, the factors of q in the accelerations, are what a
-/// difference of two evaluations gives, in either basis. The meshes are open and all is at
-/// rest, so the accelerations are linear in q and only rounding is left.
+// a_1q, a_3q and a_qq of the arm, the factors of q in the accelerations, must equal the difference of two
+// evaluations, in either basis. With open meshes at rest the accelerations are linear in q, so only rounding
+// errors remain.
 #[test]
-fn coefficients_of_the_modes_are_slopes_of_the_accelerations() {
+fn modal_coefficients_match_slopes_of_the_accelerations() {
     for basis in ["clamped_free", "clamped_free_printed"] {
         let arm = shipped("planetary_arm");
         let text = arm

@@ -1,4 +1,4 @@
-//! Specifications as text, derived variants, and `rustc`. Nothing is checked here.
+//! Specifications as text, derived variants, and `rustc`, for the tests.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ use eomgen_codegen::variant::Variant;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::Source;
 
-/// A specification given as text, checked.
+/// Checks a specification given as text.
 pub fn model(text: &str) -> Model {
     match eomgen_model_spec::check(Source::new("test.toml", text)) {
         Ok(checked) => checked.model,
@@ -22,23 +22,23 @@ pub fn model(text: &str) -> Model {
     }
 }
 
-/// A shipped specification, checked.
+/// Loads a shipped specification.
 pub fn shipped(name: &str) -> Model {
     let text = std::fs::read_to_string(models().join(format!("{name}.toml"))).unwrap();
     model(&text)
 }
 
-/// The folder of the shipped specifications.
+/// Returns the folder of the shipped specifications.
 pub fn models() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../model-spec/models")
 }
 
-/// The equations of a model with every field at one order.
+/// Derives the equations of a model with every field at one order.
 pub fn equations(model: &Model, order: usize) -> Equations {
     derive(model, &vec![order; model.fields.len()]).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The program of a model with every field at one order.
+/// Derives the program of a model with every field at one order.
 pub fn program(model: &Model, order: usize) -> Program {
     lower(
         model,
@@ -47,17 +47,17 @@ pub fn program(model: &Model, order: usize) -> Program {
     )
 }
 
-/// The evaluator of a model with every field at one order.
+/// Derives the evaluator of a model with every field at one order.
 pub fn evaluator(model: &Model, order: usize) -> Evaluator {
     Evaluator::new(program(model, order))
 }
 
-/// The emitted crate of a model with every field at one order.
+/// Emits the crate of a model with every field at one order.
 pub fn emitted(model: &Model, order: usize) -> String {
     emit(&program(model, order), Packaging::Crate).unwrap()
 }
 
-/// The program of a model with every field at one order and everything that can be requested.
+/// Derives the program with every requestable output.
 pub fn program_with_all(model: &Model, order: usize) -> Program {
     let orders = vec![order; model.fields.len()];
     match Variant::derive_with(model, &orders, &Output::ALL) {
@@ -66,12 +66,12 @@ pub fn program_with_all(model: &Model, order: usize) -> Program {
     }
 }
 
-/// The emitted crate with everything that can be requested.
+/// Emits the crate with every requestable output.
 pub fn emitted_with_all(model: &Model, order: usize) -> String {
     emit(&program_with_all(model, order), Packaging::Crate).unwrap()
 }
 
-/// All observables at a state, `energy` and `power` last.
+/// Computes all observables at a state, with `energy` and `power` last.
 pub fn observables(evaluator: &mut Evaluator, t: f64, state: &[f64]) -> Vec<f64> {
     let mut values = vec![f64::NAN; evaluator.program().observables.len()];
     evaluator.observables(
@@ -85,7 +85,7 @@ pub fn observables(evaluator: &mut Evaluator, t: f64, state: &[f64]) -> Vec<f64>
     values
 }
 
-/// The accelerations at a state.
+/// Computes the accelerations at a state.
 pub fn accelerations(evaluator: &mut Evaluator, state: &[f64]) -> Vec<f64> {
     let mut rates = vec![f64::NAN; state.len()];
     evaluator.rates(
@@ -99,20 +99,20 @@ pub fn accelerations(evaluator: &mut Evaluator, state: &[f64]) -> Vec<f64> {
     rates.split_off(state.len() / 2)
 }
 
-/// A folder of its own below the tests' temporary folder.
+/// Creates a folder below the tests' temporary folder.
 pub fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     std::fs::create_dir_all(&folder).unwrap();
     folder
 }
 
-/// Compiles a source as a library by plain `rustc`, warnings denied.
+/// Compiles a source as a library by plain `rustc`; warnings are errors.
 pub fn compile(name: &str, source: &str, options: &[&str]) -> PathBuf {
     let compiler = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
     compile_by(Command::new(compiler), name, source, options)
 }
 
-/// The same by this compiler.
+/// Compiles a source as a library by `compiler`; warnings are errors.
 pub fn compile_by(mut compiler: Command, name: &str, source: &str, options: &[&str]) -> PathBuf {
     let folder = folder(name);
     let path = folder.join("lib.rs");
@@ -140,7 +140,7 @@ pub fn compile_by(mut compiler: Command, name: &str, source: &str, options: &[&s
     folder
 }
 
-/// A chain of pendulums `q_1 ..`, each hanging from the one before: a full mass matrix that
+/// Returns a chain of pendulums `q_1 ..`, each attached to the one before: its mass matrix is full and
 /// depends on the state.
 pub fn chain_of_pendulums(count: usize) -> String {
     let mut text = String::from(

@@ -1,15 +1,15 @@
-//! Random expressions as trees, and how a specification writes them.
+//! Random expressions as trees, and their text in a specification.
 
 use std::fmt::Write;
 
 use proptest::prelude::*;
 
-/// A tree as it is written.
+/// Expression tree.
 #[derive(Clone, Debug)]
 pub enum Tree {
-    /// x, y, z
+    /// One of x, y, z.
     Coordinate(usize),
-    /// a, b
+    /// One of a, b.
     Parameter(usize),
     Number(f64),
     Unary(&'static str, Box<Tree>),
@@ -19,12 +19,12 @@ pub enum Tree {
     Power(Box<Tree>, Box<Tree>),
 }
 
-/// The coordinates' names.
+/// Names of the coordinates.
 pub const COORDINATES: [&str; 3] = ["x", "y", "z"];
-/// The parameters' names and values.
+/// Names and values of the parameters.
 pub const PARAMETERS: [(&str, f64); 2] = [("a", 1.7), ("b", -0.6)];
 
-/// Trees of up to forty nodes.
+/// Generates trees of up to forty nodes.
 pub fn trees() -> impl Strategy<Value = Tree> {
     let leaf = prop_oneof![
         4 => (0..3_usize).prop_map(Tree::Coordinate),
@@ -52,7 +52,8 @@ pub fn trees() -> impl Strategy<Value = Tree> {
 }
 
 impl Tree {
-    /// Functions with a domain are applied to what lies in it: asin(u/(1 + abs(u))).
+    /// Writes the tree. Arguments of functions with a domain are transformed into it, for example asin(u/(2 +
+    /// abs(u))).
     pub fn write(&self, out: &mut String) {
         let written = |tree: &Self| {
             let mut text = String::new();

@@ -1,9 +1,9 @@
-//! Integrands that need quadrature at run time or at preparation, against a composite
-//! rule over shapes evaluated by `at`.
+//! Integrands that need quadrature at run time or during preparation, compared with a composite rule over
+//! shapes evaluated by `at`.
 
 use crate::support::{evaluator, model, observables};
 
-/// An observable `found` and the deflection, slope and curvature at points to integrate.
+/// Returns a model with the observable `found`, and deflections and slopes at the points of the rule.
 fn spec(integrand: &str) -> String {
     let samples: String = (0..=POINTS)
         .map(|k| {
@@ -72,7 +72,7 @@ fn check(integrand: &str, function: impl Fn(f64, f64, f64) -> f64) {
 }
 
 #[test]
-fn integrands_of_every_shape() {
+fn integrands_of_every_form_match_composite_rule() {
     check("w/l^2", |_, w, _| w / L.powi(2));
     check("x/l^2", |x, _, _| x / L.powi(2));
     check("x^2*w/l^4", |x, w, _| x * x * w / L.powi(4));
@@ -99,18 +99,18 @@ fn integrands_of_every_shape() {
     check("1/l", |_, _, _| 1.0 / L);
 }
 
-/// A power too high for a table of its own, in closed form.
+// A power without a table, in closed form.
 #[test]
-fn high_powers_of_the_position() {
+fn high_powers_of_the_position_match_closed_form() {
     let model = model(&spec("(x/l)^40/l"));
     let found = observables(&mut evaluator(&model, 3), 0.0, &[0.0; 6])[0];
     let expected = (1.0 - (A / L).powi(41)) / 41.0;
     assert!((found / expected - 1.0).abs() < 1e-13, "{found} {expected}");
 }
 
-/// What does not vary along the field may be any expression, also as a divisor in `at`.
+// Factors that are constant along the field can be any expression, also as a divisor in `at`.
 #[test]
-fn at_divides_by_sums_that_do_not_vary() {
+fn at_divides_by_constant_sums() {
     let text = spec("1/l").replace(
         "at(w, a + (l - a)*7/400)",
         "at(2*w/(1 + (l + a)/(a + l)), a + (l - a)*7/400)",
