@@ -1,9 +1,8 @@
-//! Quantities given beside a specification, as `NAME=VALUE` of an option: read as the specification reads
-//! its own.
+//! Quantities from options, as `NAME=VALUE`, with the syntax of a specification.
 //!
-//! A plain number is in the unit of what is set. Any other value is an expression of parameters and
-//! constants, in SI and of the right unit, as `pi/3` or `2*l`; or it has a unit of its own behind it, as
-//! `30 deg` or `2*sqrt(2) mm`.
+//! A plain number is in the unit of the quantity. Any other value is an expression of
+//! parameters and constants in SI, with the right unit, for example `pi/3` or `2*l`; or it ends
+//! with a unit, for example `30 deg` or `2*sqrt(2) mm`.
 
 mod quantity_reader;
 mod settings;
@@ -14,7 +13,7 @@ use crate::span::Span;
 
 pub use quantity_reader::QuantityReader;
 
-/// The parts of `NAME=VALUE`, with their places.
+/// Parts of `NAME=VALUE`, with their positions.
 #[derive(Clone, Debug)]
 pub struct Assignment {
     source: Source,
@@ -23,10 +22,11 @@ pub struct Assignment {
 }
 
 impl Assignment {
-    /// Splits the text of an option; `option` stands for the file in messages, as `--set` does.
+    /// Splits the text of an option. `option`, for example `--set`, replaces the file name in
+    /// messages.
     ///
     /// # Errors
-    /// There is no `=`, or nothing beside it.
+    /// No `=`, or an empty name or value.
     pub fn split(option: &str, text: &str) -> Result<Self, Diagnostics> {
         let source = Source::new(option, text);
         let trimmed = |start: usize, end: usize| {
@@ -46,24 +46,24 @@ impl Assignment {
             _ => {
                 let message = format!("{option} {text}: expected NAME=VALUE");
                 let wrong = Diagnostic::error(message).at(Span::new(0, text.len()), "");
-                let help = "VALUE is a number, an expression of parameters, or one with a unit: k=2*k_0, \
+                let help = "give a number, an expression of parameters, or an expression with a unit: k=2*k_0, \
                             theta=pi/3, theta=\"30 deg\"";
                 Err(Diagnostics::one(source, wrong.help(help)))
             }
         }
     }
 
-    /// What is set.
+    /// Returns the name.
     pub fn name(&self) -> &str {
         &self.source.text[self.name.start..self.name.end]
     }
 
-    /// The whole text.
+    /// Returns the whole text.
     pub fn text(&self) -> &str {
         &self.source.text
     }
 
-    /// The finding that the name is wrong.
+    /// Returns the finding that the name is wrong.
     pub fn refuse_name(&self, message: String, help: Option<String>) -> Diagnostics {
         let wrong = Diagnostic::error(message).at(self.name, "").help_if(help);
         Diagnostics::one(self.source.clone(), wrong)
@@ -119,7 +119,7 @@ kept = "a + d/l"
     }
 
     #[test]
-    fn values_are_numbers_expressions_or_have_a_unit() {
+    fn numbers_expressions_and_units_are_read() {
         use std::f64::consts::PI;
         for (text, unit, right) in [
             ("theta=0.5", "rad", 0.5),
@@ -151,7 +151,7 @@ kept = "a + d/l"
     }
 
     #[test]
-    fn wrong_values_are_refused_with_their_place() {
+    fn wrong_values_are_rejected_with_their_position() {
         for (text, unit, parts) in [
             ("theta", "rad", &["expected NAME=VALUE"][..]),
             ("theta=", "rad", &["expected NAME=VALUE"]),
@@ -172,7 +172,7 @@ kept = "a + d/l"
             (
                 "x=2*l mm",
                 "m",
-                &["--at:1:3", "a second unit", "leave the unit out"],
+                &["--at:1:3", "a second unit", "remove the unit"],
             ),
             ("l=1/3", "mm", &["--at:1:3", "1/3 mm"]),
             ("x=nan", "m", &["finite"]),
@@ -192,7 +192,7 @@ kept = "a + d/l"
     }
 
     #[test]
-    fn settings_see_those_before_them() {
+    fn settings_use_earlier_settings() {
         let model = model();
         let given = ["l=1 m", "m=2*m", "d=l/4", "l=d"].map(|text| Assignment::split("--set", text));
         let given = given.map(|given| given.expect("an assignment"));

@@ -1,4 +1,4 @@
-//! Values of assignments, read by the names and parameter values of a model.
+//! Reads values of assignments, with the names and parameter values of a model.
 
 use super::Assignment;
 use crate::ast::{Syntax, SyntaxKind};
@@ -16,7 +16,7 @@ use crate::space;
 use crate::span::Span;
 use crate::unit::Unit;
 
-/// Reads quantities by the names and parameter values of a model.
+/// Reader of quantities, with the names and parameter values of a model.
 pub struct QuantityReader<'m> {
     model: &'m Model,
     names: Names,
@@ -24,10 +24,10 @@ pub struct QuantityReader<'m> {
 }
 
 impl<'m> QuantityReader<'m> {
-    /// A reader at the parameter values of the model.
+    /// Creates a reader at the present parameter values of the model.
     ///
     /// # Errors
-    /// As [`crate::check`], of a model that was changed by hand.
+    /// Those of [`crate::check`], for a model that was changed by hand.
     pub fn new(model: &'m Model) -> Result<Self, Diagnostics> {
         let mut document = document::read(&model.source)?;
         space::expand(&mut document, &model.source)?;
@@ -43,17 +43,17 @@ impl<'m> QuantityReader<'m> {
         }
     }
 
-    /// The value of an assignment, in the unit of what it sets.
+    /// Returns the value of an assignment, in the unit of the quantity.
     ///
     /// # Errors
-    /// What is no expression, a name that is not known, a unit that does not fit, a value that is not finite;
-    /// each with its place in the option.
+    /// An invalid expression, an unknown name, a unit that does not match, or a value that is not
+    /// finite, with the position in the option.
     pub fn read(&self, given: &Assignment, unit: &Unit) -> Result<f64, Diagnostics> {
         let value = self.value(given, unit);
         let finite = value.and_then(|value| match value.is_finite() {
             true => Ok(value),
             false => {
-                let message = format!("{}: `{}` comes out as {value}", given.text(), given.name());
+                let message = format!("{}: `{}` evaluates to {value}", given.text(), given.name());
                 Err(Diagnostic::error(message)
                     .at(given.value, "")
                     .help("expected a finite number"))
@@ -96,7 +96,7 @@ impl<'m> QuantityReader<'m> {
         inference.infer(value)
     }
 
-    /// A number with a unit of its own.
+    /// Converts a number with an explicit unit.
     fn in_unit(
         &self,
         given: &Assignment,
@@ -107,13 +107,12 @@ impl<'m> QuantityReader<'m> {
         unit: &Unit,
     ) -> Result<f64, Diagnostic> {
         if let Some(dimension) = dimension.filter(|dimension| !dimension.is_none()) {
-            return Err(Diagnostic::error(format!(
-                "this value is {} without a unit",
-                Words(dimension)
-            ))
-            .at(place, Words(dimension).to_string())
-            .also(written_place, "a second unit")
-            .help("leave the unit out: parameters have theirs"));
+            return Err(
+                Diagnostic::error(format!("this value is already {}", Words(dimension)))
+                    .at(place, Words(dimension).to_string())
+                    .also(written_place, "a second unit")
+                    .help("remove the unit: parameters have units"),
+            );
         }
         let own = Unit::parse(written).map_err(|error| {
             Diagnostic::error(error.message)
@@ -124,7 +123,7 @@ impl<'m> QuantityReader<'m> {
             let message = format!("`{}` is in {unit}, not in {own}", given.name());
             return Err(Diagnostic::error(message)
                 .at(written_place, "another kind of quantity")
-                .help(format!("give a unit such as {unit}")));
+                .help(format!("give a unit of the same dimension as {unit}")));
         }
         Ok(match own == *unit {
             true => number,
@@ -133,7 +132,7 @@ impl<'m> QuantityReader<'m> {
     }
 }
 
-/// An expression without a unit behind it, which is in SI.
+/// Converts an expression without an explicit unit, which is in SI.
 fn in_si(
     given: &Assignment,
     number: f64,
@@ -153,14 +152,11 @@ fn in_si(
             );
             let help = match own.is_none() {
                 true => format!(
-                    "write the unit behind it: {}=\"{} {unit}\"",
+                    "write the unit after it: {}=\"{} {unit}\"",
                     given.name(),
                     given.value()
                 ),
-                false => format!(
-                    "parameters have their units; expected {}",
-                    Words(unit.dimension)
-                ),
+                false => format!("parameters have units; expected {}", Words(unit.dimension)),
             };
             Err(Diagnostic::error(message)
                 .at(syntax.span, Words(own).to_string())
@@ -169,7 +165,8 @@ fn in_si(
     }
 }
 
-/// Where a unit begins behind an expression: at an operand that follows another without an operator.
+/// Returns the index of the first token of a unit: an operand that follows another without an
+/// operator.
 fn unit_start(tokens: &[Token]) -> usize {
     let ends = |kind: &TokenKind| {
         matches!(

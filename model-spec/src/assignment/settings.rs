@@ -1,4 +1,4 @@
-//! Parameters set by assignments, and the units of names that can be set.
+//! Reads assignments to parameters, and returns the units of states.
 
 use super::Assignment;
 use super::quantity_reader::QuantityReader;
@@ -7,11 +7,11 @@ use crate::model::{Model, ParameterValue};
 use crate::unit::Unit;
 
 impl Model {
-    /// The values of assignments to parameters, one after the other, in the units that the specification
-    /// declares; an expression sees what was set before it.
+    /// Returns the values of assignments to parameters, in the declared units. Each expression uses
+    /// the values set before it.
     ///
     /// # Errors
-    /// A name that no parameter has, and as [`QuantityReader::read`].
+    /// An unknown parameter, and errors of [`QuantityReader::read`].
     pub fn read_settings(&self, given: &[Assignment]) -> Result<Vec<(String, f64)>, Diagnostics> {
         let mut set = Vec::with_capacity(given.len());
         let mut model = self.clone();
@@ -29,7 +29,7 @@ impl Model {
         Ok(set)
     }
 
-    /// The units of the states at these orders, in their order: coordinates and modes, their rates, states
+    /// Returns the units of the states at these orders: coordinates and modes, their rates, states
     /// of first order.
     pub fn state_units(&self, orders: &[usize]) -> Vec<Unit> {
         let mut units: Vec<Unit> = self

@@ -1,5 +1,4 @@
-//! Adding one entry at the end of a section, the section itself at the end of the file
-//! where it is missing.
+//! Appends an entry to a section, and the section to the file if it is missing.
 
 use toml_edit::{DocumentMut, InlineTable, Item, Table, Value};
 
@@ -7,7 +6,7 @@ use super::{
     EditError, NewCoordinate, NewForce, NewParameter, NewState, NewTerm, NewValue, Section,
 };
 
-/// Adds a term: an expression alone where there is nothing more to say.
+/// Adds a term, as a bare expression if it has no description and no origin.
 pub fn term(document: &mut DocumentMut, new: &NewTerm) -> Result<(), EditError> {
     let value = if new.doc.is_empty() && new.source.is_empty() {
         Value::from(new.value.as_str())
@@ -81,10 +80,10 @@ fn insert(
     Ok(())
 }
 
-/// Adds an empty section behind all others, parted from them by an empty line.
+/// Appends an empty section after an empty line.
 fn add_section(document: &mut DocumentMut, section: &str) {
     let mut table = Table::new();
-    // What stands behind the last entry, such as a closing comment, stays in front.
+    // Text after the last entry, such as a closing comment, stays in front of the new section.
     let trailing = document.trailing().as_str().unwrap_or_default().to_owned();
     document.set_trailing("");
     let separator = if trailing.is_empty() || trailing.ends_with('\n') {
@@ -98,7 +97,7 @@ fn add_section(document: &mut DocumentMut, section: &str) {
     document.insert(section, Item::Table(table));
 }
 
-/// The table with those of the texts that are not empty.
+/// Adds the texts that are not empty to a table.
 fn with_texts(mut table: InlineTable, texts: &[(&str, &String)]) -> Value {
     for (key, text) in texts {
         if !text.is_empty() {
@@ -108,7 +107,7 @@ fn with_texts(mut table: InlineTable, texts: &[(&str, &String)]) -> Value {
     table.into()
 }
 
-/// A number in the shortest form that reads back as itself.
+/// Formats a number in the shortest form that parses to the same value.
 fn new_value(name: &str, value: &NewValue) -> Result<Value, EditError> {
     match value {
         NewValue::Expression(text) => Ok(Value::from(text.as_str())),

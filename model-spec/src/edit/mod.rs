@@ -1,6 +1,6 @@
-//! Changes of a specification made by program: terms, parameters, coordinates and states added,
-//! expressions replaced inside terms, numbers set. Comments, order and layout of everything else stay as
-//! they are. What to change is decided elsewhere; the result is checked here.
+//! Edits a specification: adds terms, parameters, coordinates and states, replaces expressions
+//! in terms, sets numbers. Comments, order and layout of the rest are kept. The result is
+//! checked.
 
 mod insert;
 mod prescribe;
@@ -13,7 +13,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics, quoted};
 use crate::load::check;
 use crate::source::Source;
 
-/// A section of named expressions.
+/// Section of named expressions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Section {
     /// `[definitions]`
@@ -28,12 +28,12 @@ pub enum Section {
     Forces,
     /// `[observables]`
     Observables,
-    /// `[states]`, by their rates
+    /// `[states]`, with their rates as expressions
     States,
 }
 
 impl Section {
-    /// Its key in the file.
+    /// Returns the key in the file.
     pub fn name(self) -> &'static str {
         match self {
             Self::Definitions => "definitions",
@@ -46,7 +46,7 @@ impl Section {
         }
     }
 
-    /// The key of an entry's expression, where the entry is a table.
+    /// Returns the key of the expression in an entry that is a table.
     fn expression_key(self) -> &'static str {
         match self {
             Self::States => "rate",
@@ -55,16 +55,16 @@ impl Section {
     }
 }
 
-/// A number or an expression.
+/// Number or expression.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NewValue {
-    /// A finite number in the declared unit.
+    /// Finite number in the declared unit.
     Number(f64),
-    /// An expression in SI.
+    /// Expression in SI.
     Expression(String),
 }
 
-/// One change. Empty texts (`doc`, `source`) are left out.
+/// One edit. Empty texts (`doc`, `source`) are omitted.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Edit {
     /// Adds a term to an energy, the dissipation, the definitions or the observables.
@@ -79,174 +79,174 @@ pub enum Edit {
     AddForce(NewForce),
     /// Replaces an expression inside terms.
     Substitute(Substitution),
-    /// Sets the number of a parameter that is there.
+    /// Sets the value of an existing parameter to a number.
     SetParameter(SetParameter),
-    /// Says what a sensor does to its channel.
+    /// Sets gain, bias and delay of a sensor.
     SetSensor(SetSensor),
-    /// Puts an expression in the place of an input.
+    /// Replaces an input by an expression.
     PrescribeInput(PrescribeInput),
 }
 
-/// An input that follows an expression. One of numbers and `t` alone gives the input in its unit, with
-/// `t` in s; in any other the units have to agree, as everywhere in a specification.
+/// Input given by an expression. If the expression contains only numbers and `t`, it gives the
+/// input in its unit, with `t` in s. Otherwise the units have to match.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PrescribeInput {
-    /// Its name; it is a definition afterwards.
+    /// Name of the input, then of the definition.
     pub name: String,
-    /// The expression.
+    /// Expression.
     pub value: String,
 }
 
-/// A parameter's new number, in its declared unit.
+/// New number of a parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SetParameter {
-    /// Its name.
+    /// Name of the parameter.
     pub name: String,
-    /// A finite number in the declared unit; it takes the place of an expression too.
+    /// Finite number in the declared unit; it also replaces an expression.
     pub value: f64,
-    /// Where the number comes from; if empty, what is said of that stays.
+    /// Origin of the number; if empty, the present origin remains.
     pub source: String,
 }
 
-/// What a sensor does: measured(t) = gain * quantity(t - delay) + bias.
+/// Model of a sensor: measured(t) = gain * quantity(t - delay) + bias.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SetSensor {
-    /// Its channel.
+    /// Name of the channel.
     pub channel: String,
-    /// What it measures.
+    /// Observable that the sensor measures.
     pub observable: String,
-    /// Dimensionless.
+    /// Gain, dimensionless.
     pub gain: f64,
-    /// In the channel's SI unit.
+    /// Bias in the channel's SI unit.
     pub bias: f64,
-    /// In s, negative where the channel is early.
+    /// Delay in s; negative for an early signal.
     pub delay: f64,
 }
 
-/// A term to be added.
+/// New term.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NewTerm {
-    /// Where; not `Forces` or `States`, which hold more than a value.
+    /// Section; not `Forces` or `States`, whose entries need more than a value.
     pub section: Section,
-    /// The term's name, not yet used in the section.
+    /// Name, not yet used in the section.
     pub name: String,
-    /// Its expression.
+    /// Expression.
     pub value: String,
-    /// What it is.
+    /// Description.
     pub doc: String,
-    /// Where it comes from.
+    /// Origin.
     pub source: String,
 }
 
-/// A parameter to be added.
+/// New parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NewParameter {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its value.
+    /// Value.
     pub value: NewValue,
-    /// Its unit.
+    /// Unit.
     pub unit: String,
-    /// What it is.
+    /// Description.
     pub doc: String,
-    /// Where its value comes from.
+    /// Origin of the value.
     pub source: String,
 }
 
-/// A coordinate to be added.
+/// New coordinate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NewCoordinate {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its unit, coherent SI.
+    /// Unit, coherent SI.
     pub unit: String,
-    /// What it is.
+    /// Description.
     pub doc: String,
-    /// Its initial value, 0 if absent.
+    /// Initial value; 0 if absent.
     pub initial: Option<NewValue>,
 }
 
-/// A state of first order to be added; it begins at 0.
+/// New state of first order, with the initial value 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NewState {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its unit, coherent SI.
+    /// Unit, coherent SI.
     pub unit: String,
-    /// Its rate, in its unit per s.
+    /// Rate, in the state's unit per s.
     pub rate: String,
-    /// What it is.
+    /// Description.
     pub doc: String,
 }
 
-/// A force to be added.
+/// New force.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NewForce {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// What it works on.
+    /// Coordinate or displacement that the force acts on.
     pub on: String,
-    /// Its value.
+    /// Expression.
     pub value: String,
-    /// What it is.
+    /// Description.
     pub doc: String,
-    /// Where it comes from.
+    /// Origin.
     pub source: String,
 }
 
-/// An expression to be replaced by another wherever it occurs inside the values of named
-/// terms; each of the terms must hold it. Expressions are compared as syntax trees: spaces
-/// and superfluous brackets do not matter, the order of operands does.
+/// Replacement of an expression in the values of named terms; each of the terms must contain
+/// it. Expressions are compared as syntax trees: spaces and superfluous brackets do not matter,
+/// the order of operands does.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Substitution {
-    /// Where the terms are.
+    /// Section of the terms.
     pub section: Section,
-    /// Their names.
+    /// Names of the terms.
     pub terms: Vec<String>,
-    /// What is to be replaced.
+    /// Expression to be replaced.
     pub find: String,
-    /// What takes its place.
+    /// Replacement.
     pub replace: String,
 }
 
-/// Why an edit could not be made.
+/// Error of an edit.
 #[derive(Clone, Debug)]
 pub enum EditError {
     /// The text is not TOML, or the edited text is not a valid specification.
     Invalid(Diagnostics),
-    /// The section has an entry of this name already.
+    /// The section has an entry of this name.
     Taken {
-        /// The section.
+        /// Section.
         section: String,
-        /// The name.
+        /// Name.
         name: String,
     },
     /// The section has no entry of this name.
     MissingTerm {
-        /// The section.
+        /// Section.
         section: String,
-        /// The name.
+        /// Name.
         name: String,
     },
-    /// The term does not hold the expression to be replaced.
+    /// The term does not contain the expression to be replaced.
     MissingExpression {
-        /// The term's section.
+        /// Section of the term.
         section: String,
-        /// The term.
+        /// Name of the term.
         name: String,
-        /// What was looked for.
+        /// Expression that was not found.
         find: String,
     },
-    /// An expression of the edit or of the term cannot be read.
+    /// An expression of the edit or of the term has a syntax error.
     Expression {
-        /// The expression.
+        /// Expression.
         text: String,
-        /// What is wrong with it, its places being bytes of the expression.
+        /// Finding, with positions as bytes of the expression.
         diagnostic: Box<Diagnostic>,
     },
     /// A value of the edit is not a finite number.
     NotFinite {
-        /// The name it was for.
+        /// Name of the entry.
         name: String,
     },
 }
@@ -255,15 +255,19 @@ impl std::fmt::Display for EditError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Invalid(diagnostics) => write!(f, "{diagnostics}"),
-            Self::Taken { section, name } => write!(f, "[{section}] has {} already", quoted(name)),
-            Self::MissingTerm { section, name } => write!(f, "[{section}] has no {}", quoted(name)),
+            Self::Taken { section, name } => {
+                write!(f, "[{section}] already contains {}", quoted(name))
+            }
+            Self::MissingTerm { section, name } => {
+                write!(f, "[{section}] does not contain {}", quoted(name))
+            }
             Self::MissingExpression {
                 section,
                 name,
                 find,
             } => write!(
                 f,
-                "{} of [{section}] does not hold {}",
+                "{} in [{section}] does not contain {}",
                 quoted(name),
                 quoted(find)
             ),
@@ -281,11 +285,11 @@ impl std::fmt::Display for EditError {
 
 impl std::error::Error for EditError {}
 
-/// The text of a specification after all edits, in order. The result passes
+/// Returns the text of a specification after all edits, in order. The result passes
 /// [`crate::check`].
 ///
 /// # Errors
-/// The first edit whose place is missing or taken; or all that is wrong with the result.
+/// The first edit with a missing or existing target; or all findings on the result.
 pub fn apply(source: &Source, edits: &[Edit]) -> Result<String, EditError> {
     let parsed: Result<DocumentMut, _> = source.text.parse();
     let Ok(mut document) = parsed else {
@@ -303,8 +307,9 @@ pub fn apply(source: &Source, edits: &[Edit]) -> Result<String, EditError> {
     Ok(text)
 }
 
-/// The edited text with the line ends and the byte order mark of the original, which
-/// TOML's writer drops. A file of mixed line ends gets plain ones.
+/// Restores the line ends and the byte order mark of the original, which the TOML writer drops.
+/// A file with mixed line ends gets `\
+/// `.
 fn restored(original: &str, edited: String) -> String {
     let lines = original.matches('\n').count();
     let text = if lines > 0 && original.matches("\r\n").count() == lines {

@@ -1,5 +1,4 @@
-//! An input prescribed by an expression: it becomes a definition of the same name, so that whatever
-//! used it goes on to.
+//! Replaces an input by a definition of the same name, so that all references remain valid.
 
 use toml_edit::{DocumentMut, Item};
 
@@ -16,8 +15,8 @@ pub fn prescribe(document: &mut DocumentMut, edit: &PrescribeInput) -> Result<()
     })?;
     let tree = syntax(&edit.value)?;
     let value = if is_of_numbers(&tree) {
-        // Numbers have no unit, and a specification insists on them: a second and a unit of the
-        // input, of the value 1, stand in the expression for what was left out.
+        // Numbers are dimensionless, and units are checked: parameters of value 1, a second and a
+        // unit of the input, supply the units.
         let (second, one) = (unused(document, "one_second"), unused(document, "one_unit"));
         let timed = replaced(&edit.value, "t", &format!("t/{second}"))?;
         if timed.is_some() {
@@ -31,7 +30,7 @@ pub fn prescribe(document: &mut DocumentMut, edit: &PrescribeInput) -> Result<()
     if !has_rates {
         return define(document, &edit.name, value);
     }
-    // Whatever its rates are, they are those of the time.
+    // The factor depends on the time, so that the definition has a rate.
     let value = if mentions_time(&tree) {
         value
     } else {
@@ -58,7 +57,7 @@ fn define(document: &mut DocumentMut, name: &str, value: String) -> Result<(), E
     term(document, &definition)
 }
 
-/// Whether a name stands somewhere in a document.
+/// Returns true if a document contains a name.
 fn is_named(document: &DocumentMut, name: &str) -> bool {
     let is_of_names = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let text = document.to_string();
@@ -72,7 +71,7 @@ fn mentions_time(tree: &Syntax) -> bool {
     mentions
 }
 
-/// Takes an input out of a document, and gives its unit and whether its rates are given.
+/// Removes an input from a document. Returns its unit, and true if its rates are given.
 fn remove(document: &mut DocumentMut, name: &str) -> Option<(String, bool)> {
     let inputs = document
         .get_mut("inputs")
@@ -89,7 +88,7 @@ fn remove(document: &mut DocumentMut, name: &str) -> Option<(String, bool)> {
     Some((unit, has_rates))
 }
 
-/// Whether there is nothing with a unit in an expression but the time.
+/// Returns true if an expression contains only numbers and the time.
 fn is_of_numbers(tree: &Syntax) -> bool {
     let mut of_numbers = true;
     tree.visit(&mut |part| {
@@ -102,7 +101,7 @@ fn is_of_numbers(tree: &Syntax) -> bool {
     of_numbers
 }
 
-/// A name that begins so and stands nowhere in a document.
+/// Returns a name with this prefix that the document does not contain.
 fn unused(document: &DocumentMut, name: &str) -> String {
     let text = document.to_string();
     let mut unused = name.to_owned();

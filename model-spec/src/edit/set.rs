@@ -1,11 +1,10 @@
-//! Setting what is there: a parameter's number and where it comes from, and what a sensor
-//! does to a channel.
+//! Sets the number and the origin of a parameter, or the model of a sensor.
 
 use toml_edit::{DocumentMut, Item, Table, Value};
 
 use super::{EditError, SetParameter, SetSensor};
 
-/// Sets a parameter's number, whatever stood there.
+/// Replaces the value of a parameter, a number or an expression, by a number.
 pub fn parameter(document: &mut DocumentMut, edit: &SetParameter) -> Result<(), EditError> {
     let entry = document
         .get_mut("parameters")
@@ -30,7 +29,7 @@ pub fn parameter(document: &mut DocumentMut, edit: &SetParameter) -> Result<(), 
     Ok(())
 }
 
-/// Sets what a sensor does, the whole of it.
+/// Sets gain, bias and delay of a sensor, and the observable.
 pub fn sensor(document: &mut DocumentMut, edit: &SetSensor) -> Result<(), EditError> {
     if document.get("sensors").is_none() {
         let mut sensors = Table::new();
@@ -61,7 +60,7 @@ pub fn sensor(document: &mut DocumentMut, edit: &SetSensor) -> Result<(), EditEr
     Ok(())
 }
 
-/// A number in the shortest form that reads back as itself.
+/// Formats a number in the shortest form that parses to the same value.
 fn number(name: &str, value: f64) -> Result<Value, EditError> {
     let written = format!("{value:?}").parse().ok();
     let finite = written.filter(|_| value.is_finite());
@@ -70,7 +69,7 @@ fn number(name: &str, value: f64) -> Result<Value, EditError> {
     })
 }
 
-/// Puts a value in the place of another, with the spaces around it.
+/// Replaces a value, and keeps the spaces around it.
 fn replace(place: Option<&mut Item>, mut value: Value) {
     if let Some(old) = place.and_then(Item::as_value_mut) {
         *value.decor_mut() = old.decor().clone();

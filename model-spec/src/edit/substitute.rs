@@ -1,5 +1,5 @@
-//! Replacing an expression inside a term: found by comparing syntax trees, replaced in the
-//! text, so that the rest of the term keeps its spelling.
+//! Replaces an expression in a term: compared as syntax trees, replaced in the text, so that
+//! the rest of the term is unchanged.
 
 use toml_edit::{DocumentMut, Item, Value};
 
@@ -9,7 +9,7 @@ use crate::lexer::tokens;
 use crate::parser::parse;
 use crate::span::Span;
 
-/// Replaces an expression in every term that is named.
+/// Replaces an expression in every named term.
 pub fn substitute(document: &mut DocumentMut, edit: &Substitution) -> Result<(), EditError> {
     let replacement = Replacement::new(&edit.find, &edit.replace)?;
     for term in &edit.terms {
@@ -18,22 +18,22 @@ pub fn substitute(document: &mut DocumentMut, edit: &Substitution) -> Result<(),
     Ok(())
 }
 
-/// An expression with every `find` in it replaced; none where there is none.
+/// Returns the text with every `find` replaced; `None` without an occurrence.
 pub fn replaced(text: &str, find: &str, replace: &str) -> Result<Option<String>, EditError> {
     Replacement::new(find, replace)?.replaced(text)
 }
 
-/// One expression to be replaced by another.
+/// Replacement of one expression by another.
 struct Replacement<'e> {
     find: &'e str,
     pattern: Syntax,
     replace: &'e str,
-    /// Whether the replacement needs brackets next to an operator.
+    /// True if the replacement needs brackets next to an operator.
     compound: bool,
 }
 
 impl<'e> Replacement<'e> {
-    /// Reads both expressions.
+    /// Parses both expressions.
     fn new(find: &'e str, replace: &'e str) -> Result<Self, EditError> {
         let replacement = syntax(replace)?;
         Ok(Self {
@@ -77,7 +77,7 @@ impl<'e> Replacement<'e> {
         Ok(())
     }
 
-    /// The text with every occurrence replaced; None where there is none.
+    /// Returns the text with every occurrence replaced; `None` without an occurrence.
     fn replaced(&self, text: &str) -> Result<Option<String>, EditError> {
         let tree = syntax(text)?;
         let mut places = Vec::new();
@@ -101,7 +101,7 @@ impl<'e> Replacement<'e> {
         Ok(Some(replaced))
     }
 
-    /// The places of the occurrences, each with whether it stands beside an operator.
+    /// Collects the spans of the occurrences; the flag is true next to an operator.
     fn places(&self, tree: &Syntax, beside_operator: bool, found: &mut Vec<(Span, bool)>) {
         if same(tree, &self.pattern) {
             found.push((tree.span, beside_operator));
@@ -127,7 +127,8 @@ impl<'e> Replacement<'e> {
     }
 }
 
-/// The expression of a term, under this key where the term is a table, and the value that holds it.
+/// Returns the value with the expression of a term, and its text. If the term is a table, `key`
+/// selects the value.
 fn expression_of<'i>(item: &'i mut Item, key: &str) -> Option<(&'i mut Value, String)> {
     let value = if item.is_table_like() {
         item.get_mut(key)?.as_value_mut()?
@@ -138,7 +139,7 @@ fn expression_of<'i>(item: &'i mut Item, key: &str) -> Option<(&'i mut Value, St
     Some((value, text))
 }
 
-/// The syntax tree of an expression.
+/// Parses an expression.
 pub fn syntax(text: &str) -> Result<Syntax, EditError> {
     let end = Span::new(text.len(), text.len());
     let parsed = tokens(text, Span::new).and_then(|tokens| parse(&tokens, end));
@@ -148,7 +149,7 @@ pub fn syntax(text: &str) -> Result<Syntax, EditError> {
     })
 }
 
-/// Whether two trees are the same but for their places.
+/// Returns true if two trees are equal up to positions.
 fn same(one: &Syntax, other: &Syntax) -> bool {
     match (&one.kind, &other.kind) {
         (SyntaxKind::Number(one), SyntaxKind::Number(other)) => one == other,

@@ -1,6 +1,6 @@
-//! Specifications that must not load: each file of `corpus/broken` has its message beside
-//! it. `EOMGEN_BLESS=1 cargo test -p eomgen-model-spec --test reader broken` writes the messages
-//! anew; read the difference before keeping it.
+//! Invalid specifications: each file of `corpus/broken` has its messages in a `.txt` file of
+//! the same name. `EOMGEN_BLESS=1 cargo test -p eomgen-model-spec --test reader broken`
+//! rewrites the messages; review the difference before you commit it.
 
 use std::path::{Path, PathBuf};
 
@@ -19,7 +19,7 @@ fn corpus() -> Vec<PathBuf> {
     paths
 }
 
-/// The mistakes of a text.
+/// Returns the findings of an invalid specification.
 fn refused(name: &str, text: &str) -> Diagnostics {
     let found = check(Source::new(name, text)).expect_err(name);
     assert!(!found.render(false).is_empty());
@@ -27,7 +27,7 @@ fn refused(name: &str, text: &str) -> Diagnostics {
 }
 
 #[test]
-fn each_broken_specification_has_its_message() {
+fn broken_specifications_have_the_recorded_messages() {
     let bless = std::env::var_os("EOMGEN_BLESS").is_some();
     let mut differing = Vec::new();
     for path in corpus() {
@@ -50,7 +50,7 @@ fn each_broken_specification_has_its_message() {
 }
 
 #[test]
-fn each_message_has_a_line_and_a_column() {
+fn messages_have_a_line_and_a_column() {
     for path in corpus() {
         let name = path
             .file_name()
@@ -72,7 +72,7 @@ fn each_message_has_a_line_and_a_column() {
 }
 
 #[test]
-fn ten_thousand_brackets_are_refused_at_once() {
+fn ten_thousand_brackets_are_rejected() {
     let brackets = "(".repeat(10_000);
     let text = format!(
         "[model]\nname = \"a\"\n[kinetic]\ndeep = \"{brackets}\"\n[coordinates]\nx = {{ unit = \"m\" }}\n"
@@ -90,7 +90,7 @@ fn ten_thousand_brackets_are_refused_at_once() {
 }
 
 #[test]
-fn a_file_of_ten_megabytes_is_not_read() {
+fn file_of_ten_megabytes_is_rejected() {
     let path = temporary("large.toml");
     std::fs::write(&path, vec![b'#'; 10 << 20]).expect("writable");
     let shown = load(&path).expect_err("too large").render(false);
@@ -102,7 +102,7 @@ fn a_file_of_ten_megabytes_is_not_read() {
 }
 
 #[test]
-fn of_a_full_megabyte_of_mistakes_20_are_listed() {
+fn a_megabyte_of_errors_lists_twenty() {
     let head =
         "[model]\nname = \"a\"\n[coordinates]\nx = { unit = \"m\" }\n[kinetic]\nk = \"dot(x)\"\n";
     let fill = |line: &dyn Fn(usize) -> String| {
@@ -135,7 +135,7 @@ fn long_chains_of_definitions_do_not_exhaust_the_stack() {
         text.push_str(&format!("d{index} = \"-d{}\"\n", index - 1));
     }
     let shown = refused("chain.toml", &text).render(false);
-    assert!(shown.contains("written out"), "{shown}");
+    assert!(shown.contains("after expansion"), "{shown}");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Edits made by program: what is asked for changes, everything else stays byte for byte.
+//! Edits by a program: only the edited text changes.
 
 use eomgen_model_spec::edit::{
     Edit, EditError, NewCoordinate, NewForce, NewParameter, NewState, NewTerm, NewValue, Section,
@@ -56,7 +56,8 @@ fn parameter() -> Edit {
     })
 }
 
-/// The lines of `edited` that `SPRING` does not have, all others being there in order.
+/// Returns the lines of `edited` that `SPRING` does not have; all other lines must match in
+/// order.
 fn added_lines(edited: &str) -> Vec<String> {
     let mut original = SPRING.lines().peekable();
     let mut added = Vec::new();
@@ -72,7 +73,7 @@ fn added_lines(edited: &str) -> Vec<String> {
 }
 
 #[test]
-fn additions_leave_every_line_as_it_is() {
+fn additions_keep_every_line() {
     let edited = apply(&source(), &[parameter(), force()]).expect("valid");
     let expected = [
         "T_c = { value = 8e-7, unit = \"N\", doc = 'dry \"friction\"' }",
@@ -119,7 +120,7 @@ fn terms_and_coordinates_are_added_to_their_sections() {
 }
 
 #[test]
-fn a_state_is_added_and_stands_in_the_place_of_an_input() {
+fn added_state_replaces_an_input() {
     let drive = "[inputs]\nu = { unit = \"N\" }\n\n[states]\nF = { unit = \"N\", rate = \"(u - F)/tau\" }\n\n\
                  [forces]\npull = { on = \"y\", value = \"F + u\" }\n";
     let tau = "tau = { value = 0.1, unit = \"s\" }\n\n[coordinates]";
@@ -155,7 +156,7 @@ fn a_state_is_added_and_stands_in_the_place_of_an_input() {
 }
 
 #[test]
-fn substitutions_change_the_matching_text_only() {
+fn substitution_changes_only_the_matching_text() {
     let substitute = |find, replace| {
         Edit::Substitute(Substitution {
             section: Section::Potential,
@@ -178,7 +179,7 @@ fn substitutions_change_the_matching_text_only() {
 }
 
 #[test]
-fn missing_anchors_are_errors_of_their_own() {
+fn missing_targets_have_specific_errors() {
     let substitute = |section, term, find| {
         Edit::Substitute(Substitution {
             section,
@@ -211,7 +212,7 @@ fn missing_anchors_are_errors_of_their_own() {
 }
 
 #[test]
-fn edits_that_make_no_model_are_refused() {
+fn edits_to_an_invalid_model_are_rejected() {
     let failed = |edits: &[Edit]| apply(&source(), edits).expect_err("no model");
     let taken = failed(&[parameter(), parameter()]);
     assert!(matches!(taken, EditError::Taken { .. }), "{taken}");
@@ -234,12 +235,12 @@ fn edits_that_make_no_model_are_refused() {
 }
 
 #[test]
-fn no_edits_give_the_same_bytes() {
+fn empty_list_of_edits_keeps_the_bytes() {
     assert_eq!(apply(&source(), &[]).expect("valid"), SPRING);
 }
 
 #[test]
-fn carriage_returns_and_byte_order_marks_survive() {
+fn line_ends_and_byte_order_mark_are_kept() {
     let windows = format!("\u{feff}{}", SPRING.replace('\n', "\r\n"));
     let source = Source::new("spring.toml", windows.as_str());
     assert_eq!(apply(&source, &[]).expect("valid"), windows);
@@ -250,7 +251,7 @@ fn carriage_returns_and_byte_order_marks_survive() {
 }
 
 #[test]
-fn a_range_stays_as_it_is_written() {
+fn range_keeps_its_layout() {
     let text = SPRING.replace(
         "y = { unit = \"m\" }",
         "y = { unit = \"m\", range = [ \"-2*b\", 0.02 ] }   # the stops",

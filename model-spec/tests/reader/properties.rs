@@ -1,5 +1,5 @@
-//! Properties of the language on arbitrary input: nothing panics, precedence survives
-//! being written out and read back, units follow the laws of multiplication.
+//! Properties for arbitrary input: no panics, printed expressions parse to the same tree, units
+//! follow the laws of multiplication.
 
 use eomgen_model_spec::ast::{BinaryOperator, Syntax, SyntaxKind};
 use eomgen_model_spec::check;
@@ -17,7 +17,8 @@ fn parsed(text: &str) -> Option<Syntax> {
     parse(&tokens(text, Span::new).ok()?, end).ok()
 }
 
-/// An expression with the brackets that precedence demands and no others.
+/// Prints an expression with only the brackets that precedence needs, and returns its
+/// precedence.
 fn written(syntax: &Syntax) -> (String, u8) {
     let bracketed = |part: &Syntax, least: u8| {
         let (text, binding) = written(part);
@@ -53,7 +54,7 @@ fn written(syntax: &Syntax) -> (String, u8) {
                 BinaryOperator::Divide => ("/", 2),
                 BinaryOperator::Power => ("^", 4),
             };
-            // Powers group to the right and take a sign there, all others to the left.
+            // Powers are right-associative and allow a sign on the right.
             let (least_left, least_right) = if own == 4 { (5, 3) } else { (own, own + 1) };
             let (left, right) = (bracketed(left, least_left), bracketed(right, least_right));
             (format!("{left}{sign}{right}"), own)
@@ -61,7 +62,7 @@ fn written(syntax: &Syntax) -> (String, u8) {
     }
 }
 
-/// The tree without places.
+/// Returns the tree without positions.
 fn shape(syntax: &Syntax) -> Syntax {
     let span = Span::default();
     let kind = match &syntax.kind {
@@ -147,21 +148,21 @@ fn dimension() -> impl Strategy<Value = Dimension> {
 
 proptest! {
     #[test]
-    fn what_is_written_out_reads_back_as_it_was(tree in syntax()) {
+    fn printed_expression_parses_to_the_same_tree(tree in syntax()) {
         let (text, _) = written(&tree);
         let read = parsed(&text);
         prop_assert_eq!(read.as_ref().map(shape), Some(tree), "{}", text);
     }
 
     #[test]
-    fn arbitrary_text_is_no_reason_to_panic(text in ".{0,200}") {
+    fn arbitrary_text_does_not_panic(text in ".{0,200}") {
         let _ = parsed(&text);
         let _ = Unit::parse(&text);
         let _ = check(Source::new("any.toml", text)).map_err(|found| found.render(false));
     }
 
     #[test]
-    fn arbitrary_expressions_are_no_reason_to_panic(text in "[-+*/^()\\[\\],. a-c0-9e]{0,60}") {
+    fn arbitrary_expressions_do_not_panic(text in "[-+*/^()\\[\\],. a-c0-9e]{0,60}") {
         let _ = parsed(&text);
         let specification = format!(
             "[model]\nname = \"any\"\n[coordinates]\na = {{ unit = \"m\" }}\n\
@@ -172,7 +173,7 @@ proptest! {
     }
 
     #[test]
-    fn pieces_of_a_specification_are_no_reason_to_panic(start in 0usize..9000, length in 0usize..9000) {
+    fn fragments_of_a_specification_do_not_panic(start in 0usize..9000, length in 0usize..9000) {
         let whole = models::PLANETARY_ARM.text;
         let start = whole.floor_char_boundary(start);
         let end = whole.floor_char_boundary(start + length);
@@ -193,13 +194,13 @@ proptest! {
     }
 
     #[test]
-    fn every_dimension_reads_back_as_it_is_shown(a in dimension()) {
+    fn printed_dimension_parses_to_itself(a in dimension()) {
         let read = Unit::parse(&a.to_string());
         prop_assert_eq!(read.map(|unit| (unit.dimension, unit.is_coherent())), Ok((a, true)));
     }
 
     #[test]
-    fn conversion_to_si_and_back_is_within_a_rounding(
+    fn conversion_to_si_and_back_is_within_rounding(
         value in -1e6f64..1e6,
         unit in prop::sample::select(vec!["mm", "um", "deg", "GPa", "g/cm^3", "km/h", "N m/deg"]),
     ) {

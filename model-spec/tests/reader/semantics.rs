@@ -1,4 +1,4 @@
-//! What a specification means once it is accepted: values, units, orders, names, warnings.
+//! Meaning of valid specifications: values, units, orders, names, warnings.
 
 use eomgen_model_spec::Checked;
 use eomgen_model_spec::diagnostic::Severity;
@@ -104,7 +104,7 @@ gain = 1.01
 "#;
 
 #[test]
-fn states_of_first_order_stand_last_in_the_state() {
+fn states_of_first_order_are_last_in_the_state() {
     let text = ACTUATED.replace(
         "[coordinates]",
         "l = { value = 30, unit = \"mm\" }\n[coordinates]",
@@ -126,9 +126,8 @@ fn states_of_first_order_stand_last_in_the_state() {
     );
 }
 
-/// A thousand states, each with the rate of the one before it.
 #[test]
-fn rates_of_rates_are_written_out_to_a_limit_and_quickly() {
+fn chained_rates_of_states_are_limited_and_fast() {
     let chain = |count: usize| {
         let states = (1..count).map(|k| {
             let before = k - 1;
@@ -165,7 +164,7 @@ fn rates_of_rates_are_written_out_to_a_limit_and_quickly() {
 }
 
 #[test]
-fn values_are_in_si_and_follow_what_they_refer_to() {
+fn values_are_in_si_and_follow_their_references() {
     let model = checked(BEAM).model;
     assert_eq!(value(&model, "E"), 2e11);
     assert_eq!(value(&model, "I"), 1e-9);
@@ -177,15 +176,15 @@ fn values_are_in_si_and_follow_what_they_refer_to() {
         .expect("replaces the expression");
     assert_eq!(value(&fixed, "EI"), 50.0);
     let state = fixed.initial_state(&[1]).expect("finite");
-    // sqrt(EI/(mu l^4)) = sqrt(50/(0.8/16)), one rounding for each operation.
+    // sqrt(EI/(mu l^4)) = sqrt(50/(0.8/16)), one rounding per operation.
     let rate = (50.0_f64 / (0.8 / 16.0)).sqrt();
     assert_eq!((state.len(), state[0], state[1]), (4, 0.25, 0.0));
     assert!((state[2] - rate).abs() <= 8.0 * f64::EPSILON * rate);
 }
 
 #[test]
-fn settings_hold_together_whatever_their_order() {
-    // The domain from 0 to l would be empty while only one of the two is set.
+fn settings_are_checked_together_in_any_order() {
+    // With only one of the two set, the domain from a to l would be empty.
     let text = BEAM.replace("from = 0", "from = \"a\"").replace(
         "[coordinates]",
         "a = { value = 100, unit = \"mm\" }\n\n[coordinates]",
@@ -199,7 +198,7 @@ fn settings_hold_together_whatever_their_order() {
 }
 
 #[test]
-fn unfit_settings_are_refused_with_advice() {
+fn invalid_settings_are_rejected_with_help() {
     let model = checked(BEAM).model;
     let refused = |name: &str, value: f64| {
         let error = model.with_parameter(name, value).expect_err(name);
@@ -223,7 +222,7 @@ fn unfit_settings_are_refused_with_advice() {
 }
 
 #[test]
-fn orders_are_the_fields_own_or_given() {
+fn orders_are_default_or_given() {
     let model = checked(BEAM).model;
     assert_eq!(model.orders(None), Ok(vec![2]));
     assert_eq!(model.orders(Some(0)), Ok(vec![0]));
@@ -269,9 +268,9 @@ fn rates_and_derivatives_of_fields_have_one_form() {
     assert_eq!(second, 1, "a derivative of a derivative is one of order 2");
 }
 
-/// The rate of what a field is at a place is what its rate is there.
+/// dot(at(...)) and at(dot(...)) resolve to the same form.
 #[test]
-fn the_rate_at_a_place_has_one_form() {
+fn rate_at_a_position_has_one_form() {
     let observables = |value: &str| {
         let text = BEAM.replace(
             "slope_rate = \"at(dot(diff(w, x)), l)\"",
@@ -295,16 +294,16 @@ fn the_rate_at_a_place_has_one_form() {
     assert_eq!(kind("dot(at(x*w, l))").0, "m^2/s");
     for (value, wrong) in [
         ("dot(at(dot(w), l))", "acceleration"),
-        ("dot(at(x, l))", "no rate"),
+        ("dot(at(x, l))", "without a rate"),
     ] {
         let found = refused(&BEAM.replace("at(dot(diff(w, x)), l)", value));
         assert!(found.contains(wrong), "{value}: {found}");
     }
 }
 
-/// Terms and forces have names of their own; quantities have not.
+/// No expression refers to terms and forces, so any word is valid.
 #[test]
-fn terms_may_be_called_anything() {
+fn terms_accept_reserved_names() {
     for name in [
         "t", "energy", "loop", "power", "fn", "sin", "pi", "dot", "theta", "q_1",
     ] {
@@ -326,7 +325,7 @@ fn terms_may_be_called_anything() {
 }
 
 #[test]
-fn what_is_not_used_takes_one_line() {
+fn unused_parameters_take_one_line() {
     let more = "[parameters]\ng = { value = 9.81, unit = \"m/s^2\" }\nh_2 = { value = 1 }\n";
     let warnings = checked(&BEAM.replace("[parameters]\n", more)).warnings;
     let shown = warnings.render(false);
@@ -345,7 +344,7 @@ fn what_is_not_used_takes_one_line() {
 }
 
 #[test]
-fn parameters_near_to_a_name_are_suggested() {
+fn unknown_parameter_suggests_similar_names() {
     let model = checked(BEAM).model;
     for (name, help) in [
         ("Ei", "did you mean `EI`?"),
@@ -361,7 +360,7 @@ fn parameters_near_to_a_name_are_suggested() {
 }
 
 #[test]
-fn coefficients_know_the_modes_they_are_given_for() {
+fn coefficients_of_modes_have_their_field() {
     let model = checked(BEAM).model;
     assert_eq!(model.coefficients[0].each, Some(FieldId::new(0)));
     assert!(matches!(
@@ -369,11 +368,11 @@ fn coefficients_know_the_modes_they_are_given_for() {
         CoefficientKind::Factor { of, times: Some(_), .. } if of.kind == ExprKind::ModeCoordinate(FieldId::new(0))
     ));
     let outside = refused(&BEAM.replace("\"sum(i, w, h^2)\"", "\"h^2\""));
-    assert!(outside.contains("one for each mode of `w`"), "{outside}");
+    assert!(outside.contains("exists for each mode of `w`"), "{outside}");
 }
 
 #[test]
-fn provenance_and_sensors_are_kept() {
+fn origins_and_sensors_are_kept() {
     let model = checked(BEAM).model;
     assert_eq!(
         (
@@ -395,7 +394,7 @@ fn provenance_and_sensors_are_kept() {
 }
 
 #[test]
-fn what_nothing_refers_to_is_warned_of() {
+fn unused_names_give_warnings() {
     assert!(checked(BEAM).warnings.is_empty());
     let text = BEAM
         .replace("[inputs]\n", "[inputs]\nv = { unit = \"N\" }\n")
@@ -428,13 +427,13 @@ fn what_nothing_refers_to_is_warned_of() {
 }
 
 #[test]
-fn observables_are_no_names_in_expressions() {
+fn observables_are_rejected_in_expressions() {
     let text = BEAM.replace("modal = ", "twice = \"2*slope_rate\"\nmodal = ");
-    assert!(refused(&text).contains("give the expression a name in [definitions]"));
+    assert!(refused(&text).contains("move the expression to [definitions]"));
 }
 
 #[test]
-fn places_hold_in_files_with_carriage_returns_and_byte_order_marks() {
+fn positions_are_right_with_carriage_returns_and_byte_order_mark() {
     let broken = BEAM.replace("x*dot(theta)", "x*dot(thetta)");
     let line = BEAM
         .lines()
@@ -479,7 +478,7 @@ coil = { on = "x", value = "u" }
 "#;
 
 #[test]
-fn coordinates_and_inputs_say_where_they_live() {
+fn coordinates_and_inputs_have_ranges() {
     let model = checked(SPEAKER).model;
     let ranges = model.coordinate_ranges().expect("values");
     assert_eq!(ranges, [None, Some((-0.005, 0.004))]);
@@ -488,7 +487,7 @@ fn coordinates_and_inputs_say_where_they_live() {
 }
 
 #[test]
-fn a_parameter_that_moves_a_range_off_the_beginning_is_refused() {
+fn parameter_with_initial_value_outside_range_is_rejected() {
     let text = SPEAKER.replace("[\"-b\", 0.004]", "[0, \"b\"]");
     let model = checked(&text).model;
     let error = model.with_parameter("b", 0.5).expect_err("0.5 mm");
@@ -525,7 +524,7 @@ fn points_are_placed_by_numbers_coordinates_and_observables() {
 }
 
 #[test]
-fn states_have_ranges_in_which_they_begin() {
+fn initial_value_of_a_state_is_inside_its_range() {
     let state = "[states]\nz = { unit = \"m\", rate = \"dot(x)\", initial = 0.002, range = [\"-b\", 0.004] }\n\n[kinetic]";
     let text = SPEAKER.replace("[kinetic]", state);
     let model = checked(&text).model;
@@ -543,7 +542,7 @@ fn states_have_ranges_in_which_they_begin() {
     assert!(refused(&wrong).contains("the upper end of `z` is in kg"));
 }
 
-/// A mass with a definition `d` that its potential holds, and more sections.
+/// Returns a specification of a mass with a definition `d` and additional sections.
 fn with_definition(value: &str, more: &str) -> String {
     format!(
         "[model]\nname = \"m\"\n[parameters]\nm = {{ value = 1, unit = \"kg\" }}\nb = {{ value = 0, unit = \"m\" }}\n\
@@ -554,7 +553,7 @@ fn with_definition(value: &str, more: &str) -> String {
 }
 
 #[test]
-fn constants_without_a_finite_value_are_refused_where_they_stand() {
+fn constants_without_finite_value_are_rejected_at_their_position() {
     for (value, message, place) in [
         ("1/0", "division by 0", "0\""),
         ("0/0", "division by 0", "0\""),
@@ -592,7 +591,7 @@ fn constants_without_a_finite_value_are_refused_where_they_stand() {
 }
 
 #[test]
-fn constants_outside_the_domain_of_their_function_are_refused() {
+fn constants_outside_a_domain_are_rejected() {
     for (value, message, place) in [
         (
             "sin(1e10)",
@@ -633,7 +632,7 @@ fn constants_outside_the_domain_of_their_function_are_refused() {
 }
 
 #[test]
-fn what_is_0_by_a_factor_keeps_its_unit() {
+fn product_with_zero_keeps_its_unit() {
     let unit = |value: &str| {
         let model = checked(&with_definition(value, "")).model;
         model.definitions[0].unit.to_string()
@@ -645,13 +644,13 @@ fn what_is_0_by_a_factor_keeps_its_unit() {
     assert_eq!(unit("0 + b"), "m");
     let message = refused(&with_definition("0*b + k", ""));
     assert!(message.contains("added to a quantity in m"), "{message}");
-    // 0 by itself fits any unit, also by name.
+    // The literal 0 fits any unit, also through a definition.
     let by_name = with_definition("0", "total = \"d + x\"\nlength = \"max(d, b)\"\n");
     checked(&by_name);
 }
 
 #[test]
-fn components_that_are_0_keep_the_unit_of_their_vector() {
+fn zero_components_keep_the_unit_of_their_vector() {
     for value in ["[b, 0*x, b]", "[x, 0, 0]", "2*[0, 0, x]"] {
         let more = "second = \"m*d.y + m*x\"\ntotal = \"d + [x, b, x]\"\n";
         let model = checked(&with_definition(value, more)).model;
@@ -665,7 +664,7 @@ fn components_that_are_0_keep_the_unit_of_their_vector() {
     checked(GRAVITY);
 }
 
-/// Gravity with a component that is 0 by a factor, along frames that turn.
+/// Gravity with a component 0*a, in rotating frames.
 const GRAVITY: &str = r#"[model]
 name = "two_frames"
 gravity = ["a", "0*a", "-g"]

@@ -1,5 +1,4 @@
-//! The specifications shipped with the crate: each loads without a warning, and says what
-//! it is meant to say.
+//! Shipped specifications: they load without a warning and have the published values.
 
 use std::path::Path;
 
@@ -28,7 +27,7 @@ mod bodies;
 mod vectors;
 
 #[test]
-fn every_shipped_specification_loads_without_a_warning() {
+fn shipped_specifications_load_without_warnings() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
     let mut names = Vec::new();
     for entry in std::fs::read_dir(folder).expect("the models are there") {
@@ -45,7 +44,7 @@ fn every_shipped_specification_loads_without_a_warning() {
 }
 
 #[test]
-fn the_arm_has_the_names_and_values_of_the_paper() {
+fn arm_has_the_names_and_values_of_the_paper() {
     let model = shipped("planetary_arm.toml");
     let orders = model.orders(None).expect("its own order");
     let expected = [
@@ -79,21 +78,21 @@ fn the_arm_has_the_names_and_values_of_the_paper() {
 }
 
 #[test]
-fn the_arms_geometry_closes() {
+fn geometry_of_the_arm_closes() {
     let model = shipped("planetary_arm.toml");
     let of = |name| value(&model, name);
     let carrier = of("r_c") * of("alpha").cos();
-    // Each side is rounded a few times: ten units in the last place.
+    // Each side has several roundings: tolerance of ten units in the last place.
     assert!((carrier - of("r_s") - of("r_p")).abs() <= 10.0 * f64::EPSILON * carrier);
     let ratio = 2.0 * (of("z_s") + of("z_p")) / of("z_s");
     assert!((of("i_sH") - ratio).abs() <= 10.0 * f64::EPSILON * ratio);
-    // The arm's own inertia of Table I, 0.033 kg m^2 to the digits printed.
+    // Inertia of the arm in Table I: 0.033 kg m^2, to the printed digits.
     let arm = of("rho") * of("A") * of("l").powi(3) / 3.0;
     assert!((arm - 0.033).abs() < 0.0005);
 }
 
 #[test]
-fn units_of_observables_are_those_declared_or_inferred() {
+fn units_of_observables_are_declared_or_inferred() {
     let model = shipped("hub_beam_tip_mass.toml");
     let units: Vec<_> = model
         .observables
@@ -106,7 +105,7 @@ fn units_of_observables_are_those_declared_or_inferred() {
 }
 
 #[test]
-fn the_constants_are_the_files() {
+fn constants_equal_the_files() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
     let files = std::fs::read_dir(&folder).expect("the models are there");
     assert_eq!(models::ALL.len(), files.count());

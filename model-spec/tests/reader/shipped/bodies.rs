@@ -1,5 +1,5 @@
-//! Bodies in space against energies from positions alone: homogeneous transforms multiplied out
-//! in numbers, and their rates by differences. No velocity is propagated here.
+//! Bodies against energies from positions: products of homogeneous transforms in numbers, with
+//! rates by differences. No velocity is propagated.
 
 use eomgen_model_spec::ast::BinaryOperator;
 use eomgen_model_spec::model::{Expr, ExprKind, Function, Model, Term};
@@ -18,8 +18,8 @@ fn times(a: &Matrix, b: &Matrix) -> Matrix {
     product
 }
 
-/// The transform of a joint by Denavit and Hartenberg: about z by q, along z by d, along x by a,
-/// about x by alpha.
+/// Returns the Denavit-Hartenberg transform of a joint: about z by q, along z by d, along x by
+/// a, about x by alpha.
 fn joint(q: f64, d: f64, a: f64, alpha: f64) -> Matrix {
     let ((s, c), (sa, ca)) = (q.sin_cos(), alpha.sin_cos());
     [
@@ -48,7 +48,7 @@ pub fn links(q: &[f64; 6]) -> Vec<Matrix> {
     all
 }
 
-/// Kinetic and potential energy of the arm.
+/// Returns the kinetic and the potential energy of the arm, in J.
 pub fn energies(q: &[f64; 6], rates: &[f64; 6]) -> (f64, f64) {
     let masses = [0.0, 17.4, 4.8, 0.82, 0.34, 0.09];
     let centres = [
@@ -99,7 +99,7 @@ pub fn energies(q: &[f64; 6], rates: &[f64; 6]) -> (f64, f64) {
 /// Coordinates and rates.
 pub type State<'s> = (&'s [f64; 6], &'s [f64; 6]);
 
-/// The value of an expression and its rate.
+/// Evaluates an expression and its rate.
 pub fn evaluate(model: &Model, state: State<'_>, expr: &Expr) -> (f64, f64) {
     let of = |expr: &Expr| evaluate(model, state, expr);
     match &expr.kind {
@@ -138,7 +138,7 @@ pub fn evaluate(model: &Model, state: State<'_>, expr: &Expr) -> (f64, f64) {
 }
 
 #[test]
-fn the_energies_of_the_puma_are_those_of_its_positions() {
+fn energies_of_the_puma_match_its_positions() {
     let model = shipped("puma_560.toml");
     for (q, rates) in [
         (
@@ -166,7 +166,7 @@ fn the_energies_of_the_puma_are_those_of_its_positions() {
     }
 }
 
-/// A body that is tilted by p on a carriage, at r along an arm that turns by q about the vertical.
+/// Body on a carriage: tilted by p, at r along an arm that rotates by q about the vertical.
 const CARRIAGE: &str = r#"
 [model]
 name = "carriage"
@@ -189,13 +189,13 @@ load = { frame = "tilted", mass = "m", centre = [0, "l", 0], inertia = ["3*J", "
 "#;
 
 #[test]
-fn origins_that_move_products_of_inertia_and_oblique_gravity_count() {
+fn energies_include_moving_origins_products_of_inertia_and_oblique_gravity() {
     let source = eomgen_model_spec::source::Source::new("carriage.toml", CARRIAGE);
     let model = eomgen_model_spec::check(source).expect("sound").model;
     let (q, r, p, dq, dr, dp) = (0.4_f64, -0.6, 1.1_f64, 0.7, -1.3, 2.1);
     let (m, g, h, l) = (2.0, 9.81, 0.3, 0.7);
     let (s, c) = p.sin_cos();
-    // Along the arm, across it and up.
+    // Components along the arm, across it and up.
     let (along, across) = (r + l, h + l * c);
     let v = [dr - dq * across, dq * along - l * s * dp, l * c * dp];
     let [x, y, z] = [dp, dq * s, dq * c];
@@ -212,7 +212,7 @@ fn origins_that_move_products_of_inertia_and_oblique_gravity_count() {
     assert!((potential - fall).abs() < 1e-13, "{potential} {fall}");
 }
 
-/// The finding on a body or a frame, and the text it underlines.
+/// Returns the first message, and the text that it underlines.
 fn refused(text: &str) -> (String, String) {
     let text = format!(
         "[model]\nname = \"a\"\ngravity = [0, 0, \"-g\"]\n[parameters]\n\
@@ -220,7 +220,7 @@ fn refused(text: &str) -> (String, String) {
          l = {{ value = 1, unit = \"m\" }}\nJ = {{ value = 3, unit = \"kg m^2\" }}\n\
          [coordinates]\nq = {{ unit = \"rad\" }}\n{text}"
     );
-    // The coordinate has an inertia whatever the bodies are.
+    // The coordinate needs an inertia, with or without bodies.
     let own = "\n[kinetic]\nown = \"1/2*J*dot(q)^2\"\n";
     let text = match text.contains("[kinetic]") {
         true => text,
@@ -237,7 +237,7 @@ fn refused(text: &str) -> (String, String) {
 }
 
 #[test]
-fn mistakes_are_refused_where_they_stand() {
+fn errors_in_frames_and_bodies_have_positions() {
     let frame = "[frames]\nf = { rotation = \"rotation_z(q)\" }\n";
     let body = "[bodies]\nb = { frame = \"f\", mass = \"m\" }\n";
     for (text, message, place) in [
@@ -302,7 +302,7 @@ fn mistakes_are_refused_where_they_stand() {
         ),
         (
             "[frames]\nf = { rotation = \"rotation_w(q)\" }\n".to_owned() + body,
-            "no rotation",
+            "not a rotation",
             "rotation_w",
         ),
         (
@@ -336,5 +336,8 @@ fn mistakes_are_refused_where_they_stand() {
         "{said}"
     );
     let (said, _) = refused(&(chain + "[bodies]\nb = { frame = \"f_999\", mass = \"m\" }"));
-    assert!(said.contains("chain of more than 100 frames"), "{said}");
+    assert!(
+        said.contains("chain of frames is longer than 100"),
+        "{said}"
+    );
 }

@@ -1,5 +1,4 @@
-//! Vectors against what they stand for: closed forms, and numbers that transforms and differences of
-//! positions give.
+//! Vectors against closed forms, and against transforms and differences of positions.
 
 use std::fmt::Write as _;
 use std::time::{Duration, Instant};
@@ -43,7 +42,7 @@ const STATES: [([f64; 6], [f64; 6]); 2] = [
     ),
 ];
 
-/// A symmetric top with a fixed point: positions and angular velocity by Euler's angles.
+/// Symmetric top with a fixed point, in Euler angles.
 const TOP: &str = r#"
 [model]
 name = "top"
@@ -82,7 +81,7 @@ momentum = "m*cross(r, dot(r)) + A*omega + (C - A)*dot(omega, axis)*axis"
 "#;
 
 #[test]
-fn a_top_has_the_energies_of_its_euler_angles() {
+fn top_matches_the_energies_in_euler_angles() {
     let model = checked(TOP);
     let (m, g, l, a, c) = (0.3, 9.81, 0.04, 2e-4, 1.5e-4);
     for (q, rates) in &STATES {
@@ -102,14 +101,15 @@ fn a_top_has_the_energies_of_its_euler_angles() {
             vector(&model, "third", state),
         );
         close(&axis, &third, 1e-15);
-        // The momentum about the vertical: the derivative of the energy by the precession's rate.
+        // Momentum about the vertical: derivative of the energy with respect to the precession
+        // rate.
         let vertical = (a + m * l * l) * rates[0] * sine * sine + c * spin * cosine;
         close(&[observed(&model, "momentum_z", state)], &[vertical], 1e-15);
     }
 }
 
 #[test]
-fn a_torque_on_a_frame_works_by_its_angular_velocity() {
+fn power_of_a_torque_uses_the_angular_velocity() {
     let model = checked(TOP);
     let (q, _) = STATES[0];
     let along = |name: &str, rates: &[f64; 6]| vector(&model, name, (&q, rates));
@@ -132,7 +132,7 @@ fn a_torque_on_a_frame_works_by_its_angular_velocity() {
 }
 
 #[test]
-fn frames_are_where_their_transforms_put_them() {
+fn frames_match_their_transforms() {
     let text = include_str!("../../../models/puma_560.toml").to_owned()
         + "[observables]\n\
            origin = \"link_6.origin\"\n\
@@ -160,7 +160,7 @@ fn frames_are_where_their_transforms_put_them() {
         let (now, before, after) = (at(0.0), at(-step), at(step));
         let column = |matrix: &Matrix, j: usize| [0, 1, 2].map(|i| matrix[i][j]);
         let rate = |i: usize, j: usize| (after[i][j] - before[i][j]) / (2.0 * step);
-        // The model's origin of the last links is the wrist, as the transform's.
+        // In the model and in the transforms, the origin of the last links is the wrist.
         close(&vector(&model, "origin", state), &column(&now, 3), 1e-15);
         for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
             close(&vector(&model, name, state), &column(&now, axis), 1e-15);
@@ -179,7 +179,7 @@ fn frames_are_where_their_transforms_put_them() {
     }
 }
 
-/// The PUMA 560 without frames and bodies: rotations, positions and angular velocities link by link.
+/// Returns the PUMA 560 in vectors: rotations, positions and angular velocities link by link.
 fn arm_of_vectors() -> String {
     let text = include_str!("../../../models/puma_560.toml").replace("gravity =", "# gravity =");
     let (head, rest) = text.split_once("[frames]").expect("frames");
@@ -242,14 +242,14 @@ fn arm_of_vectors() -> String {
             let _ = writeln!(potential, "weight_{own} = \"m_{own}*g*c_{own}.z\"");
         }
     }
-    // The origin of the first links rests: it is no definition of any use.
+    // The origin of the first link is constant and would give an unused definition.
     let definitions = definitions.replace("o_1 = \"[0, 0, 0]\"\n", "");
     let energies = format!("[kinetic]\n{kinetic}[potential]\n{potential}");
     format!("{head}[definitions]\n{definitions}{energies}[forces]{forces}")
 }
 
 #[test]
-fn six_joints_in_vectors_have_the_energies_of_their_positions() {
+fn six_joints_in_vectors_match_the_energies_of_positions() {
     let model = checked(&arm_of_vectors());
     for (q, rates) in &STATES {
         let total = |terms: &[eomgen_model_spec::model::Term]| -> f64 {
@@ -265,7 +265,7 @@ fn six_joints_in_vectors_have_the_energies_of_their_positions() {
 }
 
 #[test]
-fn a_rotation_about_any_axis_is_that_of_quaternions() {
+fn rotation_about_any_axis_matches_quaternions() {
     let model = checked(
         "[model]\nname = \"turns\"\n[parameters]\nJ = { value = 1, unit = \"kg m^2\" }\n\
          [coordinates]\nq = { unit = \"rad\" }\np = { unit = \"rad\" }\n\
@@ -311,7 +311,7 @@ fn a_rotation_about_any_axis_is_that_of_quaternions() {
 }
 
 #[test]
-fn products_of_products_do_not_double_with_every_level() {
+fn nested_products_grow_linearly() {
     let head = "[model]\nname = \"nested\"\n[parameters]\nJ = { value = 1, unit = \"kg m^2\" }\n\
                 [coordinates]\nq = { unit = \"rad\" }\n[kinetic]\nown = \"1/2*J*dot(q)^2\"\n";
     let nested = "cross([0, 0, 1], ".repeat(60) + "[cos(q), sin(q), q]" + &")".repeat(60);
@@ -326,7 +326,8 @@ fn products_of_products_do_not_double_with_every_level() {
     }
 }
 
-/// Rotations each the square of the one before, and what the last makes of a vector.
+/// Returns a specification with rotations that are each the square of the one before, and a
+/// vector rotated by the last.
 fn squared_rotations(first: &str, vector: &str, count: usize) -> String {
     let mut text =
         "[model]\nname = \"squared\"\n[parameters]\nJ = { value = 1, unit = \"kg m^2\" }\n\
@@ -342,7 +343,7 @@ fn squared_rotations(first: &str, vector: &str, count: usize) -> String {
 }
 
 #[test]
-fn rotations_of_rotations_share_their_parts() {
+fn squared_rotations_share_their_parts() {
     for (first, vector) in [
         ("rotation_z(q)", "[1, 0, 0]"),
         ("rotation(q)", "[1, 0]"),
@@ -361,7 +362,7 @@ fn rotations_of_rotations_share_their_parts() {
 }
 
 #[test]
-fn a_rotation_squared_again_and_again_turns_by_its_angle_times_a_power_of_two() {
+fn repeated_squaring_multiplies_the_angle_by_powers_of_two() {
     let model = checked(&squared_rotations("rotation_z(q)", "[1, 0, 0]", 4));
     for (values, rates) in &STATES {
         let end = vector(&model, "end", (values, rates));

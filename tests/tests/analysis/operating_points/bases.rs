@@ -291,7 +291,7 @@ fn an_unknown_basis_is_refused_with_the_one_that_was_meant() {
         ("pined_pinned", "did you mean `pinned_pinned`?"),
         ("clamped_fre", "did you mean `clamped_free`?"),
         ("strings", "did you mean `string`?"),
-        ("hinged", "each clamped, pinned, free or guided"),
+        ("hinged", "clamped, pinned, free or guided"),
     ] {
         let model = written(folder.path(), &uniform(wrong, 2));
         let message = refused(&["check", &model]);

@@ -123,7 +123,10 @@ fn the_hash_covers_the_table() {
 fn a_text_without_a_folder_has_no_table() {
     let found = eomgen_model_spec::check(Source::new("beam.toml", BEAM)).expect_err("no folder");
     let said = found.render(false);
-    assert!(said.contains("beside the specification's file"), "{said}");
+    assert!(
+        said.contains("the specification was given as text"),
+        "{said}"
+    );
     assert!(said.contains("beam.toml:14:9"), "{said}");
 }
 
@@ -180,13 +183,13 @@ fn tables_that_are_none_are_refused_with_the_place() {
         (line(5, lines[3]).into(), "modes.csv:5:1: x = "),
         (
             line(1, "x,phi_1,phi_3,phi_2").into(),
-            "modes.csv:1:9: the column `phi_3` where phi_2 is",
+            "modes.csv:1:9: unexpected column `phi_3`, expected phi_2",
         ),
         (
             line(1, "s,phi_1,phi_2,phi_3").into(),
-            "modes.csv:1:1: the column `s` where x is",
+            "modes.csv:1:1: unexpected column `s`, expected x",
         ),
-        (line(1, lines[1]).into(), "modes.csv:1:1: the column"),
+        (line(1, lines[1]).into(), "modes.csv:1:1: unexpected column"),
         (without(1..2).into(), "modes.csv:2:1: x = "),
         (without(18..22).into(), "the field has to = 0.95"),
         (without(8..12).into(), "modes.csv:9:1: a gap from x = "),
