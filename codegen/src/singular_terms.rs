@@ -1,5 +1,5 @@
-//! Terms of a model without a derivative at a point, such as `v/norm(v)` at rest: each term is differentiated
-//! along all variables at once, energies twice, as their first derivatives are forces.
+//! Terms of a model without a derivative at a point, such as `v/norm(v)` at rest. Each term is differentiated
+//! along all variables at once, energies twice, because their first derivatives are forces.
 
 use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_model_spec::model::Model;
@@ -12,11 +12,11 @@ use crate::program::lowering::lower_with_outputs;
 use crate::symbolic::differentiate::Direction;
 use crate::symbolic::graph::{Dependence, Graph, NodeId};
 
-/// Returns the places of terms whose derivatives at a point are not finite; `parameters` are the values of
-/// all parameters, SI.
+/// Returns the places of terms with a non-finite derivative at a point; `parameters` are the values of all
+/// parameters in SI units.
 ///
 /// # Errors
-/// What cannot be derived.
+/// Expressions that cannot be derived.
 pub fn without_derivative(
     model: &Model,
     orders: &[usize],
@@ -61,7 +61,7 @@ pub fn without_derivative(
 struct Term {
     node: NodeId,
     span: Span,
-    /// How many derivatives of it a Jacobian holds.
+    /// Number of derivatives of the term in a Jacobian.
     derivatives: usize,
 }
 
@@ -85,7 +85,7 @@ fn terms(model: &Model, equations: &Equations) -> Vec<Term> {
         .collect()
 }
 
-/// The derivative with all variables growing by 1.
+/// Differentiates with a tangent of 1 for every variable.
 fn along_everything(graph: &mut Graph, node: NodeId) -> NodeId {
     let tangent = |graph: &mut Graph, leaf: NodeId| {
         let variables = [

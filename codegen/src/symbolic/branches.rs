@@ -1,14 +1,14 @@
-//! Nodes that are one of two others.
+//! Nodes that select one of two others.
 
 use eomgen_model_spec::model::Function;
 
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 
-/// For a node that is one of two others: a and b of the condition a > b, the node where it
-/// holds, the node elsewhere. A guarded power counts as the power.
+/// Returns, for a node that selects one of two others, a and b of the condition a > b, the node if it is
+/// true, and the node otherwise. A guarded power counts as a power.
 pub(crate) fn choice(graph: &Graph, id: NodeId) -> Option<[NodeId; 4]> {
     match graph.operation(id) {
-        // Differentiated as the power it guards: what has no limit there has to show it.
+        // Differentiated as the power that it guards, so that a missing limit remains visible.
         _ if graph.guarded_power(id).is_some() => None,
         &Operation::Select {
             a,

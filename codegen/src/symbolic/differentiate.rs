@@ -1,5 +1,5 @@
-//! Derivatives of graph nodes by a scalar variable and along a direction (forward mode), and the partial
-//! derivatives of each operation. Shared nodes are differentiated once; nothing is multiplied out.
+//! Derivatives of graph nodes by a scalar variable and along a direction (forward mode), and partial
+//! derivatives of each operation. Shared nodes are differentiated once; no product is expanded.
 
 use std::collections::BTreeMap;
 
@@ -11,17 +11,16 @@ use crate::symbolic::flat::guard_partial;
 use crate::symbolic::graph::{Graph, NodeId, Operation, Shape};
 use crate::symbolic::node_map::NodeMap;
 
-/// Which nodes move at all along a direction. Asked before a derivative is formed: most of
-/// an expression is constant along most directions, and the partial derivatives by what is
-/// constant would be formed for nothing.
+/// Nodes that vary along a direction. The test precedes the formation of derivatives, because most of an
+/// expression is constant along most directions.
 #[derive(Default)]
 pub(super) struct Moving {
     pub(super) known: NodeMap<NodeId, bool>,
 }
 
 impl Moving {
-    /// Whether anything that `id` is computed from moves, by what `leaf` says of nodes that
-    /// it knows and of all that have no operands.
+    /// Returns true if an operand of `id`, direct or indirect, varies. `leaf` decides for leaves and for
+    /// other nodes that it recognises.
     pub(super) fn has(
         &mut self,
         graph: &Graph,
@@ -32,7 +31,7 @@ impl Moving {
             return known;
         }
         let moves = match leaf(graph, id) {
-            // As fast to find again as to look up.
+            // This test is as fast as a lookup.
             Some(false) => return false,
             Some(true) => true,
             None => {
@@ -45,22 +44,22 @@ impl Moving {
     }
 }
 
-/// The derivative of a leaf.
+/// Function that returns the derivative of a leaf.
 pub type Tangent<'a> = dyn Fn(&mut Graph, NodeId) -> NodeId + 'a;
 
-/// Values that the leaves of the graph have as derivatives.
+/// Direction: derivatives of the leaves of the graph.
 #[derive(Default)]
 pub struct Direction<'a> {
     tangent: Option<&'a Tangent<'a>>,
     known: NodeMap<NodeId, NodeId>,
-    /// What was seeded with a derivative.
+    /// Nodes with a given derivative.
     seeds: Vec<NodeId>,
-    /// Set once seeds with the derivative 0 are removed.
+    /// True after the removal of seeds with the derivative 0.
     has_moving_seeds_alone: bool,
     moving: Moving,
 }
 
-/// The derivatives along a direction that are known so far.
+/// Known derivatives along a direction.
 #[derive(Default)]
 pub(crate) struct KnownDerivatives {
     known: NodeMap<NodeId, NodeId>,
@@ -68,8 +67,7 @@ pub(crate) struct KnownDerivatives {
 }
 
 impl<'a> Direction<'a> {
-    /// A direction given by the derivative of every leaf that is no parameter (0 for those
-    /// that are constant).
+    /// Creates a direction from the derivative of every leaf that is no parameter (0 for constant ones).
     pub fn new(tangent: &'a Tangent<'a>) -> Self {
         Self {
             tangent: Some(tangent),
@@ -77,7 +75,7 @@ impl<'a> Direction<'a> {
         }
     }
 
-    /// The same direction with the derivatives that it has given before.
+    /// Continues a direction with its known derivatives.
     pub(crate) fn resume(tangent: &'a Tangent<'a>, known: KnownDerivatives) -> Self {
         let KnownDerivatives { known, moving } = known;
         Self {
@@ -88,20 +86,20 @@ impl<'a> Direction<'a> {
         }
     }
 
-    /// The derivatives that are known.
+    /// Returns the known derivatives.
     pub(crate) fn into_known(self) -> KnownDerivatives {
         let Self { known, moving, .. } = self;
         KnownDerivatives { known, moving }
     }
 
-    /// Treats `id` as a variable whose derivative is `tangent`.
+    /// Makes `id` a variable with the derivative `tangent`.
     pub fn seed(&mut self, id: NodeId, tangent: NodeId) {
         self.known.insert(id, tangent);
         self.seeds.push(id);
         self.has_moving_seeds_alone = false;
     }
 
-    /// The derivative of `id` along the direction.
+    /// Returns the derivative of `id` along the direction.
     pub fn derivative(&mut self, graph: &mut Graph, id: NodeId) -> NodeId {
         if let Some(&known) = self.known.get(&id) {
             return known;
@@ -111,8 +109,8 @@ impl<'a> Direction<'a> {
         result
     }
 
-    /// Whether `id` can have a derivative other than 0. No tangent is asked for, which would
-    /// put its nodes into the graph out of turn.
+    /// Returns true if `id` can have a derivative other than 0. It does not evaluate tangents, which would
+    /// change the order of nodes in the graph.
     fn moves(&mut self, graph: &Graph, id: NodeId) -> bool {
         let (known, tangents) = (&self.known, self.tangent.is_some());
         if !self.has_moving_seeds_alone {
@@ -123,7 +121,7 @@ impl<'a> Direction<'a> {
         let seeds = &self.seeds;
         let is_out_of_reach =
             |id| !tangents && !seeds.iter().any(|seed| graph.may_depend_on(id, *seed));
-        // Most terms of a long sum end here, without a lookup.
+        // Most terms of a long sum return here without a lookup.
         if is_out_of_reach(id) {
             return false;
         }
@@ -187,8 +185,7 @@ impl<'a> Direction<'a> {
     }
 }
 
-/// The derivative of a node by a scalar node taken as a variable of its own: a leaf, or an
-/// expression whose own operands then count as constant.
+/// Differentiates a node by a scalar node: a leaf, or an expression whose operands then count as constant.
 pub fn by_scalar(graph: &mut Graph, id: NodeId, variable: NodeId) -> NodeId {
     let mut direction = Direction::default();
     let one = graph.one();
@@ -196,8 +193,8 @@ pub fn by_scalar(graph: &mut Graph, id: NodeId, variable: NodeId) -> NodeId {
     direction.derivative(graph, id)
 }
 
-/// The derivative of such a node. The derivatives are chosen between, not multiplied by 1
-/// and 0: that of the branch not taken may be infinite or no number.
+/// Differentiates a node that selects one of two others. It selects between the derivatives instead of
+/// multiplying them by 1 and 0, because the derivative of the unused branch can be infinite or NaN.
 pub(super) fn choose(
     graph: &mut Graph,
     id: NodeId,
@@ -214,9 +211,9 @@ pub(super) fn choose(
     graph.select(a, b, taken, skipped)
 }
 
-/// For an element-wise operation: each operand that moves with the partial derivative by
-/// it (for functions every operand). Matrix operations have none here: along a direction they
-/// are in `matrix_derivatives`, and with the state they do not move.
+/// Returns, for an elementwise operation, each varying operand with its partial derivative (for functions
+/// every operand). Matrix operations have none: `matrix_derivatives` differentiates them along a direction,
+/// and they do not vary with the state.
 pub(crate) fn partial_derivatives(
     graph: &mut Graph,
     id: NodeId,
@@ -293,7 +290,7 @@ pub(crate) fn partial_derivatives(
     }
 }
 
-/// The factors of a product with guarded powers as powers. Each term of the derivative is guarded anew.
+/// Replaces guarded powers in a product by powers. Each term of the derivative gets new guards.
 fn unguarded(graph: &Graph, factors: &[(NodeId, i32)]) -> Vec<(NodeId, i32)> {
     let mut collected = BTreeMap::new();
     for &(factor, exponent) in factors {
@@ -318,7 +315,7 @@ fn power_derivatives(
     [(base, by_base), (exponent, by_exponent)]
 }
 
-/// b^e ln(b), with its limit 0 at b = 0 for e > 0. The other branch is not a number where there is no limit.
+/// Returns b^e ln(b), with its limit 0 at b = 0 for e > 0. The other branch is NaN if there is no limit.
 fn by_exponent(graph: &mut Graph, power: NodeId, base: NodeId, exponent: NodeId) -> NodeId {
     let logarithm = graph.call(Function::Ln, &[base]);
     let then = graph.multiply(power, logarithm);
@@ -358,7 +355,7 @@ fn function_derivatives(
     }
 }
 
-/// Returns true if the derivative of a function is infinite at a point where the function may be clipped.
+/// Returns true if a function has an infinite derivative at a point at which its argument may be clipped.
 fn has_singular_slope(function: Function) -> bool {
     matches!(
         function,
@@ -366,7 +363,7 @@ fn has_singular_slope(function: Function) -> bool {
     )
 }
 
-/// The derivative of a function of one argument; `None` where it is 0 almost everywhere.
+/// Returns the derivative of a function of one argument; `None` if it is 0 almost everywhere.
 fn derivative_of_function(
     graph: &mut Graph,
     id: NodeId,

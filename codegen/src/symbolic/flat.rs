@@ -1,10 +1,10 @@
 //! Derivatives on the flat side of a switch.
 //!
-//! `sqrt(max(x, 0))` is constant for x < 0. Its derivative there is 0, but the chain rule gives 1/sqrt(0) times 0.
-//! The activity of an expression is a node that is 0 on every open set where the expression is constant because of a
-//! switch, and positive elsewhere. A term of a derivative with a factor that may be infinite is 0 where
-//! the activity is 0. On the switching surface itself the activity is positive, so that a derivative without a limit
-//! there stays infinite or no number.
+//! `sqrt(max(x, 0))` is constant for x < 0. Its derivative there is 0, but the chain rule gives 1/sqrt(0)
+//! times 0. The activity of an expression is a node that is 0 on every open set on which a switch makes the
+//! expression constant, and positive elsewhere. A term of a derivative with a possibly infinite factor is 0
+//! if the activity is 0. On the switching surface the activity is positive, so that a derivative without a
+//! limit remains infinite or NaN.
 
 use std::collections::HashMap;
 
@@ -15,12 +15,12 @@ use crate::symbolic::graph::{Graph, NodeId, Operation, Shape};
 use crate::symbolic::switches::FlatGuard;
 
 impl Graph {
-    /// The guard that a node is, if it is one.
+    /// Returns the guard represented by a node, if it is one.
     pub(crate) fn flat_guard(&self, id: NodeId) -> Option<FlatGuard> {
         self.flat_guards.get(&id).copied()
     }
 
-    /// `inner` with a guard like `guard`, or without it if nothing in `inner` can be infinite.
+    /// Guards `inner` like `guard`, unless nothing in `inner` can be infinite.
     pub(super) fn guard_flat(&mut self, guard: FlatGuard, inner: NodeId) -> NodeId {
         if self.is_zero(inner) || !(guard.is_permanent || self.has_reciprocal_root(inner)) {
             return inner;
@@ -42,7 +42,7 @@ impl Graph {
         node
     }
 
-    /// Removes the guards of a factor, which are added to `guards`, outermost first.
+    /// Removes the guards of a factor and adds them to `guards`, outermost first.
     pub(super) fn without_flat_guards(
         &mut self,
         mut id: NodeId,
@@ -68,7 +68,7 @@ impl Graph {
     }
 }
 
-/// `partial`, the derivative of a function at `argument`, guarded where `argument` is constant because of a switch.
+/// Guards `partial`, the derivative of a function at `argument`, if a switch can make `argument` constant.
 pub(super) fn guard_partial(
     graph: &mut Graph,
     partial: NodeId,
@@ -90,7 +90,8 @@ pub(super) fn guard_partial(
     graph.guard_flat(guard, partial)
 }
 
-/// Activities of nodes, and their supports: nodes that are 0 on every open set where a switch makes the node 0.
+/// Activities and supports of nodes. A support is a node that is 0 on every open set on which a switch makes
+/// the other node 0.
 struct Activities<'m> {
     moves: &'m mut dyn FnMut(&Graph, NodeId) -> bool,
     activities: HashMap<NodeId, NodeId>,
@@ -121,7 +122,7 @@ impl<'m> Activities<'m> {
         }
         let operation = graph.operation(id).clone();
         let operands = graph.operands(&operation);
-        // The variable itself may be an expression.
+        // The variable itself can be an expression.
         let is_variable = !operands.iter().any(|operand| (self.moves)(graph, *operand));
         if is_variable || !graph.holds_switch(id) {
             return graph.one();
@@ -152,7 +153,7 @@ impl<'m> Activities<'m> {
         }
     }
 
-    /// Positive where any of the operands is active.
+    /// Returns a node that is positive if any of the operands is active.
     fn any_activity(&mut self, graph: &mut Graph, operands: &[NodeId]) -> NodeId {
         let found = operands
             .iter()
@@ -216,7 +217,7 @@ impl<'m> Activities<'m> {
     }
 }
 
-/// The first of the branches if a > b, the second if b > a; on the surface a branch that is not 0.
+/// Selects the first branch if a > b and the second if b > a; on the surface, a branch that is not 0.
 fn strict_select(graph: &mut Graph, a: NodeId, b: NodeId, branches: [NodeId; 2]) -> NodeId {
     let [then, otherwise] = branches;
     if graph.is_zero(otherwise) {
@@ -225,14 +226,14 @@ fn strict_select(graph: &mut Graph, a: NodeId, b: NodeId, branches: [NodeId; 2])
     graph.select(a, b, then, otherwise)
 }
 
-/// 0 if |p| < b, 1 elsewhere.
+/// Returns 0 if |p| < b, else 1.
 fn outside_play(graph: &mut Graph, p: NodeId, b: NodeId) -> NodeId {
     let magnitude = graph.call(Function::Abs, &[p]);
     let (zero, one) = (graph.zero(), graph.one());
     graph.select(b, magnitude, zero, one)
 }
 
-/// Positive where any of the nodes is, none of which is negative.
+/// Returns a node that is positive if any of the nodes is; none of them is negative.
 fn any(graph: &mut Graph, nodes: &[NodeId]) -> NodeId {
     let is_positive = |id: &NodeId| graph.as_constant(*id).is_some_and(|value| value > 0.0);
     if nodes.iter().any(is_positive) {
@@ -242,7 +243,7 @@ fn any(graph: &mut Graph, nodes: &[NodeId]) -> NodeId {
     graph.combine(&terms)
 }
 
-/// The total of `summand` over the elements of `vector`.
+/// Returns the total of `summand` over the elements of `vector`.
 fn total(graph: &mut Graph, vector: NodeId, summand: NodeId) -> NodeId {
     match graph.shape(vector) {
         Shape::Vector(space) => graph.total_over(space, summand),

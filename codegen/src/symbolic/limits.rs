@@ -1,9 +1,9 @@
-//! Limits of derivatives where a root vanishes.
+//! Limits of derivatives at zeros of roots.
 //!
-//! The derivative of `norm(v)*v_x` holds v_x (v . dv)/norm(v), which is 0/0 at v = 0 although its limit is 0.
-//! With s the argument of a root and |f| <= C s^o near s = 0, o is the order of f here. A product of positive
-//! order vanishes with s. Its reciprocals of the root are then guarded: 0 where the root is 0. A product of no
-//! positive order keeps them. It is infinite or not a number at s = 0, where it has no limit.
+//! The derivative of `norm(v)*v_x` contains v_x (v . dv)/norm(v), which is 0/0 at v = 0 although its limit is
+//! 0. With the argument s of a root and |f| <= C s^o near s = 0, o is the order of f. A product of positive
+//! order vanishes with s, so its reciprocals of the root are guarded: they are 0 if the root is 0. Other
+//! products keep their reciprocals and are infinite or NaN at s = 0, where they have no limit.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -15,8 +15,8 @@ use crate::symbolic::orders::{Bounds, Monomial};
 use crate::symbolic::substitute::substitute;
 
 impl Graph {
-    /// `partial` times `inner`, a term of a derivative: 0 on the flat side of a switch, and with its limit where
-    /// a root in it vanishes.
+    /// Returns `partial` times `inner`, a term of a derivative: 0 on the flat side of a switch, and equal to
+    /// its limit at the zero of a root in it.
     pub(crate) fn derivative_term(&mut self, partial: NodeId, inner: NodeId) -> NodeId {
         let mut guards = Vec::new();
         let partial = self.without_flat_guards(partial, &mut guards);
@@ -40,7 +40,7 @@ impl Graph {
         term
     }
 
-    /// The power that a guarded reciprocal stands for away from 0, as its base and exponent.
+    /// Returns base and exponent of the power that a guarded reciprocal represents away from 0.
     pub(crate) fn guarded_power(&self, id: NodeId) -> Option<(NodeId, i32)> {
         self.guarded_power_of(self.operation(id))
     }
@@ -69,7 +69,7 @@ impl Graph {
         }
     }
 
-    /// Returns true if an unguarded reciprocal of a root stands in an operation.
+    /// Returns true if an operation contains an unguarded reciprocal of a root.
     pub(crate) fn holds_reciprocal_root(&self, operation: &Operation) -> bool {
         let held = |ids: &[NodeId]| ids.iter().any(|id| self.has_reciprocal_root(*id));
         let is_reciprocal = match operation {
@@ -97,7 +97,7 @@ impl Graph {
         }
     }
 
-    /// Base and exponent of a power with a negative number as its exponent.
+    /// Returns base and exponent of a power with a negative constant exponent.
     fn negative_power(&self, id: NodeId) -> Option<(NodeId, f64)> {
         let Operation::Power(base, exponent) = *self.operation(id) else {
             return None;
@@ -106,7 +106,7 @@ impl Graph {
         (exponent < 0.0).then_some((base, exponent))
     }
 
-    /// The argument s of a factor s^(-n/2) or s^-c.
+    /// Returns the argument s of a factor s^(-n/2) or s^-c.
     fn reciprocal_argument(&self, (factor, exponent): (NodeId, i32)) -> Option<NodeId> {
         match exponent < 0 {
             true => self.root_argument(factor),
@@ -114,7 +114,7 @@ impl Graph {
         }
     }
 
-    /// The arguments of all roots whose reciprocals stand unguarded in a node.
+    /// Returns the arguments of all roots with unguarded reciprocals in a node.
     fn reciprocal_arguments(&mut self, id: NodeId) -> Arc<Vec<NodeId>> {
         if let Some(known) = self.orders_at_zeros.arguments.get(&id) {
             return known.clone();
@@ -140,7 +140,7 @@ impl Graph {
         found
     }
 
-    /// The order of a node in `argument`; negative without a proof that the node stays bounded.
+    /// Returns the order of a node in `argument`; negative without a proof that the node is bounded.
     fn order(&mut self, argument: NodeId, id: NodeId) -> f64 {
         if let Some(&known) = self.orders_at_zeros.orders.get(&(argument, id)) {
             return known;
@@ -203,7 +203,7 @@ impl Graph {
         }
     }
 
-    /// 0 for operands that stay bounded.
+    /// Returns 0 for bounded operands, else negative infinity.
     fn bounded(&mut self, argument: NodeId, operands: &[NodeId]) -> f64 {
         let unbounded = operands.iter().any(|operand| {
             self.has_reciprocal_root(*operand) && self.order(argument, *operand) < 0.0
@@ -211,7 +211,7 @@ impl Graph {
         if unbounded { f64::NEG_INFINITY } else { 0.0 }
     }
 
-    /// The sum of the orders of monomials that a product holds, and of its other factors.
+    /// Adds the orders of the monomials in a product, and those of its other factors.
     fn product_order(
         &mut self,
         argument: NodeId,
@@ -236,7 +236,7 @@ impl Graph {
         let mut left: Vec<(NodeId, i32)> = left.into_iter().filter(|(_, n)| *n != 0).collect();
         left.sort_unstable();
         for (factor, exponent) in left {
-            // Without a monomial in it nothing is known of the node itself.
+            // Without a monomial in it, the order of the node itself is unknown.
             if own == Some(factor) {
                 continue;
             }
@@ -245,8 +245,8 @@ impl Graph {
         order
     }
 
-    /// The order of a factor of a product. Only the root itself is known to be no smaller than its order
-    /// says, so that its reciprocal has one.
+    /// Returns the order of a factor. A reciprocal has an order only for the root itself, which is bounded
+    /// below.
     fn factor_order(&mut self, argument: NodeId, factor: NodeId, exponent: i32) -> f64 {
         if self.root_argument(factor) == Some(argument) {
             return 0.5;
@@ -257,7 +257,7 @@ impl Graph {
         }
     }
 
-    /// Adds the factors of a power; the absolute value of a product has those of the product.
+    /// Adds the factors of a power; the absolute value of a product has the factors of the product.
     fn split_absolute(&self, factor: NodeId, exponent: i32, into: &mut HashMap<NodeId, i32>) {
         match self.operation(factor) {
             Operation::Call(Function::Abs, a) => self.split_absolute(a[0], exponent, into),
@@ -274,8 +274,8 @@ impl Graph {
         }
     }
 
-    /// The monomials that vanish with a sum of terms of one sign; `None` if the sum may have others, or a term
-    /// of parameters alone, with which it does not vanish.
+    /// Returns the monomials that vanish with a sum of terms of one sign. `None` if the sum can have terms of
+    /// other signs, or a term of parameters, with which it does not vanish.
     fn bounds(&mut self, argument: NodeId) -> Option<Bounds> {
         if let Some(known) = self.orders_at_zeros.bounds.get(&argument) {
             return known.clone();
@@ -361,7 +361,7 @@ fn vanishes_with_argument(function: Function) -> bool {
     )
 }
 
-/// The node with every reciprocal of the root of `argument` guarded.
+/// Guards every reciprocal of the root of `argument` in a node.
 fn guard(graph: &mut Graph, id: NodeId, argument: NodeId) -> NodeId {
     let replacement = |graph: &mut Graph, node: NodeId| guarded(graph, node, argument);
     substitute(graph, id, &replacement, &mut HashMap::new())

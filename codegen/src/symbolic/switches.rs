@@ -4,19 +4,19 @@ use eomgen_model_spec::model::Function;
 
 use crate::symbolic::operation::{NodeId, Operation};
 
-/// A factor of a derivative, guarded on flat sides.
+/// Factor of a derivative with a guard on flat sides.
 #[derive(Clone, Copy)]
 pub(crate) struct FlatGuard {
     /// Node that is 0 on flat sides.
     pub(super) activity: NodeId,
-    /// The factor elsewhere.
+    /// Factor elsewhere.
     pub(super) inner: NodeId,
-    /// A term keeps the guard although it holds no reciprocal of a root.
+    /// True if terms keep the guard even without a reciprocal of a root.
     pub(super) is_permanent: bool,
 }
 
 impl FlatGuard {
-    /// The same guard, which no term drops.
+    /// Returns the guard with `is_permanent` set.
     pub(super) fn permanent(self) -> Self {
         Self {
             is_permanent: true,
