@@ -105,7 +105,6 @@ pub fn check_drawing(model: &Model, found: &mut Diagnostics) {
     }
 }
 
-/// Warns about parameters, inputs and definitions that nothing refers to.
 pub fn warn_unused(model: &Model, warnings: &mut Diagnostics) {
     let mut used = Used {
         parameters: vec![false; model.parameters.len()],
@@ -161,7 +160,6 @@ impl Used {
     }
 }
 
-/// Calls `see` with every expression of a model.
 pub fn for_each_expression(model: &Model, see: &mut impl FnMut(&Expr)) {
     for parameter in &model.parameters {
         if let ParameterValue::Expression(expr) = &parameter.value {

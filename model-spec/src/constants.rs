@@ -9,21 +9,14 @@ use crate::span::Span;
 
 /// Constant that is infinite, not a number, or outside the domain of a function.
 pub struct NotFinite {
-    /// The cause.
     pub message: String,
-    /// The cure.
     pub help: &'static str,
-    /// Position of the constant.
     pub span: Span,
 }
 
 /// Finite value of an expression; `None` if it is not constant.
 type Constant = Result<Option<f64>, NotFinite>;
 
-/// Checks the constant parts of all expressions, at these values of the parameters in SI.
-///
-/// # Errors
-/// The first constant that is not finite, with its position.
 pub fn check(model: &Model, parameters: &[f64]) -> Result<(), NotFinite> {
     let mut known = Constants {
         parameters,
@@ -169,7 +162,6 @@ fn is_periodic(function: Function) -> bool {
     matches!(function, Function::Sin | Function::Cos | Function::Tan)
 }
 
-/// Returns the condition for a finite value of a function.
 fn domain(function: Function) -> &'static str {
     match function {
         Function::Sqrt => "give `sqrt` an argument of at least 0",

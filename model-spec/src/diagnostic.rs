@@ -257,7 +257,6 @@ impl Diagnostics {
         }
     }
 
-    /// Returns one line for each kind of declaration with unused names.
     fn unused_lines(&self) -> Vec<String> {
         let kinds = [Declared::Parameter, Declared::Input, Declared::Definition];
         let kinds = kinds.into_iter();

@@ -19,10 +19,6 @@ use crate::toml_file::grammar_error;
 /// Largest number of entries in a section.
 pub const MAX_ENTRIES: usize = 2000;
 
-/// Reads the sections of a specification.
-///
-/// # Errors
-/// All errors of TOML grammar, sections and keys.
 pub fn read(source: &Source) -> Result<Document, Diagnostics> {
     let text: &str = &source.text;
     let toml = Toml::parse(text)
@@ -148,7 +144,6 @@ impl<'d> Reader<'d> {
         Some((name, title))
     }
 
-    /// Reads the gravity of the model, if it has one.
     fn gravity(&mut self) -> Option<Vec<Quantity>> {
         let model = self.section("model")?.table("{ }").ok()?;
         let entry = model
@@ -167,7 +162,6 @@ impl<'d> Reader<'d> {
         self.found.keep(components)
     }
 
-    /// Reads all entries of a section.
     fn collect<T>(
         &mut self,
         section: &str,
@@ -179,7 +173,6 @@ impl<'d> Reader<'d> {
         }
     }
 
-    /// Reads the points and lines of `[drawing]`, if there is one.
     fn drawing(&mut self) -> Option<RawDrawing> {
         let entry = self.section("drawing").cloned()?;
         let example = "{ } or [drawing.points]";
@@ -197,7 +190,6 @@ impl<'d> Reader<'d> {
         Some(drawing)
     }
 
-    /// Reads all entries of a table.
     fn entries<T>(
         &mut self,
         table: &Entry<'d>,

@@ -23,7 +23,6 @@ const BODY_EXAMPLE: &str = "{ frame = \"link_1\", mass = \"m_1\" }";
 const FIELD_EXAMPLE: &str = "{ along = \"x\", from = 0, to = \"l\", basis = \"clamped_free\", \
                              coordinates = \"q\", order = 4, unit = \"m\" }";
 
-/// Converts a string to a name.
 pub fn name_of(written: Written) -> Name {
     Name {
         text: written.text,
@@ -31,7 +30,6 @@ pub fn name_of(written: Written) -> Name {
     }
 }
 
-/// Reads an entry of `[parameters]`.
 pub fn parameter(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawParameter> {
     let record = entry.record(&keys::PARAMETER, PARAMETER_EXAMPLE, found)?;
     let help = "give a number in the declared unit, or an expression of other parameters";
@@ -48,7 +46,6 @@ pub fn parameter(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawParame
     })
 }
 
-/// Reads the `uncertainty` of a parameter, if it has one.
 fn uncertainty(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawUncertainty> {
     let entry = record.get("uncertainty")?;
     let record = entry.record(&keys::UNCERTAINTY, UNCERTAINTY_EXAMPLE, found)?;
@@ -82,7 +79,6 @@ fn uncertainty(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawUncert
     found.keep(raw)
 }
 
-/// Reads an entry of `[coordinates]`.
 pub fn coordinate(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawCoordinate> {
     let record = entry.record(&keys::COORDINATE, COORDINATE_EXAMPLE, found)?;
     Some(RawCoordinate {
@@ -109,7 +105,6 @@ fn required_unit(record: &Record<'_>, found: &mut Diagnostics) -> Option<Written
     found.keep(unit)
 }
 
-/// Reads an entry of `[inputs]`.
 pub fn input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawInput> {
     let record = entry.record(&keys::INPUT, "{ unit = \"N m\" }", found)?;
     Some(RawInput {
@@ -140,7 +135,6 @@ fn rates(record: &Record<'_>, found: &mut Diagnostics) -> u8 {
     2
 }
 
-/// Reads an entry of `[states]`.
 pub fn state(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawState> {
     let record = entry.record(&keys::STATE, STATE_EXAMPLE, found)?;
     let unit = required_unit(&record, found);
@@ -156,7 +150,6 @@ pub fn state(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawState> {
     })
 }
 
-/// Reads an entry of `[constraints]`.
 pub fn constraint(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawTerm> {
     let record = entry.record(&keys::CONSTRAINT, CONSTRAINT_EXAMPLE, found)?;
     let help = "give the expression that stays zero: zero = \"x^2 + y^2 - l^2\"";
@@ -186,7 +179,6 @@ pub fn impact(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<(RawTerm, Qu
     Some((term, found.keep(restitution?)?))
 }
 
-/// Reads a section `[fields.NAME]`.
 pub fn field(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawField> {
     let record = entry.record(&keys::FIELD, FIELD_EXAMPLE, found)?;
     let along = record
@@ -218,7 +210,6 @@ pub fn field(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawField> {
     })
 }
 
-/// Reads `basis` and `table`.
 fn basis_of(record: &Record<'_>, basis: &Entry<'_>, found: &mut Diagnostics) -> Option<RawBasis> {
     let written = found.keep(basis.written())?;
     let table = record.get("table");
@@ -257,7 +248,6 @@ fn basis_named(written: &Written) -> Result<Basis, Diagnostic> {
     })
 }
 
-/// Reader of a term's value.
 type Read<'d> = fn(&Entry<'d>) -> Result<Quantity, Diagnostic>;
 
 /// Reads an entry of an energy or of the dissipation.
@@ -265,7 +255,6 @@ pub fn term(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawTerm> {
     named_expression(entry, Entry::quantity, found)
 }
 
-/// Reads an entry of `[definitions]`.
 pub fn definition(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawTerm> {
     named_expression(entry, Entry::scalar_or_vector, found)
 }
@@ -323,7 +312,6 @@ pub fn observable(
     Some((term_of(&record, Entry::scalar_or_vector, found)?, unit))
 }
 
-/// Reads a section `[frames.NAME]`.
 pub fn frame(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawFrame> {
     let record = entry.record(&keys::FRAME, FRAME_EXAMPLE, found)?;
     let origin = record.get("origin");
@@ -337,7 +325,6 @@ pub fn frame(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawFrame> {
     })
 }
 
-/// Reads a section `[bodies.NAME]`.
 pub fn body(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawBody> {
     let record = entry.record(&keys::BODY, BODY_EXAMPLE, found)?;
     let mut list = |key: &str, counts: &[usize], example: &str| {
@@ -375,7 +362,6 @@ pub fn body(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawBody> {
     })
 }
 
-/// Reads an entry of `[coefficients]`.
 pub fn coefficient(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawCoefficient> {
     let name = entry.name.clone();
     if !entry.is_table() {
@@ -421,7 +407,6 @@ fn coefficient_kind(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawC
     ))
 }
 
-/// Reads a section `[sensors.CHANNEL]`.
 pub fn sensor(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawSensor> {
     let record = entry.record(&keys::SENSOR, "{ gain = 1, bias = 0 }", found)?;
     let observable = record.written("observable", found);
@@ -435,7 +420,6 @@ pub fn sensor(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawSensor> {
     })
 }
 
-/// Reads an entry of `[drawing.points]`.
 pub fn point(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawPoint> {
     let record = entry.record(&keys::POINT, "{ x = \"tip_x\", y = \"tip_y\" }", found)?;
     let help = "give a number in m, or the name of an observable or a coordinate in m";
@@ -449,7 +433,6 @@ pub fn point(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawPoint> {
     })
 }
 
-/// Reads an entry of `[drawing.lines]`.
 pub fn line(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawLine> {
     let points = found.keep(entry.list("[\"origin\", \"tip\"]"))?;
     let count = points.len();

@@ -2,7 +2,6 @@
 
 use crate::model::Function;
 
-/// Functions of scalar arguments, with the names of their arguments.
 const FUNCTIONS: [(&str, Function, &[&str]); 20] = [
     ("sin", Function::Sin, &["x"]),
     ("cos", Function::Cos, &["x"]),
@@ -92,7 +91,6 @@ impl Function {
     }
 }
 
-/// Returns the names of all functions and forms.
 pub fn callable() -> impl Iterator<Item = &'static str> {
     FUNCTIONS.iter().map(|(name, ..)| *name).chain(FORMS)
 }

@@ -1,6 +1,5 @@
 //! Sets of small numbers as bits: a union costs one operation per 64 numbers.
 
-/// Set of small numbers.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct IdSet {
     words: Vec<u64>,
@@ -15,7 +14,6 @@ impl IdSet {
         self.words[word] |= 1 << (number % 64);
     }
 
-    /// Adds all numbers of another set.
     pub fn extend(&mut self, other: &Self) {
         if self.words.len() < other.words.len() {
             self.words.resize(other.words.len(), 0);

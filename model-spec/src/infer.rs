@@ -13,13 +13,10 @@ use crate::span::Span;
 /// Unit of an expression; `None` for 0, which fits any unit.
 pub type Inferred = Option<Dimension>;
 
-/// Units known so far.
 pub struct Inference<'m> {
     /// Units of parameters, coordinates, inputs, states and fields.
     pub model: &'m Model,
-    /// Units of definitions, filled in dependency order.
     pub definitions: Vec<Inferred>,
-    /// Units of the coefficients so far.
     pub coefficients: Vec<Inferred>,
 }
 
@@ -41,10 +38,6 @@ impl Inference<'_> {
         factor.map(Some).ok_or_else(|| out_of_range(by.span))
     }
 
-    /// Infers the unit of an expression.
-    ///
-    /// # Errors
-    /// Units that do not match.
     pub fn infer(&self, expr: &Expr) -> Result<Inferred, Diagnostic> {
         let model = self.model;
         let out_of_range = || out_of_range(expr.span);
@@ -240,7 +233,6 @@ impl std::fmt::Display for Words {
     }
 }
 
-/// Describes a quantity of this unit in a sentence.
 fn quantity(dimension: Dimension) -> String {
     if dimension.is_none() {
         "a pure number".to_owned()

@@ -3,9 +3,7 @@
 
 use crate::model::{Basis, End};
 
-/// Keys of `[model]`.
 pub const MODEL: [&str; 3] = ["name", "title", "gravity"];
-/// Keys of an entry of `[parameters]`.
 pub const PARAMETER: [&str; 7] = [
     "value",
     "unit",
@@ -17,13 +15,9 @@ pub const PARAMETER: [&str; 7] = [
 ];
 /// Keys of the `uncertainty` of a parameter; an entry has one of them.
 pub const UNCERTAINTY: [&str; 3] = ["relative", "sd", "between"];
-/// Keys of an entry of `[coordinates]`.
 pub const COORDINATE: [&str; 5] = ["unit", "doc", "initial", "initial_rate", "range"];
-/// Keys of an entry of `[inputs]`.
 pub const INPUT: [&str; 4] = ["unit", "rates", "doc", "range"];
-/// Keys of an entry of `[states]`.
 pub const STATE: [&str; 5] = ["unit", "rate", "initial", "range", "doc"];
-/// Keys of a section `[fields.NAME]`.
 pub const FIELD: [&str; 9] = [
     "along",
     "from",
@@ -35,28 +29,18 @@ pub const FIELD: [&str; 9] = [
     "unit",
     "doc",
 ];
-/// Keys of a section `[frames.NAME]`.
 pub const FRAME: [&str; 4] = ["in", "origin", "rotation", "doc"];
-/// Keys of a section `[bodies.NAME]`.
 pub const BODY: [&str; 6] = ["frame", "mass", "centre", "inertia", "doc", "source"];
 /// Keys of a definition, an energy term or a dissipation term.
 pub const TERM: [&str; 3] = ["value", "doc", "source"];
-/// Keys of an entry of `[forces]`.
 pub const FORCE: [&str; 4] = ["on", "value", "doc", "source"];
-/// Keys of an entry of `[constraints]`.
 pub const CONSTRAINT: [&str; 3] = ["zero", "doc", "source"];
-/// Keys of an entry of `[impacts]`.
 pub const IMPACT: [&str; 4] = ["when", "restitution", "doc", "source"];
-/// Keys of an entry of `[observables]`.
 pub const OBSERVABLE: [&str; 4] = ["value", "unit", "doc", "source"];
-/// Keys of an entry of `[coefficients]`.
 pub const COEFFICIENT: [&str; 6] = ["value", "of", "by", "times", "each", "doc"];
-/// Keys of a section `[sensors.CHANNEL]`.
 pub const SENSOR: [&str; 4] = ["observable", "gain", "bias", "delay"];
 
-/// Keys of `[drawing]`.
 pub const DRAWING: [&str; 2] = ["points", "lines"];
-/// Keys of an entry of `[drawing.points]`.
 pub const POINT: [&str; 2] = ["x", "y"];
 
 /// Sections with the keys of their entries; for `[model]` and `[drawing]`, the keys of the
@@ -83,7 +67,6 @@ pub const SECTIONS: [(&str, &[&str]); 19] = [
     ("drawing", &DRAWING),
 ];
 
-/// Returns the names of the sections.
 pub fn sections() -> impl Iterator<Item = &'static str> {
     SECTIONS.iter().map(|(name, _)| *name)
 }

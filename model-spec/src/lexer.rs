@@ -115,7 +115,6 @@ fn token(text: &str, first: char, span: Span) -> Result<TokenKind, Diagnostic> {
     })
 }
 
-/// Reports an operator of another language.
 fn foreign(operator: &str, span: Span) -> Diagnostic {
     let help = written_here(operator).map(str::to_owned);
     Diagnostic::error(format!("{} is not an operator", quoted(operator)))

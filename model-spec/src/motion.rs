@@ -24,7 +24,6 @@ fn field_number(field: FieldId) -> usize {
     2 * field.index() + 1
 }
 
-/// Dependencies of an expression.
 #[derive(Clone, Debug, Default)]
 struct Motion {
     /// Coordinates and fields that enter by value.
@@ -43,7 +42,6 @@ struct Motion {
     reaction: Option<Span>,
     /// Position of the first function that switches during the motion.
     switch: Option<Span>,
-    /// True if time enters.
     time: bool,
     /// Depth after expansion of definitions.
     depth: usize,
@@ -200,7 +198,6 @@ impl Checker<'_, '_> {
         }
     }
 
-    /// Checks all constraints. Returns for each whether it contains rates.
     fn constraints(&mut self) -> Vec<bool> {
         let model = self.model;
         let degrees = model.coordinates.len();
@@ -269,7 +266,6 @@ impl Checker<'_, '_> {
         is_nonholonomic
     }
 
-    /// Checks the distances of all impacts.
     fn impacts(&mut self) {
         let model = self.model;
         if let Some(excess) = model.impacts.get(MAX_IMPACTS) {
@@ -312,7 +308,6 @@ impl Checker<'_, '_> {
         }
     }
 
-    /// Returns the number of given rates of an input.
     fn given_rates(&self, input: InputId) -> u8 {
         let inputs = &self.model.inputs;
         let rates = std::iter::successors(inputs[input].rate, |rate| inputs[*rate].rate);
@@ -333,7 +328,6 @@ impl Checker<'_, '_> {
         motion
     }
 
-    /// Returns the dependencies of an expression. Reports invalid uses of `dot`.
     fn motion_with_reactions(&mut self, expr: &Expr) -> Motion {
         let mut motion = Motion::default();
         self.add(expr, &mut motion, 1);

@@ -22,10 +22,8 @@ pub enum Symbol {
     Parameter(ParameterId),
     Coordinate(CoordinateId),
     Input(InputId),
-    /// State of first order.
     State(StateId),
     Field(FieldId),
-    /// Mode coordinates of a field.
     Modes(FieldId),
     /// Position along one or more fields.
     Position,
@@ -33,14 +31,11 @@ pub enum Symbol {
     /// Vector, with components that are definitions.
     Vector,
     Coefficient(CoefficientId),
-    /// Multiplier of a constraint.
     Multiplier(ConstraintId),
-    /// Residual of a constraint.
     Residual(ConstraintId),
 }
 
 impl Symbol {
-    /// Returns the kind of symbol, for a message.
     pub fn kind(self) -> &'static str {
         match self {
             Self::Parameter(_) => "a parameter",
@@ -59,7 +54,6 @@ impl Symbol {
     }
 }
 
-/// Names that an expression may use.
 pub struct Names {
     symbols: HashMap<String, (Symbol, Span)>,
     observables: HashSet<String>,
@@ -68,17 +62,14 @@ pub struct Names {
     pub fields: Vec<FieldNames>,
 }
 
-/// Names that belong to one field.
 pub struct FieldNames {
     pub field: String,
     /// Position along the field.
     pub along: String,
-    /// Mode coordinates.
     pub modes: String,
 }
 
 impl Names {
-    /// Declares all names of a specification and reports the invalid ones.
     pub fn declare(document: &Document, found: &mut Diagnostics) -> Self {
         found.keep(identifier(&document.name));
         let mut names = Self {
@@ -127,7 +118,6 @@ impl Names {
         names
     }
 
-    /// Returns the meaning of a name.
     pub fn get(&self, name: &str) -> Option<Symbol> {
         self.symbols.get(name).map(|(symbol, _)| *symbol)
     }
@@ -269,7 +259,6 @@ impl Names {
         }
     }
 
-    /// Returns the meaning of a generated name.
     fn generated(&self, name: &str) -> Option<String> {
         let (stem, what) = match name.strip_suffix("_dot") {
             Some(stem) => (stem, "the rate of"),

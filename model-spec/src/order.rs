@@ -22,7 +22,6 @@ pub fn order(references: &[Vec<Reference>]) -> Result<Vec<usize>, Vec<Reference>
     Ok(sorted)
 }
 
-/// Reports a cycle of references.
 pub fn circular<'n>(
     kind: &str,
     circle: &[Reference],

@@ -331,7 +331,6 @@ mod tests {
         parse(&tokens(text, Span::new)?, end)
     }
 
-    /// Writes the tree with every operation in brackets.
     fn bracketed(syntax: &Syntax) -> String {
         match &syntax.kind {
             SyntaxKind::Number(value) => value.to_string(),

@@ -11,7 +11,6 @@ use crate::span::Span;
 /// Expression that is expanded at its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WrittenOut {
-    /// Value of a definition.
     Definition(DefinitionId),
     /// Rate of a state, for `dot(z)`.
     Rate(StateId),
@@ -94,7 +93,6 @@ fn references(expr: &Expr, sizes: Sizes) -> Vec<Reference> {
     found.into_iter().collect()
 }
 
-/// Adds the rates of the states in an expression.
 fn held_rates(expr: &Expr, sizes: Sizes, found: &mut BTreeMap<usize, Span>) {
     expr.visit(&mut |part| {
         let place = match part.kind {

@@ -5,7 +5,6 @@ use crate::model::{Basis, STABILISATION_RATE};
 use crate::span::Span;
 use crate::table::{Name, Number, Quantity, Written};
 
-/// Specification as read.
 #[derive(Debug)]
 pub struct Document {
     /// `name` of `[model]`; the span includes its quotes.
@@ -66,14 +65,12 @@ impl Document {
     }
 }
 
-/// The section `[drawing]`.
 #[derive(Debug)]
 pub struct RawDrawing {
     pub points: Vec<RawPoint>,
     pub lines: Vec<RawLine>,
 }
 
-/// Entry of `[drawing.points]`.
 #[derive(Debug)]
 pub struct RawPoint {
     pub name: Name,
@@ -81,14 +78,12 @@ pub struct RawPoint {
     pub y: Quantity,
 }
 
-/// Entry of `[drawing.lines]`.
 #[derive(Debug)]
 pub struct RawLine {
     pub name: Name,
     pub points: Vec<Written>,
 }
 
-/// Entry of `[parameters]`.
 #[derive(Debug)]
 pub struct RawParameter {
     pub name: Name,
@@ -102,7 +97,6 @@ pub struct RawParameter {
     pub uncertainty: Option<RawUncertainty>,
 }
 
-/// The `uncertainty` of a parameter.
 #[derive(Debug)]
 pub enum RawUncertainty {
     Relative(Number),
@@ -110,7 +104,6 @@ pub enum RawUncertainty {
     Between([Number; 2]),
 }
 
-/// Entry of `[coordinates]`.
 #[derive(Debug)]
 pub struct RawCoordinate {
     pub name: Name,
@@ -130,7 +123,6 @@ pub struct RawRange {
     pub span: Span,
 }
 
-/// Entry of `[inputs]`.
 #[derive(Debug)]
 pub struct RawInput {
     pub name: Name,
@@ -168,7 +160,6 @@ impl RawInput {
     }
 }
 
-/// Mode shapes of a field.
 #[derive(Debug)]
 pub enum RawBasis {
     /// Shapes of a formula.
@@ -177,7 +168,6 @@ pub enum RawBasis {
     Table(Written),
 }
 
-/// Entry of `[states]`.
 #[derive(Debug)]
 pub struct RawState {
     pub name: Name,
@@ -188,7 +178,6 @@ pub struct RawState {
     pub doc: String,
 }
 
-/// A section `[fields.NAME]`.
 #[derive(Debug)]
 pub struct RawField {
     pub name: Name,
@@ -203,7 +192,6 @@ pub struct RawField {
     pub doc: String,
 }
 
-/// Named expression.
 #[derive(Debug)]
 pub struct RawTerm {
     pub name: Name,
@@ -213,7 +201,6 @@ pub struct RawTerm {
     pub origin: String,
 }
 
-/// A section `[frames.NAME]`.
 #[derive(Debug)]
 pub struct RawFrame {
     pub name: Name,
@@ -226,7 +213,6 @@ pub struct RawFrame {
     pub doc: String,
 }
 
-/// A section `[bodies.NAME]`.
 #[derive(Debug)]
 pub struct RawBody {
     pub name: Name,
@@ -242,7 +228,6 @@ pub struct RawBody {
     pub origin: String,
 }
 
-/// Entry of `[coefficients]`.
 #[derive(Debug)]
 pub struct RawCoefficient {
     pub name: Name,
@@ -260,7 +245,6 @@ pub enum RawCoefficientKind {
     Factor(Quantity, Quantity, Option<Quantity>),
 }
 
-/// A section `[sensors.CHANNEL]`.
 #[derive(Debug)]
 pub struct RawSensor {
     pub channel: Name,

@@ -117,7 +117,6 @@ impl<T> RigidBody<T> {
     }
 }
 
-/// Converts three expressions.
 fn each<T, U, E>(parts: &[T; 3], change: &mut impl FnMut(&T) -> Result<U, E>) -> Result<[U; 3], E> {
     let [x, y, z] = parts.each_ref().map(change);
     Ok([x?, y?, z?])

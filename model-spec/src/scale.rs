@@ -16,7 +16,6 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// Factor 1.
     pub const ONE: Self = Self {
         fraction: Ratio::new_raw(1, 1),
         pi_power: 0,

@@ -138,7 +138,6 @@ impl ShapeTable {
         Ok(())
     }
 
-    /// Checks the table as a whole.
     fn check(&self) -> Result<(), TableFault> {
         let (rows, modes) = (self.positions.len(), self.shapes.len());
         let least = MIN_ROWS.max(2 * modes + 2);
@@ -217,7 +216,6 @@ impl TableFault {
     }
 }
 
-/// Returns the number of shapes in a header.
 fn modes(header: &str, most: usize) -> Result<usize, TableFault> {
     let cells = cells(header);
     if cells.len() < 2 {

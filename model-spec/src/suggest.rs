@@ -33,7 +33,6 @@ fn count_comparison() {
     tests::COMPARED.with(|compared| compared.set(compared.get() + 1));
 }
 
-/// Returns the length of the common prefix.
 fn common(one: &str, other: &str) -> usize {
     one.chars()
         .zip(other.chars())

@@ -171,10 +171,7 @@ impl<'d> Entry<'d> {
         range.map_or(self.name.span, |range| Span::new(range.start, range.end))
     }
 
-    /// Returns the entries of a table.
-    ///
-    /// # Errors
-    /// A value of another kind.
+    /// Returns the entries of a table; an error for any other kind of value.
     pub fn table(&self, example: &str) -> Result<Vec<Entry<'d>>, Diagnostic> {
         match self.table_like() {
             Some(table) => Ok(entries(table, self.text)),
@@ -182,10 +179,7 @@ impl<'d> Entry<'d> {
         }
     }
 
-    /// Returns the elements of a list, each with the key of the list and its own position.
-    ///
-    /// # Errors
-    /// A value of another kind.
+    /// Returns the elements of a list, each with the key of the list and its own position; an error for any other kind of value.
     pub fn list(&self, example: &str) -> Result<Vec<Entry<'d>>, Diagnostic> {
         let element = |node: Node<'d>| {
             let mut entry = Entry {
@@ -227,10 +221,7 @@ impl<'d> Entry<'d> {
         })
     }
 
-    /// Returns a truth value.
-    ///
-    /// # Errors
-    /// A value of another kind.
+    /// Returns a truth value; an error for any other kind of value.
     pub fn truth(&self) -> Result<bool, Diagnostic> {
         match self.value() {
             Some(Value::Boolean(truth)) => Ok(*truth.value()),
@@ -270,10 +261,7 @@ impl<'d> Entry<'d> {
         self.table_like().is_some()
     }
 
-    /// Returns a string.
-    ///
-    /// # Errors
-    /// A value of another kind.
+    /// Returns a string; an error for any other kind of value.
     pub fn written(&self) -> Result<Written, Diagnostic> {
         let value = self.value();
         value
@@ -292,10 +280,7 @@ impl<'d> Entry<'d> {
             .unwrap_or_else(|| Err(self.mismatch("a number", "0.5")))
     }
 
-    /// Returns a number or an expression.
-    ///
-    /// # Errors
-    /// A value of another kind.
+    /// Returns a number or an expression; an error for any other kind of value.
     pub fn quantity(&self) -> Result<Quantity, Diagnostic> {
         let value = self.value();
         value
@@ -305,10 +290,7 @@ impl<'d> Entry<'d> {
             })
     }
 
-    /// Returns a scalar or a vector: a number, an expression or an array of components.
-    ///
-    /// # Errors
-    /// A value of another kind.
+    /// Returns a scalar or a vector: a number, an expression or an array of components; an error for any other kind of value.
     pub fn scalar_or_vector(&self) -> Result<Quantity, Diagnostic> {
         match self.value() {
             Some(Value::Array(_)) => {
@@ -323,10 +305,7 @@ impl<'d> Entry<'d> {
         }
     }
 
-    /// Returns a vector: an array of three components, or an expression.
-    ///
-    /// # Errors
-    /// A value of another kind.
+    /// Returns a vector: an array of three components, or an expression; an error for any other kind of value.
     pub fn vector(&self, example: &str) -> Result<Quantity, Diagnostic> {
         match self.written() {
             Ok(written) => Ok(Quantity::Expression(written)),
@@ -428,10 +407,7 @@ impl<'d> Entry<'d> {
         }
     }
 
-    /// Returns a whole number.
-    ///
-    /// # Errors
-    /// A value of another kind.
+    /// Returns a whole number; an error for any other kind of value.
     pub fn whole(&self) -> Result<(i64, Span), Diagnostic> {
         match self.value() {
             Some(Value::Integer(integer)) => Ok((*integer.value(), self.span())),

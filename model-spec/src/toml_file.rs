@@ -51,7 +51,6 @@ pub fn source(path: &Path, limit: u64) -> Result<Source, Diagnostics> {
     Ok(Source::new(shown.clone(), text))
 }
 
-/// Converts an error of the TOML parser to a finding.
 pub(crate) fn grammar_error(text: &str, error: &toml_edit::TomlError) -> Diagnostic {
     let range = error.span().unwrap_or(text.len()..text.len());
     let mut lines = error.message().lines();

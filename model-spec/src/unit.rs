@@ -215,7 +215,6 @@ fn refuse_ambiguous(above: &str, below: &str) -> Result<(), UnitError> {
     ))
 }
 
-/// Splits a product at spaces and `*`.
 fn factors(text: &str) -> impl Iterator<Item = &str> {
     text.split([' ', '*']).filter(|part| !part.is_empty())
 }

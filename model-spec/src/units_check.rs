@@ -122,7 +122,6 @@ impl Units<'_, '_> {
         }
     }
 
-    /// Infers the units of all definitions. Returns true if all have one.
     fn definitions(&mut self) -> bool {
         let mut all = true;
         for &index in &self.model.definition_order {
@@ -204,7 +203,6 @@ impl Units<'_, '_> {
         }
     }
 
-    /// Returns the unit of every constraint.
     fn constraints(&mut self) -> Vec<Unit> {
         let mut units = Vec::with_capacity(self.model.constraints.len());
         for constraint in &self.model.constraints {

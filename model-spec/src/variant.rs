@@ -341,7 +341,6 @@ impl Model {
 }
 
 impl Model {
-    /// Checks that all restitutions are between 0 and 1.
     fn check_restitutions(&self, parameters: &[f64]) -> Result<(), ModelError> {
         for impact in &self.impacts {
             let value = evaluate(&impact.restitution, parameters);
@@ -364,7 +363,6 @@ impl Range {
     }
 }
 
-/// Evaluates an initial value in SI; 0 if absent.
 fn initial_value(name: &str, expr: Option<&Expr>, parameters: &[f64]) -> Result<f64, ModelError> {
     let Some(expr) = expr else {
         return Ok(0.0);
@@ -389,7 +387,6 @@ fn check_range(name: &str, range: &Range, values: &[f64]) -> Result<(), ModelErr
         .help("give two finite ends, the lower one first"))
 }
 
-/// Checks that an initial value is in its range.
 fn check_inside(name: &str, range: &Range, values: &[f64], initial: f64) -> Result<(), ModelError> {
     let (low, high) = range.ends(values);
     if (low..=high).contains(&initial) {

@@ -21,7 +21,6 @@ pub fn term(document: &mut DocumentMut, new: &NewTerm) -> Result<(), EditError> 
     insert(document, new.section.name(), &new.name, value)
 }
 
-/// Adds a parameter.
 pub fn parameter(document: &mut DocumentMut, new: &NewParameter) -> Result<(), EditError> {
     let mut table = InlineTable::new();
     table.insert("value", new_value(&new.name, &new.value)?);
@@ -30,7 +29,6 @@ pub fn parameter(document: &mut DocumentMut, new: &NewParameter) -> Result<(), E
     insert(document, "parameters", &new.name, value)
 }
 
-/// Adds a coordinate.
 pub fn coordinate(document: &mut DocumentMut, new: &NewCoordinate) -> Result<(), EditError> {
     let mut table = InlineTable::new();
     table.insert("unit", Value::from(new.unit.as_str()));
@@ -41,14 +39,12 @@ pub fn coordinate(document: &mut DocumentMut, new: &NewCoordinate) -> Result<(),
     insert(document, "coordinates", &new.name, value)
 }
 
-/// Adds a state of first order.
 pub fn state(document: &mut DocumentMut, new: &NewState) -> Result<(), EditError> {
     let texts = [("unit", &new.unit), ("rate", &new.rate), ("doc", &new.doc)];
     let value = with_texts(InlineTable::new(), &texts);
     insert(document, Section::States.name(), &new.name, value)
 }
 
-/// Adds a force.
 pub fn force(document: &mut DocumentMut, new: &NewForce) -> Result<(), EditError> {
     let head = [("on", &new.on), ("value", &new.value)];
     let tail = [("doc", &new.doc), ("source", &new.source)];
@@ -97,7 +93,6 @@ fn add_section(document: &mut DocumentMut, section: &str) {
     document.insert(section, Item::Table(table));
 }
 
-/// Adds the texts that are not empty to a table.
 fn with_texts(mut table: InlineTable, texts: &[(&str, &String)]) -> Value {
     for (key, text) in texts {
         if !text.is_empty() {

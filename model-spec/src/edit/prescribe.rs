@@ -7,7 +7,6 @@ use super::substitute::{replaced, syntax};
 use super::{EditError, NewParameter, NewTerm, NewValue, PrescribeInput, Section};
 use crate::ast::{Syntax, SyntaxKind};
 
-/// Prescribes an input.
 pub fn prescribe(document: &mut DocumentMut, edit: &PrescribeInput) -> Result<(), EditError> {
     let (unit, has_rates) = remove(document, &edit.name).ok_or_else(|| EditError::MissingTerm {
         section: "inputs".to_owned(),
@@ -57,7 +56,6 @@ fn define(document: &mut DocumentMut, name: &str, value: String) -> Result<(), E
     term(document, &definition)
 }
 
-/// Returns true if a document contains a name.
 fn is_named(document: &DocumentMut, name: &str) -> bool {
     let is_of_names = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let text = document.to_string();

@@ -60,7 +60,6 @@ pub fn sensor(document: &mut DocumentMut, edit: &SetSensor) -> Result<(), EditEr
     Ok(())
 }
 
-/// Formats a number in the shortest form that parses to the same value.
 fn number(name: &str, value: f64) -> Result<Value, EditError> {
     let written = format!("{value:?}").parse().ok();
     let finite = written.filter(|_| value.is_finite());

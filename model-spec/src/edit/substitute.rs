@@ -9,7 +9,6 @@ use crate::lexer::tokens;
 use crate::parser::parse;
 use crate::span::Span;
 
-/// Replaces an expression in every named term.
 pub fn substitute(document: &mut DocumentMut, edit: &Substitution) -> Result<(), EditError> {
     let replacement = Replacement::new(&edit.find, &edit.replace)?;
     for term in &edit.terms {
@@ -23,7 +22,6 @@ pub fn replaced(text: &str, find: &str, replace: &str) -> Result<Option<String>,
     Replacement::new(find, replace)?.replaced(text)
 }
 
-/// Replacement of one expression by another.
 struct Replacement<'e> {
     find: &'e str,
     pattern: Syntax,
@@ -33,7 +31,6 @@ struct Replacement<'e> {
 }
 
 impl<'e> Replacement<'e> {
-    /// Parses both expressions.
     fn new(find: &'e str, replace: &'e str) -> Result<Self, EditError> {
         let replacement = syntax(replace)?;
         Ok(Self {
@@ -47,7 +44,6 @@ impl<'e> Replacement<'e> {
         })
     }
 
-    /// Replaces every occurrence in the value of one term.
     fn make(
         &self,
         document: &mut DocumentMut,
@@ -77,7 +73,6 @@ impl<'e> Replacement<'e> {
         Ok(())
     }
 
-    /// Returns the text with every occurrence replaced; `None` without an occurrence.
     fn replaced(&self, text: &str) -> Result<Option<String>, EditError> {
         let tree = syntax(text)?;
         let mut places = Vec::new();
@@ -139,7 +134,6 @@ fn expression_of<'i>(item: &'i mut Item, key: &str) -> Option<(&'i mut Value, St
     Some((value, text))
 }
 
-/// Parses an expression.
 pub fn syntax(text: &str) -> Result<Syntax, EditError> {
     let end = Span::new(text.len(), text.len());
     let parsed = tokens(text, Span::new).and_then(|tokens| parse(&tokens, end));

@@ -9,11 +9,9 @@ use crate::model::{Expr, ExprKind};
 use crate::names::Symbol;
 use crate::span::Span;
 
-/// Highest derivative with respect to the position.
 const MAX_DERIVATIVE: f64 = 4.0;
 
 impl Resolver<'_> {
-    /// Resolves a call of a special form.
     pub(super) fn form(
         &mut self,
         name: &str,

@@ -27,7 +27,6 @@ pub enum Scope {
     Factor,
 }
 
-/// Resolver of the names of one expression.
 pub struct Resolver<'n> {
     names: &'n Names,
     scope: Scope,
@@ -42,7 +41,6 @@ pub struct Resolver<'n> {
 type ResolvedKind = Result<ExprKind, Diagnostic>;
 
 impl<'n> Resolver<'n> {
-    /// Creates a resolver for expressions in `scope`.
     pub fn new(names: &'n Names, scope: Scope) -> Self {
         Self {
             names,
@@ -65,10 +63,6 @@ impl<'n> Resolver<'n> {
         self
     }
 
-    /// Resolves the names of an expression.
-    ///
-    /// # Errors
-    /// The first name or call that is invalid at its place.
     pub fn resolve(&mut self, syntax: &Syntax) -> Result<Expr, Diagnostic> {
         let span = syntax.span;
         let kind = match &syntax.kind {
@@ -344,7 +338,6 @@ fn vectors_elsewhere(span: Span) -> Diagnostic {
         )
 }
 
-/// Reports a wrong number of arguments.
 pub(super) fn wrong_count(name: &str, span: Span, count: usize, usage: &str) -> Diagnostic {
     let plural = if count == 1 { "" } else { "s" };
     Diagnostic::error(format!("`{name}` does not accept {count} argument{plural}"))

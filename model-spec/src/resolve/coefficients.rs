@@ -11,7 +11,6 @@ use crate::raw::{RawCoefficient, RawCoefficientKind};
 use crate::table::{Quantity, Written};
 
 impl Builder {
-    /// Builds all coefficients; each may refer to earlier ones.
     pub(super) fn coefficients(&mut self, raw: Vec<RawCoefficient>) -> Vec<Coefficient> {
         let mut built = Vec::with_capacity(raw.len());
         let mut per_mode = Vec::with_capacity(raw.len());
@@ -103,7 +102,6 @@ fn rows_of(expr: &Expr) -> Option<FieldId> {
     }
 }
 
-/// Returns the fields with one coefficient per mode.
 fn modes_of(coefficient: &Coefficient) -> Vec<FieldId> {
     let mut fields: Vec<FieldId> = coefficient.each.into_iter().collect();
     if let CoefficientKind::Factor { of, by, .. } = &coefficient.kind {

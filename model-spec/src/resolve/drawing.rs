@@ -13,7 +13,6 @@ use crate::table::{Quantity, Written};
 /// Name of the point (0, 0), which every drawing has.
 const ORIGIN: &str = "origin";
 
-/// Names for ordinates.
 struct Known<'d> {
     coordinates: Vec<&'d str>,
     observables: Vec<&'d str>,
@@ -48,7 +47,6 @@ impl Known<'_> {
 }
 
 impl Builder {
-    /// Builds the drawing of a document, if it has one.
     pub(super) fn drawing(&mut self, document: &Document) -> Option<Drawing> {
         let raw = document.drawing.as_ref()?;
         let coordinates = document.coordinates.iter();
@@ -103,7 +101,6 @@ impl Builder {
     }
 }
 
-/// Returns the point of a name.
 fn named(written: &Written, names: &[&str]) -> Result<PointId, Diagnostic> {
     let place = names.iter().position(|name| *name == written.text);
     place.map(PointId::new).ok_or_else(|| {

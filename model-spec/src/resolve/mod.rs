@@ -38,14 +38,9 @@ pub struct Resolved {
     pub demanded: Vec<(Expr, Dimension, String)>,
     /// Components of vectors, which need one unit.
     pub alike: Vec<Vec<Expr>>,
-    /// Inertias of the bodies.
     pub inertias: Vec<Inertia<Expr>>,
 }
 
-/// Builds the model of a document.
-///
-/// # Errors
-/// Invalid or unknown names, invalid units and expressions, cyclic references.
 pub fn resolve(
     document: Document,
     demands: Demands,
@@ -118,7 +113,6 @@ impl Builder {
         }
     }
 
-    /// Resolves the quantities of short forms.
     fn demands(&mut self, demands: Demands, resolved: &mut Resolved) {
         if !self.found.is_empty() {
             return;

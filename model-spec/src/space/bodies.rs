@@ -79,7 +79,6 @@ pub fn expand(
     bodies
 }
 
-/// Mass, centre of mass and inertia of a body.
 struct Parts {
     mass: Syntax,
     centre: Vector,

@@ -13,14 +13,11 @@ use crate::table::Name;
 /// Entry that a definition is generated for; the definition has its position and description.
 #[derive(Clone, Debug)]
 pub struct Owner {
-    /// Key of the entry.
     pub name: Name,
-    /// Description of the entry.
     pub doc: String,
 }
 
 impl Owner {
-    /// Creates an owner from a name and a description.
     pub fn new(name: &Name, doc: &str) -> Self {
         Self {
             name: name.clone(),
@@ -28,24 +25,20 @@ impl Owner {
         }
     }
 
-    /// Returns the name of a part of the entry.
     pub fn named(&self, what: &str) -> String {
         format!("{}_{what}", self.name.text)
     }
 }
 
-/// Generated definitions, and the names with a rate.
 pub struct Definitions {
     written: Vec<RawTerm>,
     taken: HashSet<String>,
     /// Largest number of a part, for each entry.
     parts: HashMap<String, usize>,
-    /// Names with a rate.
     pub moving: Moving,
 }
 
 impl Definitions {
-    /// Creates an empty list of definitions.
     pub fn of(document: &Document) -> Self {
         Self {
             written: Vec::new(),
@@ -60,12 +53,10 @@ impl Definitions {
         self.taken.contains(name)
     }
 
-    /// Removes and returns the generated definitions.
     pub fn take(&mut self) -> Vec<RawTerm> {
         std::mem::take(&mut self.written)
     }
 
-    /// Generates a definition and returns its name.
     pub fn define(&mut self, owner: &Owner, text: String, value: Syntax) -> Syntax {
         let span = value.span;
         let defined = name(&text, span);

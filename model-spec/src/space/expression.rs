@@ -16,7 +16,6 @@ use crate::span::Span;
 use crate::suggest::did_you_mean;
 use crate::table::Quantity;
 
-/// Members of every frame.
 pub const MEMBERS: [&str; 7] = [
     "origin",
     "velocity",
@@ -30,7 +29,6 @@ pub const MEMBERS: [&str; 7] = [
 /// Largest size of a repeated expression inside integrals and sums, which cannot be named.
 const MAX_REPEATED: usize = 10_000;
 
-/// Evaluates the expressions of one entry.
 pub struct Reader<'s> {
     pub(super) space: &'s mut Space,
     pub(super) owner: &'s Owner,
@@ -41,7 +39,6 @@ pub struct Reader<'s> {
 pub(super) type Read = Result<Value, Diagnostic>;
 
 impl<'s> Reader<'s> {
-    /// Creates a reader for an entry.
     pub fn new(space: &'s mut Space, owner: &'s Owner) -> Self {
         Self {
             space,
@@ -50,10 +47,6 @@ impl<'s> Reader<'s> {
         }
     }
 
-    /// Evaluates an expression.
-    ///
-    /// # Errors
-    /// Operands of the wrong kind, and unknown members.
     pub fn value(&mut self, syntax: &Syntax) -> Read {
         let span = syntax.span;
         match &syntax.kind {
@@ -94,10 +87,6 @@ impl<'s> Reader<'s> {
         }
     }
 
-    /// Evaluates an expression to a scalar.
-    ///
-    /// # Errors
-    /// Those of `value`, and a value of another kind, reported as `subject`.
     pub fn scalar(
         &mut self,
         quantity: &Quantity,
@@ -187,10 +176,6 @@ impl<'s> Reader<'s> {
         }
     }
 
-    /// Evaluates a vector of three components with this unit.
-    ///
-    /// # Errors
-    /// Those of `in_space`.
     pub fn demanded(
         &mut self,
         written: &Quantity,

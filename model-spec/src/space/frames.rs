@@ -20,7 +20,6 @@ const MAX_CHAIN: usize = 100;
 /// Motion of a frame, along its own axes.
 #[derive(Clone)]
 pub struct Motion {
-    /// Angular velocity, in 1/s.
     pub omega: Vector,
     /// Velocity of the origin, in m/s.
     pub velocity: Vector,
@@ -30,10 +29,8 @@ pub struct Motion {
     pub depth: Syntax,
 }
 
-/// Frame of a specification.
 #[derive(Clone)]
 pub struct Frame {
-    /// Entry of the frame.
     pub owner: Owner,
     /// Parent frame; `None` for the fixed axes.
     pub parent: Option<String>,
@@ -41,7 +38,6 @@ pub struct Frame {
     pub origin: Vector,
     /// Rotations from the parent's axes to the frame's.
     pub turns: Vec<Turn>,
-    /// Motion of the frame.
     pub motion: Motion,
     /// Index among the frames, in dependency order.
     pub id: FrameId,
@@ -49,14 +45,12 @@ pub struct Frame {
     level: usize,
 }
 
-/// Frames of a specification.
 pub struct Frames {
     frames: HashMap<String, Frame>,
     /// Motion of the fixed axes: zero.
     fixed: Motion,
     /// Factor from `down` to the acceleration of free fall, in m/s^2.
     pub strength: Option<Syntax>,
-    /// True if gravity is given.
     pub gravity: bool,
 }
 
@@ -78,12 +72,10 @@ impl Frames {
         }
     }
 
-    /// Returns the frame of this name, if any.
     pub fn named(&self, name: &str) -> Option<&Frame> {
         self.frames.get(name)
     }
 
-    /// Returns all frames, each after its parent.
     pub fn in_order(&self) -> Vec<&Frame> {
         let mut frames: Vec<&Frame> = self.frames.values().collect();
         frames.sort_by_key(|frame| frame.id);
@@ -98,24 +90,15 @@ impl Frames {
         }
     }
 
-    /// Returns the names of all frames.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.frames.keys().map(String::as_str)
     }
 
-    /// Returns the frame of this name.
-    ///
-    /// # Errors
-    /// An unknown name, with the nearest known one.
     pub fn get(&self, written: &Written) -> Result<&Frame, Diagnostic> {
         self.named(&written.text)
             .ok_or_else(|| unknown(written, self.names()))
     }
 
-    /// Adds a frame after its parent.
-    ///
-    /// # Errors
-    /// A chain of more than [`MAX_CHAIN`] frames.
     pub fn place(
         &mut self,
         owner: Owner,
@@ -148,7 +131,6 @@ impl Frames {
     }
 }
 
-/// Reports an unknown frame.
 pub fn unknown<'n>(written: &Written, known: impl Iterator<Item = &'n str>) -> Diagnostic {
     let help = "declare a frame as [frames.NAME]";
     Diagnostic::error(format!("unknown frame {}", quoted(&written.text)))
@@ -188,7 +170,6 @@ fn moved(
     motion
 }
 
-/// Returns the motion along rotated axes.
 fn turned(
     mut motion: Motion,
     turns: &[Turn],

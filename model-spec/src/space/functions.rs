@@ -12,7 +12,6 @@ use crate::functions::VECTOR_FUNCTIONS;
 use crate::span::Span;
 
 impl Reader<'_> {
-    /// Evaluates a call.
     pub(super) fn call(
         &mut self,
         (function, place): (&str, Span),
@@ -57,7 +56,6 @@ impl Reader<'_> {
         Ok(standing(made, span))
     }
 
-    /// Evaluates the arguments of a function of scalars.
     fn of_scalars(
         &mut self,
         (function, place): (&str, Span),
@@ -186,7 +184,6 @@ impl Reader<'_> {
         Ok(Factor::About(Box::new((direction, cosine, sine))))
     }
 
-    /// Divides a vector by its length.
     fn unit(&mut self, vector: Vector, span: Span) -> Result<Vector, Diagnostic> {
         let numbers = vector.each_ref().map(|component| match &component.kind {
             SyntaxKind::Number(value) => Some(*value),
@@ -221,7 +218,6 @@ impl Reader<'_> {
         }))
     }
 
-    /// Returns the rates of the components.
     fn rates(&mut self, [x, y, z]: Vector) -> Result<Vector, Diagnostic> {
         Ok([self.rate(x)?, self.rate(y)?, self.rate(z)?])
     }

@@ -10,19 +10,14 @@ use super::value::Value;
 use crate::ast::{Syntax, SyntaxKind};
 use crate::functions::VECTOR_FUNCTIONS;
 
-/// State of the expansion of a specification.
 pub struct Space {
-    /// Vectors and rotations by name.
     pub vectors: HashMap<String, Value>,
-    /// Frames added so far.
     pub frames: Frames,
     /// Names of all frames, added or not.
     pub frame_names: HashSet<String>,
     /// Positions of frames computed so far.
     pub placements: Placements,
-    /// Generated definitions.
     pub definitions: Definitions,
-    /// Requirements checked later.
     pub demands: Demands,
     /// Names of multipliers and residuals of constraints.
     pub reported: HashSet<String>,
@@ -56,7 +51,6 @@ impl Space {
     }
 }
 
-/// Returns true if an expression contains vector syntax.
 pub fn is_spatial(syntax: &Syntax) -> bool {
     let mut spatial = false;
     syntax.visit(&mut |part| {

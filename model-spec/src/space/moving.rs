@@ -5,7 +5,6 @@ use std::collections::HashSet;
 use crate::ast::{Syntax, SyntaxKind};
 use crate::raw::Document;
 
-/// Names with a rate.
 pub struct Moving {
     names: HashSet<String>,
 }
@@ -30,7 +29,6 @@ impl Moving {
         }
     }
 
-    /// Returns true if an expression has a rate.
     pub fn holds(&self, syntax: &Syntax) -> bool {
         let mut holds = false;
         syntax.visit(&mut |part| {

@@ -13,11 +13,9 @@ use crate::span::Span;
 /// that a matrix needs fewer products.
 const MAX_FACTORS: usize = 3;
 
-/// Operand and its position.
 type Operand = (Value, Span);
 
 impl Reader<'_> {
-    /// Evaluates a binary operation.
     pub(super) fn binary(
         &mut self,
         operator: BinaryOperator,
@@ -145,7 +143,6 @@ impl Reader<'_> {
     }
 }
 
-/// Sets the position of a value to that of the operation.
 pub fn standing(value: Value, span: Span) -> Value {
     let here = |component: Syntax| Syntax { span, ..component };
     match value {
@@ -167,7 +164,6 @@ fn divided(component: Syntax, by: &Syntax, span: Span) -> Syntax {
     Syntax { kind, span }
 }
 
-/// Reports operands that cannot be added.
 pub fn mixed(left: &Operand, right: &Operand) -> Diagnostic {
     let message = format!("{} and {} cannot be added", left.0.kind(), right.0.kind());
     let help = match (&left.0, &right.0) {

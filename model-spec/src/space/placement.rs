@@ -9,7 +9,6 @@ use super::scalar::{add, number};
 use super::vector::{AXES, Rows, Vector, turned, zero};
 use crate::span::Span;
 
-/// Results so far.
 #[derive(Default)]
 pub struct Placements {
     rows: HashMap<String, Rows>,
@@ -17,7 +16,6 @@ pub struct Placements {
     motions: HashMap<(String, &'static str), Vector>,
 }
 
-/// Returns the rows of the identity.
 fn identity(span: Span) -> Rows {
     [0, 1, 2].map(|axis| {
         let mut row = zero(span);
@@ -48,7 +46,6 @@ impl Placements {
         rows
     }
 
-    /// Returns the position of a frame's origin, in m.
     pub fn origin(
         &mut self,
         frame: &Frame,
@@ -73,7 +70,6 @@ impl Placements {
         origin
     }
 
-    /// Returns the velocity of a frame's origin, in m/s.
     pub fn velocity(
         &mut self,
         frame: &Frame,
@@ -84,7 +80,6 @@ impl Placements {
         self.motion("velocity", own, frame, frames, definitions)
     }
 
-    /// Returns the angular velocity of a frame, in 1/s.
     pub fn angular_velocity(
         &mut self,
         frame: &Frame,

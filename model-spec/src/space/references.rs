@@ -12,7 +12,6 @@ use crate::span::Span;
 use super::definitions::declared;
 use super::frames::unknown;
 
-/// Expressions of a frame.
 pub struct FrameExpressions {
     pub origin: Option<Syntax>,
     pub rotation: Option<Syntax>,
@@ -20,9 +19,7 @@ pub struct FrameExpressions {
 
 /// Expressions that are evaluated in dependency order.
 pub struct Expressions {
-    /// Expressions of `[definitions]`.
     pub definitions: Vec<Syntax>,
-    /// Expressions of `[frames]`.
     pub frames: Vec<FrameExpressions>,
 }
 
@@ -46,7 +43,6 @@ impl Expressions {
     }
 }
 
-/// Definition or frame.
 #[derive(Clone, Copy)]
 pub enum Entry {
     /// Index into `[definitions]`.
@@ -55,7 +51,6 @@ pub enum Entry {
     Frame(usize),
 }
 
-/// Returns definitions and frames in dependency order.
 pub fn in_order(
     document: &Document,
     expressions: &Expressions,
@@ -100,7 +95,6 @@ pub fn in_order(
     Some(sorted.ok()?.into_iter().map(entry).collect())
 }
 
-/// Indices of definitions and frames by name.
 struct Names<'d> {
     definitions: HashMap<&'d str, usize>,
     frames: HashMap<&'d str, usize>,

@@ -17,7 +17,6 @@ pub struct Turn {
     pub angle: Syntax,
 }
 
-/// Factor of a rotation of vectors.
 #[derive(Clone, Debug)]
 pub enum Factor {
     /// Turn about a coordinate axis.
@@ -31,7 +30,6 @@ pub enum Factor {
 }
 
 impl Factor {
-    /// Returns the inverse rotation.
     pub fn transposed(self) -> Self {
         match self {
             Self::Turn(turn) => Self::Turn(turn.back()),
@@ -70,7 +68,6 @@ impl Factor {
     }
 }
 
-/// Function that names an expression.
 pub type Naming<'n> = dyn FnMut(Syntax) -> Result<Syntax, Diagnostic> + 'n;
 
 /// Returns the turns of a frame's rotation, starting at the parent's axes.
@@ -121,7 +118,6 @@ fn turn(syntax: &Syntax) -> Result<Turn, Diagnostic> {
 }
 
 impl Turn {
-    /// Returns the inverse turn.
     pub fn back(&self) -> Self {
         Self {
             axis: self.axis,
@@ -169,7 +165,6 @@ impl Turn {
     }
 }
 
-/// Returns the number of quarter turns of a constant angle.
 fn quarters(angle: &Syntax) -> Option<f64> {
     match &angle.kind {
         SyntaxKind::Number(value) if *value == 0.0 => Some(0.0),

@@ -9,7 +9,6 @@ pub fn expansion(syntax: Syntax) -> Quantity {
     Quantity::Expansion(Box::new(syntax))
 }
 
-/// Returns a literal.
 pub fn number(value: f64, span: Span) -> Syntax {
     Syntax {
         kind: SyntaxKind::Number(value),
@@ -17,7 +16,6 @@ pub fn number(value: f64, span: Span) -> Syntax {
     }
 }
 
-/// Returns a name as an expression.
 pub fn name(text: &str, span: Span) -> Syntax {
     Syntax {
         kind: SyntaxKind::Name(text.to_owned()),
@@ -25,7 +23,6 @@ pub fn name(text: &str, span: Span) -> Syntax {
     }
 }
 
-/// Returns the expression with another position.
 pub fn placed(mut syntax: Syntax, span: Span) -> Syntax {
     syntax.span = span;
     match &mut syntax.kind {
@@ -45,7 +42,6 @@ pub fn placed(mut syntax: Syntax, span: Span) -> Syntax {
     syntax
 }
 
-/// Returns a call with one argument.
 pub fn call(function: &str, argument: Syntax) -> Syntax {
     let span = argument.span;
     let kind = SyntaxKind::Call {
@@ -69,12 +65,10 @@ pub fn is_plain(value: &Syntax) -> bool {
     }
 }
 
-/// Returns true if the expression is this literal.
 pub fn is(syntax: &Syntax, value: f64) -> bool {
     syntax.kind == SyntaxKind::Number(value)
 }
 
-/// Returns `-a`.
 pub fn negate(a: Syntax) -> Syntax {
     let span = a.span;
     match a.kind {
@@ -87,7 +81,6 @@ pub fn negate(a: Syntax) -> Syntax {
     }
 }
 
-/// Returns `a + b`.
 pub fn add(a: Syntax, b: Syntax) -> Syntax {
     if is(&a, 0.0) {
         return b;
@@ -102,7 +95,6 @@ pub fn add(a: Syntax, b: Syntax) -> Syntax {
     }
 }
 
-/// Returns `a * b`.
 pub fn multiply(a: Syntax, b: Syntax) -> Syntax {
     if is(&a, 0.0) || is(&b, 1.0) {
         return a;
@@ -137,7 +129,6 @@ pub fn zero_times(a: &Syntax, span: Span) -> Syntax {
     binary(BinaryOperator::Multiply, number(0.0, span), a.clone(), span)
 }
 
-/// Returns `a^2`.
 pub fn square(a: Syntax) -> Syntax {
     let span = a.span;
     match a.kind {
@@ -147,7 +138,6 @@ pub fn square(a: Syntax) -> Syntax {
     }
 }
 
-/// Returns `a / 2`.
 pub fn half(a: Syntax) -> Syntax {
     let span = a.span;
     multiply(number(0.5, span), a)

@@ -22,7 +22,6 @@ use crate::dimension::Dimension;
 use crate::raw::{Document, RawFrame, RawTerm};
 use crate::table::{Name, Quantity};
 
-/// Returns true if a specification has vectors, frames or bodies.
 pub fn are_spatial(document: &Document) -> bool {
     let has_frames = !document.frames.is_empty() || !document.bodies.is_empty();
     // `resolve` reports syntax errors.
@@ -108,7 +107,6 @@ pub fn expand(document: &mut Document, found: &mut Diagnostics) -> Option<Demand
     Some(space.demands)
 }
 
-/// Returns all names in expressions.
 fn mentioned(document: &Document) -> HashSet<String> {
     let mut names = HashSet::new();
     let frames = document.frames.iter();
@@ -227,7 +225,6 @@ fn by_components(
     (written, vector)
 }
 
-/// Adds a frame, or reports an error in it.
 fn frame(
     space: &mut Space,
     raw: &RawFrame,

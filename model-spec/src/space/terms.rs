@@ -100,7 +100,6 @@ fn scalar(
     }
 }
 
-/// Returns a component of a term.
 fn component(term: &RawTerm, axis: &str, value: Syntax) -> RawTerm {
     RawTerm {
         name: Name {

@@ -5,7 +5,6 @@ use super::rotation::Turn;
 use crate::ast::Syntax;
 use crate::rigid_tree::{AxisTurn, PlacedFrame, RigidBody, RigidTree};
 
-/// Returns the tree of all frames and bodies; `None` without a body.
 pub fn tree(frames: &Frames, bodies: Vec<RigidBody<Syntax>>) -> Option<RigidTree<Syntax>> {
     if bodies.is_empty() {
         return None;

@@ -4,17 +4,14 @@ use super::rotation::Factor;
 use super::vector::Vector;
 use crate::ast::Syntax;
 
-/// Number of components of a vector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dimensions {
     /// x and y; z is stored as 0.
     Two,
-    /// x, y and z.
     Three,
 }
 
 impl Dimensions {
-    /// Returns the number of components.
     pub fn count(self) -> usize {
         match self {
             Self::Two => 2,
@@ -23,10 +20,8 @@ impl Dimensions {
     }
 }
 
-/// Value of an expression.
 #[derive(Clone, Debug)]
 pub enum Value {
-    /// Scalar.
     Scalar(Syntax),
     /// Components along the fixed axes.
     Vector(Vector, Dimensions),
@@ -35,7 +30,6 @@ pub enum Value {
 }
 
 impl Value {
-    /// Returns the kind, for a message.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Scalar(_) => "a scalar",

@@ -4,7 +4,6 @@ use super::scalar::{add, is, is_plain, multiply, negate, number, zero_times};
 use crate::ast::Syntax;
 use crate::span::Span;
 
-/// Components along x, y, z.
 pub type Vector = [Syntax; 3];
 
 /// Components of the fixed axes x, y and z along a frame's axes: the rows of the rotation
@@ -14,7 +13,6 @@ pub type Rows = [Vector; 3];
 /// Suffixes of the axes in names.
 pub const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Returns the zero vector.
 pub fn zero(span: Span) -> Vector {
     [0, 1, 2].map(|_| number(0.0, span))
 }
@@ -32,19 +30,16 @@ pub fn component(vector: &Vector, axis: usize) -> Syntax {
     }
 }
 
-/// Returns `a + b`.
 pub fn sum([ax, ay, az]: Vector, [bx, by, bz]: Vector) -> Vector {
     [add(ax, bx), add(ay, by), add(az, bz)]
 }
 
-/// Returns `by * a`.
 pub fn scaled(vector: &Vector, by: &Syntax) -> Vector {
     vector
         .clone()
         .map(|component| multiply(by.clone(), component))
 }
 
-/// Returns the vector product.
 pub fn cross([ax, ay, az]: &Vector, [bx, by, bz]: &Vector) -> Vector {
     let minor = |a: &Syntax, d: &Syntax, c: &Syntax, b: &Syntax| {
         let left = multiply(a.clone(), d.clone());
@@ -57,7 +52,6 @@ pub fn cross([ax, ay, az]: &Vector, [bx, by, bz]: &Vector) -> Vector {
     ]
 }
 
-/// Returns the scalar product.
 pub fn inner([ax, ay, az]: &Vector, [bx, by, bz]: &Vector) -> Syntax {
     let product = |a: &Syntax, b: &Syntax| multiply(a.clone(), b.clone());
     add(add(product(ax, bx), product(ay, by)), product(az, bz))
