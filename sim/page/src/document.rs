@@ -1,41 +1,42 @@
-//! The document around a page's body.
+//! HTML document around a page's body.
 
 use eomgen_model_spec::visible::{is_hidden, visible};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-/// Of every page; `prefers-color-scheme` has the dark one.
+/// Style of every page, with a dark scheme by `prefers-color-scheme`.
 const STYLE: &str = include_str!("style.css");
 
-/// Content security policy of a page without a script: its own styles, and nothing from elsewhere.
+/// Content security policy of a page without a script: only inline styles, nothing external.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src data:";
 
-/// Content security policy of a page with a script: that script besides.
+/// Content security policy of a page with a script: inline styles and scripts, nothing external.
 const SCRIPT_POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; \
                              script-src 'unsafe-inline' 'wasm-unsafe-eval'";
 
-/// A complete document that loads nothing and runs no script: its content security policy forbids both.
-/// Control characters and those that reverse the direction of writing are shown as `\u{202e}`.
+/// Returns a complete document without scripts and external resources; its content security policy
+/// forbids both. Control characters and characters that reverse the writing direction appear as
+/// escapes such as `\u{202e}`.
 pub fn document(title: &str, body: &Markup) -> String {
     around(title, POLICY, &html! {}, body)
 }
 
-/// What a page with a script is made of.
+/// Parts of a page with a script.
 #[derive(Clone, Copy, Debug)]
 pub struct ScriptedDocument<'a> {
-    /// Its title.
+    /// Title of the page.
     pub title: &'a str,
-    /// A style sheet besides that of every page. A part of the program, as the script is.
+    /// Additional style sheet; a constant of the program.
     pub style: &'a str,
-    /// What it shows.
+    /// Body of the page.
     pub body: &'a Markup,
-    /// JSON that the script finds under the id `model`.
+    /// JSON in the element with the id `model`.
     pub data: &'a str,
-    /// The script, which nothing from outside the program becomes a part of.
+    /// Script; a constant of the program, without external input.
     pub script: &'a str,
 }
 
-/// A complete document with a script. It may compute with WebAssembly and may load nothing, from
-/// the network or otherwise: browsers see to that.
+/// Returns a complete document with a script. It can use WebAssembly, but its content security
+/// policy forbids all loading.
 pub fn scripted_document(parts: &ScriptedDocument<'_>) -> String {
     let data = data_text(parts.data);
     let head = html! { style { (PreEscaped(parts.style)) } };
@@ -47,8 +48,8 @@ pub fn scripted_document(parts: &ScriptedDocument<'_>) -> String {
     around(parts.title, SCRIPT_POLICY, &head, &body)
 }
 
-/// JSON that ends no element of HTML, and whose strings hold the escapes of hidden characters instead of
-/// these.
+/// Escapes `<` in JSON, so that it cannot end an HTML element, and hidden characters in its
+/// strings.
 fn data_text(json: &str) -> String {
     let mut text = String::with_capacity(json.len());
     for letter in json.chars() {
@@ -88,7 +89,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn markup_becomes_text_wherever_it_stands() {
+    fn markup_is_escaped_everywhere() {
         let hostile = "</title><script a=\"b\">'&'</script>";
         let body = html! { p title=(hostile) { (hostile) } };
         let page = document(hostile, &body);
@@ -99,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn data_do_not_end_where_they_say_so() {
+    fn data_cannot_end_their_element() {
         let page = scripted_document(&ScriptedDocument {
             title: "a",
             style: "",
@@ -133,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn every_page_forbids_what_is_not_its_own() {
+    fn every_page_forbids_external_resources() {
         let page = document("a", &html! {});
         let policy = "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; ";
         assert_eq!(page.matches(policy).count(), 1, "{page}");
@@ -141,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn the_style_refers_to_nothing_outside() {
+    fn style_has_no_external_references() {
         for forbidden in ["http", "//", "url(", "@import", "</"] {
             assert!(!STYLE.contains(forbidden), "{forbidden}");
         }

@@ -1,5 +1,5 @@
-//! The derived equations as a part of a page: definitions, energies, M q'' + c = f entry by
-//! entry, the named coefficients with their values, the accelerations, what switches.
+//! Derived equations as a part of a page: definitions, energies, the entries of M q'' + c = f,
+//! named coefficients with their values, accelerations, switching surfaces.
 
 use eomgen_codegen::report::{CoefficientLine, Line, MassMatrixEntry, Report, Sentence, Solution};
 use eomgen_codegen::symbolic::formula::{Formula, Symbol};
@@ -9,10 +9,10 @@ use crate::formula::formula;
 use crate::number::number;
 use crate::parts::table;
 
-/// At most so many values of a coefficient are shown.
+/// Maximum number of values of a coefficient.
 const SHOWN_VALUES: usize = 8;
 
-/// The equations that a report holds, their formulas as MathML.
+/// Returns the equations of a report, with formulas as MathML.
 pub fn equations(report: &Report) -> Markup {
     let has_modes = report.orders.iter().any(|order| *order > 0);
     let terms = html! {
@@ -36,7 +36,7 @@ pub fn equations(report: &Report) -> Markup {
         (lines(&html! { "Generalised forces " i { "f" } }, &report.forces, |name| {
             indexed("f", &[name])
         }))
-        (lines(&html! { "Rates of states of first order" }, &report.state_rates, formula))
+        (lines(&html! { "Rates of first-order states" }, &report.state_rates, formula))
         (lines(&html! { "Constraints, which are zero" }, &report.constraints, formula))
         (lines(&html! { "Multipliers of the constraints" }, &report.multipliers, formula))
         (coefficients(&report.coefficients))
@@ -50,20 +50,20 @@ pub fn equations(report: &Report) -> Markup {
 fn introduction(report: &Report) -> Markup {
     html! {
         p {
-            "Lagrange’s equations of the energies, in the form "
+            "Lagrange’s equations, in the form "
             b { "M" } " " i { "q̈" } " + " i { "c" } " = " i { "f" } "."
             @match report.orders.as_slice() {
                 [] => {},
                 [order] => {
-                    " The flexible body is carried by " i { "S" } " = " (order) " modes."
+                    " The flexible body has " i { "S" } " = " (order) " modes."
                 },
                 orders => {
-                    " The flexible bodies are carried by "
+                    " The flexible bodies have "
                     (separated(orders, |order| html! { (order) })) " modes."
                 },
             }
             " Sums run over the modes " i { "i" } "; integrals over the mode shapes " i { "φ" }
-            " run over " i { "s" } " = " i { "x" } "/" i { "l" }
+            " use " i { "s" } " = " i { "x" } "/" i { "l" }
             " from 0 to 1, with primes for derivatives by " i { "s" } "."
         }
         p {
@@ -74,7 +74,7 @@ fn introduction(report: &Report) -> Markup {
     }
 }
 
-/// Items with commas between them.
+/// Returns items with commas between them.
 fn separated<T>(items: &[T], set: impl Fn(&T) -> Markup) -> Markup {
     html! {
         @for (place, item) in items.iter().enumerate() {
@@ -84,7 +84,7 @@ fn separated<T>(items: &[T], set: impl Fn(&T) -> Markup) -> Markup {
     }
 }
 
-/// A letter with names as its indices.
+/// Returns a letter with names as its indices.
 fn indexed(letter: &str, names: &[&Formula]) -> Markup {
     html! { i { (letter) } sub { (separated(names, |name| formula(name))) } }
 }
@@ -101,7 +101,7 @@ fn row(left: &Markup, right: &Formula) -> Markup {
     html! { tr { th scope="row" { (left) } td { "= " (formula(right)) } } }
 }
 
-/// Equations under a heading.
+/// Returns equations under a heading.
 fn under(heading: &Markup, rows: &Markup) -> Markup {
     html! {
         h3 { (heading) }
@@ -150,7 +150,7 @@ fn coefficients(lines: &[CoefficientLine]) -> Markup {
     };
     html! {
         h3 { "Coefficients" }
-        p { "By the names the specification gives them; values in SI units at its parameters." }
+        p { "Names as in the specification; values in SI units for its parameters." }
         (table(&["coefficient", "formula", "value, or one per mode"], &rows))
     }
 }
@@ -172,7 +172,7 @@ fn guards(guards: &[Formula]) -> Markup {
     }
     html! {
         h3 { "Switching surfaces" }
-        p { "The equations switch where one of these changes sign:" }
+        p { "The equations switch when one of these changes sign:" }
         ul.formulas { @for guard in guards { li { (formula(guard)) } } }
     }
 }
@@ -189,11 +189,11 @@ fn solution(solution: &Solution, has_modes: bool) -> Markup {
         count => format!("{count} interface unknowns, then "),
     };
     html! {
-        h3 { "How the accelerations are solved for" }
+        h3 { "Solution for the accelerations" }
         p {
-            "Without pivoting, in the cheapest order: " (modes) (interfaces)
+            "Elimination without pivoting, in the cheapest order: " (modes) (interfaces)
             (separated(&solution.order, formula)) ". That takes " (solution.operations)
-            " operations per call, against " (solution.dearest) " in the most expensive order."
+            " operations per call; the most expensive order takes " (solution.dearest) "."
         }
     }
 }

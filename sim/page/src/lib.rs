@@ -1,8 +1,6 @@
-//! Pages that stand for themselves: one file of HTML, with its style sheet inside, light or dark
-//! as its reader likes, without a reference to anything outside, and without script but where a
-//! program computes in it. What a page
-//! says is the caller's; its markup is written with [`maud`], which takes every text for nothing
-//! but text.
+//! Self-contained HTML pages: one file with its style sheet, in a light and a dark scheme, without
+//! external references. Only pages that compute contain a script. The markup is written with
+//! [`maud`], which escapes all text.
 //!
 //! ```
 //! use eomgen_page::{document, section};
@@ -13,9 +11,9 @@
 //! assert!(page.contains("<p>Tom &amp; Jerry</p>"));
 //! ```
 //!
-//! The files: `document` (head, style sheet, body), `parts` (sections, tables, figures, files
-//! behind a summary), `number`, [`mod@formula`] (formulas as MathML, from their trees), `equations`
-//! (a report's formulas with what they are), [`mod@play`] (what pages that compute have in common).
+//! Modules: `document` (head, style sheet, body), `parts` (sections, tables, figures, collapsible
+//! files), `number`, [`mod@formula`] (formulas as MathML), `equations` (formulas of a report),
+//! [`mod@play`] (scripts of pages that compute).
 
 mod document;
 mod equations;

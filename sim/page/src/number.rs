@@ -1,16 +1,16 @@
-//! Numbers for people.
+//! Numbers in pages.
 
 use maud::{Markup, html};
 
 use crate::formula::power_of_ten;
 
-/// A number with so many digits after the first, powers of ten written out.
+/// Returns a number with `digits` digits after the first, with powers of ten in full.
 pub fn number(value: f64, digits: usize) -> Markup {
     if !value.is_finite() {
         return html! { (value.to_string()) };
     }
     let text = format!("{value:.digits$e}");
-    // What has just been written as a number reads as one.
+    // Cannot fail: the text was formatted from a number.
     let rounded: f64 = text.parse().unwrap_or(value);
     let magnitude = rounded.abs();
     let element = if magnitude == 0.0 || (1e-3..1e5).contains(&magnitude) {
@@ -28,7 +28,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_are_written_for_people() {
+    fn numbers_have_powers_of_ten_and_minus_signs() {
         let set = |value: f64, digits: usize| number(value, digits).into_string();
         let element = |number: &str| format!("<math><mn>{number}</mn></math>");
         assert_eq!(set(0.0, 3), element("0"));

@@ -1,8 +1,8 @@
-//! What pages are made of.
+//! Parts of pages.
 
 use maud::{Markup, PreEscaped, html};
 
-/// A section under a heading.
+/// Returns a section with a heading.
 pub fn section(heading: &str, content: &Markup) -> Markup {
     html! {
         section {
@@ -12,7 +12,7 @@ pub fn section(heading: &str, content: &Markup) -> Markup {
     }
 }
 
-/// A table: its column headings, and its rows as `tr` elements.
+/// Returns a table; `rows` are its `tr` elements.
 pub fn table(headings: &[&str], rows: &Markup) -> Markup {
     html! {
         div.wide {
@@ -24,7 +24,7 @@ pub fn table(headings: &[&str], rows: &Markup) -> Markup {
     }
 }
 
-/// A file's text behind a summary that opens it.
+/// Returns a file's text as a collapsible element with a summary.
 pub fn folded(summary: &str, text: &str, is_open: bool) -> Markup {
     html! {
         details open[is_open] {
@@ -34,17 +34,16 @@ pub fn folded(summary: &str, text: &str, is_open: bool) -> Markup {
     }
 }
 
-/// A figure with its caption.
+/// Figure with its caption.
 #[derive(Clone, Copy, Debug)]
 pub struct Figure<'a> {
-    /// SVG as `eomgen_plot` draws it, which escapes its texts: the one text that a page takes
-    /// for markup.
+    /// SVG of `eomgen_plot`, which escapes its texts. It is the only text that becomes markup.
     pub svg: &'a str,
-    /// What to look for; empty for a figure without a caption.
+    /// Caption; empty for none.
     pub caption: &'a str,
 }
 
-/// A figure in a page.
+/// Returns a figure as an HTML element.
 pub fn figure(figure: Figure<'_>) -> Markup {
     html! {
         figure {

@@ -1,5 +1,5 @@
-//! Formulas of derived equations as MathML: well-formed for every specification, and set as in
-//! print.
+//! Tests of derived formulas as MathML: well-formed for every specification, and formatted
+//! correctly.
 
 use std::path::{Path, PathBuf};
 
@@ -24,7 +24,7 @@ fn report(text: &str) -> Report {
     )
 }
 
-/// Every shipped specification, and every one with a feature of the language.
+/// Returns every shipped specification, and one per feature of the language.
 fn specifications() -> Vec<(String, String)> {
     let features = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/features");
     let entries = std::fs::read_dir(features).unwrap();
@@ -40,7 +40,7 @@ fn specifications() -> Vec<(String, String)> {
     shipped.into_iter().chain(paths.iter().map(read)).collect()
 }
 
-/// All formulas of a report.
+/// Returns all formulas of a report.
 fn formulas(report: &Report) -> Vec<&Formula> {
     let lines = [
         &report.definitions,
@@ -74,7 +74,7 @@ fn mathml_is_well_formed_for_every_specification() {
 }
 
 #[test]
-fn fractions_dots_and_indices_are_set_as_in_print() {
+fn fractions_dots_and_indices_are_formatted() {
     let report = report(models::PLANETARY_ARM.text);
     let acceleration = formula(&report.accelerations[0].name).into_string();
     assert_eq!(
@@ -90,7 +90,7 @@ fn fractions_dots_and_indices_are_set_as_in_print() {
 }
 
 #[test]
-fn a_name_stays_text() {
+fn markup_in_names_is_escaped() {
     let named = formula(&Formula::named("<b>&\"'")).into_string();
     assert_eq!(named, "<math><mi>&lt;b&gt;&amp;&quot;'</mi></math>");
 }

@@ -1,58 +1,57 @@
-//! Why a sweep could not be started, finished or merged.
+//! Errors of starting, finishing and merging sweeps.
 
 use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// How many gaps a message names.
+/// Maximum number of gaps in a message.
 const GAPS_SHOWN: usize = 5;
 
-/// Why a sweep could not be started, finished or merged.
+/// Error of a sweep.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SweepError {
-    /// The request makes no sense: what is wrong and what would be right.
+    /// Invalid request, with cause and cure.
     Request(String),
-    /// A file or folder could not be read or written.
+    /// File or folder that could not be read or written.
     File {
-        /// `read`, `write`, ...
+        /// Verb of the message: `read`, `write`, ...
         action: &'static str,
-        /// Which.
+        /// Path of the file or folder.
         path: PathBuf,
-        /// What the system says.
+        /// Message of the system.
         reason: String,
     },
-    /// The folder holds a different sweep.
+    /// Folder with a different sweep.
     OtherJob {
-        /// The folder.
+        /// Path of the folder.
         folder: PathBuf,
-        /// What differs.
+        /// Options that differ.
         differences: Vec<&'static str>,
     },
-    /// A finished chunk in the folder belongs to a different sweep.
+    /// Finished chunk of a different sweep.
     OtherPart {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
     },
-    /// A description of a job that cannot be used.
+    /// Invalid description of a job.
     Description {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// Problem of the description.
         reason: String,
     },
-    /// Chunks are missing.
+    /// Missing chunks.
     Gaps {
-        /// The folder.
+        /// Path of the folder.
         folder: PathBuf,
-        /// Grid points that are missing, in order, counted from 0.
+        /// Missing points in order, counted from 0.
         missing: Vec<Range<usize>>,
-        /// How many points the grid has.
+        /// Number of points.
         points: usize,
     },
 }
 
 impl SweepError {
-    /// A file or folder that could not be read or written.
     pub(super) fn file(action: &'static str, path: &Path, error: &dyn fmt::Display) -> Self {
         Self::File {
             action,
@@ -76,7 +75,7 @@ impl fmt::Display for SweepError {
                 differences,
             } => write!(
                 f,
-                "{} holds a different sweep (not the same: {}); give another --out, or remove \
+                "{} contains a different sweep (differences: {}); give another --out, or remove \
                  that folder",
                 folder.display(),
                 differences.join(", ")
@@ -88,7 +87,7 @@ impl fmt::Display for SweepError {
             ),
             Self::Description { path, reason } => write!(
                 f,
-                "{}: {reason}; it is the description that `eomgen sweep` leaves, unchanged",
+                "{}: {reason}; expected the unchanged description that `eomgen sweep` wrote",
                 path.display()
             ),
             Self::Gaps {
@@ -120,7 +119,7 @@ fn write_gaps(
     write!(
         f,
         "{}: {count} of {points} points are missing (counted from 0: {}{more}); run the missing \
-         shards, or the sweep again without --shard, or copy their files into `parts`",
+         shards, run the sweep again without --shard, or copy the missing files into `parts`",
         folder.display(),
         shown.join(", ")
     )

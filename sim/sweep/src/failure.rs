@@ -1,4 +1,4 @@
-//! What of a failed point is kept.
+//! Conversion of errors at a point to its status.
 
 use eomgen_compiled_model::{Cause, Error, Motion};
 use eomgen_sim::ode::SolveError;
@@ -8,16 +8,16 @@ use eomgen_sim::variational::GrowthError;
 use crate::measure::Failure;
 
 impl From<Error> for Failure {
-    /// What an instance refuses is wrong with its parameters.
+    /// An instance rejects only its parameters.
     fn from(_: Error) -> Self {
         Self::Parameters
     }
 }
 
-/// A motion that came to its end, or why there is none.
+/// Returns a finished motion, or the status of a motion that stopped early.
 pub fn of_motion(motion: Result<Motion, Error>) -> Result<Motion, Failure> {
     let motion = motion.map_err(|error| match error {
-        // Before the motion has begun.
+        // The motion stopped at its start.
         Error::Stopped { .. } => Failure::NotFinite,
         error => error.into(),
     })?;

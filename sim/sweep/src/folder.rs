@@ -1,8 +1,8 @@
-//! The folder of a sweep: `sweep.json`, the description of the job, and `parts`, one file
-//! per finished chunk. Files are written beside their place and moved there when whole, so
-//! that a kill at any time leaves whole files only.
+//! Folder of a sweep: `sweep.json`, the description of the job, and `parts`, with one file per
+//! finished chunk. Files are written under a temporary name and then renamed, so that an
+//! interruption leaves only complete files.
 //!
-//! Several processes may work in one folder, each on a shard of its own.
+//! Several processes can work in one folder, each on a separate shard.
 
 use std::fs;
 use std::io::{ErrorKind, Read, Write};
@@ -14,26 +14,24 @@ use super::error::SweepError;
 use super::job::{Job, Plan};
 use super::part::{self, Found};
 
-/// The description's name.
 const DESCRIPTION: &str = "sweep.json";
 
-/// The parts' folder.
 const PARTS: &str = "parts";
 
-/// How files end that are being written.
+/// Suffix of files during writing.
 const UNFINISHED: &str = ".unfinished";
 
-/// The largest description accepted, in bytes.
+/// Largest description, in bytes.
 const LARGEST_DESCRIPTION: u64 = 16 << 20;
 
-/// What stands in `sweep.json`.
+/// Content of `sweep.json`.
 #[derive(Serialize, Deserialize)]
 struct Stored {
     hash: String,
     plan: Plan,
 }
 
-/// The folder of one job.
+/// Folder of one job.
 #[derive(Debug)]
 pub struct Folder {
     path: PathBuf,
@@ -41,10 +39,10 @@ pub struct Folder {
 }
 
 impl Folder {
-    /// The folder at `path` for a job, made if it is not there.
+    /// Opens the folder of a job and creates it if it is missing.
     ///
     /// # Errors
-    /// A folder that holds another job, or that cannot be made or written to.
+    /// A folder with another job, or one that cannot be created or written to.
     pub fn open(path: &Path, job: Job) -> Result<Self, SweepError> {
         let description = path.join(DESCRIPTION);
         if description.exists() {
@@ -61,17 +59,17 @@ impl Folder {
             job,
         };
         let parts = path.join(PARTS);
-        fs::create_dir_all(&parts).map_err(|error| SweepError::file("make", &parts, &error))?;
+        fs::create_dir_all(&parts).map_err(|error| SweepError::file("create", &parts, &error))?;
         if !description.exists() {
             folder.write(&description, folder.description()?.as_bytes())?;
         }
         Ok(folder)
     }
 
-    /// The folder of a job begun before.
+    /// Opens the folder of an existing job.
     ///
     /// # Errors
-    /// No description there, or one that is not as it was written.
+    /// A missing or modified description.
     pub fn existing(path: &Path) -> Result<Self, SweepError> {
         let file = path.join(DESCRIPTION);
         let bytes = read(&file, LARGEST_DESCRIPTION)?;
@@ -83,7 +81,7 @@ impl Folder {
             serde_json::from_slice(&bytes).map_err(|error| refused(error.to_string()))?;
         let job = Job::new(stored.plan).map_err(|error| refused(error.to_string()))?;
         if job.hash() != stored.hash {
-            return Err(refused("the plan does not have the hash given".to_owned()));
+            return Err(refused("the plan does not match its hash".to_owned()));
         }
         Ok(Self {
             path: path.to_owned(),
@@ -91,17 +89,17 @@ impl Folder {
         })
     }
 
-    /// Where it is.
+    /// Returns the path of the folder.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// The job.
+    /// Returns the job.
     pub fn job(&self) -> &Job {
         &self.job
     }
 
-    /// The text of `sweep.json`.
+    /// Returns the text of `sweep.json`.
     fn description(&self) -> Result<String, SweepError> {
         let stored = Stored {
             hash: self.job.hash().to_owned(),
@@ -112,10 +110,10 @@ impl Folder {
             .map_err(|error| SweepError::file("write", &self.path.join(DESCRIPTION), &error))
     }
 
-    /// Whether a chunk is there, whole.
+    /// Returns true if a chunk is complete.
     ///
     /// # Errors
-    /// A part of another job in its place, or a file that cannot be read.
+    /// A part of another job, or a file that cannot be read.
     pub fn holds(&self, chunk: usize) -> Result<bool, SweepError> {
         let path = self.part(chunk);
         let failed = |error| SweepError::file("read", &path, &error);
@@ -135,7 +133,7 @@ impl Folder {
         }
     }
 
-    /// The numbers of a chunk, point by point; `None` where it is missing or damaged.
+    /// Reads the numbers of a chunk, point by point; `None` if it is missing or damaged.
     pub(super) fn load(&self, chunk: usize) -> Result<Option<Vec<f64>>, SweepError> {
         if !self.holds(chunk)? {
             return Ok(None);
@@ -144,17 +142,16 @@ impl Folder {
         Ok(part::decode(&self.job, chunk, &bytes))
     }
 
-    /// Writes a finished chunk.
     pub(super) fn store(&self, chunk: usize, numbers: &[f64]) -> Result<(), SweepError> {
         let text = part::encode(&self.job, chunk, numbers);
         self.write(&self.part(chunk), text.as_bytes())
     }
 
-    /// Removes what kills have left unfinished; for when every chunk is there and nobody
-    /// writes any more.
+    /// Removes unfinished files of interrupted runs. Requires that every chunk is complete and that
+    /// no process writes.
     pub(super) fn tidy(&self) -> Result<(), SweepError> {
         let parts = self.path.join(PARTS);
-        let failed = |error| SweepError::file("tidy", &parts, &error);
+        let failed = |error| SweepError::file("clean up", &parts, &error);
         for entry in fs::read_dir(&parts).map_err(failed)? {
             let entry = entry.map_err(failed)?;
             if entry.file_name().to_string_lossy().ends_with(UNFINISHED) {
@@ -168,7 +165,7 @@ impl Folder {
         self.path.join(PARTS).join(format!("{chunk:04}.part"))
     }
 
-    /// Writes beside the parts, then moves into place.
+    /// Writes a temporary file in `parts` and renames it.
     fn write(&self, path: &Path, bytes: &[u8]) -> Result<(), SweepError> {
         let failed = |error: std::io::Error| SweepError::file("write", path, &error);
         let mut file = tempfile::Builder::new()
@@ -190,7 +187,7 @@ fn read(path: &Path, limit: u64) -> Result<Vec<u8>, SweepError> {
     Ok(bytes)
 }
 
-/// Temporary files are private; parts are to be collected by others.
+/// Makes a temporary file, which is private by default, readable for others.
 #[cfg(unix)]
 fn make_readable(file: &fs::File) -> std::io::Result<()> {
     use std::os::unix::fs::PermissionsExt;

@@ -1,4 +1,4 @@
-//! The forcing of a model: which parameter is its angular frequency, and its period.
+//! Forcing of a model: its angular frequency and its period.
 
 use std::f64::consts::TAU;
 
@@ -9,10 +9,10 @@ use eomgen_model_spec::unit::Unit;
 use crate::error::SweepError;
 use crate::measure::Failure;
 
-/// The parameter that is the angular frequency of the forcing.
+/// Looks up the parameter that is the angular frequency of the forcing.
 ///
 /// # Errors
-/// No such parameter, or one that is no frequency.
+/// A missing parameter, or one with another unit.
 pub fn frequency(model: &Model, name: &str) -> Result<Frequency, SweepError> {
     let parameters = &model.parameters;
     let Some(place) = parameters.iter().position(|known| known.name == name) else {
@@ -26,7 +26,7 @@ pub fn frequency(model: &Model, name: &str) -> Result<Frequency, SweepError> {
     let expected = Unit::parse("rad/s").map(|unit| unit.dimension);
     if Ok(unit.dimension) != expected {
         return Err(SweepError::Request(format!(
-            "--frequency {name}: its unit is {unit}, where an angular frequency is in rad/s"
+            "--frequency {name}: its unit is {unit}, expected rad/s for an angular frequency"
         )));
     }
     Ok(Frequency {
@@ -34,22 +34,22 @@ pub fn frequency(model: &Model, name: &str) -> Result<Frequency, SweepError> {
     })
 }
 
-/// Which parameter is the angular frequency of the forcing.
+/// Angular frequency of the forcing, as a parameter.
 #[derive(Clone, Debug)]
 pub struct Frequency {
     name: String,
 }
 
 impl Frequency {
-    /// The name of the parameter.
+    /// Returns the name of the parameter.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// The period of the forcing, in s.
+    /// Returns the period of the forcing, in s.
     ///
     /// # Errors
-    /// [`Failure::Undefined`] where the frequency is not positive.
+    /// [`Failure::Undefined`] if the frequency is not positive.
     pub fn period(&self, instance: &Instance<'_>) -> Result<f64, Failure> {
         let period = TAU / instance.value(&self.name).unwrap_or(f64::NAN);
         if period > 0.0 && period.is_finite() {

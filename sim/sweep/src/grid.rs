@@ -1,52 +1,52 @@
-//! What is varied: axes of parameter values and the grid they span.
+//! Grid of parameter values, spanned by axes.
 
 use serde::{Deserialize, Serialize};
 
 use super::error::SweepError;
 use eomgen_elementary::Function;
 
-/// The most points of a grid.
+/// Maximum number of points of a grid.
 pub const MOST_POINTS: usize = 10_000_000;
 
-/// How the values of an axis are spaced.
+/// Spacing of the values of an axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Spacing {
-    /// Evenly.
+    /// Linear spacing.
     #[default]
     Linear,
-    /// Evenly in their logarithms.
+    /// Logarithmic spacing.
     Log,
 }
 
 impl Spacing {
-    /// What is left out of a plan, so that one without logarithms says nothing of them.
+    /// Returns true for the default, which is omitted from plans.
     fn is_linear(&self) -> bool {
         *self == Self::Linear
     }
 }
 
-/// Parameters that take the same spaced values together.
+/// Parameters that take the same values together.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Axis {
-    /// The parameters.
+    /// Names of the parameters.
     pub names: Vec<String>,
-    /// The first value, in the unit that the specification declares for each.
+    /// First value, in the declared unit of each parameter.
     pub from: f64,
-    /// The last value.
+    /// Last value.
     pub to: f64,
-    /// How many values; with one it is `from`.
+    /// Number of values; the value is `from` if it is 1.
     pub count: usize,
-    /// How they are spaced.
+    /// Spacing of the values.
     #[serde(default, skip_serializing_if = "Spacing::is_linear")]
     pub spacing: Spacing,
 }
 
 impl Axis {
-    /// Reads `NAME[,NAME...]=FROM:TO:COUNT[:log]`.
+    /// Parses `NAME[,NAME...]=FROM:TO:COUNT[:log]`.
     ///
     /// # Errors
-    /// Says which part is wrong and what would be right.
+    /// The invalid part, with the expected form.
     pub fn parse(text: &str) -> Result<Self, SweepError> {
         let refused = |reason: String| {
             SweepError::Request(format!(
@@ -65,12 +65,12 @@ impl Axis {
         let (from, to, count, spacing) = match parts[..] {
             [from, to, count] => (from, to, count, Spacing::Linear),
             [from, to, count, "log"] => (from, to, count, Spacing::Log),
-            [_, _, _, other] => return Err(refused(format!("\"{other}\" is no spacing"))),
+            [_, _, _, other] => return Err(refused(format!("\"{other}\" is not a spacing"))),
             _ => return Err(refused(format!("{} numbers in the range", parts.len()))),
         };
         let number = |part: &str| {
             part.parse::<f64>()
-                .map_err(|_| refused(format!("\"{part}\" is no number")))
+                .map_err(|_| refused(format!("\"{part}\" is not a number")))
         };
         let axis = Self {
             names,
@@ -78,14 +78,14 @@ impl Axis {
             to: number(to)?,
             count: count
                 .parse()
-                .map_err(|_| refused(format!("\"{count}\" is no whole number")))?,
+                .map_err(|_| refused(format!("\"{count}\" is not a whole number")))?,
             spacing,
         };
         axis.check().map_err(refused)?;
         Ok(axis)
     }
 
-    /// What is wrong with an axis by itself.
+    /// Checks a single axis.
     fn check(&self) -> Result<(), String> {
         if self.names.iter().any(String::is_empty) {
             return Err("a name is missing".to_owned());
@@ -94,13 +94,13 @@ impl Axis {
             return Err("the ends of the range must be finite".to_owned());
         }
         if self.count == 0 {
-            return Err("there is at least one value".to_owned());
+            return Err("the count must be at least 1".to_owned());
         }
         if self.count > MOST_POINTS {
             return Err(format!("the limit is {MOST_POINTS} points"));
         }
         if self.count > 1 && self.from == self.to {
-            return Err("the ends of the range are the same, so there is one value".to_owned());
+            return Err("the ends of the range are equal, so the count must be 1".to_owned());
         }
         if !((self.to - self.from) * self.count as f64).is_finite() {
             return Err("the range is too wide".to_owned());
@@ -109,7 +109,7 @@ impl Axis {
         let is_apart_from_zero = self.from != 0.0 && self.to != 0.0;
         if is_log && !(is_apart_from_zero && self.from.signum() == self.to.signum()) {
             return Err(
-                "the ends of a logarithmic range are both positive, or both negative".to_owned(),
+                "the ends of a logarithmic range must be both positive or both negative".to_owned(),
             );
         }
         if is_log && !(self.to / self.from).is_normal() {
@@ -118,7 +118,7 @@ impl Axis {
         Ok(())
     }
 
-    /// Value `index`, counted from 0: spaced as the axis says, the first and the last exact.
+    /// Returns value `index`, counted from 0. The first and the last value are exact.
     pub fn value(&self, index: usize) -> f64 {
         if index == 0 {
             return self.from;
@@ -131,7 +131,7 @@ impl Axis {
             Spacing::Linear => {
                 self.from + (self.to - self.from) * index as f64 / (self.count - 1) as f64
             }
-            // By the project's own functions, so that every machine has the same bits.
+            // The project's own functions give the same bits on every machine.
             Spacing::Log => {
                 let logarithm = Function::Ln.apply(&[self.to / self.from]);
                 self.from * Function::Exp.apply(&[logarithm * part])
@@ -139,14 +139,14 @@ impl Axis {
         }
     }
 
-    /// All values in order.
+    /// Returns all values in order.
     pub fn values(&self) -> Vec<f64> {
         (0..self.count).map(|index| self.value(index)).collect()
     }
 }
 
-/// All combinations of the values of some axes. Points are counted from 0; the last axis
-/// goes fastest.
+/// All combinations of the values of some axes. Points are counted from 0; the last axis varies
+/// fastest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
     axes: Vec<Axis>,
@@ -154,11 +154,11 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Spans the axes.
+    /// Creates the grid of the axes.
     ///
     /// # Errors
-    /// No axis, an axis that makes no sense, a parameter that is varied twice, more than
-    /// [`MOST_POINTS`] points.
+    /// No axis, an invalid axis, a parameter that is varied twice, or more than [`MOST_POINTS`]
+    /// points.
     pub fn new(axes: Vec<Axis>) -> Result<Self, SweepError> {
         let refused = |reason: String| Err(SweepError::Request(reason));
         if axes.is_empty() {
@@ -185,24 +185,24 @@ impl Grid {
         }
     }
 
-    /// The axes.
+    /// Returns the axes.
     pub fn axes(&self) -> &[Axis] {
         &self.axes
     }
 
-    /// How many points there are.
+    /// Returns the number of points.
     pub fn points(&self) -> usize {
         self.points
     }
 
-    /// The varied parameters, in the order of the axes.
+    /// Returns the varied parameters, in the order of the axes.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.axes
             .iter()
             .flat_map(|axis| axis.names.iter().map(String::as_str))
     }
 
-    /// The parameters' values at a point, in the order of [`Grid::names`].
+    /// Returns the parameters' values at a point, in the order of [`Grid::names`].
     pub fn settings(&self, point: usize) -> Vec<(&str, f64)> {
         let mut settings = Vec::new();
         let mut stride = self.points;
@@ -228,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn the_last_axis_goes_fastest_and_names_go_together() {
+    fn last_axis_varies_fastest_and_names_vary_together() {
         let grid = grid(&["a,b=0:1:3", "c=-5:5:2"]).expect("a grid");
         assert_eq!(grid.points(), 6);
         assert_eq!(grid.names().collect::<Vec<_>>(), ["a", "b", "c"]);
@@ -239,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn ends_are_exact_and_one_value_is_the_first() {
+    fn ends_are_exact_and_single_value_is_first() {
         let axis = Axis::parse("b = 0.1 : 0.7 : 7").expect("an axis");
         let values = axis.values();
         assert_eq!((values[0], values[6], values.len()), (0.1, 0.7, 7));
@@ -252,19 +252,19 @@ mod tests {
     }
 
     #[test]
-    fn malformed_ranges_are_refused_with_what_would_be_right() {
+    fn malformed_ranges_are_rejected_with_expected_form() {
         for (text, part) in [
             ("b", "no `=`"),
             ("b=1:2", "2 numbers"),
-            ("b=1:2:3:4", "\"4\" is no spacing"),
+            ("b=1:2:3:4", "\"4\" is not a spacing"),
             ("b=1:2:3:log:5", "5 numbers"),
             ("b=0:2:3:log", "both positive"),
             ("b=-1:2:3:log", "both positive"),
             ("b=1e-300:1e300:3:log", "too wide"),
-            ("b=x:2:3", "\"x\" is no number"),
-            ("b=0:1:2.5", "\"2.5\" is no whole number"),
-            ("b=0:1:-3", "\"-3\" is no whole number"),
-            ("b=0:1:0", "at least one value"),
+            ("b=x:2:3", "\"x\" is not a number"),
+            ("b=0:1:2.5", "\"2.5\" is not a whole number"),
+            ("b=0:1:-3", "\"-3\" is not a whole number"),
+            ("b=0:1:0", "at least 1"),
             ("b=0:inf:3", "finite"),
             ("b=NaN:1:3", "finite"),
             ("b=-1e308:1e308:3", "too wide"),
@@ -280,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn grids_that_are_too_large_or_vary_a_name_twice_are_refused() {
+    fn too_large_grids_and_repeated_names_are_rejected() {
         let large = grid(&["a=0:1:4000", "b=0:1:4000"]).expect_err("16 million points");
         assert!(large.contains("more than 10000000 points"), "{large}");
         let overflow = ["a=0:1:9000000", "b=0:1:9000000", "c=0:1:9000000"];

@@ -1,4 +1,4 @@
-//! A sweep as data: everything its numbers depend on, with a hash that names it.
+//! Sweep as data: everything that its numbers depend on, with an identifying hash.
 
 use std::ops::Range;
 
@@ -11,44 +11,43 @@ use super::measure::{Column, Description, Failure};
 use super::points::Points;
 use super::samples::Samples;
 
-/// The form of plans, parts and their cutting into chunks.
+/// Version of plans, parts and the division into chunks.
 const SCHEMA: u32 = 1;
 
-/// The most chunks a job is cut into: few enough for a folder, many enough for little to be
-/// lost with one.
+/// Maximum number of chunks: not too many files for a folder, but small losses at an interruption.
 const MOST_CHUNKS: usize = 1000;
 
 /// Everything that the numbers of a sweep depend on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
-    /// The form of this description.
+    /// Version of this description.
     pub schema: u32,
-    /// The program's version.
+    /// Version of the program.
     pub version: String,
-    /// The model's name.
+    /// Name of the model.
     pub model: String,
     /// SHA-256 of the specification's text.
     pub specification: String,
-    /// The orders of the model's fields.
+    /// Orders of the model's fields.
     pub orders: Vec<usize>,
-    /// Parameters set to other values than the specification's, in declared units.
+    /// Parameters with other values than in the specification, in declared units.
     pub set: Vec<(String, f64)>,
-    /// What is varied, the last fastest; nothing where there are samples.
+    /// Varied axes, the last one fastest; empty with samples.
     pub vary: Vec<Axis>,
-    /// Random samples in place of a grid.
+    /// Random samples, if there is no grid.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub samples: Option<Samples>,
-    /// The varied parameters as columns, with the units that the specification declares.
+    /// Columns of the varied parameters, with declared units.
     pub parameters: Vec<Column>,
-    /// What is measured.
+    /// Descriptions of the measures.
     pub measures: Vec<Description>,
-    /// What the numbers in the status columns mean.
+    /// Meaning of the numbers in the status columns.
     pub statuses: Vec<(u8, String)>,
 }
 
 impl Plan {
-    /// A plan of this version of the program; `specification` is the hash of all that the model
-    /// was read from, [`Model::hash`](eomgen_model_spec::model::Model::hash).
+    /// Creates a plan of this version of the program. `specification` is
+    /// [`Model::hash`](eomgen_model_spec::model::Model::hash), the hash of all files of the model.
     pub fn new(
         specification: String,
         model: &str,
@@ -78,7 +77,7 @@ impl Plan {
         }
     }
 
-    /// What of two plans is not the same, in words of the command line.
+    /// Returns the options in which two plans differ, as on the command line.
     pub fn differences(&self, other: &Self) -> Vec<&'static str> {
         let same = [
             (
@@ -100,7 +99,7 @@ impl Plan {
     }
 }
 
-/// A plan that makes sense, cut into chunks of consecutive points.
+/// Valid plan, divided into chunks of consecutive points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Job {
     plan: Plan,
@@ -109,23 +108,27 @@ pub struct Job {
 }
 
 impl Job {
-    /// Takes a plan.
+    /// Checks a plan and creates its job.
     ///
     /// # Errors
-    /// Axes that span no grid, two columns of one name, nothing to measure, or a form that
-    /// this version does not know.
+    /// Axes that span no grid, repeated column names, no measure, or an unknown version.
     pub fn new(plan: Plan) -> Result<Self, SweepError> {
         let refused = |reason: String| Err(SweepError::Request(reason));
         if plan.schema != SCHEMA {
-            return refused(format!("schema {}, where {SCHEMA} is known", plan.schema));
+            return refused(format!(
+                "schema {} is unknown; expected {SCHEMA}",
+                plan.schema
+            ));
         }
         if plan.measures.is_empty() {
-            return refused("nothing is measured".to_owned());
+            return refused("the plan has no measure".to_owned());
         }
         let points = match &plan.samples {
             None => Points::Grid(Grid::new(plan.vary.clone())?),
             Some(_) if !plan.vary.is_empty() => {
-                return refused("either a grid is measured or samples are".to_owned());
+                return refused(
+                    "the plan has both a grid and samples; expected one of them".to_owned(),
+                );
             }
             Some(samples) => {
                 samples.check()?;
@@ -134,7 +137,7 @@ impl Job {
         };
         let columns = plan.parameters.iter().map(|column| column.name.as_str());
         if !columns.eq(points.names()) {
-            return refused("what is varied and the columns for it do not agree".to_owned());
+            return refused("the varied parameters and their columns differ".to_owned());
         }
         let text = serde_json::to_string(&plan)
             .map_err(|error| SweepError::Request(format!("the plan cannot be written: {error}")))?;
@@ -155,22 +158,22 @@ impl Job {
         Ok(job)
     }
 
-    /// The plan.
+    /// Returns the plan.
     pub fn plan(&self) -> &Plan {
         &self.plan
     }
 
-    /// Where the parameters are set to.
+    /// Returns the points.
     pub fn points(&self) -> &Points {
         &self.points
     }
 
-    /// SHA-256 of the plan's compact JSON, 64 hexadecimal digits.
+    /// Returns the SHA-256 of the plan's compact JSON, 64 hexadecimal digits.
     pub fn hash(&self) -> &str {
         &self.hash
     }
 
-    /// The columns of the result: varied parameters, then each measure's columns and its
+    /// Returns the columns of the result: varied parameters, then each measure's columns and its
     /// status.
     pub fn columns(&self) -> Vec<Column> {
         let mut columns = self.plan.parameters.clone();
@@ -185,18 +188,18 @@ impl Job {
         columns
     }
 
-    /// How many numbers are measured at a point, statuses included.
+    /// Returns the number of measured numbers per point, statuses included.
     pub fn measured(&self) -> usize {
         let measures = self.plan.measures.iter();
         measures.map(|measure| measure.columns.len() + 1).sum()
     }
 
-    /// How many chunks there are.
+    /// Returns the number of chunks.
     pub fn chunks(&self) -> usize {
         self.points.count().div_ceil(self.chunk_points())
     }
 
-    /// The points of a chunk.
+    /// Returns the points of a chunk.
     pub fn chunk(&self, chunk: usize) -> Range<usize> {
         let (size, points) = (self.chunk_points(), self.points.count());
         (chunk * size).min(points)..((chunk + 1) * size).min(points)
@@ -213,7 +216,7 @@ pub(super) mod tests {
 
     use super::*;
 
-    /// A job over `x` from 0 to 1 that measures `m_value`.
+    /// Creates a job over `x` from 0 to 1 that measures `m_value`.
     pub fn job(count: usize) -> Job {
         let axis = Axis::parse(&format!("x=0:1:{count}")).expect("an axis");
         let grid = Grid::new(vec![axis]).expect("a grid");
@@ -254,7 +257,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn whatever_the_numbers_depend_on_changes_the_hash() {
+    fn every_dependence_changes_hash() {
         let plan = job(5).plan;
         let hash = |change: &dyn Fn(&mut Plan)| {
             let mut plan = plan.clone();
@@ -278,9 +281,9 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn a_plan_is_read_back_exactly() {
+    fn plan_is_read_back_exactly() {
         let mut plan = job(5).plan;
-        // Of random bits, so that a reader which misses the last one now and then is caught.
+        // Random bits reveal a reader that sometimes loses the last bit.
         let mut bits = 1_u64;
         let numbers = std::iter::repeat_with(|| {
             // Knuth's linear congruential generator, MMIX.
@@ -310,7 +313,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn two_columns_of_one_name_are_refused() {
+    fn repeated_column_names_are_rejected() {
         let mut plan = job(5).plan;
         plan.measures.push(plan.measures[0].clone());
         let error = Job::new(plan).expect_err("m twice").to_string();

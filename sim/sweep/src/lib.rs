@@ -1,12 +1,16 @@
-//! Maps over parameters: a grid of parameter values, something measured at every point, in
-//! parallel, in parts that survive a kill and can be computed on several machines.
+//! Maps over parameters: a grid of parameter values with measures at every point. Points are
+//! computed in parallel, in chunks that survive an interruption and that several machines can
+//! share.
 //!
-//! The pipeline: [`points`] of a [`grid`] (what is varied, [`parameters`] of the model) or of random [`samples`], [`measure`] (what is
-//! measured; `forcing` is its period, [`span`] and [`window`] say how long is looked; [`poincare`],
-//! [`lyapunov`] and [`over_time`] are measures), [`job`] (all of that as data, with a
-//! hash that names it), [`folder`] and `part` (the job and its finished chunks as files),
-//! [`shard`] (who computes which chunk), [`run`](mod@run) (computing them), [`merge`](mod@merge) (all chunks to one
-//! table). Messages and final files are the caller's.
+//! Modules in the order of the computation:
+//!
+//! - [`points`]: a [`grid`] of varied [`parameters`], or random [`samples`];
+//! - [`measure`]: interface of the measures [`poincare`], [`lyapunov`] and [`over_time`];
+//!   `forcing`, [`span`] and [`window`] select their times;
+//! - [`job`]: all of this as data, with an identifying hash;
+//! - [`folder`] and `part`: the job and its finished chunks as files;
+//! - [`shard`]: selection of chunks for one run; [`run`](mod@run): their computation;
+//!   [`merge`](mod@merge): all chunks in one table.
 //!
 //! ```
 //! use eomgen_compiled_model::{CompiledModel, Orders};
@@ -37,12 +41,11 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! # The same bytes
+//! # Reproducibility
 //!
-//! A number in the result depends on the job and the point alone: a worker keeps nothing
-//! from the point before, chunks are cut by the job and not by the number of threads, and
-//! the table is in the order of the grid. Threads, shards, kills and resumptions therefore
-//! leave no trace in it.
+//! A number in the result depends only on the job and the point. A worker keeps nothing from
+//! previous points, chunks do not depend on the number of threads, and the table is in the order of
+//! the points. Threads, shards, interruptions and resumed runs therefore give the same bytes.
 
 pub mod error;
 mod failure;

@@ -1,6 +1,6 @@
-//! The measure `lyapunov`: how fast neighbouring motions part. A model that is linear between its
-//! switches has its tangent vector carried exactly by [`eomgen_sim::piecewise_linear`], any
-//! other by the variational equation, [`eomgen_sim::variational`].
+//! Measure `lyapunov`: growth rate of the distance between neighbouring motions. For a model that
+//! is linear between its switches, [`eomgen_sim::piecewise_linear`] propagates the tangent vector
+//! exactly. Other models use the variational equation, [`eomgen_sim::variational`].
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -14,33 +14,34 @@ use eomgen_sim::ode::Settings;
 use eomgen_sim::piecewise_linear::Lyapunov as Request;
 use eomgen_sim::variational::{Growths, Stretches, growths};
 
-/// The relative tolerance of the general solver.
+/// Relative tolerance of the general solver.
 const TOLERANCE: f64 = 1e-9;
 
-/// Measures a model at many parameter values.
+/// Lyapunov exponent of a model at many parameter values.
 pub struct Lyapunov<'a> {
     model: &'a CompiledModel,
     times: Times,
 }
 
 impl<'a> Lyapunov<'a> {
-    /// Measures over a window: once per forcing period, or in stretches of the second half of a time.
+    /// Creates the measure over a window: once per forcing period, or in intervals of the second
+    /// half of a time.
     ///
     /// # Errors
-    /// A window that makes no sense, a model that cannot be differentiated.
+    /// An invalid window, or a model that cannot be differentiated.
     pub fn new(model: &'a CompiledModel, window: &Window) -> Result<Self, SweepError> {
         let times = Times::of(model.model(), window, "lyapunov", FEWEST)?;
         if let Some(constraint) = model.model().constraints.first() {
             return Err(SweepError::Request(format!(
-                "--measure lyapunov: the model has constraints (`{}`), and neighbouring motions that keep \
-                 them are not followed yet",
+                "--measure lyapunov: the model has constraints (`{}`), which this measure does not \
+                 support yet",
                 constraint.name
             )));
         }
         if let Some(impact) = model.model().impacts.first() {
             return Err(SweepError::Request(format!(
-                "--measure lyapunov: the model has impacts (`{}`), over which neighbouring motions are not \
-                 followed yet",
+                "--measure lyapunov: the model has impacts (`{}`), which this measure does not \
+                 support yet",
                 impact.name
             )));
         }
@@ -51,7 +52,7 @@ impl<'a> Lyapunov<'a> {
         Ok(Self { model, times })
     }
 
-    /// What is said of the method, and options beside the window's.
+    /// Returns the description of the method, and options in addition to the window's.
     fn method(&self) -> (&'static str, Vec<(String, String)>) {
         if self.model.piecewise_linear().is_ok() {
             return ("carried exactly", Vec::new());
@@ -125,7 +126,7 @@ impl Worker for &Lyapunov<'_> {
     }
 }
 
-/// The growth of a vector that is carried exactly.
+/// Returns the growth of an exactly propagated tangent vector.
 fn exact(instance: &Instance<'_>, stretches: &Stretches) -> Result<Growths, Failure> {
     let request = Request {
         transient: stretches.transient,
@@ -145,7 +146,7 @@ fn exact(instance: &Instance<'_>, stretches: &Stretches) -> Result<Growths, Fail
     })
 }
 
-/// The growth of a vector that follows the variational equation.
+/// Returns the growth of a tangent vector by the variational equation.
 fn followed(instance: &Instance<'_>, stretches: &Stretches) -> Result<Growths, Failure> {
     let (evaluator, inputs) = (RefCell::new(instance.evaluator()?), instance.no_inputs());
     let system = Driven::new(&evaluator, &inputs)

@@ -1,22 +1,22 @@
-//! What is measured at every point of a grid, as far as the sweep knows of it.
+//! Interface of measures.
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-/// A column of numbers in the result.
+/// Column of numbers in the result.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Column {
-    /// Its name, unlike any other's.
+    /// Unique name.
     pub name: String,
-    /// Its unit, `1` for a pure number.
+    /// Unit; `1` for a dimensionless number.
     pub unit: String,
-    /// What it is.
+    /// Description of the numbers.
     pub about: String,
 }
 
 impl Column {
-    /// A column.
+    /// Creates a column.
     pub fn new(name: impl Into<String>, unit: impl Into<String>, about: impl Into<String>) -> Self {
         Self {
             name: name.into(),
@@ -26,66 +26,62 @@ impl Column {
     }
 }
 
-/// What a measure is, as far as others need to know. All of it enters the job's hash: two
-/// measures of one description give the same numbers.
+/// Description of a measure. All of it enters the job's hash: measures with equal descriptions give
+/// equal numbers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Description {
-    /// The name it is asked for by.
+    /// Name of the measure on the command line.
     pub name: String,
-    /// What is measured and how.
+    /// Description of quantity and method.
     pub about: String,
-    /// Everything its numbers depend on beside the model.
+    /// Options that the numbers depend on, in addition to the model.
     pub options: BTreeMap<String, String>,
-    /// What it gives.
+    /// Columns of the result.
     pub columns: Vec<Column>,
-    /// The columns that a figure shows: one over a plane, all of them over a line.
+    /// Columns in a figure: one over a plane, all of them over a line.
     pub drawn: Vec<String>,
-    /// The name of what they hold, `lambda_1` say.
+    /// Name of the quantity in these columns, for example `lambda_1`.
     pub quantity: String,
 }
 
-/// Something that can be measured at a point of parameter space.
+/// Measure at points of parameter space.
 pub trait Measure: Sync {
-    /// What it is; the same at every call.
+    /// Returns the description, the same at every call.
     fn describe(&self) -> Description;
 
-    /// Whoever measures, one point after the other on one thread.
+    /// Creates a worker, which measures on one thread.
     fn worker(&self) -> Box<dyn Worker + '_>;
 }
 
-/// Measures points with memory of its own. What it writes depends on the point alone and
-/// not on the points before.
+/// Worker with its own memory. Its results must not depend on previous points.
 pub trait Worker {
-    /// Measures at a point.
-    ///
-    /// `settings`: the varied parameters, each in the unit that the specification declares.
-    /// `out`: one number per column of [`Description::columns`]; NaN on entry, and what is
-    /// written there counts only on success.
+    /// Measures at a point. `settings` are the varied parameters in their declared units. `out` has
+    /// one number per column of [`Description::columns`]; it contains NaN before the call and is
+    /// valid only on success.
     ///
     /// # Errors
-    /// Why there is no number at this point.
+    /// The reason why the point has no number.
     fn measure(&mut self, settings: &[(&str, f64)], out: &mut [f64]) -> Result<(), Failure>;
 }
 
-/// Why nothing could be measured at a point. The sweep goes on: the point's numbers are NaN
-/// and the measure's status column holds [`Failure::code`].
+/// Reason why a point has no number. The sweep continues: the numbers are NaN and the status column
+/// contains [`Failure::code`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Failure {
-    /// The parameters are no admissible model.
+    /// Inadmissible parameters.
     Parameters,
-    /// Rates of the motion are infinite or not numbers.
+    /// State derivative that is infinite or NaN.
     NotFinite,
-    /// The motion could not be followed within the limits on step size and work; one that
-    /// grows without bound ends here too.
+    /// Limits on step size or work exceeded, for example by a diverging motion.
     Limit,
-    /// Switching surfaces are crossed too fast, or the motion is held on one.
+    /// Switching surfaces that are crossed too often, or that hold the motion.
     Switching,
-    /// The motion is known and the measure has no value for it.
+    /// Motion for which the measure has no value.
     Undefined,
 }
 
 impl Failure {
-    /// The statuses of a point with their codes; 0 is success.
+    /// Codes of the statuses with their texts; 0 is success.
     pub const CODES: [(u8, &'static str); 6] = [
         (0, "measured"),
         (1, "the parameters are no admissible model"),
@@ -98,7 +94,7 @@ impl Failure {
         (5, "the measure has no value for this motion"),
     ];
 
-    /// The number in the status column.
+    /// Returns the number in the status column.
     pub fn code(self) -> u8 {
         match self {
             Self::Parameters => 1,

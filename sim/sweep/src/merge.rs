@@ -1,32 +1,31 @@
-//! All chunks of a job to one table.
+//! Merges all chunks of a job into one table.
 
 use std::ops::Range;
 
 use super::error::SweepError;
 use super::folder::Folder;
 
-/// The result of a sweep, in the order of its points.
+/// Result of a sweep, in the order of its points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
-    /// The names of [`Job::columns`](super::Job::columns).
+    /// Names of the columns, as in [`Job::columns`](super::Job::columns).
     pub names: Vec<String>,
-    /// As many columns, each with one number per point.
+    /// Columns with one number per point.
     pub columns: Vec<Vec<f64>>,
 }
 
 impl Table {
-    /// A column by its name.
+    /// Returns a column by its name.
     pub fn column(&self, name: &str) -> Option<&[f64]> {
         let place = self.names.iter().position(|known| known == name)?;
         self.columns.get(place).map(Vec::as_slice)
     }
 }
 
-/// Puts all chunks together, and tidies up after runs that were killed.
+/// Merges all chunks and removes unfinished files of interrupted runs.
 ///
 /// # Errors
-/// Chunks that are missing or damaged, all of them named; parts of another job; files that
-/// cannot be read.
+/// All missing or damaged chunks, parts of another job, or files that cannot be read.
 pub fn merge(folder: &Folder) -> Result<Table, SweepError> {
     let job = folder.job();
     let (all, measured) = (job.points(), job.measured());
@@ -64,7 +63,7 @@ pub fn merge(folder: &Folder) -> Result<Table, SweepError> {
     Ok(Table { names, columns })
 }
 
-/// Adds a gap, or lengthens the last one.
+/// Adds a gap, or extends the last one.
 fn add(missing: &mut Vec<Range<usize>>, points: Range<usize>) {
     match missing.last_mut() {
         Some(last) if last.end == points.start => last.end = points.end,

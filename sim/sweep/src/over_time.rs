@@ -1,5 +1,5 @@
-//! The measures `max:NAME`, `rms:NAME` and `final:NAME`: one number of a quantity's course over
-//! time. Samples are taken as `simulate` takes its rows; who integrates is the model's business.
+//! Measures `max:NAME`, `rms:NAME` and `final:NAME`: statistics of a quantity over time. Samples
+//! are the same as the rows of `simulate`.
 
 use std::collections::BTreeMap;
 
@@ -12,13 +12,13 @@ use crate::failure::of_motion;
 use crate::measure::{Column, Description, Failure, Measure, Worker};
 use crate::window::{Times, Window};
 
-/// Samples are a thousandth of the time apart, as rows of `simulate` are.
+/// Number of sample intervals, the same as in `simulate`.
 const SAMPLES: usize = 1000;
 
-/// The relative tolerance of solvers that have one.
+/// Relative tolerance of solvers with error control.
 const TOLERANCE: f64 = 1e-9;
 
-/// What becomes of a course over time.
+/// Statistic of a quantity over time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Statistic {
     Greatest,
@@ -29,7 +29,7 @@ enum Statistic {
 impl Statistic {
     const ALL: [Self; 3] = [Self::Greatest, Self::RootMeanSquare, Self::Last];
 
-    /// Its name on the command line.
+    /// Returns the name on the command line.
     fn name(self) -> &'static str {
         match self {
             Self::Greatest => "max",
@@ -47,36 +47,36 @@ impl Statistic {
     }
 }
 
-/// The names that [`OverTime::new`] takes, with `NAME` for the quantity.
+/// Returns the names that [`OverTime::new`] accepts, with `NAME` for the quantity.
 pub fn forms() -> impl Iterator<Item = String> {
     Statistic::ALL
         .into_iter()
         .map(|statistic| format!("{}:NAME", statistic.name()))
 }
 
-/// What is looked at: its place among the states or the observables.
+/// Index of a quantity among the states or the observables.
 enum Quantity {
     State(usize),
     Observable(usize),
 }
 
-/// Measures a model at many parameter values.
+/// Statistic of a quantity at many parameter values.
 pub struct OverTime<'a> {
     model: &'a CompiledModel,
     statistic: Statistic,
     quantity: Quantity,
-    /// Of the quantity.
+    /// Name of the quantity.
     name: String,
     unit: String,
     times: Times,
 }
 
 impl<'a> OverTime<'a> {
-    /// Measures what `asked` says, `max:tip` say: of an observable, a coordinate or a rate. Nothing if
-    /// it is no such measure.
+    /// Creates the measure `asked`, for example `max:tip`, of an observable, a coordinate or a
+    /// rate. Returns `None` for the name of another measure.
     ///
     /// # Errors
-    /// A quantity that the model does not have, a window that makes no sense.
+    /// A quantity that the model does not have, or an invalid window.
     pub fn new(
         model: &'a CompiledModel,
         asked: &str,
@@ -106,7 +106,7 @@ impl<'a> OverTime<'a> {
             let known = observables.iter().chain(&states).map(String::as_str);
             let hint = did_you_mean(name, known).unwrap_or_else(|| {
                 format!(
-                    "there are {}",
+                    "it has {}",
                     [observables.join(", "), states.join(", ")].join(", ")
                 )
             });
@@ -126,7 +126,8 @@ impl<'a> OverTime<'a> {
         })
     }
 
-    /// The times of the samples, s: the start, and those that are looked at from the place given.
+    /// Returns the times of the samples in s, from the start, and the index of the first sample in
+    /// the window.
     fn times(&self, instance: &Instance<'_>) -> Result<(Vec<f64>, usize), Failure> {
         let (begin, end) = self.times.range(instance)?;
         let sample = |place: usize| match place {
@@ -139,7 +140,7 @@ impl<'a> OverTime<'a> {
         Ok((times.collect(), before))
     }
 
-    /// The quantity at every sample.
+    /// Returns the quantity at every sample.
     fn course(&self, instance: &Instance<'_>, motion: &Motion) -> Result<Vec<f64>, Failure> {
         Ok(match self.quantity {
             Quantity::State(place) => {

@@ -1,4 +1,4 @@
-//! The varied parameters as columns of a result.
+//! Columns of the varied parameters.
 
 use eomgen_model_spec::model::Model;
 
@@ -6,10 +6,10 @@ use crate::error::SweepError;
 use crate::measure::Column;
 use crate::points::Points;
 
-/// The parameters that differ from point to point as columns, in declared units.
+/// Returns the columns of the parameters that differ between points, in declared units.
 ///
 /// # Errors
-/// A name that is no parameter of the model.
+/// A name that is not a parameter of the model.
 pub fn columns(model: &Model, points: &Points) -> Result<Vec<Column>, SweepError> {
     let column = |name: &str| {
         let mut known = model.parameters.iter();

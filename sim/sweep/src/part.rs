@@ -1,6 +1,5 @@
-//! A finished chunk as a file.
-//!
-//! Text. Three lines say whose it is, then one line per point in the order of the grid:
+//! Finished chunk as a text file. Three header lines identify the job and the points; one line per
+//! point follows, in the order of the grid:
 //!
 //! ```text
 //! eomgen sweep part 1
@@ -9,30 +8,30 @@
 //! 3ff0000000000000 7ff8000000000000 ...
 //! ```
 //!
-//! The points are counted from 0, the last one is excluded. A number is the 16 hexadecimal
-//! digits of its bits, so that nothing is lost and every part has a length known
-//! beforehand: a file of another length is not whole.
+//! Points are counted from 0; the last one is excluded. A number is the 16 hexadecimal digits of
+//! its bits. This is exact, and the length of every part is known: a file with another length is
+//! incomplete.
 
 use std::fmt::Write;
 
 use super::job::Job;
 
-/// The first line.
+/// First line.
 const TITLE: &str = "eomgen sweep part 1";
 
-/// What a file turned out to be.
+/// State of a file.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Found {
-    /// The whole chunk.
+    /// Complete chunk.
     Whole,
-    /// Not the whole of it, or not a part at all.
+    /// Incomplete, or not a part.
     Damaged,
-    /// A part of another job.
+    /// Part of another job.
     Other,
 }
 
-/// The bytes of a chunk with its numbers, point by point. Every NaN is written as the one
-/// NaN: its sign and payload depend on the machine.
+/// Returns the bytes of a chunk with its numbers, point by point. All NaNs are written equally,
+/// because their sign and payload depend on the machine.
 pub fn encode(job: &Job, chunk: usize, numbers: &[f64]) -> String {
     let mut text = header(job, chunk);
     text.reserve(numbers.len() * 17);
@@ -40,7 +39,6 @@ pub fn encode(job: &Job, chunk: usize, numbers: &[f64]) -> String {
         for (place, number) in row.iter().enumerate() {
             let number = if number.is_nan() { f64::NAN } else { *number };
             let between = if place == 0 { "" } else { " " };
-            // Writing to a String cannot fail.
             let _ = write!(text, "{between}{:016x}", number.to_bits());
         }
         text.push('\n');
@@ -48,12 +46,12 @@ pub fn encode(job: &Job, chunk: usize, numbers: &[f64]) -> String {
     text
 }
 
-/// How many bytes the header has.
+/// Returns the length of the header, in bytes.
 pub fn header_length(job: &Job) -> usize {
     header(job, 0).len()
 }
 
-/// What a file is, by its length and its first bytes.
+/// Returns the state of a file, from its length and its first bytes.
 pub fn judge(job: &Job, chunk: usize, length: u64, start: &[u8]) -> Found {
     let expected = header(job, chunk);
     let whole = expected.len() + job.chunk(chunk).len() * job.measured() * 17;
@@ -73,7 +71,7 @@ pub fn judge(job: &Job, chunk: usize, length: u64, start: &[u8]) -> Found {
     Found::Damaged
 }
 
-/// The numbers of a whole part, point by point; `None` if it is not the whole chunk.
+/// Parses the numbers of a complete part, point by point; `None` if it is incomplete.
 pub fn decode(job: &Job, chunk: usize, bytes: &[u8]) -> Option<Vec<f64>> {
     let text = std::str::from_utf8(bytes).ok()?;
     let body = text.strip_prefix(&header(job, chunk))?;
@@ -104,13 +102,13 @@ mod tests {
     use super::super::job::tests::job;
     use super::*;
 
-    /// Two points a chunk, two numbers a point.
+    /// Two points per chunk, two numbers per point.
     fn numbers() -> [f64; 4] {
         [-0.0, f64::NAN, f64::NEG_INFINITY, 5e-324]
     }
 
     #[test]
-    fn every_number_is_read_back_with_all_its_bits() {
+    fn numbers_are_read_back_with_all_bits() {
         let job = job(2000);
         let text = encode(&job, 7, &numbers());
         let read = decode(&job, 7, text.as_bytes()).expect("a whole part");
@@ -123,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn only_a_whole_part_of_the_job_and_chunk_is_taken() {
+    fn only_complete_part_of_job_and_chunk_is_accepted() {
         let job = job(2000);
         let text = encode(&job, 7, &numbers());
         let start = header_length(&job);

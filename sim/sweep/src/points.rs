@@ -1,9 +1,9 @@
-//! The points of a sweep: those of a grid, or random samples.
+//! Points of a sweep: a grid or random samples.
 
 use crate::grid::{Axis, Grid};
 use crate::samples::Samples;
 
-/// Where parameters are set to, point by point, counted from 0.
+/// Parameter values of each point, counted from 0.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Points {
     /// All combinations of the values of some axes.
@@ -13,7 +13,7 @@ pub enum Points {
 }
 
 impl Points {
-    /// How many there are.
+    /// Returns the number of points.
     pub fn count(&self) -> usize {
         match self {
             Self::Grid(grid) => grid.points(),
@@ -21,7 +21,7 @@ impl Points {
         }
     }
 
-    /// The parameters that are set.
+    /// Returns the names of the parameters.
     pub fn names(&self) -> Vec<&str> {
         match self {
             Self::Grid(grid) => grid.names().collect(),
@@ -29,7 +29,7 @@ impl Points {
         }
     }
 
-    /// The parameters' values at a point, in the order of [`Points::names`].
+    /// Returns the parameters' values at a point, in the order of [`Points::names`].
     pub fn settings(&self, point: usize) -> Vec<(&str, f64)> {
         match self {
             Self::Grid(grid) => grid.settings(point),
@@ -37,7 +37,7 @@ impl Points {
         }
     }
 
-    /// The axes of a grid; none of samples.
+    /// Returns the axes of a grid; empty for samples.
     pub fn axes(&self) -> &[Axis] {
         match self {
             Self::Grid(grid) => grid.axes(),
@@ -45,7 +45,7 @@ impl Points {
         }
     }
 
-    /// The samples, if that is what they are.
+    /// Returns the samples, if the points are samples.
     pub fn samples(&self) -> Option<&Samples> {
         match self {
             Self::Grid(_) => None,

@@ -1,4 +1,4 @@
-//! Computes the chunks of a job that are not there yet, in parallel.
+//! Parallel computation of the missing chunks of a job.
 
 use std::ops::Range;
 use std::sync::Mutex;
@@ -12,27 +12,25 @@ use super::job::Job;
 use super::measure::{Measure, Worker};
 use super::shard::Shard;
 
-/// What a run did.
+/// Result of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Done {
-    /// Points of this shard that were there before.
+    /// Points of this shard that were complete before.
     pub found: usize,
     /// Points computed.
     pub computed: usize,
 }
 
-/// A measure's place among the numbers of a point, and whoever measures.
+/// Range of a measure's numbers at a point, and its worker.
 type Place<'a> = (Range<usize>, Box<dyn Worker + 'a>);
 
-/// Computes what a shard lacks.
-///
-/// `measures`: in the order of the plan, as [`Measure::describe`] put them there.
-/// `threads`: how many; 0 for one per core.
-/// `progress`: told how many points are computed, and of how many.
+/// Computes the missing chunks of a shard. `measures` are in the order of the plan. `threads` is
+/// the number of threads, 0 for one per core. `progress` receives the number of computed points and
+/// of all points.
 ///
 /// # Errors
-/// Parts of another job in the folder, files that cannot be read or written, threads that
-/// cannot be had. What is finished by then stays and counts at the next run.
+/// Parts of another job in the folder, files that cannot be read or written, or threads that cannot
+/// be started. Finished chunks remain for the next run.
 pub fn run(
     folder: &Folder,
     measures: &[Box<dyn Measure + '_>],
@@ -45,7 +43,7 @@ pub fn run(
     let whole = missing.iter().map(|chunk| job.chunk(*chunk).len()).sum();
     let state = Mutex::new((0, progress));
     let point_is_done = || {
-        // A thread that panicked while it held the count left it as it was.
+        // A thread that panicked with the lock did not change the count.
         let mut state = state
             .lock()
             .unwrap_or_else(std::sync::PoisonError::into_inner);
@@ -56,7 +54,7 @@ pub fn run(
     let pool = ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()
-        .map_err(|error| SweepError::Request(format!("no threads can be had: {error}")))?;
+        .map_err(|error| SweepError::Request(format!("cannot start threads: {error}")))?;
     pool.install(|| {
         missing.par_iter().try_for_each_init(
             || workers(measures),
@@ -72,7 +70,7 @@ pub fn run(
     })
 }
 
-/// The chunks of a shard that are not there, and how many of its points are.
+/// Returns the missing chunks of a shard, and the number of its complete points.
 fn missing(folder: &Folder, shard: Shard) -> Result<(Vec<usize>, usize), SweepError> {
     let job = folder.job();
     let (mut missing, mut found) = (Vec::new(), 0);
@@ -97,7 +95,7 @@ fn workers<'a>(measures: &'a [Box<dyn Measure + 'a>]) -> Vec<Place<'a>> {
     workers
 }
 
-/// The numbers of a chunk, point by point: each measure's, then its status.
+/// Returns the numbers of a chunk, point by point: each measure's, then its status.
 fn compute(
     job: &Job,
     chunk: usize,
@@ -127,7 +125,8 @@ mod tests {
     use super::super::merge::merge;
     use super::*;
 
-    /// 1/x, undefined at 0. Leaves what it knows in its memory, which nobody may see.
+    /// Returns 1/x, undefined at 0. Its memory contains previous results, which must not become
+    /// visible.
     struct Reciprocal;
 
     impl Measure for Reciprocal {
@@ -155,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn failures_are_told_by_their_code_and_the_rest_goes_on() {
+    fn failed_points_have_codes_and_others_continue() {
         let place = tempfile::tempdir().expect("a folder");
         let folder = Folder::open(place.path(), job(5)).expect("a new sweep");
         let mut seen = Vec::new();
@@ -172,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_there_is_kept_and_what_is_damaged_done_again() {
+    fn finished_chunks_are_kept_and_damaged_ones_repeated() {
         let place = tempfile::tempdir().expect("a folder");
         let folder = Folder::open(place.path(), job(5)).expect("a new sweep");
         let go = || run(&folder, &measures(), Shard::WHOLE, 1, &mut |_, _| {}).expect("a run");
@@ -203,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn a_merge_names_the_gaps() {
+    fn merge_reports_gaps() {
         let place = tempfile::tempdir().expect("a folder");
         let folder = Folder::open(place.path(), job(7)).expect("a new sweep");
         let shard = Shard::parse("2/3").expect("a shard");
@@ -216,14 +215,14 @@ mod tests {
     }
 
     #[test]
-    fn another_job_in_the_folder_is_refused() {
+    fn another_job_in_folder_is_rejected() {
         let place = tempfile::tempdir().expect("a folder");
         let folder = Folder::open(place.path(), job(5)).expect("a new sweep");
         run(&folder, &measures(), Shard::WHOLE, 1, &mut |_, _| {}).expect("a run");
         let error = Folder::open(place.path(), job(6))
             .expect_err("another job")
             .to_string();
-        assert!(error.contains("not the same: --vary"), "{error}");
+        assert!(error.contains("differences: --vary"), "{error}");
         let elsewhere = tempfile::tempdir().expect("a folder");
         let other = Folder::open(elsewhere.path(), job(6)).expect("a new sweep");
         let name = "parts/0001.part";

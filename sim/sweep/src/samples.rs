@@ -1,9 +1,9 @@
-//! Random samples of the parameters that a specification calls uncertain.
+//! Random samples of the uncertain parameters of a specification.
 //!
-//! The numbers are those of SplitMix64 (Steele, Lea and Flood 2014), and normal ones of them by the
-//! transform of Box and Muller (1958), with the project's own functions: the same bits on every
-//! machine. Each number is made of the seed, the parameter's name and the sample alone, so that
-//! shards need nothing from each other, and another uncertain parameter leaves the others' samples.
+//! The generator is SplitMix64 (Steele, Lea and Flood 2014) with the transform of Box and Muller
+//! (1958) for normal numbers. The project's own functions give the same bits on every machine. Each
+//! number depends only on the seed, the parameter's name and the sample. Shards are therefore
+//! independent, and a further uncertain parameter does not change the samples of the others.
 
 use std::f64::consts::TAU;
 
@@ -17,45 +17,46 @@ use serde::{Deserialize, Serialize};
 use crate::error::SweepError;
 use crate::grid::MOST_POINTS;
 
-/// How often a normal number is drawn until it lies within its bounds. These are a standard deviation
-/// away at least, so that all of them lie outside once in 10^30; the mean is taken then.
+/// Maximum number of draws of a normal number within its bounds. The bounds are at least one
+/// standard deviation away, so all draws fail with a probability of 10^-30. The mean is used in
+/// that case.
 const MOST_DRAWS: usize = 64;
 
-/// Random samples of parameters, which do not depend on each other.
+/// Independent random samples of parameters.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Samples {
-    /// How many samples.
+    /// Number of samples.
     pub count: usize,
-    /// Which sequence.
+    /// Seed of the sequence.
     pub seed: u64,
-    /// What is sampled.
+    /// Distributions of the parameters.
     pub parameters: Vec<Sampled>,
 }
 
-/// How a parameter is sampled; numbers in the unit that the specification declares.
+/// Distribution of a parameter, in its declared unit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "law", rename_all = "snake_case")]
 pub enum Sampled {
-    /// Normal, without what lies outside the bounds.
+    /// Normal distribution, truncated to the bounds.
     Normal {
-        /// The parameter.
+        /// Name of the parameter.
         name: String,
-        /// The mean.
+        /// Mean.
         mean: f64,
-        /// The standard deviation.
+        /// Standard deviation.
         sd: f64,
-        /// The lower bound, if there is one.
+        /// Lower bound, if any.
         low: Option<f64>,
-        /// The upper bound.
+        /// Upper bound, if any.
         high: Option<f64>,
     },
-    /// Between two ends, all values alike.
+    /// Uniform distribution.
     Uniform {
-        /// The parameter.
+        /// Name of the parameter.
         name: String,
-        /// The lower end.
+        /// Lower end.
         low: f64,
-        /// The upper end.
+        /// Upper end.
         high: f64,
     },
 }
@@ -80,18 +81,18 @@ impl From<Spread> for Sampled {
 }
 
 impl Samples {
-    /// So many samples of the uncertain parameters of a model, about the values that they have.
+    /// Creates samples of the uncertain parameters of a model, around their values.
     ///
     /// # Errors
-    /// A model without an uncertain parameter, an uncertainty that is none at a parameter's value, no
-    /// sample, more than [`MOST_POINTS`].
+    /// A model without uncertain parameters, an uncertainty that is undefined at a parameter's
+    /// value, or a number of samples outside 1 to [`MOST_POINTS`].
     pub fn new(model: &Model, count: usize, seed: u64) -> Result<Self, SweepError> {
         let spreads = model.spreads();
         let spreads = spreads.map_err(|error| SweepError::Request(error.to_string()))?;
         if spreads.is_empty() {
             return Err(SweepError::Request(format!(
-                "--samples: the model `{}` has no uncertain parameter: give one or more of them an \
-                 uncertainty, as k = {{ value = 50, unit = \"N/m\", uncertainty = {{ relative = 0.02 }} }}",
+                "--samples: the model `{}` has no uncertain parameter: give at least one parameter an \
+                 uncertainty, such as k = {{ value = 50, unit = \"N/m\", uncertainty = {{ relative = 0.02 }} }}",
                 model.name
             )));
         }
@@ -104,7 +105,7 @@ impl Samples {
         Ok(samples)
     }
 
-    /// What is wrong with a number of samples.
+    /// Checks the number of samples.
     pub(crate) fn check(&self) -> Result<(), SweepError> {
         if (1..=MOST_POINTS).contains(&self.count) {
             return Ok(());
@@ -115,12 +116,12 @@ impl Samples {
         )))
     }
 
-    /// The sampled parameters.
+    /// Returns the sampled parameters.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.parameters.iter().map(Sampled::name)
     }
 
-    /// The parameters' values in a sample, in the order of [`Samples::names`].
+    /// Returns the parameters' values in a sample, in the order of [`Samples::names`].
     pub fn settings(&self, sample: usize) -> Vec<(&str, f64)> {
         let value = |parameter: &Sampled| {
             let mut state = self.seed;
@@ -137,7 +138,7 @@ impl Samples {
 }
 
 impl Sampled {
-    /// The parameter's name.
+    /// Returns the parameter's name.
     pub fn name(&self) -> &str {
         match self {
             Self::Normal { name, .. } | Self::Uniform { name, .. } => name,
@@ -164,19 +165,19 @@ impl Sampled {
     }
 }
 
-/// Uniform in [0, 1).
+/// Returns a number that is uniform in [0, 1).
 fn unit(random: &mut SplitMix64) -> f64 {
     (random.next_u64() >> 11) as f64 * 0.5_f64.powi(53)
 }
 
-/// Normal with mean 0 and standard deviation 1.
+/// Returns a normal number with mean 0 and standard deviation 1.
 fn normal(random: &mut SplitMix64) -> f64 {
-    // 1 - [0, 1) is not 0, so that it has a logarithm.
+    // 1 - [0, 1) excludes 0, so its logarithm exists.
     let radius = (-2.0 * Function::Ln.apply(&[1.0 - unit(random)])).sqrt();
     radius * Function::Cos.apply(&[TAU * unit(random)])
 }
 
-/// A name as a number: the hash of Fowler, Noll and Vo, FNV-1a.
+/// Returns the hash of a name by Fowler, Noll and Vo, FNV-1a.
 fn word_of(name: &str) -> u64 {
     name.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
@@ -218,11 +219,11 @@ mod tests {
     }
 
     #[test]
-    fn normal_numbers_have_the_moments_of_their_law() {
+    fn normal_numbers_have_expected_moments() {
         let n = 40_000;
         let values = values(&normal_law("k", None), 1, n);
         let root = (n as f64).sqrt();
-        // Standard errors of the first four moments, times four.
+        // Four standard errors of the first four moments.
         assert!((moment(&values, 0.0, 1) - 3.0).abs() < 4.0 * 0.5 / root);
         assert!((moment(&values, 3.0, 2) - 0.25).abs() < 4.0 * 0.25 * 2_f64.sqrt() / root);
         assert!(moment(&values, 3.0, 3).abs() < 4.0 * 0.125 * 15_f64.sqrt() / root);
@@ -236,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn bounds_cut_the_law_and_seeds_names_and_samples_make_other_numbers() {
+    fn bounds_truncate_and_seeds_names_and_samples_differ() {
         let n = 10_000;
         let cut = values(&normal_law("k", Some(2.5)), 1, n);
         assert!(cut.iter().all(|value| *value >= 2.5));
@@ -253,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn uniform_numbers_fill_their_range() {
+    fn uniform_numbers_fill_range_evenly() {
         let name = "k".to_owned();
         let values = values(
             &Sampled::Uniform {

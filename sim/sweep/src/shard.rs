@@ -1,9 +1,9 @@
-//! Which chunks of a sweep one run computes.
+//! Selection of a sweep's chunks for one run.
 
 use super::error::SweepError;
 
-/// Part `number` of `count`, counted from 1. Chunks are dealt out one by one, so that
-/// regions of the grid that take long are shared by all.
+/// Part `number` of `count`, counted from 1. Chunks are assigned in turn, so that all shards share
+/// slow regions of the grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
     number: usize,
@@ -17,10 +17,10 @@ impl Shard {
         count: 1,
     };
 
-    /// Reads `2/3`.
+    /// Parses for example `2/3`.
     ///
     /// # Errors
-    /// A text that is not of this form, or a number outside 1 to the count.
+    /// Another form, or a number outside 1 to the count.
     pub fn parse(text: &str) -> Result<Self, SweepError> {
         let refused = |reason: &str| {
             Err(SweepError::Request(format!(
@@ -35,20 +35,20 @@ impl Shard {
         });
         match numbers {
             None => refused("expected NUMBER/COUNT"),
-            Some((_, 0)) => refused("there is at least one shard"),
+            Some((_, 0)) => refused("expected a count of at least 1"),
             Some((number, count)) if number == 0 || number > count => {
-                refused("shards are counted from 1 to their count")
+                refused("expected a number from 1 to the count")
             }
             Some((number, count)) => Ok(Self { number, count }),
         }
     }
 
-    /// Whether this is all there is.
+    /// Returns true if this is the only shard.
     pub fn is_whole(self) -> bool {
         self.count == 1
     }
 
-    /// Whether a chunk, counted from 0, belongs to this shard.
+    /// Returns true if a chunk, counted from 0, belongs to this shard.
     pub fn holds(self, chunk: usize) -> bool {
         chunk % self.count == self.number - 1
     }
@@ -75,7 +75,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_shard_is_refused() {
+    fn invalid_shards_are_rejected() {
         for text in ["0/3", "4/3", "1/0", "0/0", "3", "a/b", "1/2/3", "-1/3", ""] {
             let error = Shard::parse(text).expect_err(text).to_string();
             assert!(error.contains("2/3"), "{text}: {error}");

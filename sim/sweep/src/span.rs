@@ -1,31 +1,31 @@
-//! How long measures wait and look, in periods of the forcing.
+//! Transient and measured time, in forcing periods.
 
 use super::error::SweepError;
 
-/// The most periods of a measurement: beyond, rounding has long decided what is seen.
+/// Maximum number of periods of a measurement; rounding dominates long before.
 pub const MOST_PERIODS: usize = 1_000_000;
 
-/// How long to wait and to look, in forcing periods.
+/// Transient and measured time, in forcing periods.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Span {
-    /// Periods that pass first.
+    /// Periods before the measurement.
     pub transient: usize,
-    /// Periods that are looked at.
+    /// Measured periods.
     pub periods: usize,
 }
 
 impl Span {
-    /// Refuses fewer than `least` periods to look at, and times without end.
+    /// Checks that at least `least` and at most [`MOST_PERIODS`] periods are measured.
     ///
     /// # Errors
-    /// What is wrong, in words of the command line.
+    /// The problem, in terms of the command line.
     pub fn check(&self, measure: &str, least: usize) -> Result<(), SweepError> {
         if self.periods >= least && self.transient.saturating_add(self.periods) <= MOST_PERIODS {
             return Ok(());
         }
         Err(SweepError::Request(format!(
-            "--measure {measure}: at least {least} --periods are looked at, and --transient and \
-             --periods are at most {MOST_PERIODS} together"
+            "--measure {measure}: expected at least {least} --periods, and --transient and \
+             --periods of at most {MOST_PERIODS} together"
         )))
     }
 }

@@ -1,5 +1,4 @@
-//! Which time of a motion measures look at: some periods of the forcing after others, or a time from
-//! the start for models without one.
+//! Time window of a measure: forcing periods after a transient, or a time from the start.
 
 use eomgen_compiled_model::Instance;
 use eomgen_model_spec::model::Model;
@@ -10,37 +9,37 @@ use crate::forcing::{Frequency, frequency};
 use crate::measure::Failure;
 use crate::span::Span;
 
-/// Into how many stretches the second half of a time is cut where growth is measured.
+/// Number of intervals in the second half of a time for the measurement of growth.
 const STRETCHES: usize = 100;
 
-/// Which time is looked at.
+/// Time window of a measure.
 #[derive(Clone, Debug)]
 pub enum Window {
-    /// From t = 0 to this time, s.
+    /// From t = 0 to this time, in s.
     Until(f64),
-    /// So many periods of a forcing after others.
+    /// Forcing periods after a transient.
     Periods {
-        /// The parameter that is the angular frequency of the forcing.
+        /// Parameter that is the angular frequency of the forcing.
         forcing: String,
-        /// Which ones.
+        /// Transient and measured periods.
         span: Span,
     },
 }
 
-/// A window with its forcing looked up.
+/// Time window with resolved names.
 #[derive(Clone, Debug)]
 pub enum Times {
-    /// From t = 0 to this time, s.
+    /// From t = 0 to this time, in s.
     Until(f64),
     /// Periods of the forcing.
     Periods(Frequency, Span),
 }
 
 impl Times {
-    /// The window of the measure `asked`, which looks at `least` periods or more.
+    /// Creates the window of the measure `asked`, which requires at least `least` periods.
     ///
     /// # Errors
-    /// A window that makes no sense, a parameter that is no frequency.
+    /// An invalid window, or a parameter that is not a frequency.
     pub fn of(
         model: &Model,
         window: &Window,
@@ -53,7 +52,7 @@ impl Times {
                 span.check(asked, least)?;
                 let known = frequency(model, forcing).map_err(|error| {
                     SweepError::Request(format!(
-                        "--measure {asked}: {error}; or give --until, the time in s that is looked at"
+                        "--measure {asked}: {error}; or give --until, the measured time in s"
                     ))
                 })?;
                 Ok(Self::Periods(known, *span))
@@ -61,7 +60,7 @@ impl Times {
         }
     }
 
-    /// What of a measure's numbers depends on the window.
+    /// Returns the options on which a measure's numbers depend.
     pub fn options(&self) -> Vec<(String, String)> {
         let option = |name: &str, value: String| (name.to_owned(), value);
         match self {
@@ -74,10 +73,10 @@ impl Times {
         }
     }
 
-    /// The first and the last time that is looked at, s.
+    /// Returns the first and the last time of the window, in s.
     ///
     /// # Errors
-    /// [`Failure::Undefined`] where the frequency is not positive.
+    /// [`Failure::Undefined`] if the frequency is not positive.
     pub fn range(&self, instance: &Instance<'_>) -> Result<(f64, f64), Failure> {
         Ok(match self {
             Self::Until(end) => (0.0, *end),
@@ -89,10 +88,11 @@ impl Times {
         })
     }
 
-    /// Where growth is measured: once per period, or over the second half of the time.
+    /// Returns the intervals for the measurement of growth: once per period, or over the second
+    /// half of the time.
     ///
     /// # Errors
-    /// As [`Times::range`].
+    /// Same as [`Times::range`].
     pub fn stretches(&self, instance: &Instance<'_>) -> Result<Stretches, Failure> {
         Ok(match self {
             Self::Until(end) => Stretches {
@@ -112,15 +112,15 @@ impl Times {
     }
 }
 
-/// A time to look at, s.
+/// Checks a time, in s.
 ///
 /// # Errors
-/// One that is not above 0, or not finite.
+/// A time that is not positive and finite.
 pub fn time(until: f64) -> Result<f64, SweepError> {
     if until > 0.0 && until.is_finite() {
         return Ok(until);
     }
     Err(SweepError::Request(format!(
-        "--until {until:?}: expected a time in s above 0"
+        "--until {until:?}: expected a time in s greater than 0"
     )))
 }

@@ -1,11 +1,10 @@
-//! The constants of a basis as MathML: values and integrals of mode shapes.
+//! Constants of a basis as MathML: values and integrals of mode shapes.
 
 use eomgen_codegen::symbolic::tables::TableKind;
 use maud::{Markup, html};
 
 use super::{element, fenced, identifier};
 
-/// A constant of a basis.
 pub(super) fn table(kind: TableKind) -> Markup {
     match kind {
         TableKind::Wavenumber => wavenumber(),
@@ -44,12 +43,12 @@ fn mixing() -> Markup {
     element(&identifier("ξ"), "i")
 }
 
-/// The factor of an exponential in a mode.
+/// Returns the factor of an exponential in a mode.
 fn amplitude(sense: &str) -> Markup {
     html! { msubsup { (identifier("φ")) (identifier("i")) mo { (sense) } } }
 }
 
-/// A mode shape with primes for its derivatives.
+/// Returns a mode shape with primes for its derivatives.
 fn shape(index: &str, derivative: u8) -> Markup {
     let shape = element(&identifier("φ"), index);
     match derivative {
@@ -62,7 +61,7 @@ fn at_position(derivative: u8, place: &Markup) -> Markup {
     html! { (shape("i", derivative)) (fenced("(", place, ")")) }
 }
 
-/// The integral over s from 0 to 1 of a power of s times shapes.
+/// Returns the integral over s from 0 to 1 of a power of s times shapes.
 fn integral(power: u32, shapes: &Markup) -> Markup {
     html! {
         mrow {

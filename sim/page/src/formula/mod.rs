@@ -1,6 +1,5 @@
-//! Formulas as MathML, from their trees: the elements of MathML Core, which browsers set by
-//! themselves. Each term of a formula's outermost sum is an element of its own, because
-//! browsers break lines between these and nowhere inside.
+//! Formulas as MathML Core, which browsers render without a library. Each term of a formula's
+//! outermost sum is a separate element, because browsers break lines only between elements.
 
 mod basis;
 
@@ -10,10 +9,10 @@ use eomgen_codegen::symbolic::formula::{
 use eomgen_model_spec::model::Function;
 use maud::{Markup, html};
 
-/// Between factors, where nothing is seen: the invisible times of Unicode.
+/// Invisible multiplication sign of Unicode.
 const TIMES: &str = "\u{2062}";
 
-/// A formula as MathML elements, between which a line may be broken.
+/// Returns a formula as MathML elements; lines can break between them.
 pub fn formula(formula: &Formula) -> Markup {
     match formula {
         Formula::Sum(terms) => html! {
@@ -26,7 +25,7 @@ pub fn formula(formula: &Formula) -> Markup {
     }
 }
 
-/// A number as a MathML element: a mantissa, times a power of ten if there is an exponent.
+/// Returns a number as MathML: a mantissa, times a power of ten if there is an exponent.
 pub(crate) fn power_of_ten(mantissa: &str, exponent: Option<&str>) -> Markup {
     let signed = |number: &str| number.replace('-', "\u{2212}");
     let mantissa = signed(mantissa);
@@ -51,7 +50,7 @@ fn times() -> Markup {
     html! { mo { (TIMES) } }
 }
 
-/// A formula in its surroundings, as one element or a few.
+/// Returns a formula at a level of precedence, with parentheses if necessary.
 fn at(formula: &Formula, level: Level) -> Markup {
     if formula.set_level() < level {
         return fenced("(", &at(formula, Level::Sum), ")");
@@ -106,7 +105,7 @@ fn term(term: &Term, is_first: bool) -> Markup {
     }
 }
 
-/// Factors side by side; a sum over modes that others follow stands in parentheses.
+/// Returns factors in a row; a sum over modes before other factors has parentheses.
 fn product(factors: &[Formula]) -> Markup {
     if let [only] = factors {
         return at(only, Level::Sum);
@@ -192,12 +191,12 @@ fn matrix_part(part: &MatrixPart) -> Markup {
     }
 }
 
-/// An element of what is indexed.
+/// Returns an indexed element.
 fn element(of: &Markup, index: &str) -> Markup {
     html! { msub { (of) (identifier(index)) } }
 }
 
-/// A name with its dots above its head and everything else below the line.
+/// Returns a name with dots above its head and the rest as subscripts.
 fn symbol(symbol: &Symbol) -> Markup {
     let (head, mut parts) = symbol.parts();
     let head = identifier(letter(head).unwrap_or(head));
@@ -218,7 +217,7 @@ fn symbol(symbol: &Symbol) -> Markup {
     element(&head, &parts.collect::<Vec<_>>().join(","))
 }
 
-/// A magnitude in front of a product: a small fraction where it is one exactly.
+/// Returns the factor before a product, as a fraction if it is a small fraction exactly.
 fn factor(magnitude: f64) -> Markup {
     match small_fraction(magnitude) {
         Some((numerator, denominator)) => {

@@ -1,6 +1,6 @@
-// What every picture on a canvas needs: colours, a clean sheet, numbers as they are written.
+// Common functions of pictures on a canvas: colours, clearing, and formatted numbers.
 
-/** The colours of the page, read anew for every picture: the scheme may change. */
+/** Returns the colours of the page. Every picture reads them again, because the scheme can change. */
 function colours() {
   const style = getComputedStyle(document.documentElement);
   const named = (name) => style.getPropertyValue(`--${name}`).trim();
@@ -14,7 +14,7 @@ function colours() {
   };
 }
 
-/** A canvas as large as it is shown, in pixels of the page; cleared. */
+/** Resizes a canvas to its size on the page and clears it; returns its context, width and height. */
 function cleared(canvas) {
   const scale = window.devicePixelRatio || 1;
   const { clientWidth: width, clientHeight: height } = canvas;
@@ -31,7 +31,7 @@ function cleared(canvas) {
   return { context, width, height };
 }
 
-/** A number of few digits, with a true minus. */
+/** Formats a number with few digits and a minus sign. */
 function shown(value, digits = 4) {
   if (!Number.isFinite(value)) return "–";
   const size = Math.abs(value);
@@ -42,7 +42,7 @@ function shown(value, digits = 4) {
   return text.replaceAll("-", "−");
 }
 
-/** A number of units that is easy to read: 1, 2 or 5 times a power of ten, not below `least`. */
+/** Returns the smallest of 1, 2 or 5 times a power of ten that is at least `least`. */
 function round(least) {
   const power = 10 ** Math.floor(Math.log10(least));
   return power * ([1, 2, 5, 10].find((step) => step * power >= least * (1 - 1e-12)) ?? 10);

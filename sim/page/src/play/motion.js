@@ -1,5 +1,5 @@
-// The motion: the module's functions, and an explicit Runge-Kutta method of order 5 (Dormand and
-// Prince, 1980) that chooses its steps and ends one where a switching surface is crossed.
+// Motion: functions of the module, and an explicit Runge-Kutta method of order 5 (Dormand and Prince,
+// 1980) with step size control. A step ends at the first switching surface that it crosses.
 
 const NODES = [0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1, 1];
 const STAGES = [
@@ -11,27 +11,27 @@ const STAGES = [
   [9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656],
   [35 / 384, 0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84],
 ];
-/** The result of order 5 less that of order 4. */
+/** Weights of the difference between the results of orders 5 and 4. */
 const ERROR = [71 / 57600, 0, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525, -1 / 40];
 
 const RELATIVE_TOLERANCE = 1e-7;
 const ABSOLUTE_TOLERANCE = 1e-11;
-/** The longest step in s. */
+/** Largest step size, in s. */
 const LONGEST = 0.05;
-/** The shortest step as a fraction of the time that has passed, and in s. */
+/** Smallest step size, relative to the time or 1 s, whichever is larger. */
 const SHORTEST = 1e-14;
-/** After so many crossings in a row the motion slides along a surface, on steps of this length in s. */
+/** Number of consecutive crossings after which the motion slides along a surface, and its step size then, in s. */
 const CROSSINGS_IN_A_ROW = 16;
 const SLIDING = 1e-4;
-/** How closely a crossing is located, as a fraction of a step. */
+/** Accuracy of the location of a crossing, as a fraction of a step. */
 const CROSSING = 1e-9;
 
-/** What is written in base 64: a module, or the numbers of an array. */
+/** Decodes base 64: a module, or the numbers of an array. */
 function bytes(text) {
   return Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
 }
 
-/** The module, with its arrays as they stand in its memory. */
+/** Module with views of the arrays in its memory. */
 class Machine {
   constructor(model, exports) {
     const array = (name, length) => new Float64Array(exports.memory.buffer, exports[name].value, length);
@@ -45,26 +45,26 @@ class Machine {
     this.usable = exports.prepare() === 1;
   }
 
-  /** Prepares the coefficients after parameters have changed. */
+  /** Computes the coefficients after a change of parameters. */
   prepare() {
     this.usable = this.exports.prepare() === 1;
   }
 
-  /** The rates of a state, written to `rates`. */
+  /** Writes the time derivative of a state to `rates`. */
   rate(t, state, rates) {
     this.state.set(state);
     this.exports.rates(t);
     rates.set(this.rates);
   }
 
-  /** The observables of a state. */
+  /** Returns the observables of a state. */
   observe(t, state) {
     this.state.set(state);
     this.exports.observables(t);
     return this.observables;
   }
 
-  /** On which sides of the switching surfaces a state is. */
+  /** Returns the sides of all switching surfaces for a state. */
   sides(t, state) {
     if (this.guards.length === 0) return [];
     this.state.set(state);
@@ -73,7 +73,7 @@ class Machine {
   }
 }
 
-/** A state that moves. */
+/** Integration of a state. */
 class Motion {
   constructor(machine, initial) {
     this.machine = machine;
@@ -83,7 +83,7 @@ class Motion {
     this.restart(initial);
   }
 
-  /** Begins anew, at this time. */
+  /** Restarts at a state and a time. */
   restart(initial, t = 0) {
     this.t = t;
     this.state.set(initial);
@@ -92,7 +92,7 @@ class Motion {
     this.begin();
   }
 
-  /** Begins a smooth piece of the motion where it is: after a start, a switch or a change from outside. */
+  /** Starts a smooth piece at the current state, after a restart, a switch or an external change. */
   begin() {
     this.step = 1e-4;
     this.failed = !this.machine.usable;
@@ -101,7 +101,7 @@ class Motion {
     if (!this.slopes[0].every(Number.isFinite)) this.failed = true;
   }
 
-  /** One step, not beyond `end`. */
+  /** Takes one step, at most to `end`. */
   advance(end) {
     const rest = end - this.t;
     if (this.inARow >= CROSSINGS_IN_A_ROW && !this.failed) {
@@ -109,7 +109,7 @@ class Motion {
       return;
     }
     while (!this.failed) {
-      // What would leave a crumb of a step takes all that is left.
+      // Avoid a very short last step.
       let h = Math.min(this.step, LONGEST);
       if (h > 0.9 * rest) h = rest;
       const error = this.attempt(h);
@@ -124,7 +124,7 @@ class Motion {
     }
   }
 
-  /** A step of length h from the state to `next`; its error, 1 where it is as large as it may be. */
+  /** Computes a step of size h from the state to `next`; returns its error relative to the tolerance. */
   attempt(h) {
     const { state, next, slopes, trial } = this;
     for (let stage = 1; stage < NODES.length; stage += 1) {
@@ -142,13 +142,13 @@ class Motion {
       for (let k = 0; k < NODES.length; k += 1) sum += ERROR[k] * slopes[k][i];
       const size = Math.max(Math.abs(state[i]), Math.abs(next[i]));
       const ratio = Math.abs(h * sum) / (ABSOLUTE_TOLERANCE + RELATIVE_TOLERANCE * size);
-      // NaN is no small error, though it is not larger than anything.
+      // The negated comparison also keeps NaN.
       if (!(ratio <= error)) error = ratio;
     }
     return error;
   }
 
-  /** Takes the step, up to the first switching surface that it crosses. */
+  /** Accepts the step up to the first switching surface that it crosses. */
   accept(h) {
     const after = this.machine.sides(this.t + h, this.next);
     const crossed = after.some((side, place) => side !== this.current[place]);
@@ -161,16 +161,16 @@ class Motion {
       const [step, before] = [this.step, this.current];
       this.begin();
       this.step = Math.min(step, h);
-      // The cubic may see a crossing early: then the next step crosses.
+      // The interpolation can locate a crossing too early; the next step then crosses.
       if (before.some((side, place) => side !== this.current[place])) this.switches += 1;
     } else {
-      // The last stage is the first of the next step.
+      // The last stage is the first stage of the next step.
       const [first, last] = [0, NODES.length - 1];
       [this.slopes[first], this.slopes[last]] = [this.slopes[last], this.slopes[first]];
     }
   }
 
-  /** A step whatever it crosses: where both sides of a surface lead back to it, nothing is to be located. */
+  /** Takes a step without location of crossings, for a motion that both sides of a surface drive back to it. */
   slide(h) {
     this.attempt(h);
     this.t += h;
@@ -180,7 +180,7 @@ class Motion {
     if (side.every((value, place) => value === this.current[place])) this.inARow = 0;
   }
 
-  /** How far into a step it crosses a surface first: on the cubic through both ends. */
+  /** Returns the time from the start of a step to its first crossing, on the cubic through both ends. */
   crossing(h) {
     const { state, next, slopes, trial } = this;
     const [start, end] = [slopes[0], slopes[NODES.length - 1]];

@@ -1,14 +1,14 @@
-// Sliders with a number beside them, and texts that change.
+// Sliders with number fields, and texts that change.
 
-/** A number as it is written into a field, of few digits. */
+/** Formats a number for a field with six digits. */
 function written(value) {
   const size = Math.abs(value);
   const digits = Number(value.toPrecision(6));
   return size !== 0 && (size < 1e-4 || size >= 1e6) ? digits.toExponential() : String(digits);
 }
 
-/** Joins a slider and its number: either changes the other, and `change` is told the value in SI, or nothing where it
- * stands as in the specification: that is taken as it is there, without a conversion. Gives the control a `reset`. */
+/** Connects a slider and its number field. `change` receives the value in SI, or undefined for the value of the
+ * specification, which needs no conversion. Adds `reset` to the control. */
 function join(control, change) {
   const [number, slider] = control.querySelectorAll("input");
   const factor = Number(control.dataset.factor);
@@ -34,7 +34,7 @@ function join(control, change) {
   };
 }
 
-/** Writes a text where another one stands. */
+/** Replaces the text of an element, if it differs. */
 function say(id, text) {
   const element = document.getElementById(id);
   if (element.textContent !== text) element.textContent = text;

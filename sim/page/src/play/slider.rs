@@ -1,4 +1,4 @@
-//! Sliders with a number beside them, for what a page can change.
+//! Sliders with number fields for the quantities that a page can change.
 
 use eomgen_codegen::symbolic::formula::{Formula, Symbol};
 use eomgen_model_spec::model::Parameter;
@@ -6,33 +6,33 @@ use maud::{Markup, html};
 
 use crate::formula::formula;
 
-/// In how many steps a slider goes from one end to the other.
+/// Number of steps of a slider.
 const STEPS: f64 = 400.0;
 
-/// A number that a page can change.
+/// Quantity that a page can change.
 #[derive(Clone, Debug)]
 pub struct Slider<'m> {
-    /// Its name.
+    /// Name of the quantity.
     pub name: String,
-    /// The unit that it is shown in.
+    /// Unit in the page.
     pub unit: String,
-    /// What it is, in words.
+    /// Description of the quantity.
     pub doc: &'m str,
-    /// Its place among those of its kind.
+    /// Index among the quantities of its kind.
     pub place: usize,
-    /// How much one of its unit is in SI.
+    /// Size of the unit in SI.
     pub factor: f64,
-    /// In its unit, as are the ends.
+    /// Value, in the unit.
     pub value: f64,
-    /// The lower end.
+    /// Lower end, in the unit.
     pub low: f64,
-    /// The upper end.
+    /// Upper end, in the unit.
     pub high: f64,
 }
 
 impl<'m> Slider<'m> {
-    /// A parameter in its declared unit, at this value in SI. Without declared ends from 0 to twice
-    /// its value.
+    /// Creates the slider of a parameter in its declared unit; `value` is in SI. Without declared
+    /// limits the slider goes from 0 to twice the value.
     pub fn of_parameter(parameter: &'m Parameter, place: usize, value: f64) -> Self {
         let unit = &parameter.unit;
         let value = unit.from_si(value);
@@ -52,7 +52,7 @@ impl<'m> Slider<'m> {
         }
     }
 
-    /// Its markup. `kind` and place are what the script knows it by.
+    /// Returns the markup. The script identifies it by `kind` and index.
     pub fn control(&self, kind: &str) -> Markup {
         let Self {
             name,
@@ -83,7 +83,7 @@ impl<'m> Slider<'m> {
     }
 }
 
-/// From 0 to twice a value; around 0 where it is that. All finite.
+/// Returns the finite range from 0 to twice a value, or around 0 for 0.
 fn around(value: f64) -> (f64, f64) {
     let twice = (2.0 * value).clamp(f64::MIN, f64::MAX);
     if value > 0.0 {
@@ -95,7 +95,7 @@ fn around(value: f64) -> (f64, f64) {
     }
 }
 
-/// A number with all its digits, short where it is large or small.
+/// Formats a number with all its digits, in exponential notation if it is large or small.
 fn written(value: f64) -> String {
     let size = value.abs();
     if size == 0.0 || (1e-4..1e6).contains(&size) {
@@ -105,7 +105,7 @@ fn written(value: f64) -> String {
     }
 }
 
-/// A unit with its exponents raised; those that are fractions stay as they are.
+/// Formats a unit with superscript exponents, unless it has a fraction as an exponent.
 pub fn printed(unit: &str) -> String {
     if unit.contains("^(") {
         return unit.to_owned();
@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn a_slider_has_two_ends() {
+    fn slider_has_finite_range() {
         for value in [0.0, 1.0, -2.0, 1.7e308, -1.7e308, 5e-324] {
             let (low, high) = around(value);
             assert!(low <= value && value <= high && low < high, "{value}");

@@ -1,6 +1,5 @@
-//! Sections by an event: a coordinate or a rate that crosses a value in one direction. An angle with
-//! which the equations repeat goes through it once per turn. The general solver locates the event as it
-//! locates switches.
+//! Sections by an event: a coordinate or a rate that crosses a value in one direction. A periodic
+//! angle crosses it once per turn. The general solver locates these events like its switches.
 
 use std::cell::{Cell, RefCell};
 use std::f64::consts::TAU;
@@ -15,13 +14,13 @@ use super::rotation::{Looks, turns_over};
 use crate::error::SweepError;
 use crate::measure::Failure;
 
-/// The time is gone through in so many parts, so that it can end with the last crossing asked for.
+/// Number of parts of the simulated time, so that it can end soon after the last crossing.
 const PARTS: usize = 64;
 
-/// Samples in each part, for the extent of the motion.
+/// Number of samples in each part, for the extent of the motion.
 const LOOKS: usize = 64;
 
-/// A coordinate or a rate going through a value.
+/// Crossing of a value by a coordinate or a rate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Crossing {
     name: String,
@@ -31,10 +30,10 @@ pub struct Crossing {
 }
 
 impl Crossing {
-    /// Reads `NAME=VALUE`, upwards, or with `:up` or `:down` behind it.
+    /// Parses `NAME=VALUE` (upwards), `NAME=VALUE:up` or `NAME=VALUE:down`.
     ///
     /// # Errors
-    /// Says which part is wrong and what would be right.
+    /// The invalid part, with the expected form.
     pub fn parse(model: &CompiledModel, text: &str) -> Result<Self, SweepError> {
         let refused = |reason: String| {
             SweepError::Request(format!(
@@ -49,7 +48,7 @@ impl Crossing {
             None => (rest, true),
             Some((value, "up")) => (value, true),
             Some((value, "down")) => (value, false),
-            Some((_, other)) => return Err(refused(format!("\"{other}\" is no direction"))),
+            Some((_, other)) => return Err(refused(format!("\"{other}\" is not a direction"))),
         };
         let name = name.trim();
         let state = place(model, name).map_err(refused)?;
@@ -65,8 +64,8 @@ impl Crossing {
         })
     }
 
-    /// Returns the part of the way at which the motion crosses `value` between two points, if it does
-    /// so in the direction of the section.
+    /// Returns the fraction of the way between two points at which the motion crosses `value` in
+    /// the direction of the section, if it does.
     fn between(&self, value: f64, before: &[f64], after: &[f64]) -> Option<f64> {
         let sign = if self.is_upwards { 1.0 } else { -1.0 };
         let above = |y: &[f64]| sign * (y[self.state] - value);
@@ -74,7 +73,8 @@ impl Crossing {
         (from <= 0.0 && to > 0.0).then(|| -from / (to - from))
     }
 
-    /// Returns true if all crossings are at the same value, or at values that the equations do not tell apart.
+    /// Returns true if all crossings are at the same value, or at values for which the equations
+    /// are equal.
     fn is_one_value(&self, instance: &Instance<'_>, seen: &Seen) -> Result<bool, Failure> {
         let is_near = |point: &Vec<f64>| (point[self.state] - self.value).abs() < 0.5 * TAU;
         if !instance.is_angle(self.state) || seen.points.iter().all(is_near) {
@@ -95,21 +95,21 @@ impl std::fmt::Display for Crossing {
     }
 }
 
-/// What was seen of a motion.
+/// Results of a simulated motion.
 pub struct Seen {
-    /// The times of the crossings, s.
+    /// Times of the crossings, in s.
     pub times: Vec<f64>,
-    /// The states there.
+    /// States at the crossings.
     pub points: Vec<Vec<f64>>,
-    /// States between, about from the first of them on.
+    /// States between the crossings, approximately from the first one on.
     pub between: Vec<Vec<f64>>,
 }
 
-/// Returns `kept` crossings of an instance's motion after the first `transient`. A section by an angle with
-/// which the equations repeat is crossed in every turn.
+/// Returns `kept` crossings of an instance's motion after the first `transient`. A section by a
+/// periodic angle is crossed in every turn.
 ///
 /// # Errors
-/// A motion that cannot be followed, or that has fewer crossings until the time `until`, s.
+/// A motion that fails, or that has fewer crossings before the time `until`, in s.
 pub fn crossings(
     instance: &Instance<'_>,
     crossing: &Crossing,
@@ -135,7 +135,8 @@ pub fn crossings(
     Ok(seen)
 }
 
-/// Returns all crossings until enough are found or the time is over; of every turn, or of the value itself.
+/// Returns all crossings until there are enough or the time ends, either in every turn or only at
+/// the value itself.
 fn followed(
     instance: &Instance<'_>,
     (crossing, in_every_turn): (&Crossing, bool),
@@ -162,16 +163,16 @@ fn followed(
     })
 }
 
-/// The switching surface of a section: the value, or that value in every turn.
+/// Switching surface of a section: the value, or the value in every turn.
 struct Surface<'c> {
     crossing: &'c Crossing,
-    /// The number of the turn that the motion is in, if every turn has a section. Held from crossing to
-    /// crossing, so that a step over several turns still ends at the first.
+    /// Number of the current turn, if every turn has a section. It changes only at crossings, so
+    /// that a step over several turns ends at the first one.
     turn: Option<Cell<f64>>,
 }
 
 impl Surface<'_> {
-    /// Returns the values that bound a turn, which begins at the section.
+    /// Returns the values that bound a turn, which starts at the section.
     fn bounds(&self, turn: f64) -> (f64, f64) {
         let start = |turn: f64| self.crossing.value + TAU * turn;
         (start(turn), start(turn + 1.0))
@@ -190,8 +191,8 @@ impl Surface<'_> {
         });
     }
 
-    /// Returns the switching function. Its sign alternates from turn to turn, so that it does not jump
-    /// when the motion enters the next one.
+    /// Returns the guard. Its sign alternates between turns, so that it is continuous when the
+    /// motion enters the next turn.
     fn guard(&self, y: &[f64]) -> f64 {
         let value = y[self.crossing.state];
         let Some(turn) = &self.turn else {
@@ -206,7 +207,7 @@ impl Surface<'_> {
         }
     }
 
-    /// Returns the value that the motion crosses next in the direction of the section.
+    /// Returns the next value that the motion crosses in the direction of the section.
     fn next(&self) -> f64 {
         let Some(turn) = &self.turn else {
             return self.crossing.value;
@@ -216,7 +217,7 @@ impl Surface<'_> {
     }
 }
 
-/// A system with the section as one more switching surface, and the crossings found.
+/// System with the section as an additional switching surface, and its crossings.
 struct Watched<'c, S> {
     system: S,
     surface: Surface<'c>,
@@ -224,8 +225,8 @@ struct Watched<'c, S> {
 }
 
 impl<S: System> Watched<'_, S> {
-    /// Follows a motion until the last crossing is found or the time is over; the samples since the
-    /// first that counts.
+    /// Simulates a motion until the last crossing or the end of the time. Returns the samples from
+    /// the first crossing that counts.
     fn follow(
         &self,
         initial: &[f64],

@@ -1,7 +1,7 @@
-//! The measure `poincare`: a coordinate or a rate seen on a section, once per forcing period or
-//! wherever a `crossing` says so; `quantity` is what is seen, `rotation` takes the drift of turning machines
-//! away, `numbers` sum it up. Where the model is linear between its switches the motion over a forcing is
-//! exact, elsewhere it is the general solver's.
+//! Measure `poincare`: a coordinate or a rate on a section, once per forcing period or at a
+//! `crossing`. `quantity` selects the coordinate, `rotation` removes the drift of rotating
+//! machines, `numbers` computes statistics. With forcing, the motion is exact if the model is
+//! linear between its switches; otherwise the general solver computes it.
 
 mod crossing;
 mod numbers;
@@ -24,43 +24,43 @@ use eomgen_analysis::poincare::LONGEST_PERIOD;
 use eomgen_compiled_model::{CompiledModel, Instance};
 use eomgen_sim::ode::{Settings, Trajectory, simulate};
 
-/// Looks at the motion per forcing period: one belongs to the section, all together give the
-/// extent of the motion.
+/// Samples per forcing period. One of them is on the section; all of them give the extent of the
+/// motion.
 const LOOKS: usize = 8;
 
-/// The most points of the section that become columns.
+/// Maximum number of points that become columns.
 pub const MOST_POINTS_KEPT: usize = 1000;
 
-/// The exact solver's numbers are right to this part of a state, the general solver's to ten tolerances.
+/// Relative accuracy of the exact solver's states. That of the general solver is ten tolerances.
 const EXACT_RESOLUTION: f64 = 1e-12;
 
-/// What the measure is called, alone or with `:NAME` behind it.
+/// Name of the measure, optionally followed by `:NAME`.
 const NAME: &str = "poincare";
 
-/// Where a motion is seen.
+/// Section of the motion.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Section {
-    /// Once per period of the forcing that has this parameter for its angular frequency.
+    /// Once per forcing period; contains the parameter that is the angular frequency.
     Forcing(String),
-    /// Where a coordinate or a rate goes through a value.
+    /// At a crossing of a value by a coordinate or a rate.
     Crossing {
-        /// `NAME=VALUE`, upwards, or with `:up` or `:down` behind it.
+        /// `NAME=VALUE` (upwards), `NAME=VALUE:up` or `NAME=VALUE:down`.
         event: String,
-        /// How long crossings are looked for, s.
+        /// Maximum time of the search for crossings, in s.
         until: f64,
     },
 }
 
-/// A section with its names looked up.
+/// Section with resolved names.
 enum Places {
     Forcing(Frequency),
     Crossing(Crossing, f64),
 }
 
-/// Measures a model at many parameter values.
+/// Section of a model's motion at many parameter values.
 pub struct Poincare<'a> {
     model: &'a CompiledModel,
-    /// What it was asked for by.
+    /// Name of the measure on the command line.
     asked: String,
     quantity: Quantity,
     places: Places,
@@ -70,12 +70,12 @@ pub struct Poincare<'a> {
 }
 
 impl<'a> Poincare<'a> {
-    /// Measures what `asked` says, `poincare` for the first coordinate or `poincare:theta`, over the
-    /// `span`, of forcing periods or of crossings. With `keep_points` the points themselves become
-    /// columns: the bifurcation diagram. Nothing if it is no such measure.
+    /// Creates the measure `asked`: `poincare` for the first coordinate, or for example
+    /// `poincare:theta`. `span` counts forcing periods or crossings. With `keep_points`, the points
+    /// become columns of a bifurcation diagram. Returns `None` for the name of another measure.
     ///
     /// # Errors
-    /// A model without that coordinate, rate or forcing, a section or a span that makes no sense.
+    /// A missing coordinate, rate or forcing, an invalid section or an invalid span.
     pub fn new(
         model: &'a CompiledModel,
         asked: &str,
@@ -102,21 +102,21 @@ impl<'a> Poincare<'a> {
         span.check(asked, 2)?;
         if keep_points && span.periods > MOST_POINTS_KEPT {
             return Err(refused(format!(
-                "--periods {}: at most {MOST_POINTS_KEPT} points become columns",
+                "--periods {}: expected at most {MOST_POINTS_KEPT}, because each point becomes a column",
                 span.periods
             )));
         }
         let states = model.state_names();
         let name = name.or(states.first().map(String::as_str));
-        let name =
-            name.ok_or_else(|| refused("the model has no coordinate to look at".to_owned()))?;
+        let name = name
+            .ok_or_else(|| refused("--measure poincare: the model has no coordinate".to_owned()))?;
         let quantity = Quantity::of(model, name);
         let places = match section {
             Section::Forcing(parameter) => {
                 let known = frequency(model.model(), parameter).map_err(|error| {
                     refused(format!(
-                        "--measure {asked}: {error}; or give --section NAME=VALUE, where the motion \
-                         is seen"
+                        "--measure {asked}: {error}; or give --section NAME=VALUE, \
+                         the event of the section"
                     ))
                 })?;
                 Places::Forcing(known)
@@ -136,7 +136,7 @@ impl<'a> Poincare<'a> {
         })
     }
 
-    /// What is written, in this order.
+    /// Returns the columns in the order of the numbers.
     fn columns(&self) -> Vec<Column> {
         let Quantity { name, unit, .. } = &self.quantity;
         let longest = LONGEST_PERIOD.min(self.span.periods / 2);
@@ -178,12 +178,11 @@ impl<'a> Poincare<'a> {
             .collect()
     }
 
-    /// The name of a column.
     fn column(&self, part: &str) -> String {
         format!("{}_{part}", self.asked)
     }
 
-    /// Names of the columns that hold the points.
+    /// Returns the names of the columns with points.
     fn points(&self) -> Vec<String> {
         let count = if self.keep_points {
             self.span.periods
@@ -282,13 +281,13 @@ impl Worker for &Poincare<'_> {
     }
 }
 
-/// What is found on a section.
+/// Results on a section.
 struct OnSection {
-    /// The points, without whole turns of an angle that turns.
+    /// Points, without full turns of a rotating angle.
     points: Vec<[f64; 2]>,
-    /// Period and clusters of the points; 0: none.
+    /// Period and clusters of the points; 0 for none.
     repetition: [f64; 2],
-    /// The mean time between crossings, s.
+    /// Mean time between crossings, in s.
     time: Option<f64>,
 }
 
@@ -362,7 +361,7 @@ impl Poincare<'_> {
             .collect()
     }
 
-    /// The states at these times, s.
+    /// Returns the states at these times, in s.
     fn motion(&self, instance: &Instance<'_>, times: &[f64]) -> Result<Trajectory, Failure> {
         let span = (0.0, times.last().copied().ok_or(Failure::Undefined)?);
         let (initial, quiet) = (instance.initial(), &mut |_: f64| {});
@@ -384,7 +383,7 @@ impl Poincare<'_> {
         )?)
     }
 
-    /// The times of all looks, in s; the first and every [`LOOKS`]th belong to the section.
+    /// Returns the times of all samples in s; every [`LOOKS`]th, from the first, is on the section.
     fn times(&self, period: f64) -> Vec<f64> {
         let look = |look: usize| {
             let periods = self.span.transient + look / LOOKS;

@@ -1,27 +1,27 @@
-//! What the points of a section are summed up in.
+//! Statistics of the points on a section.
 
 use std::f64::consts::{PI, TAU};
 
 use eomgen_analysis::poincare::{Section, Shape};
 
-/// Points of the section are equal within this share of the extent of the motion.
+/// Distance below which points are equal, relative to the extent of the motion.
 pub const EQUAL: f64 = 1e-3;
 
-/// How one of both numbers tells points apart.
+/// Comparison of one coordinate of points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Part {
-    /// As it is, in parts of the extent of the motion.
+    /// Difference relative to the extent of the motion.
     Linear {
-        /// Greatest less least over the whole motion.
+        /// Range of the coordinate over the whole motion.
         extent: f64,
     },
-    /// As an angle: a turn more or less is the same.
+    /// Difference of angles, modulo full turns.
     Angle,
-    /// Not at all: nothing depends on it, or it does not change.
+    /// No comparison: the coordinate is cyclic or constant.
     Ignored,
 }
 
-/// Period and clusters of the points, 0 for none; nothing if they are not finite.
+/// Returns period and clusters of the points, 0 for none; `None` if they are not finite.
 pub fn repetition(points: &[[f64; 2]], parts: [Part; 2]) -> Option<[f64; 2]> {
     let mut scale = Vec::with_capacity(4);
     for part in parts {
@@ -34,7 +34,7 @@ pub fn repetition(points: &[[f64; 2]], parts: [Part; 2]) -> Option<[f64; 2]> {
     if !points.as_flattened().iter().all(|value| value.is_finite()) {
         return None;
     }
-    // At rest there is no extent to compare with, and nothing to compare.
+    // A motion at rest has no extent and nothing to compare.
     if scale.is_empty() {
         return Some([1.0, 1.0]);
     }
@@ -56,7 +56,7 @@ pub fn repetition(points: &[[f64; 2]], parts: [Part; 2]) -> Option<[f64; 2]> {
     Some([period, clusters].map(|count| count.unwrap_or(0) as f64))
 }
 
-/// Mean, least, greatest and root mean square of the first of both numbers; nothing if they are not finite.
+/// Returns mean, minimum, maximum and RMS of the first coordinate; `None` if a point is not finite.
 pub fn statistics(points: &[[f64; 2]]) -> Option<[f64; 4]> {
     let values = || points.iter().map(|[x, _]| *x);
     let count = values().count() as f64;
@@ -72,8 +72,8 @@ pub fn statistics(points: &[[f64; 2]]) -> Option<[f64; 4]> {
         .then_some(found)
 }
 
-/// Both numbers as parts of the motion `seen`; what changes by no more than `resolution` of its size does
-/// not change.
+/// Returns the comparisons for the motion `seen`. A coordinate is constant if it changes by at most
+/// `resolution` of its size.
 pub fn linear_parts(seen: &[[f64; 2]], resolution: f64) -> [Part; 2] {
     extents(seen.iter()).map(|(least, greatest)| {
         let extent = greatest - least;
@@ -84,7 +84,7 @@ pub fn linear_parts(seen: &[[f64; 2]], resolution: f64) -> [Part; 2] {
     })
 }
 
-/// Least and greatest of both numbers.
+/// Returns minimum and maximum of both coordinates.
 pub fn extents<'s>(seen: impl Iterator<Item = &'s [f64; 2]> + Clone) -> [(f64, f64); 2] {
     [0, 1].map(|place| {
         let values = || seen.clone().map(|pair| pair[place]);
@@ -93,7 +93,7 @@ pub fn extents<'s>(seen: impl Iterator<Item = &'s [f64; 2]> + Clone) -> [(f64, f
     })
 }
 
-/// An angle without the whole turns that part it from another one.
+/// Returns an angle without full turns relative to `from`.
 pub fn within_a_turn(angle: f64, from: f64) -> f64 {
     let turned = (angle - from + PI).rem_euclid(TAU) - PI;
     from + turned
@@ -105,10 +105,10 @@ mod tests {
 
     const LOOKS: usize = 8;
 
-    /// Below it, a part is taken not to change.
+    /// Relative change below which a coordinate is constant.
     const RESOLUTION: f64 = 1e-12;
 
-    /// The looks at x = a + b cos(t) + c cos(t/2) at the phases of cos(t), over `periods`.
+    /// Returns samples of x = a + b cos(t) + c cos(t/2) at the phases of cos(t), over `periods`.
     fn seen(periods: usize, [a, b, c]: [f64; 3]) -> Vec<[f64; 2]> {
         let look = |look: usize| {
             let t = TAU * look as f64 / LOOKS as f64;
@@ -134,8 +134,8 @@ mod tests {
     }
 
     #[test]
-    fn a_motion_of_half_the_forcing_frequency_has_two_points() {
-        // On the section x = a + b + c and a + b - c in turn.
+    fn motion_with_half_forcing_frequency_has_two_points() {
+        // On the section x alternates between a + b + c and a + b - c.
         let [period, clusters, mean, min, max, rms] = of(&seen(10, [3.0, 4.0, 1.0]));
         assert_eq!((period, clusters), (2.0, 2.0));
         close(mean, 7.0);
@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn a_motion_of_the_forcing_frequency_has_one_point_and_rest_has_one() {
+    fn motion_with_forcing_frequency_and_rest_have_one_point() {
         let found = of(&seen(10, [3.0, 4.0, 0.0]));
         assert_eq!(found[..2], [1.0, 1.0]);
         close(found[2], 7.0);
@@ -154,8 +154,8 @@ mod tests {
     }
 
     #[test]
-    fn angles_repeat_across_the_end_of_a_turn() {
-        // Half a turn and two turns more each time, with noise on both sides of half a turn.
+    fn angles_repeat_across_end_of_turn() {
+        // Two and a half turns more each time, with noise on both sides of half a turn.
         let points: Vec<[f64; 2]> = (0..20)
             .map(|k| [PI + 2.0 * TAU * f64::from(k) + 1e-9 * f64::from(k % 2), 1.0])
             .collect();

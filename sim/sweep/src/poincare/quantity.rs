@@ -1,41 +1,41 @@
-//! What is seen on a section: a coordinate with its rate, or a rate with its coordinate.
+//! Quantity on a section: a coordinate with its rate, or a rate with its coordinate.
 
 use eomgen_compiled_model::CompiledModel;
 use eomgen_model_spec::suggest::did_you_mean;
 
-/// Where a coordinate or a rate stands in the state.
+/// Returns the index of a coordinate or a rate in the state.
 ///
 /// # Errors
-/// There is none of this name; what is near to it.
+/// An unknown name, with similar names.
 pub fn place(model: &CompiledModel, name: &str) -> Result<usize, String> {
     let states = model.state_names();
     let place = states.iter().position(|known| known == name);
     place.ok_or_else(|| {
         let hint = did_you_mean(name, states.iter().map(String::as_str))
-            .unwrap_or_else(|| format!("there are {}", states.join(", ")));
+            .unwrap_or_else(|| format!("it has {}", states.join(", ")));
         let model = &model.model().name;
         format!("the model `{model}` has no coordinate and no rate `{name}`: {hint}")
     })
 }
 
-/// A coordinate with its rate, or a rate with its coordinate: the first is shown, both tell points
-/// apart.
+/// Coordinate with its rate, or rate with its coordinate. The first is reported; both distinguish
+/// points.
 #[derive(Clone, Debug)]
 pub struct Quantity {
-    /// Of what is shown.
+    /// Name of the reported quantity.
     pub name: String,
-    /// The SI unit of that.
+    /// SI unit of the reported quantity.
     pub unit: String,
     places: [usize; 2],
-    /// Which of the two is the coordinate: the other is its rate.
+    /// Position of the coordinate among the two; the other one is its rate.
     coordinate: usize,
 }
 
 impl Quantity {
-    /// By its name.
+    /// Looks up a quantity by its name.
     ///
     /// # Errors
-    /// As [`place`].
+    /// Same as [`place`].
     pub fn of(model: &CompiledModel, name: &str) -> Result<Self, String> {
         let shown = place(model, name)?;
         let (partner, coordinate) = match name.strip_suffix("_dot") {
@@ -50,12 +50,12 @@ impl Quantity {
         })
     }
 
-    /// Which of both is the coordinate, and its place in the state.
+    /// Returns the position of the coordinate among the two, and its index in the state.
     pub fn coordinate(&self) -> (usize, usize) {
         (self.coordinate, self.places[self.coordinate])
     }
 
-    /// Both, in a state.
+    /// Returns both in a state.
     pub fn seen(&self, state: &[f64]) -> [f64; 2] {
         self.places.map(|place| state[place])
     }

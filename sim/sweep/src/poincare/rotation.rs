@@ -1,7 +1,7 @@
-//! Coordinates of a section that grow for ever, as machines turn or travel.
+//! Coordinates of a section that grow without bound, for example in rotating machines.
 //!
-//! A coordinate along which nothing changes does not tell points apart; an angle with which the equations
-//! repeat tells them apart within a turn.
+//! A cyclic coordinate does not distinguish points. A periodic angle distinguishes them within a
+//! turn.
 
 use std::f64::consts::TAU;
 
@@ -11,18 +11,18 @@ use super::numbers::{Part, extents, within_a_turn};
 use super::quantity::Quantity;
 use crate::measure::Failure;
 
-/// States of the motion at which the equations are compared after a turn.
+/// Number of states at which the equations are compared after a turn.
 const COMPARED: usize = 8;
 
-/// A motion at the times when it was looked at.
+/// Samples of a motion.
 pub struct Looks<'m> {
-    /// The times, s.
+    /// Times of the samples, in s.
     pub times: &'m [f64],
-    /// The states.
+    /// States of the samples.
     pub states: &'m [Vec<f64>],
 }
 
-/// Replaces the part of a coordinate that only its drift tells apart, and takes whole turns off the points.
+/// Replaces the comparison of a drifting coordinate, and removes full turns from the points.
 pub fn without_drift(
     instance: &Instance<'_>,
     quantity: &Quantity,
@@ -50,7 +50,7 @@ pub fn without_drift(
     Ok(())
 }
 
-/// Returns true if a coordinate is an angle and the equations are the same after a turn of it, at all angles.
+/// Returns true if a coordinate is an angle and the equations are periodic in it.
 pub fn turns_over(
     instance: &Instance<'_>,
     looks: &Looks<'_>,
@@ -59,7 +59,7 @@ pub fn turns_over(
     if !instance.is_angle(place) {
         return Ok(false);
     }
-    // All looks may be at one angle.
+    // All samples can be at one angle, so the angle is varied.
     let turned = |state: &[f64], part: usize| {
         let mut state = state.to_vec();
         state[place] += TAU * part as f64 / COMPARED as f64;
@@ -78,7 +78,7 @@ pub fn turns_over(
     Ok(is_cyclic(instance, looks, place)? || instance.repeats_with_a_turn(place, &compared)?)
 }
 
-/// Whether a cyclic direction moves a coordinate.
+/// Returns true if a cyclic direction moves a coordinate.
 fn is_cyclic(instance: &Instance<'_>, looks: &Looks<'_>, place: usize) -> Result<bool, Failure> {
     let Some((t, state)) = looks.times.iter().zip(looks.states).next_back() else {
         return Ok(false);
@@ -88,12 +88,12 @@ fn is_cyclic(instance: &Instance<'_>, looks: &Looks<'_>, place: usize) -> Result
         state: state.clone(),
         inputs: instance.model().usual_inputs(),
     };
-    // A model that has no Jacobians is compared as it is.
+    // A model without Jacobians has no known cyclic direction.
     let directions = instance.cyclic_directions(&at).unwrap_or_default();
     Ok(directions.iter().any(|direction| direction[place] != 0.0))
 }
 
-/// Whether the equations are the same after a turn of a coordinate.
+/// Returns true if the equations are equal after a turn of a coordinate.
 fn repeats(instance: &Instance<'_>, looks: &Looks<'_>, place: usize) -> Result<bool, Failure> {
     let step = (looks.states.len() / COMPARED).max(1);
     let compared: Vec<(f64, &[f64])> = looks

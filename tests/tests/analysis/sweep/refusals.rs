@@ -24,7 +24,7 @@ fn another_sweep_in_the_folder_is_refused_and_left_alone() {
     fs::write(place.at("oscillator.toml"), changed).expect("a specification");
     let message = refuse(&place.sweep("map", &MAP));
     assert!(
-        message.contains("not the same: the specification"),
+        message.contains("differences: the specification"),
         "{message}"
     );
     assert!(results(&place.at("map")) == before);
@@ -98,7 +98,7 @@ fn what_makes_no_sense_is_refused_before_anything_is_written() {
         (vec!["--vary", "m=-1:2:3"], "at least 0 kg"),
         (vec!["--vary", "m=2:-1:3"], "at least 0 kg"),
         (vec!["--vary", "c=1:2"], "FROM:TO:COUNT"),
-        (vec!["--vary", "c=1:2:0"], "at least one value"),
+        (vec!["--vary", "c=1:2:0"], "at least 1"),
         (vec!["--vary", "c=1:nan:3"], "finite"),
         (
             vec!["--vary", "c=1:2:5000", "--vary", "k=1:2:5000"],

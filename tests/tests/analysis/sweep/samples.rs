@@ -178,7 +178,7 @@ fn seeds_make_the_numbers_and_threads_shards_and_kills_leave_no_trace() {
         &[&few[..], &["--seed", "2"]].concat(),
     ));
     assert!(
-        message.contains("not the same: --samples or --seed"),
+        message.contains("differences: --samples or --seed"),
         "{message}"
     );
     accept(&arguments(

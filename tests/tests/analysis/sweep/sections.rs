@@ -134,7 +134,7 @@ fn sections_that_make_no_sense_are_refused() {
                 "--until",
                 "9",
             ],
-            "no direction",
+            "is not a direction",
         ),
         (
             &[
