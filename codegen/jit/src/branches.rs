@@ -72,7 +72,6 @@ fn alone(kernel: &Kernel, users: &[Vec<usize>], selection: usize, root: usize) -
     (0..selection).filter(|place| inside[*place]).collect()
 }
 
-/// Selection.
 pub(crate) struct Choice {
     pub(crate) condition: FloatCC,
     pub(crate) left: usize,

@@ -146,7 +146,6 @@ impl Writer<'_, '_, '_> {
         self.ins().band(either, one)
     }
 
-    /// Computes the indicator of p > 0.
     fn above(&mut self, p: Value) -> Value {
         let zero = self.literal(0.0, Lanes::Two);
         let one = self.literal(1.0, Lanes::Two);

@@ -40,7 +40,6 @@ impl fmt::Display for CompileError {
 
 impl std::error::Error for CompileError {}
 
-/// Function with the arguments `(memory, t, state, out)`.
 type Function = unsafe extern "C" fn(*mut f64, f64, *const f64, *mut f64);
 
 /// Machine code of every stage of one program.
@@ -183,7 +182,6 @@ fn define(
     Ok(id)
 }
 
-/// Returns the code of a finished function.
 #[allow(unsafe_code)]
 fn function(module: &JITModule, id: FuncId) -> Function {
     let address = module.get_finalized_function(id);

@@ -71,7 +71,6 @@ impl Writer<'_, '_, '_> {
         self.load(array, column)
     }
 
-    /// Returns a row of a matrix.
     fn row(&mut self, matrix: Matrix, row: Value) -> Array {
         let bytes = self.ins().imul_imm_u(row, (matrix.columns * 8) as i64);
         let base = self.ins().iadd(matrix.array.base, bytes);
@@ -81,7 +80,6 @@ impl Writer<'_, '_, '_> {
         }
     }
 
-    /// Refers to element `index`.
     fn indexed(&mut self, index: Value) -> At {
         let moving = self.ins().imul_imm_u(index, 8);
         At {

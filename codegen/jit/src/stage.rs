@@ -104,7 +104,6 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
         }
     }
 
-    /// Returns the inserter of the next instruction.
     pub(crate) fn ins(&mut self) -> FuncInstBuilder<'_, 'f> {
         self.builder.ins()
     }
@@ -219,7 +218,6 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
         }
     }
 
-    /// Returns the place of a value in memory.
     pub(crate) fn place(&self, id: ValueId) -> Array {
         Array {
             base: self.call.memory,
@@ -291,7 +289,6 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
         }
     }
 
-    /// Computes a vector element by element.
     fn vector(&mut self, id: ValueId, length: usize) {
         let (wanted, used_once) = (
             self.plan.wanted.contains(&id),

@@ -3,7 +3,6 @@
 use super::names::of_item;
 use crate::program::Program;
 
-/// Writes a comment with these lines.
 pub(super) fn comment(lines: &[String]) -> String {
     let lines: Vec<String> = lines.iter().map(|line| clean(line)).collect();
     match lines.as_slice() {

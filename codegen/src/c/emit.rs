@@ -86,7 +86,6 @@ fn opening(program: &Program) -> String {
     )
 }
 
-/// Writes the tables with a use.
 fn tables(file: &File<'_>) -> Emitted<String> {
     let program = file.program;
     let mut roots = stage_roots(program);

@@ -9,7 +9,6 @@ use crate::program::{PARTIAL_SUMS, Program};
 use crate::statements::layout::{BLOCK, CLOSE, COMMA_OUT, FLOW, FLOW_OUT, SPACE, ZERO, block};
 use crate::statements::{Array, Expression, Index, Operator, Place, Statement, Structure};
 
-/// Precedence of an expression.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Level {
     And,
@@ -20,7 +19,6 @@ enum Level {
     Atom,
 }
 
-/// Writer of expressions and statements.
 pub(super) struct Writer {
     /// Prefix of functions, types and tables.
     prefix: String,
@@ -31,7 +29,6 @@ pub(super) struct Writer {
 }
 
 impl Writer {
-    /// Creates a writer for the stages of a program.
     pub(super) fn new(program: &Program) -> Self {
         Self {
             prefix: format!("{}_", program.name),
@@ -40,7 +37,6 @@ impl Writer {
         }
     }
 
-    /// Creates a writer for functions in double precision.
     pub(super) fn double(program: &Program) -> Self {
         Self {
             real: "double".to_owned(),
@@ -67,7 +63,6 @@ impl Writer {
         text
     }
 
-    /// Writes one call for the sine and the cosine of the same argument.
     fn sine_and_cosine(&self, both: &SineAndCosine) -> String {
         let [sine, cosine] = [both.sine, both.cosine];
         let declared = format!("{} {sine}, {cosine};\n", self.real);
@@ -113,7 +108,6 @@ impl Writer {
         }
     }
 
-    /// Writes the definition of a named number.
     pub(super) fn bound(&self, name: &str, value: &Expression) -> String {
         let value = self.expression(value);
         assignment(&format!("const {} {name}", self.real), &value)
@@ -318,7 +312,6 @@ impl Writer {
         }
     }
 
-    /// Returns the name of an array.
     pub(super) fn array(&self, array: &Array) -> String {
         match array {
             Array::Local(name) => name.clone(),

@@ -8,7 +8,6 @@ use crate::statements::layout::block;
 use crate::statements::{KernelStatements, Needed, describe_elementary};
 use eomgen_elementary::Function as Elementary;
 
-/// Writes the functions that `stages` call.
 pub(super) fn functions(program: &Program, needed: &Needed, stages: &str) -> String {
     let mut elementary = needed.elementary.clone();
     if needed.cholesky || needed.cholesky_of_matrix {
@@ -108,7 +107,6 @@ fn sine_and_cosine(program: &Program) -> String {
         + &block(&named(program, head), &lines, "}")
 }
 
-/// Union of a number and its bits.
 const BITS: &str = "\
 /** A number and its bits. */
 typedef union {
@@ -245,7 +243,6 @@ static NAME_real NAME_contact(NAME_real p, NAME_real b) {
 }
 ";
 
-/// Indicator of p > 0.
 const ABOVE: &str = "\
 /** 1 where p > 0 and 0 elsewhere. */
 static NAME_real NAME_above(NAME_real p) {
@@ -286,7 +283,6 @@ static NAME_real NAME_pivot_reciprocal(NAME_real pivot) {
 }
 ";
 
-/// Cholesky factorisation and solution.
 const CHOLESKY: &str = "\
 /** Lower factor L of a symmetric matrix L L^T of n rows; NaN where it is not positive definite. */
 static void NAME_cholesky(int n, const NAME_real *matrix, NAME_real *factor) {

@@ -7,7 +7,6 @@ use super::stages::{GIVEN, head, nested, passed_on};
 use crate::program::{Jacobian, Output, Program, ValueId};
 use crate::statements::layout::block;
 
-/// Writes the declarations for the header.
 pub(super) fn declarations(program: &Program) -> String {
     let mut text = String::new();
     for jacobian in &program.outputs.jacobians {
@@ -30,7 +29,6 @@ pub(super) fn declarations(program: &Program) -> String {
     text
 }
 
-/// Writes the numbers of structural nonzeros as macros.
 pub(super) fn sizes(program: &Program) -> String {
     let size = |jacobian: &Jacobian<ValueId>| {
         let line = format!(

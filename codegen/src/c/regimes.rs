@@ -6,7 +6,6 @@ use crate::program::{Program, SURFACES_OF_A_REGIME};
 use crate::statements::File;
 use crate::statements::layout::block;
 
-/// Documentation of the function.
 pub(super) const REGIME: &str = "The regime that a state is in: bit k is set where number k of [`guards`] is positive,\n\
                                  for up to 32 of them. Crossing one flips its bit.";
 

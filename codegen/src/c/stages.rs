@@ -34,7 +34,6 @@ fn arguments(stage: &Stage) -> Vec<(&'static str, &'static str)> {
     all
 }
 
-/// Arguments of every stage.
 pub(super) const GIVEN: [(&str, &str); 4] = [
     ("NAME_real ", "t"),
     ("const NAME_real *", "state"),
@@ -42,7 +41,6 @@ pub(super) const GIVEN: [(&str, &str); 4] = [
     ("const NAME_coefficients *", "coefficients"),
 ];
 
-/// Argument for a square matrix.
 const MATRIX: (&str, &str) = ("NAME_real (*", "values)[NAME_DEGREES_OF_FREEDOM]");
 
 /// Writes the head of a function; pointers of a definition are declared not to overlap.
@@ -69,7 +67,6 @@ pub(super) fn head(
     )
 }
 
-/// Returns the result type of a stage's function.
 fn result(stage: &Stage) -> &'static str {
     match stage.outcome {
         Outcome::Number(_) => "NAME_real ",
@@ -77,7 +74,6 @@ fn result(stage: &Stage) -> &'static str {
     }
 }
 
-/// Writes the declaration with its documentation.
 pub(super) fn declaration(program: &Program, stage: &Stage) -> String {
     let mut lines = linked(program, &stage.doc);
     lines.extend(stage.list.iter().cloned());

@@ -60,7 +60,6 @@ fn structure(file: &File<'_>, doc: &str, name: &str, fields: String) -> String {
     comment(&[doc.to_owned()]) + &nested("typedef struct {", &fields, &closing)
 }
 
-/// Writes a member with its documentation.
 fn field(file: &File<'_>, quantity: &Quantity, origin: &str) -> Emitted<String> {
     let name = file.words.identifier(&quantity.name)?;
     let doc = comment(&[quantity_line(&quantity.doc, &quantity.unit, origin)]);

@@ -87,7 +87,6 @@ struct Search<'s> {
 struct Dependence {
     /// Factors of the scaled rows.
     parts: Vec<f64>,
-    /// Factors of the constraints.
     factors: Vec<f64>,
     residuals: Vec<f64>,
 }

@@ -6,7 +6,6 @@ use super::vectors::{dot, norm};
 struct Rest {
     vector: Vec<f64>,
     parts: Vec<f64>,
-    /// Length of the remainder.
     size: f64,
 }
 

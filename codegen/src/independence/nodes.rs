@@ -8,7 +8,6 @@ use crate::mechanics::unsolved::Unsolved;
 use crate::program::evaluator::Point;
 use crate::symbolic::graph::NodeId;
 
-/// Constraint derivatives and residuals, computed from graph nodes.
 pub(crate) struct NodeGeometry<'u> {
     model: &'u Unsolved,
     parameters: Vec<f64>,

@@ -13,7 +13,6 @@ use crate::program::evaluator::{Evaluator, Point};
 use crate::program::lowering::lower_with_outputs;
 use crate::symbolic::graph::{NodeId, Space};
 
-/// Derivatives and residuals of constraints at a state.
 pub(crate) trait ConstraintGeometry {
     /// Returns the rows of A, each entry divided by the square root of its coordinate's inertia.
     fn rows(&mut self, point: Point<'_>) -> Vec<Vec<f64>>;

@@ -103,7 +103,6 @@ fn one(
     })
 }
 
-/// Returns the row that `of` names.
 pub(crate) fn row_of(of: &Expr) -> Derived<EquationRow> {
     match of.kind {
         ExprKind::Coordinate(index) => Ok(EquationRow::Coordinate(index)),

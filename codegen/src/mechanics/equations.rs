@@ -41,7 +41,6 @@ pub struct Equations {
     pub velocity_terms: RowNodes,
     /// Momenta from a sweep over the velocities, for models without fields.
     pub(crate) sweep: Option<Momenta>,
-    /// Rigid bodies, for models without fields.
     pub(crate) rigid_bodies: Option<RigidBodies>,
     /// Generalised forces f: -dV/dq - dR/dq' + Q.
     pub forces: RowNodes,

@@ -114,7 +114,6 @@ pub(crate) fn guards(graph: &mut Graph, roots: &[NodeId]) -> Vec<Guard> {
 /// Switching surfaces of a piecewise function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Surfaces {
-    /// No surface.
     None,
     /// Surface p = 0, positive for p > 0.
     One(NodeId),
@@ -122,17 +121,13 @@ pub(crate) enum Surfaces {
     Turned(NodeId),
     /// Surfaces p = b and p = -b, positive above each.
     Between {
-        /// p - b.
         above: NodeId,
-        /// p + b.
         beyond: NodeId,
     },
     /// Surfaces at the ends of -b <= p <= b, within which p can remain for a whole regime. Each is positive
     /// on one outer side.
     Outside {
-        /// p - b, or p.
         above: NodeId,
-        /// -p - b, or -p.
         below: NodeId,
     },
 }

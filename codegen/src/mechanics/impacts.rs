@@ -97,7 +97,6 @@ pub(crate) fn moves_nothing(impact: &model::Impact) -> DeriveError {
     }
 }
 
-/// Returns the scalar product of two rows.
 fn product(graph: &mut Graph, a: &RowNodes, b: &RowNodes) -> NodeId {
     let mut terms = Vec::new();
     for (a, b) in a.scalars.iter().zip(&b.scalars) {

@@ -19,7 +19,6 @@ pub(crate) struct KineticRows {
     pub(crate) mass: MassMatrix,
     /// d/dt(dT/dq') without accelerations, minus dT/dq.
     pub(crate) velocity_terms: RowNodes,
-    /// Momenta from a sweep, for models without fields.
     pub(crate) sweep: Option<Momenta>,
 }
 
@@ -105,7 +104,7 @@ impl KineticRows {
         })
     }
 
-    /// Counts the operations, without those shared with `beside`.
+    /// Counts the operations, including those of `beside`, with shared nodes once.
     fn operations(&self, graph: &Graph, beside: &[NodeId]) -> usize {
         let mut nodes = self.velocity_terms.nodes();
         nodes.extend(beside);

@@ -15,7 +15,6 @@ use crate::symbolic::modal_derivative::ModalDerivative;
 use crate::symbolic::operation_count::count_operations;
 use crate::symbolic::trigonometry::with_sums_of_angles;
 
-/// Variables of a gradient.
 pub(crate) enum GradientBy {
     Coordinates,
     Rates,
@@ -44,7 +43,6 @@ pub(crate) fn nonzero_gradient(
     found
 }
 
-/// Numbers of coordinates and fields.
 pub(crate) struct Variables {
     pub(crate) coordinates: usize,
     pub(crate) fields: usize,
@@ -58,7 +56,6 @@ impl Variables {
         }
     }
 
-    /// Computes the gradient of a scalar by coordinates or by rates.
     pub(crate) fn gradient(&self, graph: &mut Graph, scalar: NodeId, kind: GradientBy) -> RowNodes {
         let scalars = CoordinateId::first(self.coordinates)
             .map(|index| {

@@ -71,7 +71,6 @@ pub fn linearity(equations: &Equations) -> Linearity {
     }
 }
 
-/// Degrees of nodes in the moving quantities.
 struct Degrees<'g> {
     graph: &'g Graph,
     known: HashMap<NodeId, Result<u32, NodeId>>,

@@ -163,13 +163,11 @@ impl Sides {
     }
 }
 
-/// Returns 1 - side.
 fn opposite(graph: &mut Graph, side: NodeId) -> NodeId {
     let one = graph.one();
     graph.subtract(one, side)
 }
 
-/// Returns 2 side - 1.
 fn sign(graph: &mut Graph, side: NodeId) -> NodeId {
     let one = graph.one();
     graph.combine(&[(2.0, side), (-1.0, one)])

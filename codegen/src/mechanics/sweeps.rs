@@ -31,7 +31,6 @@ pub(crate) struct Velocities {
 /// Rate-dependent node, with the factors of the products in its sum as operands.
 struct Unit {
     node: NodeId,
-    /// Rate-dependent operands.
     operands: Vec<NodeId>,
     /// Derivative of the node by each operand.
     partials: Vec<NodeId>,

@@ -287,7 +287,6 @@ impl<'m> Translator<'m> {
         Ok(node)
     }
 
-    /// Returns the rates of the states that a node depends on.
     fn rates_within(&mut self, node: NodeId) -> Derived<HashMap<StateId, NodeId>> {
         if !self.graph.dependence(node).has(Dependence::STATE) {
             return Ok(HashMap::new());
@@ -332,7 +331,6 @@ impl<'m> Translator<'m> {
         })
     }
 
-    /// Translates an expression of a field's position.
     fn field_function(&mut self, field: FieldId, expr: &Expr) -> Derived<FieldFunction> {
         match &expr.kind {
             ExprKind::Position(_) => {

@@ -19,11 +19,9 @@ pub(crate) struct Unsolved {
     pub(crate) graph: Graph,
     /// Kinetic energy T in J.
     pub(crate) kinetic: NodeId,
-    /// Constraints in the order of the model.
     pub(crate) constraints: Vec<ConstraintNodes>,
 }
 
-/// Residual and derivatives of a constraint.
 pub(crate) struct ConstraintNodes {
     /// Expression that is zero for every motion.
     pub(crate) residual: NodeId,
@@ -62,7 +60,6 @@ impl Unsolved {
         })
     }
 
-    /// Returns the expressions of the constraints.
     pub(crate) fn residuals(&self) -> impl Iterator<Item = NodeId> {
         self.constraints.iter().map(|one| one.residual)
     }

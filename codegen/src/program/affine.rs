@@ -6,7 +6,6 @@ use eomgen_model_spec::model::Function;
 use crate::program::evaluator::Evaluator;
 use crate::program::{Extent, Program, ValueId};
 
-/// Values of the coefficients of one row.
 #[derive(Clone)]
 pub(crate) struct AffineRowValues {
     pub coordinates: Vec<ValueId>,
@@ -27,7 +26,6 @@ pub struct AffineProgram {
     pub(crate) layout: AffineLayout,
 }
 
-/// Values of the coefficients in a program.
 #[derive(Clone)]
 pub(crate) struct AffineLayout {
     pub(crate) scalars: Vec<AffineRowValues>,

@@ -63,7 +63,6 @@ impl Program {
     }
 }
 
-/// Returns n^3/3 for a matrix of n rows.
 fn cube_third(extent: Extent) -> usize {
     match extent {
         Extent::Matrix(rows, _) => rows.pow(3).div_ceil(3),

@@ -11,10 +11,8 @@ use crate::mechanics::rows::RowNodes;
 use crate::symbolic::formula::{Formula, Index, Symbol};
 use crate::symbolic::graph::{Graph, NodeId, Space};
 
-/// Name and node of a line.
 pub(super) type Shown = (Formula, NodeId);
 
-/// Nodes of a report by section.
 pub(super) struct Outline<'a> {
     model: &'a Model,
     equations: &'a Equations,

@@ -106,7 +106,6 @@ impl std::fmt::Display for Sentence {
     }
 }
 
-/// Writes the statement as plain text.
 impl Serialize for Sentence {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(self)

@@ -11,7 +11,6 @@ use crate::program::evaluator::Evaluator;
 use crate::symbolic::formula::{Formula, Index, Reader};
 use crate::symbolic::graph::{NodeId, Shape};
 
-/// Sources of the sections.
 pub(super) struct Writer<'a> {
     pub equations: &'a Equations,
     pub outline: &'a Outline<'a>,

@@ -3,7 +3,6 @@
 use super::expression::array;
 use crate::statements::File;
 
-/// Writes sizes, names and origin of the file.
 pub(super) fn constants(file: &File<'_>) -> String {
     let program = file.program;
     let orders: Vec<String> = program.fields.iter().map(|f| f.order.to_string()).collect();
@@ -41,7 +40,6 @@ pub(super) fn constants(file: &File<'_>) -> String {
     ) + &names(file)
 }
 
-/// Writes number and names of the inputs and of the parameters.
 fn names(file: &File<'_>) -> String {
     let program = file.program;
     let parameters = program.parameters.iter().map(|p| p.quantity.name.as_str());

@@ -52,7 +52,6 @@ pub fn emit(program: &Program, packaging: Packaging) -> Result<String, EmitError
     Ok(layout::source(&marked(&file, packaging)?))
 }
 
-/// Returns the file as marked text.
 fn marked(file: &File<'_>, packaging: Packaging) -> Emitted<String> {
     let mut needed = Needed::default();
     let mut writer = Writer {
@@ -126,7 +125,6 @@ fn documentation(file: &File<'_>) -> Vec<String> {
     ]
 }
 
-/// Writes the tables with a use.
 fn tables(file: &File<'_>) -> Emitted<String> {
     let program = file.program;
     let mut roots = stage_roots(program);

@@ -9,7 +9,6 @@ use crate::statements::layout::{
 };
 use crate::statements::{Array, Expression, Index, Operator, Place, Statement, Structure};
 
-/// Precedence of an expression.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Level {
     And,
@@ -32,7 +31,6 @@ pub(super) struct Conversions {
     pub(super) read_matrix: bool,
 }
 
-/// Writer of expressions and statements.
 #[derive(Debug, Default)]
 pub(super) struct Writer {
     /// True if coefficients are read for SIMD lanes.
@@ -97,7 +95,6 @@ impl Writer {
         }
     }
 
-    /// Writes the definition of a named number.
     pub(super) fn bound(&mut self, name: &str, value: &Expression) -> String {
         assignment(&format!("let {name}"), self.expression(value)) + "\n"
     }
@@ -175,7 +172,6 @@ impl Writer {
         }
     }
 
-    /// Writes a whole array.
     pub(super) fn array(&mut self, array: &Array) -> String {
         match array {
             Array::Local(name) => name.clone(),
@@ -221,7 +217,6 @@ impl Writer {
     }
 }
 
-/// Writes the definition of an array of zeros.
 pub(super) fn zeros(name: &str, lengths: &[String]) -> String {
     let zero = "T::number(0.0)".to_owned();
     let value = lengths

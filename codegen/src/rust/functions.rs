@@ -113,7 +113,6 @@ fn cholesky_solve<T: Scalar, const N: usize>(
     x
 }
 ";
-/// Cholesky solution column by column.
 const CHOLESKY_OF_MATRIX: &str = "\
 /// Solution of L L^T X = right, column by column.
 fn cholesky_solve_matrix<T: Scalar, const N: usize, const M: usize>(
@@ -131,7 +130,6 @@ fn cholesky_solve_matrix<T: Scalar, const N: usize, const M: usize>(
 }
 ";
 
-/// Conversion of vectors to another type.
 const CONVERTED: &str = "\
 /// These numbers in another type.
 #[inline(always)]
@@ -144,7 +142,6 @@ fn converted<T: Scalar, const N: usize>(numbers: &[f64; N]) -> [T; N] {
 }
 ";
 
-/// Conversion of matrices to another type.
 const CONVERTED_MATRIX: &str = "\
 /// The same of a matrix.
 #[inline(always)]

@@ -18,7 +18,6 @@ pub(super) struct Signature<'a> {
 }
 
 impl<'a> Signature<'a> {
-    /// Returns a signature without additional arguments.
     pub(super) fn of(name: &'a str, result: &'a str) -> Self {
         Self {
             name,
@@ -29,7 +28,6 @@ impl<'a> Signature<'a> {
     }
 }
 
-/// Writes a function with prepared coefficients.
 pub(super) fn stage_with(
     file: &File<'_>,
     head: &str,

@@ -56,7 +56,6 @@ pub(super) fn inputs(file: &File<'_>) -> Emitted<String> {
     Ok(text + &array_conversion(file, "Inputs", "INPUTS"))
 }
 
-/// Writes the conversion from an array of numbers in the order of the names.
 fn array_conversion(file: &File<'_>, name: &str, count: &str) -> String {
     let program = file.program;
     let quantities: Vec<&Quantity> = match name {
@@ -168,7 +167,6 @@ fn prepare(file: &File<'_>, statements: &str) -> String {
     block(&opening, &format!("{declared}{statements}"), "}")
 }
 
-/// Writes a field with its documentation.
 fn field(file: &File<'_>, quantity: &Quantity, origin: &str) -> Emitted<String> {
     let name = file.words.identifier(&quantity.name)?;
     let docs = doc(&[quantity_line(&quantity.doc, &quantity.unit, origin)]);

@@ -39,5 +39,4 @@ impl std::fmt::Display for EmitError {
 
 impl std::error::Error for EmitError {}
 
-/// Result of the emission of a part of a file.
 pub(crate) type Emitted<T> = Result<T, EmitError>;

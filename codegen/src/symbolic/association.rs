@@ -8,14 +8,10 @@ use eomgen_model_spec::model::Function;
 
 use crate::symbolic::graph::{Graph, NodeId, Operation, Shape};
 
-/// Factor of a product.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) enum Factor {
-    /// Prepared factor, by its index.
     Coefficient(usize),
-    /// Node.
     Node(NodeId),
-    /// Product of two factors, by its index.
     Pair(usize),
 }
 
@@ -29,7 +25,6 @@ pub(crate) struct PreparedFactor {
 /// Product with the magnitude of its numeric factor.
 type ProductKey = (u64, NodeId);
 
-/// Chosen multiplication orders.
 #[derive(Default)]
 pub(crate) struct Association {
     coefficients: Vec<PreparedFactor>,
@@ -58,7 +53,6 @@ impl Association {
         &self.coefficients[place]
     }
 
-    /// Returns the two factors of a pair.
     pub(crate) fn pair(&self, place: usize) -> (Factor, Factor) {
         self.pairs[place]
     }

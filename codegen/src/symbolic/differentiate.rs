@@ -59,7 +59,6 @@ pub struct Direction<'a> {
     moving: Moving,
 }
 
-/// Known derivatives along a direction.
 #[derive(Default)]
 pub(crate) struct KnownDerivatives {
     known: NodeMap<NodeId, NodeId>,
@@ -86,7 +85,6 @@ impl<'a> Direction<'a> {
         }
     }
 
-    /// Returns the known derivatives.
     pub(crate) fn into_known(self) -> KnownDerivatives {
         let Self { known, moving, .. } = self;
         KnownDerivatives { known, moving }

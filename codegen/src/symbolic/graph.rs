@@ -81,7 +81,6 @@ impl Graph {
         self.input_rates = rates;
     }
 
-    /// Returns the input that is the rate of an input, if there is one.
     pub(crate) fn input_rate(&self, input: InputId) -> Option<InputId> {
         self.input_rates.get(input.index()).copied().flatten()
     }

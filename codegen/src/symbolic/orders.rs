@@ -11,7 +11,6 @@ pub(crate) type Monomial = Vec<(NodeId, i32)>;
 /// Monomials with their orders in s: |monomial| <= C s^order.
 pub(crate) type Bounds = Arc<Vec<(Monomial, f64)>>;
 
-/// Orders found so far.
 #[derive(Default)]
 pub(crate) struct Orders {
     /// Bounds by the argument of a root; `None` if its zeros are unknown.

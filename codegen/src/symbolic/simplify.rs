@@ -8,7 +8,6 @@ use eomgen_model_spec::model::Function;
 use crate::symbolic::arguments::Arguments;
 use crate::symbolic::graph::{Bits, Graph, NodeId, Operation, Shape};
 
-/// Factors of a product with their exponents.
 type Factors = Vec<(NodeId, i32)>;
 
 impl Graph {

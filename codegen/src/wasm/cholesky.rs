@@ -6,7 +6,6 @@ use eomgen_elementary::Function as Elementary;
 use crate::program::Extent;
 use crate::statements::{Array, Emitted, Expression, Index, Place};
 
-/// Named solution with a Cholesky factor.
 pub(super) struct Solution<'s> {
     pub(super) name: &'s str,
     pub(super) factor: &'s Array,

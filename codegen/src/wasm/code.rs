@@ -12,13 +12,11 @@ use crate::statements::{EmitError, Emitted, Index};
 /// Binary logarithm of the bytes of a number, for alignment.
 const ALIGNMENT: u32 = NUMBER.trailing_zeros();
 
-/// Function under construction.
 pub(super) struct Code<'m> {
     pub(super) program: &'m Program,
     pub(super) memory: &'m mut Memory,
     pub(super) functions: &'m Indices,
     bytes: Vec<u8>,
-    /// Number of arguments.
     arguments: u32,
     /// Types of the other variables.
     types: Vec<ValType>,
@@ -27,7 +25,6 @@ pub(super) struct Code<'m> {
 }
 
 impl<'m> Code<'m> {
-    /// Starts a function with these arguments.
     pub(super) fn new(
         program: &'m Program,
         memory: &'m mut Memory,
@@ -47,12 +44,10 @@ impl<'m> Code<'m> {
         }
     }
 
-    /// Names an array.
     pub(super) fn name_array(&mut self, name: &str, region: Region) {
         self.arrays.insert(name.to_owned(), region);
     }
 
-    /// Returns the finished function.
     pub(super) fn finish(mut self) -> Function {
         self.put().end();
         let mut function = Function::new_with_locals_types(self.types);
@@ -60,7 +55,6 @@ impl<'m> Code<'m> {
         function
     }
 
-    /// Returns the sink of instructions.
     pub(super) fn put(&mut self) -> InstructionSink<'_> {
         InstructionSink::new(&mut self.bytes)
     }
@@ -71,21 +65,18 @@ impl<'m> Code<'m> {
         place
     }
 
-    /// Declares a named number.
     pub(super) fn number(&mut self, name: &str) -> u32 {
         let variable = self.variable(ValType::F64);
         self.variables.insert(name.to_owned(), variable);
         variable
     }
 
-    /// Declares a named flag.
     pub(super) fn flag(&mut self, name: &str) -> u32 {
         let variable = self.variable(ValType::I32);
         self.variables.insert(name.to_owned(), variable);
         variable
     }
 
-    /// Returns the variable with this name.
     pub(super) fn named(&self, name: &str) -> Emitted<u32> {
         let variable = self.variables.get(name).copied();
         variable.ok_or_else(|| nowhere(name))
@@ -102,7 +93,6 @@ impl<'m> Code<'m> {
         Ok(region)
     }
 
-    /// Returns the array with this name.
     pub(super) fn region(&self, name: &str) -> Emitted<Region> {
         let region = self.arrays.get(name).copied();
         region.ok_or_else(|| nowhere(name))
@@ -178,7 +168,6 @@ impl<'m> Code<'m> {
         };
     }
 
-    /// Pushes an index.
     pub(super) fn index(&mut self, index: &Index) -> Emitted<()> {
         match index {
             Index::Number(number) => {

@@ -57,7 +57,6 @@ pub fn emit(program: &Program) -> Result<Vec<u8>, EmitError> {
     Ok(module(&helpers, &exported, &written, &memory))
 }
 
-/// Returns the exported name of a stage.
 fn exported_name(stage: &Stage) -> &'static str {
     match stage.outcome {
         Outcome::Rates => "rates",
@@ -65,7 +64,6 @@ fn exported_name(stage: &Stage) -> &'static str {
     }
 }
 
-/// Writes the function that prepares the coefficients.
 fn preparing(
     file: &File<'_>,
     prepared: Preparation,
@@ -111,7 +109,6 @@ fn preparing(
     Ok(code.finish())
 }
 
-/// Writes the function of a stage.
 fn computing(
     program: &Program,
     stage: Stage,

@@ -89,7 +89,6 @@ impl Code<'_> {
         Ok(())
     }
 
-    /// Returns the region of an array.
     pub(super) fn region_of(&mut self, array: &Array) -> Emitted<Region> {
         match array {
             Array::Local(name) => self.region(name),

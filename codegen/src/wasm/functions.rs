@@ -10,7 +10,6 @@ use crate::program::Program;
 use crate::statements::{Emitted, Expression, KernelStatements, Needed, Statement};
 use eomgen_elementary::Function as Elementary;
 
-/// Function of one or two numbers.
 #[derive(Debug)]
 pub(super) struct Helper {
     pub(super) name: &'static str,
@@ -33,7 +32,6 @@ impl Helper {
     }
 }
 
-/// Returns the required helpers.
 pub(super) fn helpers(needed: &Needed) -> Vec<Helper> {
     let mut elementary = needed.elementary.clone();
     if needed.cholesky || needed.cholesky_of_matrix {

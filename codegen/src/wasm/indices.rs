@@ -5,7 +5,6 @@ use std::collections::HashMap;
 use super::memory::nowhere;
 use crate::statements::Emitted;
 
-/// Indices of functions by name.
 #[derive(Debug)]
 pub(super) struct Indices(HashMap<&'static str, u32>);
 
@@ -15,7 +14,6 @@ impl Indices {
         Self(names.zip(0..).collect())
     }
 
-    /// Returns the index of a function.
     pub(super) fn of(&self, name: &str) -> Emitted<u32> {
         self.0.get(name).copied().ok_or_else(|| nowhere(name))
     }

@@ -24,7 +24,6 @@ pub(super) struct Region {
 }
 
 impl Region {
-    /// Returns the address of a number.
     pub(super) fn at(self, place: usize) -> u32 {
         // No overflow: the end of the region was checked at allocation.
         self.first + NUMBER * place as u32
@@ -42,7 +41,6 @@ pub(super) struct Exchanged {
     pub(super) guards: Region,
 }
 
-/// Memory of a module.
 #[derive(Debug)]
 pub(super) struct Memory {
     size: u32,
@@ -86,7 +84,6 @@ impl Memory {
         Ok(memory)
     }
 
-    /// Allocates an array.
     pub(super) fn allocate(&mut self, extent: Extent) -> Emitted<Region> {
         allocate(&mut self.size, extent)
     }
@@ -114,13 +111,11 @@ impl Memory {
         region.ok_or_else(|| nowhere(name))
     }
 
-    /// Returns the address of a parameter.
     pub(super) fn parameter(&self, name: &str) -> Emitted<u32> {
         let place = self.parameters.get(name).ok_or_else(|| nowhere(name))?;
         Ok(self.exchanged.parameters.at(*place))
     }
 
-    /// Returns the address of an input.
     pub(super) fn input(&self, name: &str) -> Emitted<u32> {
         let place = self.inputs.get(name).ok_or_else(|| nowhere(name))?;
         Ok(self.exchanged.inputs.at(*place))

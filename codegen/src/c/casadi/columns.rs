@@ -14,7 +14,6 @@ struct Nonzero {
     place: usize,
 }
 
-/// Matrix in compressed columns.
 pub(super) struct Columns {
     rows: usize,
     columns: usize,
@@ -96,7 +95,6 @@ impl Columns {
         Self::new(self.columns, self.rows, turned.collect())
     }
 
-    /// Returns the number of structural nonzeros.
     pub(super) fn count(&self) -> usize {
         self.nonzeros.len()
     }

@@ -9,9 +9,7 @@ use crate::statements::layout::block;
 /// Function of time, state, inputs and parameters, and of further arguments.
 pub(super) struct Function {
     name: &'static str,
-    /// Names of the arguments and of their sparsities.
     given: Vec<(String, String)>,
-    /// Names of the results and of their sparsities.
     results: Vec<(String, String)>,
     /// Size of the work array.
     room: usize,
@@ -34,12 +32,10 @@ impl Function {
         }
     }
 
-    /// Adds an argument.
     pub(super) fn given(&mut self, name: &str, shape: &str) {
         self.given.push((name.to_owned(), shape.to_owned()));
     }
 
-    /// Adds a result.
     pub(super) fn result(&mut self, name: String, sparsity: &str) {
         self.results.push((name, sparsity.to_owned()));
     }

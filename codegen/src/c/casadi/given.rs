@@ -12,7 +12,6 @@ pub(super) struct Given {
     pub(super) count: usize,
 }
 
-/// Returns the arguments of the rates.
 pub(super) fn given(program: &Program) -> [Given; 4] {
     let one = |name, shape, jacobian, count| Given {
         name,
@@ -33,7 +32,6 @@ pub(super) fn given(program: &Program) -> [Given; 4] {
     ]
 }
 
-/// Finds a Jacobian by its name.
 pub(super) fn derived<'a>(program: &'a Program, name: &str) -> Emitted<&'a Jacobian<ValueId>> {
     let mut jacobians = program.outputs.jacobians.iter();
     let found = jacobians.find(|known| known.name == name);

@@ -9,7 +9,6 @@ use super::given::{Given, derived};
 use crate::program::{GradientDerivative, Program, ValueId};
 use crate::statements::Emitted;
 
-/// Writes both functions.
 pub(super) fn gradient(
     program: &Program,
     given: &[Given; 4],
@@ -111,7 +110,6 @@ fn second(
     Ok(text + &function.text(program))
 }
 
-/// Writes a column of a block by its sparsity.
 const COLUMN: &str = "\
 static void NAME_column(
     const casadi_int *sparsity, int k, const double *product, casadi_real *block

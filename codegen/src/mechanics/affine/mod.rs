@@ -30,11 +30,9 @@ pub struct AffineEquations {
     pub(crate) parameter_names: Vec<String>,
     /// Expression of each dependent parameter; the sides follow, without expressions.
     pub(crate) derived_parameters: Vec<Option<NodeId>>,
-    /// One row for each coordinate.
     pub(crate) scalars: Vec<AffineRow>,
     /// One row for each field, with a number or a row of coefficients for each mode.
     pub(crate) modal: Vec<AffineRow>,
-    /// One row for each state of first order.
     pub(crate) first_order: Vec<AffineRow>,
     pub(crate) guards: Vec<AffineRow>,
     pub(crate) guard_functions: Vec<Function>,
@@ -46,11 +44,9 @@ pub struct AffineEquations {
     /// Half-widths of dead zones, which must not be negative.
     pub(crate) half_widths: Vec<NodeId>,
     pub(crate) phases: Vec<PhaseNodes>,
-    /// Pivots of the mass matrix.
     pub(crate) pivots: Vec<NodeId>,
 }
 
-/// Phase rate t + offset.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PhaseNodes {
     pub rate: NodeId,

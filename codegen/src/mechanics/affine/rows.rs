@@ -44,7 +44,6 @@ impl AffineRow {
     }
 }
 
-/// Sines and cosines of time.
 pub(super) struct Sinusoids {
     /// Distinct phases.
     pub phases: Vec<NodeId>,
@@ -77,7 +76,6 @@ impl Sinusoids {
     }
 }
 
-/// Derives coefficients of expressions.
 pub(super) struct Reader<'a> {
     sinusoids: &'a Sinusoids,
     coordinates: Vec<NodeId>,

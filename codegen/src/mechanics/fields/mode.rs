@@ -7,7 +7,6 @@
 use eomgen_elementary::Function;
 use eomgen_model_spec::model::End;
 
-/// Mode shape.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Mode {
     /// Wave number k = beta_r l.
@@ -76,7 +75,6 @@ pub(super) fn exponential(x: f64) -> f64 {
     Function::Exp.apply(&[x])
 }
 
-/// Computes a power by repeated multiplication.
 pub(super) fn power(base: f64, exponent: u8) -> f64 {
     (0..exponent).fold(1.0, |product, _| product * base)
 }

@@ -105,7 +105,6 @@ impl Shapes {
         }
     }
 
-    /// Returns all shapes at a position.
     fn at(&self, derivative: u8, s: f64) -> Vec<f64> {
         match self {
             Self::Modes(modes) => modes.iter().map(|m| m.shape(derivative, s)).collect(),

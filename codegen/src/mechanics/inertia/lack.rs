@@ -9,7 +9,6 @@ pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// Components of a direction below this fraction of the largest are rounding errors.
 const NEGLIGIBLE: f64 = 1e-6;
 
-/// Defect of a mass matrix.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Lack {
     /// A diagonal entry that is not positive, or an entry of its row that is not finite.

@@ -210,7 +210,6 @@ impl Machine<'_> {
     }
 }
 
-/// Formats a number for a message.
 fn short(value: f64) -> String {
     let text = format!("{value:.4}");
     match text.trim_end_matches('0').trim_end_matches('.') {

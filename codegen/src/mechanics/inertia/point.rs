@@ -6,7 +6,6 @@ use crate::symbolic::graph::{Graph, NodeId, Operation};
 
 /// Parameters, state and inputs, in SI units.
 pub(crate) struct Point<'p> {
-    /// All parameters, in the order of the model.
     pub(crate) parameters: &'p [f64],
     /// Coordinates, their rates, then the states of first order.
     pub(crate) state: &'p [f64],

@@ -27,7 +27,6 @@ pub(crate) struct Velocities<'g> {
     values: &'g [f64],
 }
 
-/// Derivatives of a velocity by its operands.
 struct Local {
     slopes: Vec<(NodeId, f64)>,
     curvatures: Vec<(NodeId, NodeId, f64)>,
@@ -200,7 +199,6 @@ impl<'g> Velocities<'g> {
     }
 }
 
-/// Step of the sweep.
 enum Step<'s> {
     /// Velocity, its derivatives by its operands, and the energy's derivative by it.
     Velocity(NodeId, &'s Local, f64),
@@ -224,7 +222,6 @@ impl Hessian {
         }
     }
 
-    /// Removes a node and returns its row.
     fn take(&mut self, node: NodeId) -> BTreeMap<NodeId, f64> {
         let row = self.rows.remove(&node).unwrap_or_default();
         for other in row.keys() {

@@ -81,7 +81,6 @@ fn total_product(graph: &mut Graph, space: Space, a: NodeId, b: NodeId) -> NodeI
     graph.total_over(space, product)
 }
 
-/// Returns the index space of a matrix's rows.
 fn rows(graph: &Graph, matrix: NodeId) -> Option<Space> {
     match graph.shape(matrix) {
         crate::symbolic::graph::Shape::Matrix(rows, _) => Some(rows),

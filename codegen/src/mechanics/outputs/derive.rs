@@ -134,7 +134,6 @@ fn inverse_dynamics(equations: &mut Equations, bias: &RowNodes) -> RowNodes {
     best
 }
 
-/// Returns the acceleration of a coordinate as an argument.
 fn given_acceleration(graph: &mut Graph, index: CoordinateId) -> NodeId {
     let variable = Variable::Coordinate(index);
     graph.intern(Operation::Argument(Argument::Accelerations, variable))
@@ -262,7 +261,6 @@ fn weighted_by_parameters(
     }
 }
 
-/// Returns the sum of weights times accelerations and first-order rates.
 fn weighted_sum(graph: &mut Graph, weighted: &[(NodeId, NodeId)]) -> NodeId {
     let mut terms = Vec::new();
     for &(weight, row) in weighted {

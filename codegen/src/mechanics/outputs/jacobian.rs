@@ -102,7 +102,6 @@ pub(crate) fn observable_rows(equations: &mut Equations) -> JacobianRows {
     }
 }
 
-/// Derives the Jacobian by the state, or by the inputs.
 pub(crate) fn by_variables(
     equations: &mut Equations,
     rows: &JacobianRows,
@@ -124,7 +123,6 @@ pub(crate) fn by_variables(
     blocks.jacobian(name, column)
 }
 
-/// Derives the Jacobian by the independent parameters.
 pub(crate) fn by_parameters(
     equations: &mut Equations,
     rows: &JacobianRows,
@@ -155,7 +153,6 @@ pub(crate) fn by_time(
     blocks.jacobian(name, 1)
 }
 
-/// Builds a Jacobian of one row.
 pub(crate) fn one_row(graph: &Graph, name: &'static str, row: &[NodeId]) -> Jacobian<NodeId> {
     let nonzeros = row
         .iter()
@@ -197,7 +194,6 @@ pub(super) fn state_variables(equations: &Equations) -> Vec<Variable> {
         .collect()
 }
 
-/// Collected blocks of a Jacobian.
 struct Blocks<'a> {
     graph: &'a mut Graph,
     rows: &'a JacobianRows,

@@ -14,11 +14,9 @@ use crate::mechanics::sweeps::Velocities;
 use crate::mechanics::translate::{Derived, Translator};
 use crate::symbolic::graph::{Graph, NodeId};
 
-/// Rigid bodies of a model without fields.
 #[derive(Clone)]
 pub(crate) struct RigidBodies {
     tree: RigidTree<NodeId>,
-    /// Kinetic energy of the other terms.
     other_kinetic: NodeId,
     /// Generalised forces without the bodies' weights.
     other_forces: RowNodes,

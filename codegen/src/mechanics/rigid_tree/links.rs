@@ -12,7 +12,6 @@ pub(super) struct Link {
     pub(super) parent: Option<usize>,
     /// Position relative to the parent.
     pub(super) joint: Joint,
-    /// Mass fixed to the link.
     pub(super) mass: MassProperties,
 }
 
@@ -86,7 +85,6 @@ pub(super) fn links(graph: &mut Graph, tree: &RigidTree<NodeId>) -> Vec<Link> {
     links
 }
 
-/// Adds a link and returns its index.
 fn push(
     graph: &mut Graph,
     links: &mut Vec<Link>,

@@ -27,7 +27,6 @@ impl MassProperties {
         }
     }
 
-    /// Returns the parameters of a body along the axes of its frame.
     pub(super) fn of_body(graph: &mut Graph, body: &RigidBody<NodeId>) -> Self {
         let ([xx, yy, zz], [xy, yz, xz]) = (body.moments, body.products);
         let zero = graph.zero();
@@ -39,7 +38,6 @@ impl MassProperties {
         about_centre.shifted_back(graph, &body.centre)
     }
 
-    /// Returns the sum of two sets of mass properties.
     pub(super) fn plus(&self, graph: &mut Graph, other: &Self) -> Self {
         let mut sum = |a: NodeId, b: NodeId| graph.combine_flat(&[(1.0, a), (1.0, b)]);
         Self {

@@ -8,7 +8,6 @@ use crate::mechanics::translate::along_motion;
 use crate::symbolic::differentiate::Direction;
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 
-/// Acceleration of a coordinate.
 pub(crate) type Acceleration<'a> = dyn Fn(&mut Graph, CoordinateId) -> NodeId + 'a;
 
 /// Motion of a link along its own axes.

@@ -7,7 +7,6 @@ use crate::symbolic::graph::{Graph, NodeId, Operation};
 /// Components along x, y, z.
 pub(super) type Vector = [NodeId; 3];
 
-/// Rows of components.
 pub(super) type Matrix = [Vector; 3];
 
 /// Terms of a sum for each component.

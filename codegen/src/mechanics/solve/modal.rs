@@ -15,8 +15,9 @@ pub(super) enum ModalInverse {
         diagonal: NodeId,
         reciprocal: NodeId,
     },
-    /// Cholesky factor of a dense block.
-    Dense { factor: NodeId },
+    Dense {
+        factor: NodeId,
+    },
 }
 
 impl ModalInverse {

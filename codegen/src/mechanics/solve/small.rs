@@ -21,7 +21,6 @@ pub(super) struct SmallSystem {
     pub(super) solved_coupling: Vec<Vec<NodeId>>,
 }
 
-/// Response of the interfaces to the modes.
 struct Response {
     /// K = Phi^T D^-1 Phi
     compliance: Vec<Vec<NodeId>>,

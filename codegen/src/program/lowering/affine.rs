@@ -103,7 +103,6 @@ fn fields(model: &Model, orders: &[usize]) -> Vec<ProgramField> {
         .collect()
 }
 
-/// Returns the parameter for the side of a surface.
 fn side(guard: usize) -> ProgramParameter {
     ProgramParameter {
         quantity: Quantity {

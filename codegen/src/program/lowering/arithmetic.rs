@@ -241,7 +241,6 @@ impl Lowering<'_> {
         }
     }
 
-    /// Computes base^n by squaring.
     fn integer_power(&mut self, base: ValueId, exponent: u32) -> ValueId {
         let mut result: Option<ValueId> = None;
         let (mut square, mut rest) = (base, exponent);

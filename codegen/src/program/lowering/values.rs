@@ -46,7 +46,6 @@ impl Hash for Computation {
     }
 }
 
-/// Program values under construction.
 pub(super) struct Lowering<'g> {
     pub(super) graph: &'g Graph,
     derived: &'g [Option<NodeId>],
@@ -60,7 +59,6 @@ pub(super) struct Lowering<'g> {
     table_places: HashMap<usize, usize>,
     /// Number of uses of each node by the accelerations, while these are lowered.
     pub(super) uses: HashMap<NodeId, usize>,
-    /// Order in which factors are multiplied.
     pub(super) association: Association,
 }
 

@@ -168,7 +168,6 @@ fn call(function: Function, arguments: &[Formula]) -> String {
     }
 }
 
-/// Returns the LaTeX command of a function name.
 pub(super) fn function_name(function: Function) -> String {
     match function {
         Function::Asin => "\\arcsin".to_owned(),

@@ -1,6 +1,5 @@
 //! Names of Greek letters with their LaTeX commands and characters.
 
-/// Name, command and character.
 const GREEK: [(&str, &str, &str); 35] = [
     ("alpha", "\\alpha", "α"),
     ("beta", "\\beta", "β"),
@@ -39,7 +38,6 @@ const GREEK: [(&str, &str, &str); 35] = [
     ("dphi", "\\Delta\\phi", "Δφ"),
 ];
 
-/// Returns the LaTeX command for the name of a letter.
 pub(super) fn command(name: &str) -> Option<&'static str> {
     entry(name).map(|(_, command, _)| *command)
 }
@@ -49,7 +47,6 @@ pub fn letter(name: &str) -> Option<&'static str> {
     entry(name).map(|(_, _, letter)| *letter)
 }
 
-/// Returns the LaTeX command for a character.
 pub(super) fn command_of(letter: char) -> Option<&'static str> {
     GREEK
         .iter()

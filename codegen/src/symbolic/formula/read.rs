@@ -185,7 +185,6 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Returns the symbol of a variable.
     fn variable(&self, variable: Variable) -> Symbol {
         let model = self.model;
         let modes = |field: FieldId| {

@@ -67,7 +67,6 @@ impl Shared {
     }
 }
 
-/// Lengths of the formulas of nodes.
 struct Lengths<'a> {
     graph: &'a Graph,
     uses: &'a HashMap<NodeId, usize>,

@@ -194,7 +194,6 @@ impl Formula {
     }
 }
 
-/// Writes the formula as plain text.
 impl Serialize for Formula {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(self)

@@ -15,7 +15,6 @@ use super::mode::{Mode, exponential, values_at};
 #[cfg(test)]
 mod tests;
 
-/// Computes the elastic mode `number`, from 1, of a beam with these ends.
 pub(super) fn mode(from: End, to: End, number: usize) -> Mode {
     let root = Root::of(from, to, number);
     let wave = wave(from, to, root);
@@ -80,7 +79,6 @@ struct Root {
     k: f64,
     sine: f64,
     cosine: f64,
-    /// exp(-k)
     decay: f64,
 }
 
@@ -142,7 +140,6 @@ fn quarter_turns(quarters: f64) -> [f64; 2] {
     }
 }
 
-/// Returns sech k from exp(-k).
 fn sech(decay: f64) -> f64 {
     2.0 * decay / (1.0 + decay * decay)
 }

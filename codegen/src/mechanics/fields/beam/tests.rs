@@ -8,7 +8,6 @@ use crate::mechanics::fields::quadrature::gauss_legendre;
 const ENDS: [End; 4] = [End::Clamped, End::Pinned, End::Free, End::Guided];
 const NUMBERS: [usize; 6] = [1, 2, 3, 12, 64, 128];
 
-/// Returns every pair of ends with every mode number.
 fn all() -> impl Iterator<Item = (End, End, usize)> {
     ENDS.into_iter().flat_map(|from| {
         ENDS.into_iter()
