@@ -179,7 +179,8 @@ impl<'d> Entry<'d> {
         }
     }
 
-    /// Returns the elements of a list, each with the key of the list and its own position; an error for any other kind of value.
+    /// Returns the elements of a list, each with the key of the list and its own position; an
+    /// error for any other kind of value.
     pub fn list(&self, example: &str) -> Result<Vec<Entry<'d>>, Diagnostic> {
         let element = |node: Node<'d>| {
             let mut entry = Entry {
@@ -290,7 +291,8 @@ impl<'d> Entry<'d> {
             })
     }
 
-    /// Returns a scalar or a vector: a number, an expression or an array of components; an error for any other kind of value.
+    /// Returns a scalar or a vector: a number, an expression or an array of components; an
+    /// error for any other kind of value.
     pub fn scalar_or_vector(&self) -> Result<Quantity, Diagnostic> {
         match self.value() {
             Some(Value::Array(_)) => {
@@ -305,7 +307,8 @@ impl<'d> Entry<'d> {
         }
     }
 
-    /// Returns a vector: an array of three components, or an expression; an error for any other kind of value.
+    /// Returns a vector: an array of three components, or an expression; an error for any other
+    /// kind of value.
     pub fn vector(&self, example: &str) -> Result<Quantity, Diagnostic> {
         match self.written() {
             Ok(written) => Ok(Quantity::Expression(written)),
