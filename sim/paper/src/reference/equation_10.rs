@@ -1,9 +1,8 @@
-//! The rigid arm in the angles of its shafts: Eq. (10) with Eq. (6), (9) and (11).
+//! Rigid arm in the angles of its shafts: Eq. (10) with Eq. (6), (9) and (11).
 //!
-//! Equations are given as residuals (left side minus right side, N m), so that the
-//! printed form, which has no acceleration of the carrier at all, can be stated word by
-//! word beside the corrected one. The angles lose digits where the meshes are nearly
-//! closed; for simulation use [`super::equation_12`].
+//! Equations are residuals (left side minus right side, N m), because the printed form lacks the
+//! acceleration of the carrier and can only be compared in this way. Angles lose digits if the
+//! meshes are nearly closed; use [`super::equation_12`] for simulation.
 
 use super::evaluation::{Row, relative};
 use super::mesh::{f_c, f_k};
@@ -14,23 +13,23 @@ use super::parameters::PlanetaryArmParameters;
 pub struct ShaftMotion {
     /// theta_s, theta_p, theta_c.
     pub angle: [f64; 3],
-    /// Their rates.
+    /// Rates of the angles.
     pub rate: [f64; 3],
-    /// Their accelerations.
+    /// Accelerations of the angles.
     pub acceleration: [f64; 3],
 }
 
-/// What stands in Eq. (10): the torque on each inertia, N m.
+/// Residuals of Eq. (10): the torque on each inertia, N m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Residuals {
     /// Left side minus right side of the three rows.
     pub residual: [f64; 3],
-    /// The largest term summed in each row, the scale of its rounding.
+    /// Largest term of each row, the scale of its rounding.
     pub scale: [f64; 3],
 }
 
 impl Residuals {
-    /// The largest residual relative to its row's scale; infinite if one is not a number.
+    /// Returns the largest residual relative to the scale of its row; infinite if one is NaN.
     pub fn worst(&self) -> f64 {
         let rows = self.residual.iter().zip(&self.scale);
         rows.map(|(residual, scale)| relative(*residual, *scale))
@@ -38,8 +37,8 @@ impl Residuals {
     }
 }
 
-/// Eq. (10), corrected: the sun is loaded by its own mesh only, the carrier by the sum
-/// of both, and the third row is the carrier's.
+/// Evaluates the corrected Eq. (10): only its mesh loads the sun, the sum of both meshes loads the
+/// carrier, and the third row has the acceleration of the carrier.
 pub fn corrected(parameters: &PlanetaryArmParameters, t: f64, motion: &ShaftMotion) -> Residuals {
     let (f_sp, f_pr) = mesh_forces(parameters, motion);
     let acceleration = motion.acceleration;
@@ -60,8 +59,8 @@ pub fn corrected(parameters: &PlanetaryArmParameters, t: f64, motion: &ShaftMoti
     ])
 }
 
-/// Eq. (10) as printed: the ring's mesh loads the sun, and the third row multiplies the
-/// carrier's inertia with the sun's acceleration and subtracts the forces.
+/// Evaluates the printed Eq. (10): the ring mesh loads the sun, and the third row multiplies the
+/// inertia of the carrier by the acceleration of the sun and subtracts the forces.
 pub fn printed(parameters: &PlanetaryArmParameters, t: f64, motion: &ShaftMotion) -> Residuals {
     let (f_sp, f_pr) = mesh_forces(parameters, motion);
     let acceleration = motion.acceleration;
@@ -83,7 +82,7 @@ pub fn printed(parameters: &PlanetaryArmParameters, t: f64, motion: &ShaftMotion
     ])
 }
 
-/// The second row, correct as printed.
+/// Returns the second row, which is correct as printed.
 fn planet_row(
     parameters: &PlanetaryArmParameters,
     motion: &ShaftMotion,
@@ -97,7 +96,7 @@ fn planet_row(
     ]
 }
 
-/// F_ksp + F_csp and F_kpr + F_cpr of Eq. (6) and (9), N.
+/// Computes F_ksp + F_csp and F_kpr + F_cpr of Eq. (6) and (9), N.
 fn mesh_forces(parameters: &PlanetaryArmParameters, motion: &ShaftMotion) -> (f64, f64) {
     let deflections = |[theta_s, theta_p, theta_c]: [f64; 3]| {
         let x_s = parameters.r_s() * theta_s;

@@ -1,4 +1,4 @@
-//! The rigid arm in mesh deflections: Eq. (12), corrected and as printed.
+//! Rigid arm in mesh deflections: Eq. (12), corrected and as printed.
 //!
 //! The state is x_sp, x_pr, x_c (m) and their rates (m/s).
 
@@ -6,7 +6,7 @@ use super::evaluation::{Evaluation, Row};
 use super::mesh::{f_c, f_k};
 use super::parameters::PlanetaryArmParameters;
 
-/// The equivalent masses and factors listed below Eq. (12).
+/// Equivalent masses and factors listed below Eq. (12).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(non_snake_case, reason = "names as in the paper")]
 pub struct EquivalentMasses {
@@ -32,7 +32,7 @@ pub struct EquivalentMasses {
 
 #[allow(non_snake_case, reason = "names as in the paper")]
 impl EquivalentMasses {
-    /// The masses and factors of `parameters`.
+    /// Computes the masses and factors.
     pub fn new(parameters: &PlanetaryArmParameters) -> Self {
         let cos_squared = parameters.alpha.cos().powi(2);
         let r_c_squared = parameters.r_c().powi(2);
@@ -57,7 +57,7 @@ impl EquivalentMasses {
     }
 }
 
-/// The mesh forces of Eq. (6) and (9), N.
+/// Mesh forces of Eq. (6) and (9), N.
 struct MeshForces {
     spring_sp: f64,
     damping_sp: f64,
@@ -86,7 +86,7 @@ impl MeshForces {
     }
 }
 
-/// x_sp'', x_pr'', x_c'' of Eq. (12), corrected, in m/s^2.
+/// Evaluates the corrected Eq. (12): x_sp'', x_pr'', x_c'', m/s^2.
 pub fn corrected(parameters: &PlanetaryArmParameters, t: f64, state: &[f64; 6]) -> Evaluation {
     let masses = EquivalentMasses::new(parameters);
     let forces = MeshForces::new(parameters, state);
@@ -121,9 +121,8 @@ pub fn corrected(parameters: &PlanetaryArmParameters, t: f64, state: &[f64; 6]) 
     Evaluation::from_rows([sun, planet, carrier(&masses, &forces)])
 }
 
-/// x_sp'', x_pr'', x_c'' of Eq. (12) as printed, in m/s^2: the motor's damping acts on
-/// x_sp' and x_c' only, F_csp lacks D in the second row, and the motor's fluctuation of
-/// Eq. (11) is lost.
+/// Evaluates the printed Eq. (12): x_sp'', x_pr'', x_c'', m/s^2. The motor damping acts only on
+/// x_sp' and x_c', F_csp lacks D in the second row, and the fluctuation of Eq. (11) is missing.
 pub fn printed(parameters: &PlanetaryArmParameters, state: &[f64; 6]) -> Evaluation {
     let masses = EquivalentMasses::new(parameters);
     let forces = MeshForces::new(parameters, state);
@@ -156,7 +155,7 @@ pub fn printed(parameters: &PlanetaryArmParameters, state: &[f64; 6]) -> Evaluat
     Evaluation::from_rows([sun, planet, carrier(&masses, &forces)])
 }
 
-/// The third row, correct as printed.
+/// Returns the third row, which is correct as printed.
 fn carrier(masses: &EquivalentMasses, forces: &MeshForces) -> Row {
     let mut row = Row::new();
     for force in [

@@ -1,19 +1,19 @@
-//! The value of a hand-written equation together with the scale of its rounding.
+//! Value of a hand-written equation with the scale of its rounding.
 //!
-//! Two ways of evaluating the same row agree to a few units in the last place of the
-//! largest term they sum, not of the sum itself; every reference therefore reports both.
+//! Two evaluations of the same row agree to a few units in the last place of its largest term, not
+//! of its sum.
 
-/// Accelerations in the order of the coordinates, with one scale for each.
+/// Accelerations in the order of the coordinates, each with a scale.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Evaluation {
-    /// The accelerations, in the unit of the coordinate per s^2.
+    /// Accelerations, in the unit of the coordinate per s^2.
     pub accelerations: Vec<f64>,
-    /// The largest magnitude summed in each row, in the same units.
+    /// Largest term of each row, in the same units.
     pub scales: Vec<f64>,
 }
 
 impl Evaluation {
-    /// The sums and scales of `rows`.
+    /// Collects the sums and scales of `rows`.
     pub fn from_rows(rows: impl IntoIterator<Item = Row>) -> Self {
         let mut evaluation = Self::default();
         for row in rows {
@@ -23,8 +23,8 @@ impl Evaluation {
         evaluation
     }
 
-    /// The largest deviation of `accelerations` from these, relative to each row's
-    /// scale; infinite if the lengths differ or a value is not a number.
+    /// Returns the largest deviation of `accelerations`, relative to the scale of its row; infinite
+    /// if the lengths differ or a value is NaN.
     pub fn deviation(&self, accelerations: &[f64]) -> f64 {
         if accelerations.len() != self.accelerations.len() {
             return f64::INFINITY;
@@ -39,7 +39,7 @@ impl Evaluation {
     }
 }
 
-/// |difference|/scale, 0 for no difference at all, infinite where that is no number.
+/// Returns |difference|/scale: 0 for equal values, infinite if the quotient is NaN.
 pub(crate) fn relative(difference: f64, scale: f64) -> f64 {
     if difference == 0.0 {
         return 0.0;
@@ -48,7 +48,7 @@ pub(crate) fn relative(difference: f64, scale: f64) -> f64 {
     if ratio.is_nan() { f64::INFINITY } else { ratio }
 }
 
-/// One row being summed.
+/// Row during summation.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Row {
     sum: f64,
@@ -56,7 +56,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// An empty row.
+    /// Creates an empty row.
     pub fn new() -> Self {
         Self::default()
     }
@@ -67,12 +67,12 @@ impl Row {
         self.largest = self.largest.max(term.abs());
     }
 
-    /// The sum of the terms so far.
+    /// Returns the sum of the terms.
     pub fn sum(&self) -> f64 {
         self.sum
     }
 
-    /// The largest magnitude among the terms so far.
+    /// Returns the largest magnitude of a term.
     pub fn largest(&self) -> f64 {
         self.largest
     }

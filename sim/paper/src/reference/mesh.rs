@@ -1,9 +1,8 @@
-//! The piecewise laws of a gear mesh with backlash: Eq. (7) and Eq. (8).
+//! Piecewise laws of a gear mesh with backlash: Eq. (7) and Eq. (8).
 //!
-//! `p` is the deflection along the line of action and `b` half of the backlash, in the
-//! same unit. How the forces enter the equations is not here.
+//! `p` is the deflection along the line of action and `b` half of the backlash, in the same unit.
 
-/// f_k of Eq. (7): how far the deflection `p` reaches beyond the dead band.
+/// Computes f_k of Eq. (7), the deflection `p` beyond the dead band.
 #[inline]
 pub fn f_k(p: f64, b: f64) -> f64 {
     if p > b {
@@ -15,7 +14,7 @@ pub fn f_k(p: f64, b: f64) -> f64 {
     }
 }
 
-/// f_c of Eq. (8): the deflection's rate `p_dot` in contact, 0 inside the dead band.
+/// Computes f_c of Eq. (8): the rate `p_dot` in contact, 0 inside the dead band.
 #[inline]
 pub fn f_c(p: f64, p_dot: f64, b: f64) -> f64 {
     if p.abs() > b { p_dot } else { 0.0 }

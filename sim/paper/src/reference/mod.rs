@@ -1,12 +1,10 @@
-//! Equations written by hand: the oracle that derived models are compared with.
+//! Hand-written equations for comparison with derived models.
 //!
-//! What lives here is assembled from the paper (with its errors corrected) or from
-//! textbooks, and shares no code with the derivation. The pipeline of the arm:
-//! [`parameters`] and [`mode_shapes`] give the numbers, [`mesh`] the piecewise laws,
-//! [`equation_10`], [`equation_12`] and [`equation_22`] the equations, each evaluated
-//! with the scale of its rounding ([`evaluation`]); [`errata`] says where the printed
-//! equations differ and checks a derived model against both.
-//! [`closed_forms`] holds the other machines.
+//! They come from the paper (with its errors corrected) or from textbooks, and share no code with
+//! the derivation. For the arm, [`parameters`] and [`mode_shapes`] give the numbers, [`mesh`] the
+//! piecewise laws, and [`equation_10`], [`equation_12`] and [`equation_22`] the equations, each
+//! with the scale of its rounding ([`evaluation`]). [`errata`] compares the printed equations and a
+//! derived model. [`closed_forms`] has the other machines.
 
 pub mod closed_forms;
 pub mod equation_10;

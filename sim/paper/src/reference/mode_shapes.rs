@@ -1,23 +1,23 @@
-//! Mode shapes of the clamped-free beam in the paper's normalisation, Eq. (17), and the
-//! integrals over them that the equations need.
+//! Mode shapes of the clamped-free beam in the normalisation of the paper, Eq. (17), and their
+//! integrals.
 //!
-//! Everything is dimensionless: s = x/l runs from 0 to 1, z = beta l, and derivatives
-//! are by s. The growing exponential is carried as exp(-z (1 - s)), so that no digit is
-//! lost at high modes. Two variants are kept apart by their constructors: the modes as
-//! the boundary conditions give them, and the shapes of Eq. (18) and (19) as printed.
+//! All quantities are dimensionless: s = x/l runs from 0 to 1, z = beta l, and derivatives are by
+//! s. The growing exponential is stored as exp(-z (1 - s)), so that high modes lose no digits. Two
+//! constructors give the modes of the boundary conditions and the shapes of Eq. (18) and (19) as
+//! printed.
 //!
 //! Source: Blevins, "Formulas for natural frequency and mode shape", clamped-free beam.
 
 use std::f64::consts::PI;
 
-/// One shape phi(s) = sin zs - sinh zs + xi (cos zs - cosh zs).
+/// Shape phi(s) = sin zs - sinh zs + xi (cos zs - cosh zs).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModeShape {
     /// beta l.
     pub beta_l: f64,
     /// xi of Eq. (19).
     pub xi: f64,
-    /// (1 + xi) exp(beta l), the factor of exp(-z (1 - s)).
+    /// Factor (1 + xi) exp(beta l) of exp(-z (1 - s)).
     growing: f64,
 }
 
@@ -33,12 +33,12 @@ pub struct ModalIntegrals {
 }
 
 impl ModeShape {
-    /// Mode `r` (counted from 1) of the clamped-free beam: beta_r l is the r-th root of
+    /// Computes mode `r` (counted from 1) of the clamped-free beam: beta_r l is the r-th root of
     /// cos z cosh z = -1 and xi_r = -(sin z + sinh z)/(cos z + cosh z).
     pub fn clamped_free(r: usize) -> Self {
         let z = clamped_free_root(r);
         let decay = (-z).exp();
-        // (cos z + cosh z) exp(-z) and (sin z + sinh z) exp(-z), which stay of order 1.
+        // (cos z + cosh z) exp(-z) and (sin z + sinh z) exp(-z) remain of order 1.
         let cosines = decay * z.cos() + 0.5 * (1.0 + decay * decay);
         let sines = decay * z.sin() + 0.5 * (1.0 - decay * decay);
         Self {
@@ -48,9 +48,9 @@ impl ModeShape {
         }
     }
 
-    /// Shape `r` (counted from 1) as Eq. (18) and (19) print it: beta_r l = pi (r - 1/2)
-    /// and xi_r = (cos + cosh)/(sin + sinh). It grows like exp(beta l), and its squares
-    /// overflow beyond r of about 110.
+    /// Computes shape `r` (counted from 1) as printed in Eq. (18) and (19): beta_r l = pi (r - 1/2)
+    /// and xi_r = (cos + cosh)/(sin + sinh). It grows like exp(beta l), and its squares overflow
+    /// beyond r of about 110.
     pub fn printed(r: usize) -> Self {
         let z = PI * (r as f64 - 0.5);
         let xi = (z.cos() + z.cosh()) / (z.sin() + z.sinh());
@@ -61,8 +61,8 @@ impl ModeShape {
         }
     }
 
-    /// The frequency of Eq. (18) with the amplitude ratio that frees the end of a beam
-    /// vibrating at it, or the reverse: Eq. (17) with any `beta_l` and `xi`.
+    /// Creates the shape of Eq. (17) with any `beta_l` and `xi`, for instance the printed frequency
+    /// with the correct amplitude ratio.
     pub fn with(beta_l: f64, xi: f64) -> Self {
         Self {
             beta_l,
@@ -71,12 +71,12 @@ impl ModeShape {
         }
     }
 
-    /// The derivative of order `derivative` (0 to 3, higher ones repeat with z^4) of
-    /// phi by s at `s` in 0..=1.
+    /// Computes the derivative of order `derivative` (0 to 3, higher ones repeat with z^4) of phi
+    /// by s, for `s` in 0..=1.
     pub fn derivative(&self, derivative: u32, s: f64) -> f64 {
         let z = self.beta_l;
         let (sin, cos) = (z * s).sin_cos();
-        // The derivatives of sin + xi cos by its argument repeat after four.
+        // The derivatives of sin + xi cos repeat after four.
         let oscillating = match derivative % 4 {
             0 => sin + self.xi * cos,
             1 => cos - self.xi * sin,
@@ -93,14 +93,14 @@ impl ModeShape {
         z.powi(derivative as i32) * (oscillating + growing + alternating)
     }
 
-    /// phi at `s` in 0..=1.
+    /// Computes phi for `s` in 0..=1.
     pub fn value(&self, s: f64) -> f64 {
         self.derivative(0, s)
     }
 
-    /// The integrals of a shape that meets the boundary conditions, in closed form:
-    /// xi^2, -2 xi/z^2 and z^4 xi^2 (from phi'''' = z^4 phi and partial integration).
-    /// For a shape from [`ModeShape::printed`] use [`ModeShape::integrals_by_quadrature`].
+    /// Returns the integrals of a shape with correct boundary conditions in closed form: xi^2, -2
+    /// xi/z^2 and z^4 xi^2 (from phi'''' = z^4 phi and partial integration). For a shape from
+    /// [`ModeShape::printed`] use [`ModeShape::integrals_by_quadrature`].
     pub fn integrals(&self) -> ModalIntegrals {
         let phi_squared = self.xi * self.xi;
         ModalIntegrals {
@@ -110,8 +110,8 @@ impl ModeShape {
         }
     }
 
-    /// The same integrals for any shape, by Gauss-Legendre quadrature with eight points
-    /// on each half wave (error below 1e-12 of the integral of the squares).
+    /// Computes the integrals of any shape by Gauss-Legendre quadrature with eight points per half
+    /// wave (error below 1e-12 of the integral of the squares).
     pub fn integrals_by_quadrature(&self) -> ModalIntegrals {
         let mean = |f: &dyn Fn(f64) -> f64| self.quadrature(f);
         ModalIntegrals {
@@ -121,7 +121,7 @@ impl ModeShape {
         }
     }
 
-    /// Integral of `f` over the unit span.
+    /// Integrates `f` over the unit span.
     fn quadrature(&self, f: &dyn Fn(f64) -> f64) -> f64 {
         let panels = 2 * (self.beta_l / PI).ceil() as usize + 2;
         let width = 1.0 / panels as f64;
@@ -137,8 +137,8 @@ impl ModeShape {
     }
 }
 
-/// The r-th positive root of cos z cosh z = -1, by Newton's method on the distance from
-/// (r - 1/2) pi, so that the small distance keeps its digits.
+/// Computes the r-th positive root of cos z cosh z = -1 by Newton's method for the distance from (r
+/// - 1/2) pi, which keeps the digits of the small distance.
 fn clamped_free_root(r: usize) -> f64 {
     let centre = (r as f64 - 0.5) * PI;
     let sign = if r.is_multiple_of(2) { 1.0 } else { -1.0 };
@@ -181,7 +181,7 @@ mod tests {
     fn the_roots_are_the_published_ones() {
         for (r, root) in (1..).zip(ROOTS) {
             let own = ModeShape::clamped_free(r).beta_l;
-            // One unit in the last place of the digits above.
+            // One unit in the last given place.
             assert!(
                 (own - root).abs() <= 1e-15 * root,
                 "mode {r}: {own} and {root}"
@@ -193,7 +193,7 @@ mod tests {
     fn clamped_at_one_end_free_at_the_other() {
         for r in [1, 2, 5, 12, 40, 128] {
             let shape = ModeShape::clamped_free(r);
-            // The phase z s carries a rounding error of z eps, each derivative a factor z.
+            // The phase z s has a rounding error of z eps; each derivative multiplies by z.
             let rounding = 4.0 * f64::EPSILON * shape.beta_l;
             for (derivative, s) in [(0, 0.0), (1, 0.0), (2, 1.0), (3, 1.0)] {
                 let value = shape.derivative(derivative, s) / shape.beta_l.powi(derivative as i32);
@@ -210,10 +210,10 @@ mod tests {
         for r in [1, 2, 3, 7, 20, 64, 128] {
             let shape = ModeShape::clamped_free(r);
             let (exact, sum) = (shape.integrals(), shape.integrals_by_quadrature());
-            // Rounding of the phase, z eps, and of some thousand summands.
+            // Rounding of the phase, z eps, and of about a thousand summands.
             let tolerance = 1e-13 + 4.0 * f64::EPSILON * shape.beta_l;
             assert!((exact.phi_squared - sum.phi_squared).abs() <= tolerance * exact.phi_squared);
-            // s phi oscillates: its sum is compared with the size of its summands.
+            // s phi oscillates, so its sum is compared with the size of its summands.
             assert!((exact.s_phi - sum.s_phi).abs() <= tolerance);
             let curvature = exact.curvature_squared;
             assert!((curvature - sum.curvature_squared).abs() <= tolerance * curvature);

@@ -1,15 +1,12 @@
-//! The parameters of the paper's arm, by the names of its nomenclature, and the radii
-//! that follow from them.
+//! Parameters of the arm with the names of the paper's nomenclature, and the radii that follow.
 //!
-//! The values are those of Table I; where the paper discloses none, an assumed value
-//! stands here and says so. What the equations make of the parameters is not here.
+//! The values are those of Table I, or assumed values, marked as such, if the paper gives none.
 
 use std::f64::consts::PI;
 
-/// Parameters of the arm on its planetary reducer, all in SI.
+/// Parameters of the arm on its planetary reducer, SI.
 ///
-/// `Default` gives the values of Table I and, where the field says "assumed", a value
-/// the paper does not disclose.
+/// `Default` has the values of Table I, and assumed values for fields marked "assumed".
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(non_snake_case, reason = "names as in the paper's nomenclature")]
 pub struct PlanetaryArmParameters {
@@ -100,42 +97,42 @@ impl Default for PlanetaryArmParameters {
 
 #[allow(non_snake_case, reason = "names as in the paper's nomenclature")]
 impl PlanetaryArmParameters {
-    /// Base circle radius of the sun, m: m z_s cos(alpha)/2.
+    /// Returns the base circle radius of the sun, m: m z_s cos(alpha)/2.
     pub fn r_s(&self) -> f64 {
         self.m * self.z_s * self.alpha.cos() / 2.0
     }
 
-    /// Base circle radius of a planet, m: m z_p cos(alpha)/2.
+    /// Returns the base circle radius of a planet, m: m z_p cos(alpha)/2.
     pub fn r_p(&self) -> f64 {
         self.m * self.z_p * self.alpha.cos() / 2.0
     }
 
-    /// Radius of the carrier, m: m (z_s + z_p)/2.
+    /// Returns the radius of the carrier, m: m (z_s + z_p)/2.
     pub fn r_c(&self) -> f64 {
         self.m * (self.z_s + self.z_p) / 2.0
     }
 
-    /// Equivalent base radius of the carrier, m: r_c cos(alpha), Eq. (3).
+    /// Returns the equivalent base radius of the carrier, m: r_c cos(alpha), Eq. (3).
     pub fn r_c_cos_alpha(&self) -> f64 {
         self.r_c() * self.alpha.cos()
     }
 
-    /// Moment of inertia of the straight arm about the joint, kg m^2: rho A l^3/3.
+    /// Returns the moment of inertia of the straight arm about the joint, kg m^2: rho A l^3/3.
     pub fn I_arm(&self) -> f64 {
         self.rho * self.A * self.l.powi(3) / 3.0
     }
 
-    /// Everything that turns with the carrier, kg m^2: I_c + 3 m_p r_c^2 + I_arm.
+    /// Returns the inertia that turns with the carrier, kg m^2: I_c + 3 m_p r_c^2 + I_arm.
     pub fn I_tot(&self) -> f64 {
         self.I_c + 3.0 * self.m_p * self.r_c().powi(2) + self.I_arm()
     }
 
-    /// Transmission ratio from sun to carrier: 1 + z_r/z_s.
+    /// Returns the transmission ratio from sun to carrier: 1 + z_r/z_s.
     pub fn i_sH(&self) -> f64 {
         1.0 + self.z_r / self.z_s
     }
 
-    /// The motor's torque fluctuation at time `t` in s, N m: F_w sin(omega t) of Eq. (11).
+    /// Returns the motor's torque fluctuation at time `t` (s), N m: F_w sin(omega t) of Eq. (11).
     pub fn torque_fluctuation(&self, t: f64) -> f64 {
         self.F_w * eomgen_elementary::sin(self.omega * t)
     }
@@ -145,7 +142,7 @@ impl PlanetaryArmParameters {
 mod tests {
     use super::*;
 
-    /// Rounding of a handful of products.
+    /// Rounding of a few products.
     const ROUNDING: f64 = 1e-15;
 
     #[test]

@@ -1,5 +1,5 @@
-//! The hand-written equations of the arm against each other and against a dense solve of
-//! the balance of every inertia.
+//! Hand-written equations of the arm against each other and against a dense solve of the balance of
+//! every inertia.
 
 use approx::assert_abs_diff_eq;
 use eomgen_paper::reference::equation_10::{self, ShaftMotion};
@@ -12,7 +12,7 @@ use proptest::prelude::*;
 /// Rounding of some tens of operations, relative to the largest term of a row.
 const TOLERANCE: f64 = 1e-12;
 
-/// A mesh is open or closed on either flank.
+/// Meshes open, or closed on either flank.
 const REGIMES: [(f64, f64); 9] = [
     (-1.0, -1.0),
     (-1.0, 0.0),
@@ -25,7 +25,7 @@ const REGIMES: [(f64, f64); 9] = [
     (1.0, 1.0),
 ];
 
-/// A state of order `order` in the regime `(sp, pr)` from `numbers` in -1..1.
+/// Returns a state of order `order` in the regime `(sp, pr)` from `numbers` in -1..1.
 fn state_in(
     regime: (f64, f64),
     order: usize,
@@ -52,8 +52,8 @@ fn state_in(
     state
 }
 
-/// The balance of sun, planets, carrier and modes as one dense system in theta_s,
-/// theta_p, theta_c, q, solved by LU and mapped to x_sp, x_pr, x_c, q.
+/// Solves the balance of sun, planets, carrier and modes as one dense system in theta_s, theta_p,
+/// theta_c, q by LU, and converts to x_sp, x_pr, x_c, q.
 fn dense(parameters: &PlanetaryArmParameters, order: usize, t: f64, state: &[f64]) -> Vec<f64> {
     let n = 3 + order;
     let (r_s, r_p, r_c) = (
@@ -84,8 +84,8 @@ fn dense(parameters: &PlanetaryArmParameters, order: usize, t: f64, state: &[f64
     mass[(2, 2)] = parameters.I_tot();
     force[2] = 3.0 * r_c * (f_sp + f_pr);
     for i in 0..order {
-        // The closed forms on both sides: they have tests of their own, and a quadrature
-        // of x phi loses the digits of z^2.
+        // Closed forms on both sides: they have separate tests, and a quadrature of x phi loses the
+        // digits of z^2.
         let integrals = ModeShape::clamped_free(i + 1).integrals();
         let line_mass = parameters.rho * parameters.A;
         mass[(2, 3 + i)] = line_mass * parameters.l.powi(2) * integrals.s_phi;
@@ -106,7 +106,7 @@ fn numbers() -> impl Strategy<Value = Vec<f64>> {
     proptest::collection::vec(-1.0..1.0_f64, 40..60)
 }
 
-/// Asserts that every acceleration is `expected`'s up to the rounding of its row.
+/// Asserts that every acceleration is equal up to the rounding of its row.
 fn assert_rows_eq(expected: &Evaluation, found: &[f64]) {
     assert_eq!(expected.accelerations.len(), found.len());
     let rows = expected.accelerations.iter().zip(&expected.scales);
@@ -160,8 +160,8 @@ proptest! {
             let rigid = equation_12::corrected(&parameters, t, &state);
             let motion = shafts(&parameters, &state, &rigid.accelerations);
             let balance = equation_10::corrected(&parameters, t, &motion);
-            // Angles of order 10 rad carry the mesh deflections with a rounding of
-            // r_s 10 eps, which the mesh stiffness turns into a force.
+            // Angles of order 10 rad give mesh deflections a rounding of r_s 10 eps, which the mesh
+            // stiffness converts to a force.
             let rounding = 100.0 * f64::EPSILON * parameters.k_sp * parameters.r_c();
             for row in 0..3 {
                 let allowed = TOLERANCE * balance.scale[row] + rounding * parameters.r_c();
@@ -179,8 +179,8 @@ proptest! {
     }
 }
 
-/// The prepared right-hand side at (1, 1) and at the paper's scales against the
-/// evaluation of the coefficients by name.
+/// Compares the prepared right-hand side at (1, 1) and at the scales of the paper with the
+/// coefficients by name.
 fn scales_do_not_matter<const S: usize>(numbers: &[f64], t: f64) -> Result<(), TestCaseError> {
     let parameters = PlanetaryArmParameters::default();
     for (omega_n, b_c) in [(1.0, 1.0), (3.0885e4, 25e-6)] {
@@ -206,7 +206,7 @@ fn scales_do_not_matter<const S: usize>(numbers: &[f64], t: f64) -> Result<(), T
     Ok(())
 }
 
-/// The shafts' motion at a state of the rigid arm.
+/// Returns the motion of the shafts at a state of the rigid arm.
 fn shafts(
     parameters: &PlanetaryArmParameters,
     state: &[f64; 6],
@@ -235,12 +235,12 @@ fn a_state_of_the_wrong_length_has_no_value() {
 #[test]
 fn the_printed_equation_10_is_out_of_balance() {
     let parameters = PlanetaryArmParameters::default();
-    // Both meshes closed, so that every misprinted term is there.
+    // With both meshes closed, every misprinted term contributes.
     let state = [6e-5, 7e-5, 0.1, 0.01, -0.02, 0.3];
     let rigid = equation_12::corrected(&parameters, 0.1, &state);
     let motion = shafts(&parameters, &state, &rigid.accelerations);
     let balance = equation_10::printed(&parameters, 0.1, &motion);
-    // Row 2 is correct as printed; its angles carry the rounding of the closed meshes.
+    // Row 2 is correct as printed; its angles have the rounding of the closed meshes.
     for (row, is_correct) in [(0, false), (1, true), (2, false)] {
         let relative = balance.residual[row].abs() / balance.scale[row];
         assert_eq!(relative < 1e-3, is_correct, "row {row}: {balance:?}");

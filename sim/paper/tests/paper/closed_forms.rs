@@ -1,4 +1,4 @@
-//! The closed forms of the other machines: energy, limits that textbooks give, refusals.
+//! Closed forms of the other machines: energy, textbook limits, errors.
 
 use eomgen_paper::reference::Evaluation;
 use eomgen_paper::reference::closed_forms::{NotApplicable, StateAndParameters, find};
@@ -67,7 +67,7 @@ fn evaluate(
     })
 }
 
-/// The terms of T + V of each machine, from the positions and velocities of its parts.
+/// Returns the terms of T + V of each machine, from positions and velocities of its parts.
 fn energies(model: &str, values: Values, order: usize, state: &[f64]) -> Vec<f64> {
     let parameter = look_up(values);
     let p = |name: &str| parameter(name).unwrap_or_else(|| panic!("{name} is missing"));
@@ -152,7 +152,7 @@ fn square(vector: &[f64]) -> f64 {
     vector.iter().map(|component| component * component).sum()
 }
 
-/// d(energy)/dt along the accelerations, by central differences, and its scale.
+/// Computes d(energy)/dt along the accelerations by central differences, and its scale.
 fn power(model: &str, values: Values, order: usize, state: &[f64]) -> (f64, f64) {
     let accelerations = evaluate(model, values, order, state)
         .expect("a value")
@@ -173,7 +173,7 @@ fn power(model: &str, values: Values, order: usize, state: &[f64]) -> (f64, f64)
     };
     let (ahead, behind) = (at(1.0), at(-1.0));
     let total = |terms: &[f64]| terms.iter().sum::<f64>();
-    // The terms may cancel; their rounding does not.
+    // The terms may cancel, but not their rounding.
     let magnitude = |terms: &[f64]| terms.iter().map(|term| term.abs()).sum::<f64>();
     (
         (total(&ahead) - total(&behind)) / (2.0 * step),
@@ -184,8 +184,8 @@ fn power(model: &str, values: Values, order: usize, state: &[f64]) -> (f64, f64)
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// The energies are those of the parts' positions and velocities; without damping
-    /// and input the closed forms must keep them.
+    /// The energies use positions and velocities of the parts. Without damping and input the closed
+    /// forms must conserve them.
     #[test]
     fn free_machines_keep_their_energy(numbers in proptest::collection::vec(-2.0..2.0_f64, 10)) {
         let cases = [
@@ -199,7 +199,7 @@ proptest! {
             // Deflections of millimetres.
             state[1..=order].iter_mut().enumerate().for_each(|(i, q)| *q *= 1e-2 / (i + 1).pow(4) as f64);
             let (power, scale) = power(model, values, order, &state);
-            // The rounding of the energies, some hundred operations each, in a difference quotient.
+            // Rounding of the energies, about a hundred operations each, in a difference quotient.
             prop_assert!(power.abs() < 4e-13 * scale, "{model}: {power:e} of {scale:e}");
         }
     }
@@ -212,7 +212,7 @@ fn a_pendulum_swings_down_and_is_damped() {
         .expect("a value")
         .accelerations;
     let expected = (-2.0 * 9.81 * 0.5 * 0.3_f64.sin() - 0.1 * 2.0) / 0.6;
-    // The sine of pi + 0.3 rounds its argument: half a unit in the last place of 3.4.
+    // The argument of the sine of pi + 0.3 is rounded: half a unit in the last place of 3.4.
     assert!((found[0] - expected).abs() < 1e-14 * expected.abs());
 }
 

@@ -1,4 +1,4 @@
-//! The table of errata with the hand-written equations in the place of a derived model.
+//! Table of errata, with hand-written equations instead of a derived model.
 
 use eomgen_paper::reference::equation_22::Coefficients;
 use eomgen_paper::reference::errata::errata_table;
@@ -16,7 +16,7 @@ fn every_row_agrees_with_the_correction_and_differs_from_the_misprint() {
     let table = errata_table(&corrected);
     println!("{table}");
     assert!(table.passed(), "{table}");
-    // The rows of the paper that are misprinted, and those checked to be right.
+    // Misprinted rows of the paper, and rows that are correct.
     let misprints = table
         .rows
         .iter()

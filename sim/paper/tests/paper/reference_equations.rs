@@ -1,5 +1,5 @@
-//! Which models the equations written by hand belong to: those with the same equations,
-//! whatever their numbers, names of terms, comments and observables.
+//! Assignment of hand-written equations to models with the same equations, whatever their numbers,
+//! names of terms, comments and observables.
 
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::models;
@@ -16,13 +16,13 @@ fn model(text: &str) -> Model {
         .model
 }
 
-/// The text with one part of it replaced.
+/// Returns the text with one part replaced.
 fn with(text: &str, from: &str, to: &str) -> String {
     assert!(text.contains(from), "{from}");
     text.replace(from, to)
 }
 
-/// Names of the references, and names and reasons of those that are absent.
+/// Returns the names of the references, and names and reasons of the absent ones.
 fn of(text: &str, order: usize) -> (Vec<String>, Vec<(String, String)>) {
     let model = model(text);
     let values = model.parameter_values().expect("values");

@@ -1,4 +1,4 @@
-//! The solver on Eq. (22) against a trajectory computed with quadruple precision.
+//! Solver with Eq. (22) against a trajectory in quadruple precision.
 
 mod arm;
 
@@ -8,7 +8,7 @@ use eomgen_sim::ode::{Method, Settings, Trajectory, simulate};
 
 const REFERENCE: &str = include_str!("../../../../tests/reference/trajectory_order4.csv");
 
-/// Time, x_sp and tip of each row up to `until` seconds.
+/// Returns time, x_sp and tip of each row up to `until` seconds.
 fn reference(until: f64) -> Vec<[f64; 3]> {
     let rows = REFERENCE.lines().skip(1).map(|line| {
         let fields: Vec<f64> = line
@@ -52,7 +52,7 @@ fn the_arm_follows_the_reference_trajectory_for_a_second() {
         trajectory.switches.len(),
         trajectory.work
     );
-    // What is asked of a simulation at this tolerance.
+    // Required accuracy of a simulation at this tolerance.
     assert!(worst[0] < 1e-8 && worst[1] < 1e-8, "{worst:?}");
 }
 
@@ -78,7 +78,7 @@ fn the_arm_moves_as_with_runge_kutta() {
     assert_eq!(guards(&with_adams), guards(&with_runge_kutta));
     let times = with_adams.switches.iter().zip(&with_runge_kutta.switches);
     for (one, other) in times {
-        // Deflections agree to 1e-9 m, and surfaces are crossed at some 0.01 m/s.
+        // Deflections agree to 1e-9 m, and surfaces are crossed at about 0.01 m/s.
         assert!((one.t - other.t).abs() < 1e-7, "{one:?} {other:?}");
     }
     let deflections = with_adams.last.iter().zip(&with_runge_kutta.last).take(2);

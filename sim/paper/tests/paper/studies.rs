@@ -1,5 +1,5 @@
-//! The paper's cases, claims and search: measurements against other ways to the same number,
-//! rules against readings made up for them, a search against itself after a kill.
+//! Cases, claims and search of the paper: measurements against independent computations, rules
+//! against constructed readings, a resumed search against an uninterrupted one.
 
 use std::collections::BTreeMap;
 
@@ -15,7 +15,7 @@ use eomgen_paper::studies::sets::{RANGES, set};
 use eomgen_paper::studies::tally::{exclusive, histogram, share_with, shares, undecided};
 use eomgen_sim::inputs::HeldInputs;
 
-/// A reading with a transmission error that follows b and a deflection that does not.
+/// Returns a reading whose transmission error grows with b, with a constant deflection.
 fn reading(key: &Key, kind: Kind) -> Reading {
     let of = |span: f64| Amplitude {
         largest: span / 2.0,
@@ -36,7 +36,7 @@ fn reading(key: &Key, kind: Kind) -> Reading {
     }
 }
 
-/// What the paper says of each case.
+/// Returns the readings that the paper describes.
 fn paper() -> Readings {
     let kind = |key: &Key| match (key.order, key.forcing, key.micrometres) {
         (0, ..) => Kind::Regular,
@@ -72,8 +72,8 @@ fn each_claim_can_fail() {
         };
         reading.f_la.largest = 1.0;
         reading.f_la_signed.largest = 1.0;
-        // The larger part is the transmission error for small b and the deflection for
-        // large b, which grows tenfold.
+        // The larger part is the transmission error for small b, and the deflection for large b,
+        // which grows tenfold.
         reading.dr.span = 1e-4 * (b / 10.0).powi(2) * (1.0 + key.order as f64);
         reading.dr.rms = reading.dr.span;
         reading.transmission.span = 2e-3 * (1.0 + b / 10.0);
@@ -96,7 +96,7 @@ fn each_claim_can_fail() {
             ..reference
         },
     );
-    // Frequency and flexibility matter as before: what they compare was swapped on both sides.
+    // Frequency and flexibility still matter, because both compared sides were exchanged.
     let still = ["frequency", "flexibility"];
     for claim in CLAIMS.iter().filter(|claim| !still.contains(&claim.id)) {
         assert_eq!(
@@ -128,7 +128,8 @@ fn a_route_with_a_gap_that_might_lead_back_is_undecided() {
         // One unknown case between regular and chaotic may be either.
         ([R, U, C, C], Holding::Holds),
         ([R, R, U, C], Holding::Holds),
-        // Two of them may be chaotic, regular; so may one after chaos or before regularity.
+        // Two unknown cases may be chaotic then regular; so may one after chaos or before regular
+        // motion.
         ([R, U, U, C], Holding::Undecided),
         ([R, C, U, C], Holding::Undecided),
         ([R, U, R, C], Holding::Undecided),
@@ -155,7 +156,7 @@ fn a_missing_case_decides_nothing() {
     }
 }
 
-/// The arm with the assumed values and the paper's order.
+/// Returns the arm with the assumed values and the order of the paper.
 fn assumed(forcing: Forcing, backlash: f64) -> Case {
     Case {
         order: 4,
@@ -165,9 +166,9 @@ fn assumed(forcing: Forcing, backlash: f64) -> Case {
     }
 }
 
-/// How fast a second motion beside the first parts from it, per forcing period: it is set back
-/// to its first distance four times in each (G. Benettin, L. Galgani, J.-M. Strelcyn, Phys.
-/// Rev. A 14 (1976) 2338-2345).
+/// Returns the logarithmic growth of the distance to a second motion per forcing period. The
+/// distance is reset four times per period (G. Benettin, L. Galgani, J.-M. Strelcyn, Phys. Rev. A
+/// 14 (1976) 2338-2345).
 fn parting(arm: &Arm, case: &Case, transient: usize, periods: usize) -> Vec<f64> {
     const DISTANCE: f64 = 1e-9;
     let mut propagator = arm.propagator(case).unwrap();
@@ -181,7 +182,7 @@ fn parting(arm: &Arm, case: &Case, transient: usize, periods: usize) -> Vec<f64>
     let mut difference = vec![1.0; here.len()];
     let mut growths = vec![0.0; periods];
     for (period, step) in (0..4 * periods).map(|step| (step / 4, step + 4 * transient)) {
-        // No force depends on where the carrier is.
+        // No force depends on the position of the carrier.
         difference[2] = 0.0;
         let length = difference.iter().map(|d| d * d).sum::<f64>().sqrt();
         let beside = here.iter().zip(&difference);
@@ -220,7 +221,7 @@ fn chaos_of_the_assumed_arm_grows_as_neighbouring_motions_part() {
         (carried.value - parted.value).abs() < 4.0 * error,
         "{carried:?} {parted:?}"
     );
-    // What the torque makes at its own frequency is no sign of order.
+    // The response at the forcing frequency is not evidence of regular motion.
     let lines = measured.evidence.line_share.unwrap();
     assert!(lines < 0.1, "{lines}");
 }
@@ -233,7 +234,7 @@ fn stated_errors_of_exponents_are_how_they_scatter_over_neighbouring_backlashes(
         modes: 1,
         ..Length::FULL
     };
-    // Chaos that comes and goes over hundreds of periods.
+    // Intermittent chaos over hundreds of periods.
     let exponents: Vec<_> = (0..16)
         .map(|place| {
             let case = assumed(Forcing::FivePi, 100e-6 + 1e-8 * f64::from(place));
@@ -247,7 +248,8 @@ fn stated_errors_of_exponents_are_how_they_scatter_over_neighbouring_backlashes(
     let scatter = (squares.sum::<f64>() / (count - 1.0)).sqrt();
     let stated = exponents.iter().map(|e| e.standard_error.powi(2));
     let stated = (stated.sum::<f64>() / count).sqrt();
-    // 16 of them know the scatter to 18 %; batches of 20 periods of 400 state 0.4 of it.
+    // 16 exponents determine the scatter to 18 %; batches of 20 periods of 400 would give 0.4 of
+    // it.
     assert!(
         (0.65..1.6).contains(&(stated / scatter)),
         "{stated} {scatter} {exponents:?}"
@@ -265,7 +267,7 @@ fn a_case_is_followed_on_until_it_is_decided() {
             ..Length::SCREENING
         };
         let measured = measure(&arm, &case, &length).unwrap();
-        // What is recorded does not grow.
+        // The record does not grow.
         let last = measured.record.times.last().unwrap() - measured.record.times[0];
         assert!((last / case.period() - 100.0).abs() < 1e-9);
         (measured.verdict.motion, measured.periods)
@@ -288,7 +290,7 @@ fn with_the_printed_mode_shapes_the_least_play_is_chaos_and_no_third_mode_domina
             let key = Key::flexible(forcing, micrometres);
             let measured = measure(&arm, &key.case(Undisclosed::ASSUMED), &length);
             let reading = Reading::of(&measured.unwrap());
-            // One of the eight comes to rest in a motion that repeats.
+            // One of the eight cases becomes periodic.
             let settles = (forcing, micrometres) == (Forcing::FivePi, 50);
             let kind = if settles {
                 Kind::Regular
@@ -312,14 +314,14 @@ fn without_backlash_the_arm_moves_regularly_and_as_its_observables_say() {
     };
     let measured = measure(&arm, &case, &Length::SCREENING).unwrap();
     assert_eq!(Reading::of(&measured).kind, Kind::Regular);
-    // Quasi-static bending by the hub's acceleration, as a check of scale: the tip of a
-    // cantilever under the load rho A x a/l, which bends by 11 rho A a l^4/(120 E I).
+    // Check of scale, quasi-static bending by the acceleration of the hub: the tip of a cantilever
+    // under the load rho A x a/l deflects by 11 rho A a l^4/(120 E I).
     let torque = case.undisclosed.f_w;
     let lengths = arm.lengths(&case);
     let i_sh = 1.0 + 99.0 / 27.0;
     let acceleration = torque / lengths.inertia / i_sh * 0.5;
     let tip = 11.0 * 7900.0 * 1e-4 * acceleration * 0.5_f64.powi(4) / (120.0 * 2e11 * 8.333e-10);
-    // The motor's damping and resonance at 31 of 230 rad/s change it by some per cent.
+    // Motor damping and resonance at 31 of 230 rad/s change it by a few per cent.
     assert!(
         (0.5 * measured.dr.span / tip - 1.0).abs() < 0.1,
         "{tip} {:?}",
@@ -343,7 +345,7 @@ fn sets_fill_their_ranges() {
             counts[(10.0 * (value / low).ln() / (high / low).ln()) as usize] += 1;
         }
         let all: usize = counts.iter().sum();
-        // A random sequence would leave tenths that differ by a third.
+        // In a random sequence, the tenths would differ by a third.
         let even = |count: &usize| (*count as f64 * 10.0 / all as f64 - 1.0).abs() < 0.2;
         assert!(counts.iter().all(even), "{} {counts:?}", range.name);
     }
@@ -373,7 +375,7 @@ fn a_killed_search_goes_on_to_the_same_bytes() {
     let first = run(&request).unwrap();
     let part = folder.path().join("screened_00000.csv");
     let bytes = std::fs::read(&part).unwrap();
-    // What a kill leaves: a chunk not there, another cut short beside its place.
+    // State after an interruption: a missing chunk, and an incomplete temporary file.
     std::fs::remove_file(&part).unwrap();
     std::fs::write(folder.path().join("screened_00000.unfinished"), "0,1").unwrap();
     assert_eq!(run(&request).unwrap(), first);
@@ -399,7 +401,8 @@ fn what_holds_is_counted() {
             strict: letters(&first.replacen('H', "F", 1)),
         }
     };
-    // The first two claims hold somewhere, never together; the first and the third do.
+    // The first two claims hold in some sets, but never together; the first and the third hold
+    // together.
     let sets = [
         judged(0, "HFH"),
         judged(1, "FHU"),

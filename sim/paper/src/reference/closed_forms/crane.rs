@@ -1,5 +1,5 @@
-//! A load on a rope of changing length below a moving trolley, from the balance of forces across
-//! the rope: m (l theta'' + 2 l' theta' + s'' cos theta + g sin theta) = the drag across it.
+//! Load on a rope of changing length below a moving trolley, from the balance of forces across the
+//! rope: m (l theta'' + 2 l' theta' + s'' cos theta + g sin theta) = the drag across it.
 
 use super::{NotApplicable, StateAndParameters};
 use crate::reference::evaluation::{Evaluation, Row};
@@ -13,7 +13,7 @@ pub fn accelerations(at: &StateAndParameters<'_>) -> Result<Evaluation, NotAppli
     row.add(-2.0 * l_dot * rate / l);
     row.add(-at.input("s_ddot") * theta.cos() / l);
     row.add(-g * theta.sin() / l);
-    // The load's velocity across the rope.
+    // Velocity of the load across the rope.
     row.add(-c * rate / m);
     row.add(-c * at.input("s_dot") * theta.cos() / (m * l));
     Ok(Evaluation::from_rows([row]))

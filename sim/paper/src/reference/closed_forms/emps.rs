@@ -1,7 +1,7 @@
-//! The electro-mechanical positioning system: one axis with friction.
+//! Electro-mechanical positioning system: one axis with friction.
 //!
-//! M q'' + F_v q' + F_c sign(q') + offset = force (Janot, Gautier and Brunot, "Data set
-//! and reference models of EMPS", 2019, Eq. 1); the dry friction is optional.
+//! M q'' + F_v q' + F_c sign(q') + offset = force (Janot, Gautier and Brunot, "Data set and
+//! reference models of EMPS", 2019, Eq. 1). The dry friction is optional.
 
 use super::linear_system::LinearSystem;
 use super::{NotApplicable, StateAndParameters};

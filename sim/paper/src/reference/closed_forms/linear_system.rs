@@ -1,18 +1,18 @@
-//! Solves M(q) q'' = f for the accelerations and tells how far rounding may move them.
+//! Solution of M(q) q'' = f for the accelerations, with a bound of its rounding.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::NotApplicable;
 use crate::reference::evaluation::{Evaluation, Row};
 
-/// The equation of every coordinate: M(q) q'' = f(q, q').
+/// Equations M(q) q'' = f(q, q') of all coordinates.
 pub struct LinearSystem {
     mass: DMatrix<f64>,
     force: Vec<Row>,
 }
 
 impl LinearSystem {
-    /// A system of `coordinates` rows with nothing in it.
+    /// Creates an empty system of `coordinates` rows.
     pub fn new(coordinates: usize) -> Self {
         Self {
             mass: DMatrix::zeros(coordinates, coordinates),
@@ -20,7 +20,7 @@ impl LinearSystem {
         }
     }
 
-    /// Adds `value` to the mass matrix at `(row, column)` and at its mirror image.
+    /// Adds `value` to the mass matrix at `(row, column)` and at `(column, row)`.
     pub fn mass(&mut self, row: usize, column: usize, value: f64) {
         self.mass[(row, column)] += value;
         if row != column {
@@ -35,9 +35,9 @@ impl LinearSystem {
         }
     }
 
-    /// The accelerations q''. The scale of row i is that of
-    /// |M^-1| (largest term of f + |M| |q''|), the componentwise bound for the rounding
-    /// of a solve (Higham, "Accuracy and Stability of Numerical Algorithms", chapter 7).
+    /// Solves for the accelerations q''. The scale of row i is that of |M^-1| (largest term of f +
+    /// |M| |q''|), the componentwise bound of the rounding of a solve (Higham, "Accuracy and Stability of
+    /// Numerical Algorithms", chapter 7).
     pub fn solve(self) -> Result<Evaluation, NotApplicable> {
         let force = DVector::from_iterator(self.force.len(), self.force.iter().map(Row::sum));
         let inverse = self.mass.clone().try_inverse().ok_or(NotApplicable::Mass)?;

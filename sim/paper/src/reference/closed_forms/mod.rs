@@ -1,10 +1,8 @@
-//! Closed forms of other machines, written by hand from textbooks: mass matrix and
-//! forces of each, in the coordinates and with the parameter names of the specification
-//! of the same name.
+//! Closed forms of other machines from textbooks, one file per machine: mass matrix and forces, in
+//! the coordinates and parameter names of the specification of the same name.
 //!
-//! One file per machine. [`find`] gives the closed form that belongs to a model's name;
-//! a parameter that a machine may lack (a damping, an inertia) counts as 0 where it is
-//! missing.
+//! [`find`] returns the closed form for the name of a model. An optional parameter (a damping, an
+//! inertia) that is missing counts as 0.
 
 mod cart_two_arms;
 mod chaplygin_sleigh;
@@ -25,29 +23,29 @@ use std::fmt;
 
 use super::evaluation::Evaluation;
 
-/// Where a closed form is evaluated.
+/// State, parameters and inputs for the evaluation of a closed form.
 pub struct StateAndParameters<'a> {
     /// Parameters by name, SI.
     pub parameter: &'a dyn Fn(&str) -> Option<f64>,
     /// Inputs by name, SI; an input without a value is 0.
     pub input: &'a dyn Fn(&str) -> Option<f64>,
-    /// The truncation order of the flexible field, 0 without one.
+    /// Truncation order of the flexible field, 0 without a field.
     pub order: usize,
-    /// The coordinates in the specification's order, the modes, then the rates of all, then states
-    /// of first order.
+    /// Coordinates in the order of the specification, the modes, the rates of all, then first-order
+    /// states.
     pub state: &'a [f64],
 }
 
-/// Accelerations of a machine, in the order of its coordinates, then rates of states of first
-/// order, with row scales.
+/// Accelerations of a machine in the order of its coordinates, then rates of first-order states,
+/// with row scales.
 pub type ClosedForm = fn(&StateAndParameters<'_>) -> Result<Evaluation, NotApplicable>;
 
-/// Why a closed form has no value in a situation.
+/// Reason that a closed form does not apply.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum NotApplicable {
-    /// A parameter that every such machine has is not there.
+    /// A required parameter is missing.
     Parameter(&'static str),
-    /// The state has not this many entries.
+    /// The number of entries of the state differs from this number.
     State(usize),
     /// The mass matrix is singular.
     Mass,
@@ -65,7 +63,7 @@ impl fmt::Display for NotApplicable {
 
 impl std::error::Error for NotApplicable {}
 
-/// The closed form that belongs to the model called `name`.
+/// Returns the closed form for the model called `name`.
 pub fn find(name: &str) -> Option<ClosedForm> {
     match name {
         "cart_two_arms" => Some(cart_two_arms::accelerations),
@@ -86,22 +84,22 @@ pub fn find(name: &str) -> Option<ClosedForm> {
 }
 
 impl StateAndParameters<'_> {
-    /// A parameter every such machine has.
+    /// Returns a required parameter.
     fn required(&self, name: &'static str) -> Result<f64, NotApplicable> {
         (self.parameter)(name).ok_or(NotApplicable::Parameter(name))
     }
 
-    /// A parameter that counts as 0 where the machine lacks it.
+    /// Returns a parameter, or 0 if it is missing.
     fn optional(&self, name: &str) -> f64 {
         (self.parameter)(name).unwrap_or(0.0)
     }
 
-    /// An input, 0 without a value.
+    /// Returns an input, or 0 without a value.
     fn input(&self, name: &str) -> f64 {
         (self.input)(name).unwrap_or(0.0)
     }
 
-    /// Coordinates and rates of a machine with `N` coordinates and no field.
+    /// Returns coordinates and rates of a machine with `N` coordinates and no field.
     fn motion<const N: usize>(&self) -> Result<([f64; N], [f64; N]), NotApplicable> {
         let (position, rate) = self.state.split_at(self.state.len() / 2);
         match (position.try_into(), rate.try_into()) {

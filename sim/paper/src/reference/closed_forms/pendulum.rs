@@ -1,4 +1,4 @@
-//! A physical pendulum, theta from upright: hanging at pi.
+//! Physical pendulum with theta from upright: hanging at pi.
 //!
 //! (m a^2 + I) theta'' = m g a sin theta - k theta' (any textbook).
 

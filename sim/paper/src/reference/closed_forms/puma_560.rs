@@ -1,8 +1,8 @@
-//! The PUMA 560 by the recursion of Newton and Euler (Luh, Walker and Paul, "On-line computational
+//! PUMA 560 by the recursion of Newton and Euler (Luh, Walker and Paul, "On-line computational
 //! scheme for mechanical manipulators", 1980): accelerations outward, forces and moments inward, in
-//! numbers, along the axes of the links. The mass matrix is column by column the torques of one
-//! unit acceleration at rest without gravity (Walker and Orin, 1982, method 1). Moments of
-//! inertia: Armstrong, Khatib and Burdick (1986).
+//! numbers, along the axes of the links. Each column of the mass matrix is the torques of one unit
+//! acceleration at rest without gravity (Walker and Orin, 1982, method 1). Moments of inertia:
+//! Armstrong, Khatib and Burdick (1986).
 
 use super::linear_system::LinearSystem;
 use super::{NotApplicable, StateAndParameters};
@@ -10,8 +10,8 @@ use crate::reference::evaluation::Evaluation;
 
 type Vector = [f64; 3];
 
-/// A link: the joint turns it by q about the z axis of the link before, at `origin` there; its own
-/// axes are tilted about x by a quarter turn whose sine is `tilt`, or not at all.
+/// Link. The joint turns it by q about the z axis of the previous link, at `origin`. Its axes are
+/// tilted about x by a quarter turn with sine `tilt`, or not tilted.
 struct Link {
     origin: Vector,
     tilt: f64,
@@ -80,7 +80,7 @@ fn links(at: &StateAndParameters<'_>) -> Result<[Link; 6], NotApplicable> {
     ])
 }
 
-/// The joints' torques of a motion.
+/// Computes the joint torques of a motion.
 fn torques(
     links: &[Link; 6],
     q: &[f64; 6],
@@ -116,12 +116,12 @@ fn torques(
     found
 }
 
-/// What a point at `arm` accelerates by more than the origin.
+/// Computes the acceleration of a point at `arm` relative to the origin.
 fn at_arm(omega: Vector, alpha: Vector, arm: Vector) -> Vector {
     plus(cross(alpha, arm), cross(omega, cross(omega, arm)))
 }
 
-/// Components along the link before, along this link.
+/// Converts components of the previous link to components of this link.
 fn inward(link: &Link, q: f64, [x, y, z]: Vector) -> Vector {
     let (sin, cos) = q.sin_cos();
     let (x, y) = (cos * x + sin * y, cos * y - sin * x);
@@ -132,7 +132,7 @@ fn inward(link: &Link, q: f64, [x, y, z]: Vector) -> Vector {
     }
 }
 
-/// Components along this link, along the link before.
+/// Converts components of this link to components of the previous link.
 fn outward(link: &Link, q: f64, [x, y, z]: Vector) -> Vector {
     let (y, z) = if link.tilt == 0.0 {
         (y, z)

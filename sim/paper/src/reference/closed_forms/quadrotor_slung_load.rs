@@ -1,7 +1,7 @@
-//! A quadrotor with a load on a rope, by Newton's equations of two points that pull at each other along
-//! the rope and Euler's equations along the axes of the rotors (Sreenath, Lee and Kumar, *Proc. 52nd IEEE
-//! Conf. Decision and Control*, 2013, with air on the load). With d = s - r, v = d' and a stabilisation rate w, the constraint
-//! g = d.d - l^2 follows g'' + 2 w g' + w^2 g = 0.
+//! Quadrotor with a load on a rope: Newton's equations of two points with the rope force, and
+//! Euler's equations along the axes of the rotors (Sreenath, Lee and Kumar, *Proc. 52nd IEEE Conf.
+//! Decision and Control*, 2013, with air drag on the load). With d = s - r, v = d' and a
+//! stabilisation rate w, the constraint g = d.d - l^2 follows g'' + 2 w g' + w^2 g = 0.
 
 use super::{NotApplicable, StateAndParameters};
 use crate::reference::evaluation::{Evaluation, Row};
@@ -22,13 +22,13 @@ pub fn accelerations(at: &StateAndParameters<'_>) -> Result<Evaluation, NotAppli
     Ok(Evaluation::from_rows(rows))
 }
 
-/// The third axis of the rotors.
+/// Returns the third axis of the rotors.
 fn thrust_direction(position: &[f64; 9]) -> Vector {
     let [(sy, cy), (sp, cp), (sr, cr)] = [position[3], position[4], position[5]].map(f64::sin_cos);
     [cy * sp * cr + sy * sr, sy * sp * cr - cy * sr, cp * cr]
 }
 
-/// Accelerations of the quadrotor, then of the load.
+/// Computes the accelerations of the quadrotor, then of the load.
 fn translation(
     at: &StateAndParameters<'_>,
     position: &[f64; 9],
@@ -68,7 +68,7 @@ fn translation(
     Ok(rows)
 }
 
-/// Second rates of yaw, pitch and roll.
+/// Computes the second derivatives of yaw, pitch and roll.
 fn rotation(
     at: &StateAndParameters<'_>,
     position: &[f64; 9],
@@ -87,7 +87,7 @@ fn rotation(
         pitch * cr + yaw * cp * sr,
         yaw * cp * cr - pitch * sr,
     ];
-    // Along the axes: torques, then what turning does.
+    // Along the axes: torques, then gyroscopic terms.
     let rates = [0, 1, 2].map(|i| {
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);
         let gyroscopic = (inertia[j] - inertia[k]) * omega[j] * omega[k];

@@ -1,7 +1,7 @@
-//! The planar arm of two rigid links with a mass at its end: the first angle from the
-//! horizontal, the second from the first link (Spong, Hutchinson and Vidyasagar, "Robot
-//! Modeling and Control", section 6.4, with the rotor of the elbow on the second link).
-//! Flexible links have no closed form here.
+//! Planar arm of two rigid links with a mass at its end: the first angle from the horizontal, the
+//! second from the first link (Spong, Hutchinson and Vidyasagar, "Robot Modeling and Control",
+//! section 6.4, with the rotor of the elbow on the second link). Flexible links have no closed form
+//! here.
 
 use super::linear_system::LinearSystem;
 use super::{NotApplicable, StateAndParameters};

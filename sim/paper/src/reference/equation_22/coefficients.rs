@@ -1,25 +1,25 @@
-//! The coefficients of Eq. (22) under the paper's names, for any truncation order S,
-//! corrected where the printed ones contradict the paper's own mechanics.
+//! Coefficients of Eq. (22) with the names of the paper, for any truncation order S, corrected
+//! where the printed ones contradict the mechanics of the paper.
 //!
-//! The paper numbers columns for S = 4: a_31 .. a_34 belong to the modes and
-//! a_35 .. a_38 to the meshes. Here the columns of the modes are an array of S entries
-//! and those of the meshes keep the paper's names at S = 4.
+//! The paper numbers columns for S = 4: a_31 .. a_34 are for modes and a_35 .. a_38 for meshes.
+//! Here the columns of the modes are an array of S entries, and those of the meshes keep their
+//! names at S = 4.
 
 use crate::reference::evaluation::{Evaluation, Row};
 use crate::reference::mesh::{f_c, f_k};
 use crate::reference::mode_shapes::ModeShape;
 use crate::reference::parameters::PlanetaryArmParameters;
 
-/// The coefficients of Eq. (22) in physical units.
+/// Coefficients of Eq. (22) in physical units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coefficients {
     /// (I_c + 3 m_p r_c^2 + I_arm)/(r_c cos alpha), kg m.
     pub a_01: f64,
     /// a_02 .. a_0(S+1): rho A int x phi_i dx/(r_c cos alpha), kg.
     pub a_0: Vec<f64>,
-    /// a_m/(r_s M_s), m/s^2, the constant part of a_11.
+    /// Constant part of a_11: a_m/(r_s M_s), m/s^2.
     pub a_11_constant: f64,
-    /// F_w/(r_s M_s), m/s^2, the amplitude of a_11's fluctuation.
+    /// Amplitude of the fluctuation of a_11: F_w/(r_s M_s), m/s^2.
     pub a_11_amplitude: f64,
     /// -B_m/M_s, 1/s, on x_sp' and on x_pr'.
     pub a_12: f64,
@@ -55,17 +55,17 @@ pub struct Coefficients {
     pub a_37: f64,
     /// 3 r_c cos(alpha) c_pr, N s, on f_c(x_pr).
     pub a_38: f64,
-    /// The rows of the modes: a_40 .. a_48 is `modes[0]`, a_50 .. a_58 `modes[1]`, ...
+    /// Rows of the modes: a_40 .. a_48 is `modes[0]`, a_50 .. a_58 `modes[1]`, ...
     pub modes: Vec<ModeRow>,
     /// Half of the backlash between sun and planet, m.
     pub b_sp: f64,
     /// Half of the backlash between planet and ring, m.
     pub b_pr: f64,
-    /// Angular frequency of the motor's fluctuation, rad/s.
+    /// Angular frequency of the motor fluctuation, rad/s.
     pub omega: f64,
 }
 
-/// The row of one mode i of Eq. (22): a_(3+i)0 .. a_(3+i)8 at S = 4.
+/// Row of mode i of Eq. (22): a_(3+i)0 .. a_(3+i)8 at S = 4.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModeRow {
     /// a_(3+i)0 = a_30 rho A int phi_i^2 dx, kg^2 m, on q_i''.
@@ -83,7 +83,7 @@ pub struct ModeRow {
     pub a_8: f64,
 }
 
-/// Integrals over one mode of the uniform arm, with their units.
+/// Integrals over one mode of the uniform arm, with units.
 struct ArmMode {
     /// rho A int x phi dx, kg m.
     h: f64,
@@ -113,7 +113,7 @@ impl ArmMode {
 }
 
 impl Coefficients {
-    /// The coefficients of `parameters` for truncation order `order`, 0 for the rigid arm.
+    /// Computes the coefficients for truncation order `order`, 0 for the rigid arm.
     pub fn new(parameters: &PlanetaryArmParameters, order: usize) -> Self {
         let PlanetaryArmParameters {
             k_sp,
@@ -180,7 +180,7 @@ impl Coefficients {
         coefficients
     }
 
-    /// The row of mode `i`, counted from 0.
+    /// Computes the row of mode `i`, counted from 0.
     fn mode_row(&self, i: usize, mode: &ArmMode) -> ModeRow {
         let a_0 = self.a_0[i];
         let mut a: Vec<f64> = self.a_3.iter().map(|a_3| -a_0 * a_3).collect();
@@ -195,12 +195,12 @@ impl Coefficients {
         }
     }
 
-    /// The truncation order S.
+    /// Returns the truncation order S.
     pub fn order(&self) -> usize {
         self.modes.len()
     }
 
-    /// a_11 at time `t` in s: A_m(t)/M_s, m/s^2.
+    /// Returns a_11 at time `t` (s): A_m(t)/M_s, m/s^2.
     pub fn a_11(&self, t: f64) -> f64 {
         self.a_11_constant + self.a_11_fluctuation(t)
     }
@@ -209,9 +209,9 @@ impl Coefficients {
         self.a_11_amplitude * eomgen_elementary::sin(self.omega * t)
     }
 
-    /// The accelerations of x_sp, x_pr, x_c, q_1 .. q_S (m/s^2) at time `t` (s) and
-    /// `state` (the same coordinates in m, then their rates in m/s), with row scales;
-    /// `None` if the state has not 2 (3 + S) entries.
+    /// Evaluates the accelerations of x_sp, x_pr, x_c, q_1 .. q_S (m/s^2) at time `t` (s) and
+    /// `state` (the same coordinates in m, then their rates in m/s), with row scales. Returns
+    /// `None` if the state does not have 2 (3 + S) entries.
     pub fn evaluate(&self, t: f64, state: &[f64]) -> Option<Evaluation> {
         let coordinates = 3 + self.order();
         if state.len() != 2 * coordinates {

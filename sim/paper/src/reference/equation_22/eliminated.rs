@@ -1,15 +1,15 @@
-//! The equations behind Eq. (22) as one writes them for speed: the modes are eliminated
-//! first (their block of the mass matrix is diagonal), which leaves one division by a_30,
-//! and every row costs O(S). All coefficients are prepared once; nothing is allocated.
+//! Eq. (22) written for speed. The modes are eliminated first (their block of the mass matrix is
+//! diagonal), which leaves one division by a_30, and every row costs O(S). All coefficients are
+//! prepared once; nothing is allocated.
 //!
-//! This is what generated code is measured against. It reads the coefficients of Eq. (22)
-//! and nothing of the derivation.
+//! Generated code is measured against this code. It uses the coefficients of Eq. (22) and nothing
+//! from the derivation.
 
 use super::coefficients::Coefficients;
 use crate::reference::mesh::{f_c, f_k};
 use crate::reference::parameters::PlanetaryArmParameters;
 
-/// Above this many modes their sum has partial sums.
+/// Largest number of modes summed without partial sums.
 const FEW: usize = 8;
 
 /// Spring, damper and backlash of one mesh.
@@ -23,7 +23,7 @@ struct Mesh {
     half_width: f64,
 }
 
-/// The arm of order `S`, prepared for one set of parameters.
+/// Arm of order `S`, prepared for one set of parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Eliminated<const S: usize> {
     sun_planet: Mesh,
@@ -40,9 +40,9 @@ pub struct Eliminated<const S: usize> {
     sun: f64,
     /// 1/M_p, 1/kg
     planet: f64,
-    /// 3 r_c cos(alpha)/a_30, 1/kg: the carrier's acceleration per force.
+    /// 3 r_c cos(alpha)/a_30, 1/kg: acceleration of the carrier per force.
     carrier: f64,
-    /// a_3i/(3 r_c cos alpha), N/m: the force of a mode at the carrier.
+    /// a_3i/(3 r_c cos alpha), N/m: force of a mode at the carrier.
     bending: [f64; S],
     /// -k_i/m_i, 1/s^2
     minus_square: [f64; S],
@@ -51,7 +51,7 @@ pub struct Eliminated<const S: usize> {
 }
 
 impl Mesh {
-    /// The mesh's force, N.
+    /// Computes the force of the mesh, N.
     #[inline(always)]
     fn force(&self, p: f64, p_dot: f64) -> f64 {
         self.stiffness * f_k(p, self.half_width) + self.damping * f_c(p, p_dot, self.half_width)
@@ -89,7 +89,7 @@ impl<const S: usize> Eliminated<S> {
         }
     }
 
-    /// All prepared numbers in the order of their fields, for the same equations in another language
+    /// Returns all prepared numbers in the order of the fields, for the same equations in C
     /// (`benches/c/by_hand.h`).
     pub fn prepared(&self) -> Vec<f64> {
         let mesh = |mesh: Mesh| [mesh.stiffness, mesh.damping, mesh.half_width];
@@ -113,8 +113,8 @@ impl<const S: usize> Eliminated<S> {
     }
 
     /// Writes the rates of `state` (x_sp, x_pr, x_c, q_1 .. q_S in m, then their rates in m/s) at
-    /// time `t` in s. The motor's sine is waited for last. Not inlined, as emitted functions
-    /// are not into other crates.
+    /// time `t` (s). The sine of the motor is used last. Not inlined, like emitted functions in
+    /// other crates.
     #[inline(never)]
     pub fn rates<const N: usize>(&self, t: f64, state: &[f64; N], rates: &mut [f64; N]) {
         const { assert!(N == 2 * (3 + S)) };
@@ -143,8 +143,8 @@ impl<const S: usize> Eliminated<S> {
     }
 }
 
-/// Copies numbers, two in a turn: one by one the compiler takes the loop for a copy of memory
-/// and calls the system's function, which costs more than the copy.
+/// Copies numbers, two per iteration. The compiler replaces a simple loop by a call of `memcpy`,
+/// which takes longer than the copy.
 #[inline(always)]
 pub fn copy_in_pairs(from: &[f64], to: &mut [f64]) {
     let length = from.len().min(to.len());
@@ -157,7 +157,7 @@ pub fn copy_in_pairs(from: &[f64], to: &mut [f64]) {
     }
 }
 
-/// The sum of a_i b_i.
+/// Computes the sum of a_i b_i.
 #[inline(always)]
 fn sum_of_products<const S: usize>(a: &[f64; S], b: &[f64]) -> f64 {
     if S > FEW {
@@ -166,10 +166,9 @@ fn sum_of_products<const S: usize>(a: &[f64; S], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// The same in eight partial sums, so that it is not one chain of additions. These are added
-/// half to half and not neighbour to neighbour, for which vectors need not be taken apart: by
-/// neighbours the compiler shuffles all that it multiplies. Not inlined: with the loops around
-/// it unrolled into one piece the compiler vectorises across them, and spills.
+/// Computes the sum of a_i b_i in eight partial sums, which avoids one chain of additions. The
+/// halves are added, because for neighbouring partial sums the compiler shuffles all factors. Not
+/// inlined: inlined, the compiler vectorises across the surrounding loops and spills registers.
 #[inline(never)]
 fn sum_in_blocks(a: &[f64], b: &[f64]) -> f64 {
     let ((a_blocks, a_rest), (b_blocks, b_rest)) = (a.as_chunks::<8>(), b.as_chunks::<8>());

@@ -1,8 +1,8 @@
-//! Eq. (22) as a right-hand side: dimensionless, every coefficient divided once by its
-//! row's inertia and scales, modes as loops, no allocation.
+//! Eq. (22) as a dimensionless right-hand side: each coefficient is divided once by the inertia and
+//! the scales of its row; modes are loops; nothing is allocated.
 //!
-//! X = x/b_c, qbar = q/b_c and tau = omega_n t; derivatives are by tau. With
-//! omega_n = 1 rad/s and b_c = 1 m the numbers are the physical ones.
+//! X = x/b_c, qbar = q/b_c and tau = omega_n t; derivatives are by tau. With omega_n = 1 rad/s and
+//! b_c = 1 m the numbers are the physical ones.
 
 use super::coefficients::Coefficients;
 use crate::reference::mesh::{f_c, f_k};
@@ -20,7 +20,7 @@ struct MeshColumns {
 /// Eq. (22) of order `S`, prepared for one set of parameters and scales.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Equation22<const S: usize> {
-    /// a_11/(b_c omega_n^2), its constant part and the amplitude of its fluctuation.
+    /// Constant part and amplitude of the fluctuation of a_11/(b_c omega_n^2).
     a_11: [f64; 2],
     /// omega/omega_n.
     omega: f64,
@@ -34,15 +34,14 @@ pub struct Equation22<const S: usize> {
     a_18: [f64; S],
     /// a_31 .. over a_30 omega_n^2, on qbar in row 3.
     a_3: [f64; S],
-    /// Rows of the modes on qbar, by column so that the rows run in lanes.
+    /// Rows of the modes on qbar, stored by column, so that the rows vectorise.
     modes: [[f64; S]; S],
     /// Rows of the modes on the mesh terms, each an array over the rows.
     modes_mesh: [[f64; S]; 4],
 }
 
 impl<const S: usize> Equation22<S> {
-    /// The number of entries of the state: X_sp, X_pr, X_c, qbar_1 .. qbar_S, then
-    /// their derivatives.
+    /// Number of entries of the state: X_sp, X_pr, X_c, qbar_1 .. qbar_S, then their derivatives.
     pub const STATES: usize = 2 * (3 + S);
 
     /// Prepares the equation for `parameters`, `omega_n` in rad/s and `b_c` in m.
@@ -85,7 +84,7 @@ impl<const S: usize> Equation22<S> {
     ///
     /// # Panics
     ///
-    /// If `state` or `out` has not [`Self::STATES`] entries.
+    /// If `state` or `out` does not have [`Self::STATES`] entries.
     #[inline]
     pub fn rates(&self, tau: f64, state: &[f64], out: &mut [f64]) {
         assert_eq!(state.len(), Self::STATES);
@@ -110,7 +109,7 @@ impl<const S: usize> Equation22<S> {
         acceleration[3..].copy_from_slice(&self.mode_rows(&q, &mesh));
     }
 
-    /// The rows a_40 .., each over its inertia.
+    /// Computes the rows a_40 .., each divided by its inertia.
     #[inline]
     fn mode_rows(&self, q: &[f64; S], mesh: &[f64; 4]) -> [f64; S] {
         let mut rows = [0.0; S];
@@ -138,7 +137,7 @@ impl MeshColumns {
     }
 }
 
-/// Sum of products; four partial sums, so that it is not one chain of additions.
+/// Computes the sum of products in four partial sums, which avoids one chain of additions.
 #[inline]
 fn dot<const S: usize>(a: &[f64; S], b: &[f64; S]) -> f64 {
     let mut partial = [0.0; 4];

@@ -1,8 +1,8 @@
-//! Rows that are no coefficient, judged by what follows from them: scales, dead band,
-//! mode shapes, the positioning error, Table I and the nomenclature.
+//! Errata that are not coefficients, judged by their consequences: scales, dead band, mode shapes,
+//! positioning error, Table I, nomenclature.
 //!
-//! Not here: what the paper leaves out (I, a_m, b_m, F_w, c_sp, c_pr, b_c, the initial
-//! state); those have assumed values in the parameters, and nothing to be compared.
+//! Not included: quantities that the paper omits (I, a_m, b_m, F_w, c_sp, c_pr, b_c, the initial
+//! state). They have assumed values and cannot be compared.
 
 #![allow(non_snake_case, reason = "names as in the paper")]
 
@@ -13,13 +13,13 @@ use crate::reference::equation_22::Equation22;
 use crate::reference::mesh::f_k;
 use crate::reference::mode_shapes::ModeShape;
 
-/// The paper's time scale, rad/s: sqrt(k_sp/M_sp) with Table I.
+/// Time scale of the paper, rad/s: sqrt(k_sp/M_sp) with Table I.
 const OMEGA_N: f64 = 3.0885e4;
 
-/// The displacement scale, m (assumed).
+/// Displacement scale, m (assumed).
 const B_C: f64 = 25e-6;
 
-/// States the rows.
+/// Adds the rows.
 pub fn state(sources: &Sources, derived: &Derived<'_>, table: &mut ErrataTable) {
     scales(sources, derived, table);
     dead_band(sources, table);
@@ -31,15 +31,15 @@ pub fn state(sources: &Sources, derived: &Derived<'_>, table: &mut ErrataTable) 
     nomenclature(sources, table);
 }
 
-/// Eq. (13)-(15) and the lines below Eq. (22): one state through the dimensionless
-/// equations and back, by the scales as printed and as corrected.
+/// Compares Eq. (13)-(15) and the lines below Eq. (22): one state through the dimensionless
+/// equations and back, with the printed and with the corrected scales.
 fn scales(sources: &Sources, derived: &Derived<'_>, table: &mut ErrataTable) {
     let state = [
         6e-5, -7e-5, 0.3, 2e-4, -3e-5, 1e-5, 4e-6, 0.02, -0.01, 0.5, 0.05, 0.02, -0.03, 0.01,
     ];
     let physical = derived(&sources.parameters, PRINTED_ORDER, 0.0, &state);
     let equation = Equation22::<PRINTED_ORDER>::new(&sources.parameters, OMEGA_N, B_C);
-    // `factor` multiplies a displacement to make it dimensionless.
+    // `factor` converts a displacement to dimensionless form.
     let through = |factor: f64, rate_factor: f64, acceleration_factor: f64| {
         let mut scaled = state;
         scaled[..7].iter_mut().for_each(|x| *x *= factor);
@@ -72,7 +72,7 @@ fn scales(sources: &Sources, derived: &Derived<'_>, table: &mut ErrataTable) {
     );
 }
 
-/// f_k(X) of Eq. (16) and (22): half way to contact there is no force.
+/// Compares f_k(X) of Eq. (16) and (22): at half the distance to contact there is no force.
 fn dead_band(sources: &Sources, table: &mut ErrataTable) {
     let b = sources.parameters.b_sp;
     let inside = 0.5 * b / B_C;
@@ -85,15 +85,15 @@ fn dead_band(sources: &Sources, table: &mut ErrataTable) {
     );
 }
 
-/// The stiffness of mode `i` over its mass, 1/s^2, from the accelerations alone: the
-/// coupling with the carrier is taken off.
+/// Computes stiffness over mass of mode `i`, 1/s^2, from accelerations, without the coupling to the
+/// carrier.
 fn frequency_squared(sources: &Sources, i: usize) -> f64 {
     let by_force = &sources.flexible.spring[0];
     let by_mode = &sources.flexible.modes[i];
     by_force.at(3 + i) / by_force.at(2) * by_mode.at(2) - by_mode.at(3 + i)
 }
 
-/// beta_i l of the derived model.
+/// Computes beta_i l of the derived model.
 fn beta_l(sources: &Sources, i: usize) -> f64 {
     let parameters = &sources.parameters;
     let line_mass = parameters.rho * parameters.A;
@@ -102,13 +102,13 @@ fn beta_l(sources: &Sources, i: usize) -> f64 {
     fourth_power.powf(0.25)
 }
 
-/// int x phi_1 dx/int phi_1^2 dx of the derived model, m.
+/// Computes int x phi_1 dx/int phi_1^2 dx of the derived model, m.
 fn first_coupling(sources: &Sources) -> f64 {
     let by_force = &sources.flexible.spring[0];
     -by_force.at(3) / by_force.at(2) * sources.parameters.r_c_cos_alpha()
 }
 
-/// Eq. (18).
+/// Compares Eq. (18).
 fn frequencies(sources: &Sources, table: &mut ErrataTable) {
     for i in 0..PRINTED_ORDER {
         table.misprint(
@@ -123,11 +123,10 @@ fn frequencies(sources: &Sources, table: &mut ErrataTable) {
     }
 }
 
-/// Eq. (19): the amplitude ratio of mode 1, and the moment and shear it leaves at the
-/// free end.
+/// Compares Eq. (19): the amplitude ratio of mode 1, and its moment and shear at the free end.
 fn amplitude_ratio(sources: &Sources, table: &mut ErrataTable) {
     let z = beta_l(sources, 0);
-    // int x phi/int phi^2 = -2 l/(xi z^2) for a shape that meets its conditions.
+    // int x phi/int phi^2 = -2 l/(xi z^2) for a shape with correct boundary conditions.
     let xi = -2.0 * sources.parameters.l / (z * z * first_coupling(sources));
     let printed_xi = (z.cos() + z.cosh()) / (z.sin() + z.sinh());
     let (printed_text, corrected_text) = ("(cos + cosh)/(sin + sinh)", "(cos + cosh)/(sin - sinh)");
@@ -149,7 +148,8 @@ fn amplitude_ratio(sources: &Sources, table: &mut ErrataTable) {
     }
 }
 
-/// Eq. (21): without the rotation in the arm's velocity no mode feels the carrier.
+/// Compares Eq. (21): without the rotation in the velocity of the arm, modes do not couple to the
+/// carrier.
 fn coupling(sources: &Sources, table: &mut ErrataTable) {
     let integrals = ModeShape::clamped_free(1).integrals();
     table.misprint(
@@ -163,8 +163,8 @@ fn coupling(sources: &Sources, table: &mut ErrataTable) {
     );
 }
 
-/// Eq. (23) and (24), by the geometry of one state: where the end of the arm is, less
-/// where the sun says it should be.
+/// Compares Eq. (23) and (24) by the geometry of one state: the position of the end point less its
+/// nominal position from the sun.
 fn positioning_error(sources: &Sources, table: &mut ErrataTable) {
     let parameters = &sources.parameters;
     let (x_sp, x_pr, x_c, w) = (4e-5, 3e-5, 0.2, 1e-4);
@@ -186,13 +186,13 @@ fn positioning_error(sources: &Sources, table: &mut ErrataTable) {
     );
 }
 
-/// Everything that turns with the carrier in the derived rigid model, kg m^2.
+/// Computes the inertia that turns with the carrier in the derived rigid model, kg m^2.
 fn carrier_inertia(sources: &Sources) -> f64 {
     let r_c = sources.parameters.r_c_cos_alpha();
     3.0 * r_c * r_c * sources.parameters.k_sp / sources.rigid.spring[0].at(2)
 }
 
-/// Table I: I_arm, I_c/r_c^2 and the time scale that follows.
+/// Compares Table I: I_arm, I_c/r_c^2 and the resulting time scale.
 fn table_1(sources: &Sources, table: &mut ErrataTable) {
     let parameters = &sources.parameters;
     let r_c = parameters.r_c();
@@ -225,7 +225,7 @@ fn table_1(sources: &Sources, table: &mut ErrataTable) {
     );
 }
 
-/// What the nomenclature calls rho and theta_p.
+/// Compares the nomenclature of rho and theta_p.
 fn nomenclature(sources: &Sources, table: &mut ErrataTable) {
     let parameters = &sources.parameters;
     let rest = parameters.I_c + 3.0 * parameters.m_p * parameters.r_c().powi(2);
@@ -240,7 +240,7 @@ fn nomenclature(sources: &Sources, table: &mut ErrataTable) {
     );
     let by_force = &sources.rigid.spring[0];
     let absolute = parameters.k_sp / sources.masses.M_p;
-    // An angle counted from the carrier moves by the carrier's rotation as well.
+    // An angle relative to the carrier also contains the rotation of the carrier.
     let carrier = 3.0 * parameters.r_c_cos_alpha() * parameters.k_sp / parameters.I_tot();
     table.misprint(
         "Nomenclature: theta_p, by x_p'' per f_k(x_sp)",

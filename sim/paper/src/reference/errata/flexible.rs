@@ -1,11 +1,11 @@
-//! Rows of the flexible arm: the coefficients of Eq. (22) at S = 4.
+//! Errata of the flexible arm: coefficients of Eq. (22) at S = 4.
 
 #![allow(non_snake_case, reason = "names as in the paper")]
 
 use super::table::ErrataTable;
 use super::{PRINTED_ORDER, Sources};
 
-/// States the rows of Eq. (22).
+/// Adds the rows of Eq. (22).
 pub fn state(sources: &Sources, table: &mut ErrataTable) {
     motor(sources, table);
     meshes_in_row_1(sources, table);
@@ -17,7 +17,7 @@ pub fn state(sources: &Sources, table: &mut ErrataTable) {
     }
 }
 
-/// a_11, a_12, a_13.
+/// Compares a_11, a_12, a_13.
 fn motor(sources: &Sources, table: &mut ErrataTable) {
     let a = &sources.coefficients;
     let measured = &sources.flexible;
@@ -47,7 +47,7 @@ fn motor(sources: &Sources, table: &mut ErrataTable) {
     table.correct("Eq. (22), a_13", ("2 a_12", a.a_13), measured.rate[2].at(0));
 }
 
-/// a_14 .. a_17 and a_18 .. a_111 in the row of X_sp.
+/// Compares a_14 .. a_17 and a_18 .. a_111 in the row of X_sp.
 fn meshes_in_row_1(sources: &Sources, table: &mut ErrataTable) {
     let a = &sources.coefficients;
     let parameters = &sources.parameters;
@@ -94,7 +94,7 @@ fn meshes_in_row_1(sources: &Sources, table: &mut ErrataTable) {
     modes_in_row(sources, 0, "X_sp", table);
 }
 
-/// a_21 .. a_24 and a_18 .. a_111 in the row of X_pr.
+/// Compares a_21 .. a_24 and a_18 .. a_111 in the row of X_pr.
 fn meshes_in_row_2(sources: &Sources, table: &mut ErrataTable) {
     let a = &sources.coefficients;
     let parameters = &sources.parameters;
@@ -129,7 +129,7 @@ fn meshes_in_row_2(sources: &Sources, table: &mut ErrataTable) {
     modes_in_row(sources, 1, "X_pr", table);
 }
 
-/// a_18 .. a_111.
+/// Compares a_18 .. a_111.
 fn modes_in_row(sources: &Sources, row: usize, name: &str, table: &mut ErrataTable) {
     for (i, a) in sources.coefficients.a_18.iter().enumerate() {
         table.correct(
@@ -140,7 +140,7 @@ fn modes_in_row(sources: &Sources, row: usize, name: &str, table: &mut ErrataTab
     }
 }
 
-/// a_01 .. a_05 and a_30, from the accelerations of carrier and modes under F_sp.
+/// Compares a_01 .. a_05 and a_30, from the accelerations of carrier and modes under F_sp.
 fn inertias(sources: &Sources, table: &mut ErrataTable) {
     let a = &sources.coefficients;
     let by_rigid = &sources.rigid.spring[0];
@@ -167,7 +167,7 @@ fn inertias(sources: &Sources, table: &mut ErrataTable) {
     }
 }
 
-/// a_31 .. a_38, each over a_30.
+/// Compares a_31 .. a_38, each over a_30.
 fn carrier_row(sources: &Sources, table: &mut ErrataTable) {
     let a = &sources.coefficients;
     let measured = &sources.flexible;
@@ -197,7 +197,7 @@ fn carrier_row(sources: &Sources, table: &mut ErrataTable) {
     }
 }
 
-/// The row of mode `i` (from 0), each coefficient over that of the mode's acceleration.
+/// Compares the row of mode `i` (from 0), each coefficient over that of the mode's acceleration.
 fn mode_row(sources: &Sources, i: usize, table: &mut ErrataTable) {
     let a = &sources.coefficients;
     let measured = &sources.flexible;
@@ -208,7 +208,7 @@ fn mode_row(sources: &Sources, i: usize, table: &mut ErrataTable) {
         let derived = measured.modes[j].at(3 + i);
         let value = coefficient / row.a_0;
         if i == j && i >= 2 {
-            // Printed with a_03 where the mode's own a_0(i+1) belongs.
+            // The paper prints a_03 instead of a_0(i+1).
             let printed = (coefficient + (a.a_0[i] - a.a_0[1]) * a.a_3[i]) / row.a_0;
             let text = format!("-a_30 int EI phi_i''^2 - a_03 a_3{}", i + 1);
             let right = format!("-a_30 int EI phi_i''^2 - a_0{} a_3{}", i + 2, i + 1);

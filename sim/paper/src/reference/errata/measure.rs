@@ -1,25 +1,24 @@
-//! Reads the coefficients of a right-hand side off its values at chosen states.
+//! Measurement of the coefficients of a right-hand side from its values at chosen states.
 //!
-//! Inside a regime of the meshes the accelerations are linear in the state; half the
-//! difference between a state and its mirror image gives a column of coefficients
-//! without the constant terms.
+//! In a regime of the meshes the accelerations are linear in the state. Half the difference between
+//! a state and its negative gives a column of coefficients without the constant terms.
 
 use crate::reference::parameters::PlanetaryArmParameters;
 
-/// A derived right-hand side: the accelerations at (parameters, order, t, state).
+/// Derived right-hand side: accelerations at (parameters, order, t, state).
 pub type Derived<'a> = dyn Fn(&PlanetaryArmParameters, usize, f64, &[f64]) -> Vec<f64> + 'a;
 
-/// How far a mesh is pressed beyond its dead band, m: its spring force then is of the
-/// order of its damping force at 1 m/s.
+/// Compression of a mesh beyond its dead band, m: its spring force is then of the order of its
+/// damping force at 1 m/s.
 const PRESS: f64 = 1e-6;
 
-/// What all accelerations gain from one unit of one quantity.
+/// Change of all accelerations per unit of one quantity.
 #[derive(Clone, Debug)]
 pub struct Response(Vec<f64>);
 
 impl Response {
-    /// The entry for the acceleration of coordinate `row`, not a number if the derived
-    /// model returned too few.
+    /// Returns the entry for coordinate `row`, or NaN if the derived model returned too few
+    /// accelerations.
     pub fn at(&self, row: usize) -> f64 {
         self.0.get(row).copied().unwrap_or(f64::NAN)
     }
@@ -29,22 +28,22 @@ impl Response {
     }
 }
 
-/// The responses of a model of one order.
+/// Responses of a model of one order.
 #[derive(Clone, Debug)]
 pub struct Responses {
-    /// At rest, meshes open, t = 0.
+    /// Accelerations at rest with open meshes at t = 0.
     pub constant: Response,
-    /// What a quarter of the motor's period adds to `constant`.
+    /// Change of `constant` after a quarter of the motor's period.
     pub fluctuation: Response,
-    /// By x_sp', x_pr', x_c' with both meshes open, 1/s.
+    /// Response to x_sp', x_pr', x_c' with both meshes open, 1/s.
     pub rate: [Response; 3],
-    /// By f_k(x_sp) and f_k(x_pr), 1/s^2.
+    /// Response to f_k(x_sp) and f_k(x_pr), 1/s^2.
     pub spring: [Response; 2],
-    /// By f_c(x_sp) and f_c(x_pr), 1/s.
+    /// Response to f_c(x_sp) and f_c(x_pr), 1/s.
     pub damping: [Response; 2],
-    /// By q_1 .. q_S with both meshes open, 1/s^2.
+    /// Response to q_1 .. q_S with both meshes open, 1/s^2.
     pub modes: Vec<Response>,
-    /// By x_sp with both meshes open, 1/s^2.
+    /// Response to x_sp with both meshes open, 1/s^2.
     pub inside_dead_band: Response,
 }
 
@@ -82,7 +81,7 @@ impl Responses {
     }
 }
 
-/// Evaluates the derived model at states given by their entries that are not zero.
+/// Evaluation of the derived model at states given by their nonzero entries.
 struct Probe<'a> {
     derived: &'a Derived<'a>,
     parameters: &'a PlanetaryArmParameters,
@@ -90,7 +89,7 @@ struct Probe<'a> {
 }
 
 impl Probe<'_> {
-    /// The index of a coordinate's rate in the state.
+    /// Returns the index of a coordinate's rate in the state.
     fn rate_of(&self, coordinate: usize) -> usize {
         3 + self.order + coordinate
     }
@@ -103,8 +102,8 @@ impl Probe<'_> {
         Response((self.derived)(self.parameters, self.order, t, &state))
     }
 
-    /// Half the difference between `entries` and their negatives, per `unit`, with
-    /// `held` the same on both sides.
+    /// Computes half the difference between `entries` and their negatives, per `unit`, with `held`
+    /// equal on both sides.
     fn slope(&self, entries: &[(usize, f64)], unit: f64, held: &[(usize, f64)]) -> Response {
         let with = |sign: f64| {
             let signed = entries.iter().map(|(index, value)| (*index, sign * value));

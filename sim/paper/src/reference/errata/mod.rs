@@ -1,12 +1,10 @@
-//! What the paper prints against what its own mechanics gives, row by row, and the check
-//! of a derived model against both.
+//! Errata: comparison of the printed equations with the mechanics of the paper, row by row, and
+//! with a derived model.
 //!
-//! The pipeline: `measure` reads every coefficient off a derived right-hand side by
-//! differences between states (the model is linear inside a regime, so that these are
-//! exact up to rounding); `rigid` (Eq. 10, 12, 16), `flexible` (Eq. 22) and
-//! `consequences` (rows that are no coefficient: scales, mode shapes, Table I) state
-//! the printed and the corrected value of each; `table` compares. A ratio stands where
-//! only a ratio can be observed: the accelerations give a_35/a_30, not a_35.
+//! `measure` reads every coefficient of a derived right-hand side by differences between states,
+//! which are exact up to rounding because the model is linear in a regime. `rigid` (Eq. 10, 12,
+//! 16), `flexible` (Eq. 22) and `consequences` (scales, mode shapes, Table I) give the printed and
+//! the corrected values; `table` compares. Only ratios such as a_35/a_30 follow from accelerations.
 
 mod consequences;
 mod flexible;
@@ -22,11 +20,10 @@ use super::equation_22::Coefficients;
 use super::parameters::PlanetaryArmParameters;
 use measure::Responses;
 
-/// The truncation order at which Eq. (22) is printed.
+/// Truncation order of the printed Eq. (22).
 const PRINTED_ORDER: usize = 4;
 
-/// What the rows are computed from: the parameters, the corrected coefficients and the
-/// responses of the derived model.
+/// Parameters, corrected coefficients and responses of the derived model.
 struct Sources {
     parameters: PlanetaryArmParameters,
     masses: EquivalentMasses,
@@ -35,11 +32,11 @@ struct Sources {
     flexible: Responses,
 }
 
-/// Compares a derived model of the arm with the printed and with the corrected equations.
+/// Compares a derived model of the arm with the printed and the corrected equations.
 ///
-/// `derived(parameters, order, t, state)` returns the accelerations of x_sp, x_pr, x_c,
-/// q_1 .. q_S (m/s^2) at time t (s) and the state (the coordinates in m, then their
-/// rates in m/s); it is called with order 0 and with order 4.
+/// `derived(parameters, order, t, state)` returns the accelerations of x_sp, x_pr, x_c, q_1 .. q_S
+/// (m/s^2) at time t (s) and the state (coordinates in m, then their rates in m/s). It is called
+/// with orders 0 and 4.
 pub fn errata_table(derived: &Derived<'_>) -> ErrataTable {
     let parameters = distinct_parameters();
     let sources = Sources {
@@ -56,8 +53,8 @@ pub fn errata_table(derived: &Derived<'_>) -> ErrataTable {
     table
 }
 
-/// The paper's values, with the two meshes told apart: with equal stiffness, damping and
-/// backlash an exchange of the meshes would go unnoticed.
+/// Returns the values of the paper with different meshes: with equal stiffness, damping and
+/// backlash, exchanged meshes would remain undetected.
 fn distinct_parameters() -> PlanetaryArmParameters {
     PlanetaryArmParameters {
         k_pr: 1.3e8,

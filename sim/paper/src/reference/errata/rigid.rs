@@ -1,4 +1,4 @@
-//! Rows of the rigid arm: Eq. (10), (12) and (16).
+//! Errata of the rigid arm: Eq. (10), (12) and (16).
 
 #![allow(non_snake_case, reason = "names as in the paper")]
 
@@ -6,7 +6,7 @@ use super::Sources;
 use super::table::ErrataTable;
 use crate::reference::equation_12::EquivalentMasses;
 
-/// States the rows of the rigid arm.
+/// Adds the rows of the rigid arm.
 pub fn state(sources: &Sources, table: &mut ErrataTable) {
     equation_10(sources, table);
     equation_12_row_1(sources, table);
@@ -15,7 +15,7 @@ pub fn state(sources: &Sources, table: &mut ErrataTable) {
     equation_16_rows_2_and_3(sources, table);
 }
 
-/// Eq. (10): torques per newton of mesh force, from the accelerations of the shafts.
+/// Compares Eq. (10): torques per newton of mesh force, from the accelerations of the shafts.
 fn equation_10(sources: &Sources, table: &mut ErrataTable) {
     let parameters = &sources.parameters;
     let (r_s, r_p, r_c) = (
@@ -74,7 +74,7 @@ fn equation_10(sources: &Sources, table: &mut ErrataTable) {
     );
 }
 
-/// Eq. (12), row 1, solved for x_sp''.
+/// Compares row 1 of Eq. (12), solved for x_sp''.
 fn equation_12_row_1(sources: &Sources, table: &mut ErrataTable) {
     let EquivalentMasses {
         M_s, M_sp, B, B_m, ..
@@ -145,7 +145,7 @@ fn equation_12_row_1(sources: &Sources, table: &mut ErrataTable) {
     );
 }
 
-/// Eq. (12), rows 2 and 3, solved for x_pr'' and x_c''.
+/// Compares rows 2 and 3 of Eq. (12), solved for x_pr'' and x_c''.
 fn equation_12_rows_2_and_3(sources: &Sources, table: &mut ErrataTable) {
     let EquivalentMasses {
         M_pr, M_c_prime, D, ..
@@ -199,14 +199,14 @@ fn equation_12_rows_2_and_3(sources: &Sources, table: &mut ErrataTable) {
     );
 }
 
-/// A time scale that is not sqrt(k_sp/M_sp), rad/s: only at that one the printed
-/// coefficient 1 of f_k(X_sp) holds.
+/// Time scale other than sqrt(k_sp/M_sp), rad/s: only for that one does the printed coefficient 1
+/// of f_k(X_sp) hold.
 const OMEGA_N: f64 = 1e4;
 
-/// The displacement scale, m.
+/// Displacement scale, m.
 const B_C: f64 = 25e-6;
 
-/// Eq. (16), row 1, solved for X_sp''.
+/// Compares row 1 of Eq. (16), solved for X_sp''.
 fn equation_16_row_1(sources: &Sources, table: &mut ErrataTable) {
     let EquivalentMasses { M_s, M_sp, B, .. } = sources.masses;
     let parameters = &sources.parameters;
@@ -262,7 +262,7 @@ fn equation_16_row_1(sources: &Sources, table: &mut ErrataTable) {
     );
 }
 
-/// Eq. (16), rows 2 and 3, solved for X_pr'' and X_c''.
+/// Compares rows 2 and 3 of Eq. (16), solved for X_pr'' and X_c''.
 fn equation_16_rows_2_and_3(sources: &Sources, table: &mut ErrataTable) {
     let EquivalentMasses {
         M_sp,

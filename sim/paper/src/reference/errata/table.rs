@@ -1,75 +1,75 @@
-//! The table of errata: outcomes and how they are shown.
+//! Table of errata with outcomes.
 
 use std::fmt;
 
 use crate::reference::evaluation::relative;
 
-/// A derived value agrees with a stated one up to this deviation: rounding of the
-/// differences of accelerations, a few hundred operations at 1e-16.
+/// Largest deviation of equal values: rounding of differences of accelerations, a few hundred
+/// operations at 1e-16.
 const AGREEMENT: f64 = 1e-11;
 
-/// Beyond this deviation two values differ: far above rounding, and below the smallest
-/// misprint (beta_4 of Eq. (18), 3e-6).
+/// Smallest deviation of different values: far above rounding, below the smallest misprint (beta_4
+/// of Eq. (18), 3e-6).
 const DIFFERENCE: f64 = 1e-6;
 
-/// A statement of the paper, or its correction, with its value at the table's parameters.
+/// Printed or corrected statement, with its value at the parameters of the table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stated {
-    /// The formula in ASCII.
+    /// Formula in ASCII.
     pub text: String,
-    /// Its value, SI.
+    /// Value, SI.
     pub value: f64,
 }
 
-/// One row: what is stated and what the derived model gives.
+/// Row of the table: statements and value of the derived model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ErratumOutcome {
-    /// Where it stands and which quantity is compared.
+    /// Equation and compared quantity.
     pub place: String,
-    /// What the paper prints, if that is wrong; `None` where it is correct as printed.
+    /// Printed statement if it is wrong; `None` if it is correct.
     pub printed: Option<Stated>,
-    /// What is consistent with the energies.
+    /// Statement consistent with the energies.
     pub corrected: Stated,
-    /// What the derived model gives.
+    /// Value of the derived model.
     pub derived: f64,
     /// |derived - corrected| relative to the larger of the stated magnitudes.
     pub deviation_from_corrected: f64,
-    /// |derived - printed| likewise, where the printed one is wrong.
+    /// |derived - printed| relative to the larger magnitude, if the printed statement is wrong.
     pub deviation_from_printed: Option<f64>,
 }
 
 impl ErratumOutcome {
-    /// The derived value is the corrected one up to rounding.
+    /// Returns true if the derived value equals the corrected value up to rounding.
     pub fn agrees_with_corrected(&self) -> bool {
         self.deviation_from_corrected <= AGREEMENT
     }
 
-    /// The derived value is not the printed one; true where nothing wrong is printed.
+    /// Returns true if the derived value differs from a wrong printed value, or if none is wrong.
     pub fn differs_from_printed(&self) -> bool {
         self.deviation_from_printed
             .is_none_or(|deviation| deviation > DIFFERENCE)
     }
 
-    /// Both as they must be.
+    /// Returns true if both conditions hold.
     pub fn passed(&self) -> bool {
         self.agrees_with_corrected() && self.differs_from_printed()
     }
 }
 
-/// All rows in the order of the paper.
+/// Rows in the order of the paper.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ErrataTable {
-    /// The rows.
+    /// Rows.
     pub rows: Vec<ErratumOutcome>,
 }
 
 impl ErrataTable {
-    /// Every row agrees with the correction and differs from what is misprinted.
+    /// Returns true if every row agrees with the correction and differs from its misprint.
     pub fn passed(&self) -> bool {
         self.rows.iter().all(ErratumOutcome::passed)
     }
 
-    /// Adds a row whose printed statement is wrong.
+    /// Adds a row with a wrong printed statement.
     pub(super) fn misprint(
         &mut self,
         place: impl Into<String>,
@@ -146,7 +146,7 @@ impl fmt::Display for ErrataTable {
     }
 }
 
-/// The width of a column.
+/// Returns the width of a column.
 fn width<'a>(entries: impl Iterator<Item = &'a str>, title: &str) -> usize {
     entries
         .map(|entry| entry.chars().count())

@@ -1,10 +1,10 @@
-//! The arm by Eq. (22), as the solvers see it.
+//! Eq. (22) as a system for the solvers.
 
 use eomgen_paper::reference::PlanetaryArmParameters;
 use eomgen_paper::reference::equation_22::Equation22;
 use eomgen_sim::ode::System;
 
-/// The arm with S modes in physical units.
+/// Arm with S modes in physical units.
 pub struct Arm<const S: usize> {
     equation: Equation22<S>,
     parameters: PlanetaryArmParameters,
