@@ -69,7 +69,7 @@ fn absent(name: &str, reason: String) -> ReferenceEquations {
 /// Returns the shipped specification with the equations of `model`, or the reason that none
 /// matches.
 fn written(model: &Model) -> Result<Model, String> {
-    let mut reason = format!("nobody has written the equations of {} by hand", model.name);
+    let mut reason = format!("there are no hand-written equations of {}", model.name);
     for text in SHIPPED {
         let Ok(checked) = eomgen_model_spec::check(Source::new("a shipped specification", text))
         else {
@@ -84,7 +84,10 @@ fn written(model: &Model) -> Result<Model, String> {
         match difference(model, &known, given) {
             None => return Ok(known),
             Some(found) if known.name == model.name => {
-                reason = format!("this is not the {} written by hand: {found}", known.name);
+                reason = format!(
+                    "the equations differ from the hand-written ones of {}: {found}",
+                    known.name
+                );
             }
             Some(_) => {}
         }

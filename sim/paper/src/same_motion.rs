@@ -54,7 +54,7 @@ impl Pair<'_> {
         listed("states", &names(self.model), &names(self.known)).or_else(|| {
             let mut pairs = self.model.states.iter().zip(self.known.states.iter());
             let other = pairs.find(|(state, known)| !self.same(&state.rate, &known.rate));
-            other.map(|(state, _)| format!("the rate of its state `{}` is another", state.name))
+            other.map(|(state, _)| format!("the rate of its state `{}` differs", state.name))
         })
     }
 
@@ -66,7 +66,7 @@ impl Pair<'_> {
                 && self.same(&field.to, &known.to)
         };
         (fields.len() != known.len() || !fields.iter().zip(known).all(alike))
-            .then(|| "its fields, their domains or bases are others".to_owned())
+            .then(|| "its fields, their domains or bases differ".to_owned())
     }
 
     fn terms(&self, section: &str, terms: &[Term], known: &[Term]) -> Option<String> {
@@ -210,10 +210,10 @@ fn matched<T>(
     let mut left: Vec<&T> = known.iter().collect();
     for entry in own {
         let Some(place) = left.iter().position(|known| same(entry, known)) else {
-            return Some(format!("`{}` of [{section}] is another", name(entry)));
+            return Some(format!("`{}` of [{section}] differs", name(entry)));
         };
         left.swap_remove(place);
     }
     let missing = left.first()?;
-    Some(format!("it has no `{}` of [{section}]", name(missing)))
+    Some(format!("`{}` of [{section}] is missing", name(missing)))
 }

@@ -83,7 +83,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_deviation_is_relative_to_the_largest_term() {
+    fn deviation_is_relative_to_the_largest_term() {
         let mut row = Row::new();
         row.add(1e6);
         row.add(-1e6);
@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_never_agrees() {
+    fn nan_never_agrees() {
         let evaluation = Evaluation::from_rows([Row::new()]);
         assert_eq!(evaluation.deviation(&[f64::NAN]), f64::INFINITY);
         assert_eq!(evaluation.deviation(&[]), f64::INFINITY);

@@ -25,7 +25,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_dead_band_includes_its_ends() {
+    fn dead_band_includes_its_ends() {
         for p in [-1.0, -0.5, 0.0, 1.0] {
             assert_eq!((f_k(p, 1.0), f_c(p, 3.0, 1.0)), (0.0, 0.0));
         }

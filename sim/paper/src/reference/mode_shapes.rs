@@ -178,7 +178,7 @@ mod tests {
     ];
 
     #[test]
-    fn the_roots_are_the_published_ones() {
+    fn roots_match_published_values() {
         for (r, root) in (1..).zip(ROOTS) {
             let own = ModeShape::clamped_free(r).beta_l;
             // One unit in the last given place.
@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn clamped_at_one_end_free_at_the_other() {
+    fn shapes_satisfy_the_boundary_conditions() {
         for r in [1, 2, 5, 12, 40, 128] {
             let shape = ModeShape::clamped_free(r);
             // The phase z s has a rounding error of z eps; each derivative multiplies by z.
@@ -206,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn the_closed_forms_are_the_integrals() {
+    fn closed_forms_match_quadrature() {
         for r in [1, 2, 3, 7, 20, 64, 128] {
             let shape = ModeShape::clamped_free(r);
             let (exact, sum) = (shape.integrals(), shape.integrals_by_quadrature());
@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn derivatives_are_those_of_the_value() {
+    fn derivatives_match_differences() {
         let shape = ModeShape::clamped_free(3);
         let step = 1e-4;
         for derivative in 0..3 {
@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn the_printed_shapes_do_not_free_the_end() {
+    fn printed_shapes_leave_forces_at_the_free_end() {
         for r in 1..=4 {
             let shape = ModeShape::printed(r);
             let moment = shape.derivative(2, 1.0) / shape.beta_l.powi(2);

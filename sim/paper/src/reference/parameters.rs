@@ -146,7 +146,7 @@ mod tests {
     const ROUNDING: f64 = 1e-15;
 
     #[test]
-    fn the_geometry_closes() {
+    fn radii_satisfy_the_geometry() {
         let parameters = PlanetaryArmParameters::default();
         let sum = parameters.r_s() + parameters.r_p();
         assert!((parameters.r_c_cos_alpha() - sum).abs() <= ROUNDING * sum);
@@ -155,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn the_arm_has_the_inertia_of_table_1() {
+    fn arm_inertia_matches_table_1() {
         // Table I prints two digits.
         assert!((PlanetaryArmParameters::default().I_arm() - 0.033).abs() < 0.0005);
     }

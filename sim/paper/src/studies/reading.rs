@@ -125,8 +125,10 @@ impl Reading {
             Motion::Undecided => Kind::Unknown,
         };
         let note = match (motion, kind) {
-            (Motion::Undecided, Kind::Regular) => " Read as regular: the exponent is not positive.",
-            (Motion::Undecided, Kind::Chaotic) => " Read as chaotic: the exponent is large.",
+            (Motion::Undecided, Kind::Regular) => {
+                " Counted as regular: the exponent is not positive."
+            }
+            (Motion::Undecided, Kind::Chaotic) => " Counted as chaotic: the exponent is large.",
             _ => "",
         };
         Self {

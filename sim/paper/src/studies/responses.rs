@@ -246,10 +246,10 @@ fn all_tables(display: &Display) -> Vec<Columns> {
 const NOTES: [&str; 8] = [
     "lengths in m, times in s, exponents in 1/s, densities in m^2/Hz; t = 0 is the start at rest",
     "rms is about the mean; peak is the greatest magnitude",
-    "numbers are taken over 400 forcing periods after the transient, spectra of the figures over 40 s, the figures show 2 s",
+    "numbers are from 400 forcing periods after the transient, spectra of the figures from 40 s; the figures show 2 s",
     "the figures draw densities below 1e-13 of the greatest at that level",
     "f_la is Eq. (24) as printed, l dtheta + dr; trend is the logarithm of the ratio of its rms in the second half of the record to that in the first",
-    "natural_frequencies are those with both meshes in contact on one side, Hz; dominant_band is by the clamped arm's, which are lower",
+    "natural_frequencies are those with both meshes in contact on one side, Hz; dominant_band uses those of the clamped arm, which are lower",
     "the section has a point per forcing period; bifurcation tables have x_sp and dr at 80 forcing periods after 160 from rest, for each b",
-    "dominant_mode vibrates most at the arm's end, frequencies below the first mode's band left out; dominant_mode_with_static counts everything",
+    "dominant_mode has the largest vibration at the arm's end, without frequencies below the first mode's band; dominant_mode_with_static includes them",
 ];

@@ -229,7 +229,7 @@ impl Store {
             Ok(found) if found == text => {}
             Ok(_) => {
                 return Err(StudyError::Request(format!(
-                    "{} holds a different search; give another folder, or remove that one",
+                    "{} contains a different search; choose another folder, or remove it",
                     folder.display()
                 )));
             }

@@ -187,7 +187,7 @@ proptest! {
     /// The energies use positions and velocities of the parts. Without damping and input the closed
     /// forms must conserve them.
     #[test]
-    fn free_machines_keep_their_energy(numbers in proptest::collection::vec(-2.0..2.0_f64, 10)) {
+    fn free_machines_conserve_energy(numbers in proptest::collection::vec(-2.0..2.0_f64, 10)) {
         let cases = [
             ("double_pendulum", DOUBLE, 0, 4),
             ("cart_two_arms", CART, 0, 6),
@@ -206,7 +206,7 @@ proptest! {
 }
 
 #[test]
-fn a_pendulum_swings_down_and_is_damped() {
+fn pendulum_swings_down_with_damping() {
     let values: Values = &[("m", 2.0), ("a", 0.5), ("I", 0.1), ("g", 9.81), ("k", 0.1)];
     let found = evaluate("pendulum", values, 0, &[std::f64::consts::PI + 0.3, 2.0])
         .expect("a value")
@@ -217,7 +217,7 @@ fn a_pendulum_swings_down_and_is_damped() {
 }
 
 #[test]
-fn the_axis_feels_friction_against_its_motion() {
+fn friction_opposes_the_motion_of_the_axis() {
     let values: Values = &[("M", 95.0), ("F_v", 200.0), ("F_c", 20.0), ("offset", -3.0)];
     let at = |rate: f64| {
         evaluate("emps", values, 0, &[0.1, rate])
@@ -231,7 +231,7 @@ fn the_axis_feels_friction_against_its_motion() {
 }
 
 #[test]
-fn what_is_missing_is_named() {
+fn missing_parameters_are_named() {
     assert!(find("planetary_arm").is_none());
     let error = evaluate("pendulum", &[("m", 1.0), ("a", 1.0)], 0, &[0.0, 0.0]);
     assert_eq!(error, Err(NotApplicable::Parameter("g")));

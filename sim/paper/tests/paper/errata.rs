@@ -12,7 +12,7 @@ fn corrected(parameters: &PlanetaryArmParameters, order: usize, t: f64, state: &
 }
 
 #[test]
-fn every_row_agrees_with_the_correction_and_differs_from_the_misprint() {
+fn rows_agree_with_corrections_and_differ_from_misprints() {
     let table = errata_table(&corrected);
     println!("{table}");
     assert!(table.passed(), "{table}");
@@ -30,7 +30,7 @@ fn every_row_agrees_with_the_correction_and_differs_from_the_misprint() {
 }
 
 #[test]
-fn a_model_with_the_printed_damping_fails_in_that_row() {
+fn printed_damping_fails_in_its_row() {
     let printed = |parameters: &PlanetaryArmParameters, order: usize, t: f64, state: &[f64]| {
         match <&[f64; 6]>::try_from(state) {
             Ok(rigid) => equation_12::printed(parameters, rigid).accelerations,
@@ -60,7 +60,7 @@ fn a_model_with_the_printed_damping_fails_in_that_row() {
 }
 
 #[test]
-fn a_model_that_returns_nothing_agrees_with_nothing() {
+fn empty_accelerations_agree_with_no_row() {
     let table = errata_table(&|_, _, _, _| Vec::new());
     let from_the_model = table
         .rows

@@ -36,7 +36,7 @@ fn of(text: &str, order: usize) -> (Vec<String>, Vec<(String, String)>) {
 }
 
 #[test]
-fn a_comment_a_number_or_another_observable_keeps_the_reference() {
+fn comments_numbers_and_observables_keep_the_reference() {
     let closed = (vec!["closed_form".to_owned()], Vec::new());
     assert_eq!(of(EMPS, 0), closed);
     let commented = format!("# mine\n{EMPS}");
@@ -55,7 +55,7 @@ fn a_comment_a_number_or_another_observable_keeps_the_reference() {
 }
 
 #[test]
-fn the_numbers_are_passed_on() {
+fn references_use_the_values_of_the_model() {
     let heavier = model(&with(EMPS, "value = 95,", "value = 50,"));
     let mut values = heavier.parameter_values().expect("values");
     let place = |name: &str| {
@@ -76,27 +76,25 @@ fn the_numbers_are_passed_on() {
 }
 
 #[test]
-fn other_equations_have_no_reference_and_the_line_says_why() {
+fn other_equations_have_no_reference_but_a_reason() {
     let (names, absent) = of(&with(EMPS, "1/2*M*dot(q)^2", "3/2*M*dot(q)^2"), 0);
     assert!(names.is_empty());
     let [(name, reason)] = &absent[..] else {
         panic!("{absent:?}");
     };
     assert_eq!(name, "reference");
-    let expected = "this is not the emps written by hand: `carriage` of [kinetic] is another";
+    let expected =
+        "the equations differ from the hand-written ones of emps: `carriage` of [kinetic] differs";
     assert_eq!(reason, expected);
     let spring = "[model]\nname = \"spring\"\ntitle = \"Spring\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\n\
                   [coordinates]\nx = { unit = \"m\" }\n[kinetic]\nm = \"1/2*m*dot(x)^2\"\n";
     let (names, absent) = of(spring, 0);
     assert!(names.is_empty());
-    assert_eq!(
-        absent[0].1,
-        "nobody has written the equations of spring by hand"
-    );
+    assert_eq!(absent[0].1, "there are no hand-written equations of spring");
 }
 
 #[test]
-fn the_arm_keeps_its_equations_at_other_plays_and_loses_them_with_other_radii() {
+fn arm_references_allow_other_plays_but_not_other_radii() {
     let wider = with(ARM, "b_sp = { value = 25e-6", "b_sp = { value = 80e-6");
     let heavier = with(&wider, "value = \"M_s*r_s^2\"", "value = 1e-3");
     let (names, absent) = of(&heavier, 4);
@@ -116,7 +114,7 @@ fn the_arm_keeps_its_equations_at_other_plays_and_loses_them_with_other_radii() 
 }
 
 #[test]
-fn a_closed_form_of_rigid_links_says_that_it_is_one() {
+fn flexible_links_have_no_closed_form() {
     assert_eq!(of(TWO_LINKS, 0).0, ["closed_form"]);
     let (names, absent) = of(TWO_LINKS, 2);
     assert!(names.is_empty());
@@ -124,7 +122,7 @@ fn a_closed_form_of_rigid_links_says_that_it_is_one() {
 }
 
 #[test]
-fn a_parameter_that_a_machine_of_the_kind_may_have_is_not_passed_on_where_it_does_nothing() {
+fn unused_optional_parameters_are_not_passed_on() {
     let text = with(
         EMPS,
         "[coordinates]",

@@ -21,7 +21,7 @@ fn reference(until: f64) -> Vec<[f64; 3]> {
 }
 
 #[test]
-fn the_arm_follows_the_reference_trajectory_for_a_second() {
+fn arm_follows_the_reference_trajectory() {
     let rows = reference(1.0);
     assert_eq!(rows.len(), 101, "a row per hundredth of a second");
     let arm = Arm::<4>::default();
@@ -57,7 +57,7 @@ fn the_arm_follows_the_reference_trajectory_for_a_second() {
 }
 
 #[test]
-fn the_arm_moves_as_with_runge_kutta() {
+fn adams_matches_runge_kutta_on_the_arm() {
     let arm = Arm::<2>::default();
     let initial = [0.0; 10];
     let run = |method: Method| {

@@ -52,7 +52,7 @@ fn claim(id: &str) -> &'static Claim {
 }
 
 #[test]
-fn all_claims_hold_for_what_the_paper_describes() {
+fn all_claims_hold_for_readings_of_the_paper() {
     let readings = paper();
     for claim in &CLAIMS {
         let judged = judge(claim, &readings);
@@ -121,7 +121,7 @@ fn periodic_motion_is_quasi_periodic_only_in_the_generous_reading() {
 }
 
 #[test]
-fn a_route_with_a_gap_that_might_lead_back_is_undecided() {
+fn route_with_a_possible_return_is_undecided() {
     use Kind::{Chaotic as C, Regular as R, Unknown as U};
     for (kinds, expected) in [
         ([R, R, C, C], Holding::Holds),
@@ -149,7 +149,7 @@ fn a_route_with_a_gap_that_might_lead_back_is_undecided() {
 }
 
 #[test]
-fn a_missing_case_decides_nothing() {
+fn missing_cases_leave_claims_undecided() {
     for claim in &CLAIMS {
         let judged = judge(claim, &BTreeMap::new());
         assert_eq!(judged.holding, Holding::Undecided, "{}", claim.id);
@@ -202,7 +202,7 @@ fn parting(arm: &Arm, case: &Case, transient: usize, periods: usize) -> Vec<f64>
 }
 
 #[test]
-fn chaos_of_the_assumed_arm_grows_as_neighbouring_motions_part() {
+fn exponent_matches_the_divergence_of_two_motions() {
     let arm = Arm::new(&[4]).unwrap();
     let case = assumed(Forcing::TenPi, 100e-6);
     let length = Length {
@@ -227,7 +227,7 @@ fn chaos_of_the_assumed_arm_grows_as_neighbouring_motions_part() {
 }
 
 #[test]
-fn stated_errors_of_exponents_are_how_they_scatter_over_neighbouring_backlashes() {
+fn exponent_errors_match_their_scatter() {
     let arm = Arm::new(&[4]).unwrap();
     let length = Length {
         transient: (200, 200),
@@ -257,7 +257,7 @@ fn stated_errors_of_exponents_are_how_they_scatter_over_neighbouring_backlashes(
 }
 
 #[test]
-fn a_case_is_followed_on_until_it_is_decided() {
+fn undecided_cases_are_extended() {
     let arm = Arm::new(&[4]).unwrap();
     let case = assumed(Forcing::FivePi, 10e-6);
     let motion = |most: usize| {
@@ -279,7 +279,7 @@ fn a_case_is_followed_on_until_it_is_decided() {
 }
 
 #[test]
-fn with_the_printed_mode_shapes_the_least_play_is_chaos_and_no_third_mode_dominates() {
+fn printed_mode_shapes_give_chaos_without_a_dominant_third_mode() {
     let arm = Arm::with(Shapes::Printed, &[4]).unwrap();
     let length = Length {
         modes: 1,
@@ -304,7 +304,7 @@ fn with_the_printed_mode_shapes_the_least_play_is_chaos_and_no_third_mode_domina
 }
 
 #[test]
-fn without_backlash_the_arm_moves_regularly_and_as_its_observables_say() {
+fn motion_without_backlash_is_regular_and_matches_observables() {
     let arm = Arm::new(&[4]).unwrap();
     let case = Case {
         order: 4,
@@ -353,7 +353,7 @@ fn sets_fill_their_ranges() {
 }
 
 #[test]
-fn a_killed_search_goes_on_to_the_same_bytes() {
+fn interrupted_search_resumes_to_the_same_bytes() {
     let arm = Arm::new(&orders()).unwrap();
     let short = Length {
         transient: (2, 2),
@@ -388,7 +388,7 @@ fn a_killed_search_goes_on_to_the_same_bytes() {
 }
 
 #[test]
-fn what_holds_is_counted() {
+fn tally_counts_verdicts() {
     let judged = |index: usize, first: &str| {
         let letters = |first: &str| {
             let rest = std::iter::repeat_n('F', CLAIMS.len() - first.len());

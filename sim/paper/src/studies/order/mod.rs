@@ -120,7 +120,7 @@ fn study(
                         "differences are rms over the given seconds from the start at rest, to S = {REFERENCE}; lengths in m"
                     ),
                     "without backlash the machine is linear and the series converge at every time",
-                    "with backlash the motion is chaotic and two orders part exponentially: the series converge over a short time only, the statistics over a long one",
+                    "with backlash the motion is chaotic and two orders diverge exponentially: the series converge over a short time only, the statistics over a long time",
                     "the paper does not give the forcing frequency of Fig. 4",
                 ]),
             ),
