@@ -220,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_out_of_range_are_refused() {
+    fn numbers_out_of_range_are_rejected() {
         for text in ["1e999", "1e-999"] {
             assert!(tokens(text, Span::new).is_err(), "{text}");
         }
