@@ -1,5 +1,4 @@
-//! The files that a comparison and a discovery leave, and how a specification that was extended
-//! is validated. What is compared and what is found is the library's.
+//! Comparison of a model with records, discovery of missing effects, and the files that they write.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -13,51 +12,61 @@ use eomgen_records::read_dataset;
 use eomgen_validate::certificate::{Check, Verdict};
 use serde_json::{Value, json};
 
-use crate::arguments;
 use crate::error::{Error, Result, warn};
 use crate::model::{load, orders};
 use crate::output::write_file;
 
-/// Compares; the document that is left beside the page.
-pub fn compared(options: &arguments::Compare) -> Result<Value> {
+/// Files and seed of a comparison or a discovery.
+pub struct Task<'a> {
+    pub spec: &'a Path,
+    pub order: Option<&'a str>,
+    pub dataset: &'a Path,
+    pub out: &'a Path,
+    /// Seed of the noise in the simulated record that gives the noise floor.
+    pub seed: u64,
+}
+
+/// Compares a model with records and writes `comparison.json` and `report.html`. Returns the document.
+pub fn compare(task: &Task<'_>) -> Result<Value> {
     let begin = Instant::now();
-    let (text, order, dataset) = inputs(&options.spec, &options.dataset, options.order.as_deref())?;
-    let path = options.spec.display().to_string();
+    let (text, order, dataset) = inputs(task)?;
+    let path = task.spec.display().to_string();
     let specification = Specification {
         path: &path,
         text: &text,
         order,
     };
-    let found = eomgen_discover::compare(specification, &dataset, options.seed, &warn);
+    let found = eomgen_discover::compare(specification, &dataset, task.seed, &warn);
     let found = found.map_err(Error::discovery)?;
     let mut document = found.to_json();
     document["seconds"] = json!(begin.elapsed().as_secs_f64());
-    write_json(&options.out.join("comparison.json"), &document)?;
-    write_file(&options.out.join("report.html"), found.page().as_bytes())?;
+    write_json(&task.out.join("comparison.json"), &document)?;
+    write_file(&task.out.join("report.html"), found.page().as_bytes())?;
     Ok(document)
 }
 
-/// Discovers; the document that is left beside the page and the specification.
-pub fn discovered(options: &arguments::Discover) -> Result<Value> {
+/// Finds missing effects and writes `discovery.json`, `extended.toml`, `report.html` and proposed experiments.
+/// `limit` is in s; `effects` is a file with additional effects. Returns the document.
+pub fn discover(task: &Task<'_>, limit: Option<f64>, effects: Option<&Path>) -> Result<Value> {
     let begin = Instant::now();
-    let (text, order, dataset) = inputs(&options.spec, &options.dataset, options.order.as_deref())?;
-    let effects = catalogue::effects(options.effects.as_deref()).map_err(Error::Specification)?;
-    let path = options.spec.display().to_string();
+    let (text, order, dataset) = inputs(task)?;
+    let effects = catalogue::effects(effects).map_err(Error::Specification)?;
+    let path = task.spec.display().to_string();
     let specification = Specification {
         path: &path,
         text: &text,
         order,
     };
-    let stop = match options.limit {
+    let stop = match limit {
         Some(limit) => Stop::after(seconds(limit)?),
         None => Stop::default(),
     };
-    let found = discover_until(specification, dataset, &effects, options.seed, &warn, &stop);
+    let found = discover_until(specification, dataset, &effects, task.seed, &warn, &stop);
     let mut found = found.map_err(Error::discovery)?;
-    found.validation = validated(&path, &found.extended, order)?;
+    found.validation = validate(&path, &found.extended, order)?;
     let mut document = found.to_json();
     document["seconds"] = json!(begin.elapsed().as_secs_f64());
-    let out = &options.out;
+    let out = task.out;
     write_file(&out.join("extended.toml"), found.extended.as_bytes())?;
     write_file(&out.join("report.html"), found.page().as_bytes())?;
     for experiment in &found.experiments {
@@ -67,7 +76,7 @@ pub fn discovered(options: &arguments::Discover) -> Result<Value> {
     Ok(document)
 }
 
-/// A time to be spent.
+/// Parses a time limit in s.
 fn seconds(limit: f64) -> Result<Duration> {
     Duration::try_from_secs_f64(limit)
         .ok()
@@ -75,10 +84,9 @@ fn seconds(limit: f64) -> Result<Duration> {
         .ok_or_else(|| Error::input(format!("--limit {limit:?}: expected a time in s above 0")))
 }
 
-/// What the checks of `validate` say of the specification that was written: its equations are
-/// derived anew and set beside the independent oracle and the emitted source. None where fields
-/// have different orders, for which there are no such checks.
-fn validated(path: &str, text: &str, order: Option<usize>) -> Result<Option<Validation>> {
+/// Runs the checks of `validate` on the extended specification. Returns none if its fields have different
+/// orders, for which these checks do not exist.
+fn validate(path: &str, text: &str, order: Option<usize>) -> Result<Option<Validation>> {
     let checked = eomgen_model_spec::check(Source::new(path, text));
     let model = checked.map_err(Error::Specification)?.model;
     let orders = model.orders(order);
@@ -98,17 +106,13 @@ fn validated(path: &str, text: &str, order: Option<usize>) -> Result<Option<Vali
     }))
 }
 
-/// The specification's text, the order asked for, and the dataset.
-fn inputs(
-    spec: &Path,
-    dataset: &Path,
-    order: Option<&str>,
-) -> Result<(String, Option<usize>, Dataset)> {
-    let model = load(spec)?.model;
+/// Reads the specification's text, the truncation order and the dataset.
+fn inputs(task: &Task<'_>) -> Result<(String, Option<usize>, Dataset)> {
+    let model = load(task.spec)?.model;
     let text = model.source.text.to_string();
-    orders(&model, order)?;
-    let order = order.and_then(|order| order.trim().parse().ok());
-    let dataset = read_dataset(dataset, &model).map_err(Error::records)?;
+    orders(&model, task.order)?;
+    let order = task.order.and_then(|order| order.trim().parse().ok());
+    let dataset = read_dataset(task.dataset, &model).map_err(Error::records)?;
     for note in &dataset.notes {
         warn(&format!("note: {note}"));
     }

@@ -41,13 +41,11 @@ mod tour;
 
 use std::process::ExitCode;
 
-use clap::Parser;
-
-use arguments::{Arguments, Command};
+use arguments::{Arguments, Command, Paper};
 use error::Result;
 
 fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+    let arguments = Arguments::read();
     let result: Result = match arguments.command {
         Command::Check(options) => commands::check::run(&options),
         Command::Derive(options) => commands::derive::run(&options),
@@ -62,8 +60,8 @@ fn main() -> ExitCode {
         Command::Discover(options) => commands::discover::discover(&options),
         Command::Sweep(options) => commands::sweep::run(&options),
         Command::Merge(options) => commands::merge::run(&options),
-        Command::StudySearch(options) => commands::study_search::run(&options),
-        Command::Study(options) => commands::study::run(&options),
+        Command::Paper(Paper::Study(options)) => commands::study::run(&options),
+        Command::Paper(Paper::Claims(options)) => commands::claims::run(&options),
         Command::Page(options) => commands::page::run(&options),
         Command::Tour(options) => commands::tour::run(&options),
         Command::Schema => commands::schema::run(),

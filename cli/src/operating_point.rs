@@ -1,5 +1,4 @@
-//! Operating points on the command line: a model of given orders and parameters, where it is
-//! linearised or where a motion begins, and its JSON.
+//! Operating points given on the command line, initial states, and their JSON.
 
 use std::path::Path;
 
@@ -16,19 +15,20 @@ use serde_json::{Map, Value, json};
 use crate::error::{Error, Result, warn};
 use crate::model::{derive, load, orders};
 use crate::motion::note_moved;
+use crate::output::SCHEMA;
 use crate::settings::{borrowed, split, with_settings};
 
-/// The model of a specification with parameters set.
+/// Loads a specification with parameters set and derives it.
 pub fn model(spec: &Path, order: Option<&str>, set: &[String]) -> Result<CompiledModel> {
     let model = with_settings(load(spec)?.model, set)?;
     let orders = orders(&model, order)?;
     derive(model, &orders)
 }
 
-/// The word in place of an assignment for the nearest equilibrium.
+/// Word of `--state` that selects the nearest equilibrium.
 const TRIM: &str = "trim";
 
-/// Names and values of every `NAME=VALUE` of an option: states, inputs and `t`, in SI.
+/// Reads every `NAME=EXPR` of an option. Returns names and values, in SI, of states, inputs and `t`.
 pub fn values(run: &Instance<'_>, option: &str, assigned: &[String]) -> Result<Vec<(String, f64)>> {
     let (compiled, model) = (run.model(), run.model().model());
     let states = model.state_units(compiled.orders());
@@ -49,26 +49,30 @@ pub fn values(run: &Instance<'_>, option: &str, assigned: &[String]) -> Result<V
     split(option, assigned)?.iter().map(value).collect()
 }
 
-/// The point of `--at`: the initial state with every `NAME=VALUE`, on the constraints; with the word `trim`
-/// the equilibrium nearest to it.
-pub fn point(run: &Instance<'_>, at: &[String]) -> Result<OperatingPoint> {
+/// Splits the values of `--state` into assignments, in SI, and whether the word `trim` is among them.
+fn assignments(run: &Instance<'_>, state: &[String]) -> Result<(Vec<(String, f64)>, bool)> {
     let (words, assigned): (Vec<String>, Vec<String>) =
-        at.iter().cloned().partition(|text| text.trim() == TRIM);
-    let given = values(run, "--at", &assigned)?;
+        state.iter().cloned().partition(|text| text.trim() == TRIM);
+    Ok((values(run, "--state", &assigned)?, !words.is_empty()))
+}
+
+/// Returns the point of `--state`: the initial state with every `NAME=EXPR`, moved onto the constraints, or
+/// the nearest equilibrium.
+pub fn point(run: &Instance<'_>, state: &[String]) -> Result<OperatingPoint> {
+    let (given, is_trimmed) = assignments(run, state)?;
     let given = borrowed(&given);
-    match words.is_empty() {
-        true => consistent(run, run.operating_point(&given)?),
-        false => {
-            let request = EquilibriumRequest {
-                start: &given,
-                fixed: &[],
-            };
-            Ok(equilibrium(run, request)?.at)
-        }
+    match is_trimmed {
+        false => consistent(run, run.operating_point(&given)?),
+        true => Ok(equilibrium_near(run, &given)?.at),
     }
 }
 
-/// An equilibrium; the command fails if there is none.
+fn equilibrium_near(run: &Instance<'_>, start: &[(&str, f64)]) -> Result<Equilibrium> {
+    let fixed = &[];
+    equilibrium(run, EquilibriumRequest { start, fixed })
+}
+
+/// Finds an equilibrium; the command fails if there is none.
 pub fn equilibrium(run: &Instance<'_>, request: EquilibriumRequest<'_>) -> Result<Equilibrium> {
     match run.equilibrium(request) {
         Err(Failure::Stopped { reason, .. }) => {
@@ -80,12 +84,12 @@ pub fn equilibrium(run: &Instance<'_>, request: EquilibriumRequest<'_>) -> Resul
             if !found.running.is_empty() {
                 let rates = found.running.join(", ");
                 warn(&format!(
-                    "note: this is not rest but steady running: {rates} are constant"
+                    "note: the equilibrium is a steady motion, not rest: {rates} are constant"
                 ));
             }
             if found.depends_on_time {
                 warn(&format!(
-                    "warning: the forces depend on the time: this is an equilibrium at t = {} s alone",
+                    "warning: the forces depend on time: the state is an equilibrium at t = {} s only",
                     found.at.t
                 ));
             }
@@ -94,20 +98,20 @@ pub fn equilibrium(run: &Instance<'_>, request: EquilibriumRequest<'_>) -> Resul
     }
 }
 
-/// Whether a point is an equilibrium, with a warning if it is not.
+/// Returns whether a point is an equilibrium, and warns if it is not.
 pub fn is_equilibrium(run: &Instance<'_>, at: &OperatingPoint) -> Result<bool> {
     let found = run.departure(at)?;
     if !found.is_none() {
         warn(&format!(
-            "warning: this state is no equilibrium: {}, and what is linearised holds for a short time only; \
-             give another state with --at NAME=VALUE, or --at trim",
+            "warning: this state is no equilibrium: {}; the linearisation holds for a short time only; \
+             give another state with --state NAME=EXPR, or --state trim",
             described(&found)
         ));
     }
     Ok(found.is_none())
 }
 
-/// Says which quantities change at a state that is no equilibrium.
+/// Names the quantities that change at a state that is no equilibrium.
 fn described(found: &Departure) -> String {
     let parts = [
         ("the machine moves there", &found.moving, "is not 0"),
@@ -128,20 +132,24 @@ fn described(found: &Departure) -> String {
     parts.join(" and ")
 }
 
-/// The initial state with every `NAME=VALUE`.
-pub fn with_initial(run: &Instance<'_>, assigned: &[String]) -> Result<Vec<f64>> {
-    let settings = values(run, "--initial", assigned)?;
-    for (name, _) in &settings {
+/// Returns the initial state with every `NAME=EXPR` of `--state`, or the nearest equilibrium.
+pub fn initial_state(run: &Instance<'_>, state: &[String]) -> Result<Vec<f64>> {
+    let (given, is_trimmed) = assignments(run, state)?;
+    for (name, _) in &given {
         if !matches!(run.model().setting(name)?, Setting::State(_)) {
             return Err(Error::input(format!(
-                "--initial {name}: expected a coordinate, a mode or a rate"
+                "--state {name}: expected a coordinate, a mode, a rate or another state; inputs are set with --input"
             )));
         }
     }
-    Ok(run.operating_point(&borrowed(&settings))?.state)
+    let given = borrowed(&given);
+    match is_trimmed {
+        false => Ok(run.operating_point(&given)?.state),
+        true => Ok(equilibrium_near(run, &given)?.at.state),
+    }
 }
 
-/// The point moved onto the constraints of the model, with a note of what that moved.
+/// Moves a point onto the constraints of the model, with a note about the states that moved.
 fn consistent(run: &Instance<'_>, mut at: OperatingPoint) -> Result<OperatingPoint> {
     let inputs = HeldInputs::constant(at.inputs.clone());
     let (state, moved) = run.consistent(&at.state, at.t, &inputs)?;
@@ -150,10 +158,10 @@ fn consistent(run: &Instance<'_>, mut at: OperatingPoint) -> Result<OperatingPoi
     Ok(at)
 }
 
-/// The head of a document: schema, model, order; with the names and SI units of what it is about.
+/// Returns the head of a document: schema, model, order.
 pub fn head(compiled: &CompiledModel) -> Map<String, Value> {
     let mut document = Map::new();
-    document.insert("schema".to_owned(), json!(1));
+    document.insert("schema".to_owned(), json!(SCHEMA));
     document.insert("model".to_owned(), json!(compiled.model().name));
     let order = match compiled.orders() {
         [] => json!(0),
@@ -164,7 +172,7 @@ pub fn head(compiled: &CompiledModel) -> Map<String, Value> {
     document
 }
 
-/// A time, a state and inputs by name, SI.
+/// Returns time, state and inputs by name, in SI.
 pub fn named(compiled: &CompiledModel, at: &OperatingPoint) -> Value {
     let mut values = Map::new();
     values.insert("t".to_owned(), json!(at.t));
@@ -177,7 +185,7 @@ pub fn named(compiled: &CompiledModel, at: &OperatingPoint) -> Value {
     Value::Object(values)
 }
 
-/// Names and SI units of the inputs.
+/// Returns names and SI units of the inputs.
 pub fn inputs(compiled: &CompiledModel) -> (Vec<&str>, Vec<String>) {
     let inputs = compiled.model().inputs.iter();
     inputs
@@ -185,7 +193,7 @@ pub fn inputs(compiled: &CompiledModel) -> (Vec<&str>, Vec<String>) {
         .unzip()
 }
 
-/// What the numbers of a shape are amplitudes of: coordinates, then states of first order.
+/// Returns the names of the amplitudes of a mode shape: coordinates, then states of first order.
 pub fn shape_names(compiled: &CompiledModel) -> Vec<String> {
     let (mut names, degrees) = (
         compiled.state_names(),

@@ -8,7 +8,10 @@ use tempfile::NamedTempFile;
 
 use crate::error::{Error, Result, say, say_bytes, warn};
 
-/// Where a command's one file goes.
+/// Version of the JSON documents that the commands print and write.
+pub const SCHEMA: u32 = 2;
+
+/// Destination of a command's output file.
 pub enum Destination {
     /// To stdout, for the name `-`.
     Stdout,

@@ -1,4 +1,4 @@
-//! The inputs of a simulation and the times of its samples.
+//! Inputs of a simulation, and the times of its rows.
 
 use eomgen_model_spec::model::Model;
 use eomgen_records::read_inputs;
@@ -8,13 +8,13 @@ use crate::arguments::Simulate;
 use crate::error::{Error, Result, warn};
 use crate::settings::warn_of_inputs;
 
-/// The most numbers written, rows times columns: a few GB of memory.
-const MOST_NUMBERS: f64 = 1e8;
+/// Largest number of values in a table, rows times columns: a few GB of memory.
+const MAX_VALUES: f64 = 1e8;
 
-/// Rows where nothing is said about them.
-const DEFAULT_ROWS: f64 = 1000.0;
+/// Number of intervals without `--interval`.
+const DEFAULT_INTERVALS: f64 = 1000.0;
 
-/// The inputs: a record's, or 0.
+/// Returns the inputs: from a record, or constant.
 pub fn inputs(options: &Simulate, model: &Model) -> Result<HeldInputs> {
     match &options.record {
         Some(dataset) => {
@@ -34,16 +34,16 @@ pub fn inputs(options: &Simulate, model: &Model) -> Result<HeldInputs> {
     }
 }
 
-/// The times of the samples, s.
+/// Returns the times of the rows, in s.
 pub fn times(options: &Simulate, inputs: &HeldInputs) -> Result<Vec<f64>> {
     let span = span(options, inputs)?;
-    match options.sample {
+    match options.rows.interval {
         None if options.record.is_some() => record_times(inputs, span),
         step => even_times(span, step),
     }
 }
 
-/// Begin and end of the simulation, in s.
+/// Returns start and end of the simulation, in s.
 fn span(options: &Simulate, inputs: &HeldInputs) -> Result<(f64, f64)> {
     let recorded = options.record.as_ref().map(|_| inputs.times());
     let start = recorded
@@ -62,7 +62,7 @@ fn span(options: &Simulate, inputs: &HeldInputs) -> Result<(f64, f64)> {
     )))
 }
 
-/// The record's times up to the end.
+/// Returns the record's times up to `end`.
 fn record_times(inputs: &HeldInputs, (_, end): (f64, f64)) -> Result<Vec<f64>> {
     let times: Vec<f64> = inputs
         .times()
@@ -73,40 +73,40 @@ fn record_times(inputs: &HeldInputs, (_, end): (f64, f64)) -> Result<Vec<f64>> {
     let last = inputs.times().last().copied().unwrap_or(end);
     if end > last {
         return Err(Error::input(format!(
-            "--until {end:?}: the record ends at {last:?} s; with --sample its last inputs hold on"
+            "--until {end:?}: the record ends at {last:?} s; give an earlier time, or --interval to hold the last inputs"
         )));
     }
     match times.len() {
         0 | 1 => Err(Error::input(format!(
-            "--until {end:?}: no second sample of the record by then; give a later time, or --sample"
+            "--until {end:?}: the record has fewer than two samples up to then; give a later time, or --interval"
         ))),
         _ => Ok(times),
     }
 }
 
-/// Times a step apart, in s; a thousandth of the whole where no step is given.
+/// Returns evenly spaced times, in s. The default interval is a thousandth of the span.
 fn even_times((start, end): (f64, f64), step: Option<f64>) -> Result<Vec<f64>> {
     let whole = end - start;
-    let step = step.unwrap_or(whole / DEFAULT_ROWS);
+    let step = step.unwrap_or(whole / DEFAULT_INTERVALS);
     if !(step > 0.0 && step <= whole) {
         return Err(Error::input(format!(
-            "--sample {step:?}: expected a time in s above 0 and at most {whole:?}"
+            "--interval {step:?}: expected a time in s above 0 and at most {whole:?}"
         )));
     }
     let steps = (whole / step * (1.0 + 1e-12)).floor();
-    check_size(steps.min(MOST_NUMBERS * 2.0) as usize, 1)?;
+    check_size(steps.min(MAX_VALUES * 2.0) as usize, 1)?;
     Ok((0..=steps as usize)
         .map(|row| (start + row as f64 * step).min(end))
         .collect())
 }
 
-/// Refuses what would not fit into memory.
+/// Rejects a table that does not fit into memory.
 pub fn check_size(rows: usize, columns: usize) -> Result {
-    let numbers = rows as f64 * columns as f64;
-    if numbers <= MOST_NUMBERS {
+    let values = rows as f64 * columns as f64;
+    if values <= MAX_VALUES {
         return Ok(());
     }
     Err(Error::input(format!(
-        "too many rows: the limit is {MOST_NUMBERS:e} numbers; give --sample a longer time"
+        "too many rows: the limit is {MAX_VALUES:e} values (rows times columns); give a longer --interval"
     )))
 }

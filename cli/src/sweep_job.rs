@@ -69,7 +69,7 @@ pub fn model(
     at(points.count() - 1)?;
     let first = at(0)?;
     warn_of_inputs(&first);
-    let orders = orders(&first, options.order.as_deref())?;
+    let orders = orders(&first, options.model.order.text())?;
     Ok(CompiledModel::derive_unjudged(
         first,
         Orders::Each(&orders),

@@ -1,4 +1,4 @@
-//! What can be typed, with an example for every command.
+//! Commands and options of the program, with an example for every command.
 
 mod maps;
 mod models;
@@ -6,119 +6,169 @@ mod motions;
 mod paper;
 mod records;
 mod setup;
+mod shared;
+
+use std::ffi::OsString;
 
 use clap::{Parser, Subcommand};
 
 pub use maps::{Engine, Merge, Sweep};
 pub use models::{Check, Derive, Extra, Format, Generate, Page, Target, Validate};
-pub use motions::{Linearise, Modes, Simulate, Solver, Trim};
-pub use paper::{ModeShapes, Study, StudyName, StudySearch, Tour};
+pub use motions::{Linearise, Modes, Simulate, Trim};
+pub use paper::{Claims, ModeShapes, Paper, Study, StudyName, Tour};
 pub use records::{Compare, Dataset, Discover};
 pub use setup::{Completions, Man};
+pub use shared::Solver;
 
-/// From a specification of a mechanical system's energies to fast, checked equations of
-/// motion in Rust.
+/// Generates fast, checked equations of motion in Rust and C from the energies of a mechanical system.
 #[derive(Parser)]
 #[command(name = "eomgen", version, arg_required_else_help = true)]
 pub struct Arguments {
-    /// What to do.
     #[command(subcommand)]
     pub command: Command,
 }
 
-/// The commands.
+impl Arguments {
+    /// Parses the command line of the process. Earlier names of commands are accepted and not listed.
+    pub fn read() -> Self {
+        Self::parse_from(current_names(std::env::args_os().collect()))
+    }
+}
+
+/// Earlier names of commands, and the current ones.
+const RENAMED: [(&str, [&str; 2]); 2] = [
+    ("study", ["paper", "study"]),
+    ("study-search", ["paper", "claims"]),
+];
+
+/// Replaces an earlier name of a command, also after `help`.
+fn current_names(mut arguments: Vec<OsString>) -> Vec<OsString> {
+    let place = match arguments.get(1) {
+        Some(first) if first == "help" => 2,
+        _ => 1,
+    };
+    let name = arguments.get(place);
+    let renamed = RENAMED
+        .iter()
+        .find(|(old, _)| name.is_some_and(|name| name == old));
+    if let Some((_, new)) = renamed {
+        arguments.splice(place..=place, new.iter().map(OsString::from));
+    }
+    arguments
+}
+
+/// Command with its options.
 #[derive(Subcommand)]
 pub enum Command {
-    /// Read and check a specification: grammar, names, units, inertia at the initial state,
-    /// unused parameters.
+    /// Check a specification: grammar, names, units, inertia at the initial state, unused parameters.
     #[command(after_help = "Example:\n  eomgen check model-spec/models/planetary_arm.toml")]
     Check(Check),
-    /// Print the equations of motion and what each coefficient is.
+    /// Print the equations of motion and the meaning of each coefficient.
     #[command(
         after_help = "Example:\n  eomgen derive model-spec/models/planetary_arm.toml --order 4 --format latex"
     )]
     Derive(Derive),
-    /// Emit the equations of motion as source.
+    /// Emit the equations of motion as source code.
     #[command(
         after_help = "Examples:\n  eomgen generate model-spec/models/planetary_arm.toml --order 5 --out arm5\n  eomgen generate model-spec/models/emps.toml --with jacobians,inverse_dynamics --certify --out emps\n  eomgen generate --all --check"
     )]
     Generate(Generate),
-    /// Check derived equations against independent ones and write a certificate.
+    /// Check the derived equations against independent ones and write a certificate.
     #[command(
         after_help = "Example:\n  eomgen validate model-spec/models/planetary_arm.toml --order 16 --out certificate.json"
     )]
     Validate(Validate),
-    /// Simulate and write a trajectory.
+    /// Simulate a model and write the trajectory.
     #[command(
-        after_help = "Example:\n  eomgen simulate model-spec/models/planetary_arm.toml --order 4 --until 2 --sample 0.001 --set b_sp=50e-6 --out arm.csv"
+        after_help = "Examples:\n  eomgen simulate model-spec/models/planetary_arm.toml --order 4 --until 2 --interval 0.001 --set b_sp=50e-6 --out arm.csv\n  eomgen simulate model-spec/models/pendulum.toml --until 10 --state theta=\"20 deg\" --out swing.csv --plot swing.svg"
     )]
     Simulate(Simulate),
-    /// Print the matrices A, B, C, D of a model about a state.
+    /// Linearise a model at a state and print the matrices A, B, C, D.
     #[command(
-        after_help = "Example:\n  eomgen linearise model-spec/models/furuta_pendulum.toml --at theta=pi --out upright.json"
+        after_help = "Examples:\n  eomgen linearise model-spec/models/furuta_pendulum.toml --state theta=pi --out upright.json\n  eomgen linearise model-spec/models/furuta_pendulum.toml --state trim"
     )]
     Linearise(Linearise),
-    /// Print natural frequencies, damping and shapes of a model about a state.
+    /// Print natural frequencies, damping ratios and mode shapes at a state.
     #[command(
         after_help = "Example:\n  eomgen modes model-spec/models/hub_beam_tip_mass.toml --order 4"
     )]
     Modes(Modes),
-    /// Find the equilibrium nearest to a state: at rest or running steadily.
+    /// Find the equilibrium nearest to a state, at rest or in steady motion.
     #[command(
-        after_help = "Examples:\n  eomgen trim model-spec/models/pendulum.toml\n  eomgen trim model-spec/models/furuta_pendulum.toml --fix u=0 --fix phi=0.5\n  eomgen trim model-spec/models/pendulum.toml --state theta=\"20 deg\"\nCoordinates are free, inputs 0. Where coordinates are fixed, inputs that are not are free. A coordinate on\nwhich nothing depends may move at a constant speed: the one that it starts with, or the one that is found."
+        after_help = "Examples:\n  eomgen trim model-spec/models/pendulum.toml\n  eomgen trim model-spec/models/furuta_pendulum.toml --fix u=0 --fix phi=0.5\n  eomgen trim model-spec/models/pendulum.toml --state theta=\"20 deg\"\nThe search varies the coordinates and keeps inputs at 0. If coordinates are fixed, it also varies the inputs that are not.\nA coordinate that appears in no equation may move at a constant speed: the initial one, or one that the search finds."
     )]
     Trim(Trim),
-    /// Propose a dataset file for a record: how its numbers stand, which columns are what, how
-    /// much noise they hold, with every guess marked.
+    /// Propose a dataset file for a record: number format, columns and noise, with guesses marked.
     #[command(
-        after_help = "Example:\n  eomgen dataset train.csv my_machine.toml --out proposed.toml\nWhat it guesses stands beside each key as a comment; docs/discovery.md has all keys."
+        after_help = "Example:\n  eomgen dataset train.csv my_machine.toml --out proposed.toml\nA comment after each key explains its guess; docs/discovery.md describes all keys."
     )]
     Dataset(Dataset),
-    /// Say where a model and its measurements disagree.
+    /// Report when and in which channels a model disagrees with its records.
     #[command(
         after_help = "Example:\n  eomgen compare my_machine.toml dataset.toml --out compared"
     )]
     Compare(Compare),
-    /// Find what a model lacks, name it, add it, and show the gap shrink.
+    /// Find the effects that a model lacks, add them, and report the remaining residual.
     #[command(
-        after_help = "Examples:\n  eomgen discover my_machine.toml dataset.toml --out found --seed 1\n  eomgen discover my_machine.toml dataset.toml --out found --limit 60\nWhere records do not tell effects apart, found/experiment.csv is an input that does: play it, list its record beside the others,\nand run this again; docs/discovery.md has its bounds."
+        after_help = "Examples:\n  eomgen discover my_machine.toml dataset.toml --out found --seed 1\n  eomgen discover my_machine.toml dataset.toml --out found --limit 60\nIf the records cannot separate two effects, found/experiment.csv is an input that does: apply it to the machine, add its record\nto the dataset file, and run the command again. Its bounds are described in docs/discovery.md."
     )]
     Discover(Discover),
-    /// Measure the motion over a grid of parameters.
+    /// Measure the motion over a grid or over random samples of parameters.
     #[command(
-        after_help = "Examples:\n  eomgen sweep model-spec/models/planetary_arm.toml --vary b_sp,b_pr=0:100e-6:50 --vary omega=10:60:50 --measure lyapunov,poincare --out map\n  eomgen sweep SPEC --vary b_sp,b_pr=0:100e-6:200 --vary omega=10:40:200 --measure poincare --out DIR --shard 2/3\n  eomgen sweep SPEC --vary k=10:1e5:50:log --measure max:tip,rms:tip --until 2 --out DIR\n  eomgen sweep SPEC --vary k=1:9:200 --measure poincare:y_dot --section x=0:up --until 500 --out DIR\n  eomgen sweep SPEC --vary omega=10:40:1000 --measure poincare --out DIR --engine slurm --shards 100\n  eomgen sweep SPEC --samples 1000 --seed 1 --measure max:tip --until 2 --out DIR\nA run that was interrupted goes on where it was. Shards may run one after the other or\nat once, in one folder or with their files in `parts` collected in one; then `eomgen merge DIR`."
+        after_help = "Examples:\n  eomgen sweep model-spec/models/planetary_arm.toml --vary b_sp,b_pr=0:100e-6:50 --vary omega=10:60:50 --measure lyapunov,poincare --out map\n  eomgen sweep SPEC --vary b_sp,b_pr=0:100e-6:200 --vary omega=10:40:200 --measure poincare --out DIR --shard 2/3\n  eomgen sweep SPEC --vary k=10:1e5:50:log --measure max:tip,rms:tip --until 2 --out DIR\n  eomgen sweep SPEC --vary k=1:9:200 --measure poincare:y_dot --section x=0:up --until 500 --out DIR\n  eomgen sweep SPEC --vary omega=10:40:1000 --measure poincare --out DIR --engine slurm --shards 100\n  eomgen sweep SPEC --samples 1000 --seed 1 --measure max:tip --until 2 --out DIR\nShards may run one after another or at the same time, into one folder, or into several folders whose `parts` are collected in\none folder afterwards. Then run `eomgen merge DIR`."
     )]
     Sweep(Sweep),
-    /// Put the shards of a sweep together; refuses where some are missing.
+    /// Combine the shards of a sweep; fails if shards are missing.
     #[command(after_help = "Example:\n  eomgen merge map")]
     Merge(Merge),
-    /// Judge the paper's claims, at the assumed values and over plausible ranges.
-    #[command(after_help = "Example:\n  eomgen study-search --sets 5000 --out search")]
-    StudySearch(StudySearch),
-    /// One of the paper's numerical studies: data, figures as the paper has them, and
-    /// `study.json`.
-    #[command(after_help = "Example:\n  eomgen study backlash --out studies/backlash")]
-    Study(Study),
-    /// Write a page on which a model can be played with: one HTML file that needs nothing else.
+    /// Reproduce the paper: its numerical studies and its claims.
+    #[command(
+        subcommand,
+        arg_required_else_help = true,
+        after_help = "Examples:\n  eomgen paper study backlash --out studies/backlash\n  eomgen paper claims --sets 5000 --out search"
+    )]
+    Paper(Paper),
+    /// Write an interactive simulation of a model as one self-contained HTML file.
     #[command(
         after_help = "Example:\n  eomgen page model-spec/models/double_pendulum.toml --out double_pendulum.html"
     )]
     Page(Page),
-    /// The newcomer's walk: check, derive, generate, validate and simulate the paper's arm,
-    /// find what a stage lacks, and leave one HTML page.
+    /// Run all steps on the paper's arm, from check to discover, and write one HTML page about them.
     #[command(after_help = "Example:\n  eomgen tour --out tour")]
     Tour(Tour),
-    /// Print the JSON schema of specifications, by which an editor completes and checks them.
+    /// Print the JSON schema of specifications, for completion and checks in an editor.
     #[command(
-        after_help = "Example:\n  eomgen schema > eomgen.schema.json\nA specification beside it then begins with the line\n  #:schema ./eomgen.schema.json"
+        after_help = "Example:\n  eomgen schema > eomgen.schema.json\nThe first line of a specification in the same folder is then\n  #:schema ./eomgen.schema.json"
     )]
     Schema,
-    /// Print a shell's completions of commands and options.
+    /// Print shell completions of commands and options.
     #[command(
         after_help = "Examples:\n  eomgen completions bash > ~/.local/share/bash-completion/completions/eomgen\n  eomgen completions fish > ~/.config/fish/completions/eomgen.fish\n  eomgen completions zsh > ~/.zfunc/_eomgen"
     )]
     Completions(Completions),
-    /// Write man pages, one of the program and one of every command.
+    /// Write man pages of the program and of every command.
     #[command(after_help = "Example:\n  eomgen man --out ~/.local/share/man/man1")]
     Man(Man),
+}
+
+#[cfg(test)]
+mod tests {
+    use std::ffi::OsString;
+
+    use super::current_names;
+
+    #[test]
+    fn earlier_names_of_commands_become_current_ones() {
+        for (given, expected) in [
+            ("eomgen study order", "eomgen paper study order"),
+            ("eomgen study-search --json", "eomgen paper claims --json"),
+            ("eomgen help study", "eomgen help paper study"),
+            ("eomgen paper study order", "eomgen paper study order"),
+            ("eomgen check study", "eomgen check study"),
+            ("eomgen", "eomgen"),
+        ] {
+            let words = |line: &str| line.split(' ').map(OsString::from).collect::<Vec<_>>();
+            assert_eq!(current_names(words(given)), words(expected), "{given}");
+        }
+    }
 }

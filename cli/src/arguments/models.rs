@@ -5,20 +5,18 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use eomgen_codegen::mechanics::outputs::{Output, UnknownOutput};
 
+use super::shared::{Json, ModelFile, Order};
+
 /// Options of `check`.
 #[derive(Args)]
 pub struct Check {
-    /// The specification.
-    pub spec: PathBuf,
-    /// Modal truncation order of every field, instead of the specification's.
-    #[arg(long, allow_negative_numbers = true)]
-    pub order: Option<String>,
-    /// Print one JSON document.
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub model: ModelFile,
+    #[command(flatten)]
+    pub output: Json,
 }
 
-/// How equations are printed.
+/// Format of printed equations.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Format {
     /// Plain text.
@@ -32,48 +30,43 @@ pub enum Format {
 /// Options of `derive`.
 #[derive(Args)]
 pub struct Derive {
-    /// The specification.
-    pub spec: PathBuf,
-    /// Modal truncation order of every field, instead of the specification's.
-    #[arg(long, allow_negative_numbers = true)]
-    pub order: Option<String>,
-    /// How to print.
+    #[command(flatten)]
+    pub model: ModelFile,
+    /// Output format.
     #[arg(long, value_enum, default_value = "text")]
     pub format: Format,
-    /// The same as `--format json`.
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub output: Json,
 }
 
-/// What source is emitted.
+/// Language of the emitted source.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Target {
     /// Rust, `no_std`, without dependencies: `lib.rs`.
     Rust,
-    /// C99 that is C++ as well, without allocation or library: `NAME.h` and `NAME.c`, by the
-    /// model's name.
+    /// C99 that is also C++, without allocation or libraries: `NAME.h` and `NAME.c`, named after the model.
     C99,
     /// The functions `rates` and `jac_rates` of (t, x, u, p) for CasADi's `external`:
     /// `NAME_casadi.c`, for one `cc -shared -fPIC`.
     Casadi,
-    /// A functional mock-up unit by FMI 2.0, for model exchange and co-simulation: `NAME.fmu`, with
-    /// sources and, where there is a C compiler `cc`, a binary for this machine.
+    /// A functional mock-up unit (FMI 2.0) for model exchange and co-simulation: `NAME.fmu` with sources,
+    /// and with a binary for this machine if there is a C compiler `cc`.
     Fmu2,
-    /// The same by FMI 3.0.
+    /// The same for FMI 3.0.
     Fmu3,
 }
 
-/// What `generate` leaves besides.
+/// Additional output of `generate`.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Extra {
     /// Functions in the source.
     Output(Output),
-    /// A benchmark beside it.
+    /// A benchmark.
     Bench,
 }
 
 impl Extra {
-    /// The functions among what was asked for.
+    /// Returns the requested functions.
     pub fn outputs(all: &[Self]) -> Vec<Output> {
         let request = |extra: &Self| match extra {
             Self::Output(output) => Some(*output),
@@ -100,74 +93,61 @@ impl std::str::FromStr for Extra {
 /// Options of `generate`.
 #[derive(Args)]
 pub struct Generate {
-    /// The specification.
+    /// Specification file (TOML).
     #[arg(required_unless_present = "all")]
     pub spec: Option<PathBuf>,
-    /// Modal truncation order of every field, instead of the specification's.
-    #[arg(long, allow_negative_numbers = true)]
-    pub order: Option<String>,
-    /// What to emit besides rates, observables, energy, power, guards and mass matrix:
-    /// bias_forces, inverse_dynamics, guard_rates, jacobians, products (of the Jacobian with
-    /// vectors), linearisation, regimes (rates with every contact
-    /// decided), lanes (every function inlined once more), hessians (of the weighted rates, for
-    /// CasADi), bench (a benchmark beside the source).
+    #[command(flatten)]
+    pub order: Order,
+    /// Functions to emit in addition to rates, observables, energy, power, guards and mass matrix:
+    /// bias_forces, inverse_dynamics, guard_rates, jacobians, products (Jacobian times vector), linearisation,
+    /// regimes (rates for given contact states), lanes (an inlined copy of every function, for SIMD), hessians
+    /// (of the weighted rates, for CasADi), bench (a benchmark).
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub with: Vec<Extra>,
-    /// The language.
+    /// Language of the emitted source.
     #[arg(long, value_enum, default_value = "rust")]
     pub target: Target,
-    /// The folder to write to.
+    /// Output folder.
     #[arg(long, required_unless_present = "all")]
     pub out: Option<PathBuf>,
-    /// Leave `certificate.json` beside the source, as `validate` writes it; exit status 1 if
-    /// any check fails.
+    /// Write `certificate.json` (see `eomgen validate`) to the same folder; exit with status 1 if a check fails.
     #[arg(long)]
     pub certify: bool,
-    /// Regenerate the checked-in variants in `generated/src` and their certificates (from the
-    /// project's folder).
+    /// Regenerate the checked-in variants in `generated/src` and their certificates; run it in the project's
+    /// folder.
     #[arg(long, conflicts_with_all = ["spec", "out", "order", "with", "target", "certify"])]
     pub all: bool,
-    /// With --all: compare instead of writing; exit status 1 on a difference.
+    /// With --all: compare instead of writing; exit with status 1 on a difference.
     #[arg(long)]
     pub check: bool,
-    /// Print one JSON document on what was written.
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub output: Json,
 }
 
 /// Options of `validate`.
 #[derive(Args)]
 pub struct Validate {
-    /// The specification.
-    pub spec: PathBuf,
-    /// Modal truncation order of every field, instead of the specification's.
-    #[arg(long, allow_negative_numbers = true)]
-    pub order: Option<String>,
-    /// What is emitted besides, as for `generate`, and judged with it: the certificate is of
-    /// one emitted source, and says nothing of what is not in it.
+    #[command(flatten)]
+    pub model: ModelFile,
+    /// Additional functions, as in `generate`. The certificate covers one emitted source, with these functions
+    /// only.
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub with: Vec<Extra>,
-    /// The file to write the certificate to, `-` for stdout; without it only the summary is
-    /// printed.
+    /// Output file for the certificate, `-` for stdout. Default: only a summary is printed.
     #[arg(long)]
     pub out: Option<PathBuf>,
-    /// Print the certificate on stdout instead of the summary.
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub output: Json,
 }
 
 /// Options of `page`.
 #[derive(Args)]
 pub struct Page {
-    /// The specification.
-    pub spec: PathBuf,
-    /// Modal truncation order of every field, instead of the specification's.
-    #[arg(long, allow_negative_numbers = true)]
-    pub order: Option<String>,
-    /// The file to write, or `-` for stdout.
+    #[command(flatten)]
+    pub model: ModelFile,
+    /// Output file (HTML), `-` for stdout.
     #[arg(long)]
     pub out: PathBuf,
-    /// Print one JSON document on the page instead of the summary.
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub output: Json,
 }

@@ -1,47 +1,58 @@
-//! Options of the paper's studies and of the tour.
+//! Options of the commands for the paper, and of the tour.
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::{Args, Subcommand, ValueEnum};
 
-/// Which mode shapes the paper's arm is derived with.
+use super::shared::Json;
+
+/// Commands for the paper.
+#[derive(Subcommand)]
+pub enum Paper {
+    /// Run one of the paper's numerical studies: data, the paper's figures and `study.json`.
+    #[command(after_help = "Example:\n  eomgen paper study backlash --out studies/backlash")]
+    Study(Study),
+    /// Evaluate the paper's claims at the assumed values and over plausible ranges of undisclosed parameters.
+    #[command(after_help = "Example:\n  eomgen paper claims --sets 5000 --out search")]
+    Claims(Claims),
+}
+
+/// Mode shapes of the paper's arm.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum ModeShapes {
-    /// Those of a clamped-free beam.
+    /// Mode shapes of a clamped-free beam.
     Corrected,
-    /// Those that the paper prints, Eq. (18) and (19).
+    /// Mode shapes as printed in the paper, Eq. (18) and (19).
     Printed,
 }
 
-/// Options of `study-search`.
+/// Options of `paper claims`.
 #[derive(Args)]
-pub struct StudySearch {
-    /// The folder to write to; a search begun there goes on.
+pub struct Claims {
+    /// Output folder. An interrupted search is resumed.
     #[arg(long)]
     pub out: PathBuf,
-    /// How many parameter sets.
-    #[arg(long, default_value_t = 5000)]
+    /// Number of parameter sets.
+    #[arg(long, value_name = "N", default_value_t = 5000)]
     pub sets: usize,
-    /// Which sequence of sets.
+    /// Seed of the parameter sets.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
-    /// Which mode shapes the arm has.
+    /// Mode shapes of the arm.
     #[arg(long, value_enum, default_value_t = ModeShapes::Corrected)]
     pub mode_shapes: ModeShapes,
-    /// Print one JSON document on what was found.
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub output: Json,
 }
 
 /// Options of `tour`.
 #[derive(Args)]
 pub struct Tour {
-    /// The folder to write to.
+    /// Output folder.
     #[arg(long)]
     pub out: PathBuf,
-    /// Print one JSON document on what was left.
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub output: Json,
 }
 
 /// The paper's studies.
@@ -57,16 +68,15 @@ pub enum StudyName {
     Flexibility,
 }
 
-/// Options of `study`.
+/// Options of `paper study`.
 #[derive(Args)]
 pub struct Study {
-    /// Which study.
+    /// Name of the study.
     #[arg(value_enum)]
     pub name: StudyName,
-    /// The folder to write to.
+    /// Output folder.
     #[arg(long)]
     pub out: PathBuf,
-    /// Print `study.json` on stdout instead of the summary.
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub output: Json,
 }

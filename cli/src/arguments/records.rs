@@ -4,66 +4,58 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::shared::{Json, ModelFile, NoiseSeed};
+
 /// Options of `dataset`.
 #[derive(Args)]
 pub struct Dataset {
-    /// The record: text or Parquet.
+    /// Record: text or Parquet.
     pub record: PathBuf,
-    /// The specification of the machine.
+    /// Specification file (TOML) of the machine.
     pub spec: PathBuf,
-    /// The dataset file, in the record's folder or above it; on stdout if absent.
+    /// Dataset file to write, in the record's folder or above it. Default: stdout.
     #[arg(long)]
     pub out: Option<PathBuf>,
-    /// Print one JSON document.
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub output: Json,
 }
 
 /// Options of `compare`.
 #[derive(Args)]
 pub struct Compare {
-    /// The specification.
-    pub spec: PathBuf,
-    /// The dataset's description.
+    #[command(flatten)]
+    pub model: ModelFile,
+    /// Dataset file (TOML) that describes the records.
     pub dataset: PathBuf,
-    /// Modal truncation order of every field, instead of the specification's.
-    #[arg(long, allow_negative_numbers = true)]
-    pub order: Option<String>,
-    /// The folder for `comparison.json` and `report.html`.
+    /// Output folder for `comparison.json` and `report.html`.
     #[arg(long)]
     pub out: PathBuf,
-    /// Draws the noise of the twin that gives the floor.
-    #[arg(long, default_value_t = 1)]
-    pub seed: u64,
-    /// Print one JSON document.
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub noise: NoiseSeed,
+    #[command(flatten)]
+    pub output: Json,
 }
 
 /// Options of `discover`.
 #[derive(Args)]
 pub struct Discover {
-    /// The specification.
-    pub spec: PathBuf,
-    /// The dataset's description.
+    #[command(flatten)]
+    pub model: ModelFile,
+    /// Dataset file (TOML) that describes the records.
     pub dataset: PathBuf,
-    /// Modal truncation order of every field, instead of the specification's.
-    #[arg(long, allow_negative_numbers = true)]
-    pub order: Option<String>,
-    /// The folder for `discovery.json`, `extended.toml`, `report.html`, and `experiment.csv` where one would tell more.
+    /// Output folder for `discovery.json`, `extended.toml` and `report.html`, and for `experiment.csv` if an
+    /// experiment would separate effects.
     #[arg(long)]
     pub out: PathBuf,
-    /// Draws the noise of the twin that gives the floor.
-    #[arg(long, default_value_t = 1)]
-    pub seed: u64,
-    /// End the search after so many seconds, with what is known by then. The model as it is, is
-    /// fitted in any case, and what is found is written back and run again.
-    #[arg(long, allow_negative_numbers = true)]
+    #[command(flatten)]
+    pub noise: NoiseSeed,
+    /// Time limit of the search, in s. Default: no limit. The fit of the given model and the final check run in
+    /// any case.
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
     pub limit: Option<f64>,
-    /// Effects of your own, beside those of the catalogue.
-    #[arg(long)]
+    /// File (TOML) with additional effects for the catalogue.
+    #[arg(long, value_name = "EFFECTS.toml")]
     pub effects: Option<PathBuf>,
-    /// Print one JSON document.
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub output: Json,
 }

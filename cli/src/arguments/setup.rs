@@ -8,7 +8,7 @@ use clap_complete::Shell;
 /// Options of `completions`.
 #[derive(Args)]
 pub struct Completions {
-    /// The shell.
+    /// Shell for which completions are printed.
     #[arg(value_enum)]
     pub shell: Shell,
 }
@@ -16,7 +16,7 @@ pub struct Completions {
 /// Options of `man`.
 #[derive(Args)]
 pub struct Man {
-    /// The folder to write to.
+    /// Output folder.
     #[arg(long)]
     pub out: PathBuf,
 }

@@ -21,14 +21,14 @@ pub fn run(options: &Check) -> Result {
     let examined = match examined(options) {
         Ok(found) => found,
         Err(error) => {
-            if let (true, Error::Specification(found)) = (options.json, &error) {
+            if let (true, Error::Specification(found)) = (options.output.json, &error) {
                 let document = json!({"passed": false, "diagnostics": found.records()});
                 say_json(&document)?;
             }
             return Err(error);
         }
     };
-    if options.json {
+    if options.output.json {
         return say_json(&record(&examined));
     }
     if !examined.warnings.is_empty() {
@@ -38,8 +38,8 @@ pub fn run(options: &Check) -> Result {
 }
 
 fn examined(options: &Check) -> Result<Examined> {
-    let checked = eomgen_model_spec::load(&options.spec).map_err(Error::Specification)?;
-    let orders = orders(&checked.model, options.order.as_deref())?;
+    let checked = eomgen_model_spec::load(&options.model.spec).map_err(Error::Specification)?;
+    let orders = orders(&checked.model, options.model.order.text())?;
     examine(&checked.model, &orders).map_err(Error::Specification)?;
     Ok(Examined {
         model: checked.model,

@@ -25,7 +25,7 @@ pub fn run(options: &Dataset) -> Result {
             Err(refusal) => warn(&format!("note: it cannot be used as it is: {refusal}")),
         }
     }
-    match (&options.out, options.json) {
+    match (&options.out, options.output.json) {
         (out, true) => say_json(&json!({ "schema": 1, "out": out, "dataset": text })),
         (Some(out), false) => say(&format!(
             "{}: check the lines that are marked as guessed\n",

@@ -9,8 +9,8 @@ use crate::model::load_to_read;
 
 /// Runs the command.
 pub fn run(options: &Derive) -> Result {
-    let compiled = load_to_read(&options.spec, options.order.as_deref())?;
-    let format = if options.json {
+    let compiled = load_to_read(&options.model.spec, options.model.order.text())?;
+    let format = if options.output.json {
         Format::Json
     } else {
         options.format

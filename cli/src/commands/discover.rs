@@ -5,17 +5,36 @@ use std::path::Path;
 use serde_json::Value;
 
 use crate::arguments;
-use crate::discovery::{compared, discovered};
+use crate::discovery::{self, Task};
 use crate::error::{Result, say, say_json};
 
 /// Runs `compare`.
 pub fn compare(options: &arguments::Compare) -> Result {
-    print(options.json, &compared(options)?, &options.out)
+    let task = Task {
+        spec: &options.model.spec,
+        order: options.model.order.text(),
+        dataset: &options.dataset,
+        out: &options.out,
+        seed: options.noise.seed,
+    };
+    print(
+        options.output.json,
+        &discovery::compare(&task)?,
+        &options.out,
+    )
 }
 
 /// Runs `discover`.
 pub fn discover(options: &arguments::Discover) -> Result {
-    print(options.json, &discovered(options)?, &options.out)
+    let task = Task {
+        spec: &options.model.spec,
+        order: options.model.order.text(),
+        dataset: &options.dataset,
+        out: &options.out,
+        seed: options.noise.seed,
+    };
+    let found = discovery::discover(&task, options.limit, options.effects.as_deref())?;
+    print(options.output.json, &found, &options.out)
 }
 
 /// The verdict, the effects and the gap by channel.

@@ -31,14 +31,14 @@ pub fn run(options: &Generate) -> Result {
     }
     match (&options.spec, &options.out) {
         (Some(spec), Some(out)) => one(options, spec, out),
-        _ => checked_in::run(options.check, options.json),
+        _ => checked_in::run(options.check, options.output.json),
     }
 }
 
 fn one(options: &Generate, spec: &Path, out: &Path) -> Result {
     let outputs = emission::outputs(options)?;
     let model = load(spec)?.model;
-    let orders = orders(&model, options.order.as_deref())?;
+    let orders = orders(&model, options.order.text())?;
     let variant = Variant::derive_with(&model, &orders, &outputs).map_err(Error::Specification)?;
     let emitted = emission::files(&model, &variant, options)?;
     let mut certificate = None;
@@ -64,7 +64,7 @@ fn one(options: &Generate, spec: &Path, out: &Path) -> Result {
         .iter()
         .map(|path| path.display().to_string())
         .collect();
-    if options.json {
+    if options.output.json {
         let document = json!({
             "model": variant.program.name,
             "orders": variant.equations.graph.orders(),

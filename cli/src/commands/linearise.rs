@@ -15,9 +15,13 @@ pub fn run(options: &Linearise) -> Result {
         .as_deref()
         .map(|out| Destination::of(out, false));
     let destination = destination.transpose()?;
-    let compiled = model(&options.spec, options.order.as_deref(), &options.set)?;
+    let compiled = model(
+        &options.model.spec,
+        options.model.order.text(),
+        &options.parameters.set,
+    )?;
     let run = compiled.at_declared()?;
-    let at = point(&run, &options.at)?;
+    let at = point(&run, &options.point.state)?;
     let is_equilibrium = is_equilibrium(&run, &at)?;
     let found = run.linearise(at.point())?;
     let text = || {

@@ -10,7 +10,7 @@ use crate::sweep_files::finish;
 pub fn run(options: &Merge) -> Result {
     let folder = Folder::existing(&options.dir).map_err(|error| Error::input(error.to_string()))?;
     let finished = finish(&folder)?;
-    if options.json {
+    if options.output.json {
         return say_json(&finished.json());
     }
     say(&finished.text())

@@ -1,6 +1,7 @@
 //! One file per command.
 
 pub mod check;
+pub mod claims;
 pub mod completions;
 pub mod dataset;
 pub mod derive;
@@ -14,7 +15,6 @@ pub mod page;
 pub mod schema;
 pub mod simulate;
 pub mod study;
-pub mod study_search;
 pub mod sweep;
 pub mod tour;
 pub mod trim;

@@ -15,11 +15,15 @@ use crate::regime::{Side, regime};
 /// Runs the command.
 pub fn run(options: &Modes) -> Result {
     let drawing = options.plot.as_deref();
-    let drawing = drawing.map(|plot| Destination::of_figure(plot, None, options.json));
+    let drawing = drawing.map(|plot| Destination::of_figure(plot, None, options.output.json));
     let drawing = drawing.transpose()?;
-    let compiled = model(&options.spec, options.order.as_deref(), &options.set)?;
+    let compiled = model(
+        &options.model.spec,
+        options.model.order.text(),
+        &options.parameters.set,
+    )?;
     let run = compiled.at_declared()?;
-    let at = point(&run, &options.at)?;
+    let at = point(&run, &options.point.state)?;
     let is_equilibrium = is_equilibrium(&run, &at)?;
     let found = run.linearise(at.point())?;
     let degrees = compiled.program().degrees_of_freedom();
@@ -29,7 +33,7 @@ pub fn run(options: &Modes) -> Result {
     if let Some(drawing) = &drawing {
         drawing.write(figure(&run, &regime, &modes)?.as_bytes())?;
     }
-    if !options.json {
+    if !options.output.json {
         let text = table(&compiled, &modes) + &sides(&regime);
         return drawing.map_or_else(|| say(&text), |drawing| drawing.summarise(&text));
     }

@@ -12,15 +12,15 @@ use crate::settings::stabilised;
 
 /// Runs the command.
 pub fn run(options: &Page) -> Result {
-    let destination = Destination::of(&options.out, options.json)?;
-    let model = load(&options.spec)?.model;
+    let destination = Destination::of(&options.out, options.output.json)?;
+    let model = load(&options.model.spec)?.model;
     without_impacts(&model, "a page")?;
     let model = stabilised(model)?;
-    let orders = orders(&model, options.order.as_deref())?;
+    let orders = orders(&model, options.model.order.text())?;
     let compiled = derive(model, &orders)?;
     let page = playable(&compiled)?;
     destination.write(page.as_bytes())?;
-    if options.json {
+    if options.output.json {
         let document = json!({
             "schema": 1,
             "model": compiled.program().name,

@@ -9,7 +9,7 @@ use crate::error::{Error, Result, warn};
 use crate::history;
 use crate::model::{derive, load, orders};
 use crate::motion::{columns, follow, in_words, table};
-use crate::operating_point::with_initial;
+use crate::operating_point::initial_state;
 use crate::output::Destination;
 use crate::ranges::warn_of_ranges;
 use crate::samples::{check_size, inputs, times};
@@ -18,35 +18,35 @@ use crate::table::Table;
 
 /// Runs the command.
 pub fn run(options: &Simulate) -> Result {
-    let destination = Destination::of(&options.out, options.json)?;
+    let destination = Destination::of(&options.out, options.output.json)?;
     let figure = options
         .plot
         .as_deref()
-        .map(|plot| Destination::of_figure(plot, Some(&options.out), options.json));
+        .map(|plot| Destination::of_figure(plot, Some(&options.out), options.output.json));
     let figure = figure.transpose()?;
-    let model = with_inputs(load(&options.spec)?.model, &options.input)?;
-    let model = with_settings(model, &options.set)?;
-    let orders = orders(&model, options.order.as_deref())?;
+    let model = with_inputs(load(&options.model.spec)?.model, &options.input)?;
+    let model = with_settings(model, &options.parameters.set)?;
+    let orders = orders(&model, options.model.order.text())?;
     let compiled = derive(model, &orders)?;
     let inputs = inputs(options, compiled.model())?;
     let times = times(options, &inputs)?;
-    if options.solver == Solver::Exact && options.tolerance.is_some() {
+    if options.integration.solver == Solver::Exact && options.integration.tolerance.is_some() {
         warn("warning: --tolerance has no effect on the exact solver: only rounding limits it");
     }
-    if options.solver == Solver::Exact && options.max_step.is_some() {
+    if options.integration.solver == Solver::Exact && options.integration.max_step.is_some() {
         warn("warning: --max-step has no effect on the exact solver, which misses no input");
     }
-    let tolerance = options.tolerance.unwrap_or(DEFAULT_TOLERANCE);
+    let tolerance = options.integration.tolerance.unwrap_or(DEFAULT_TOLERANCE);
     let run = compiled.at_declared()?;
     check_size(times.len(), columns(&run).len())?;
-    let initial = with_initial(&run, &options.initial)?;
+    let initial = initial_state(&run, &options.initial.state)?;
     let request = Request {
         initial: &initial,
         times: &times,
         inputs: &inputs,
-        solver: options.solver.into(),
+        solver: options.integration.solver.into(),
         tolerance,
-        max_step: options.max_step.unwrap_or(f64::INFINITY),
+        max_step: options.integration.max_step.unwrap_or(f64::INFINITY),
         audit: true,
     };
     let motion = follow(&run, &request)?;
@@ -98,7 +98,7 @@ fn summary(
     let file = options.out.display();
     let (rows, switches) = (table.rows(), motion.trajectory.switches.len());
     let work = motion.trajectory.work;
-    if options.json {
+    if options.output.json {
         let document = json!({
             "file": file.to_string(),
             "solver": motion.solver.name(),

@@ -37,7 +37,7 @@ pub fn run(options: &Study) -> Result {
     // Last, so that a folder with this file is whole.
     let text = format!("{document:#}\n");
     write_file(&document_path, text.as_bytes())?;
-    match options.json {
+    match options.output.json {
         true => say_bytes(text.as_bytes()),
         false => say(&summary(&study, &options.out)),
     }

@@ -20,8 +20,8 @@ pub fn run(options: &Sweep) -> Result {
         .as_deref()
         .map_or(Ok(Shard::WHOLE), Shard::parse);
     let shard = shard.map_err(refused)?;
-    let declared = load(&options.spec)?.model;
-    let set = settings(&declared, &options.set)?;
+    let declared = load(&options.model.spec)?.model;
+    let set = settings(&declared, &options.parameters.set)?;
     let set = borrowed(&set);
     let points = points(options, &declared, &set)?;
     let model = model(options, &declared, &points, &set)?;
@@ -65,7 +65,7 @@ pub fn run(options: &Sweep) -> Result {
 
 /// Says what was done.
 fn end(options: &Sweep, mut counts: Value, document: Value, text: &str) -> Result {
-    if !options.json {
+    if !options.output.json {
         return say(text);
     }
     if let (Value::Object(all), Value::Object(more)) = (&mut counts, document) {

@@ -9,8 +9,8 @@ use crate::tour::{TourResult, walk};
 /// Runs the command.
 pub fn run(options: &Tour) -> Result {
     let walked = walk(&options.out)?;
-    let summary = summary(options.json, &walked);
-    match options.json {
+    let summary = summary(options.output.json, &walked);
+    match options.output.json {
         true => say_bytes(summary.as_bytes())?,
         false => say(&summary)?,
     }

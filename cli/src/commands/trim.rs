@@ -10,9 +10,13 @@ use crate::settings::borrowed;
 
 /// Runs the command.
 pub fn run(options: &Trim) -> Result {
-    let compiled = model(&options.spec, options.order.as_deref(), &options.set)?;
+    let compiled = model(
+        &options.model.spec,
+        options.model.order.text(),
+        &options.parameters.set,
+    )?;
     let run = compiled.at_declared()?;
-    let start = values(&run, "--state", &options.state)?;
+    let start = values(&run, "--state", &options.start.state)?;
     let fixed = values(&run, "--fix", &options.fix)?;
     let request = EquilibriumRequest {
         start: &borrowed(&start),

@@ -13,10 +13,10 @@ use crate::progress::Note;
 pub fn run(options: &Validate) -> Result {
     let out = options.out.as_deref();
     let destination = out
-        .map(|path| Destination::of(path, options.json))
+        .map(|path| Destination::of(path, options.output.json))
         .transpose()?;
-    let model = load(&options.spec)?.model;
-    let orders = orders(&model, options.order.as_deref())?;
+    let model = load(&options.model.spec)?.model;
+    let orders = orders(&model, options.model.order.text())?;
     let certificate = {
         let _note = Note::new(format!("validating {}", model.name));
         certify(&model, &orders, &Extra::outputs(&options.with))?
@@ -26,7 +26,7 @@ pub fn run(options: &Validate) -> Result {
         destination.write(text.as_bytes())?;
     }
     match destination {
-        _ if options.json => say_bytes(text.as_bytes())?,
+        _ if options.output.json => say_bytes(text.as_bytes())?,
         Some(destination) => destination.summarise(&summary(&certificate))?,
         None => say(&summary(&certificate))?,
     }

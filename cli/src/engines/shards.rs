@@ -30,7 +30,7 @@ impl Commands {
         let folder = absolute(&options.out)?;
         let program = std::env::current_exe()
             .map_err(|error| Error::input(format!("this program has no path: {error}")))?;
-        let mut sweep = vec!["sweep".to_owned(), text(&absolute(&options.spec)?)?];
+        let mut sweep = vec!["sweep".to_owned(), text(&absolute(&options.model.spec)?)?];
         let mut add =
             |option: &str, value: &str| sweep.extend([option.to_owned(), value.to_owned()]);
         for vary in &options.vary {
@@ -40,10 +40,10 @@ impl Commands {
             add("--samples", &samples.to_string());
             add("--seed", &options.seed.to_string());
         }
-        for set in &options.set {
+        for set in &options.parameters.set {
             add("--set", set);
         }
-        if let Some(order) = &options.order {
+        if let Some(order) = options.model.order.text() {
             add("--order", order);
         }
         add("--measure", &options.measure.join(","));

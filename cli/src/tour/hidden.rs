@@ -10,8 +10,7 @@ use eomgen_model_spec::source::Source;
 use eomgen_sim::inputs::HeldInputs;
 use serde_json::Value;
 
-use crate::arguments::{Compare, Discover};
-use crate::discovery;
+use crate::discovery::{self, Task};
 use crate::error::{Error, Result};
 use crate::model::derive;
 use crate::motion::{simulate, table};
@@ -56,24 +55,15 @@ pub fn rediscover(out: &Path) -> Result<Rediscovery> {
     let dataset = folder.join("dataset.toml");
     write_file(&dataset, description().as_bytes())?;
     let (compared, found) = (folder.join("compared"), folder.join("found"));
-    let comparison = discovery::compared(&Compare {
-        spec: specification.clone(),
-        dataset: dataset.clone(),
+    let task = |out| Task {
+        spec: &specification,
         order: None,
-        out: compared.clone(),
+        dataset: &dataset,
+        out,
         seed: 1,
-        json: false,
-    })?;
-    let discovery = discovery::discovered(&Discover {
-        spec: specification,
-        dataset,
-        order: None,
-        out: found.clone(),
-        seed: 1,
-        limit: None,
-        effects: None,
-        json: false,
-    })?;
+    };
+    let comparison = discovery::compare(&task(&compared))?;
+    let discovery = discovery::discover(&task(&found), None, None)?;
     Ok(Rediscovery {
         comparison,
         discovery,

@@ -10,7 +10,7 @@ use eomgen_paper::studies::search::{Request, judge_all, orders, search};
 use eomgen_paper::studies::search_report;
 use eomgen_paper::studies::tally::shares;
 
-use crate::arguments::{ModeShapes, StudySearch};
+use crate::arguments::{Claims, ModeShapes};
 use crate::error::{Error, Result, say, say_json};
 use crate::output::{file_place, write_file};
 use crate::progress::Bar;
@@ -24,7 +24,7 @@ const NEIGHBOURS: usize = 32;
 const MOST_SETS: usize = 1_000_000;
 
 /// Runs the command.
-pub fn run(options: &StudySearch) -> Result {
+pub fn run(options: &Claims) -> Result {
     let (out, sets) = (options.out.as_path(), options.sets);
     let (document, table) = (out.join("search.json"), out.join("search.csv"));
     file_place(&document)?;
@@ -66,7 +66,7 @@ pub fn run(options: &StudySearch) -> Result {
     }
     let report = search_report::document(&request, &assumed, &found);
     write_file(&document, format!("{report:#}\n").as_bytes())?;
-    if options.json {
+    if options.output.json {
         return say_json(&report);
     }
     say(&format!(
