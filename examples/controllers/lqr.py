@@ -1,11 +1,11 @@
 """A linear-quadratic regulator for the planetary arm from its linearisation, tried on the arm with its play.
 
-    eomgen linearise model-spec/models/planetary_arm_rig.toml --at x_sp=1e-3 --at x_pr=1e-3 --out contact.json
+    eomgen linearise model-spec/models/planetary_arm_rig.toml --state x_sp=1e-3 --state x_pr=1e-3 --out contact.json
     eomgen generate model-spec/models/planetary_arm_rig.toml --target c99 --out arm
     cc -shared -fPIC -std=c99 -O2 -I arm examples/controllers/closed_loop.c arm/planetary_arm_rig.c -o arm.so
     python examples/controllers/lqr.py contact.json arm.so
 
-Linearised where both meshes are in contact, the torque moves every state. Linearised at rest, without `--at`,
+Linearised where both meshes are in contact, the torque moves every state. Linearised at rest, without `--state`,
 the meshes are open and it moves the sun alone: that is said, and no gain is computed.
 """
 
@@ -55,7 +55,7 @@ def gain(document):
         out = ", ".join(name for name, alone in zip(document["states"], out) if alone) or "the rest"
         sys.exit(
             f"error: the torque does not move {out}: no gain controls them\n"
-            "help: linearise where both meshes are in contact: --at x_sp=1e-3 --at x_pr=1e-3"
+            "help: linearise where both meshes are in contact: --state x_sp=1e-3 --state x_pr=1e-3"
         )
     large = np.array([LARGE[unit] for unit in document["units"]["states"]])
     A, B = A / large[:, None] * large, B / large[:, None]

@@ -169,7 +169,7 @@ def test_a_linearisation_holds_the_jacobians(cart, states):
 def test_the_command_s_arrays_are_those_of_the_package(tmp_path, program, cart):
     out, spec = tmp_path / "matrices.npz", tmp_path / "cart.toml"
     spec.write_text(cart.text, encoding="utf-8")
-    point = ["--at", f"{cart.states[1]}=0.3", "--at", "t=0.5"]
+    point = ["--state", f"{cart.states[1]}=0.3", "--state", "t=0.5"]
     subprocess.run([program, "linearise", spec, *point, "--out", out], check=True, capture_output=True)
     written, found = np.load(out), cart.linearise(0.5, {cart.states[1]: 0.3})
     for name, matrix in zip("ABCD", found):

@@ -17,7 +17,7 @@ from conftest import SPECIFICATIONS
 )
 def test_a_motion_is_that_of_the_command_line(tmp_path, program, name, solver):
     path, out = SPECIFICATIONS / f"{name}.toml", tmp_path / "motion.csv"
-    command = [program, "simulate", path, "--until", "0.7", "--sample", "1e-3"]
+    command = [program, "simulate", path, "--until", "0.7", "--interval", "1e-3"]
     subprocess.run([*command, "--solver", solver, "--out", out], check=True, capture_output=True)
     with open(out, encoding="utf-8") as file:
         header = file.readline().strip().split(",")

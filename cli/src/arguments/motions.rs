@@ -98,7 +98,7 @@ pub struct Trim {
     pub start: StateValues,
     /// Value that the search keeps, of a coordinate, an input, or the speed (NAME_dot) of a coordinate that
     /// appears in no equation; written as for --state. Repeatable.
-    #[arg(long, value_name = "NAME=EXPR")]
+    #[arg(long, value_name = "NAME=VALUE")]
     pub fix: Vec<String>,
     #[command(flatten)]
     pub output: Json,

@@ -34,7 +34,7 @@ pub struct ModelFile {
 pub struct ParameterValues {
     /// Value of a parameter: a number in its declared unit, an expression of parameters such as `2*l`, or a
     /// value with a unit such as `"30 mm"`. Repeatable.
-    #[arg(long, value_name = "NAME=EXPR")]
+    #[arg(long, value_name = "NAME=VALUE")]
     pub set: Vec<String>,
 }
 

@@ -110,7 +110,7 @@ kept = "a + d/l"
 
     fn read(text: &str, unit: &str) -> Result<f64, String> {
         let model = model();
-        let given = Assignment::split("--at", text).map_err(|error| error.to_string())?;
+        let given = Assignment::split("--state", text).map_err(|error| error.to_string())?;
         let unit = Unit::parse(unit).expect("a unit");
         let reader = QuantityReader::new(&model).expect("a reader");
         reader
@@ -158,28 +158,28 @@ kept = "a + d/l"
             (
                 "theta=2*pii",
                 "rad",
-                &["--at:1:9", "unknown name `pii`", "`pi`"],
+                &["--state:1:9", "unknown name `pii`", "`pi`"],
             ),
-            ("theta=2*", "rad", &["--at:1:9"]),
-            ("theta=30 mm", "rad", &["--at:1:10", "in rad, not in mm"]),
+            ("theta=2*", "rad", &["--state:1:9"]),
+            ("theta=30 mm", "rad", &["--state:1:10", "in rad, not in mm"]),
             (
                 "theta=30 degs",
                 "rad",
-                &["--at:1:10", "unknown unit `degs`"],
+                &["--state:1:10", "unknown unit `degs`"],
             ),
-            ("x=a", "m", &["--at:1:3", "a pure number"]),
-            ("x=m", "m", &["--at:1:3", "in kg"]),
+            ("x=a", "m", &["--state:1:3", "a pure number"]),
+            ("x=m", "m", &["--state:1:3", "in kg"]),
             (
                 "x=2*l mm",
                 "m",
-                &["--at:1:3", "a second unit", "remove the unit"],
+                &["--state:1:3", "a second unit", "remove the unit"],
             ),
-            ("l=1/3", "mm", &["--at:1:3", "1/3 mm"]),
+            ("l=1/3", "mm", &["--state:1:3", "1/3 mm"]),
             ("x=nan", "m", &["finite"]),
             ("x=1/0", "m", &["finite"]),
-            ("x=theta", "m", &["--at:1:3", "a coordinate"]),
-            ("x=1=2", "m", &["--at:1:4"]),
-            ("x=3 (2)", "m", &["--at:1:5"]),
+            ("x=theta", "m", &["--state:1:3", "a coordinate"]),
+            ("x=1=2", "m", &["--state:1:4"]),
+            ("x=3 (2)", "m", &["--state:1:5"]),
         ] {
             let error = read(text, unit).expect_err(text);
             for part in parts {

@@ -211,14 +211,14 @@ impl Instance<'_> {
         if let Some(place) = lengths.iter().position(|length| *length == 0.0) {
             return Ok(Some(format!(
                 "the constraint `{}` holds nothing at the initial state: its derivative is zero there; start \
-                 elsewhere (--initial), or write it so that it crosses zero, as x instead of x^2",
+                 elsewhere (--state), or write it so that it crosses zero, as x instead of x^2",
                 constraints[place].name
             )));
         }
         if let Some(place) = lengths.iter().position(|length| !length.is_finite()) {
             return Ok(Some(format!(
                 "the derivative of the constraint `{}` is not finite at the initial state, as that of \
-                 sqrt(x) at x = 0; start elsewhere (--initial), or write the constraint without it",
+                 sqrt(x) at x = 0; start elsewhere (--state), or write the constraint without it",
                 constraints[place].name
             )));
         }
@@ -267,7 +267,7 @@ impl Instance<'_> {
             .collect();
         Error::Request(format!(
             "no state near the initial one keeps the constraints: {}; one of them may never be zero, or \
-             contradict another; check them, or start nearer (--initial)",
+             contradict another; check them, or start nearer (--state)",
             left.join(", ")
         ))
     }
@@ -300,7 +300,7 @@ impl Depends<'_> {
         }
         format!(
             "the initial state is a singular position: the derivative of the constraint `{name}` is a \
-             combination of the derivatives of {others} there; start elsewhere (--initial), or leave one of them out if they depend on \
+             combination of the derivatives of {others} there; start elsewhere (--state), or leave one of them out if they depend on \
              each other everywhere"
         )
     }

@@ -233,7 +233,7 @@ impl SingularityWatch {
         };
         format!(
             "at t = {t:?} s the motion comes to a singular position: {what} there, and no accelerations follow; \
-             shorten the time, or keep the motion away from there (a stop, another start by --initial)"
+             shorten the time, or keep the motion away from there (a stop, another start by --state)"
         )
     }
 }

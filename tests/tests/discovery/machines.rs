@@ -231,7 +231,7 @@ impl Machine {
             &specification,
             "--until",
             &until,
-            "--sample",
+            "--interval",
             &step,
             "--record",
             &input_file,

@@ -320,7 +320,14 @@ fn the_longest_step_decides_whether_a_short_pulse_is_seen() {
     let (spec, file) = (spec.display().to_string(), out.display().to_string());
     let pulse = "u=100*exp(-((t - 63.4)/0.005)^2)";
     let simulate = [
-        "simulate", &spec, "--until", "100", "--sample", "20", "--out", &file,
+        "simulate",
+        &spec,
+        "--until",
+        "100",
+        "--interval",
+        "20",
+        "--out",
+        &file,
     ];
     let options = ["--solver", "rk", "--input", pulse, "--max-step", "0.01"];
     let output = run(&[&simulate[..], &options].concat());

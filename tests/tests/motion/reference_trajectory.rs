@@ -92,7 +92,7 @@ fn simulated(
         path("planetary_arm").display().to_string(),
         until.to_string(),
     );
-    let case = ["--order", "4", "--until", &until, "--sample", sample];
+    let case = ["--order", "4", "--until", &until, "--interval", sample];
     let play = ["--set", "b_sp=25e-6", "--set", "b_pr=25e-6"];
     let ripple = ["--set", "omega=31.41592653589793"];
     let mut arguments = vec!["simulate", &arm, "--json", "--out", &file];

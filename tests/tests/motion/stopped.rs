@@ -166,7 +166,7 @@ fn stopped(specification: &str, until: &str, more: &[&str]) -> Stopped {
 
 #[test]
 fn friction_at_rest_leaves_the_rows_so_far() {
-    let found = stopped(BELT, "2", &["--solver", "adams", "--sample", "0.001"]);
+    let found = stopped(BELT, "2", &["--solver", "adams", "--interval", "0.001"]);
     // The belt's friction brings the mass to its speed within 0.02 s.
     assert!(
         (0.015..0.025).contains(&found.last_time()),
@@ -199,8 +199,17 @@ fn rows_so_far_in_parquet_and_the_reason_in_json() {
     );
     let shown = out.display().to_string();
     let output = run(&[
-        "simulate", &spec, "--until", "2", "--sample", "0.001", "--solver", "adams", "--json",
-        "--out", &shown,
+        "simulate",
+        &spec,
+        "--until",
+        "2",
+        "--interval",
+        "0.001",
+        "--solver",
+        "adams",
+        "--json",
+        "--out",
+        &shown,
     ]);
     assert_eq!(output.status.code(), Some(1));
     let bytes = std::fs::read(&out).expect("the rows so far");
@@ -268,7 +277,7 @@ fn a_relay_that_looks_ahead_slides() {
 #[test]
 fn the_exact_solver_leaves_the_rows_so_far() {
     let law = between_forces("-F*sign(x) - D*sign(dot(x))");
-    let of = |solver| stopped(&law, "60", &["--solver", solver, "--sample", "0.01"]);
+    let of = |solver| stopped(&law, "60", &["--solver", solver, "--interval", "0.01"]);
     let (exact, general) = (of("exact"), of("rk"));
     exact.says(&["error: at t = 6.3"]);
     assert_eq!((exact.rows.len(), general.rows.len()), (631, 631));
@@ -280,7 +289,7 @@ fn the_exact_solver_leaves_the_rows_so_far() {
 #[test]
 fn a_motion_that_grows_beyond_all_bounds_is_no_friction() {
     for solver in ["auto", "rk", "adams", "radau"] {
-        let found = stopped(BLOW_UP, "20", &["--solver", solver, "--sample", "0.01"]);
+        let found = stopped(BLOW_UP, "20", &["--solver", solver, "--interval", "0.01"]);
         found.says(&["at t = ", "`x"]);
         found.is_silent_on(&["sticks", "friction", "tanh"]);
         // x'' = 2 x^3 from rest at 1: infinite after 1.31 s.
@@ -312,7 +321,15 @@ fn stiffness_is_solved_by_the_implicit_solver() {
     let shown = out.display().to_string();
     let begun = Instant::now();
     let output = run(&[
-        "simulate", &spec, "--until", "10", "--sample", "0.1", "--json", "--out", &shown,
+        "simulate",
+        &spec,
+        "--until",
+        "10",
+        "--interval",
+        "0.1",
+        "--json",
+        "--out",
+        &shown,
     ]);
     let said = text(&output.stderr);
     assert!(output.status.success(), "{said}");
@@ -333,7 +350,7 @@ fn stiffness_is_solved_by_the_implicit_solver() {
 #[test]
 fn a_mass_matrix_that_loses_its_definiteness_is_named() {
     for solver in ["auto", "rk", "adams", "radau"] {
-        let found = stopped(INDEFINITE, "2", &["--solver", solver, "--sample", "0.01"]);
+        let found = stopped(INDEFINITE, "2", &["--solver", solver, "--interval", "0.01"]);
         found.says(&["at t = 0.", "not positive definite", "`phi`"]);
         assert!(
             (0.4..=0.5).contains(&found.last_time()),

@@ -79,7 +79,7 @@ fn the_page_counts_the_verdicts() {
 fn the_page_names_the_command_that_leaves_the_document() {
     let document = found();
     says(&format!(
-        "study-search --sets {} --seed {} --out assumed",
+        "paper claims --sets {} --seed {} --out assumed",
         document["sets"], document["seed"]
     ));
 }

@@ -1,4 +1,4 @@
-//! `eomgen study`: whole folders, figures that can be opened, and numbers that hold by other
+//! `eomgen paper study`: whole folders, figures that can be opened, and numbers that hold by other
 //! means than those that made them.
 
 use std::path::Path;
@@ -12,7 +12,9 @@ use serde_json::Value;
 fn study(name: &str, out: &Path) -> Value {
     let mut command = eomgen();
     command.timeout(Duration::from_secs(600));
-    command.args(["study", name, "--json", "--out"]).arg(out);
+    command
+        .args(["paper", "study", name, "--json", "--out"])
+        .arg(out);
     let output = command.output().expect("the program can be run");
     assert!(output.status.success(), "{}", text(&output.stderr));
     let written = std::fs::read(out.join("study.json")).expect("study.json");
@@ -176,7 +178,7 @@ fn every_other_study_runs_and_leaves_what_the_pages_show() {
 
 #[test]
 fn wrong_use_is_refused() {
-    assert!(refused(&["study", "fly", "--out", "never-made"]).contains("backlash"));
-    assert!(refused(&["study", "order"]).contains("--out"));
-    assert!(accepted(&["study", "--help"]).contains("eomgen study backlash"));
+    assert!(refused(&["paper", "study", "fly", "--out", "never-made"]).contains("backlash"));
+    assert!(refused(&["paper", "study", "order"]).contains("--out"));
+    assert!(accepted(&["paper", "study", "--help"]).contains("eomgen paper study backlash"));
 }

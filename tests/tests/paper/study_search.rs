@@ -1,4 +1,4 @@
-//! `eomgen study-search`: a search that is killed goes on to the same bytes, its counts are
+//! `eomgen paper claims`: a search that is killed goes on to the same bytes, its counts are
 //! those of its own table, and wrong use is refused.
 
 use std::fs;
@@ -20,7 +20,7 @@ const LIMIT: Duration = Duration::from_secs(300);
 fn search(out: &Path) -> Value {
     let mut command = eomgen();
     command.timeout(LIMIT);
-    command.args(["study-search", "--json"]).args(FEW);
+    command.args(["paper", "claims", "--json"]).args(FEW);
     let output = command.arg("--out").arg(out).output();
     let output = output.expect("the program can be run");
     assert!(output.status.success(), "{}", text(&output.stderr));
@@ -30,7 +30,7 @@ fn search(out: &Path) -> Value {
 /// Begins a search and kills it once its screening is written.
 fn begin(out: &Path) {
     let mut child = Command::new(program::path())
-        .arg("study-search")
+        .args(["paper", "claims"])
         .args(FEW)
         .arg("--out")
         .arg(out)
@@ -103,13 +103,7 @@ fn a_killed_search_goes_on_to_the_same_bytes() {
     assert!(table.lines().all(|line| bars(line) == 9), "{table}");
     let other = whole.display().to_string();
     let error = refused(&[
-        "study-search",
-        "--sets",
-        "2",
-        "--seed",
-        "6",
-        "--out",
-        &other,
+        "paper", "claims", "--sets", "2", "--seed", "6", "--out", &other,
     ]);
     assert!(error.contains("different search"), "{error}");
 }
@@ -138,7 +132,7 @@ fn the_assumed_values_are_judged_as_the_page_says(found: &Value) {
         for name in named {
             assert_eq!(
                 kept[name], found[name],
-                "{id}: run study-search again, as docs/claims.md says"
+                "{id}: run `paper claims` again, as docs/claims.md says"
             );
         }
     }
@@ -181,7 +175,7 @@ fn counts_are_those_of_the_table(found: &Value, rows: &[Vec<String>]) {
 
 #[test]
 fn wrong_use_is_refused() {
-    let nowhere = ["study-search", "--out", "never-made"];
+    let nowhere = ["paper", "claims", "--out", "never-made"];
     for (option, value) in [
         ("--sets", "0"),
         ("--sets", "1000001"),
@@ -192,8 +186,8 @@ fn wrong_use_is_refused() {
         assert!(error.contains(option) && error.contains(value), "{error}");
     }
     assert!(!Path::new("never-made").exists());
-    assert!(refused(&["study-search", "--sets", "2"]).contains("--out"));
-    assert!(accepted(&["study-search", "--help"]).contains("eomgen study-search --sets"));
+    assert!(refused(&["paper", "claims", "--sets", "2"]).contains("--out"));
+    assert!(accepted(&["paper", "claims", "--help"]).contains("eomgen paper claims --sets"));
 }
 
 #[test]
@@ -204,7 +198,7 @@ fn a_place_that_cannot_be_written_to_is_refused_at_once() {
     // Not counting the time to build the program.
     program::path();
     let began = Instant::now();
-    let error = refused(&["study-search", "--out", &file.display().to_string()]);
+    let error = refused(&["paper", "claims", "--out", &file.display().to_string()]);
     assert!(error.contains("file"), "{error}");
     assert!(
         began.elapsed() < Duration::from_secs(10),

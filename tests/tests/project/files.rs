@@ -164,7 +164,7 @@ fn start(out: &Path, rows: usize, parameter: &str) -> Child {
         .args([
             "simulate",
             &spec("pendulum"),
-            "--sample",
+            "--interval",
             "1e-3",
             "--set",
             parameter,

@@ -48,12 +48,12 @@ const ELSEWHERE: [(&str, &str); 15] = [
     ),
     // Searches of one set, and what they say of the assumed values against docs/claims.json.
     (
-        "cargo run --release -- study-search ",
+        "cargo run --release -- paper claims ",
         "tests/tests/paper/study_search.rs",
     ),
     // All four studies.
     (
-        "cargo run --release -- study ",
+        "cargo run --release -- paper study ",
         "tests/tests/paper/study.rs",
     ),
     // The same script, with the arm as it is emitted.

@@ -96,7 +96,7 @@ fn help_has_an_example_and_succeeds() {
     assert!(accepted(&["--version"]).starts_with("eomgen "));
     for command in COMMANDS
         .into_iter()
-        .chain(["dataset", "sweep", "merge", "tour"])
+        .chain(["dataset", "sweep", "merge", "paper", "tour"])
     {
         let help = accepted(&[command, "--help"]);
         // The line of the usage names the command too.
@@ -105,6 +105,89 @@ fn help_has_an_example_and_succeeds() {
             example.is_some_and(|example| example.contains(&format!("eomgen {command} "))),
             "{command}: {help}"
         );
+    }
+}
+
+/// Earlier names of options and commands keep working; help does not list them.
+#[test]
+fn earlier_names_work_and_are_not_listed() {
+    let pendulum = spec("pendulum");
+    let out = |arguments: &[&str]| accepted(arguments);
+    for command in ["linearise", "modes"] {
+        let current = out(&[command, &pendulum, "--json", "--state", "theta=pi"]);
+        assert_eq!(
+            out(&[command, &pendulum, "--json", "--at", "theta=pi"]),
+            current
+        );
+        let trimmed = out(&[command, &pendulum, "--json", "--state", "trim"]);
+        assert_eq!(
+            out(&[command, &pendulum, "--json", "--at", "trim"]),
+            trimmed
+        );
+    }
+    let simulate = |state: &str, interval: &str| {
+        let options = [
+            "--until",
+            "1",
+            "--out",
+            "-",
+            state,
+            "theta=0.2",
+            interval,
+            "0.25",
+        ];
+        out(&[&["simulate", &pendulum][..], &options].concat())
+    };
+    let current = simulate("--state", "--interval");
+    assert_eq!(current.lines().count(), 6);
+    assert_eq!(simulate("--initial", "--sample"), current);
+    for (old, new) in [
+        (&["study"][..], &["paper", "study"][..]),
+        (&["study-search"], &["paper", "claims"]),
+    ] {
+        let help = |command: &[&str]| out(&[command, &["--help"]].concat());
+        assert_eq!(help(old), help(new));
+    }
+    let listed = out(&["--help"]);
+    assert!(listed.contains("  paper "), "{listed}");
+    assert!(!listed.contains("  study"), "{listed}");
+    let help = ["simulate", "linearise", "modes", "trim"].map(|command| out(&[command, "--help"]));
+    let completions = ["bash", "zsh", "fish"].map(|shell| out(&["completions", shell]));
+    for text in help.iter().chain(&completions) {
+        assert!(text.contains("state"), "{text}");
+        for old in ["--at ", "--at=", "--initial", "--sample ", "study-search"] {
+            assert!(!text.contains(old), "{old}: {text}");
+        }
+    }
+}
+
+/// A motion that starts at the nearest equilibrium stays there.
+#[test]
+fn simulate_starts_at_the_equilibrium_nearest_to_a_state() {
+    let motion = accepted(&[
+        "simulate",
+        &spec("pendulum"),
+        "--until",
+        "1",
+        "--state",
+        "trim",
+        "--state",
+        "theta=3",
+        "--interval",
+        "0.5",
+        "--out",
+        "-",
+    ]);
+    let rows: Vec<&str> = motion.lines().skip(1).collect();
+    assert_eq!(rows.len(), 3);
+    for row in rows {
+        let theta: f64 = row
+            .split(',')
+            .nth(1)
+            .expect("theta")
+            .parse()
+            .expect("a number");
+        assert!((theta - std::f64::consts::PI).abs() < 1e-6, "{motion}");
     }
 }
 
@@ -285,13 +368,13 @@ fn times_that_are_none_are_refused() {
         ("--until", "nan", "after 0"),
         ("--until", "inf", "after 0"),
         ("--until", "soon", "invalid"),
-        ("--sample", "0", "above 0"),
-        ("--sample", "-1", "above 0"),
-        ("--sample", "nan", "above 0"),
-        ("--sample", "inf", "at most 0.01"),
-        ("--sample", "0.02", "at most 0.01"),
-        ("--sample", "1e-300", "too many rows"),
-        ("--sample", "1e-10", "too many rows"),
+        ("--interval", "0", "above 0"),
+        ("--interval", "-1", "above 0"),
+        ("--interval", "nan", "above 0"),
+        ("--interval", "inf", "at most 0.01"),
+        ("--interval", "0.02", "at most 0.01"),
+        ("--interval", "1e-300", "too many rows"),
+        ("--interval", "1e-10", "too many rows"),
         ("--tolerance", "0", "1e-14"),
         ("--tolerance", "-1", "1e-14"),
         ("--tolerance", "nan", "1e-14"),

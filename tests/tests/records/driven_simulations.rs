@@ -134,7 +134,7 @@ fn a_held_force_moves_the_axis_as_the_closed_form_says() {
         STEPS.map(|s| s.0)
     );
     let sampled =
-        dataset.simulated(&[&options[..], &["--sample", "0.01", "--until", "2"]].concat());
+        dataset.simulated(&[&options[..], &["--interval", "0.01", "--until", "2"]].concat());
     assert_eq!(sampled.len(), 201);
     for [t, q, v] in at_the_record.iter().chain(&sampled) {
         let expected = closed_form(*t);

@@ -17,7 +17,7 @@ fn swing(measured: &Measured, angle: &str, file: &str) {
         &specification,
         "--until",
         "2",
-        "--sample",
+        "--interval",
         "0.005",
         "--out",
         &out,

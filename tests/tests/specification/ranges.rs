@@ -31,7 +31,7 @@ fn simulated(text: &str) -> String {
     command
         .arg("simulate")
         .arg(&spec)
-        .args(["--until", "3", "--sample", "0.01"]);
+        .args(["--until", "3", "--interval", "0.01"]);
     let output = command.arg("--out").arg(&table).output().expect("it runs");
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     assert!(table.exists());

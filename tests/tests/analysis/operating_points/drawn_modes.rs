@@ -87,13 +87,13 @@ fn a_piecewise_model_says_its_regime() {
     // sqrt(k/m) = 5 rad/s before the wall, sqrt((k + k_w)/m) = 10 rad/s on it.
     for (x, side, omega) in [("0", "<", 5.0), ("0.2", ">", 10.0)] {
         let at = format!("x={x}");
-        let found = json(&["modes", &spec, "--at", &at, "--json", "--plot", &shown]);
+        let found = json(&["modes", &spec, "--state", &at, "--json", "--plot", &shown]);
         let regime = &found["regime"][0];
         assert_eq!(regime["surface"], "x - d");
         assert_eq!(regime["side"], side);
         let frequency = found["modes"][0]["frequency"].as_f64().expect("a number");
         assert!((frequency * std::f64::consts::TAU - omega).abs() < 1e-12);
-        let table = accepted(&["modes", &spec, "--at", &at]);
+        let table = accepted(&["modes", &spec, "--state", &at]);
         assert!(
             table.ends_with(&format!("regime: x - d {side} 0\n")),
             "{table}"
@@ -115,9 +115,9 @@ fn figures_of_machines_of_every_kind_are_whole_documents() {
         vec!["modes", &arm, "--order", "1"],
         vec!["modes", &arm, "--order", "128"],
         vec!["modes", &shipped("loudspeaker")],
-        vec!["modes", &shipped("chaplygin_sleigh"), "--at", "x_dot=1"],
+        vec!["modes", &shipped("chaplygin_sleigh"), "--state", "x_dot=1"],
         vec!["modes", &shipped("puma_560")],
-        vec!["modes", &shipped("two_link_arm"), "--at", "theta_2=0.5"],
+        vec!["modes", &shipped("two_link_arm"), "--state", "theta_2=0.5"],
     ] {
         accepted(&[&arguments[..], &["--plot", &shown]].concat());
         let svg = std::fs::read_to_string(&svg).expect("the figure");

@@ -65,12 +65,12 @@ fn modes_and_linearise_tell_whether_the_state_is_an_equilibrium() {
     let model = written(folder.path(), DRIVEN);
     for command in ["modes", "linearise"] {
         for (at, is_equilibrium) in [
-            (&["--at", "theta=pi"][..], true),
-            (&["--at", "theta=0"], true),
-            (&["--at", "theta=pi/2", "--at", "u=m*g*l"], true),
-            (&["--at", "trim", "--at", "theta=1.2"], true),
-            (&["--at", "theta=3.14"], false),
-            (&["--at", "theta_dot=0.1", "--at", "theta=0"], false),
+            (&["--state", "theta=pi"][..], true),
+            (&["--state", "theta=0"], true),
+            (&["--state", "theta=pi/2", "--state", "u=m*g*l"], true),
+            (&["--state", "trim", "--state", "theta=1.2"], true),
+            (&["--state", "theta=3.14"], false),
+            (&["--state", "theta_dot=0.1", "--state", "theta=0"], false),
             (&[], false),
         ] {
             let given = [&[command, &model, "--json"], at].concat();
@@ -89,9 +89,9 @@ fn modes_and_linearise_tell_whether_the_state_is_an_equilibrium() {
     let trimmed = json(&[
         "modes",
         &model,
-        "--at",
+        "--state",
         "trim",
-        "--at",
+        "--state",
         "theta=100 deg",
         "--json",
     ]);
@@ -128,7 +128,7 @@ fn the_warning_names_what_changes_at_a_state_that_is_no_equilibrium() {
             ("p=1", [false, false, true]),
             ("x=0", [false, false, false]),
         ] {
-            let found = run(&[command, &model, "--at", at]);
+            let found = run(&[command, &model, "--state", at]);
             assert!(found.status.success(), "{command} {at}");
             let said = String::from_utf8_lossy(&found.stderr).into_owned();
             assert_eq!(parts.map(|part| said.contains(part)), changes, "{said}");
@@ -156,9 +156,16 @@ fn commands_read_expressions_and_units_alike() {
     let out = folder.path().join("motion.csv");
     let file = out.display().to_string();
     let given = [
-        "simulate", &model, "--until", "1", "--sample", "0.5", "--out", &file,
+        "simulate",
+        &model,
+        "--until",
+        "1",
+        "--interval",
+        "0.5",
+        "--out",
+        &file,
     ];
-    let initial = ["--initial", "x=25 mm", "--initial", "x_dot=F_0/(m*w_0)"];
+    let initial = ["--state", "x=25 mm", "--state", "x_dot=F_0/(m*w_0)"];
     accepted(&[&given[..], &initial].concat());
     let rows = columns(&out, &["x", "x_dot"]);
     assert_eq!(rows[0], [0.025, 0.75]);
@@ -167,9 +174,9 @@ fn commands_read_expressions_and_units_alike() {
     let at = json(&[
         "linearise",
         &shipped("pendulum"),
-        "--at",
+        "--state",
         "theta=90 deg",
-        "--at",
+        "--state",
         "t=20 ms",
     ]);
     assert_eq!((number(&at, "theta"), number(&at, "t")), (FRAC_PI_2, 0.02));

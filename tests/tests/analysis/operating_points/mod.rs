@@ -82,11 +82,11 @@ fn a_linearisation_has_the_matrices_of_the_closed_form() {
     let found = json(&[
         "linearise",
         &shipped("pendulum"),
-        "--at",
+        "--state",
         "theta=0",
         "--json",
     ]);
-    assert_eq!(found["schema"], 1);
+    assert_eq!(found["schema"], 2);
     assert_eq!(found["order"], 0);
     let states: Vec<&str> = found["states"]
         .as_array()
@@ -109,7 +109,7 @@ fn a_linearisation_has_the_matrices_of_the_closed_form() {
     assert_eq!(a[0], [0.0, 1.0]);
     // Upright, the hanging frequency's square with the other sign.
     let at = format!("theta={PI}");
-    let hanging = json(&["modes", &shipped("pendulum"), "--at", &at, "--json"]);
+    let hanging = json(&["modes", &shipped("pendulum"), "--state", &at, "--json"]);
     let mode = &hanging["modes"][0];
     let omega = TAU * mode["frequency"].as_f64().expect("Hz");
     assert!(
@@ -248,7 +248,15 @@ fn inputs_follow_expressions_and_motions_begin_where_they_are_told_to() {
     let simulate = |options: &[&str]| {
         let (out, figure) = (out.display().to_string(), figure.display().to_string());
         let given = [
-            "simulate", &model, "--until", "3", "--sample", "0.01", "--out", &out, "--plot",
+            "simulate",
+            &model,
+            "--until",
+            "3",
+            "--interval",
+            "0.01",
+            "--out",
+            &out,
+            "--plot",
             &figure,
         ];
         accepted(&[&given, options].concat());
@@ -267,9 +275,9 @@ fn inputs_follow_expressions_and_motions_begin_where_they_are_told_to() {
             for row in simulate(&[
                 "--input",
                 input,
-                "--initial",
+                "--state",
                 "x=0.1",
-                "--initial",
+                "--state",
                 "x_dot=-0.5",
                 "--solver",
                 solver,
@@ -301,14 +309,14 @@ fn what_makes_no_sense_is_refused_with_what_would() {
     let simulate = ["simulate", &model, "--until", "1", "--out", &out];
     for (arguments, part) in [
         (
-            &["linearise", &model, "--at", "xx=1"][..],
+            &["linearise", &model, "--state", "xx=1"][..],
             "did you mean `x`",
         ),
-        (&["linearise", &model, "--at", "x"], "NAME=VALUE"),
-        (&["linearise", &model, "--at", "x=nan"], "finite"),
-        (&["modes", &model, "--at", "x=1 kg"], "--at:1:5"),
+        (&["linearise", &model, "--state", "x"], "NAME=VALUE"),
+        (&["linearise", &model, "--state", "x=nan"], "finite"),
+        (&["modes", &model, "--state", "x=1 kg"], "--state:1:5"),
         (
-            &["modes", &model, "--at", "y=trim"],
+            &["modes", &model, "--state", "y=trim"],
             "no state and no input",
         ),
         (&["trim", &model, "--fix", "x_dot=1"], "all rates are 0"),
@@ -317,7 +325,7 @@ fn what_makes_no_sense_is_refused_with_what_would() {
             "no finite number",
         ),
         (
-            &["modes", &shipped("pendulum"), "--at", "theta=1e300"],
+            &["modes", &shipped("pendulum"), "--state", "theta=1e300"],
             "no finite number",
         ),
         (
@@ -338,8 +346,8 @@ fn what_makes_no_sense_is_refused_with_what_would() {
         ("--input", "u=F_0*sin(3*t)", "--input u=F_0*sin(3*t)"),
         ("--input", "u=x_0*t", "x_0"),
         ("--input", "u=u", "--input u=u"),
-        ("--initial", "u=1", "expected a coordinate"),
-        ("--initial", "x=inf", "finite"),
+        ("--state", "u=1", "expected a coordinate"),
+        ("--state", "x=inf", "finite"),
     ] {
         let said = refused(&[&simulate[..], &[option, value]].concat());
         assert!(said.contains(part), "{option} {value}: {said}");

@@ -139,7 +139,16 @@ fn edits_keep_the_folder() {
     let model = with_table(folder.path(), &text, sines(21, 3));
     let out = folder.path().join("out.csv").display().to_string();
     let simulate = [
-        "simulate", &model, "--until", "0.01", "--sample", "0.005", "--input", "u=1", "--out", &out,
+        "simulate",
+        &model,
+        "--until",
+        "0.01",
+        "--interval",
+        "0.005",
+        "--input",
+        "u=1",
+        "--out",
+        &out,
     ];
     accepted(&simulate);
 }

@@ -62,7 +62,7 @@ fn a_varied_expression_and_a_set_parameter_are_those_of_simulate() {
     // omega = 2: the fourth period begins at 3 pi.
     let (until, sample) = (format!("{:?}", TAU * 1.5), format!("{:?}", TAU / 2.0));
     let settings = ["--set", "zeta=0.3", "--set", "F=-2", "--out", &csv];
-    let times = ["--until", &until, "--sample", &sample];
+    let times = ["--until", &until, "--interval", &sample];
     accepted(&[&["simulate", &spec], &settings[..], &times[..]].concat());
     let text = fs::read_to_string(&csv).expect("the trajectory");
     let last = text.lines().last().expect("a row").split(',').nth(1);

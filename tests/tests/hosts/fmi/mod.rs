@@ -125,7 +125,7 @@ fn both_kinds_move_as_simulate_says() {
         let sample = until.parse::<f64>().expect("a time") / 100.0;
         let sample = sample.to_string();
         let mut arguments = vec!["simulate", &spec, "--until", until, "--out", &out];
-        arguments.extend(["--sample", &sample]);
+        arguments.extend(["--interval", &sample]);
         if let Some(order) = order {
             arguments.extend(["--order", order]);
         }
