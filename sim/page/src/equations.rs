@@ -74,7 +74,6 @@ fn introduction(report: &Report) -> Markup {
     }
 }
 
-/// Returns items with commas between them.
 fn separated<T>(items: &[T], set: impl Fn(&T) -> Markup) -> Markup {
     html! {
         @for (place, item) in items.iter().enumerate() {
@@ -101,7 +100,6 @@ fn row(left: &Markup, right: &Formula) -> Markup {
     html! { tr { th scope="row" { (left) } td { "= " (formula(right)) } } }
 }
 
-/// Returns equations under a heading.
 fn under(heading: &Markup, rows: &Markup) -> Markup {
     html! {
         h3 { (heading) }

@@ -22,7 +22,6 @@ pub(super) struct Tick {
     pub label: String,
 }
 
-/// Axis with its range and pixels.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Axis {
     pub scale: Scale,
@@ -108,7 +107,6 @@ impl Axis {
     }
 }
 
-/// Returns about `count` ticks in a range.
 pub(super) fn ticks(scale: Scale, range: Range, count: usize) -> Vec<Tick> {
     match scale {
         Scale::Linear => linear_ticks(range, count),

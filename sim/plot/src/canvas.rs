@@ -5,7 +5,6 @@ use std::fmt::Write;
 use super::decimate::Point;
 use super::lettering::{escaped, spans};
 
-/// Alignment of a text relative to its point.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Anchor {
     Start,
@@ -128,7 +127,6 @@ impl Canvas {
         let _ = writeln!(self.body, "{element}");
     }
 
-    /// Returns the SVG document.
     pub fn document(self, title: &str, width: f64, height: f64) -> String {
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" \

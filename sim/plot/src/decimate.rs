@@ -3,10 +3,8 @@
 
 use std::collections::BTreeSet;
 
-/// Point in pixels.
 pub(super) type Point = (f64, f64);
 
-/// Consecutive samples in one column.
 struct Column {
     index: i64,
     /// First, lowest, highest and last sample, each with its index in the series.

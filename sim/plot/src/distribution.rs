@@ -27,7 +27,6 @@ const WIDTH: f64 = 720.0;
 const HEIGHT: f64 = 360.0;
 /// Margins left and right, above and below the frame, in px.
 const MARGINS: ((f64, f64), (f64, f64)) = ((78.0, 70.0), (58.0, 62.0));
-/// Minimum and maximum number of columns.
 const COLUMNS: (usize, usize) = (5, 60);
 /// Points of the curve; more would be indistinguishable.
 const POINTS: usize = 400;
@@ -106,7 +105,6 @@ impl Axes {
     }
 }
 
-/// Draws ticks, names and the frame.
 fn draw_names(canvas: &mut Canvas, Axes { along, up, share }: &Axes, quantity: &str) {
     for tick in ticks(along.scale, along.range, 8) {
         let at = (along.pixel(tick.place), up.pixels.0 + 19.0);

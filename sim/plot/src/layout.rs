@@ -9,7 +9,6 @@ use super::quantity::Quantity;
 
 /// Width of a figure of stacked panels, in px.
 pub(super) const WIDTH: f64 = 900.0;
-/// Font sizes, in px.
 pub(super) const TICK_SIZE: f64 = 14.0;
 pub(super) const LABEL_SIZE: f64 = 15.0;
 pub(super) const TITLE_SIZE: f64 = 16.0;
@@ -26,7 +25,6 @@ const LARGEST_LEGEND_LABEL: f64 = 260.0;
 const CURVE_CHARACTERS: f64 = 180_000.0;
 const COLUMN_CHARACTERS: f64 = 60.0;
 
-/// Shared horizontal axis of a kind of figure.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Abscissa {
     pub symbol: &'static str,
@@ -53,7 +51,6 @@ pub(super) struct Format {
 }
 
 impl Format {
-    /// Returns the format of panels that are stacked over one axis.
     pub fn stacked(panels: usize) -> Self {
         let (frame, up) = match panels {
             1 => (300.0, 7),
@@ -72,7 +69,6 @@ impl Format {
     }
 }
 
-/// Positions of a figure's parts, in px.
 #[derive(Debug)]
 pub(super) struct Layout {
     pub abscissa: Axis,
@@ -82,12 +78,10 @@ pub(super) struct Layout {
     pub height: f64,
     /// Width of the columns for the decimation of curves.
     pub column: f64,
-    /// True if later curves are dashed.
     pub overlaid: bool,
     pub drawn: Drawn,
 }
 
-/// Positions of a panel's parts, in px.
 #[derive(Debug)]
 pub(super) struct Place {
     pub ordinate: Axis,
@@ -108,7 +102,6 @@ struct Ordinate {
 }
 
 impl Layout {
-    /// Computes the positions of checked panels.
     pub fn new(
         panels: &[Panel<'_>],
         abscissa: &Abscissa,
@@ -294,7 +287,6 @@ pub(super) fn reference_label(label: &str) -> String {
     fitted(label, TICK_SIZE, LARGEST_REFERENCE_LABEL)
 }
 
-/// Returns the legend's entries in rows below `top`.
 fn legend(panel: &Panel<'_>, top: f64, edges: (f64, f64)) -> Vec<((f64, f64), String)> {
     if panel.series.len() < 2 {
         return Vec::new();

@@ -56,7 +56,6 @@ pub(super) fn draw(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, layout
     draw_text(canvas, panel, place, layout);
 }
 
-/// Draws vertical lines.
 pub(super) fn draw_marks(canvas: &mut Canvas, marks: &[Reference], place: &Place, layout: &Layout) {
     let (bottom, top) = place.ordinate.pixels;
     for (x, _) in marked(marks, layout) {
@@ -207,7 +206,6 @@ fn draw_references(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, layout
     }
 }
 
-/// Draws the frame with inward ticks.
 fn draw_frame(canvas: &mut Canvas, place: &Place, layout: &Layout) {
     let (left, right) = layout.abscissa.pixels;
     let (bottom, top) = place.ordinate.pixels;

@@ -9,7 +9,6 @@ pub(super) struct Quantity {
     pub label: String,
 }
 
-/// Prefixes with their exponents.
 const PREFIXES: [(i32, &str); 10] = [
     (-15, "f"),
     (-12, "p"),
@@ -90,7 +89,6 @@ fn engineering_exponent(largest: f64) -> i32 {
     exponent as i32 * 3
 }
 
-/// Returns the prefix, if the unit allows it.
 fn prefix(unit: &str, exponent: i32) -> Option<&'static str> {
     if exponent == 0 {
         return Some("");

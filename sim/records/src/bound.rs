@@ -24,7 +24,6 @@ const RELATIVE: (f64, f64) = (1e-9, 1e6);
 
 /// Dataset file bound to a model.
 pub struct Bound<'d> {
-    /// Unit of the time column.
     pub time: Unit,
     /// Column and unit of each input of the model.
     pub inputs: Vec<Option<(&'d Column, Unit)>>,
@@ -35,20 +34,14 @@ pub struct Bound<'d> {
     pub channels: Vec<Channel>,
     /// Unit of each channel's column.
     pub channel_units: Vec<Unit>,
-    /// Initial state.
     pub initial: Initial,
-    /// Parameters that may be refitted.
     pub uncertain: Vec<Uncertain>,
-    /// Bounds of the next experiment.
     pub experiment: ExperimentBounds,
     /// Units of the next experiment's columns.
     pub played: Played,
 }
 
 /// Binds a dataset file to a model.
-///
-/// # Errors
-/// All unknown names, units of other dimensions and invalid numbers.
 pub fn bound<'d>(description: &'d Description, model: &Model) -> Result<Bound<'d>, Diagnostics> {
     let mut found = Diagnostics::new(description.source.clone());
     lists(description, &mut found);
@@ -97,9 +90,6 @@ pub fn bound<'d>(description: &'d Description, model: &Model) -> Result<Bound<'d
 }
 
 /// Returns the unit of the time column.
-///
-/// # Errors
-/// A unit that is not a unit of time.
 pub fn time_unit(description: &Description) -> Result<Unit, Diagnostic> {
     unit(&description.time.column.unit, "s")
 }
@@ -249,7 +239,6 @@ fn channel(
     Ok((channel, unit))
 }
 
-/// Converts a prior to SI.
 fn known_before(prior: Prior, unit: &Unit) -> Expected {
     Expected {
         mean: prior.mean.map(|mean| unit.to_si(mean.value)),
@@ -257,7 +246,6 @@ fn known_before(prior: Prior, unit: &Unit) -> Expected {
     }
 }
 
-/// Returns a quantity of the model by name, with its SI unit.
 fn quantity(model: &Model, name: &str) -> Option<(Quantity, String)> {
     if let Some(place) = model.observables.iter().position(|o| o.name == name) {
         let unit = model.observables[place].unit.text.clone();

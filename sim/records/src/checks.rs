@@ -11,7 +11,6 @@ use crate::samples::{JITTER, span, typical_step};
 use crate::windows::{LONGEST_DELAY, LONGEST_LEAD};
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 
-/// Largest fraction of missing samples of a channel.
 const MOST_MISSING: f64 = 0.5;
 
 /// Range of a channel, in standard deviations of its noise, beyond the resolution of any sensor.
@@ -82,7 +81,6 @@ fn delays(dataset: &Dataset, description: &Description) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// Returns a note on uneven time steps.
 fn timing(record: &Record) -> Option<String> {
     let step = typical_step(&record.times);
     let steps = record.times.windows(2).map(|pair| pair[1] - pair[0]);
@@ -97,7 +95,6 @@ fn timing(record: &Record) -> Option<String> {
     })
 }
 
-/// Returns a note on missing samples of inputs.
 pub(crate) fn held_inputs(record: &Record) -> Option<String> {
     let missing = |column: &&Vec<f64>| column.iter().any(|value| !value.is_finite());
     let count = record.input_columns.iter().filter(missing).count();

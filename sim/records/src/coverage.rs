@@ -21,9 +21,6 @@ const FEWEST_COMPARED: usize = 10;
 pub(crate) const STILL: f64 = 2.0;
 
 /// Checks both sets of records and returns notes.
-///
-/// # Errors
-/// A set without anything to compare.
 pub(crate) fn check(dataset: &Dataset, description: &Description) -> Result<Vec<String>, Refusal> {
     let wrong = |diagnostic: Diagnostic| Diagnostics::one(description.source.clone(), diagnostic);
     let mut notes = Vec::new();
@@ -38,9 +35,6 @@ pub(crate) fn check(dataset: &Dataset, description: &Description) -> Result<Vec<
 }
 
 /// Checks that a record can be split into windows, before it is split at gaps.
-///
-/// # Errors
-/// Windows with too few samples, or a record with most samples missing.
 pub(crate) fn can_be_cut(record: &Record, description: &Description) -> Result<(), Refusal> {
     let wrong = |diagnostic: Diagnostic| Diagnostics::one(description.source.clone(), diagnostic);
     match description.windows.length {

@@ -18,9 +18,6 @@ const UNIT_SEPARATOR: u8 = 0x1f;
 const UTF_16: [&[u8]; 2] = [&[0xff, 0xfe], &[0xfe, 0xff]];
 
 /// Reads columns; a missing number becomes NaN.
-///
-/// # Errors
-/// A missing column, or an invalid line or cell, with its place.
 pub fn read(
     path: &Path,
     bytes: &[u8],
@@ -55,7 +52,6 @@ pub(crate) struct TextFile<'t> {
     pub header: Vec<String>,
     /// Number of the line with the names.
     pub first_line: u64,
-    /// Cells of the line of units, if any.
     pub units: Vec<String>,
     skipped: u64,
     record: ByteRecord,
@@ -124,7 +120,6 @@ impl<'t> TextFile<'t> {
             .collect()
     }
 
-    /// Returns the number of the current line, from 1.
     fn line(&self) -> u64 {
         self.record.position().map_or(0, Position::line) + self.skipped
     }
@@ -206,7 +201,6 @@ pub(crate) fn behind_skipped<'b>(
     Ok(Cow::Owned(parted))
 }
 
-/// Parses a cell.
 fn number(path: &Path, line: u64, cell: &[u8], place: usize, decimal: u8) -> Result<f64, Refusal> {
     let cell = String::from_utf8_lossy(cell.trim_ascii());
     if cell.is_empty() {

@@ -53,7 +53,6 @@ impl Decimation {
         column.iter().step_by(self.every).copied().collect()
     }
 
-    /// Decimates a measured column.
     pub fn measured(&self, column: &[f64]) -> Vec<f64> {
         match &self.low_pass {
             None => self.taken(column),

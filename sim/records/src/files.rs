@@ -9,9 +9,6 @@ use crate::description::Description;
 use crate::description::records::Stretch;
 
 /// Returns the file of a record such as `train[0]`.
-///
-/// # Errors
-/// A message if there is no such record.
 pub fn numbered<'d>(description: &'d Description, record: &str) -> Result<&'d Stretch, String> {
     let records = &description.records;
     let none = || {
@@ -33,9 +30,6 @@ pub fn numbered<'d>(description: &'d Description, record: &str) -> Result<&'d St
 }
 
 /// Returns the path of a record in the dataset's folder or below. Symbolic links are resolved.
-///
-/// # Errors
-/// A name that leads out of that folder.
 pub fn beside(dataset: &Path, file: &Written) -> Result<PathBuf, Diagnostic> {
     let relative = Path::new(&file.text);
     let inside = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);

@@ -14,7 +14,6 @@ pub const MOST_SAMPLES: usize = 1_000_000;
 /// Columns of numbers; NaN for a missing one.
 #[derive(Clone, Debug, Default)]
 pub struct Table {
-    /// Columns of the table.
     pub columns: Vec<Vec<f64>>,
     /// Line number of each row, from 1. Files without lines count as if the first line had the
     /// names.

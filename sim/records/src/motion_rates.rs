@@ -5,7 +5,6 @@ use eomgen_sim::cubic_spline::CubicSpline;
 
 use crate::description::columns::Column;
 
-/// Column of a coordinate with a given motion.
 pub(crate) struct GivenColumn<'d> {
     pub name: &'d str,
     pub column: &'d Column,
@@ -13,7 +12,6 @@ pub(crate) struct GivenColumn<'d> {
     pub kind: GivenKind,
 }
 
-/// Content of the column of a given motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum GivenKind {
     Position,

@@ -35,7 +35,6 @@ pub fn estimated(column: &[f64]) -> Option<f64> {
     (found > 0.0 && found.is_finite()).then_some(found)
 }
 
-/// Returns the median of the known absolute values.
 fn median_size(differences: &[f64]) -> Option<f64> {
     let known = differences
         .iter()
@@ -44,7 +43,6 @@ fn median_size(differences: &[f64]) -> Option<f64> {
     median(&known.collect::<Vec<f64>>())
 }
 
-/// Returns the smallest step between values of a column.
 fn resolution(column: &[f64]) -> Option<f64> {
     let mut values: Vec<f64> = column.iter().copied().filter(|v| v.is_finite()).collect();
     values.sort_by(f64::total_cmp);

@@ -14,9 +14,6 @@ use crate::header::{MOST_SAMPLES, Table, places, too_many};
 use crate::refusal::Refusal;
 
 /// Reads columns; a missing number becomes NaN.
-///
-/// # Errors
-/// A damaged file, or a column that is missing or not numeric.
 pub fn read(path: &Path, bytes: Vec<u8>, wanted: &[&ColumnKey]) -> Result<Table, Refusal> {
     // The parquet crate panics on some damaged files.
     let said = std::panic::take_hook();
@@ -32,9 +29,6 @@ pub fn read(path: &Path, bytes: Vec<u8>, wanted: &[&ColumnKey]) -> Result<Table,
 }
 
 /// Returns names and numbers (from 1) of a file's numeric columns, in their order.
-///
-/// # Errors
-/// A damaged file.
 pub(crate) fn names(path: &Path, bytes: Vec<u8>) -> Result<Vec<(usize, String)>, Refusal> {
     let reader = SerializedFileReader::new(Bytes::from(bytes))
         .map_err(|error| Refusal::file(path, format!("cannot be read as Parquet: {error}")))?;

@@ -60,7 +60,6 @@ impl Record {
     }
 }
 
-/// Columns of a record and their units.
 pub(crate) struct Columns<'d> {
     pub description: &'d Description,
     pub path: &'d Path,
@@ -69,13 +68,11 @@ pub(crate) struct Columns<'d> {
     pub inputs: &'d [Option<(&'d Column, Unit)>],
     /// Column of each coordinate of the model, if the motion is given.
     pub motion: &'d [GivenColumn<'d>],
-    /// Unit of each channel's column.
     pub channels: &'d [Unit],
     /// Known initial value of each channel, in SI.
     pub starts: &'d [Option<f64>],
     pub model: &'d Model,
     pub decimation: &'d Decimation,
-    /// Minimum number of samples of a record.
     pub fewest: usize,
 }
 
@@ -120,7 +117,6 @@ impl Columns<'_> {
         })
     }
 
-    /// Returns the columns after the time, in the order of reading.
     fn read(&self) -> Vec<ReadColumn<'_>> {
         let fed = self.model.inputs.iter().zip(self.inputs);
         let inputs = fed.filter_map(|(input, fed)| {
@@ -248,7 +244,6 @@ impl Columns<'_> {
         Ok(kept.start > 0)
     }
 
-    /// Keeps one of several samples, if requested.
     fn decimate(&self, place: &Path, table: &mut Table) -> Result<(), Refusal> {
         let decimation = self.decimation;
         if decimation.is_idle() {

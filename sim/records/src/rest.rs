@@ -44,7 +44,6 @@ pub(crate) fn without_rest(dataset: &mut Dataset, model: &Model) -> Vec<String> 
     notes
 }
 
-/// Returns the coordinates on which an input acts.
 fn worked_on(model: &Model, input: usize) -> Vec<usize> {
     let mut found = Vec::new();
     for force in &model.forces {

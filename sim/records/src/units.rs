@@ -5,9 +5,6 @@ use eomgen_model_spec::table::Written;
 use eomgen_model_spec::unit::Unit;
 
 /// Parses a unit and checks that it has the dimension of the expected one.
-///
-/// # Errors
-/// An unknown unit, or a unit of another dimension.
 pub fn unit(written: &Written, expected: &str) -> Result<Unit, Diagnostic> {
     let wrong = |message: String| Diagnostic::error(message);
     let text = &written.text;

@@ -60,12 +60,10 @@ pub(crate) fn unwrapped(times: &[f64], column: &[f64], period: f64) -> Unwrapped
     Unwrapped { values, unknown }
 }
 
-/// Known samples of a column.
 struct Wrapped {
     times: Vec<f64>,
     values: Vec<f64>,
     period: f64,
-    /// Longest step without a gap.
     longest: f64,
 }
 

@@ -6,7 +6,6 @@ use crate::noise;
 use crate::unwrapping::{median, unwrapped};
 use crate::wrap_period::{ColumnUnit, estimate_period};
 
-/// Minimum number of samples.
 const FEWEST: usize = 10;
 
 /// Largest relative difference between the jumps of a column, between range and period, and between
@@ -28,7 +27,6 @@ const MOST: f64 = 0.8;
 /// Number of steps around a jump that determine its speed.
 const BESIDE: usize = 5;
 
-/// Jumps of equal size in a column.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WrapPattern {
     /// Size in the unit of the values. A usual period within the uncertainty is exact.
@@ -39,9 +37,7 @@ pub(crate) struct WrapPattern {
     pub is_usual: bool,
     /// Time of the first jump.
     pub first: f64,
-    /// Number of jumps.
     pub count: usize,
-    /// True if the period is a full turn.
     pub is_turn: bool,
     /// True if the motion travels through the whole range, in one direction from one jump to the
     /// next.
@@ -153,7 +149,6 @@ struct Crossing {
     before: usize,
     /// First sample after its last jump.
     after: usize,
-    /// Sign of the motion.
     direction: f64,
 }
 

@@ -27,10 +27,8 @@ const BITS: std::ops::RangeInclusive<i32> = 3..=32;
 /// Leading digits of usual decimal periods, for example 1000, 2500 or 3600.
 const DECIMALS: [f64; 6] = [1.0, 2.0, 2.5, 3.6, 4.0, 5.0];
 
-/// Half a turn in degrees.
 const HALF_TURN_DEG: f64 = 180.0;
 
-/// Unit of a column.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ColumnUnit {
     /// Size of the unit, in the unit of the values.
@@ -118,7 +116,6 @@ fn is_whole_number(value: f64) -> bool {
     (value - value.round()).abs() <= 1e-9 * value.abs().max(1.0)
 }
 
-/// Steps between samples of a column with jumps.
 struct Steps<'v> {
     values: &'v [f64],
     jumps: &'v [usize],

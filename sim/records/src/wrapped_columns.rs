@@ -22,11 +22,9 @@ const ROUNDED: f64 = 1e-3;
 /// Largest range of a wrapped column in periods, noise included.
 const MOST_PERIODS: f64 = 1.1;
 
-/// Column to read.
 pub(crate) struct ReadColumn<'d> {
     /// Table of the dataset file: `inputs`, `motion` or `channels`.
     table: &'static str,
-    /// Name of the table's entry.
     name: &'d str,
     pub column: &'d Column,
     pub unit: &'d Unit,
@@ -123,7 +121,6 @@ pub(crate) fn unwrap_columns(
     Ok(notes)
 }
 
-/// Checks a declared period.
 fn check_period(
     column: &ReadColumn<'_>,
     number: Number,
@@ -162,7 +159,6 @@ fn check_period(
     }
 }
 
-/// Returns a size with its unit, for messages.
 fn with_unit(size: f64, unit: &Unit) -> String {
     match unit.to_string().as_str() {
         "1" => format!("{size:.4}"),

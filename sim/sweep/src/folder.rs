@@ -21,10 +21,8 @@ const PARTS: &str = "parts";
 /// Suffix of files during writing.
 const UNFINISHED: &str = ".unfinished";
 
-/// Largest description, in bytes.
 const LARGEST_DESCRIPTION: u64 = 16 << 20;
 
-/// Content of `sweep.json`.
 #[derive(Serialize, Deserialize)]
 struct Stored {
     hash: String,
@@ -99,7 +97,6 @@ impl Folder {
         &self.job
     }
 
-    /// Returns the text of `sweep.json`.
     fn description(&self) -> Result<String, SweepError> {
         let stored = Stored {
             hash: self.job.hash().to_owned(),

@@ -10,9 +10,6 @@ use crate::error::SweepError;
 use crate::measure::Failure;
 
 /// Looks up the parameter that is the angular frequency of the forcing.
-///
-/// # Errors
-/// A missing parameter, or one with another unit.
 pub fn frequency(model: &Model, name: &str) -> Result<Frequency, SweepError> {
     let parameters = &model.parameters;
     let Some(place) = parameters.iter().position(|known| known.name == name) else {
@@ -41,7 +38,6 @@ pub struct Frequency {
 }
 
 impl Frequency {
-    /// Returns the name of the parameter.
     pub fn name(&self) -> &str {
         &self.name
     }

@@ -85,7 +85,6 @@ impl Axis {
         Ok(axis)
     }
 
-    /// Checks a single axis.
     fn check(&self) -> Result<(), String> {
         if self.names.iter().any(String::is_empty) {
             return Err("a name is missing".to_owned());

@@ -14,7 +14,6 @@ use eomgen_sim::ode::Settings;
 use eomgen_sim::piecewise_linear::Lyapunov as Request;
 use eomgen_sim::variational::{Growths, Stretches, growths};
 
-/// Relative tolerance of the general solver.
 const TOLERANCE: f64 = 1e-9;
 
 /// Lyapunov exponent of a model at many parameter values.

@@ -15,10 +15,8 @@ use crate::window::{Times, Window};
 /// Number of sample intervals, the same as in `simulate`.
 const SAMPLES: usize = 1000;
 
-/// Relative tolerance of solvers with error control.
 const TOLERANCE: f64 = 1e-9;
 
-/// Statistic of a quantity over time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Statistic {
     Greatest,
@@ -29,7 +27,6 @@ enum Statistic {
 impl Statistic {
     const ALL: [Self; 3] = [Self::Greatest, Self::RootMeanSquare, Self::Last];
 
-    /// Returns the name on the command line.
     fn name(self) -> &'static str {
         match self {
             Self::Greatest => "max",
@@ -140,7 +137,6 @@ impl<'a> OverTime<'a> {
         Ok((times.collect(), before))
     }
 
-    /// Returns the quantity at every sample.
     fn course(&self, instance: &Instance<'_>, motion: &Motion) -> Result<Vec<f64>, Failure> {
         Ok(match self.quantity {
             Quantity::State(place) => {

@@ -16,10 +16,8 @@ use std::fmt::Write;
 
 use super::job::Job;
 
-/// First line.
 const TITLE: &str = "eomgen sweep part 1";
 
-/// State of a file.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Found {
     /// Complete chunk.

@@ -105,7 +105,6 @@ impl Samples {
         Ok(samples)
     }
 
-    /// Checks the number of samples.
     pub(crate) fn check(&self) -> Result<(), SweepError> {
         if (1..=MOST_POINTS).contains(&self.count) {
             return Ok(());
@@ -170,7 +169,6 @@ fn unit(random: &mut SplitMix64) -> f64 {
     (random.next_u64() >> 11) as f64 * 0.5_f64.powi(53)
 }
 
-/// Returns a normal number with mean 0 and standard deviation 1.
 fn normal(random: &mut SplitMix64) -> f64 {
     // 1 - [0, 1) excludes 0, so its logarithm exists.
     let radius = (-2.0 * Function::Ln.apply(&[1.0 - unit(random)])).sqrt();

@@ -157,7 +157,6 @@ impl Certificate {
     }
 }
 
-/// Serialises `None` as `false`.
 fn or_false<S: Serializer>(skip: &Option<Skip>, serializer: S) -> Result<S::Ok, S::Error> {
     match skip {
         Some(skip) => skip.serialize(serializer),
@@ -165,7 +164,6 @@ fn or_false<S: Serializer>(skip: &Option<Skip>, serializer: S) -> Result<S::Ok, 
     }
 }
 
-/// Serialises pairs as one JSON object and keeps their order.
 fn by_name<S: Serializer>(pairs: &[(String, f64)], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_map(pairs.iter().map(|(name, value)| (name, value)))
 }

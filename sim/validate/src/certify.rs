@@ -171,7 +171,6 @@ fn rigid(subject: &Subject<'_>, variant: &mut dyn Variant) -> Result<Vec<Check>,
     Ok(found.into())
 }
 
-/// Returns the three checks of a nesting as not applicable.
 fn skipped(name: &str, reason: &str) -> Vec<Check> {
     [
         ("mass", MASS_TOLERANCE),

@@ -7,9 +7,7 @@ use std::process::{Child, Command, Stdio};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// Time limit of one process.
 const LIMIT: Duration = Duration::from_secs(240);
-/// Polling interval of a running process.
 const INTERVAL: Duration = Duration::from_millis(5);
 
 /// Rust compiler that accepts edition 2024.
@@ -169,7 +167,6 @@ fn collect(mut pipe: impl Read + Send + 'static) -> JoinHandle<String> {
     })
 }
 
-/// Waits for a process and stops it at the time limit.
 fn wait(child: &mut Child, name: &OsStr) -> Result<bool, String> {
     let start = Instant::now();
     loop {

@@ -117,7 +117,6 @@ impl Outputs for DerivedOutputs {
     }
 }
 
-/// Returns a Jacobian as a dense matrix.
 fn dense<N>(jacobian: &Jacobian<N>, nonzeros: &[f64]) -> DMatrix<f64> {
     let mut matrix = DMatrix::zeros(jacobian.rows, jacobian.columns);
     for (entry, BlockPlace { start, width }) in jacobian.entries.iter().zip(jacobian.places()) {

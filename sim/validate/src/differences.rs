@@ -13,7 +13,6 @@ const WEIGHTS: [f64; 4] = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
 /// Number with the scale of its rounding error.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Slope {
-    /// Derivative along the direction.
     pub value: f64,
     /// Largest addend of the quantity itself. Over a step of length 1 the quantity changes by at
     /// most a few of these.
@@ -30,7 +29,6 @@ pub(super) struct Direction {
 }
 
 impl Direction {
-    /// Creates the direction zero.
     pub fn still(states: usize, inputs: usize, parameters: usize) -> Self {
         Self {
             state: vec![0.0; states],
@@ -66,7 +64,6 @@ pub(super) fn slopes(
     Some(found)
 }
 
-/// Oracle and state at which to differentiate.
 pub(super) struct Surroundings<'s> {
     pub oracle: &'s Oracle,
     pub model: &'s Model,
@@ -106,7 +103,6 @@ impl Surroundings<'_> {
         }
     }
 
-    /// Returns all parameters after a change of the independent ones.
     fn moved_parameters(&self, direction: &Direction, length: f64) -> Option<Vec<f64>> {
         let mut model = self.model.clone();
         let known = self.parameters.iter().zip(&direction.parameters);

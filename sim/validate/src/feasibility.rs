@@ -166,7 +166,6 @@ fn longest_step(solution: &DVector<f64>, trial: &DVector<f64>, active: &[usize])
     shares.fold(1.0, f64::min)
 }
 
-/// Returns the least-squares solution with only the columns `active`.
 fn least_squares(
     matrix: &DMatrix<f64>,
     target: &DVector<f64>,

@@ -3,7 +3,6 @@
 use super::oracle::{Oracle, OracleError, Side, SwitchValue};
 use super::sample::Sample;
 
-/// Maximum number of regimes to list.
 const MAX_REGIMES: usize = 810;
 
 /// One side for every switch of the model.
@@ -15,9 +14,6 @@ pub struct Regime {
 
 impl Regime {
     /// Returns the regime of a state.
-    ///
-    /// # Errors
-    /// [`OracleError`] as from [`Oracle::switch_values`].
     pub fn of(oracle: &Oracle, sample: &Sample) -> Result<Self, OracleError> {
         let values = oracle.switch_values(sample.time, &sample.state, &sample.inputs)?;
         let sides = values.iter().map(SwitchValue::side).collect();
@@ -36,7 +32,6 @@ impl Regime {
     }
 }
 
-/// Returns the number of combinations of sides.
 pub(super) fn combinations(oracle: &Oracle) -> u64 {
     let sides = oracle.switches().iter().map(|switch| switch.sides().len());
     sides.fold(1, |count: u64, sides| count.saturating_mul(sides as u64))

@@ -57,17 +57,12 @@ pub struct Sampler<'o> {
     remote: Option<Regime>,
     /// Fraction of the distance from the initial state to a drawn state, initially 1.
     reach: f64,
-    /// Consecutive states outside the domain.
     missed: usize,
-    /// Number of all states outside the domain.
     redrawn: usize,
 }
 
 impl<'o> Sampler<'o> {
     /// Creates a sampler for the states of `oracle`.
-    ///
-    /// # Errors
-    /// [`OracleError`] as from [`Oracle::equations`].
     pub fn new(oracle: &'o Oracle, seed: u64) -> Result<Self, OracleError> {
         Ok(Self {
             oracle,
@@ -103,9 +98,6 @@ impl<'o> Sampler<'o> {
     }
 
     /// Returns the regimes to visit.
-    ///
-    /// # Errors
-    /// [`OracleError`] as from [`Oracle::equations`].
     pub fn regimes(&mut self) -> Result<Regimes, OracleError> {
         let combinations = combinations(self.oracle);
         if let Some(visited) = possible_regimes(self.oracle, &self.sizes, &self.input_sizes) {
@@ -159,9 +151,6 @@ impl<'o> Sampler<'o> {
     }
 
     /// Draws a state of the domain in any regime; `None` if the search failed.
-    ///
-    /// # Errors
-    /// [`OracleError`] as from [`Oracle::equations`].
     pub fn draw_inside(&mut self) -> Result<Option<Drawn>, OracleError> {
         for _ in 0..ATTEMPTS * MISSES {
             let sample = self.draw();
@@ -174,9 +163,6 @@ impl<'o> Sampler<'o> {
 
     /// Draws a state in `regime`; `None` if the search failed. Regimes with contradictory sides
     /// have no state.
-    ///
-    /// # Errors
-    /// [`OracleError`] as from [`Oracle::equations`].
     pub fn draw_in(&mut self, regime: &Regime) -> Result<Option<Drawn>, OracleError> {
         let reach = self.reach;
         if self.remote.as_ref() != Some(regime)
@@ -202,7 +188,6 @@ impl<'o> Sampler<'o> {
         Ok(None)
     }
 
-    /// Draws a state in `regime` by changes of single entries.
     fn draw_near(&mut self, regime: &Regime) -> Result<Option<Drawn>, OracleError> {
         for _ in 0..ATTEMPTS {
             let mut sample = self.draw();
@@ -296,7 +281,6 @@ impl<'o> Sampler<'o> {
         Ok(right)
     }
 
-    /// Returns the value to set for the quantity of a switch.
     fn target(&mut self, value: &SwitchValue, side: Side) -> f64 {
         let (width, distance) = (value.half_width, value.quantity.abs());
         match side {

@@ -21,9 +21,6 @@ pub(super) struct Sizes<'s> {
 type Inequality = (Vec<f64>, f64);
 
 /// Moves `sample` into `regime`; returns false if that failed.
-///
-/// # Errors
-/// [`OracleError`] as from [`Oracle::switch_values`].
 pub(super) fn seek(
     oracle: &Oracle,
     sample: &mut Sample,

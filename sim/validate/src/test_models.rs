@@ -3,7 +3,6 @@
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::Source;
 
-/// Parses and checks a specification.
 pub(super) fn model(text: &str) -> Model {
     match eomgen_model_spec::check(Source::new("test.toml", text)) {
         Ok(checked) => checked.model,
@@ -11,7 +10,6 @@ pub(super) fn model(text: &str) -> Model {
     }
 }
 
-/// Mass on a spring with play and an input force.
 pub(super) const SPRING: &str = r#"
 [model]
 name = "spring"
@@ -40,7 +38,6 @@ damping = { on = "y", value = "-c*contact(y, b)*dot(y)" }
 pull = { on = "y", value = "u" }
 "#;
 
-/// Mass between springs with preload and play.
 pub(super) const PRELOAD: &str = r#"
 [model]
 name = "preload"
@@ -62,7 +59,6 @@ mass = "1/2*m*dot(y)^2"
 springs = { on = "y", value = "-F*sign(deadzone(y, b)) - k*deadzone(y, b)" }
 "#;
 
-/// Two point masses on massless rods, angles from the vertical.
 pub(super) const DOUBLE_PENDULUM: &str = r#"
 [model]
 name = "double_pendulum"
@@ -97,7 +93,6 @@ gravity = "m_1*g*y_1 + m_2*g*y_2"
 joint = "1/2*c*(dot(theta_2) - dot(theta_1))^2"
 "#;
 
-/// Beam on a hub with a tip mass.
 pub(super) const BEAM: &str = r#"
 [model]
 name = "beam"

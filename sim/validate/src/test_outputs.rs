@@ -81,7 +81,6 @@ impl SpringOutputs {
         DMatrix::from_row_slice(2, columns, &self.given(name, numbers))
     }
 
-    /// Returns weights times one of the Jacobians.
     fn weighted(&self, name: &str, at_: &Sample, weights: &[f64]) -> Vec<f64> {
         let jacobian = SpringOutputs("").rates_by(name, at_);
         let weights = DMatrix::from_row_slice(1, 2, weights);

@@ -5,23 +5,18 @@ use super::oracle::Oracle;
 use super::variant::Variant;
 use nalgebra::{DMatrix, DVector};
 
-/// Fault of a variant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Fault {
     None,
-    /// Wrong sign of the velocity term in the second row.
     VelocitySign,
     /// Missing coupling of the first row to the second acceleration.
     Coupling,
     /// Asymmetry of the mass matrix, fifty times its rounding.
     Asymmetry,
-    /// Missing kinetic energy.
     Energy,
-    /// Wrong sign of the power.
     Power,
     /// Missing guard on the negative side.
     Guard,
-    /// NaN in the rates.
     NotANumber,
     /// Rate of another coordinate.
     Shifted,
@@ -29,7 +24,6 @@ pub(super) enum Fault {
     Refusal,
 }
 
-/// Textbook double pendulum.
 pub(super) struct DoublePendulum(pub Fault);
 
 const G: f64 = 9.81;
@@ -142,7 +136,6 @@ impl Variant for DoublePendulum {
     }
 }
 
-/// Mass on a spring with play.
 pub(super) struct Spring(pub Fault);
 
 impl Variant for Spring {
@@ -311,7 +304,6 @@ impl Variant for Single {
     }
 }
 
-/// Mass between preloaded springs.
 pub(super) struct Preload;
 
 impl Preload {

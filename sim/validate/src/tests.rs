@@ -15,7 +15,6 @@ use super::test_variants::{
 };
 use super::variant::Variant;
 
-/// Returns the certificate of the model in `text` for the variants that `variants` creates.
 fn certificate(
     text: &str,
     order: usize,
@@ -381,7 +380,6 @@ fn outputs_with_fault(wrong: &'static str) -> Certificate {
     })
 }
 
-/// Checks of all outputs.
 const REQUESTED: [&str; 12] = [
     "bias_forces",
     "inverse_dynamics",

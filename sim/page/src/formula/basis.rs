@@ -48,7 +48,6 @@ fn amplitude(sense: &str) -> Markup {
     html! { msubsup { (identifier("φ")) (identifier("i")) mo { (sense) } } }
 }
 
-/// Returns a mode shape with primes for its derivatives.
 fn shape(index: &str, derivative: u8) -> Markup {
     let shape = element(&identifier("φ"), index);
     match derivative {

@@ -191,7 +191,6 @@ fn matrix_part(part: &MatrixPart) -> Markup {
     }
 }
 
-/// Returns an indexed element.
 fn element(of: &Markup, index: &str) -> Markup {
     html! { msub { (of) (identifier(index)) } }
 }

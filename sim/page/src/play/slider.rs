@@ -6,7 +6,6 @@ use maud::{Markup, html};
 
 use crate::formula::formula;
 
-/// Number of steps of a slider.
 const STEPS: f64 = 400.0;
 
 /// Quantity that a page can change.

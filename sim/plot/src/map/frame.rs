@@ -19,7 +19,6 @@ const BOTTOM: f64 = 690.0;
 const RIGHT_MARGIN: f64 = 28.0;
 const LABEL_ROOM: f64 = 46.0;
 
-/// Position of the tick marks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// Outside of the frame, so that they cover no cell.
@@ -28,7 +27,6 @@ pub enum Side {
     Inside,
 }
 
-/// Unit of an axis.
 #[derive(Debug)]
 pub struct Units {
     quantity: Quantity,

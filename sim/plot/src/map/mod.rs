@@ -139,7 +139,6 @@ fn ends(edges: &[f64], map: &Map<'_>) -> Result<Range, PlotError> {
     }
 }
 
-/// Returns the index of the cell at a position.
 fn cell_of(edges: &[f64], place: f64) -> Option<usize> {
     let cell = edges
         .partition_point(|edge| *edge <= place)

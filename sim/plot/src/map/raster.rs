@@ -6,7 +6,6 @@ use super::super::error::PlotError;
 pub const WIDTH: usize = 1000;
 pub const HEIGHT: usize = 760;
 
-/// Red, green and blue.
 pub type Colour = [u8; 3];
 
 /// Picture; columns count from the left, rows from the top.
@@ -16,7 +15,6 @@ pub struct Raster {
 }
 
 impl Raster {
-    /// Creates a picture of one colour.
     pub fn new(colour: Colour) -> Self {
         Self {
             pixels: vec![colour; WIDTH * HEIGHT],
@@ -47,7 +45,6 @@ impl Raster {
         }
     }
 
-    /// Returns the picture as a PNG with its title.
     pub fn png(&self, title: &str) -> Result<Vec<u8>, PlotError> {
         let encoding = |error: png::EncodingError| PlotError::Encoding {
             reason: error.to_string(),

@@ -13,7 +13,6 @@ use super::raster::{Colour, Raster};
 pub const TICK_SIZE: f64 = 15.0;
 const TEXT: Colour = [26; 3];
 
-/// Alignment of a text relative to its point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Align {
     Start,
@@ -21,7 +20,6 @@ pub enum Align {
     End,
 }
 
-/// Direction of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
     Right,
@@ -35,7 +33,6 @@ pub struct Typeface {
     bold: FontRef<'static>,
 }
 
-/// Text with its style.
 #[derive(Clone, Copy, Debug)]
 pub struct Line<'a> {
     pub text: &'a str,
@@ -61,7 +58,6 @@ impl<'a> Line<'a> {
 }
 
 impl Typeface {
-    /// Loads the fonts in the program.
     pub fn new() -> Result<Self, PlotError> {
         let font = |bytes| {
             FontRef::try_from_slice(bytes).map_err(|error| PlotError::Encoding {
@@ -159,7 +155,6 @@ impl Typeface {
     }
 }
 
-/// Glyphs in a row, and the position of the next one.
 #[derive(Default)]
 struct Placed {
     glyphs: Vec<Glyph>,

@@ -84,7 +84,6 @@ pub(super) fn empty(name: &str) -> PlotError {
     }
 }
 
-/// Returns the largest drawable magnitude.
 pub(super) fn largest(values: &[f64]) -> f64 {
     let drawable = values.iter().filter(|value| is_drawable(**value));
     drawable.fold(0.0, |largest: f64, value| largest.max(value.abs()))

@@ -77,7 +77,6 @@ fn axes(shape: &Shape, (left, top, height): (f64, f64, f64)) -> Axes {
     }
 }
 
-/// Draws grid, ticks, names and the frame.
 fn draw_frame(canvas: &mut Canvas, Axes { x, y, along, up }: &Axes, left: f64) {
     let (edges, (bottom, top)) = (x.pixels, y.pixels);
     for tick in ticks(x.scale, x.range, 5) {

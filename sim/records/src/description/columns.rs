@@ -158,7 +158,6 @@ fn wrap(record: &Record<'_>, found: &mut Diagnostics) -> Option<Option<Wrap>> {
     Some(Some(Wrap::Period(period)))
 }
 
-/// Reads the name or the number of a column.
 fn key(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<ColumnKey> {
     let Ok((number, span)) = entry.whole() else {
         return found.keep(entry.written()).map(ColumnKey::Name);

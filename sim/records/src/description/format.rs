@@ -27,7 +27,6 @@ pub const SEPARATORS: [(&str, Separator); 5] = [
 /// Decimal signs with their names.
 pub const DECIMALS: [(&str, u8); 2] = [(".", b'.'), (",", b',')];
 
-/// Maximum number of skipped lines.
 const MOST_SKIPPED: i64 = 1000;
 
 /// Layout of a text file with numbers.

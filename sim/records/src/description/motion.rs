@@ -26,7 +26,6 @@ pub struct Windows {
     pub smoothed: bool,
 }
 
-/// Values of `initial.state`.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Word {
     Rest,

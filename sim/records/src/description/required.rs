@@ -3,7 +3,6 @@
 use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_model_spec::table::{Entry, Record};
 
-/// Returns the entry of a required key.
 pub(super) fn required<'r, 'd>(
     record: &'r Record<'d>,
     key: &str,

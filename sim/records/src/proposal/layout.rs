@@ -11,7 +11,6 @@ const LINES: usize = 400;
 /// First characters of comment lines.
 const COMMENTS: [char; 3] = ['#', '%', '!'];
 
-/// Layout and column names of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Layout {
     pub format: Format,
@@ -48,7 +47,6 @@ pub(crate) fn found(text: &str) -> Option<Layout> {
     Some(layout)
 }
 
-/// Lines with equally many cells, nearly all of them numbers.
 struct Block<'t> {
     lines: &'t [&'t str],
     separator: Separator,
@@ -101,7 +99,6 @@ impl<'t> Block<'t> {
         block
     }
 
-    /// Returns true for the columns that contain only numbers and gaps.
     fn are_numbers(&self, comment: Option<char>) -> Vec<bool> {
         let mut numbers = vec![0; self.cells];
         let mut texts = vec![0; self.cells];
@@ -242,7 +239,6 @@ fn row(line: &str, separator: Separator, count: Option<usize>) -> Vec<String> {
     cells
 }
 
-/// Returns true if a cell can be a unit.
 fn is_unit(cell: &str) -> bool {
     let bare = super::matching::bare_unit(cell);
     bare.is_empty() || bare == "-" || Unit::parse(&bare).is_ok()
@@ -252,7 +248,6 @@ fn is_unit(cell: &str) -> bool {
 mod tests {
     use super::{Format, Separator, found};
 
-    /// Returns a text with a header and forty rows.
     fn text(head: &str, row: &str) -> String {
         head.to_owned() + &row.repeat(40)
     }

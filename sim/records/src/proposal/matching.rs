@@ -21,11 +21,8 @@ pub(crate) struct FileColumn {
     pub number: usize,
     /// Name in the file; "" without a name.
     pub name: String,
-    /// Name without its unit.
     pub stem: String,
-    /// Known unit in the file, if any.
     pub unit: Option<Unit>,
-    /// Unknown unit in the file, if any.
     pub unknown_unit: Option<String>,
 }
 
@@ -61,7 +58,6 @@ impl FileColumn {
     }
 }
 
-/// Quantity of a model.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Quantity {
     pub name: String,
@@ -125,18 +121,13 @@ fn derivatives_of_observables(model: &Model) -> impl Iterator<Item = ObservedRat
     })
 }
 
-/// Matched column with the reason.
 #[derive(Clone, Debug)]
 pub(crate) struct Match {
-    /// Index of the column.
     pub column: usize,
-    /// Index of the quantity.
     pub quantity: usize,
-    /// Reason of the match.
     pub why: &'static str,
 }
 
-/// Rule that matches a column with a quantity.
 type Rule = fn(&FileColumn, &Quantity) -> bool;
 
 /// Rules in the order of their reliability.
@@ -172,7 +163,6 @@ pub(crate) fn matched(columns: &mut [FileColumn], quantities: &[Quantity]) -> Ve
     matches
 }
 
-/// Adds the matches of all rules among free columns and quantities.
 fn by_rules(columns: &[FileColumn], quantities: &[Quantity], matches: &mut Vec<Match>) {
     for (rule, why) in RULES {
         let may = |column: usize, quantity: usize| {
@@ -264,7 +254,6 @@ fn with_exponents(text: &str) -> String {
     found
 }
 
-/// Returns a name without differences of spelling.
 fn plain(name: &str) -> String {
     const GREEK: [(char, &str); 9] = [
         ('θ', "theta"),

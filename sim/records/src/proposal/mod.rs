@@ -24,13 +24,10 @@ use crate::wrapped_columns::{can_wrap, own_unit};
 
 use self::matching::{FileColumn, Match, Quantity, matched, quantities};
 
-/// Fraction of the record for training; the rest is for testing.
 const TRAIN: f64 = 0.6;
 
-/// Number of windows in the training part.
 const WINDOWS: f64 = 20.0;
 
-/// Minimum number of samples in a window.
 const FEWEST_IN_WINDOW: f64 = 100.0;
 
 /// Number of samples above which the record is decimated, because a search would take long.
@@ -39,13 +36,11 @@ const MANY: usize = 100_000;
 /// Usual names of a time column.
 const TIMES: [&str; 6] = ["t", "time", "zeit", "timestamp", "seconds", "sec"];
 
-/// Detected properties of a record.
 struct Found<'m> {
     model: &'m Model,
     format: Format,
     /// All columns of numbers.
     columns: Vec<FileColumn>,
-    /// Values of the columns.
     values: Vec<Vec<f64>>,
     /// Index of the time column, and its unit.
     time: usize,
@@ -102,14 +97,12 @@ impl Found<'_> {
         self.time_unit.to_si(typical_step(self.times()))
     }
 
-    /// Returns true if time steps are uneven.
     fn is_uneven(&self) -> bool {
         let step = typical_step(self.times());
         let mut steps = self.times().windows(2).map(|pair| pair[1] - pair[0]);
         steps.any(|s| (s - step).abs() > JITTER * step)
     }
 
-    /// Returns the number of samples that become one.
     fn every(&self) -> usize {
         self.times().len().div_ceil(MANY)
     }
@@ -200,7 +193,6 @@ pub fn proposed(record: &Path, name: &str, model: &Model) -> Result<String, Refu
     Ok(written::text(&found, name))
 }
 
-/// Detects the layout of a text file and its columns of numbers.
 fn described(record: &Path, bytes: &[u8]) -> Result<(Format, Vec<FileColumn>), Refusal> {
     // The reader reports a file that is not text.
     let text = csv_file::behind_skipped(record, bytes, &Format::default())?;
@@ -218,7 +210,6 @@ fn described(record: &Path, bytes: &[u8]) -> Result<(Format, Vec<FileColumn>), R
     Ok((layout.format, columns.collect()))
 }
 
-/// Returns the index of the time column and its unit.
 fn time(
     record: &Path,
     columns: &mut [FileColumn],

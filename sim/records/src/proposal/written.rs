@@ -53,7 +53,6 @@ fn aligned(text: &str) -> String {
     text.lines().map(line).collect()
 }
 
-/// Returns a TOML string without hidden characters.
 fn quoted(text: &str) -> String {
     if !text.contains(is_hidden) {
         return toml_edit::Value::from(text).to_string();
@@ -76,7 +75,6 @@ fn records(found: &Found<'_>, name: &str) -> String {
     )
 }
 
-/// Returns the keys that differ from the default format.
 fn format(format: &Format) -> String {
     let usual = Format::default();
     let mut keys = String::new();
@@ -122,7 +120,6 @@ fn format(format: &Format) -> String {
     }
 }
 
-/// Returns the name or the number that identifies a column.
 fn key(found: &Found<'_>, column: &FileColumn) -> String {
     let mut all = found
         .columns
@@ -162,7 +159,6 @@ fn time(found: &Found<'_>) -> String {
     text
 }
 
-/// Returns a column's unit with its source.
 fn unit(found: &Found<'_>, matched: &Match) -> String {
     let (unit, why) = found.unit(matched);
     format!("unit = {}\u{1}{why}", quoted(&unit.to_string()))
@@ -181,7 +177,6 @@ fn input(found: &Found<'_>, matched: &Match) -> String {
     )
 }
 
-/// Returns the key of a wrapped column.
 fn wrap(pattern: Option<WrapPattern>) -> String {
     pattern.map_or_else(String::new, |pattern| {
         let doubt = pattern.doubt(pattern.period);
@@ -223,7 +218,6 @@ fn channel(found: &Found<'_>, matched: &Match) -> String {
     )
 }
 
-/// Returns comments on unmatched columns and inputs.
 fn unmatched(found: &Found<'_>) -> String {
     let is_used = |place: usize| {
         place == found.time || found.matches.iter().any(|matched| matched.column == place)
@@ -265,7 +259,6 @@ fn unmatched(found: &Found<'_>) -> String {
     text
 }
 
-/// Returns a comment on parameters that can be declared uncertain.
 fn uncertain(found: &Found<'_>) -> String {
     let parameters = found.model.parameters.iter();
     let numbers = parameters.filter(|p| matches!(p.value, ParameterValue::Number(v) if v != 0.0));

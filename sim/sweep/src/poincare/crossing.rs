@@ -20,7 +20,6 @@ const PARTS: usize = 64;
 /// Number of samples in each part, for the extent of the motion.
 const LOOKS: usize = 64;
 
-/// Crossing of a value by a coordinate or a rate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Crossing {
     name: String,
@@ -31,9 +30,6 @@ pub struct Crossing {
 
 impl Crossing {
     /// Parses `NAME=VALUE` (upwards), `NAME=VALUE:up` or `NAME=VALUE:down`.
-    ///
-    /// # Errors
-    /// The invalid part, with the expected form.
     pub fn parse(model: &CompiledModel, text: &str) -> Result<Self, SweepError> {
         let refused = |reason: String| {
             SweepError::Request(format!(
@@ -95,11 +91,9 @@ impl std::fmt::Display for Crossing {
     }
 }
 
-/// Results of a simulated motion.
 pub struct Seen {
     /// Times of the crossings, in s.
     pub times: Vec<f64>,
-    /// States at the crossings.
     pub points: Vec<Vec<f64>>,
     /// States between the crossings, approximately from the first one on.
     pub between: Vec<Vec<f64>>,
@@ -178,7 +172,6 @@ impl Surface<'_> {
         (start(turn), start(turn + 1.0))
     }
 
-    /// Sets the turn to that of a state.
     fn enter(&self, y: &[f64]) {
         let Some(turn) = &self.turn else { return };
         let value = y[self.crossing.state];

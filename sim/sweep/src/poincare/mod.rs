@@ -60,7 +60,6 @@ enum Places {
 /// Section of a model's motion at many parameter values.
 pub struct Poincare<'a> {
     model: &'a CompiledModel,
-    /// Name of the measure on the command line.
     asked: String,
     quantity: Quantity,
     places: Places,
@@ -136,7 +135,6 @@ impl<'a> Poincare<'a> {
         })
     }
 
-    /// Returns the columns in the order of the numbers.
     fn columns(&self) -> Vec<Column> {
         let Quantity { name, unit, .. } = &self.quantity;
         let longest = LONGEST_PERIOD.min(self.span.periods / 2);
@@ -182,7 +180,6 @@ impl<'a> Poincare<'a> {
         format!("{}_{part}", self.asked)
     }
 
-    /// Returns the names of the columns with points.
     fn points(&self) -> Vec<String> {
         let count = if self.keep_points {
             self.span.periods
@@ -281,7 +278,6 @@ impl Worker for &Poincare<'_> {
     }
 }
 
-/// Results on a section.
 struct OnSection {
     /// Points, without full turns of a rotating angle.
     points: Vec<[f64; 2]>,

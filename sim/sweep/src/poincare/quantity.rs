@@ -4,9 +4,6 @@ use eomgen_compiled_model::CompiledModel;
 use eomgen_model_spec::suggest::did_you_mean;
 
 /// Returns the index of a coordinate or a rate in the state.
-///
-/// # Errors
-/// An unknown name, with similar names.
 pub fn place(model: &CompiledModel, name: &str) -> Result<usize, String> {
     let states = model.state_names();
     let place = states.iter().position(|known| known == name);
@@ -33,9 +30,6 @@ pub struct Quantity {
 
 impl Quantity {
     /// Looks up a quantity by its name.
-    ///
-    /// # Errors
-    /// Same as [`place`].
     pub fn of(model: &CompiledModel, name: &str) -> Result<Self, String> {
         let shown = place(model, name)?;
         let (partner, coordinate) = match name.strip_suffix("_dot") {
@@ -55,7 +49,6 @@ impl Quantity {
         (self.coordinate, self.places[self.coordinate])
     }
 
-    /// Returns both in a state.
     pub fn seen(&self, state: &[f64]) -> [f64; 2] {
         self.places.map(|place| state[place])
     }

@@ -18,7 +18,6 @@ const COMPARED: usize = 8;
 pub struct Looks<'m> {
     /// Times of the samples, in s.
     pub times: &'m [f64],
-    /// States of the samples.
     pub states: &'m [Vec<f64>],
 }
 

@@ -27,9 +27,6 @@ const SEED: u64 = 0xba1a_4ce5;
 /// Checks the power balance along trajectories from random states. Classical Runge-Kutta steps are
 /// at most a twelfth of the shortest uncoupled period of a coordinate, and shorter if coupled modes
 /// are faster.
-///
-/// # Errors
-/// [`OracleError`] as from [`Oracle::equations`].
 pub fn check(oracle: &Oracle, variant: &mut dyn Variant) -> Result<Check, OracleError> {
     let mut sampler = Sampler::new(oracle, SEED)?;
     let mut motion = Motion {
@@ -51,19 +48,15 @@ pub fn check(oracle: &Oracle, variant: &mut dyn Variant) -> Result<Check, Oracle
     Ok(Check::made(NAME, worst, ROW_TOLERANCE))
 }
 
-/// State of the check over all trajectories.
 struct Motion {
-    /// Sizes of the entries of a state.
     sizes: Vec<f64>,
     /// Largest step size, in s.
     longest: f64,
-    /// Number of steps checked.
     looked: usize,
     worst: Worst,
 }
 
 impl Motion {
-    /// Checks a trajectory until it ends or enough steps were checked.
     fn follow(
         &mut self,
         oracle: &Oracle,
@@ -172,7 +165,6 @@ fn imbalance(
     Ok(Ok((rate.deviation(power), rate.magnitude)))
 }
 
-/// Takes one classical Runge-Kutta step.
 fn moved(variant: &mut dyn Variant, sample: &Sample, step: f64) -> Result<Sample, String> {
     let start = &sample.state;
     let mut slope = vec![0.0; start.len()];

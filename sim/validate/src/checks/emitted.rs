@@ -11,15 +11,11 @@ use super::linked::{Emitted, EmittedFunction, differences, line, run};
 use std::fmt::Write as _;
 
 const NAME: &str = "emitted_rust";
-/// Number of states to compare.
 const STATES: usize = 100;
 const SEED: u64 = 0x0e31_77ed;
 
 /// Compiles `emitted` and compares it with `variant` and `functions` at random states. The value of
 /// the first check is the count of numbers with different bits.
-///
-/// # Errors
-/// [`OracleError`] as from [`Oracle::equations`].
 pub fn check(
     oracle: &Oracle,
     variant: &mut dyn Variant,

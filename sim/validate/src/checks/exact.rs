@@ -10,7 +10,6 @@ const NAME: &str = "exact_derivative";
 /// Tolerance, relative to the sum of the magnitudes of a rate's terms. The linear equations sum the
 /// same terms in another order.
 const TOLERANCE: f64 = 1e-11;
-/// Number of states to compare in every regime.
 const STATES_PER_REGIME: usize = 20;
 const SEED: u64 = 0x0e4a_c7d5;
 
@@ -27,9 +26,6 @@ pub struct Sized {
 pub type Derivative<'d> = dyn Fn(f64, &[f64], &[f64]) -> Result<Sized, String> + 'd;
 
 /// Compares `derivative` with the rates of `variant`.
-///
-/// # Errors
-/// [`OracleError`] as from [`Oracle::equations`].
 pub fn check(
     oracle: &Oracle,
     variant: &mut dyn Variant,

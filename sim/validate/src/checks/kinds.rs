@@ -18,11 +18,9 @@ use std::path::Path;
 const SINGLE_TOLERANCE: f64 = 1.0 + 1e-6;
 /// Maximum number of states, compared in groups of eight for SIMD.
 const STATES: usize = 48;
-/// States in a SIMD group.
 const LANES: usize = 8;
 const SEED: u64 = 0x51de_5eed;
 
-/// Mutable reference to the requested outputs.
 pub type BorrowedOutputs<'r> = &'r mut (dyn Outputs + 'static);
 
 /// Arguments of all output functions at one state.
@@ -62,7 +60,6 @@ impl Arguments {
     }
 }
 
-/// Returns the names of the checks for `outputs`.
 fn names(outputs: &[String]) -> Vec<&'static str> {
     let has = |name: &str| outputs.iter().any(|known| known == name);
     let mut found = Vec::new();
@@ -93,7 +90,6 @@ pub fn skipped(outputs: &[String], kind: SkipKind, reason: &str) -> Vec<Check> {
         .collect()
 }
 
-/// Compiles a program that calls the library of `emitted` in `folder` and compares its output.
 pub fn check(
     compiler: &Compiler,
     folder: &Path,
@@ -141,7 +137,6 @@ pub fn check(
     }
 }
 
-/// Call of an emitted function at every state.
 struct Call {
     /// Name of the check.
     row: &'static str,
@@ -150,7 +145,6 @@ struct Call {
     text: String,
 }
 
-/// Returns the calls of all functions in `outputs`.
 fn calls(outputs: &[String]) -> Vec<Call> {
     let has = |name: &str| outputs.iter().any(|known| known == name);
     let at = "t, &state, &inputs, &coefficients";
@@ -364,7 +358,6 @@ impl Reading<'_, '_> {
         found.ok_or_else(missing)
     }
 
-    /// Returns rates, observables, and A, B, C, D from the Jacobians.
     fn linearised(&mut self, sample: &Sample) -> Result<Vec<Vec<f64>>, String> {
         let Sample {
             time,
@@ -389,7 +382,6 @@ impl Reading<'_, '_> {
     }
 }
 
-/// Returns the entries of a Jacobian, row by row.
 fn row_by_row(functions: &mut dyn Outputs, name: &str, sample: &Sample) -> Option<Vec<f64>> {
     let jacobian = functions.jacobian(name, sample)?;
     Some(jacobian.transpose().as_slice().to_vec())
@@ -420,7 +412,6 @@ fn at(numbers: &[f64], place: usize) -> f64 {
     numbers.get(place).copied().unwrap_or(f64::NAN)
 }
 
-/// Parses a line of hexadecimal bits.
 fn numbers(line: &str) -> Result<Vec<f64>, String> {
     let words = line.split(' ');
     let number = |word: &str| u64::from_str_radix(word, 16).map(f64::from_bits);

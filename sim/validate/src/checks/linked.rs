@@ -54,9 +54,6 @@ impl EmittedFunction {
     }
 
     /// Returns the variant's value at a state.
-    ///
-    /// # Errors
-    /// The variant's message.
     pub fn expected(self, variant: &mut dyn Variant, sample: &Sample) -> Result<Vec<f64>, String> {
         let Sample {
             time,

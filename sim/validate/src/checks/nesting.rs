@@ -9,16 +9,12 @@ use super::super::variant::Variant;
 use super::{MASS_TOLERANCE, ROW_TOLERANCE, mass_matrix, matrix_distance, unknowns};
 use nalgebra::DMatrix;
 
-/// Number of states to compare.
 const STATES: usize = 50;
 const SEED: u64 = 0x0e57_ed00;
 
 /// Compares mass matrices, velocity terms and forces of two orders of one model. `oracle` belongs
 /// to the smaller order and provides the scale of each row. The names of the checks are `name`
 /// followed by `_mass`, `_bias` and `_forces`.
-///
-/// # Errors
-/// [`OracleError`] as from [`Oracle::equations`].
 pub fn check(
     name: &str,
     oracle: &Oracle,
@@ -55,7 +51,6 @@ fn kept_rows(small: &[String], large: &[String]) -> Vec<Option<usize>> {
     small.iter().map(place).collect()
 }
 
-/// Returns the deviations of mass matrix, velocity terms and forces at one state.
 fn compare(
     Drawn { sample, equations }: &Drawn,
     small: &mut dyn Variant,
@@ -87,7 +82,6 @@ fn compare(
     ])
 }
 
-/// Returns the state of the larger variant with the added modes at zero.
 fn embed(state: &[f64], kept: &[usize], size: usize) -> Vec<f64> {
     let mut embedded = vec![0.0; 2 * size];
     let (positions, rest) = state.split_at(kept.len());
@@ -108,7 +102,6 @@ struct Sides {
 }
 
 impl Sides {
-    /// Returns the rows and columns `kept`.
     fn restricted(&self, kept: &[usize]) -> Self {
         let rows = |all: &[f64]| kept.iter().map(|row| all[*row]).collect();
         Self {

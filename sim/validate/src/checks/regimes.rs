@@ -12,9 +12,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 const NAME: &str = "regime_kernels";
-/// Number of states to compare in every regime.
 const STATES_PER_REGIME: usize = 10;
-/// Maximum number of kernels to compile.
 const MOST_KERNELS: usize = 100;
 /// Maximum number of switching surfaces in the number of a regime.
 const SURFACES: usize = u32::BITS as usize;
@@ -22,9 +20,6 @@ const SEED: u64 = 0x2e61_3e5a;
 
 /// Compiles the kernels in `emitted` and compares them with `variant`. The value of the check is
 /// the count of different numbers.
-///
-/// # Errors
-/// [`OracleError`] as from [`Oracle::equations`].
 pub fn check(
     oracle: &Oracle,
     variant: &mut dyn Variant,
@@ -84,7 +79,6 @@ fn in_regimes(
     Ok((kept, numbers))
 }
 
-/// Returns statements that call the kernel of a state's regime.
 fn calls(numbers: &BTreeSet<u32>) -> String {
     let arguments = "(t, &state, &inputs, &coefficients";
     let mut text = "        let mut rates = [f64::NAN; model::STATES];\n".to_owned();

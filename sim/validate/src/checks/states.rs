@@ -11,9 +11,7 @@ use super::{
 use nalgebra::{Cholesky, DMatrix};
 use std::collections::HashMap;
 
-/// Maximum number of states in every regime.
 const STATES_PER_REGIME: usize = 200;
-/// Maximum number of states in all regimes together.
 const STATES: usize = 81 * STATES_PER_REGIME;
 /// Minimum number of states for a regime to count as sampled.
 const FEWEST: usize = 20;
@@ -31,7 +29,6 @@ pub struct Reference {
     pub deviation: Box<dyn Fn(f64, &[f64], &[f64], &[f64]) -> f64>,
 }
 
-/// Results at the states so far.
 struct Findings<'f> {
     oracle: &'f Oracle,
     references: &'f [Reference],
@@ -46,18 +43,13 @@ struct Findings<'f> {
     guards: Guards,
     /// True if no energy depends explicitly on time.
     scleronomic: bool,
-    /// States compared in all regimes.
     examined: usize,
     /// Regimes with enough states.
     sampled: u64,
-    /// States to draw in every regime.
     per_regime: usize,
 }
 
 /// Runs all checks at random states and returns them with the coverage of regimes.
-///
-/// # Errors
-/// [`OracleError`] as from [`Oracle::equations`].
 pub fn check(
     oracle: &Oracle,
     variant: &mut dyn Variant,
@@ -110,7 +102,6 @@ pub fn check(
     Ok((findings.into_checks(), coverage))
 }
 
-/// Returns the check that every regime was sampled.
 fn every_regime(coverage: &Coverage) -> Check {
     const NAME: &str = "coverage";
     if coverage.sampled >= coverage.regimes {
@@ -143,7 +134,6 @@ fn is_scleronomic(oracle: &Oracle) -> Result<bool, OracleError> {
     Ok(true)
 }
 
-/// Compares the names of the coordinates.
 fn names(oracle: &Oracle, variant: &dyn Variant) -> Check {
     let found = variant.coordinate_names();
     let same = found == oracle.names();

@@ -25,9 +25,6 @@ const JACOBIANS_THERE: &str = "jacobians_at_zeros";
 
 /// Checks that rates and Jacobians are finite. A state at which the oracle has no finite value or
 /// no derivative is excluded and reported.
-///
-/// # Errors
-/// [`OracleError`] as from [`Oracle::equations`].
 pub fn check(
     oracle: &Oracle,
     variant: &mut dyn Variant,

@@ -11,7 +11,6 @@ use eomgen_model_spec::interval::Interval;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Variable {
     Time,
-    /// Entry of the state.
     Entry(usize),
     Input(usize),
     /// Subexpression that is not affine, by its index in [`Forms`].
@@ -87,7 +86,6 @@ pub(super) struct Forms<'o> {
 }
 
 impl<'o> Forms<'o> {
-    /// Creates forms with piecewise functions on the sides of `imposed`.
     pub fn new(oracle: &'o Oracle, imposed: Imposed<'o>) -> Self {
         Self {
             oracle,
@@ -96,7 +94,6 @@ impl<'o> Forms<'o> {
         }
     }
 
-    /// Returns the affine form of `tree`.
     pub fn of(&mut self, tree: &Tree) -> Affine {
         match tree {
             Tree::Constant(value) => Affine::constant(*value),

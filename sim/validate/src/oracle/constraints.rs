@@ -14,7 +14,6 @@ use eomgen_model_spec::model::{Model, STABILISATION_RATE};
 #[derive(Debug)]
 pub(super) struct LoweredConstraint {
     zero: Tree,
-    /// Time derivative of `zero`.
     rate: Tree,
     dependence: Dependence,
     is_nonholonomic: bool,
@@ -76,7 +75,6 @@ impl LoweredConstraint {
 }
 
 impl Oracle {
-    /// Returns the multipliers of the constraints at a state.
     pub(super) fn multipliers(&self, scene: &Scene<'_>) -> Vec<Conditioned> {
         if self.constraints.is_empty() {
             return Vec::new();

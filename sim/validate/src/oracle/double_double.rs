@@ -6,9 +6,7 @@ use std::ops::{Add, Mul, Sub};
 /// Sum `high + low` with `|low|` at most half a unit in the last place of `high`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct DoubleDouble {
-    /// Number rounded to `f64`.
     pub high: f64,
-    /// Rounding error of `high`.
     pub low: f64,
 }
 

@@ -161,7 +161,6 @@ impl Oracle {
     }
 }
 
-/// Returns the inequalities of a switch on a side.
 fn side_rows(forms: &mut Forms<'_>, switch: &Switch, side: Side) -> Vec<(Affine, Relation)> {
     let quantity = forms.of(switch.quantity());
     let width = switch.half_width().map(|width| forms.of(width));

@@ -9,9 +9,6 @@ use super::{Oracle, OracleError, expect_length};
 
 impl Oracle {
     /// Returns the energy T + V at a state, in J.
-    ///
-    /// # Errors
-    /// [`OracleError::Length`] if a length does not match.
     pub fn energy(
         &self,
         time: f64,
@@ -25,9 +22,6 @@ impl Oracle {
     }
 
     /// Returns d(T + V)/dt along the motion with given accelerations, in W.
-    ///
-    /// # Errors
-    /// [`OracleError::Length`] if a length does not match.
     pub fn energy_rate(
         &self,
         time: f64,
@@ -43,9 +37,6 @@ impl Oracle {
     }
 
     /// Returns the power of all non-conservative forces at a state, in W.
-    ///
-    /// # Errors
-    /// [`OracleError::Length`] if a length does not match.
     pub fn power(
         &self,
         time: f64,
@@ -72,9 +63,6 @@ impl Oracle {
     /// Returns true if the power of the forces is the rate of T + V. In that case the kinetic
     /// energy is a quadratic form of the rates (2 T = sum of q_j' dT/dq_j' at the given state, to
     /// 1e-10) and no energy depends explicitly on time or inputs.
-    ///
-    /// # Errors
-    /// [`OracleError::Length`] if a length does not match.
     pub fn is_scleronomic(
         &self,
         time: f64,

@@ -39,7 +39,6 @@ pub struct RowTerm {
 }
 
 impl RowTerm {
-    /// Creates a term from its value in every row.
     pub(super) fn new(name: &str, kind: RowTermKind, rows: Vec<Conditioned>) -> Self {
         let part = |part: fn(&Conditioned) -> f64| {
             DVector::from_iterator(rows.len(), rows.iter().map(part))
@@ -128,7 +127,6 @@ impl Equations {
             && (self.compliance()).is_some_and(|compliance| has_pivots(&scaled(&compliance).1))
     }
 
-    /// Returns the derivatives of the constraints, A.
     fn gradients(&self) -> DMatrix<f64> {
         DMatrix::from_fn(self.constraints.len(), self.size(), |row, column| {
             self.constraints[row].gradient[column].value

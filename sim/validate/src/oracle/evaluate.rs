@@ -18,9 +18,7 @@ pub(super) type Number = HyperDual<Conditioned>;
 pub(super) trait Level: DualNum<Primitive = f64> + Copy {
     /// Converts a moving quantity.
     fn of(motion: Motion) -> Self;
-    /// Returns the time derivative of `tree`.
     fn dot(pass: &Pass<'_>, tree: &Tree, frame: &Frame<'_>) -> Self;
-    /// Returns a first-order state.
     fn state(pass: &Pass<'_>, index: usize) -> Self;
     /// Returns the cache of a definition's value.
     fn kept<'p>(pass: &'p Pass<'_>, definition: usize) -> Option<&'p Cell<Option<Self>>>;
@@ -80,11 +78,9 @@ impl Level for Dual<Number> {
 /// Place or index of the enclosing sums during an evaluation.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Frame<'f> {
-    /// Outside of all sums.
     Outside,
     /// At a position of the enclosing place set.
     At {
-        /// Index of the position.
         node: usize,
         outer: &'f Frame<'f>,
     },
@@ -116,10 +112,8 @@ impl Frame<'_> {
     }
 }
 
-/// Cached value of a definition, without and with its rate.
 type KeptDefinition = (Cell<Option<Number>>, Cell<Option<Dual<Number>>>);
 
-/// Evaluation at a scene in two directions.
 #[derive(Debug)]
 pub(super) struct Pass<'s> {
     scene: &'s Scene<'s>,
@@ -151,7 +145,6 @@ impl<'s> Pass<'s> {
         self.evaluate::<Number>(tree, &frame).re.value
     }
 
-    /// Returns the value of `tree` at `frame`.
     pub fn evaluate<N: Level>(&self, tree: &Tree, frame: &Frame<'_>) -> N {
         match tree {
             Tree::Definition(index) => self.definition(*index),
@@ -199,7 +192,6 @@ impl<'s> Pass<'s> {
         }
     }
 
-    /// Returns the rate of a first-order state.
     fn state_rate<N: Level>(&self, index: usize, frame: &Frame<'_>) -> N {
         let mut sum = N::from(0.0);
         for addend in self

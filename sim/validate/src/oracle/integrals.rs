@@ -15,7 +15,6 @@ use super::tree::Leaf;
 use nalgebra::{DMatrix, DVector};
 use std::cell::OnceCell;
 
-/// Cached values and derivatives of one integral at one state.
 #[derive(Debug, Default)]
 pub(super) struct IntegralTable {
     value: OnceCell<Conditioned>,
@@ -47,7 +46,6 @@ impl Entries {
         }
     }
 
-    /// Extracts one derivative part of every addend.
     fn part(addends: &[Number], part: impl Fn(&Number) -> Conditioned) -> Self {
         let parts: Vec<Conditioned> = addends.iter().map(part).collect();
         let entries = |entry: fn(&Conditioned) -> f64| {
@@ -104,7 +102,6 @@ impl Hessian {
     }
 }
 
-/// Variable of an integrand.
 #[derive(Clone, Copy, Debug)]
 enum Channel {
     Coordinate(usize),

@@ -4,7 +4,6 @@
 
 use super::double_double::DoubleDouble;
 
-/// Node and weight on [0, 1].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Node {
     /// Position s, 0 < s < 1.

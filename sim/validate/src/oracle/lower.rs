@@ -13,7 +13,6 @@ use eomgen_model_spec::model::{Expr, ExprKind, Field, Model};
 
 /// Converter of the expressions of one variant.
 pub(super) struct Lowering<'m> {
-    /// Result so far.
     pub system: System,
     parameters: &'m [f64],
     /// Index of each input's rate among the inputs, if given.
@@ -106,7 +105,6 @@ impl<'m> Lowering<'m> {
         Ok(())
     }
 
-    /// Returns the value of an expression of parameters.
     fn constant(&mut self, expression: &Expr) -> Result<f64, OracleError> {
         match self.lower(expression, None)? {
             Tree::Constant(value) if value.is_finite() => Ok(value),
@@ -146,7 +144,6 @@ impl<'m> Lowering<'m> {
         })
     }
 
-    /// Converts an expression without operands.
     fn name(&mut self, kind: &ExprKind, set: Option<usize>) -> Result<Tree, OracleError> {
         Ok(match kind {
             ExprKind::Number(number) => Tree::Constant(*number),
@@ -337,7 +334,6 @@ impl<'m> Lowering<'m> {
         Ok(tree)
     }
 
-    /// Evaluates a constant at every mode of a field.
     fn per_mode(&self, field: usize, tree: Tree) -> Tree {
         let modes = self.system.modes(field).len();
         let values = (0..modes).map(|mode| self.evaluate_at_mode(&tree, field, mode));

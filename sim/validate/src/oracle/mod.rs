@@ -71,6 +71,9 @@ use terms::{Lowered, LoweredForce, lower_force, lower_terms};
 use tree::Tree;
 
 /// Evaluator of the equations of motion of one variant at any state.
+///
+/// # Errors
+/// Methods return [`OracleError::Length`] if the length of an argument does not match the model.
 #[derive(Debug)]
 pub struct Oracle {
     system: System,

@@ -19,9 +19,6 @@ pub(super) fn lower_observables(lowering: &mut Lowering<'_>, model: &Model) -> V
 impl Oracle {
     /// Returns the observables at a state in the order of the specification, then T + V and its
     /// rate. An unsupported observable is 0 with infinite magnitude.
-    ///
-    /// # Errors
-    /// [`OracleError::Length`] if a length does not match.
     pub fn observables(
         &self,
         time: f64,
@@ -43,9 +40,6 @@ impl Oracle {
 
     /// Returns the rate of T + V along the motion: the power of the forces if no energy depends
     /// explicitly on time, otherwise the rate with the oracle's accelerations.
-    ///
-    /// # Errors
-    /// [`OracleError::Length`] if a length does not match.
     pub fn rate_of_energy(
         &self,
         time: f64,

@@ -20,12 +20,10 @@ const DERIVATIVES: usize = 5;
 /// Field with its domain and mode shapes.
 #[derive(Clone, Debug)]
 pub(super) struct Domain {
-    /// Start of the domain.
     pub from: f64,
     pub length: f64,
     /// Index of the field's first mode among the generalised coordinates.
     pub offset: usize,
-    /// Number of modes.
     pub order: usize,
     shapes: Shapes,
 }
@@ -86,7 +84,6 @@ impl Domain {
 #[derive(Clone, Debug)]
 pub(super) struct PlaceSet {
     pub field: usize,
-    /// Positions x.
     pub positions: Vec<f64>,
     /// Weights: dx of the rule, or 1 for a single position.
     pub weights: Vec<f64>,
@@ -96,7 +93,6 @@ pub(super) struct PlaceSet {
 }
 
 impl PlaceSet {
-    /// Creates the quadrature nodes of a field.
     pub fn quadrature(field: usize, domain: &Domain) -> Self {
         let rule = domain.rule();
         Self {
@@ -114,7 +110,6 @@ impl PlaceSet {
         }
     }
 
-    /// Creates the single position `x`.
     pub fn single(field: usize, domain: &Domain, x: f64) -> Self {
         Self {
             field,
@@ -125,7 +120,6 @@ impl PlaceSet {
         }
     }
 
-    /// Computes the derivatives of one order of all shapes.
     pub fn require(&mut self, derivative: u8, domain: &Domain) {
         let scale = domain.length.powi(-i32::from(derivative));
         let relative = &self.relative;
@@ -149,7 +143,6 @@ impl PlaceSet {
         self.shapes.get(usize::from(derivative))?.as_ref()
     }
 
-    /// Returns the computed orders of derivatives.
     pub fn derivatives(&self) -> impl Iterator<Item = u8> {
         (0..DERIVATIVES as u8).filter(|derivative| self.shapes(*derivative).is_some())
     }

@@ -12,9 +12,6 @@ use nalgebra::DMatrix;
 
 impl Oracle {
     /// Returns the equations of motion at a state (coordinates, rates, first-order states, in SI).
-    ///
-    /// # Errors
-    /// [`OracleError::Length`] if a length does not match.
     pub fn equations(
         &self,
         time: f64,
@@ -26,9 +23,6 @@ impl Oracle {
 
     /// Returns the equations of motion with every piecewise function on the given side of its
     /// switch, in the order of [`Oracle::switches`], independent of the state's actual sides.
-    ///
-    /// # Errors
-    /// [`OracleError::Length`] if a length does not match.
     pub fn equations_on(
         &self,
         sides: &[Side],
@@ -47,9 +41,6 @@ impl Oracle {
 
     /// Returns the equations of motion if the state is in the model's domain: every term and both
     /// energies are finite, and the mass matrix is positive definite. Returns `None` otherwise.
-    ///
-    /// # Errors
-    /// [`OracleError::Length`] if a length does not match.
     pub fn equations_inside(
         &self,
         time: f64,
@@ -92,7 +83,6 @@ impl Oracle {
         }
     }
 
-    /// Returns the addends of the rates of first-order states.
     fn state_rates(&self, scene: &Scene<'_>) -> Vec<Vec<Conditioned>> {
         let pass = Pass::new(scene, Direction::Still, Direction::Still);
         let rates = self.system.state_rates.iter();
@@ -102,9 +92,6 @@ impl Oracle {
     }
 
     /// Returns the derivative of each first-order state's rate by that state, in 1/s.
-    ///
-    /// # Errors
-    /// [`OracleError::Length`] if a length does not match.
     pub fn state_decays(
         &self,
         time: f64,
@@ -120,9 +107,6 @@ impl Oracle {
     }
 
     /// Returns the second derivatives of the potential energy by each generalised coordinate.
-    ///
-    /// # Errors
-    /// [`OracleError::Length`] if a length does not match.
     pub fn stiffness_diagonal(
         &self,
         time: f64,

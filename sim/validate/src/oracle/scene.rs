@@ -10,7 +10,6 @@ use super::system::System;
 use super::tree::Leaf;
 use nalgebra::{DVector, DVectorView};
 
-/// Direction of differentiation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Direction {
     /// No direction: the derivative part is 0.
@@ -21,9 +20,7 @@ pub(super) enum Direction {
     Position(usize),
     /// Rate of a generalised coordinate.
     Rate(usize),
-    /// First-order state.
     State(usize),
-    /// Single input.
     Input(usize),
     /// Explicit time.
     Clock,
@@ -41,7 +38,6 @@ pub(super) struct Motion {
 }
 
 impl Motion {
-    /// Creates a constant.
     pub fn still(value: Conditioned) -> Self {
         let zero = Conditioned::default();
         Self {
@@ -62,7 +58,6 @@ impl Motion {
     }
 }
 
-/// Field values of one derivative order at all positions of a place set.
 #[derive(Clone, Debug)]
 struct Values {
     derivative: u8,
@@ -86,7 +81,6 @@ pub(super) struct Scene<'s> {
     pub imposed: Option<Imposed<'s>>,
     position: &'s [f64],
     rate: &'s [f64],
-    /// First-order states.
     first_order: &'s [f64],
     acceleration: Option<&'s [f64]>,
     values: Vec<Vec<Values>>,
@@ -126,7 +120,6 @@ impl<'s> Scene<'s> {
         scene
     }
 
-    /// Returns the values of a field at one place set.
     fn sample(&self, set: usize) -> Vec<Values> {
         let Some(places) = self.system.places.get(set) else {
             return Vec::new();
@@ -152,7 +145,6 @@ impl<'s> Scene<'s> {
             .collect()
     }
 
-    /// Returns a generalised coordinate in two directions.
     pub fn coordinate(&self, index: usize, directions: [Direction; 2]) -> Motion {
         let [first, second] = directions.map(|direction| self.seed(index, direction));
         let at = |values: &[f64]| values.get(index).copied().unwrap_or(f64::NAN);
@@ -192,7 +184,6 @@ impl<'s> Scene<'s> {
         Motion::new((value, rate), seeds)
     }
 
-    /// Returns a constant input in two directions.
     pub fn held(&self, input: usize, directions: [Direction; 2]) -> Motion {
         let value = self.inputs.get(input).copied().unwrap_or(f64::NAN);
         let seeds = directions.map(|direction| match direction {
@@ -263,7 +254,6 @@ impl<'s> Scene<'s> {
             .unwrap_or(f64::NAN)
     }
 
-    /// Returns the derivative of the time in a direction.
     pub fn time_seed(direction: Direction) -> f64 {
         if matches!(direction, Direction::Time | Direction::Clock) {
             1.0

@@ -56,7 +56,6 @@ impl Shape {
         let determinant = |delta| conditions([from, to], half_waves, delta).determinant();
         let (mut low, mut high) = (-0.5, 0.5);
         let sign = determinant(low).signum();
-        // Reduces the interval by 2^-60.
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
             if determinant(middle) * sign > 0.0 {
@@ -136,7 +135,6 @@ fn conditions(ends: [End; 2], half_waves: f64, delta: f64) -> Matrix4<f64> {
     })
 }
 
-/// Returns the derivatives of the four solutions by u.
 fn solutions(derivative: u8, (sine, cosine): (f64, f64), exponentials: [f64; 2]) -> [f64; 4] {
     let (of_sine, of_cosine) = match derivative % 4 {
         0 => (sine, cosine),

@@ -26,7 +26,6 @@ pub(super) struct SplineShape {
 }
 
 impl SplineShape {
-    /// Returns shape `r`, from 1.
     pub fn new(table: &ShapeTable, r: usize) -> Self {
         let knots = relative(table);
         let values = table.shapes.get(r - 1).cloned().unwrap_or_default();
@@ -78,7 +77,6 @@ pub(super) fn rule(table: &ShapeTable, order: usize) -> Vec<(DoubleDouble, f64)>
         .collect()
 }
 
-/// Returns the knots scaled to [0, 1].
 fn relative(table: &ShapeTable) -> Vec<f64> {
     let first = table.positions.first().copied().unwrap_or(0.0);
     let length = table.positions.last().copied().unwrap_or(1.0) - first;

@@ -87,9 +87,7 @@ impl Switch {
 /// Prescribed sides of piecewise functions, independent of the state.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Imposed<'s> {
-    /// Switches of the model.
     pub switches: &'s [Switch],
-    /// One side per switch.
     pub sides: &'s [Side],
 }
 
@@ -120,9 +118,6 @@ fn switched_by(function: Function, arguments: &[Tree]) -> Option<(Tree, Option<T
 
 impl Oracle {
     /// Returns all switches at a state.
-    ///
-    /// # Errors
-    /// [`OracleError::Length`] if a length does not match.
     pub fn switch_values(
         &self,
         time: f64,
@@ -142,9 +137,6 @@ impl Oracle {
     }
 
     /// Returns the derivatives of the quantity of switch `index` by every entry of the state.
-    ///
-    /// # Errors
-    /// [`OracleError::Length`] if a length does not match.
     pub fn switch_slopes(
         &self,
         index: usize,
@@ -169,9 +161,6 @@ impl Oracle {
 impl Oracle {
     /// Returns the derivatives of quantity and half-width of switch `index` by every entry of the
     /// state, every input and the time.
-    ///
-    /// # Errors
-    /// [`OracleError::Length`] if a length does not match.
     pub fn switch_gradient(
         &self,
         index: usize,
@@ -307,7 +296,6 @@ impl Search<'_> {
     }
 }
 
-/// Returns true if a function has sides.
 pub(super) fn is_piecewise_function(function: Function) -> bool {
     matches!(
         function,

@@ -10,7 +10,6 @@ pub(super) struct System {
     pub size: usize,
     /// Fields in the order of the model.
     pub domains: Vec<Domain>,
-    /// Place sets, by index in the trees.
     pub places: Vec<PlaceSet>,
     /// Definitions in the order of the model.
     pub definitions: Vec<Tree>,
@@ -18,7 +17,6 @@ pub(super) struct System {
     pub state_rates: Vec<Vec<Tree>>,
     /// Expressions of constraints, in the order of the model.
     pub residuals: Vec<Tree>,
-    /// Dependences of the definitions.
     pub dependences: Vec<Dependence>,
     /// Integrals with cached derivatives.
     pub integrals: Vec<Integral>,
@@ -27,17 +25,13 @@ pub(super) struct System {
 /// Integral over a field's domain. The integrand contains no further sum.
 #[derive(Clone, Debug)]
 pub(super) struct Integral {
-    /// Index of the place set.
     pub set: usize,
     pub body: Tree,
-    /// Coordinates in the integrand.
     pub coordinates: Vec<usize>,
-    /// Field values in the integrand.
     pub leaves: Vec<Leaf>,
 }
 
 impl System {
-    /// Returns the index range of a field's modes in the state.
     pub fn modes(&self, field: usize) -> std::ops::Range<usize> {
         self.domains
             .get(field)

@@ -9,7 +9,6 @@ use super::scene::{Direction, Scene};
 use super::tree::{Dependence, Tree};
 use eomgen_model_spec::model::{Force, Term};
 
-/// Addend of a named term.
 #[derive(Debug)]
 pub(super) struct Lowered {
     pub name: String,
@@ -17,7 +16,6 @@ pub(super) struct Lowered {
     pub dependence: Dependence,
 }
 
-/// Addend of a named force.
 #[derive(Debug)]
 pub(super) struct LoweredForce {
     pub name: String,
@@ -101,7 +99,6 @@ pub(super) fn lower_terms(
     Ok(lowered)
 }
 
-/// Converts a force, each addend of its value separately.
 pub(super) fn lower_force(
     lowering: &mut Lowering<'_>,
     force: &Force,

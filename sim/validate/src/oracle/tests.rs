@@ -53,7 +53,6 @@ fn spring_with_play_has_three_regimes() {
     );
 }
 
-/// Returns the textbook accelerations of a double pendulum, by Cramer's rule.
 fn double_pendulum(state: &[f64]) -> Vec<f64> {
     let (m_1, m_2, l_1, l_2, g, c) = (1.3, 0.7, 0.9, 0.6, 9.81, 0.2);
     let (difference, rate) = (state[0] - state[1], state[3] - state[2]);

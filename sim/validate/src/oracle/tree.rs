@@ -34,7 +34,6 @@ pub(super) enum Tree {
     Coordinate(usize),
     /// First-order state, by its index among these.
     State(usize),
-    /// Rate of a first-order state.
     StateRate(usize),
     /// Multiplier of a constraint.
     Multiplier(usize),
@@ -42,7 +41,6 @@ pub(super) enum Tree {
     /// Field, or its derivative by the position, at the current place.
     Field {
         leaf: Leaf,
-        /// Index of the place set.
         set: usize,
     },
     /// Mode coordinate at the index of the enclosing sum.
@@ -52,14 +50,11 @@ pub(super) enum Tree {
     /// Mode shape, or its derivative, at the current place and index.
     Shape {
         leaf: Leaf,
-        /// Index of the place set.
         set: usize,
     },
-    /// Time derivative.
     Dot(Box<Tree>),
     /// Weighted sum of `body` over a place set: an integral, or a value at a point.
     Places {
-        /// Index of the place set.
         set: usize,
         body: Box<Tree>,
         /// Index of its cached derivatives in `integrals`, if any.
@@ -72,9 +67,7 @@ pub(super) enum Tree {
     },
     Negate(Box<Tree>),
     Binary(BinaryOperator, Box<Tree>, Box<Tree>),
-    /// Power with a constant exponent.
     Power(Box<Tree>, f64),
-    /// Function of one or two arguments.
     Call(Function, Vec<Tree>),
 }
 
@@ -86,14 +79,12 @@ pub(super) struct Leaf {
     pub derivative: u8,
 }
 
-/// Dependence of an expression on variables.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Dependence {
     /// Coordinates other than modes.
     pub coordinates: BTreeSet<usize>,
     /// Fields, through their modes or their values.
     pub fields: BTreeSet<usize>,
-    /// First-order states, through their values or their rates.
     pub states: BTreeSet<usize>,
     /// Field values at the enclosing place.
     pub leaves: BTreeSet<Leaf>,

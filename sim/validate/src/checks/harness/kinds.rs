@@ -139,7 +139,6 @@ fn worse(first: f64, second: f64) -> f64 {
     if first.is_nan() || second.is_nan() { f64::INFINITY } else { first.max(second) }
 }
 
-/// Deviation of single precision.
 #[derive(Default)]
 struct Single {
     /// Largest error, in units of its bound.

@@ -11,7 +11,6 @@ use crate::sampler::Sample;
 use eomgen_model_spec::model::Model;
 use nalgebra::{DMatrix, DVector};
 
-/// Values under test at one state.
 pub(super) struct Known {
     mass: DMatrix<f64>,
     jacobians: Vec<(&'static str, DMatrix<f64>)>,
@@ -66,7 +65,6 @@ impl Known {
     }
 }
 
-/// Returns the indices of `names` among a model's parameters.
 pub(super) fn places(model: &Model, names: &[String]) -> Vec<usize> {
     let place = |name: &String| {
         model
@@ -120,7 +118,6 @@ pub(super) fn along(
 }
 
 impl Known {
-    /// Returns the deviations from the slopes along a direction, row by row.
     fn deviations(
         &self,
         moved: Moved,
@@ -172,7 +169,6 @@ impl Known {
         found
     }
 
-    /// Returns the direction's entries for the independent parameters.
     fn of_independent(&self, direction: &Direction) -> Vec<f64> {
         let places = self.independent.iter();
         places.map(|place| direction.parameters[*place]).collect()

@@ -13,7 +13,6 @@ const DIRECTIONS: usize = 40;
 /// directions for larger models.
 const SMALL: (usize, usize) = (12, 8);
 
-/// Kind of the variables in a direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Moved {
     State,

@@ -7,7 +7,6 @@ use crate::outputs::Outputs;
 use crate::random::Random;
 use crate::sampler::Sample;
 
-/// Compares bias forces, and inverse dynamics at random accelerations.
 pub(super) fn forces(
     rows: &mut Rows,
     equations: &Equations,

@@ -5,7 +5,6 @@ use eomgen_model_spec::model::Model;
 
 pub(crate) struct Judged<'j> {
     pub oracle: &'j Oracle,
-    /// Model of the oracle.
     pub model: &'j Model,
     pub order: usize,
     /// All parameters, in SI.

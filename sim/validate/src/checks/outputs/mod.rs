@@ -32,9 +32,6 @@ const STATES: (usize, usize) = (9, 4);
 const SEED: u64 = 0x4e0b_1a75;
 
 /// Runs the checks of all requested outputs.
-///
-/// # Errors
-/// [`OracleError`] as from [`Oracle::equations`].
 pub(crate) fn check(
     judged: &Judged<'_>,
     variant: &mut dyn Variant,

@@ -49,7 +49,6 @@ impl Rows {
         }
     }
 
-    /// Returns the checks, including those that could not be run.
     pub fn into_checks(self, judged: &Judged<'_>, names: &[String], states: usize) -> Vec<Check> {
         let mut checks = Vec::new();
         for name in expected(names) {
@@ -73,7 +72,6 @@ impl Rows {
     }
 }
 
-/// Returns the names of the checks for the requested outputs.
 pub(super) fn expected(names: &[String]) -> Vec<&'static str> {
     let has = |name: &str| names.iter().any(|known| known == name);
     let mut found = Vec::new();
@@ -95,7 +93,6 @@ pub(super) fn expected(names: &[String]) -> Vec<&'static str> {
     found
 }
 
-/// Returns the reason why a check was not run.
 pub(super) fn reason(judged: &Judged<'_>, name: &str) -> (SkipKind, &'static str) {
     if name.ends_with("_by_inputs") && judged.oracle.input_count() == 0 {
         (SkipKind::NotApplicable, "the model has no input")
