@@ -1,7 +1,7 @@
 //! Small motions of a linearised machine that satisfy its constraints, and the reduced matrices.
 //!
-//! The linearised constraints are H x = 0. Let N be an orthonormal basis of their solutions. Then x
-//! = N y with y' = N^T A N y + N^T B u and the outputs C N y + D u (E. Eich-Soellner, C. Fuehrer,
+//! The linearised constraints are H x = 0. Let N be an orthonormal basis of their solutions. Motions
+//! are x = N y with y' = N^T A N y + N^T B u, outputs are C N y + D u (E. Eich-Soellner, C. Fuehrer,
 //! *Numerical Methods in Multibody Dynamics*, 2.6).
 
 use nalgebra::DMatrix;

@@ -137,8 +137,8 @@ impl ModeShape {
     }
 }
 
-/// Computes the r-th positive root of cos z cosh z = -1 by Newton's method for the distance from (r
-/// - 1/2) pi, which keeps the digits of the small distance.
+/// Computes the r-th positive root of cos z cosh z = -1. Newton's method iterates on the distance
+/// from pi (r - 1/2), which keeps the digits of the small distance.
 fn clamped_free_root(r: usize) -> f64 {
     let centre = (r as f64 - 0.5) * PI;
     let sign = if r.is_multiple_of(2) { 1.0 } else { -1.0 };
