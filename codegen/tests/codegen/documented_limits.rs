@@ -107,7 +107,7 @@ fn definitions_written_out_are_600_deep() {
     let last = last.expect("some depth is taken");
     assert!((295..=600).contains(&last), "{last}");
     hold(
-        "this is more than 600 deep",
+        "the expression is more than 600 deep",
         &chain(last),
         2 * last,
         &chain(last + 1),
