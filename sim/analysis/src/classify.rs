@@ -65,7 +65,6 @@ pub const CONTINUOUS: f64 = 0.5;
 /// Smallest share of spectral lines in a discrete spectrum.
 pub const DISCRETE: f64 = 0.9;
 
-/// Sign of the exponent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Growth {
     Positive,
@@ -117,7 +116,6 @@ fn judge(evidence: &Evidence) -> (Motion, &'static str) {
     }
 }
 
-/// Classifies a motion with growth and without a period.
 fn judge_growing(k: f64, lines: Option<f64>) -> (Motion, &'static str) {
     let is_continuous = lines.is_some_and(|share| share < CONTINUOUS);
     if k >= CHAOS {
@@ -132,7 +130,6 @@ fn judge_growing(k: f64, lines: Option<f64>) -> (Motion, &'static str) {
     }
 }
 
-/// Classifies a motion without growth and without a period.
 fn judge_bounded(k: f64, lines: Option<f64>) -> (Motion, &'static str) {
     let is_discrete = lines.is_some_and(|share| share > DISCRETE);
     if k <= REGULAR {
@@ -191,7 +188,6 @@ impl fmt::Display for Motion {
     }
 }
 
-/// Displays the numbers of the evidence.
 struct Numbers<'a>(&'a Evidence);
 
 impl fmt::Display for Numbers<'_> {

@@ -45,7 +45,6 @@ pub fn constrained_modes(
     })
 }
 
-/// Computes the modes of one connected part with constraints.
 fn modes_within(
     matrix: &DMatrix<f64>,
     held: &DMatrix<f64>,

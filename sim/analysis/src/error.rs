@@ -44,7 +44,6 @@ pub enum AnalysisError {
 }
 
 impl AnalysisError {
-    /// Creates the error of an eigenvalue iteration on this matrix.
     pub(crate) fn not_converged(matrix: &DMatrix<f64>) -> Self {
         let sizes = matrix.iter().filter(|entry| **entry != 0.0);
         let (least, most) = sizes

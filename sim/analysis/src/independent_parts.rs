@@ -3,7 +3,6 @@
 
 use nalgebra::DMatrix;
 
-/// Part of a linearised machine.
 pub(crate) struct Part {
     /// A of the part's coordinates, their rates and its first-order states.
     pub matrix: DMatrix<f64>,

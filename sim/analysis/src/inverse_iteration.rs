@@ -49,13 +49,11 @@ struct Factors {
     steps: Vec<Step>,
 }
 
-/// Step of the elimination.
 struct Step {
     /// Row exchanged with this one.
     pivot: usize,
     /// Multipliers of the rows below.
     below: Vec<(usize, Complex<f64>)>,
-    /// Pivot.
     own: Complex<f64>,
     /// Entries of the upper factor to the right of the pivot.
     right: Vec<(usize, Complex<f64>)>,

@@ -102,7 +102,6 @@ pub(crate) fn gather(
     Ok(all)
 }
 
-/// Computes the natural modes of one connected part.
 pub(crate) fn connected_modes(
     matrix: &DMatrix<f64>,
     degrees: usize,

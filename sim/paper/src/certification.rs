@@ -42,7 +42,6 @@ pub fn certify_source(
     Ok(certificate.map_err(refused)?)
 }
 
-/// Returns the common order of all fields.
 fn one_order(model: &Model, orders: &[usize]) -> Result<usize, Error> {
     let order = orders.first().copied().unwrap_or(0);
     if orders.iter().any(|other| *other != order) {

@@ -23,7 +23,6 @@ pub fn difference(model: &Model, known: &Model, given: &[&str]) -> Option<String
         .or_else(|| pair.derived_parameters(given))
 }
 
-/// Two models under comparison.
 struct Pair<'m> {
     model: &'m Model,
     known: &'m Model,

@@ -72,7 +72,6 @@ pub enum Shapes {
 }
 
 impl Shapes {
-    /// Returns the name of the basis in a specification.
     fn basis(self) -> &'static str {
         match self {
             Self::Corrected => "\"clamped_free\"",
@@ -164,7 +163,6 @@ impl Arm {
         Ok(compiled)
     }
 
-    /// Returns the value of a parameter in the specification, SI.
     fn shipped(&self, name: &str) -> f64 {
         let place = self.names.iter().position(|known| known == name);
         let value = place.and_then(|place| self.values.get(place));

@@ -22,7 +22,6 @@ const SHOWN: usize = 80;
 /// Stroboscopic points over the backlash; each list has one entry per point.
 #[derive(Clone, Debug)]
 pub(super) struct Bifurcation {
-    /// Modal truncation order.
     order: usize,
     omega: f64,
     /// Half the backlash of both meshes, m.
@@ -67,7 +66,6 @@ impl Bifurcation {
         Ok(found)
     }
 
-    /// Returns the points as a table.
     pub fn table(&self) -> Columns {
         let column = |name: &str, values: &[f64]| (name.to_owned(), values.to_vec());
         let multiple = (self.omega / PI).round();

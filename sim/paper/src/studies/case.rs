@@ -84,7 +84,6 @@ impl Length {
         modes: 4,
     };
 
-    /// Returns the number of samples per forcing period.
     fn samples(&self, case: &Case, lengths: &Lengths) -> usize {
         let shown = self.modes.min(lengths.natural.len());
         let highest = shown

@@ -82,7 +82,6 @@ impl Display {
             .collect()
     }
 
-    /// Returns the number of samples per forcing period.
     pub(super) fn per_period(&self) -> usize {
         samples_per_period(&self.case) as usize
     }
@@ -92,7 +91,6 @@ fn samples_per_period(case: &Case) -> f64 {
     (RATE * case.period()).round()
 }
 
-/// Returns times `step` s apart.
 pub(super) fn even_times(begin: f64, step: f64, steps: usize) -> Vec<f64> {
     (0..=steps).map(|n| begin + n as f64 * step).collect()
 }
@@ -124,7 +122,6 @@ fn in_band(spectrum: PowerSpectrum) -> PowerSpectrum {
     PowerSpectrum { frequency, density }
 }
 
-/// Returns the first `count` samples of a record.
 fn first(mut record: Record, count: usize) -> Record {
     let series = [
         &mut record.times,

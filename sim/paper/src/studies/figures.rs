@@ -14,7 +14,6 @@ use super::report::{Figure, id};
 /// window and are drawn at this level.
 const FLOOR: f64 = 1e-13;
 
-/// Quantity of a figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Quantity {
     MeshDeflection,
@@ -94,7 +93,6 @@ fn ids(row: &Shown<'_>) -> Vec<String> {
     }
 }
 
-/// Returns the points of the section as abscissae and ordinates.
 fn section_columns(row: &Shown<'_>) -> [Vec<f64>; 2] {
     match row {
         Shown::Course(_) => [Vec::new(), Vec::new()],
@@ -127,7 +125,6 @@ pub(super) fn figure(
     })
 }
 
-/// Returns the densities of a row's cases as drawn.
 fn densities(row: &Shown<'_>) -> Vec<Vec<f64>> {
     let Shown::Course(row) = row else {
         return Vec::new();

@@ -31,7 +31,6 @@ pub(super) struct Known<'a> {
     pub case: &'a Case,
     /// Extent of each component of the state.
     pub extents: &'a [f64],
-    /// Share of spectral lines in the power.
     pub line_share: Option<f64>,
 }
 

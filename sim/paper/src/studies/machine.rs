@@ -7,14 +7,12 @@ use super::report::Figure;
 
 /// Centre of the sun, px.
 const CENTRE: (f64, f64) = (200.0, 236.0);
-/// Pixels per mm.
 const SCALE: f64 = 0.86;
 /// Half the module, mm; times the teeth of sun, planet and ring, it gives the pitch radii.
 const HALF_MODULE: f64 = 1.5;
 const SUN: f64 = 27.0 * HALF_MODULE * SCALE;
 const PLANET: f64 = 36.0 * HALF_MODULE * SCALE;
 const RING: f64 = 99.0 * HALF_MODULE * SCALE;
-/// Length of the arm, px.
 const LENGTH: f64 = 500.0 * SCALE;
 /// Angles of the planets, degrees.
 const PLANETS: [f64; 3] = [90.0, 210.0, 330.0];
@@ -25,7 +23,6 @@ const AHEAD: f64 = 23.0;
 const TIP: f64 = 40.0;
 const PRESSURE: f64 = 24.6;
 
-/// Draws the machine.
 pub(super) fn machine() -> Figure {
     let caption = "The arm on its planetary reducer, every quantity drawn in its positive direction: angles theta_s, \
                    theta_p and theta_c, mesh deflections x_sp and x_pr, the deflection w of the arm and that of its end, \
@@ -193,7 +190,6 @@ fn law() -> Vec<Part> {
     ]
 }
 
-/// Draws the relations between the quantities.
 fn formulas() -> Vec<Part> {
     let mut parts = vec![Part::Heading((470.0, 352.0), "signs".to_owned())];
     let lines = [

@@ -67,7 +67,6 @@ impl Neighbours {
         Ok(())
     }
 
-    /// Returns the states once per forcing period.
     pub fn states(&self) -> &[Vec<f64>] {
         &self.states
     }

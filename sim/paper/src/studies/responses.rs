@@ -119,7 +119,6 @@ fn responses(
     Ok((study, arm))
 }
 
-/// Draws x_sp and f_la of one case.
 fn response(number: usize, display: &Display) -> Result<Figure, StudyError> {
     let row = |title: &str, quantity| Row {
         title: format!("{title}, {}", brief(&display.case)),

@@ -6,7 +6,6 @@ use eomgen_sim::piecewise_linear::Propagator;
 use super::arm::Case;
 use super::error::StudyError;
 
-/// Recorded motion.
 pub(super) struct Run {
     /// Evenly spaced times, s.
     pub times: Vec<f64>,
@@ -68,7 +67,6 @@ impl Run {
         Ok(())
     }
 
-    /// Returns the end of the record, s.
     pub fn end(&self) -> f64 {
         self.times.last().copied().unwrap_or(self.begin)
     }

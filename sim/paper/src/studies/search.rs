@@ -20,7 +20,6 @@ use super::sets::{neighbour, set};
 /// Version of the rules; results of other versions are rejected.
 const RULES: u32 = 3;
 
-/// Sets per chunk.
 const CHUNK: usize = 20;
 
 /// Request of a search.
@@ -238,7 +237,6 @@ impl Store {
         Ok(store)
     }
 
-    /// Judges the missing chunks.
     fn stage(
         &self,
         stage: &str,

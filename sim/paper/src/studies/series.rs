@@ -58,7 +58,6 @@ pub struct Record {
 }
 
 impl Record {
-    /// Converts states to series.
     pub(super) fn of(times: &[f64], states: &[Vec<f64>], lengths: &Lengths) -> Self {
         let column = |place: usize| -> Vec<f64> {
             let values = states.iter().map(|state| state.get(place).copied());
@@ -91,7 +90,6 @@ impl Record {
     }
 }
 
-/// Returns the extent of each component of the state.
 pub(super) fn extents(states: &[Vec<f64>]) -> Vec<f64> {
     let width = states.first().map_or(0, Vec::len);
     let mut limits = vec![(f64::INFINITY, f64::NEG_INFINITY); width];

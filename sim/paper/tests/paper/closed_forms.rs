@@ -5,7 +5,6 @@ use eomgen_paper::reference::closed_forms::{NotApplicable, StateAndParameters, f
 use eomgen_paper::reference::mode_shapes::ModeShape;
 use proptest::prelude::*;
 
-/// Parameters by name.
 type Values = &'static [(&'static str, f64)];
 
 const DOUBLE: Values = &[

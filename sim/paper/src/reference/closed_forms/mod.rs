@@ -84,7 +84,6 @@ pub fn find(name: &str) -> Option<ClosedForm> {
 }
 
 impl StateAndParameters<'_> {
-    /// Returns a required parameter.
     fn required(&self, name: &'static str) -> Result<f64, NotApplicable> {
         (self.parameter)(name).ok_or(NotApplicable::Parameter(name))
     }

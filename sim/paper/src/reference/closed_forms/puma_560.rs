@@ -80,7 +80,6 @@ fn links(at: &StateAndParameters<'_>) -> Result<[Link; 6], NotApplicable> {
     ])
 }
 
-/// Computes the joint torques of a motion.
 fn torques(
     links: &[Link; 6],
     q: &[f64; 6],

@@ -180,7 +180,6 @@ impl Coefficients {
         coefficients
     }
 
-    /// Computes the row of mode `i`, counted from 0.
     fn mode_row(&self, i: usize, mode: &ArmMode) -> ModeRow {
         let a_0 = self.a_0[i];
         let mut a: Vec<f64> = self.a_3.iter().map(|a_3| -a_0 * a_3).collect();

@@ -12,7 +12,6 @@ use crate::reference::parameters::PlanetaryArmParameters;
 /// Largest number of modes summed without partial sums.
 const FEW: usize = 8;
 
-/// Spring, damper and backlash of one mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Mesh {
     /// N/m
@@ -157,7 +156,6 @@ pub fn copy_in_pairs(from: &[f64], to: &mut [f64]) {
     }
 }
 
-/// Computes the sum of a_i b_i.
 #[inline(always)]
 fn sum_of_products<const S: usize>(a: &[f64; S], b: &[f64]) -> f64 {
     if S > FEW {

@@ -19,7 +19,6 @@ const OMEGA_N: f64 = 3.0885e4;
 /// Displacement scale, m (assumed).
 const B_C: f64 = 25e-6;
 
-/// Adds the rows.
 pub fn state(sources: &Sources, derived: &Derived<'_>, table: &mut ErrataTable) {
     scales(sources, derived, table);
     dead_band(sources, table);
@@ -93,7 +92,6 @@ fn frequency_squared(sources: &Sources, i: usize) -> f64 {
     by_force.at(3 + i) / by_force.at(2) * by_mode.at(2) - by_mode.at(3 + i)
 }
 
-/// Computes beta_i l of the derived model.
 fn beta_l(sources: &Sources, i: usize) -> f64 {
     let parameters = &sources.parameters;
     let line_mass = parameters.rho * parameters.A;
@@ -108,7 +106,6 @@ fn first_coupling(sources: &Sources) -> f64 {
     -by_force.at(3) / by_force.at(2) * sources.parameters.r_c_cos_alpha()
 }
 
-/// Compares Eq. (18).
 fn frequencies(sources: &Sources, table: &mut ErrataTable) {
     for i in 0..PRINTED_ORDER {
         table.misprint(
@@ -225,7 +222,6 @@ fn table_1(sources: &Sources, table: &mut ErrataTable) {
     );
 }
 
-/// Compares the nomenclature of rho and theta_p.
 fn nomenclature(sources: &Sources, table: &mut ErrataTable) {
     let parameters = &sources.parameters;
     let rest = parameters.I_c + 3.0 * parameters.m_p * parameters.r_c().powi(2);

@@ -5,7 +5,6 @@
 use super::table::ErrataTable;
 use super::{PRINTED_ORDER, Sources};
 
-/// Adds the rows of Eq. (22).
 pub fn state(sources: &Sources, table: &mut ErrataTable) {
     motor(sources, table);
     meshes_in_row_1(sources, table);
@@ -17,7 +16,6 @@ pub fn state(sources: &Sources, table: &mut ErrataTable) {
     }
 }
 
-/// Compares a_11, a_12, a_13.
 fn motor(sources: &Sources, table: &mut ErrataTable) {
     let a = &sources.coefficients;
     let measured = &sources.flexible;
@@ -129,7 +127,6 @@ fn meshes_in_row_2(sources: &Sources, table: &mut ErrataTable) {
     modes_in_row(sources, 1, "X_pr", table);
 }
 
-/// Compares a_18 .. a_111.
 fn modes_in_row(sources: &Sources, row: usize, name: &str, table: &mut ErrataTable) {
     for (i, a) in sources.coefficients.a_18.iter().enumerate() {
         table.correct(

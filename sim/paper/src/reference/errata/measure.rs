@@ -89,7 +89,6 @@ struct Probe<'a> {
 }
 
 impl Probe<'_> {
-    /// Returns the index of a coordinate's rate in the state.
     fn rate_of(&self, coordinate: usize) -> usize {
         3 + self.order + coordinate
     }

@@ -20,7 +20,6 @@ use super::equation_22::Coefficients;
 use super::parameters::PlanetaryArmParameters;
 use measure::Responses;
 
-/// Truncation order of the printed Eq. (22).
 const PRINTED_ORDER: usize = 4;
 
 /// Parameters, corrected coefficients and responses of the derived model.

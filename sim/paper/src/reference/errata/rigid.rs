@@ -6,7 +6,6 @@ use super::Sources;
 use super::table::ErrataTable;
 use crate::reference::equation_12::EquivalentMasses;
 
-/// Adds the rows of the rigid arm.
 pub fn state(sources: &Sources, table: &mut ErrataTable) {
     equation_10(sources, table);
     equation_12_row_1(sources, table);
@@ -74,7 +73,6 @@ fn equation_10(sources: &Sources, table: &mut ErrataTable) {
     );
 }
 
-/// Compares row 1 of Eq. (12), solved for x_sp''.
 fn equation_12_row_1(sources: &Sources, table: &mut ErrataTable) {
     let EquivalentMasses {
         M_s, M_sp, B, B_m, ..

@@ -94,7 +94,6 @@ impl ErrataTable {
         });
     }
 
-    /// Adds a row that is correct as printed.
     pub(super) fn correct(
         &mut self,
         place: impl Into<String>,
@@ -146,7 +145,6 @@ impl fmt::Display for ErrataTable {
     }
 }
 
-/// Returns the width of a column.
 fn width<'a>(entries: impl Iterator<Item = &'a str>, title: &str) -> usize {
     entries
         .map(|entry| entry.chars().count())

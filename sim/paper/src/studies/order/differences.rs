@@ -12,7 +12,6 @@ use super::run::{OMEGA, REFERENCE, Run, STATISTICS, STEP, TRANSIENT};
 /// Samples per interval of the largest differences: 5 ms.
 const PIECE: usize = 102;
 
-/// Names of the compared quantities.
 pub(super) const NAMES: [&str; 3] = ["x_sp", "f_la", "dr"];
 
 /// Differences of x_sp, f_la and dr, one value per order.
@@ -21,7 +20,6 @@ pub(super) struct Convergence {
     pub values: [Vec<f64>; 3],
 }
 
-/// Returns the run of an order.
 pub(super) fn at(runs: &[Run], order: usize) -> Result<&Run, StudyError> {
     let found = runs.iter().find(|run| run.order == order);
     found.ok_or_else(|| StudyError::Request(format!("order {order} was not run")))
@@ -58,12 +56,10 @@ impl Convergence {
     }
 }
 
-/// Returns all runs except the reference.
 fn compared(runs: &[Run]) -> impl Iterator<Item = &Run> {
     runs.iter().filter(|run| run.order != REFERENCE)
 }
 
-/// Returns x_sp, f_la or dr.
 fn series(record: &Record, which: usize) -> &[f64] {
     match which {
         0 => &record.x_sp,
