@@ -77,10 +77,10 @@ fn opening(program: &Program) -> String {
         &"#include \"HEADER\"\n\
          #if defined(__clang__)\n#pragma STDC FP_CONTRACT OFF\n\
          #elif defined(_MSC_VER)\n#pragma fp_contract(off)\n#endif\n\
-         /** What a function writes to does not overlap what it reads. */\n\
+         /** Output arguments of a function do not overlap its input arguments. */\n\
          #if defined(__cplusplus) || defined(_MSC_VER)\n#define NAME_RESTRICT __restrict\n\
          #else\n#define NAME_RESTRICT restrict\n#endif\n\
-         /** A number of the type that is computed with. */\n\
+         /** Converts a number to the number type. */\n\
          #define R(number) ((NAME_real)(number))\n"
             .replace("HEADER", &format!("{}.h", program.name)),
     )

@@ -108,7 +108,7 @@ fn sine_and_cosine(program: &Program) -> String {
 }
 
 const BITS: &str = "\
-/** A number and its bits. */
+/** Number and its bits. */
 typedef union {
     double number;
     uint64_t bits;
@@ -120,7 +120,7 @@ const PRIMITIVES: [(&str, &str); 8] = [
     (
         "nan",
         "\
-/** What is no number. */
+/** NaN. */
 static double NAME_nan(void) {
     NAME_bits value;
     value.bits = (uint64_t)0x7ff8 << 48;
@@ -131,7 +131,7 @@ static double NAME_nan(void) {
     (
         "infinity",
         "\
-/** What is larger than every number. */
+/** Infinity. */
 static double NAME_infinity(void) {
     NAME_bits value;
     value.bits = (uint64_t)0x7ff0 << 48;
@@ -142,7 +142,7 @@ static double NAME_infinity(void) {
     (
         "magnitude",
         "\
-/** A number without its sign. */
+/** Magnitude of a number. */
 static double NAME_magnitude(double x) {
     const double negated = 0.0 - x;
     return x > negated ? x : negated;
@@ -152,8 +152,8 @@ static double NAME_magnitude(double x) {
     (
         "nearest_integer",
         "\
-/** The integer nearest to x, ties to even, for |x| up to 2^51. Where sums may be reordered, each step is
- * hidden from that, in a register or by way of memory: it is done with these numbers and no others. */
+/** Integer nearest to x, ties to even, for |x| up to 2^51. If the compiler may reorder sums, each step
+ * is hidden from it in a register or in memory. */
 static double NAME_nearest_integer(double x) {
 #if !defined(__FAST_MATH__) && !defined(__ASSOCIATIVE_MATH__) && !defined(_M_FP_FAST)
     return x + 6.755399441055744e15 - 6.755399441055744e15;
@@ -176,7 +176,7 @@ static double NAME_nearest_integer(double x) {
     (
         "copy_sign",
         "\
-/** The magnitude of one number with the sign bit of another. */
+/** Magnitude of one number with the sign bit of another. */
 static double NAME_copy_sign(double x, double sign) {
     const uint64_t top = (uint64_t)1 << 63;
     NAME_bits value, other;
@@ -190,7 +190,7 @@ static double NAME_copy_sign(double x, double sign) {
     (
         "power_of_two",
         "\
-/** 2^k for an integral k: 2^52 + 1023 brings it to the place of the exponent. */
+/** 2^k for an integral k: the addition of 2^52 + 1023 moves k to the exponent bits. */
 static double NAME_power_of_two(double k) {
     NAME_bits value;
     value.number = k + 4503599627371519.0;
@@ -202,7 +202,7 @@ static double NAME_power_of_two(double k) {
     (
         "exponent",
         "\
-/** The unbiased exponent field. */
+/** Unbiased exponent field. */
 static double NAME_exponent(double x) {
     NAME_bits value;
     value.number = x;
@@ -213,7 +213,7 @@ static double NAME_exponent(double x) {
     (
         "significand",
         "\
-/** The mantissa under the exponent of 1. */
+/** Mantissa with the exponent of 1. */
 static double NAME_significand(double x) {
     NAME_bits value;
     value.number = x;
@@ -236,7 +236,7 @@ static NAME_real NAME_deadzone(NAME_real p, NAME_real b) {
 /// Indicator of Eq. (8), in the precision of the numbers. It compares the magnitude, because gcc compiles two
 /// comparisons to a branch but one to a selection.
 const CONTACT: &str = "\
-/** 1 where |p| > b and 0 elsewhere: the contact of Eq. (8). */
+/** 1 if |p| > b, else 0: the contact of Eq. (8). */
 static NAME_real NAME_contact(NAME_real p, NAME_real b) {
     const NAME_real size = -p > p ? -p : p;
     return size > b ? R(1.0) : R(0.0);
@@ -244,7 +244,7 @@ static NAME_real NAME_contact(NAME_real p, NAME_real b) {
 ";
 
 const ABOVE: &str = "\
-/** 1 where p > 0 and 0 elsewhere. */
+/** 1 if p > 0, else 0. */
 static NAME_real NAME_above(NAME_real p) {
     return p > R(0.0) ? R(1.0) : R(0.0);
 }
@@ -252,7 +252,7 @@ static NAME_real NAME_above(NAME_real p) {
 
 /// f_k on a given side of its dead zone.
 const DEADZONE_ON_SIDE: &str = "\
-/** Deflection beyond the backlash on a known side of it: f_k of Eq. (7). */
+/** Deflection beyond the backlash on a given side of it: f_k of Eq. (7). */
 static NAME_real NAME_deadzone_on_side(int above, int beyond, NAME_real p, NAME_real b) {
     return above ? p - b : beyond ? R(0.0) : p + b;
 }
@@ -260,7 +260,7 @@ static NAME_real NAME_deadzone_on_side(int above, int beyond, NAME_real p, NAME_
 
 /// Contact on a given side of its dead zone.
 const TOUCHING: &str = "\
-/** Whether there is contact on a known side of the backlash. */
+/** 1 if there is contact on a given side of the backlash, else 0. */
 static int NAME_touching(int above, int beyond) {
     return above || !beyond;
 }
@@ -268,7 +268,7 @@ static int NAME_touching(int above, int beyond) {
 
 /// Indicator for a function on either side of its zero interval.
 const EITHER: &str = "\
-/** Whether a switching function is on either side of where it rests. */
+/** 1 if a switching function is on either side of its zero interval, else 0. */
 static int NAME_either(int above, int below) {
     return above || below;
 }
@@ -276,7 +276,7 @@ static int NAME_either(int above, int below) {
 
 /// Reciprocal of a pivot, NaN if it is not positive.
 const PIVOT_RECIPROCAL: &str = "\
-/** 1/pivot of a positive pivot; NaN where the mass matrix is not positive definite. */
+/** 1/pivot for a positive pivot, else NaN: the mass matrix is not positive definite. */
 static NAME_real NAME_pivot_reciprocal(NAME_real pivot) {
     const NAME_real reciprocal = R(1.0) / pivot;
     return pivot > R(0.0) ? reciprocal : R(NAME_nan());
@@ -284,7 +284,7 @@ static NAME_real NAME_pivot_reciprocal(NAME_real pivot) {
 ";
 
 const CHOLESKY: &str = "\
-/** Lower factor L of a symmetric matrix L L^T of n rows; NaN where it is not positive definite. */
+/** Lower factor L of a symmetric matrix L L^T of n rows; NaN if it is not positive definite. */
 static void NAME_cholesky(int n, const NAME_real *matrix, NAME_real *factor) {
     for (int i = 0; i < n * n; ++i) {
         factor[i] = 0;

@@ -41,13 +41,12 @@ fn notes(program: &Program) -> Vec<String> {
     let name = &program.name;
     let text = format!(
         "\nState: {state}.\n\
-         All quantities are in SI units. Nothing here allocates or calls a library. Functions keep\n\
-         no state, so that threads may call them. What a function writes to must not overlap what\n\
-         it reads.\n\
+         All quantities are in SI units. The code does not allocate or call a library. Functions are\n\
+         reentrant. Their output arguments must not overlap their input arguments.\n\
          \n\
-         Compile {name}.c as C99 or C++. All compilers that contract no products and sums give the\n\
-         same bits: -std=c99, or -ffp-contract=off. With -D{name}_REAL=float, here and in all that\n\
-         includes this file, numbers are in single precision."
+         Compile {name}.c as C99 or C++. The results have the same bits with every compiler that does\n\
+         not contract products and sums: use -std=c99 or -ffp-contract=off. For single precision,\n\
+         use -D{name}_REAL=float here and for every file that includes this one."
     );
     lines.extend(text.split('\n').map(str::to_owned));
     lines
@@ -60,7 +59,7 @@ pub(super) fn header(file: &File<'_>, stages: &[Stage]) -> Emitted<String> {
         program,
         "#ifndef NAME_H\n#define NAME_H\n#include <stdint.h>\n\
          #ifdef __cplusplus\nextern \"C\" {\n#endif\n\
-         /** The type of all numbers. */\n\
+         /** Type of all numbers. */\n\
          #ifndef NAME_REAL\n#define NAME_REAL double\n#endif\n\
          typedef NAME_REAL NAME_real;\n",
     );
@@ -86,18 +85,30 @@ fn sizes(file: &File<'_>) -> String {
         (
             "DEGREES_OF_FREEDOM",
             program.degrees_of_freedom(),
-            "Coordinates and modes.",
+            "Number of degrees of freedom: coordinates and modes.",
         ),
         (
             "STATES",
             program.states(),
-            "Numbers in the state: coordinates, modes, and the rates of both.",
+            "Number of states: coordinates, modes, and the rates of both.",
         ),
-        ("OBSERVABLES", program.observables.len(), "Observables."),
-        ("GUARDS", file.guard_count(), "Switching surfaces."),
-        ("INPUTS", program.inputs.len(), "Inputs."),
-        ("PARAMETERS", program.parameters.len(), "Parameters."),
-        ("FIELDS", program.fields.len(), "Flexible fields."),
+        (
+            "OBSERVABLES",
+            program.observables.len(),
+            "Number of observables.",
+        ),
+        (
+            "GUARDS",
+            file.guard_count(),
+            "Number of switching surfaces.",
+        ),
+        ("INPUTS", program.inputs.len(), "Number of inputs."),
+        (
+            "PARAMETERS",
+            program.parameters.len(),
+            "Number of parameters.",
+        ),
+        ("FIELDS", program.fields.len(), "Number of flexible fields."),
     ] {
         text += &comment(&[doc.to_owned()]);
         text += &named(program, &format!("#define NAME_{name} {count}\n"));
@@ -143,7 +154,11 @@ pub(super) fn lists(program: &Program) -> Vec<(String, Vec<String>, &'static str
         .collect();
     let mut lists = Vec::new();
     for (name, elements, doc) in [
-        ("state_names", states, "Names of the state, in its order."),
+        (
+            "state_names",
+            states,
+            "Names of the states, in their order.",
+        ),
         (
             "observable_names",
             observables,

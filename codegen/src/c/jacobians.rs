@@ -11,8 +11,8 @@ pub(super) fn declarations(program: &Program) -> String {
     let mut text = String::new();
     for jacobian in &program.outputs.jacobians {
         let lines = [format!(
-            "Where the nonzeros of `{}_{}` stand in the matrix of {} x {}: `rows` and `columns` \
-             have room for {} each.",
+            "Positions of the nonzeros of `{}_{}` in the matrix of {} x {}: `rows` and `columns` \
+             have {} elements each.",
             program.name,
             jacobian.name,
             jacobian.rows,
@@ -23,7 +23,7 @@ pub(super) fn declarations(program: &Program) -> String {
     }
     if has_linearisation(program) {
         text += &named(program, LINEARISATION);
-        text += &comment(&["The linearisation about a point.".to_owned()]);
+        text += &comment(&["Linearisation about a point.".to_owned()]);
         text += &format!("{};\n", linearise_head(program, false));
     }
     text
@@ -32,7 +32,7 @@ pub(super) fn declarations(program: &Program) -> String {
 pub(super) fn sizes(program: &Program) -> String {
     let size = |jacobian: &Jacobian<ValueId>| {
         let line = format!(
-            "Structural nonzeros of `{}_{}`.",
+            "Number of structural nonzeros of `{}_{}`.",
             program.name, jacobian.name
         );
         let name = jacobian.name.to_uppercase();
@@ -140,8 +140,8 @@ fn linearise(program: &Program) -> String {
 }
 
 const PLACES: &str = "\
-/** The places of blocks: first row, rows, first column, columns, and whether only the diagonal is \
-filled. Blocks of the same rows stand together. */
+/** Expands blocks to positions. A block has first row, rows, first column, columns, and 1 if only \
+its diagonal is filled, else 0. Blocks of the same rows are adjacent. */
 static void NAME_places(const int (*blocks)[5], int count, int *rows, int *columns) {
     int next = 0;
     for (int first = 0, last = 0; first < count; first = last) {
@@ -163,7 +163,7 @@ static void NAME_places(const int (*blocks)[5], int count, int *rows, int *colum
 ";
 
 const DENSE: &str = "\
-/** The matrix with these nonzeros in blocks, row by row. */
+/** Matrix with these nonzeros in blocks, row by row. */
 static void NAME_dense(
     const int (*blocks)[5], int count, const NAME_real *nonzeros, int rows, int width,
     NAME_real *matrix
@@ -191,20 +191,20 @@ static void NAME_dense(
 ";
 
 const LINEARISATION: &str = "\
-/** The linearisation about a point: rates + A dx + B du, observables + C dx + D du. Without \
+/** Linearisation about a point: rates + A dx + B du, observables + C dx + D du. Without \
 inputs B and D have a column of zeros. */
 typedef struct {
-    /** The rates at the point. */
+    /** Rates at the point. */
     NAME_real rates[NAME_STATES];
-    /** The observables at the point. */
+    /** Observables at the point. */
     NAME_real observables[NAME_OBSERVABLES];
-    /** The rates by the state. */
+    /** Derivatives of the rates by the state. */
     NAME_real A[NAME_STATES][NAME_STATES];
-    /** The rates by the inputs. */
+    /** Derivatives of the rates by the inputs. */
     NAME_real B[NAME_STATES][NAME_INPUTS + !NAME_INPUTS];
-    /** The observables by the state. */
+    /** Derivatives of the observables by the state. */
     NAME_real C[NAME_OBSERVABLES][NAME_STATES];
-    /** The observables by the inputs. */
+    /** Derivatives of the observables by the inputs. */
     NAME_real D[NAME_OBSERVABLES][NAME_INPUTS + !NAME_INPUTS];
 } NAME_linearisation;
 ";

@@ -6,8 +6,8 @@ use crate::program::{Program, SURFACES_OF_A_REGIME};
 use crate::statements::File;
 use crate::statements::layout::block;
 
-pub(super) const REGIME: &str = "The regime that a state is in: bit k is set where number k of [`guards`] is positive,\n\
-                                 for up to 32 of them. Crossing one flips its bit.";
+pub(super) const REGIME: &str = "Regime of a state: bit k is set if number k of [`guards`] is positive, for up to 32 of\n\
+     them. Crossing a surface flips its bit.";
 
 pub(super) fn regime_head(program: &Program, definition: bool) -> String {
     head(program, ("uint32_t ", "regime"), &GIVEN, definition)

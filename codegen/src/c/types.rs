@@ -20,7 +20,7 @@ pub(super) fn structures(file: &File<'_>) -> Emitted<String> {
     for input in &program.inputs {
         fields += &field(file, input, "")?;
     }
-    text += &structure(file, "Signals supplied at run time.", "inputs", fields);
+    text += &structure(file, "Inputs at run time.", "inputs", fields);
     let mut fields = String::new();
     for id in &file.fields {
         let extents = match program.value(*id).extent {
@@ -33,26 +33,26 @@ pub(super) fn structures(file: &File<'_>) -> Emitted<String> {
         fields += &named(program, &format!("NAME_real {name}{extents};\n"));
     }
     let mut lines = vec![
-        "Whether all prepared pivots of the mass matrix are positive and finite: 1 or 0. If not,"
+        "1 if all prepared pivots of the mass matrix are positive and finite, else 0. If it is 0,"
             .to_owned(),
-        "the mass matrix is not positive definite and the rates are not to be used.".to_owned(),
+        "the mass matrix is not positive definite and the rates are invalid.".to_owned(),
     ];
     if program.may_lose_definiteness() {
         lines.extend([
-            "The mass matrix varies with the state too, of which this says nothing: where it is not"
+            "The mass matrix also varies with the state, which this flag does not include: if it is not"
                 .to_owned(),
             "positive definite, rates are NaN.".to_owned(),
         ]);
     }
     fields += &comment(&lines);
     fields += "int positive_definite;\n";
-    let doc = "What depends on the parameters alone: prepare once, use in every call.";
+    let doc = "Values that depend only on the parameters: prepare once, use in every call.";
     Ok(text + &structure(file, doc, "coefficients", fields))
 }
 
 fn structure(file: &File<'_>, doc: &str, name: &str, fields: String) -> String {
     let fields = if fields.is_empty() {
-        comment(&["There are none; C wants a member.".to_owned()]) + "char none;\n"
+        comment(&["Placeholder: C has no empty structures.".to_owned()]) + "char none;\n"
     } else {
         fields
     };
@@ -77,7 +77,7 @@ const FILLING: [Filling; 4] = [
     (
         "default_parameters",
         &[("NAME_parameters *", "parameters")],
-        "The specification's values.",
+        "Sets the values of the specification.",
     ),
     (
         "parameters_from_array",
@@ -85,7 +85,7 @@ const FILLING: [Filling; 4] = [
             ("const NAME_real *", "numbers"),
             ("NAME_parameters *", "parameters"),
         ],
-        "Parameters from `NAME_PARAMETERS` numbers in the order of `NAME_parameter_names`.",
+        "Sets parameters from `NAME_PARAMETERS` numbers in the order of `NAME_parameter_names`.",
     ),
     (
         "inputs_from_array",
@@ -93,7 +93,7 @@ const FILLING: [Filling; 4] = [
             ("const NAME_real *", "numbers"),
             ("NAME_inputs *", "inputs"),
         ],
-        "Inputs from `NAME_INPUTS` numbers in the order of `NAME_input_names`.",
+        "Sets inputs from `NAME_INPUTS` numbers in the order of `NAME_input_names`.",
     ),
     (
         "prepare",
@@ -101,7 +101,7 @@ const FILLING: [Filling; 4] = [
             ("const NAME_parameters *", "parameters"),
             ("NAME_coefficients *", "coefficients"),
         ],
-        "The coefficients of these parameters.",
+        "Prepares the coefficients of these parameters.",
     ),
 ];
 

@@ -12,17 +12,17 @@ pub(super) fn constants(file: &File<'_>) -> String {
     format!(
         "/// Modal truncation order of each field.\n\
          pub const ORDERS: [usize; {}] = {};\n\
-         /// Degrees of freedom: coordinates and modes.\n\
+         /// Number of degrees of freedom: coordinates and modes.\n\
          pub const DEGREES_OF_FREEDOM: usize = {};\n\
-         /// Numbers in the state: coordinates, modes, and the rates of both.\n\
+         /// Number of states: coordinates, modes, and the rates of both.\n\
          pub const STATES: usize = {};\n\
-         /// Names of the state, in its order.\n\
+         /// Names of the states, in their order.\n\
          pub const STATE_NAMES: [&'static str; STATES] = {state_names};\n\
-         /// Numbers that [`observables`] returns.\n\
+         /// Number of observables.\n\
          pub const OBSERVABLES: usize = {};\n\
          /// Names of the observables, in their order.\n\
          pub const OBSERVABLE_NAMES: [&'static str; OBSERVABLES] = {};\n\
-         /// Switching surfaces.\n\
+         /// Number of switching surfaces.\n\
          pub const GUARDS: usize = {};\n\
          /// SHA-256 of the specification.\n\
          pub const SPECIFICATION_SHA256: &'static str = \"{}\";\n\
@@ -44,11 +44,11 @@ fn names(file: &File<'_>) -> String {
     let program = file.program;
     let parameters = program.parameters.iter().map(|p| p.quantity.name.as_str());
     format!(
-        "/// Inputs.\n\
+        "/// Number of inputs.\n\
          pub const INPUTS: usize = {};\n\
          /// Names of the inputs, in their order.\n\
          pub const INPUT_NAMES: [&'static str; INPUTS] = {};\n\
-         /// Parameters.\n\
+         /// Number of parameters.\n\
          pub const PARAMETERS: usize = {};\n\
          /// Names of the parameters, in their order.\n\
          pub const PARAMETER_NAMES: [&'static str; PARAMETERS] = {};\n",

@@ -120,7 +120,7 @@ fn documentation(file: &File<'_>) -> Vec<String> {
         "Do not edit: change the specification and generate again.".to_owned(),
         String::new(),
         format!("State: {}.", program.state_names().join(", ")),
-        "All quantities are in SI units. Nothing here allocates, panics or needs the standard library."
+        "All quantities are in SI units. The code does not allocate, panic or use the standard library."
             .to_owned(),
     ]
 }

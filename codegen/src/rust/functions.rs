@@ -58,7 +58,7 @@ pub fn items(needed: &Needed, conversions: Conversions) -> String {
 
 /// Reciprocal of a pivot, NaN if it is not positive.
 const PIVOT_RECIPROCAL: &str = "\
-/// 1/pivot of a positive pivot; NaN where the mass matrix is not positive definite.
+/// Returns 1/pivot for a positive pivot, else NaN: the mass matrix is not positive definite.
 #[inline(always)]
 fn pivot_reciprocal<T: Scalar>(pivot: T) -> T {
     let reciprocal = T::number(1.0) / pivot;
@@ -68,7 +68,7 @@ fn pivot_reciprocal<T: Scalar>(pivot: T) -> T {
 
 /// Cholesky factorisation and solution; the solution is also used by rates for SIMD lanes.
 const CHOLESKY: &str = "\
-/// Lower factor L of a symmetric matrix L L^T; NaN where it is not positive definite.
+/// Computes the lower factor L of a symmetric matrix L L^T; NaN if it is not positive definite.
 fn cholesky<T: Scalar, const N: usize>(matrix: &[[T; N]; N]) -> [[T; N]; N] {
     let mut factor = [[T::number(0.0); N]; N];
     for i in 0..N {
@@ -88,7 +88,7 @@ fn cholesky<T: Scalar, const N: usize>(matrix: &[[T; N]; N]) -> [[T; N]; N] {
     factor
 }
 
-/// Solution of L L^T x = right.
+/// Solves L L^T x = right.
 #[inline(always)]
 fn cholesky_solve<T: Scalar, const N: usize>(
     factor: &[[T; N]; N],
@@ -114,7 +114,7 @@ fn cholesky_solve<T: Scalar, const N: usize>(
 }
 ";
 const CHOLESKY_OF_MATRIX: &str = "\
-/// Solution of L L^T X = right, column by column.
+/// Solves L L^T X = right, column by column.
 fn cholesky_solve_matrix<T: Scalar, const N: usize, const M: usize>(
     factor: &[[T; N]; N],
     right: &[[T; M]; N],
@@ -131,7 +131,7 @@ fn cholesky_solve_matrix<T: Scalar, const N: usize, const M: usize>(
 ";
 
 const CONVERTED: &str = "\
-/// These numbers in another type.
+/// Converts numbers to another type.
 #[inline(always)]
 fn converted<T: Scalar, const N: usize>(numbers: &[f64; N]) -> [T; N] {
     let mut converted = [T::number(0.0); N];
@@ -143,7 +143,7 @@ fn converted<T: Scalar, const N: usize>(numbers: &[f64; N]) -> [T; N] {
 ";
 
 const CONVERTED_MATRIX: &str = "\
-/// The same of a matrix.
+/// Converts a matrix to another type.
 #[inline(always)]
 fn converted_matrix<T: Scalar, const N: usize, const M: usize>(
     numbers: &[[f64; N]; M],
@@ -158,7 +158,7 @@ fn converted_matrix<T: Scalar, const N: usize, const M: usize>(
 
 /// Sum of the partial sums in pairs.
 const PAIRED: &str = "\
-/// The sum of the first `N` of eight numbers, neighbours added in pairs.
+/// Adds the first `N` of eight numbers, neighbours in pairs.
 #[inline(always)]
 fn paired<const N: usize, T: Scalar>(s: &[T; 8]) -> T {
     let a = if N > 1 { s[0] + s[1] } else { s[0] };
@@ -173,7 +173,7 @@ fn paired<const N: usize, T: Scalar>(s: &[T; 8]) -> T {
 
 /// Whole vectors of coefficients.
 const READ_ARRAY: &str = "\
-/// These coefficients as what is computed with.
+/// Reads coefficients as numbers of the computation.
 #[inline(always)]
 fn read_array<T: Scalar, C: Coefficient<T>, const N: usize>(numbers: &[C; N]) -> [T; N] {
     let mut read = [T::number(0.0); N];
@@ -186,7 +186,7 @@ fn read_array<T: Scalar, C: Coefficient<T>, const N: usize>(numbers: &[C; N]) ->
 
 /// Whole matrices of coefficients.
 const READ_MATRIX: &str = "\
-/// This matrix of coefficients as what is computed with.
+/// Reads a matrix of coefficients as numbers of the computation.
 #[inline(always)]
 fn read_matrix<T: Scalar, C: Coefficient<T>, const N: usize, const M: usize>(
     matrix: &[[C; N]; M],
@@ -201,7 +201,7 @@ fn read_matrix<T: Scalar, C: Coefficient<T>, const N: usize, const M: usize>(
 
 /// Sums of at most as many elements as there are partial sums.
 const SUM_OF_FEW: &str = "\
-/// The sum of up to eight elements.
+/// Adds up to eight elements.
 #[inline(always)]
 fn sum_of_few<const N: usize, T: Scalar, F: Fn(usize) -> T>(
     _: [(); N],
@@ -220,7 +220,7 @@ fn sum_of_few<const N: usize, T: Scalar, F: Fn(usize) -> T>(
 /// the compiler would stop after some calls. The length is a constant of the type, which removes bounds
 /// checks.
 const SUM: &str = "\
-/// The sum of elements in eight partial sums, number k of elements k, k + 8, k + 16, ...
+/// Adds elements in eight partial sums; sum k has the elements k, k + 8, k + 16, ...
 #[inline(always)]
 fn sum<const N: usize, T: Scalar, F: Fn(usize) -> T>(_: [(); N], element: F) -> T {
     T::long_loop(

@@ -25,7 +25,7 @@ pub(super) fn jacobians(
     }
     if outputs.kinds.contains(&Output::Linearisation) {
         text += LINEARISATION;
-        let head = linked_doc("The linearisation about a point.");
+        let head = linked_doc("Linearisation about a point.");
         let signature = Signature::of("linearise", "Linearisation<T>");
         text += &stage_with(file, &head, &signature, &linearise(file));
     }
@@ -71,9 +71,9 @@ fn pattern(jacobian: &Jacobian<ValueId>) -> String {
     let nonzeros = jacobian.nonzeros();
     let blocks = reference(array(&blocks));
     format!(
-        "/// Structural nonzeros of [`{}`].\n\
+        "/// Number of structural nonzeros of [`{}`].\n\
          pub const {name}_NONZEROS: usize = {nonzeros};\n\
-         /// Where they stand in the matrix of {} x {}.\n\
+         /// Positions of the nonzeros in the matrix of {} x {}.\n\
          pub static {name}: Pattern<{nonzeros}> = {};\n",
         jacobian.name,
         jacobian.rows,
@@ -83,16 +83,16 @@ fn pattern(jacobian: &Jacobian<ValueId>) -> String {
 }
 
 const PATTERN: &str = "\
-/// Where the structural nonzeros of a matrix stand, row by row.
+/// Positions of the structural nonzeros of a matrix, row by row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pattern<const N: usize> {
-    /// The row of each.
+    /// Row of each.
     pub rows: [usize; N],
-    /// The column of each.
+    /// Column of each.
     pub columns: [usize; N],
 }
 impl<const N: usize> Pattern<N> {
-    /// The matrix of `R` rows and `C` columns with these nonzeros.
+    /// Returns the matrix of `R` rows and `C` columns with these nonzeros.
     pub fn dense<T: Scalar, const R: usize, const C: usize>(
         &self,
         nonzeros: &[T; N],
@@ -108,8 +108,8 @@ impl<const N: usize> Pattern<N> {
         matrix
     }
 }
-/// The places of blocks: first row, rows, first column, columns, and whether only the diagonal
-/// is filled. Blocks of the same rows stand together.
+/// Expands blocks to positions. A block has first row, rows, first column, columns, and 1 if only
+/// its diagonal is filled, else 0. Blocks of the same rows are adjacent.
 const fn pattern<const B: usize, const N: usize>(
     blocks: &[[usize; 5]; B],
 ) -> Pattern<N> {
@@ -152,20 +152,20 @@ const fn pattern<const B: usize, const N: usize>(
 ";
 
 const LINEARISATION: &str = "\
-/// The linearisation about a point: rates + A dx + B du, observables + C dx + D du.
+/// Linearisation about a point: rates + A dx + B du, observables + C dx + D du.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Linearisation<T = f64> {
-    /// The rates at the point.
+    /// Rates at the point.
     pub rates: [T; STATES],
-    /// The observables at the point.
+    /// Observables at the point.
     pub observables: [T; OBSERVABLES],
-    /// The rates by the state.
+    /// Derivatives of the rates by the state.
     pub A: [[T; STATES]; STATES],
-    /// The rates by the inputs.
+    /// Derivatives of the rates by the inputs.
     pub B: [[T; INPUTS]; STATES],
-    /// The observables by the state.
+    /// Derivatives of the observables by the state.
     pub C: [[T; STATES]; OBSERVABLES],
-    /// The observables by the inputs.
+    /// Derivatives of the observables by the inputs.
     pub D: [[T; INPUTS]; OBSERVABLES],
 }
 ";

@@ -13,7 +13,7 @@ fn deadzone<T: Scalar>(p: T, b: T) -> T {
 
 /// Indicator of |p| > b, Eq. (8).
 pub const CONTACT: &str = "\
-/// 1 where |p| > b and 0 elsewhere: the contact of Eq. (8).
+/// Returns 1 if |p| > b, else 0: the contact of Eq. (8).
 #[inline(always)]
 fn contact<T: Scalar>(p: T, b: T) -> T {
     let beyond = T::select_greater(-b, p, T::number(1.0), T::number(0.0));
@@ -23,7 +23,7 @@ fn contact<T: Scalar>(p: T, b: T) -> T {
 
 /// Indicator of p > 0.
 pub const ABOVE: &str = "\
-/// 1 where p > 0 and 0 elsewhere.
+/// Returns 1 if p > 0, else 0.
 #[inline(always)]
 fn above<T: Scalar>(p: T) -> T {
     T::select_greater(p, T::number(0.0), T::number(1.0), T::number(0.0))
@@ -32,7 +32,7 @@ fn above<T: Scalar>(p: T) -> T {
 
 /// f_k on a given side of its dead zone.
 pub const DEADZONE_ON_SIDE: &str = "\
-/// Deflection beyond the backlash on a known side of it: f_k of Eq. (7).
+/// Deflection beyond the backlash on a given side of it: f_k of Eq. (7).
 #[inline(always)]
 fn deadzone_on_side<T: Scalar>(above: bool, beyond: bool, p: T, b: T) -> T {
     if above { p - b } else if beyond { T::number(0.0) } else { p + b }
@@ -41,7 +41,7 @@ fn deadzone_on_side<T: Scalar>(above: bool, beyond: bool, p: T, b: T) -> T {
 
 /// Contact on a given side of its dead zone.
 pub const TOUCHING: &str = "\
-/// Whether there is contact on a known side of the backlash.
+/// Returns true if there is contact on a given side of the backlash.
 #[inline(always)]
 fn touching(above: bool, beyond: bool) -> bool {
     above || !beyond
@@ -50,7 +50,7 @@ fn touching(above: bool, beyond: bool) -> bool {
 
 /// Indicator for a function on either side of its zero interval.
 pub const EITHER: &str = "\
-/// Whether a switching function is on either side of where it rests.
+/// Returns true if a switching function is on either side of its zero interval.
 #[inline(always)]
 fn either(above: bool, below: bool) -> bool {
     above || below
@@ -59,7 +59,7 @@ fn either(above: bool, below: bool) -> bool {
 
 /// Selection at compile time.
 pub const CHOSEN: &str = "\
-/// One of two, where it is known which.
+/// Selects one of two numbers at compile time.
 #[inline(always)]
 fn chosen<T: Scalar>(first: bool, then: T, otherwise: T) -> T {
     if first { then } else { otherwise }
@@ -68,7 +68,7 @@ fn chosen<T: Scalar>(first: bool, then: T, otherwise: T) -> T {
 
 /// Side of a guard in a regime.
 pub const POSITIVE: &str = "\
-/// Whether a guard, by its place, is positive in a regime.
+/// Returns true if the guard with this index is positive in a regime.
 #[inline(always)]
 fn positive(regime: u32, guard: u32) -> bool {
     regime >> guard & 1 == 1

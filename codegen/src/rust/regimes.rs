@@ -36,9 +36,9 @@ fn regime(file: &File<'_>) -> String {
         format!("{guards}\nlet mut regime = 0;\n{set}regime\n")
     };
     let head = linked_doc(
-        "The regime that a state is in: bit k is set where number k of [`guards`] is positive,\n\
-         for up to 32 of them. Crossing one flips its bit. Of lanes, which have to be in\n\
-         one regime, a bit is set where it is in all.",
+        "Regime of a state: bit k is set if number k of [`guards`] is positive, for up to 32 of\n\
+         them. Crossing a surface flips its bit. SIMD lanes must be in one regime: a bit is set\n\
+         if it is set in all of them.",
     ) + "#[allow(unused_variables)]\n";
     stage_with(file, &head, &Signature::of("regime", "u32"), &statements)
 }

@@ -7,8 +7,8 @@
 
 /// Traits of numbers and their implementations.
 pub const SCALAR: &str = "\
-/// What the equations are computed with: `f64`, `f32`, lanes of them, or numbers that carry
-/// derivatives. Nothing branches on a value, so that lanes may differ in every condition.
+/// Number type of the equations: `f64`, `f32`, SIMD lanes of them, or dual numbers. The code
+/// does not branch on a value, so that lanes can differ in every condition.
 pub trait Scalar: Copy
 where
     Self: core::ops::Add<Output = Self>,
@@ -17,52 +17,51 @@ where
     Self: core::ops::Div<Output = Self>,
     Self: core::ops::Neg<Output = Self>,
 {
-    /// A number, in every lane and without derivative.
+    /// Returns a constant, equal in every lane and without derivative.
     fn number(value: f64) -> Self;
-    /// `then` where a > b, `otherwise` elsewhere, also where either is NaN. Whatever is not
-    /// chosen leaves no trace.
+    /// Returns `then` if a > b, else `otherwise`, also if either is NaN. The other value has no
+    /// effect.
     fn select_greater(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
-    /// Whether a > b in every lane.
+    /// Returns true if a > b in every lane.
     fn all_greater(a: Self, b: Self) -> bool;
-    /// An elementary function of this.
+    /// Applies an elementary function.
     fn function<F: Function>(self) -> Self;
-    /// An elementary function of this and another.
+    /// Applies an elementary function of two arguments.
     fn function_of_two<F: FunctionOfTwo>(self, other: Self) -> Self;
-    /// A long loop. Single numbers keep it out of the code around; lanes must not, because code
-    /// of its own would not be compiled for their registers.
+    /// Runs a long loop. For single numbers it is not inlined; for lanes it must be, because a
+    /// separate function would not be compiled for their registers.
     #[inline(always)]
     fn long_loop<F: FnOnce() -> Self>(lines: F) -> Self {
         lines()
     }
 }
-/// Numbers in IEEE 754 double precision, or lanes of them: what the elementary functions are
-/// written for.
+/// Number type of the elementary functions: IEEE 754 double precision, or SIMD lanes of it.
 pub trait Real: Scalar {
-    /// `then` where a = b, `otherwise` elsewhere, also where either is NaN.
+    /// Returns `then` if a = b, else `otherwise`, also if either is NaN.
     fn select_equal(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
-    /// The sign bit cleared.
+    /// Clears the sign bit.
     fn magnitude(self) -> Self;
-    /// The magnitude with the sign bit of another number.
+    /// Returns the magnitude with the sign bit of another number.
     fn copy_sign(self, sign: Self) -> Self;
-    /// 2^k for an integral k: 2^52 + 1023 brings it to the place of the exponent.
+    /// Returns 2^k for an integral k: the addition of 2^52 + 1023 moves k to the exponent bits.
     fn power_of_two(self) -> Self;
-    /// The unbiased exponent field.
+    /// Returns the unbiased exponent field.
     fn exponent(self) -> Self;
-    /// The mantissa under the exponent of 1.
+    /// Returns the mantissa with the exponent of 1.
     fn significand(self) -> Self;
 }
-/// An elementary function: plain operations in a fixed order, the same bits on every machine.
+/// Elementary function: plain operations in a fixed order, with the same bits on every machine.
 pub trait Function {
-    /// Its value.
+    /// Computes the value.
     fn value<T: Real>(x: T) -> T;
-    /// Its derivative at x, where it is `value`.
+    /// Computes the derivative at x; `value` is the value there.
     fn slope<T: Scalar>(x: T, value: T) -> T;
 }
-/// An elementary function of two arguments.
+/// Elementary function of two arguments.
 pub trait FunctionOfTwo {
-    /// Its value.
+    /// Computes the value.
     fn value<T: Real>(x: T, y: T) -> T;
-    /// Its derivatives by x and y, where it is `value`.
+    /// Computes the derivatives by x and y; `value` is the value there.
     fn slopes<T: Scalar>(x: T, y: T, value: T) -> [T; 2];
 }
 impl Scalar for f64 {
@@ -117,8 +116,8 @@ impl Real for f64 {
         f64::from_bits((self.to_bits() & 0x000f_ffff_ffff_ffff) | 0x3ff0_0000_0000_0000)
     }
 }
-/// Elementary functions in double precision, then rounded: within 0.5001 units in the last
-/// place.
+/// Elementary functions are computed in double precision and rounded: within 0.5001 units in the
+/// last place.
 impl Scalar for f32 {
     #[inline(always)]
     fn number(value: f64) -> f32 {
@@ -149,10 +148,10 @@ impl Scalar for f32 {
 
 /// Trait of coefficients for SIMD lanes.
 pub const COEFFICIENT: &str = "\
-/// A coefficient as the functions for lanes read it: a number of the type that they compute
-/// with, or an `f64` that all lanes share, which takes an eighth of the memory.
+/// Coefficient of functions for SIMD lanes: a number of their type, or an `f64` that all lanes
+/// share, which takes an eighth of the memory.
 pub trait Coefficient<T>: Copy {
-    /// The number, in every lane.
+    /// Returns the number in every lane.
     fn read(self) -> T;
 }
 impl<T: Scalar> Coefficient<T> for T {

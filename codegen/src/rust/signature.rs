@@ -76,7 +76,7 @@ pub(super) fn stage_with(
     let allowed = head.lines().filter(|line| line.starts_with("#["));
     let allowed: String = allowed.map(|line| format!("{line}\n")).collect();
     let inlined_head = format!(
-        "/// [`{name}`], inlined where it is called, to be compiled for the registers there.\n\
+        "/// [`{name}`], inlined into the calling function and compiled for its registers.\n\
          {allowed}#[inline(always)]\n"
     );
     let generics = if file.fields.is_empty() {

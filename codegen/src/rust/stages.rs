@@ -17,7 +17,7 @@ pub(super) fn rates(file: &File<'_>, written: &Stage, writer: &mut Writer) -> St
         inlined(file)
     );
     let lines = format!(
-        "Rates of the state, returned.\n\n{ORDER}{}",
+        "Returns the rates of the state.\n\n{ORDER}{}",
         where_they_end(file)
     );
     let signature = Signature::of("rates", "[T; STATES]");

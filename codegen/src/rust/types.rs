@@ -22,7 +22,7 @@ pub(super) fn parameters(file: &File<'_>) -> Emitted<String> {
         casts.push(format!("{name}: T::number(self.{name})"));
     }
     let head = format!(
-        "/// Parameters of the model. `Default` gives the specification's values.\n\
+        "/// Parameters of the model. `Default` has the values of the specification.\n\
          #[derive(Clone, Copy, Debug, PartialEq)]\n\
          pub struct Parameters{} {{",
         declared(!casts.is_empty())
@@ -43,7 +43,7 @@ pub(super) fn inputs(file: &File<'_>) -> Emitted<String> {
     }
     let derived = if zeros.is_empty() { "Default, " } else { "" };
     let head = format!(
-        "/// Signals supplied at run time. `Default` gives zeros.\n\
+        "/// Inputs at run time. `Default` is zero.\n\
          #[derive(Clone, Copy, Debug, {derived}PartialEq)]\n\
          pub struct Inputs{} {{",
         declared(!zeros.is_empty())
@@ -108,12 +108,12 @@ pub(super) fn coefficients(
         values.push(format!("{name}: {FLOW_EVEN}{value}{CLOSE}"));
     }
     fields.push_str(
-        "/// Whether all prepared pivots of the mass matrix are positive and finite. If not, \
-         the mass matrix is not positive definite and the rates are not to be used.\n",
+        "/// True if all prepared pivots of the mass matrix are positive and finite. If false, \
+         the mass matrix is not positive definite and the rates are invalid.\n",
     );
     if file.program.may_lose_definiteness() {
         fields.push_str(
-            "/// The mass matrix varies with the state too, of which this says nothing: where it \
+            "/// The mass matrix also varies with the state, which this flag does not include: if it \
              is not positive definite, rates are NaN.\n",
         );
     }
@@ -122,7 +122,7 @@ pub(super) fn coefficients(
     values.push(format!("positive_definite: {FLOW_EVEN}{check}{CLOSE}"));
     let numbers = !casts.is_empty();
     let head = format!(
-        "/// What depends on the parameters alone: prepare once, use in every call.\n\
+        "/// Values that depend only on the parameters: prepare once, use in every call.\n\
          #[derive(Clone, Copy, Debug, PartialEq)]\n\
          pub struct Coefficients{} {{",
         declared(numbers)
@@ -159,7 +159,7 @@ fn prepare(file: &File<'_>, statements: &str) -> String {
         ""
     };
     let opening = format!(
-        "/// The coefficients of these parameters.\n{unused}\
+        "/// Prepares the coefficients of these parameters.\n{unused}\
          pub fn prepare{own}(parameters: &{parameters}) -> Self {{"
     );
     let nobody = !with_coefficients && !with_parameters && statements.contains("T::");
@@ -184,7 +184,7 @@ fn cast(name: &str, what: &str, fields: &[String]) -> String {
         return String::new();
     }
     let opening = format!(
-        "/// The numbers of {what} in another type, without derivatives.\n\
+        "/// Converts {what} to another number type, without derivatives.\n\
          #[inline(always)]\n\
          pub fn cast<T: Scalar>(&self) -> {name}<T> {{"
     );

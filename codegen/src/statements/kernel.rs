@@ -9,8 +9,8 @@ pub fn describe_elementary(function: Elementary) -> &'static str {
     match function {
         Elementary::Abs => "Absolute value.",
         Elementary::Sign => "Sign, with sign(0) = 0.",
-        Elementary::Min => "The smaller of two, NaN if either is.",
-        Elementary::Max => "The larger of two, NaN if either is.",
+        Elementary::Min => "Smaller of two numbers, NaN if either is NaN.",
+        Elementary::Max => "Larger of two numbers, NaN if either is NaN.",
         Elementary::Sqrt => "Square root.",
         Elementary::Exp => "Exponential function.",
         Elementary::ExpMinusOne => "exp(x) - 1.",

@@ -23,11 +23,11 @@ pub fn requested(file: &File<'_>, needed: &mut Needed) -> Emitted<Vec<Stage>> {
     let mut stages = Vec::new();
     if let Some(rows) = &outputs.bias_forces {
         let doc = "Bias forces c - f of M q'' + c = f, in the order of the first half of\n\
-                   [`STATE_NAMES`]: the forces missing for no acceleration.";
+                   [`STATE_NAMES`]: the additional forces for zero accelerations.";
         stages.push(forces(file, "bias_forces", doc, rows, needed)?);
     }
     if let Some(rows) = &outputs.inverse_dynamics {
-        let doc = "Inverse dynamics M a + c - f: the generalised forces that have to act besides\n\
+        let doc = "Inverse dynamics M a + c - f: the generalised forces needed in addition to\n\
                    those of the model for the accelerations a, in the order of the first half of\n\
                    [`STATE_NAMES`].";
         stages.push(Stage {
@@ -36,7 +36,7 @@ pub fn requested(file: &File<'_>, needed: &mut Needed) -> Emitted<Vec<Stage>> {
         });
     }
     if let Some(rates) = &outputs.guard_rates {
-        let line = "Rates of the switching surfaces along the motion, the inputs held.";
+        let line = "Rates of the switching surfaces along the motion, with constant inputs.";
         stages.push(guard_values(file, "guard_rates", line, rates, needed)?);
     }
     if let Some(products) = &outputs.products {
@@ -89,8 +89,8 @@ fn jacobian_vector_product(
     }
     Ok(Stage {
         name: "jacobian_vector_product",
-        doc: "Product of the Jacobian of the rates by state and inputs with a direction: how the\n\
-              rates change along it."
+        doc: "Product of the Jacobian of the rates by state and inputs with a direction: the derivative\n\
+              of the rates along it."
             .to_owned(),
         list: Vec::new(),
         arguments: vec![Argument::Direction, Argument::InputDirection],
@@ -205,8 +205,8 @@ fn gradient_derivative(
     }
     Ok(Stage {
         name: "gradient_derivative",
-        doc: "How the gradient of the weighted sum of the rates changes along a direction: the\n\
-              product of its Hessian with it, both by time, state, inputs and parameters in this order."
+        doc: "Derivative of the gradient of the weighted sum of the rates along a direction: the product\n\
+              of its Hessian with it, both by time, state, inputs and parameters in this order."
             .to_owned(),
         list: Vec::new(),
         arguments: vec![Argument::Weights, Argument::PointDirection],
@@ -234,8 +234,8 @@ pub fn nonzeros(
     Ok(Stage {
         name: jacobian.name,
         doc: format!(
-            "The Jacobian of the {what} by the {by}: its structural nonzeros, row by row, at the\n\
-             places of [`{}`].",
+            "Jacobian of the {what} by the {by}: structural nonzeros, row by row, at the positions\n\
+             given by [`{}`].",
             jacobian.name.to_uppercase()
         ),
         list: Vec::new(),
@@ -293,9 +293,9 @@ pub fn rates_in_regime(file: &File<'_>, needed: &mut Needed) -> Emitted<Option<S
     let roots = file.program.rate_roots();
     let body = file.body_in_regime(&roots, needed, switches.collect())?;
     let doc = format!(
-        "Rates of the state within a regime, written to `rates`: those of [`rates_into`] where\n\
-         [`regime`] is `REGIME`, for half-widths that are not negative. Beyond the regime they go\n\
-         on as they are within, and on its surfaces they are those of its side.\n\n{ORDER}{}",
+        "Rates of the state in a regime, written to `rates`. They equal those of [`rates_into`] if\n\
+         [`regime`] is `REGIME` and half-widths are not negative. Outside the regime its equations\n\
+         are continued; on a surface they are those of the regime's side.\n\n{ORDER}{}",
         where_they_end(file)
     );
     Ok(Some(Stage {

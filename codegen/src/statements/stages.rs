@@ -17,12 +17,12 @@ use eomgen_model_spec::ids::FieldId;
 pub const ORDER: &str = "`t` in s; `state` and the rates in the order of [`STATE_NAMES`].";
 
 const NOT_DEFINITE: &str = "\n\n\
-    The mass matrix varies with the state. Where it is not positive definite, rates of velocities \
-    are\nNaN, though [`Coefficients::positive_definite`], which knows the parameters alone, is true.";
+    The mass matrix varies with the state. If it is not positive definite, rates of velocities are\n\
+    NaN, even if [`Coefficients::positive_definite`], which depends only on the parameters, is true.";
 
 const BETWEEN_IMPACTS: &str = "\n\n\
-    These are the rates between the impacts of the specification: where bodies hit, and what rests on \
-    what,\nis not known here.";
+    These are the rates between impacts. Impacts and closed contacts of the specification are not\n\
+    included.";
 
 /// Largest copy, in numbers, that every compiler unrolls: one cache line.
 const COPIED_AT_ONCE: usize = 8;
@@ -111,7 +111,7 @@ pub fn observables(file: &File<'_>, needed: &mut Needed) -> Emitted<Vec<Stage>> 
     });
     let all = Stage {
         name: "observables",
-        doc: "The observables, in the order of [`OBSERVABLE_NAMES`]:\n".to_owned(),
+        doc: "Observables in the order of [`OBSERVABLE_NAMES`]:\n".to_owned(),
         list: lines.collect(),
         arguments: Vec::new(),
         outcome: Outcome::Observables(values),
@@ -151,7 +151,7 @@ fn number(
 /// Builds the stage of the switching functions.
 pub fn guards(file: &File<'_>, needed: &mut Needed) -> Emitted<Stage> {
     let ids: Vec<ValueId> = file.program.guards.iter().map(|g| g.value).collect();
-    let line = "Switching surfaces: the equations change where one of these changes sign.";
+    let line = "Switching surfaces: the equations change when one of these changes sign.";
     guard_values(file, "guards", line, &ids, needed)
 }
 
@@ -215,7 +215,7 @@ pub fn mass_matrix(file: &File<'_>, needed: &mut Needed) -> Emitted<Stage> {
         name: "mass_matrix",
         doc: by_positions(
             program,
-            "The mass matrix, in the order of the first half of [`STATE_NAMES`].",
+            "Mass matrix in the order of the first half of [`STATE_NAMES`].",
         ),
         list: Vec::new(),
         arguments: Vec::new(),

@@ -95,15 +95,15 @@ pub fn latex(kind: TableKind) -> String {
 /// Returns the description of a table on one line.
 pub fn doc(table: &Table) -> String {
     match table.kind {
-        TableKind::Wavenumber => "beta_r l of the modes".to_owned(),
-        TableKind::Mixing => "xi_r of the modes, Eq. (17)".to_owned(),
-        TableKind::GrowingAmplitude => "(1 + xi_r) exp(beta_r l) of the modes".to_owned(),
-        TableKind::FallingAmplitude => "factors of exp(-beta_r l s) in the modes".to_owned(),
-        TableKind::RisingAmplitude => "factors of exp(-beta_r l (1 - s)) in the modes".to_owned(),
+        TableKind::Wavenumber => "Wave numbers beta_r l of the modes".to_owned(),
+        TableKind::Mixing => "Factors xi_r of the modes, Eq. (17)".to_owned(),
+        TableKind::GrowingAmplitude => "Factors (1 + xi_r) exp(beta_r l) of the modes".to_owned(),
+        TableKind::FallingAmplitude => "Factors of exp(-beta_r l s) in the modes".to_owned(),
+        TableKind::RisingAmplitude => "Factors of exp(-beta_r l (1 - s)) in the modes".to_owned(),
         TableKind::NodePosition => "Gauss-Legendre nodes on [0, 1]".to_owned(),
         TableKind::NodeWeight => "Gauss-Legendre weights on [0, 1]".to_owned(),
         kind => format!(
-            "{}, with s = x/l from 0 to 1 and primes for derivatives by s",
+            "{}, with s = x/l from 0 to 1; primes are derivatives by s",
             plain(kind)
         ),
     }

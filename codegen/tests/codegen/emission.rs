@@ -79,7 +79,7 @@ fn regimes_of_the_arm_match_golden_file() {
         panic!("the arm has regimes");
     };
     let source = emit(&variant.program, Packaging::Crate).unwrap();
-    let begin = source.find("/// The regime that").unwrap();
+    let begin = source.find("/// Regime of a state").unwrap();
     let kernel = begin + source[begin..].find("rates_in_regime_into<").unwrap();
     let end = kernel + source[kernel..].find("\n}\n").unwrap() + 3;
     compare("planetary_arm_order_2_regimes.rs", &source[begin..end]);

@@ -83,7 +83,7 @@ fn functions(program: &Program) -> Emitted<String> {
 }
 
 fn defaults(program: &Program) -> String {
-    let line = "The specification's parameters, in SI: a function of nothing.";
+    let line = "Parameters of the specification in SI units; a function without arguments.";
     let filled = program
         .parameters
         .iter()
@@ -117,7 +117,7 @@ extern \"C\" {
 ";
 
 const INTERFACE: &str = "\
-/** Coefficients and inputs from u and p; 0 stands for what is not given. */
+/** Coefficients and inputs from u and p; missing ones are 0. */
 static void NAME_point(
     const casadi_real *u, const casadi_real *p, NAME_inputs *inputs,
     NAME_coefficients *coefficients
