@@ -83,7 +83,6 @@ fn separated<T>(items: &[T], set: impl Fn(&T) -> Markup) -> Markup {
     }
 }
 
-/// Returns a letter with names as its indices.
 fn indexed(letter: &str, names: &[&Formula]) -> Markup {
     html! { i { (letter) } sub { (separated(names, |name| formula(name))) } }
 }

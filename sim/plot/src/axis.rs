@@ -17,7 +17,6 @@ pub(super) struct Range {
 
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Tick {
-    /// Position in the coordinate of the [`Range`].
     pub place: f64,
     pub label: String,
 }
@@ -81,7 +80,6 @@ impl Range {
         }
     }
 
-    /// Adds a margin on both sides, as a fraction of the span.
     pub fn padded(self, share: f64) -> Self {
         let margin = share * (self.high - self.low);
         Self {

@@ -86,7 +86,6 @@ impl Canvas {
         ));
     }
 
-    /// Adds another drawing at an offset.
     pub fn place(&mut self, drawing: Self, (x, y): Point) {
         self.element(format_args!(
             "<g transform=\"translate({x} {y})\">\n{}</g>",

@@ -80,7 +80,6 @@ pub fn distribution(of: &Distribution<'_>) -> Result<String, PlotError> {
     Ok(canvas.document(&of.title, WIDTH, HEIGHT))
 }
 
-/// Axes of the numbers, of their counts and of the cumulative share.
 struct Axes {
     along: Axis,
     up: Axis,

@@ -112,7 +112,6 @@ pub fn drawing(of: &Drawing) -> String {
     canvas.document(&of.title, of.size.0, of.size.1)
 }
 
-/// Returns the head of an arrow as a line over its last point.
 fn head(points: &[Point]) -> Vec<Point> {
     let [.., before, end] = points else {
         return Vec::new();

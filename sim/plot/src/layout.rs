@@ -32,14 +32,12 @@ pub(super) struct Abscissa {
     pub scale: Scale,
 }
 
-/// Sizes of frames and approximate numbers of ticks.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Format {
     /// Width of the figure, in px.
     pub width: f64,
     /// Height of a frame, in px.
     pub frame: f64,
-    /// Ticks along the horizontal and the vertical axis.
     pub ticks: (usize, usize),
     /// Minimum margins to the left and right of the frame, in px.
     pub margins: (f64, f64),
@@ -87,13 +85,10 @@ pub(super) struct Place {
     pub ordinate: Axis,
     pub quantity: Quantity,
     pub ticks: Vec<Tick>,
-    /// Base line of the title.
     pub title: f64,
-    /// Start and text of each legend entry; empty for one series.
     pub legend: Vec<((f64, f64), String)>,
 }
 
-/// Vertical axis of a panel, without its position.
 #[derive(Debug)]
 struct Ordinate {
     range: Range,
@@ -232,7 +227,6 @@ impl Place {
     }
 }
 
-/// Returns the values of a series that can be drawn on both axes.
 fn drawable_values(series: &Series<'_>, along: Scale, scale: Scale) -> impl Iterator<Item = f64> {
     series
         .abscissa
@@ -282,7 +276,6 @@ fn right_edge(panels: &[Panel<'_>], format: Format) -> f64 {
     format.width - (widest + 10.0).max(format.margins.1)
 }
 
-/// Returns a reference line's label, truncated to its space.
 pub(super) fn reference_label(label: &str) -> String {
     fitted(label, TICK_SIZE, LARGEST_REFERENCE_LABEL)
 }

@@ -20,7 +20,6 @@ pub(super) fn width(text: &str, size: f64) -> f64 {
         * CHARACTER
 }
 
-/// Truncates a text to a width, with an ellipsis.
 pub(super) fn fitted(text: &str, size: f64, available: f64) -> String {
     let room = (available / (size * CHARACTER)).max(1.0) as usize;
     if text.chars().count() <= room || width(text, size) <= available {
@@ -30,7 +29,6 @@ pub(super) fn fitted(text: &str, size: f64, available: f64) -> String {
     format!("{}…", kept.trim_end())
 }
 
-/// Returns text as SVG character data, with subscripts as spans.
 pub(super) fn spans(text: &str, size: f64) -> String {
     let mut svg = String::new();
     let mut lowered = false;

@@ -82,7 +82,6 @@ pub(super) fn name_marks(canvas: &mut Canvas, marks: &[Reference], place: &Place
     }
 }
 
-/// Returns the pixels and names of the marks within the axis.
 fn marked<'a>(marks: &'a [Reference], layout: &'a Layout) -> impl Iterator<Item = (f64, &'a str)> {
     let (axis, unit) = (&layout.abscissa, layout.abscissa_quantity.scale);
     let places = marks
@@ -93,7 +92,6 @@ fn marked<'a>(marks: &'a [Reference], layout: &'a Layout) -> impl Iterator<Item 
     reached.map(|(place, name)| (axis.pixel(place), name))
 }
 
-/// Draws the labels of the shared axis below the last panel.
 pub(super) fn draw_abscissa(canvas: &mut Canvas, layout: &Layout) {
     let Some(last) = layout.places.last() else {
         return;

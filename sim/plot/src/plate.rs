@@ -112,7 +112,6 @@ pub fn plate(plate: &Plate<'_>) -> Result<String, PlotError> {
     Ok(canvas.document(&plate.title, width, top))
 }
 
-/// Draws a single frame; returns it with its height.
 fn draw(frame: &Frame<'_>) -> Result<(Canvas, f64), PlotError> {
     let (abscissa, scale) = frame.axes.scales();
     let panels = std::slice::from_ref(&frame.panel);

@@ -1,6 +1,5 @@
 //! Axis labels with SI prefixes: factor and unit for the largest magnitude on an axis.
 
-/// Label of an axis and the unit of its ticks.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Quantity {
     /// Divisor of SI values.

@@ -56,7 +56,6 @@ fn texts(document: &Document<'_>) -> Vec<String> {
     nodes.map(text_of).collect()
 }
 
-/// Returns the data of the paths with a colour.
 fn curves<'a>(document: &'a Document<'_>, colour: &str) -> Vec<&'a str> {
     document
         .descendants()

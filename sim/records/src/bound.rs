@@ -22,26 +22,20 @@ use crate::dataset::{
 /// unknown.
 const RELATIVE: (f64, f64) = (1e-9, 1e6);
 
-/// Dataset file bound to a model.
 pub struct Bound<'d> {
     pub time: Unit,
-    /// Column and unit of each input of the model.
     pub inputs: Vec<Option<(&'d Column, Unit)>>,
-    /// Priors of the inputs, if the file gives them.
     pub input_priors: Vec<InputPriors>,
     /// Column of each coordinate of the model, if [motion] gives the motion.
     pub(crate) motion: Vec<GivenColumn<'d>>,
     pub channels: Vec<Channel>,
-    /// Unit of each channel's column.
     pub channel_units: Vec<Unit>,
     pub initial: Initial,
     pub uncertain: Vec<Uncertain>,
     pub experiment: ExperimentBounds,
-    /// Units of the next experiment's columns.
     pub played: Played,
 }
 
-/// Binds a dataset file to a model.
 pub fn bound<'d>(description: &'d Description, model: &Model) -> Result<Bound<'d>, Diagnostics> {
     let mut found = Diagnostics::new(description.source.clone());
     lists(description, &mut found);
@@ -89,7 +83,6 @@ pub fn bound<'d>(description: &'d Description, model: &Model) -> Result<Bound<'d
     }
 }
 
-/// Returns the unit of the time column.
 pub fn time_unit(description: &Description) -> Result<Unit, Diagnostic> {
     unit(&description.time.column.unit, "s")
 }
@@ -153,7 +146,6 @@ fn input_priors(
         .collect()
 }
 
-/// Checks that records of both kinds and channels are given.
 fn lists(description: &Description, found: &mut Diagnostics) {
     let records = &description.records;
     for (kind, files) in [("train", &records.train), ("test", &records.test)] {

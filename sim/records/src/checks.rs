@@ -55,7 +55,6 @@ pub fn examine(dataset: &Dataset, description: &Description) -> Result<Vec<Strin
     Ok(notes)
 }
 
-/// Checks that expected delays are within the margins of windows.
 fn delays(dataset: &Dataset, description: &Description) -> Result<(), Refusal> {
     let step = typical_step(&dataset.train[0].times);
     let channels = description.channels.iter().map(|channel| channel.delay);
@@ -158,7 +157,6 @@ fn values(record: &Record, name: &str, noise: f64, column: &[f64]) -> Result<Vec
     Ok(notes)
 }
 
-/// Checks that no two channels are equal, up to the sign.
 fn different_channels(dataset: &Dataset, record: &Record) -> Result<(), Refusal> {
     for (a, first) in record.channels.iter().enumerate() {
         for (b, second) in record.channels.iter().enumerate().skip(a + 1) {

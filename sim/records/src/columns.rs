@@ -26,7 +26,6 @@ pub fn read(path: &Path, format: &Format, wanted: &[&ColumnKey]) -> Result<Table
     }
 }
 
-/// Reads the bytes of a record.
 pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, Refusal> {
     let metadata = std::fs::metadata(path)
         .map_err(|error| Refusal::file(path, format!("cannot be read: {error}")))?;

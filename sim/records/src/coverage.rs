@@ -104,7 +104,6 @@ fn whole_window(length: Number, set: &str, records: &[Record]) -> Result<(), Dia
     )))
 }
 
-/// Checks that every channel is in some window of a set, and returns notes on unused records.
 fn compared(dataset: &Dataset, set: &str, records: &[Record]) -> Result<Vec<String>, Refusal> {
     let windows = Windows::cut(records, dataset.window);
     let count = dataset.channels.len();
@@ -144,7 +143,6 @@ fn compared(dataset: &Dataset, set: &str, records: &[Record]) -> Result<Vec<Stri
         .collect())
 }
 
-/// Checks that a channel varies by more than its noise in some record of a set.
 fn moving(
     dataset: &Dataset,
     description: &Description,

@@ -50,7 +50,6 @@ pub(crate) struct TextFile<'t> {
     reader: Reader<&'t [u8]>,
     /// Names of the columns; their numbers if the file has no names.
     pub header: Vec<String>,
-    /// Number of the line with the names.
     pub first_line: u64,
     pub units: Vec<String>,
     skipped: u64,
@@ -134,7 +133,6 @@ impl<'t> TextFile<'t> {
         read.map_err(|error| Refusal::file(self.path, error.to_string()))
     }
 
-    /// Returns the next line of samples with its number.
     pub fn next(&mut self) -> Result<Option<(u64, &ByteRecord)>, Refusal> {
         let mut is_pending = std::mem::take(&mut self.is_pending);
         // Spreadsheets write lines of spaces or separators after the last sample.
@@ -227,7 +225,6 @@ fn number(path: &Path, line: u64, cell: &[u8], place: usize, decimal: u8) -> Res
     ))
 }
 
-/// Parses a number with this decimal sign.
 pub(crate) fn parsed(cell: &str, decimal: u8) -> Option<f64> {
     if decimal == b'.' {
         return cell.parse().ok();

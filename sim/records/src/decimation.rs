@@ -22,7 +22,6 @@ pub(crate) struct Decimation {
 }
 
 impl Decimation {
-    /// Keeps one of `every` samples, with or without a low-pass filter of the channels.
     pub fn new(every: usize, filter: bool) -> Self {
         Self {
             every,

@@ -44,7 +44,6 @@ pub struct Played {
     pub inputs: Vec<Option<Unit>>,
 }
 
-/// Returns the bounds in a dataset file, given the units of the input and channel columns.
 pub(crate) fn bound(
     description: &Description,
     model: &Model,

@@ -8,7 +8,6 @@ use eomgen_model_spec::table::Written;
 use crate::description::Description;
 use crate::description::records::Stretch;
 
-/// Returns the file of a record such as `train[0]`.
 pub fn numbered<'d>(description: &'d Description, record: &str) -> Result<&'d Stretch, String> {
     let records = &description.records;
     let none = || {

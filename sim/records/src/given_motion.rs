@@ -14,7 +14,6 @@ use crate::description::motion::InitialState;
 use crate::motion_rates::{GivenColumn, GivenKind};
 use crate::units::unit;
 
-/// Returns the column of each coordinate of the model; empty if no motion is given.
 pub(crate) fn columns<'d>(
     description: &'d Description,
     model: &Model,
@@ -132,7 +131,6 @@ fn initial_position(model: &Model, coordinate: &str) -> f64 {
         .unwrap_or(0.0)
 }
 
-/// Returns notes on motions that are given as speeds without an initial position.
 pub(crate) fn notes_of_speeds(
     columns: &[GivenColumn<'_>],
     description: &Description,

@@ -88,7 +88,6 @@ fn parted(there: &[String]) -> Option<String> {
     Some(format!("{name}; write separator = \"{word}\" in [format]"))
 }
 
-/// Returns the error for a record with more than [`MOST_SAMPLES`] samples.
 pub fn too_many(path: &Path) -> Refusal {
     Refusal::file(
         path,

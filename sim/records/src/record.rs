@@ -64,9 +64,7 @@ pub(crate) struct Columns<'d> {
     pub description: &'d Description,
     pub path: &'d Path,
     pub time: &'d Unit,
-    /// Column and unit of each input of the model, if any.
     pub inputs: &'d [Option<(&'d Column, Unit)>],
-    /// Column of each coordinate of the model, if the motion is given.
     pub motion: &'d [GivenColumn<'d>],
     pub channels: &'d [Unit],
     /// Known initial value of each channel, in SI.
@@ -77,7 +75,6 @@ pub(crate) struct Columns<'d> {
 }
 
 impl Columns<'_> {
-    /// Reads one record and adds to `notes`.
     pub fn record(
         &self,
         name: &str,
@@ -306,7 +303,6 @@ impl Columns<'_> {
     }
 }
 
-/// Holds inputs between samples and over missing ones.
 fn held(times: &[f64], columns: &[Vec<f64>]) -> HeldInputs {
     let mut last = vec![0.0; columns.len()];
     let mut values = Vec::with_capacity(times.len() * columns.len());

@@ -64,7 +64,6 @@ fn worked_on(model: &Model, input: usize) -> Vec<usize> {
     found
 }
 
-/// Returns true if an expression contains such a part, directly or in a definition.
 fn holds(model: &Model, expr: &Expr, is: &dyn Fn(&ExprKind) -> bool) -> bool {
     let mut found = false;
     let mut definitions: Vec<DefinitionId> = Vec::new();

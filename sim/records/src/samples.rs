@@ -80,7 +80,6 @@ pub fn typical_step(times: &[f64]) -> f64 {
     steps.get(steps.len() / 2).copied().unwrap_or(0.0)
 }
 
-/// Returns the difference of a column's largest and smallest value.
 pub(crate) fn span(column: &[f64]) -> f64 {
     let known = || column.iter().copied().filter(|v| v.is_finite());
     known().fold(f64::NEG_INFINITY, f64::max) - known().fold(f64::INFINITY, f64::min)

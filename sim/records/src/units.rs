@@ -4,7 +4,6 @@ use eomgen_model_spec::diagnostic::Diagnostic;
 use eomgen_model_spec::table::Written;
 use eomgen_model_spec::unit::Unit;
 
-/// Parses a unit and checks that it has the dimension of the expected one.
 pub fn unit(written: &Written, expected: &str) -> Result<Unit, Diagnostic> {
     let wrong = |message: String| Diagnostic::error(message);
     let text = &written.text;

@@ -75,7 +75,6 @@ impl Wrapped {
         ((expected - (self.values[k] - self.values[k - 1])) / self.period).round()
     }
 
-    /// Returns the rate up to a sample after these periods are added.
     fn rate(&self, k: usize, turns: f64) -> f64 {
         let step = self.values[k] - self.values[k - 1] + self.period * turns;
         step / (self.times[k] - self.times[k - 1])

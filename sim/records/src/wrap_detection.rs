@@ -145,9 +145,7 @@ fn common_jumps(values: &[f64]) -> Option<Vec<usize>> {
 
 /// Crossing of the range's end: one jump, or several back and forth by noise.
 struct Crossing {
-    /// Last sample before its first jump.
     before: usize,
-    /// First sample after its last jump.
     after: usize,
     direction: f64,
 }
@@ -166,7 +164,6 @@ impl Crossing {
     }
 }
 
-/// Returns the crossings of all jumps, without those that end at their start.
 fn crossings(jumps: &[usize], values: &[f64]) -> Vec<Crossing> {
     let mut found: Vec<(Crossing, f64)> = Vec::new();
     for jump in jumps {

@@ -37,7 +37,6 @@ pub(crate) struct ColumnUnit {
     pub turn: Option<f64>,
 }
 
-/// Estimated period, in the unit of the values.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Period {
     /// Exact if a single usual period is within the uncertainty.
@@ -96,7 +95,6 @@ pub(crate) fn estimate_period(values: &[f64], jumps: &[usize], unit: ColumnUnit)
     })
 }
 
-/// Returns usual periods near `seen`.
 fn usual_periods(seen: f64, unit: ColumnUnit) -> Vec<f64> {
     let order = (seen / unit.size).log10().floor() as i32;
     let decimals =
@@ -130,7 +128,6 @@ impl Steps<'_> {
         self.jumps.binary_search(&k).is_err()
     }
 
-    /// Returns the steps near `k`, without the step at `k`.
     fn near(&self, k: usize) -> impl Iterator<Item = usize> + '_ {
         let near = k.saturating_sub(BESIDE)..(k + BESIDE + 1).min(self.values.len() - 1);
         near.filter(move |other| *other != k && self.is_regular(*other))

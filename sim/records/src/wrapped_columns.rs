@@ -33,7 +33,6 @@ pub(crate) struct ReadColumn<'d> {
 }
 
 impl<'d> ReadColumn<'d> {
-    /// Creates the column of a table's entry, without a known value.
     pub fn of(table: &'static str, name: &'d str, column: &'d Column, unit: &'d Unit) -> Self {
         Self {
             table,
@@ -44,7 +43,6 @@ impl<'d> ReadColumn<'d> {
         }
     }
 
-    /// Sets its value at the start of a file, in SI.
     pub fn starting_at(self, start: Option<f64>) -> Self {
         Self { start, ..self }
     }
@@ -76,7 +74,6 @@ fn full_turn(unit: &Unit) -> Option<f64> {
     (unit.dimension == Dimension::NONE).then(|| unit.from_si(TAU))
 }
 
-/// Returns the unit of a column with values in that unit.
 pub(crate) fn own_unit(unit: &Unit) -> ColumnUnit {
     ColumnUnit {
         size: 1.0,
@@ -166,7 +163,6 @@ fn with_unit(size: f64, unit: &Unit) -> String {
     }
 }
 
-/// Returns the key to write for a period, with the uncertainty of the period.
 fn proposed_key(pattern: &WrapPattern, period: f64, place: &str) -> String {
     let key = format!("write wrap = {}{place}", pattern.written(period));
     match pattern.doubt(period) {

@@ -162,7 +162,6 @@ impl Folder {
         self.path.join(PARTS).join(format!("{chunk:04}.part"))
     }
 
-    /// Writes a temporary file in `parts` and renames it.
     fn write(&self, path: &Path, bytes: &[u8]) -> Result<(), SweepError> {
         let failed = |error: std::io::Error| SweepError::file("write", path, &error);
         let mut file = tempfile::Builder::new()

@@ -31,7 +31,6 @@ pub fn frequency(model: &Model, name: &str) -> Result<Frequency, SweepError> {
     })
 }
 
-/// Angular frequency of the forcing, as a parameter.
 #[derive(Clone, Debug)]
 pub struct Frequency {
     name: String,

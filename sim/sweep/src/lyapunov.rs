@@ -51,7 +51,6 @@ impl<'a> Lyapunov<'a> {
         Ok(Self { model, times })
     }
 
-    /// Returns the description of the method, and options in addition to the window's.
     fn method(&self) -> (&'static str, Vec<(String, String)>) {
         if self.model.piecewise_linear().is_ok() {
             return ("carried exactly", Vec::new());
@@ -145,7 +144,6 @@ fn exact(instance: &Instance<'_>, stretches: &Stretches) -> Result<Growths, Fail
     })
 }
 
-/// Returns the growth of a tangent vector by the variational equation.
 fn followed(instance: &Instance<'_>, stretches: &Stretches) -> Result<Growths, Failure> {
     let (evaluator, inputs) = (RefCell::new(instance.evaluator()?), instance.no_inputs());
     let system = Driven::new(&evaluator, &inputs)

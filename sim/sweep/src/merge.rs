@@ -63,7 +63,6 @@ pub fn merge(folder: &Folder) -> Result<Table, SweepError> {
     Ok(Table { names, columns })
 }
 
-/// Adds a gap, or extends the last one.
 fn add(missing: &mut Vec<Range<usize>>, points: Range<usize>) {
     match missing.last_mut() {
         Some(last) if last.end == points.start => last.end = points.end,

@@ -62,7 +62,6 @@ pub struct OverTime<'a> {
     model: &'a CompiledModel,
     statistic: Statistic,
     quantity: Quantity,
-    /// Name of the quantity.
     name: String,
     unit: String,
     times: Times,

@@ -20,11 +20,9 @@ const TITLE: &str = "eomgen sweep part 1";
 
 #[derive(Debug, PartialEq, Eq)]
 pub enum Found {
-    /// Complete chunk.
     Whole,
     /// Incomplete, or not a part.
     Damaged,
-    /// Part of another job.
     Other,
 }
 
@@ -44,12 +42,10 @@ pub fn encode(job: &Job, chunk: usize, numbers: &[f64]) -> String {
     text
 }
 
-/// Returns the length of the header, in bytes.
 pub fn header_length(job: &Job) -> usize {
     header(job, 0).len()
 }
 
-/// Returns the state of a file, from its length and its first bytes.
 pub fn judge(job: &Job, chunk: usize, length: u64, start: &[u8]) -> Found {
     let expected = header(job, chunk);
     let whole = expected.len() + job.chunk(chunk).len() * job.measured() * 17;

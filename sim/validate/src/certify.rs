@@ -153,7 +153,6 @@ fn nested(
     Ok(found.map_err(text)?.into())
 }
 
-/// Compares the rigid model (order 0) with this one.
 fn rigid(subject: &Subject<'_>, variant: &mut dyn Variant) -> Result<Vec<Check>, String> {
     const NAME: &str = "rigid_limit";
     if subject.model.fields.is_empty() {

@@ -19,7 +19,6 @@ pub(super) struct Slope {
     pub scale: f64,
 }
 
-/// Change of all variables over a step of length 1.
 #[derive(Clone, Debug)]
 pub(super) struct Direction {
     pub state: Vec<f64>,

@@ -95,7 +95,6 @@ fn source(model: &Model, outputs: &[Output], source: String) -> Emitted {
     }
 }
 
-/// Returns the source of a variant with kernels of its regimes, or the reason for its absence.
 fn kernels(
     model: &Model,
     order: usize,
@@ -115,7 +114,6 @@ fn kernels(
     })
 }
 
-/// Returns the exact propagator of a model, or the reason for its absence.
 fn exact(model: &Model, order: usize) -> Result<Propagator, String> {
     let orders = vec![order; model.fields.len()];
     let compiled = CompiledModel::derive_unjudged(model.clone(), Orders::Each(&orders));

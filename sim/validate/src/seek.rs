@@ -20,7 +20,6 @@ pub(super) struct Sizes<'s> {
 /// Inequality `row * change >= bound`; the change is in units of the sizes.
 type Inequality = (Vec<f64>, f64);
 
-/// Moves `sample` into `regime`; returns false if that failed.
 pub(super) fn seek(
     oracle: &Oracle,
     sample: &mut Sample,

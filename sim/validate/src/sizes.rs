@@ -52,7 +52,6 @@ pub(super) fn of_inputs(oracle: &Oracle) -> Vec<f64> {
         .collect()
 }
 
-/// Returns the geometric mean of positive numbers; 1 for an empty list.
 fn geometric_mean(sizes: impl Iterator<Item = f64>) -> f64 {
     let (sum, count) = sizes.fold((0.0, 0.0), |(sum, count), size| {
         (sum + size.ln(), count + 1.0)

@@ -57,7 +57,6 @@ impl SpringOutputs {
         }
     }
 
-    /// Returns the derivatives of T + V and of the power.
     fn observables_by(&self, name: &str, at_: &Sample) -> DMatrix<f64> {
         let [stretch, side, rate, pull] = at(at_);
         let touching = side.abs();

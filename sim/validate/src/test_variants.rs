@@ -9,18 +9,14 @@ use nalgebra::{DMatrix, DVector};
 pub(super) enum Fault {
     None,
     VelocitySign,
-    /// Missing coupling of the first row to the second acceleration.
     Coupling,
     /// Asymmetry of the mass matrix, fifty times its rounding.
     Asymmetry,
     Energy,
     Power,
-    /// Missing guard on the negative side.
     Guard,
     NotANumber,
-    /// Rate of another coordinate.
     Shifted,
-    /// Error in the evaluation.
     Refusal,
 }
 

@@ -54,7 +54,6 @@ fn spring(fault: Fault, emitted: Result<Emitted, String>) -> Certificate {
     certificate(SPRING, 0, &variants, &[], emitted)
 }
 
-/// Returns the certificate of a model with one coordinate; `make` creates the variant.
 fn single(text: &str, make: fn() -> Single) -> Certificate {
     let variants = move |_| Ok(Box::new(make()) as Box<dyn Variant>);
     certificate(text, 0, &variants, &[], Err("not emitted".into()))
@@ -360,7 +359,6 @@ fn missing_compiler_is_reported() {
     assert!(found.unwrap_err().contains("no-such-rustc"));
 }
 
-/// Returns the certificate of the correct spring with a fault in the output `wrong`.
 fn outputs_with_fault(wrong: &'static str) -> Certificate {
     let model = model(SPRING);
     let parameters = model.parameter_values().unwrap();

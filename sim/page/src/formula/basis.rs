@@ -60,7 +60,6 @@ fn at_position(derivative: u8, place: &Markup) -> Markup {
     html! { (shape("i", derivative)) (fenced("(", place, ")")) }
 }
 
-/// Returns the integral over s from 0 to 1 of a power of s times shapes.
 fn integral(power: u32, shapes: &Markup) -> Markup {
     html! {
         mrow {

@@ -94,7 +94,6 @@ fn around(value: f64) -> (f64, f64) {
     }
 }
 
-/// Formats a number with all its digits, in exponential notation if it is large or small.
 fn written(value: f64) -> String {
     let size = value.abs();
     if size == 0.0 || (1e-4..1e6).contains(&size) {

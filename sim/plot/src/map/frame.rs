@@ -23,7 +23,6 @@ const LABEL_ROOM: f64 = 46.0;
 pub enum Side {
     /// Outside of the frame, so that they cover no cell.
     Outside,
-    /// Inside the frame.
     Inside,
 }
 
@@ -47,7 +46,6 @@ struct Edge {
     ticks: Vec<Tick>,
 }
 
-/// Returns the unit of a coordinate, with an SI prefix on a linear axis.
 pub fn units(coordinate: &Coordinate<'_>) -> Units {
     let scale = coordinate.spacing.scale();
     let (name, unit) = (&coordinate.name, &coordinate.unit);

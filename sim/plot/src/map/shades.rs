@@ -150,7 +150,6 @@ impl Bar {
     }
 }
 
-/// Draws the key of the grey cells.
 fn draw_gap_key(raster: &mut Raster, typeface: &Typeface, (left, top): (f64, f64)) {
     let side = 16;
     raster.fill((left as usize, top as usize), (BAR, side), GREY);
@@ -183,7 +182,6 @@ fn around_zero(found: Range) -> Range {
     }
 }
 
-/// Returns ticks of both halves, with zero once.
 fn signed_ticks(range: Range) -> Vec<Tick> {
     let lower = Range { high: 0.0, ..range };
     let upper = Range { low: 0.0, ..range };

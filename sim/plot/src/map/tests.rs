@@ -31,7 +31,6 @@ impl Picture {
         self.bytes[first..first + 3].try_into().unwrap()
     }
 
-    /// Returns the colours along a row, without repetition.
     fn along(&self, row: usize) -> Vec<Colour> {
         let mut colours: Vec<Colour> = (0..self.width).map(|x| self.at(x, row)).collect();
         colours.dedup();

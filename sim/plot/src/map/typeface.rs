@@ -45,7 +45,6 @@ pub struct Line<'a> {
 }
 
 impl<'a> Line<'a> {
-    /// Creates a horizontal text with the size of a tick label.
     pub fn level(text: &'a str, align: Align) -> Self {
         Self {
             text,
@@ -83,7 +82,6 @@ impl Typeface {
         widths.fold(0.0, f64::max)
     }
 
-    /// Writes a line, truncated to a width with an ellipsis.
     pub fn write_within(&self, raster: &mut Raster, line: Line<'_>, at: (f64, f64), room: f64) {
         if self.width(line) <= room {
             return self.write(raster, line, at);
@@ -135,7 +133,6 @@ impl Typeface {
         }
     }
 
-    /// Returns the glyphs of a line from the origin, and its width.
     fn glyphs(&self, line: Line<'_>) -> (Vec<Glyph>, f32) {
         let font = self.font(line);
         let mut placed = Placed::default();
@@ -162,7 +159,6 @@ struct Placed {
 }
 
 impl Placed {
-    /// Appends a text in one size, `down` px below the base line.
     fn append(&mut self, font: &FontRef<'static>, text: &str, size: f64, down: f64) {
         let scaled = font.as_scaled(height(font, size));
         let mut before: Option<Glyph> = None;

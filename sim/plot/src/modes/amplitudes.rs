@@ -16,7 +16,6 @@ pub(super) const ROW: (f64, f64) = (21.0, 13.0);
 /// Amplitude below which the number is 0.
 const SHOWN: f64 = 5e-5;
 
-/// Draws bars from (left, top).
 pub(super) fn draw(canvas: &mut Canvas, bars: &[Bar], later: bool, (left, top): (f64, f64)) {
     let names = bars.iter().map(|bar| width(&bar.name, TICK_SIZE));
     let widest = names.fold(0.0, f64::max).min(130.0);

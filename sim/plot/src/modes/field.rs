@@ -23,7 +23,6 @@ struct Axes {
     up: Quantity,
 }
 
-/// Draws a field's shape in the frame at (left, top, height).
 pub(super) fn draw(canvas: &mut Canvas, shape: &Shape, later: bool, place: (f64, f64, f64)) {
     let axes = axes(shape, place);
     draw_frame(canvas, &axes, place.0);

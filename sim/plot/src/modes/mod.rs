@@ -84,7 +84,6 @@ fn check(panel: usize, mode: &Mode) -> Result<(), PlotError> {
     }
 }
 
-/// Returns the notes, with a key of the colours if both are used.
 fn notes(of: &Modes) -> impl Iterator<Item = String> {
     let later = of.modes.iter().any(has_later);
     let said =
@@ -105,7 +104,6 @@ fn has_later(mode: &Mode) -> bool {
     all().any(|[_, im]| im.abs() > OUT_OF_STEP * largest)
 }
 
-/// Draws a mode below `top` and returns the start of the next one.
 fn draw(canvas: &mut Canvas, mode: &Mode, top: f64) -> f64 {
     let later = has_later(mode);
     let bars = ROW.0 * mode.bars.len() as f64 + 8.0;

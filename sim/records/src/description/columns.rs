@@ -136,7 +136,6 @@ fn column(record: &Record<'_>, found: &mut Diagnostics) -> Option<Column> {
     })
 }
 
-/// Reads `wrap`; `None` after an error.
 fn wrap(record: &Record<'_>, found: &mut Diagnostics) -> Option<Option<Wrap>> {
     let Some(entry) = record.get("wrap") else {
         return Some(None);
@@ -244,7 +243,6 @@ pub(super) fn channel(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Chan
     })
 }
 
-/// Reads an optional prior; `None` after an error.
 fn prior(record: &Record<'_>, key: &str, found: &mut Diagnostics) -> Option<Option<Prior>> {
     let Some(entry) = record.get(key) else {
         return Some(None);

@@ -88,7 +88,6 @@ impl Description {
     }
 }
 
-/// Reads all tables of a file; `None` if a required one is missing or invalid.
 fn described(
     source: &Source,
     entries: &[Entry<'_>],
@@ -147,7 +146,6 @@ fn described(
     Some(description)
 }
 
-/// Checks that columns without names are identified by number.
 fn nameless(description: &Description, found: &mut Diagnostics) {
     if description.format.names {
         return;
@@ -175,7 +173,6 @@ fn uncertain(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<(Name, Number
     Some((entry.name.clone(), found.keep(relative.number())?))
 }
 
-/// Reads the entries of a table with `of`.
 fn each<T>(
     top: &Record<'_>,
     name: &str,

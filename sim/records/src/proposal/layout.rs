@@ -18,11 +18,9 @@ pub(crate) struct Layout {
     pub names: Vec<String>,
     /// Units of the columns; "" without a unit.
     pub units: Vec<String>,
-    /// True for columns of numbers.
     pub are_numbers: Vec<bool>,
 }
 
-/// Detects the layout of a text; `None` without two columns of numbers.
 pub(crate) fn found(text: &str) -> Option<Layout> {
     let lines: Vec<&str> = text.lines().take(LINES).collect();
     let comment = COMMENTS.into_iter().find(|sign| {
@@ -51,7 +49,6 @@ struct Block<'t> {
     lines: &'t [&'t str],
     separator: Separator,
     decimal: u8,
-    /// Index of its first line.
     first: usize,
     cells: usize,
     /// Number of numbers, weighted by their fraction of all cells; 0 without a block.
@@ -123,7 +120,6 @@ impl<'t> Block<'t> {
             .collect()
     }
 
-    /// Returns the layout from the lines above the block.
     fn layout(&self, comment: Option<char>) -> Layout {
         let unknown = vec![String::new(); self.cells];
         let row_above = |place: usize| {
@@ -208,7 +204,6 @@ impl<'t> Block<'t> {
         }
     }
 
-    /// Returns the format with this number of skipped lines; comments among them need no sign.
     fn skipping(&self, mut format: Format, lines: usize) -> Format {
         format.skip = lines;
         let sign = format.comment.map(char::from);

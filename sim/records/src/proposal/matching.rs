@@ -14,7 +14,6 @@ const UNITS: [(&str, &str); 6] = [
     ("N*m", "N m"),
 ];
 
-/// Column with its description in the file.
 #[derive(Clone, Debug)]
 pub(crate) struct FileColumn {
     /// Number of the column, from 1.
@@ -27,7 +26,6 @@ pub(crate) struct FileColumn {
 }
 
 impl FileColumn {
-    /// Creates a column from its name and its cell in the line of units.
     pub fn of(number: usize, name: &str, unit: &str) -> Self {
         let (stem, inside) = parted(name);
         let stated: Vec<String> = [unit, inside]
@@ -215,7 +213,6 @@ fn parted(name: &str) -> (&str, &str) {
     (name, "")
 }
 
-/// Returns a unit without brackets, in the notation of specifications.
 pub(crate) fn bare_unit(text: &str) -> String {
     let bare = text.trim().trim_matches(['[', ']', '(', ')']).trim();
     let known = UNITS.iter().find(|(theirs, _)| *theirs == bare);

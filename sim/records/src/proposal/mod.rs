@@ -39,7 +39,6 @@ const TIMES: [&str; 6] = ["t", "time", "zeit", "timestamp", "seconds", "sec"];
 struct Found<'m> {
     model: &'m Model,
     format: Format,
-    /// All columns of numbers.
     columns: Vec<FileColumn>,
     values: Vec<Vec<f64>>,
     /// Index of the time column, and its unit.
@@ -77,14 +76,12 @@ impl Found<'_> {
         }
     }
 
-    /// Returns true if a matched column jumps by full turns of this unit.
     fn turns_in(&self, matched: &Match, unit: &Unit) -> bool {
         let values = &self.values[matched.column];
         let pattern = wrap_pattern(self.times(), values, own_unit(unit));
         pattern.is_some_and(|pattern| pattern.is_turn)
     }
 
-    /// Returns the pattern of a matched column that looks wrapped, in the column's unit.
     fn wrap_pattern(&self, matched: &Match) -> Option<WrapPattern> {
         let (unit, _) = self.unit(matched);
         let values = &self.values[matched.column];
@@ -125,7 +122,6 @@ impl Found<'_> {
     }
 }
 
-/// Rounds down to 1, 2 or 5 times a power of ten.
 fn round_down(value: f64) -> f64 {
     let exponent = value.log10().floor() as i32;
     let part = |digit: i32, exponent: i32| -> f64 {

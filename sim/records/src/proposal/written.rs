@@ -16,7 +16,6 @@ use crate::wrap_detection::WrapPattern;
 /// Noise of a channel without visible noise, relative to its range.
 const UNSEEN: f64 = 1e-6;
 
-/// Returns the text of a dataset file; comments mark guesses.
 pub(super) fn text(found: &Found<'_>, name: &str) -> String {
     let mut text =
         "# Proposed by `eomgen dataset`. Check the entries that are marked as guessed.\n"

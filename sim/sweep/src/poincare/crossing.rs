@@ -210,7 +210,6 @@ impl Surface<'_> {
     }
 }
 
-/// System with the section as an additional switching surface, and its crossings.
 struct Watched<'c, S> {
     system: S,
     surface: Surface<'c>,

@@ -51,7 +51,6 @@ pub enum Section {
     },
 }
 
-/// Section with resolved names.
 enum Places {
     Forcing(Frequency),
     Crossing(Crossing, f64),
@@ -357,7 +356,6 @@ impl Poincare<'_> {
             .collect()
     }
 
-    /// Returns the states at these times, in s.
     fn motion(&self, instance: &Instance<'_>, times: &[f64]) -> Result<Trajectory, Failure> {
         let span = (0.0, times.last().copied().ok_or(Failure::Undefined)?);
         let (initial, quiet) = (instance.initial(), &mut |_: f64| {});

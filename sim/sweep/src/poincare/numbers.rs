@@ -7,7 +7,6 @@ use eomgen_analysis::poincare::{Section, Shape};
 /// Distance below which points are equal, relative to the extent of the motion.
 pub const EQUAL: f64 = 1e-3;
 
-/// Comparison of one coordinate of points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Part {
     /// Difference relative to the extent of the motion.
@@ -84,7 +83,6 @@ pub fn linear_parts(seen: &[[f64; 2]], resolution: f64) -> [Part; 2] {
     })
 }
 
-/// Returns minimum and maximum of both coordinates.
 pub fn extents<'s>(seen: impl Iterator<Item = &'s [f64; 2]> + Clone) -> [(f64, f64); 2] {
     [0, 1].map(|place| {
         let values = || seen.clone().map(|pair| pair[place]);

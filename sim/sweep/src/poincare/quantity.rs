@@ -3,7 +3,6 @@
 use eomgen_compiled_model::CompiledModel;
 use eomgen_model_spec::suggest::did_you_mean;
 
-/// Returns the index of a coordinate or a rate in the state.
 pub fn place(model: &CompiledModel, name: &str) -> Result<usize, String> {
     let states = model.state_names();
     let place = states.iter().position(|known| known == name);
@@ -29,7 +28,6 @@ pub struct Quantity {
 }
 
 impl Quantity {
-    /// Looks up a quantity by its name.
     pub fn of(model: &CompiledModel, name: &str) -> Result<Self, String> {
         let shown = place(model, name)?;
         let (partner, coordinate) = match name.strip_suffix("_dot") {

@@ -14,7 +14,6 @@ use crate::measure::Failure;
 /// Number of states at which the equations are compared after a turn.
 const COMPARED: usize = 8;
 
-/// Samples of a motion.
 pub struct Looks<'m> {
     /// Times of the samples, in s.
     pub times: &'m [f64],
@@ -77,7 +76,6 @@ pub fn turns_over(
     Ok(is_cyclic(instance, looks, place)? || instance.repeats_with_a_turn(place, &compared)?)
 }
 
-/// Returns true if a cyclic direction moves a coordinate.
 fn is_cyclic(instance: &Instance<'_>, looks: &Looks<'_>, place: usize) -> Result<bool, Failure> {
     let Some((t, state)) = looks.times.iter().zip(looks.states).next_back() else {
         return Ok(false);
@@ -92,7 +90,6 @@ fn is_cyclic(instance: &Instance<'_>, looks: &Looks<'_>, place: usize) -> Result
     Ok(directions.iter().any(|direction| direction[place] != 0.0))
 }
 
-/// Returns true if the equations are equal after a turn of a coordinate.
 fn repeats(instance: &Instance<'_>, looks: &Looks<'_>, place: usize) -> Result<bool, Failure> {
     let step = (looks.states.len() / COMPARED).max(1);
     let compared: Vec<(f64, &[f64])> = looks

@@ -88,7 +88,6 @@ fn calls(functions: &[EmittedFunction]) -> String {
     calls
 }
 
-/// Counts the numbers of `lines` with bits that differ from the variant's.
 fn compare(
     variant: &mut dyn Variant,
     emitted: &Emitted,

@@ -23,7 +23,6 @@ const SEED: u64 = 0x51de_5eed;
 
 pub type BorrowedOutputs<'r> = &'r mut (dyn Outputs + 'static);
 
-/// Arguments of all output functions at one state.
 struct Arguments {
     sample: Sample,
     accelerations: Vec<f64>,
@@ -82,7 +81,6 @@ fn tolerance(name: &str) -> f64 {
     if name == "f32" { SINGLE_TOLERANCE } else { 0.0 }
 }
 
-/// Returns the checks of `outputs` as skipped.
 pub fn skipped(outputs: &[String], kind: SkipKind, reason: &str) -> Vec<Check> {
     let names = names(outputs).into_iter();
     names
@@ -138,7 +136,6 @@ pub fn check(
 }
 
 struct Call {
-    /// Name of the check.
     row: &'static str,
     name: &'static str,
     /// Statements that print one line per list of numbers.
@@ -269,7 +266,6 @@ fn inputs_of(fields: &[String]) -> String {
     format!("{count}{head}\n    model::Inputs {{ {given} }}\n}}\n")
 }
 
-/// Output of the compiled program and the functions to compare it with.
 struct Reading<'l, 'r> {
     lines: std::str::Lines<'l>,
     variant: &'r mut dyn Variant,
@@ -331,7 +327,6 @@ impl Reading<'_, '_> {
         Ok(checks)
     }
 
-    /// Returns the numbers to expect from a call.
     fn expected(&mut self, name: &str, at: &Arguments) -> Result<Vec<Vec<f64>>, String> {
         let sample = &at.sample;
         let missing = || format!("the variant has no function {name}");

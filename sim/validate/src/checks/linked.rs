@@ -155,7 +155,6 @@ pub fn line(numbers: &[f64]) -> String {
     words.join(" ")
 }
 
-/// Returns a program that reads such lines and prints one line per function and state.
 fn harness_source(emitted: &Emitted, calls: &str) -> String {
     let mut inputs = String::new();
     for field in &emitted.input_fields {

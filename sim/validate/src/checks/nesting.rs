@@ -45,7 +45,6 @@ pub fn check(
     ])
 }
 
-/// Returns the index of each coordinate of the smaller variant in the larger one.
 fn kept_rows(small: &[String], large: &[String]) -> Vec<Option<usize>> {
     let place = |name| large.iter().position(|other| other == name);
     small.iter().map(place).collect()

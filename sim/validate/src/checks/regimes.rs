@@ -58,7 +58,6 @@ pub fn skipped(reason: impl Into<String>) -> Check {
     Check::not_applicable(NAME, 0.0, reason)
 }
 
-/// Returns the samples in regimes with a compiled kernel and the numbers of these regimes.
 fn in_regimes(
     variant: &mut dyn Variant,
     samples: Vec<Sample>,

@@ -209,7 +209,6 @@ impl Findings<'_> {
         Ok(())
     }
 
-    /// Compares at one state and returns the relative residual of the variant's accelerations.
     fn compare(
         &mut self,
         variant: &mut dyn Variant,
@@ -358,7 +357,6 @@ impl Guards {
     }
 }
 
-/// Returns true if the equations at a state are equal to those of another regime.
 fn is_same(oracle: &Oracle, drawn: &Drawn, regime: &Regime) -> Result<bool, OracleError> {
     let Drawn { sample, equations } = drawn;
     let (state, inputs) = (&sample.state, &sample.inputs);

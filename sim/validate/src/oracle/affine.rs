@@ -44,7 +44,6 @@ impl Affine {
         }
     }
 
-    /// Returns `self + factor * other`.
     pub fn plus(mut self, factor: f64, other: &Self) -> Self {
         self.constant = sum(self.constant, factor * other.constant);
         for (variable, coefficient) in &other.terms {
@@ -81,7 +80,6 @@ fn sum(first: f64, second: f64) -> f64 {
 pub(super) struct Forms<'o> {
     oracle: &'o Oracle,
     imposed: Imposed<'o>,
-    /// Atoms with their interval bounds.
     pub atoms: Vec<(Tree, Interval)>,
 }
 
@@ -176,7 +174,6 @@ impl<'o> Forms<'o> {
         })
     }
 
-    /// Returns the time derivative of an affine form; an atom if the form contains one.
     fn rate(&mut self, tree: &Tree, operand: &Tree) -> Affine {
         let form = self.of(operand);
         let mut rate = Affine::default();

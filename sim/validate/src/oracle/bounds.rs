@@ -8,7 +8,6 @@ use eomgen_model_spec::interval::Interval;
 use eomgen_model_spec::model::Function;
 
 impl Oracle {
-    /// Returns bounds of `tree` in a regime, by default all numbers.
     pub(super) fn bounds(&self, tree: &Tree, imposed: Imposed<'_>) -> Interval {
         let of = |tree: &Tree| self.bounds(tree, imposed);
         let within = |range: Option<(f64, f64)>| {

@@ -51,12 +51,10 @@ impl Conditioned {
         }
     }
 
-    /// Returns the value of a function with the derivative `slope` by `self`.
     fn mapped(self, value: f64, slope: f64) -> Self {
         Self::new(value, slope.abs() * self.magnitude)
     }
 
-    /// Returns the value of a function with the derivatives `slopes` by `self` and `other`.
     fn joined(self, other: Self, value: f64, slopes: (f64, f64)) -> Self {
         let own = slopes.0.abs() * self.magnitude;
         Self::new(value, own.max(slopes.1.abs() * other.magnitude))

@@ -18,7 +18,6 @@ impl DoubleDouble {
         }
     }
 
-    /// Returns the exact product of two `f64`.
     pub fn product(left: f64, right: f64) -> Self {
         let high = left * right;
         Self {

@@ -182,7 +182,6 @@ fn side_rows(forms: &mut Forms<'_>, switch: &Switch, side: Side) -> Vec<(Affine,
     }
 }
 
-/// Returns a typical size of the numbers in an interval.
 fn extent(bounds: Interval) -> f64 {
     let ends = [bounds.low, bounds.high];
     let sizes = ends.into_iter().map(f64::abs);

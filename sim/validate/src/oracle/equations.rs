@@ -176,7 +176,6 @@ impl Equations {
         Some((0..gaps.len()).map(row).collect())
     }
 
-    /// Returns the accelerations without constraints and the sizes of their terms.
     fn free_accelerations(&self) -> Option<(DVector<f64>, Vec<f64>)> {
         let (scale, mass) = self.scaled_mass();
         let factor = Cholesky::new(mass)?;
@@ -288,7 +287,6 @@ impl Equations {
         self.rows_of_degrees(accelerations, &vec![Vec::new(); self.size()])
     }
 
-    /// Returns the residuals of the constraints for given accelerations.
     fn rows_of_constraints(&self, accelerations: &[f64]) -> Vec<Residual> {
         let sizes = self
             .free_accelerations()

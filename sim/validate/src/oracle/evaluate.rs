@@ -16,11 +16,9 @@ pub(super) type Number = HyperDual<Conditioned>;
 /// Number type of an evaluation: a value with its derivatives in two directions, or the same with
 /// its time derivative.
 pub(super) trait Level: DualNum<Primitive = f64> + Copy {
-    /// Converts a moving quantity.
     fn of(motion: Motion) -> Self;
     fn dot(pass: &Pass<'_>, tree: &Tree, frame: &Frame<'_>) -> Self;
     fn state(pass: &Pass<'_>, index: usize) -> Self;
-    /// Returns the cache of a definition's value.
     fn kept<'p>(pass: &'p Pass<'_>, definition: usize) -> Option<&'p Cell<Option<Self>>>;
     /// Returns integral `index` with the derivatives that are cached for all rows, if they are.
     fn integral(pass: &Pass<'_>, index: usize) -> Option<Self>;
@@ -75,7 +73,6 @@ impl Level for Dual<Number> {
     }
 }
 
-/// Place or index of the enclosing sums during an evaluation.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Frame<'f> {
     Outside,
@@ -84,10 +81,8 @@ pub(super) enum Frame<'f> {
         node: usize,
         outer: &'f Frame<'f>,
     },
-    /// At a mode of a field's sum.
     Mode {
         field: usize,
-        /// Index of the mode, from 0.
         mode: usize,
         outer: &'f Frame<'f>,
     },
@@ -130,12 +125,10 @@ impl<'s> Pass<'s> {
         }
     }
 
-    /// Returns the value of `tree` outside of all sums.
     pub fn value(&self, tree: &Tree) -> Number {
         self.evaluate(tree, &Frame::Outside)
     }
 
-    /// Returns the real value of `tree` at one mode of a field's sum.
     pub fn value_at_mode(&self, tree: &Tree, field: usize, mode: usize) -> f64 {
         let frame = Frame::Mode {
             field,

@@ -12,7 +12,6 @@ pub(super) fn binary(operator: BinaryOperator, left: Tree, right: Tree) -> Tree 
     }
 }
 
-/// Replaces an operation on constants by its value.
 pub(super) fn folded(tree: Tree) -> Tree {
     let numbers: Option<Vec<f64>> = tree
         .children()

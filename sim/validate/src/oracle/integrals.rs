@@ -31,7 +31,6 @@ struct Rows {
     along_motion_by_row: Entries,
 }
 
-/// Values with their magnitudes, one per place or row.
 #[derive(Clone, Debug)]
 struct Entries {
     value: DVector<f64>,
@@ -199,7 +198,6 @@ impl Scene<'_> {
         addends.iter().map(|addend| addend.re).sum()
     }
 
-    /// Returns weight times integrand at each place.
     fn addends(&self, integral: &Integral, pass: &Pass<'_>) -> Vec<Number> {
         let weights = self
             .system

@@ -11,13 +11,11 @@ use super::system::{Integral, System};
 use super::tree::{Leaf, Tree};
 use eomgen_model_spec::model::{Expr, ExprKind, Field, Model};
 
-/// Converter of the expressions of one variant.
 pub(super) struct Lowering<'m> {
     pub system: System,
     parameters: &'m [f64],
     /// Index of each input's rate among the inputs, if given.
     input_rates: Vec<Option<usize>>,
-    /// Indices of the fields' quadrature place sets.
     quadratures: Vec<usize>,
     /// Name of the current expression, for errors.
     subject: String,
@@ -74,7 +72,6 @@ impl<'m> Lowering<'m> {
         Ok(lowering)
     }
 
-    /// Converts an expression outside of all sums; `name` is its name in errors.
     pub fn term(&mut self, name: &str, expression: &Expr) -> Result<Tree, OracleError> {
         name.clone_into(&mut self.subject);
         let tree = self.lower(expression, None)?;

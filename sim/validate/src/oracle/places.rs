@@ -17,7 +17,6 @@ use nalgebra::DMatrix;
 /// Number of derivative orders of a mode shape, from 0.
 const DERIVATIVES: usize = 5;
 
-/// Field with its domain and mode shapes.
 #[derive(Clone, Debug)]
 pub(super) struct Domain {
     pub from: f64,
@@ -36,7 +35,6 @@ enum Shapes {
 }
 
 impl Domain {
-    /// Creates the domain `from..to` with the first `order` shapes of `basis`.
     pub fn new(from: f64, to: f64, basis: &Basis, offset: usize, order: usize) -> Self {
         let numbers = 1..=order;
         let shapes = match basis {
@@ -80,7 +78,6 @@ impl Domain {
     }
 }
 
-/// Positions in a field's domain with weights.
 #[derive(Clone, Debug)]
 pub(super) struct PlaceSet {
     pub field: usize,

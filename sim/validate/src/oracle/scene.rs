@@ -16,9 +16,7 @@ pub(super) enum Direction {
     Still,
     /// Along the motion: coordinates change with the rates, rates with the accelerations.
     Time,
-    /// Generalised coordinate with constant rate.
     Position(usize),
-    /// Rate of a generalised coordinate.
     Rate(usize),
     State(usize),
     Input(usize),
@@ -26,7 +24,6 @@ pub(super) enum Direction {
     Clock,
     /// Field value at the current place, with constant rate.
     LeafPosition(Leaf),
-    /// Rate of a field value at the current place.
     LeafRate(Leaf),
 }
 
@@ -46,7 +43,6 @@ impl Motion {
         }
     }
 
-    /// Creates a value with its rate and the derivatives of both in two directions.
     pub fn new((value, rate): (f64, f64), [first, second]: [(f64, f64); 2]) -> Self {
         let number = |re: f64, first: f64, second: f64| {
             Number::new(re.into(), first.into(), second.into(), 0.0.into())
@@ -151,7 +147,6 @@ impl<'s> Scene<'s> {
         Motion::new((at(self.position), at(self.rate)), [first, second])
     }
 
-    /// Returns the derivatives of a coordinate and its rate in a direction.
     fn seed(&self, index: usize, direction: Direction) -> (f64, f64) {
         let at = |values: &[f64]| values.get(index).copied().unwrap_or(f64::NAN);
         match direction {
@@ -243,7 +238,6 @@ impl<'s> Scene<'s> {
         }
     }
 
-    /// Returns the shape of `mode` at place `node` of `set`.
     pub fn shape(&self, leaf: Leaf, set: usize, node: usize, mode: usize) -> f64 {
         self.system
             .places

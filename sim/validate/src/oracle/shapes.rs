@@ -28,7 +28,6 @@ pub(super) struct Shape {
     delta: f64,
     /// z = beta_r l.
     root: f64,
-    /// Factors of the four solutions.
     factors: Vector4<f64>,
 }
 
@@ -109,7 +108,6 @@ impl Shape {
     }
 }
 
-/// Returns the number of rigid-body motions that the ends allow.
 fn rigid_motions(from: End, to: End) -> u8 {
     let translates = |end| matches!(end, End::Free | End::Guided);
     let rotates = |end| matches!(end, End::Free | End::Pinned);

@@ -37,7 +37,6 @@ impl SplineShape {
         }
     }
 
-    /// Returns the derivative by s of order `derivative`.
     pub fn derivative(&self, derivative: u8, s: f64) -> f64 {
         let inner = self.knots.iter().skip(1).take(self.knots.len() - 2);
         let piece = inner.take_while(|knot| **knot < s).count();

@@ -8,14 +8,11 @@ use super::tree::{Dependence, Leaf, Tree};
 pub(super) struct System {
     /// Number of generalised coordinates, with modes.
     pub size: usize,
-    /// Fields in the order of the model.
     pub domains: Vec<Domain>,
     pub places: Vec<PlaceSet>,
-    /// Definitions in the order of the model.
     pub definitions: Vec<Tree>,
     /// Addends of first-order states' rates, in the order of the model.
     pub state_rates: Vec<Vec<Tree>>,
-    /// Expressions of constraints, in the order of the model.
     pub residuals: Vec<Tree>,
     pub dependences: Vec<Dependence>,
     /// Integrals with cached derivatives.

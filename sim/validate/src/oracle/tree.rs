@@ -5,7 +5,6 @@ use eomgen_model_spec::ast::BinaryOperator;
 use eomgen_model_spec::model::Function;
 use std::collections::BTreeSet;
 
-/// Expression of the state, the time and the inputs.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Tree {
     /// Literal, parameter, or constant expression of these.
@@ -21,7 +20,6 @@ pub(super) enum Tree {
     /// Input with a given rate.
     PrescribedInput {
         input: usize,
-        /// Index of the input that is its rate.
         rate: usize,
         /// Index of the input that is its second rate, if given.
         second: Option<usize>,
@@ -30,9 +28,7 @@ pub(super) enum Tree {
     Position {
         set: usize,
     },
-    /// Coordinate other than a mode, by its index in the state.
     Coordinate(usize),
-    /// First-order state, by its index among these.
     State(usize),
     StateRate(usize),
     /// Multiplier of a constraint.
@@ -60,7 +56,6 @@ pub(super) enum Tree {
         /// Index of its cached derivatives in `integrals`, if any.
         integral: Option<usize>,
     },
-    /// Sum over a field's modes.
     Sum {
         field: usize,
         body: Box<Tree>,
@@ -71,7 +66,6 @@ pub(super) enum Tree {
     Call(Function, Vec<Tree>),
 }
 
-/// Derivative of a field by its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Leaf {
     pub field: usize,
@@ -92,13 +86,11 @@ pub(super) struct Dependence {
     pub indices: BTreeSet<usize>,
     /// True for the position of the enclosing place.
     pub position: bool,
-    /// True for explicit time.
     pub time: bool,
     /// True for an input without a given rate.
     pub input: bool,
     /// True for an input with a given rate, or such a rate.
     pub prescribed: bool,
-    /// True if the expression contains a time derivative.
     pub dot: bool,
     /// True if the expression contains a sum over places or modes, directly or in a definition.
     pub nested: bool,

@@ -31,7 +31,6 @@ use rows::Rows;
 const STATES: (usize, usize) = (9, 4);
 const SEED: u64 = 0x4e0b_1a75;
 
-/// Runs the checks of all requested outputs.
 pub(crate) fn check(
     judged: &Judged<'_>,
     variant: &mut dyn Variant,

@@ -34,7 +34,6 @@ pub(super) fn worst(deviations: impl IntoIterator<Item = f64>) -> f64 {
     deviations.into_iter().fold(0.0, f64::max)
 }
 
-/// Largest deviation of each check so far, in the order of the first occurrences.
 #[derive(Default)]
 pub(super) struct Rows {
     found: Vec<(&'static str, f64, Worst)>,
