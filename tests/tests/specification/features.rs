@@ -100,7 +100,7 @@ features! {
 fn folders() -> [PathBuf; 3] {
     let tests = Path::new(env!("CARGO_MANIFEST_DIR"));
     [
-        tests.join("tests/features"),
+        tests.join("features"),
         tests.join("../examples/constrained"),
         tests.join("../examples/impacts"),
     ]
