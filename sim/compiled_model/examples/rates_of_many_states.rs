@@ -1,9 +1,9 @@
-//! How long the machine code itself takes for the rates of many states: what
-//! `python/benches/many_states.py` compares one call from Python with.
+//! Measures the time of the machine code for the rates of many states, for comparison with one
+//! call from Python in `python/benches/many_states.py`.
 //!
-//! Arguments: a specification, a file of states (f64 in the machine's order, a row for each state),
-//! how often. Writes the rates to standard output as they were read, and the least time of a pass over all
-//! states, in ns per state, to standard error.
+//! Arguments: a specification, a file of states (f64 in native byte order, one row per state), and
+//! the number of passes. Writes the rates to standard output in the same format, and the shortest
+//! time of a pass, in ns per state, to standard error.
 
 use std::io::Write;
 use std::time::Instant;

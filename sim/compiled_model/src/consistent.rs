@@ -1,6 +1,5 @@
-//! A model on its constraints: initial states moved there, what is said of constraints that cannot
-//! hold, and the model as solvers see it, whose steps are kept there. How a state is corrected is the
-//! business of `projection`.
+//! Initial states on the constraints, errors of constraints that cannot hold, and the system whose
+//! steps are projected onto the constraints.
 
 use std::cell::RefCell;
 
@@ -18,26 +17,29 @@ use crate::instance::Instance;
 use crate::projection::{LARGE_RATE, Moved, Projection};
 use crate::singular::SingularityWatch;
 
-/// Corrections of an initial state before the search is given up.
+/// Maximum number of corrections of an initial state.
 const MOST_AT_THE_START: usize = 100;
 
-/// A derivative is a combination of others if this part of it is left beside them.
+/// Derivatives are dependent if less than this fraction of one remains after the others are
+/// eliminated.
 const INDEPENDENT: f64 = 1e-9;
 
-/// A constraint is named with others if its part in their combination is no less beside the largest.
+/// Smallest coefficient of a constraint in a dependent combination, relative to the largest, at
+/// which an error names it.
 const TAKES_PART: f64 = 1e-6;
 
-/// A constraint that follows from others contradicts them if so much of the residuals is left when
-/// theirs are taken away; less may be their curvature where a motion does not begin on them.
+/// Dependent constraints are contradictory if their combined residual exceeds this fraction of its
+/// largest term. A smaller residual may be curvature, if the initial state does not satisfy the
+/// constraints.
 const CONTRADICTION: f64 = 0.1;
 
 impl Instance<'_> {
-    /// The model as the general solver sees it, with an evaluator of it: states stay on its
-    /// constraints, bodies hit at its impacts, and surfaces such as those of dry friction hold it. A
-    /// motion of its own, as contacts and what holds are remembered.
+    /// Returns the solvers' system of this instance: projected onto the constraints, with impacts
+    /// and with sticking. It keeps the state of contacts and sticking, so use it for one motion
+    /// only.
     ///
     /// # Errors
-    /// As [`Instance::evaluator`].
+    /// Same as [`Instance::evaluator`].
     pub fn driven<'d>(
         &self,
         evaluator: &'d RefCell<Evaluator>,
@@ -51,10 +53,10 @@ impl Instance<'_> {
         Ok(driven.with_impacts(impacts).with_sliding(self.sided()?))
     }
 
-    /// What keeps states on the constraints, if there are any.
+    /// Returns the projection onto the constraints; `None` without constraints.
     ///
     /// # Errors
-    /// As [`Instance::evaluator`].
+    /// Same as [`Instance::evaluator`].
     fn projection(&self) -> Result<Option<Projection>, Error> {
         if self.model().model().constraints.is_empty() {
             return Ok(None);
@@ -75,12 +77,12 @@ impl Instance<'_> {
         }))
     }
 
-    /// The state nearest to this one, by the kinetic energy, in which the constraints hold, and what
-    /// that moved.
+    /// Returns the state nearest to `state` in the norm of the kinetic energy at which the
+    /// constraints hold, and the changed values.
     ///
     /// # Errors
-    /// [`Error::Request`] that names a constraint that follows from others there, or those that no
-    /// state near this one keeps.
+    /// [`Error::Request`] if a constraint depends on others at that state, or if no state near it
+    /// satisfies the constraints; the message names them.
     pub fn consistent(
         &self,
         state: &[f64],
@@ -90,11 +92,11 @@ impl Instance<'_> {
         self.consistent_start(state, (t, t), inputs)
     }
 
-    /// The same for a motion over a time span, s: a distance of an impact that is below zero by the
-    /// rounding of what it covers then is brought to zero.
+    /// Returns a consistent state for a motion over a time span, s. A negative distance of an
+    /// impact within the rounding of that time span is set to zero.
     ///
     /// # Errors
-    /// As [`Instance::consistent`].
+    /// Same as [`Instance::consistent`].
     pub(crate) fn consistent_start(
         &self,
         state: &[f64],
@@ -109,7 +111,7 @@ impl Instance<'_> {
                 self.bring_above_zero((t, until), &mut found, inputs)?;
                 return Ok((found, Vec::new()));
             }
-            // Of constraints that follow from others wherever the machine is no pivot is positive.
+            // If constraints are dependent at every state, no pivot is positive.
             Err(error) => {
                 let reason = self.dependent(t, state, inputs)?;
                 return Err(reason.map_or(error, Error::Request));
@@ -128,7 +130,7 @@ impl Instance<'_> {
             };
             return Err(error);
         }
-        // Rounding may have let a correction succeed that rests on a constraint which follows from others.
+        // Rounding can make a correction succeed although constraints are dependent.
         if let Some(reason) = self.dependent(t, &found, inputs)? {
             return Err(Error::Request(reason));
         }
@@ -151,10 +153,10 @@ impl Instance<'_> {
         Ok((found.clone(), moved.collect()))
     }
 
-    /// Moves a state so that no distance of an impact is below zero by rounding.
+    /// Moves a state so that no distance of an impact is negative by rounding.
     ///
     /// # Errors
-    /// [`Error::Request`] that names an impact whose distance is below zero by more.
+    /// [`Error::Request`] with the name of an impact whose distance is more negative.
     fn bring_above_zero(
         &self,
         (t, until): (f64, f64),
@@ -179,14 +181,14 @@ impl Instance<'_> {
         below.map_err(|(place, distance)| {
             let impact = &impacts[place];
             Error::Request(format!(
-                "the impact `{}` begins at {distance:.6e} {}, below zero: give an initial state in which \
-                 nothing overlaps",
+                "the distance of the impact `{}` is negative at the initial state ({distance:.6e} {}): choose an \
+                 initial state in which no bodies overlap",
                 impact.name, impact.unit
             ))
         })
     }
 
-    /// The largest magnitude of the coordinates and parameters of a dimension, SI.
+    /// Returns the largest magnitude of the coordinates and parameters of a dimension, SI.
     fn largest_in(&self, dimension: Dimension, state: &[f64]) -> f64 {
         let model = self.model().model();
         let coordinates = model.coordinates.iter().zip(state);
@@ -198,8 +200,8 @@ impl Instance<'_> {
         all.fold(0.0, |most, value| value.abs().max(most))
     }
 
-    /// Which constraint has no derivative of its own, if one has none, and whether it contradicts
-    /// those that it follows.
+    /// Returns an error text if a constraint has a zero, infinite or dependent derivative at a
+    /// state, and whether it contradicts the others.
     fn dependent(&self, t: f64, state: &[f64], inputs: &[f64]) -> Result<Option<String>, Error> {
         let point = Point { t, state, inputs };
         let Some(mut rows) = self.constraint_rows() else {
@@ -210,15 +212,15 @@ impl Instance<'_> {
         let lengths: Vec<f64> = all.iter().map(|row| norm(row)).collect();
         if let Some(place) = lengths.iter().position(|length| *length == 0.0) {
             return Ok(Some(format!(
-                "the constraint `{}` holds nothing at the initial state: its derivative is zero there; start \
-                 elsewhere (--state), or write it so that it crosses zero, as x instead of x^2",
+                "the constraint `{}` has no effect at the initial state, because its derivative is zero; start \
+                 at another state (--state), or write it with a simple zero, such as x instead of x^2",
                 constraints[place].name
             )));
         }
         if let Some(place) = lengths.iter().position(|length| !length.is_finite()) {
             return Ok(Some(format!(
-                "the derivative of the constraint `{}` is not finite at the initial state, as that of \
-                 sqrt(x) at x = 0; start elsewhere (--state), or write the constraint without it",
+                "the derivative of the constraint `{}` is not finite at the initial state, as for \
+                 sqrt(x) at x = 0; start at another state (--state), or rewrite the constraint",
                 constraints[place].name
             )));
         }
@@ -248,7 +250,7 @@ impl Instance<'_> {
         Ok(Some(depends.reason()))
     }
 
-    /// Which constraints are not kept.
+    /// Returns the error that names the constraints with a residual.
     fn not_kept(&self, t: f64, state: &[f64], inputs: &[f64]) -> Error {
         let constraints = &self.model().model().constraints;
         let rows = self.constraint_rows();
@@ -260,31 +262,32 @@ impl Instance<'_> {
             .filter(|(_, residual)| residual.abs() > f64::EPSILON)
             .map(|(constraint, residual)| {
                 format!(
-                    "`{}` stays at {residual:.3e} {}",
+                    "the residual of `{}` stays at {residual:.3e} {}",
                     constraint.name, constraint.unit
                 )
             })
             .collect();
         Error::Request(format!(
-            "no state near the initial one keeps the constraints: {}; one of them may never be zero, or \
-             contradict another; check them, or start nearer (--state)",
+            "no state near the initial state satisfies the constraints: {}; a constraint may have no \
+             solution or contradict another; check them, or start nearer to a solution (--state)",
             left.join(", ")
         ))
     }
 }
 
-/// A constraint whose derivative is a combination of the derivatives of others.
+/// A constraint whose derivative is a linear combination of the derivatives of others.
 struct Depends<'a> {
     constraint: &'a Constraint,
     on: Vec<&'a Constraint>,
-    /// Its residual less the same combination of theirs.
+    /// Residual minus the same combination of the other residuals.
     apart: f64,
-    /// The largest residual of them all, as large as it is in the combination.
+    /// Largest term of that combination.
     scale: f64,
 }
 
 impl Depends<'_> {
-    /// A contradiction if the residuals do not combine to nothing as the derivatives do.
+    /// Returns the error text: a contradiction if the residuals do not satisfy the combination,
+    /// otherwise a singular position.
     fn reason(&self) -> String {
         let names: Vec<String> = self.on.iter().map(|on| format!("`{}`", on.name)).collect();
         let (name, others) = (&self.constraint.name, names.join(", "));
@@ -292,15 +295,15 @@ impl Depends<'_> {
         let of_one_kind = self.on.iter().all(|on| on.is_nonholonomic == kind);
         if of_one_kind && self.apart.abs() > CONTRADICTION * self.scale {
             return format!(
-                "the constraint `{name}` contradicts {others} at the initial state: it holds what they \
-                 hold, and asks for {:.3e} {} more; leave one of them out, or correct it",
+                "the constraint `{name}` contradicts {others} at the initial state: they restrict the \
+                 same motion, and a residual of {:.3e} {} remains; remove or correct one of them",
                 self.apart.abs(),
                 self.constraint.unit
             );
         }
         format!(
-            "the initial state is a singular position: the derivative of the constraint `{name}` is a \
-             combination of the derivatives of {others} there; start elsewhere (--state), or leave one of them out if they depend on \
+            "the initial state is a singular position: the derivative of the constraint `{name}` is a linear \
+             combination of the derivatives of {others}; start at another state (--state), or remove one of them if they depend on \
              each other everywhere"
         )
     }

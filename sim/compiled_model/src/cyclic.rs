@@ -1,9 +1,10 @@
-//! Motions that no rate of the machine depends on: where it turns or travels steadily.
+//! Cyclic directions: motions on which no rate depends, along which a machine can turn or travel
+//! steadily.
 //!
-//! Along a cyclic direction n of the coordinates, q + s n, all accelerations stay as they are, whatever s
-//! is. A coordinate that the equations do not hold is one; two wheels that roll on each other have one
-//! together. Candidates are the null space of the accelerations' Jacobian by the coordinates; each is
-//! confirmed by finite displacements.
+//! A displacement q + s n along a cyclic direction n changes no acceleration, for any s. A
+//! coordinate that the equations do not contain is a cyclic direction; two wheels that roll on
+//! each other share one. The candidates span the null space of the derivatives of the
+//! accelerations with respect to the coordinates. Finite displacements confirm each candidate.
 
 use eomgen_codegen::independence::vectors::largest;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
@@ -14,21 +15,21 @@ use crate::instance::Instance;
 use crate::jacobians::Jacobian;
 use crate::operating_point::OperatingPoint;
 
-/// A pivot of the elimination is 0 if it is this small beside the first.
+/// Pivots below this fraction of the largest entry count as 0.
 const RANK: f64 = 1e-10;
 
-/// A rate is unchanged if it differs by no more than this part of the terms it is the sum of.
+/// Largest change of a rate that counts as none, relative to its largest term.
 const UNCHANGED: f64 = 1e-9;
 
-/// Displacements along a candidate, in parts of the scale of its coordinate.
+/// Displacements along a candidate, relative to the scale of its coordinate.
 const DISPLACEMENTS: [f64; 3] = [0.37, 1.0, -2.6];
 
 impl Instance<'_> {
-    /// The independent cyclic directions at a state: for each coordinate and mode how fast it moves beside
-    /// the one that moves with 1, SI.
+    /// Finds the independent cyclic directions at a state. Each direction has one entry per
+    /// coordinate and mode, SI, relative to an entry of 1.
     ///
     /// # Errors
-    /// As [`Instance::jacobian_evaluator`].
+    /// Same as [`Instance::jacobian_evaluator`].
     pub fn cyclic_directions(&self, at: &OperatingPoint) -> Result<Vec<Vec<f64>>, Error> {
         let degrees = self.model().program().degrees_of_freedom();
         let scales = self.natural_scales()?;
@@ -49,14 +50,15 @@ impl Instance<'_> {
         {
             return Ok(Vec::new());
         }
-        // Each rate's own size, without what a displacement adds.
+        // Size of each rate without the terms that a displacement adds.
         let sizes: Vec<f64> = (0..rates.len())
             .map(|r| {
                 let terms = row(r)
                     .iter()
                     .zip(&at.state)
                     .map(|(entry, value)| (entry * value).abs());
-                // Where the machine is symmetrical these may all vanish; what a displacement changes does not.
+                // In symmetric positions all terms may vanish; the derivatives times the scales do
+                // not.
                 let scaled = rows[r].iter().zip(&scales);
                 let scaled = scaled.map(|(entry, scale)| (entry * scale.unwrap_or(0.0)).abs());
                 terms.chain(scaled).fold(rates[r].abs(), f64::max)
@@ -91,10 +93,10 @@ impl Instance<'_> {
         Ok(found)
     }
 
-    /// Whether a full turn of a coordinate changes no rate at these states.
+    /// Returns true if a full turn of a coordinate changes no rate at these states.
     ///
     /// # Errors
-    /// As [`Instance::evaluator`].
+    /// Same as [`Instance::evaluator`].
     pub fn repeats_with_a_turn(
         &self,
         coordinate: usize,
@@ -123,7 +125,7 @@ impl Instance<'_> {
         }))
     }
 
-    /// Whether a coordinate is a pure number, as angles are.
+    /// Returns true if a coordinate is dimensionless, as angles are.
     pub fn is_angle(&self, coordinate: usize) -> bool {
         let mut units = self.model().model().coordinates.iter();
         units
@@ -131,7 +133,7 @@ impl Instance<'_> {
             .is_some_and(|known| known.unit.dimension.is_none())
     }
 
-    /// Accelerations, then the rates of states of first order.
+    /// Returns the accelerations and the rates of first-order states.
     fn accelerations(&self, evaluator: &mut Evaluator, at: &OperatingPoint) -> Vec<f64> {
         let mut rates = vec![0.0; at.state.len()];
         let OperatingPoint { t, state, inputs } = at;
@@ -146,11 +148,11 @@ impl Instance<'_> {
         rates.split_off(self.model().program().degrees_of_freedom())
     }
 
-    /// How far coordinates and modes are worth moving, whatever their origin: the width of the declared
-    /// range, 1 of an angle or another pure number, SI. None where the specification does not say.
+    /// Returns scales of displacements for coordinates and modes, SI: the width of the declared
+    /// range, 1 for a dimensionless quantity, otherwise `None`.
     ///
     /// # Errors
-    /// Parameters that are not admissible.
+    /// Invalid parameter values.
     pub(crate) fn natural_scales(&self) -> Result<Vec<Option<f64>>, Error> {
         let model = self.model().model();
         let ranges = model
@@ -172,8 +174,8 @@ impl Instance<'_> {
     }
 }
 
-/// A basis of the null space of a matrix given by rows, each vector with 1 in a place of its own. Units of
-/// rows and columns do not matter.
+/// Returns a basis of the null space of a matrix given by rows; each vector has a 1 at an index
+/// where the others have 0. Rows and columns may have different units.
 fn null_directions(rows: &[Vec<f64>], columns: usize) -> Vec<Vec<f64>> {
     let row_sizes = rows.iter().map(largest);
     let mut matrix: Vec<Vec<f64>> = rows
@@ -235,7 +237,7 @@ fn null_directions(rows: &[Vec<f64>], columns: usize) -> Vec<Vec<f64>> {
 mod tests {
     use crate::{CompiledModel, Orders};
 
-    /// Two wheels on a soft contact, which turn together, a rack that nothing holds, and a pendulum.
+    /// Two wheels in elastic contact, which turn together, an unrestrained rack and a pendulum.
     const MACHINE: &str = r#"
 [model]
 name = "machine"
@@ -261,7 +263,7 @@ weight = "-w*cos(theta)"
 "#;
 
     #[test]
-    fn wheels_turn_together_and_a_rack_travels() {
+    fn coupled_wheels_and_free_rack_are_cyclic_directions() {
         let model = CompiledModel::of_text("machine.toml", MACHINE, Orders::Declared);
         let model = model.expect("a model");
         let run = model.at_declared().expect("an instance");

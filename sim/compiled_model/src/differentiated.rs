@@ -1,4 +1,4 @@
-//! A model's program with its Jacobians: derived when they are first asked for, once.
+//! The program of a model with its Jacobians, derived once at the first use.
 
 use std::sync::{Arc, OnceLock};
 
@@ -9,7 +9,7 @@ use eomgen_codegen::variant::Variant;
 use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_model_spec::model::Model;
 
-/// A model's program with its Jacobians, and its machine code once that is asked for.
+/// The program of a model with its Jacobians; its machine code is compiled at the first use.
 pub(crate) struct Differentiated {
     pub(crate) program: Program,
     code: OnceLock<Option<Arc<dyn MachineCode>>>,
@@ -25,7 +25,7 @@ impl Differentiated {
         })
     }
 
-    /// Compiles the program, once.
+    /// Returns the machine code of the program, compiled at the first call.
     pub(crate) fn code(&self) -> Option<&Arc<dyn MachineCode>> {
         let code = self.code.get_or_init(|| eomgen_jit::code(&self.program));
         code.as_ref()

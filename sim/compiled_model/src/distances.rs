@@ -1,5 +1,5 @@
-//! The distances of a model's impacts along a motion: at no sample may bodies overlap by more than
-//! errors of the solver explain.
+//! Check of a motion for overlapping bodies: a negative distance of an impact beyond the solver's
+//! errors.
 
 use eomgen_codegen::program::Op;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
@@ -13,18 +13,18 @@ use crate::motion::Motion;
 /// A sample at which bodies overlap.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Overlap {
-    /// The name of the impact.
+    /// Name of the impact.
     pub impact: String,
-    /// When, s.
+    /// Time, s.
     pub t: f64,
-    /// The distance, less than 0, SI.
+    /// Distance, negative, SI.
     pub distance: f64,
-    /// The distance that errors of the solver explain, SI.
+    /// Distance that the solver's errors can explain, SI.
     pub tolerance: f64,
 }
 
 impl Overlap {
-    /// A sentence on it.
+    /// Returns a warning with the impact, its distance and the time.
     pub fn warning(&self) -> String {
         let Self {
             impact,
@@ -33,18 +33,18 @@ impl Overlap {
             tolerance,
         } = self;
         format!(
-            "the distance of the impact `{impact}` is {distance:.4e} at t = {t} s, below -{tolerance:.1e}, \
-             which errors of the solver explain: bodies pass through each other"
+            "bodies overlap at the impact `{impact}`: its distance is {distance:.4e} (SI) at t = {t} s, more than \
+             the solver's error of {tolerance:.1e} can explain; reduce the tolerance or the longest step"
         )
     }
 }
 
 impl Instance<'_> {
-    /// The first sample at which bodies overlap by more than errors explain, solved with this
-    /// relative tolerance.
+    /// Returns the first sample at which bodies overlap by more than the solver's errors at this
+    /// relative tolerance can explain.
     ///
     /// # Errors
-    /// As [`Instance::evaluator`].
+    /// Same as [`Instance::evaluator`].
     pub fn first_overlap_of(
         &self,
         motion: &Motion,
@@ -87,7 +87,7 @@ impl Instance<'_> {
         Ok(None)
     }
 
-    /// The first impact whose distance depends on inputs.
+    /// Returns the name of the first impact whose distance depends on inputs.
     pub(crate) fn driven_contact(&self) -> Option<&str> {
         let program = self.model().program();
         let is_driven = |op: &Op| matches!(op, Op::Input(_));

@@ -1,5 +1,5 @@
-//! A derived model seen by the solvers: the evaluator of its program and the inputs that drive
-//! it behind their trait.
+//! The solvers' [`System`] for a compiled model: the evaluator of its program and the inputs that
+//! drive it.
 
 use std::borrow::Borrow;
 use std::cell::{RefCell, RefMut};
@@ -15,8 +15,8 @@ use crate::jacobians::{Jacobian, JacobianEvaluator};
 use crate::projection::Projection;
 use crate::sliding::{Sided, Sliding};
 
-/// A derived model driven by inputs, as the solvers see it; it owns or borrows both. The mass
-/// matrix has positive pivots at the evaluator's parameters.
+/// A compiled model with its inputs, as the solvers' system; it owns or borrows both. The mass
+/// matrix must be positive definite at the evaluator's parameters.
 pub struct Driven<E, I> {
     evaluator: E,
     inputs: I,
@@ -30,7 +30,7 @@ pub struct Driven<E, I> {
 }
 
 impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
-    /// Takes an evaluator, prepared with the parameters to be used, and its inputs.
+    /// Combines an evaluator, prepared at its parameters, with inputs.
     pub fn new(evaluator: E, inputs: I) -> Self {
         Self {
             evaluator,
@@ -44,25 +44,24 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
         }
     }
 
-    /// The same with the typical sizes of its states, as [`crate::CompiledModel::typical_sizes`] has them.
+    /// Sets the typical sizes of the states; see [`crate::CompiledModel::typical_sizes`].
     pub fn with_typical_sizes(mut self, sizes: &[f64]) -> Self {
         self.typical_sizes = sizes.to_vec();
         self
     }
 
-    /// The same with an auditor of its energy.
     pub(crate) fn with_auditor(mut self, auditor: Option<Auditor>) -> Self {
         self.auditor = auditor.map(RefCell::new);
         self
     }
 
-    /// The energy balance of the motion so far, if it was audited.
+    /// Returns the energy balance up to now, if the motion is audited.
     pub(crate) fn audit(&self) -> Option<Audit> {
         let auditor = self.auditor.as_ref()?;
         Some(auditor.borrow().audit().clone())
     }
 
-    /// Energy and power, with the forces that hold the motion where surfaces do, and those of contacts at rest.
+    /// Returns energy and power, with the forces during sticking and those of contacts at rest.
     fn energies(&self, t: f64, state: &[f64]) -> EnergyAt {
         let mut observables = vec![0.0; self.evaluator().program().observables.len()];
         match self.sliding.as_ref().filter(|_| self.slides()) {
@@ -84,55 +83,53 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
         found
     }
 
-    /// The same that keeps states on the constraints, at the same parameters.
+    /// Sets the projection onto the constraints, at the same parameters.
     pub(crate) fn with_projection(mut self, projection: Option<Projection>) -> Self {
         self.projection = projection;
         self
     }
 
-    /// The same where bodies hit at the impacts of these names, if there are any: those of the
-    /// program, in its order.
+    /// Enables the impacts of the program; `names` are their names, in its order.
     pub(crate) fn with_impacts(mut self, names: Vec<String>) -> Self {
         self.contacts = (!names.is_empty()).then(|| RefCell::new(Contacts::new(names)));
         self
     }
 
-    /// The same where surfaces may hold the motion, as dry friction does, at the same parameters. A motion
-    /// of its own, as what holds is remembered.
+    /// Enables sticking on switching surfaces, as under dry friction, at the same parameters. The
+    /// system keeps the state of sticking, so use it for one motion only.
     pub fn with_sliding(mut self, sided: Option<Sided>) -> Self {
         self.sliding = sided.map(|sided| RefCell::new(Sliding::new(sided)));
         self
     }
 
-    /// What it was given for surfaces that may hold the motion, for another motion.
+    /// Returns the model with sides, for use with another motion.
     pub fn into_sided(self) -> Option<Sided> {
         let sliding = self.sliding?;
         Some(sliding.into_inner().into_sided())
     }
 
-    /// What keeps states on the constraints, if there are any.
     pub(crate) fn projection(&self) -> Option<&Projection> {
         self.projection.as_ref()
     }
 
-    /// The impact at which bodies overlap, if the motion ended for that: why, and what to do.
+    /// Returns cause and cure if the motion stopped because bodies overlap at an impact.
     pub(crate) fn overlap(&self) -> Option<String> {
         self.contacts.as_ref()?.borrow().overlap()
     }
 
-    /// Whether a contact is closed.
     fn rests(&self) -> bool {
         let contacts = self.contacts.as_ref();
         contacts.is_some_and(|contacts| contacts.borrow().rest())
     }
 
-    /// Whether the rates are not those that the signs of the switching functions give.
+    /// Returns true if surfaces hold the motion, so that the signs of the switching functions do
+    /// not determine the rates.
     fn slides(&self) -> bool {
         let sliding = self.sliding.as_ref();
         sliding.is_some_and(|sliding| sliding.borrow().is_active())
     }
 
-    /// The same with its own Jacobian, at the same parameters, for implicit methods.
+    /// Sets the model's Jacobian for implicit solvers, at the same parameters.
     pub fn with_jacobian(mut self, jacobians: JacobianEvaluator) -> Self {
         self.jacobians = Some(RefCell::new(jacobians));
         self
@@ -142,14 +139,15 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
         self.evaluator.borrow().borrow_mut()
     }
 
-    /// What `of` makes of the model at a time and a state, with the inputs then.
+    /// Calls `of` with the evaluator and the point of a time and a state, with the inputs at that
+    /// time.
     fn at<T>(&self, t: f64, state: &[f64], of: impl FnOnce(&mut Evaluator, Point<'_>) -> T) -> T {
         let inputs = &self.inputs.borrow().at(t);
         of(&mut self.evaluator(), Point { t, state, inputs })
     }
 
-    /// The switching functions, those over modes one by one. A speed is one that depends on rates,
-    /// and on no coordinate where nothing moves.
+    /// Returns the switching functions, one per mode for those over modes. A function counts as a
+    /// speed if it depends on rates, and not on coordinates at zero rates.
     pub fn surfaces(&self) -> Vec<Surface> {
         let (here, there) = (self.guards_at_rest(0.11), self.guards_at_rest(0.17));
         let evaluator = self.evaluator();
@@ -176,7 +174,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
         own.chain(impacts).collect()
     }
 
-    /// The switching functions where nothing moves, with coordinates of this size.
+    /// Evaluates the switching functions at zero rates, with coordinates of this size.
     fn guards_at_rest(&self, size: f64) -> Vec<f64> {
         let mut values = vec![0.0; self.evaluator().guard_count()];
         let mut state = vec![0.0; self.states()];
@@ -353,18 +351,17 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for Driven<E, 
     }
 }
 
-/// A pivot that is this small beside its diagonal entry is rounding.
+/// Pivots below this fraction of their diagonal entry count as rounding.
 const NOTHING_LEFT: f64 = 1e-14;
 
-/// The first row of a symmetric matrix, of finite entries, whose pivot is not positive when the
-/// rows before it are eliminated.
+/// Returns the first row of a symmetric matrix of finite entries whose pivot is not positive.
 fn first_not_positive(matrix: &mut [f64], size: usize) -> Option<usize> {
     if matrix.iter().any(|entry| !entry.is_finite()) {
         return None;
     }
     for row in 0..size {
         let diagonal = matrix[row * size + row];
-        // Row by row, L L^T = matrix, into its lower part.
+        // Cholesky factorisation L L^T = matrix, into the lower part.
         for column in 0..=row {
             let products = (0..column)
                 .map(|k| matrix[row * size + k] * matrix[column * size + k])

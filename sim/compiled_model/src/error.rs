@@ -1,4 +1,4 @@
-//! Why there is no model, no instance of it or no motion.
+//! Errors of compiling and running a model.
 
 use std::fmt;
 
@@ -7,25 +7,24 @@ use eomgen_model_spec::model::Model;
 use eomgen_model_spec::variant::ModelError;
 use eomgen_sim::piecewise_linear::ExactError;
 
-/// What keeps a model from being compiled or run.
+/// Reason why a model cannot be compiled or run.
 #[derive(Clone, Debug)]
 pub enum Error {
-    /// The specification, or a parameter value set in it, is wrong: where, why, what would be
-    /// right.
+    /// Errors of the specification or of a parameter value, each with its place and cure.
     Specification(Diagnostics),
-    /// The solver that was asked for does not take the model, or the request makes no sense.
+    /// A solver that does not support the model, or an invalid request.
     Request(String),
-    /// The motion could not be followed: what is wrong, with names, and what to do.
+    /// A simulation or search that stopped early, with the cause and the cure.
     Stopped {
-        /// Where the motion stands, s, if it had begun.
+        /// Time reached, s; `None` if the simulation had not started.
         t: Option<f64>,
-        /// What is wrong.
+        /// Cause, with the names of the states or surfaces involved.
         reason: String,
     },
 }
 
 impl Error {
-    /// What is wrong with a model as such.
+    /// Converts an error of the model into an error at its place in the specification.
     pub(crate) fn model(model: &Model, error: ModelError) -> Self {
         Self::Specification(Diagnostics::one(model.source.clone(), error.diagnostic()))
     }

@@ -13,10 +13,10 @@ use crate::model::CompiledModel;
 use crate::motion::Motion;
 use crate::sliding::{Observed, Sided};
 
-/// A compiled model with values for all its parameters and the initial state that follows.
+/// A compiled model at one set of parameter values, and the initial state that follows from them.
 pub struct Instance<'m> {
     pub(crate) model: &'m CompiledModel,
-    /// The independent parameters, SI.
+    /// Independent parameters, SI.
     parameters: Vec<f64>,
     /// All parameters of the specification, SI.
     values: Vec<f64>,
@@ -24,28 +24,28 @@ pub struct Instance<'m> {
 }
 
 impl CompiledModel {
-    /// The model at the values that its specification gives.
+    /// Returns the model at the declared parameter values.
     ///
     /// # Errors
-    /// Values or initial states that are not admissible.
+    /// Invalid parameter values or initial states.
     pub fn at_declared(&self) -> Result<Instance<'_>, Error> {
         self.with(&[])
     }
 
-    /// The model with some independent parameters set, each a number in the unit that the
-    /// specification declares; what depends on them is computed anew.
+    /// Sets independent parameters, each in the unit that the specification declares, and
+    /// recomputes all dependent parameters.
     ///
     /// # Errors
-    /// An unknown name, a value that is not admissible, and a parameter that the specification
-    /// gives by an expression: it is part of the equations, and has to be set in the model before
-    /// that is derived.
+    /// An unknown name, an invalid value, or a parameter that the specification gives by an
+    /// expression. Such an expression is part of the equations: replace it in the model, then
+    /// derive again.
     pub fn with(&self, settings: &[(&str, f64)]) -> Result<Instance<'_>, Error> {
         Instance::new(self, settings)
     }
 }
 
 impl<'m> Instance<'m> {
-    /// The same where residuals of constraints decay at this rate (1/s).
+    /// Returns a copy in which residuals of constraints decay at this rate, 1/s.
     pub(crate) fn stabilised(&self, rate: f64) -> Self {
         let mut changed = Self {
             model: self.model,
@@ -98,68 +98,67 @@ impl<'m> Instance<'m> {
         };
         let independent = compiled.program().parameters.iter();
         let value = |name: &str| instance.value(name).unwrap_or(f64::NAN);
-        // Every parameter of a program is one of its model.
         instance.parameters = independent.map(|p| value(&p.quantity.name)).collect();
         Ok(instance)
     }
 
-    /// The compiled model.
+    /// Returns the compiled model.
     pub fn model(&self) -> &'m CompiledModel {
         self.model
     }
 
-    /// The independent parameters, SI, in the order of
+    /// Returns the independent parameters, SI, in the order of
     /// [`parameter_names`](CompiledModel::parameter_names).
     pub fn parameters(&self) -> &[f64] {
         &self.parameters
     }
 
-    /// All parameters of the specification, SI.
+    /// Returns all parameters of the specification, SI.
     pub(crate) fn values(&self) -> &[f64] {
         &self.values
     }
 
-    /// The value of any parameter of the specification, SI.
+    /// Returns the value of any parameter of the specification, SI.
     pub fn value(&self, name: &str) -> Option<f64> {
         let parameters = &self.model.model().parameters;
         let place = parameters.iter().position(|known| known.name == name)?;
         self.values.get(place).copied()
     }
 
-    /// The initial state that the specification gives, SI.
+    /// Returns the initial state of the specification, SI.
     pub fn initial(&self) -> &[f64] {
         &self.initial
     }
 
-    /// Inputs where nobody gives them: 0, and prescribed motion in the middle of its range, if it has
+    /// Returns the default inputs: 0, or the middle of the range for a prescribed motion that has
     /// one.
     pub fn no_inputs(&self) -> HeldInputs {
         HeldInputs::constant(self.model.usual_inputs())
     }
 
-    /// An evaluator at these parameters.
+    /// Returns an evaluator at these parameters.
     ///
     /// # Errors
-    /// [`Error::Request`] where the mass matrix is not positive definite.
+    /// [`Error::Request`] if the mass matrix is not positive definite.
     pub fn evaluator(&self) -> Result<Evaluator, Error> {
         positive(self.unchecked())
     }
 
-    /// An evaluator for a few evaluations: no machine code is made for it.
+    /// Returns an evaluator without machine code, for a few evaluations.
     ///
     /// # Errors
-    /// As [`Instance::evaluator`].
+    /// Same as [`Instance::evaluator`].
     pub fn interpreter(&self) -> Result<Evaluator, Error> {
         positive(self.model.interpreter(&self.parameters))
     }
 
-    /// An evaluator at these parameters, whether its pivots are positive or not: what is asked of it must
-    /// not rest on accelerations.
+    /// Returns an evaluator without checking that the mass matrix is positive definite. Its
+    /// accelerations may be invalid.
     pub(crate) fn unchecked(&self) -> Evaluator {
         self.model.evaluator(&self.parameters)
     }
 
-    /// Computes derivatives of the constraints at these parameters; nothing without constraints.
+    /// Returns the derivatives of the constraints at these parameters; `None` without constraints.
     pub(crate) fn constraint_rows(&self) -> Option<ConstraintRows> {
         let program = self.model.constraint_program(&self.values)?;
         let mut rows = ConstraintRows::new(self.model.model(), program.clone());
@@ -167,18 +166,18 @@ impl<'m> Instance<'m> {
         Some(rows)
     }
 
-    /// The model with sides at these parameters; see [`CompiledModel::sided`].
+    /// Returns [`CompiledModel::sided`] at these parameters.
     ///
     /// # Errors
-    /// What cannot be derived.
+    /// Terms that cannot be derived.
     pub(crate) fn sided(&self) -> Result<Option<Sided>, Error> {
         self.model.sided(&self.parameters)
     }
 
-    /// A propagator from switch to switch at these parameters.
+    /// Returns an exact propagator at these parameters.
     ///
     /// # Errors
-    /// The term that is not linear between switches, or coefficients that are no numbers.
+    /// The term that is not piecewise linear, or coefficients that are not finite.
     pub fn propagator(&self) -> Result<Propagator, ExactError> {
         let exact = self.model.piecewise_linear().map_err(Clone::clone)?;
         let value = |name: &String| self.value(name).unwrap_or(f64::NAN);
@@ -186,21 +185,22 @@ impl<'m> Instance<'m> {
         exact.at(&values)
     }
 
-    /// The observables at every state of a motion, `energy` and `power` last: a row per sample.
+    /// Returns the observables at every sample of a motion, one row per sample; `energy` and
+    /// `power` are the last two.
     ///
     /// # Errors
-    /// As [`Instance::evaluator`].
+    /// Same as [`Instance::evaluator`].
     pub fn observables(&self, motion: &Motion) -> Result<Vec<Vec<f64>>, Error> {
         let mut rows = Vec::with_capacity(motion.trajectory.times.len());
         self.observe(motion, |_, _, observables| rows.push(observables.to_vec()))?;
         Ok(rows)
     }
 
-    /// Shows time (s), state and observables of every sample of a motion, one after the other. Where
-    /// dry friction holds the motion its force is the one that does.
+    /// Calls `show` with the time (s), state and observables of every sample of a motion. During
+    /// sticking, the observables use the friction force that holds the motion.
     ///
     /// # Errors
-    /// As [`Instance::evaluator`].
+    /// Same as [`Instance::evaluator`].
     pub fn observe(
         &self,
         motion: &Motion,
@@ -219,7 +219,6 @@ impl<'m> Instance<'m> {
     }
 }
 
-/// The evaluator, if the mass matrix is positive definite.
 fn positive(evaluator: Evaluator) -> Result<Evaluator, Error> {
     match evaluator.pivots_are_positive() {
         true => Ok(evaluator),

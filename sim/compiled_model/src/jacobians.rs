@@ -1,5 +1,4 @@
-//! Jacobians of a compiled model, computed as dense matrices. How they are derived is the business
-//! of `codegen`.
+//! Dense Jacobians of a compiled model, and its linearisation. The crate `codegen` derives them.
 
 use std::sync::Arc;
 
@@ -14,22 +13,22 @@ use crate::error::Error;
 use crate::instance::Instance;
 use crate::model::{CompiledModel, evaluator};
 
-/// Which Jacobian: of what, by what.
+/// A Jacobian of a model: the function and the variable of differentiation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Jacobian {
-    /// Of the rates by the state.
+    /// Derivatives of the rates with respect to the state.
     RatesByState,
-    /// Of the rates by the inputs.
+    /// Derivatives of the rates with respect to the inputs.
     RatesByInputs,
-    /// Of the rates by the independent parameters, SI.
+    /// Derivatives of the rates with respect to the independent parameters, SI.
     RatesByParameters,
-    /// Of the rates by the time, with state and inputs held: one column.
+    /// Derivatives of the rates with respect to time at constant state and inputs; one column.
     RatesByTime,
-    /// Of the observables by the state.
+    /// Derivatives of the observables with respect to the state.
     ObservablesByState,
-    /// Of the observables by the inputs.
+    /// Derivatives of the observables with respect to the inputs.
     ObservablesByInputs,
-    /// Of the observables by the independent parameters, SI.
+    /// Derivatives of the observables with respect to the independent parameters, SI.
     ObservablesByParameters,
 }
 
@@ -45,7 +44,7 @@ impl Jacobian {
         Self::ObservablesByParameters,
     ];
 
-    /// Its name, as in emitted code.
+    /// Returns the name used in emitted code.
     pub fn name(self) -> &'static str {
         match self {
             Self::RatesByState => "rates_by_state",
@@ -59,32 +58,32 @@ impl Jacobian {
     }
 }
 
-/// Where the structural nonzeros of one Jacobian stand.
+/// Positions of the structural nonzeros of one Jacobian.
 struct Layout {
-    /// Its place among those of the program.
+    /// Index of the Jacobian in the program.
     place: usize,
     rows: usize,
     columns: usize,
-    /// For each nonzero its place in the dense matrix, row by row.
+    /// Index of each nonzero in the dense row-major matrix.
     dense: Vec<usize>,
     nonzeros: Vec<f64>,
 }
 
-/// Computes Jacobians at one set of parameter values.
+/// Evaluator of Jacobians at one set of parameter values.
 pub struct JacobianEvaluator {
     evaluator: Evaluator,
-    /// In the order of [`Jacobian::ALL`].
+    /// Layouts in the order of [`Jacobian::ALL`].
     layouts: Vec<Layout>,
 }
 
 impl JacobianEvaluator {
-    /// Rows and columns.
+    /// Returns the numbers of rows and columns.
     pub fn shape(&self, of: Jacobian) -> (usize, usize) {
         let layout = &self.layouts[of as usize];
         (layout.rows, layout.columns)
     }
 
-    /// The dense matrix at a point, row by row.
+    /// Returns the dense row-major matrix at a point.
     pub(crate) fn dense(&mut self, of: Jacobian, point: Point<'_>) -> Vec<f64> {
         let (rows, columns) = self.shape(of);
         let mut matrix = vec![0.0; rows * columns];
@@ -92,8 +91,8 @@ impl JacobianEvaluator {
         matrix
     }
 
-    /// The dense matrix at a point, row by row; `out` has rows times columns numbers. Of the regime
-    /// that the point is in; on a switching surface one-sided.
+    /// Writes the dense row-major matrix at a point to `out`, of rows times columns numbers. On a
+    /// switching surface the derivatives are one-sided.
     pub fn evaluate(&mut self, of: Jacobian, point: Point<'_>, out: &mut [f64]) {
         let layout = &mut self.layouts[of as usize];
         self.evaluator
@@ -105,27 +104,28 @@ impl JacobianEvaluator {
     }
 }
 
-/// A model linearised about a point: with dx, du, dy the differences from there,
-/// d(dx)/dt = f + A dx + B du and dy = C dx + D du. Matrices are given row by row.
+/// Linearisation of a model about a point: d(dx)/dt = f + A dx + B du and dy = C dx + D du, with
+/// the deviations dx, du, dy from the point. Matrices are row-major.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Linearisation {
-    /// Rates by states.
+    /// Matrix A: rates by states.
     pub a: Vec<f64>,
-    /// Rates by inputs.
+    /// Matrix B: rates by inputs.
     pub b: Vec<f64>,
-    /// Observables by states.
+    /// Matrix C: observables by states.
     pub c: Vec<f64>,
-    /// Observables by inputs.
+    /// Matrix D: observables by inputs.
     pub d: Vec<f64>,
-    /// The rates at the point, f: zero in an equilibrium.
+    /// Rates f at the point, SI; zero at an equilibrium.
     pub rates: Vec<f64>,
-    /// The observables at the point.
+    /// Observables at the point, SI.
     pub observables: Vec<f64>,
 }
 
 impl Linearisation {
-    /// What the constraints of the model hold of small motions dx, C dx = 0, row by row: their
-    /// residuals, and the rates of those of holonomic ones. Empty without constraints.
+    /// Returns the rows of H in H dx = 0, the constraints on small motions dx, row-major:
+    /// derivatives of all residuals, and of the rates of holonomic residuals. Empty without
+    /// constraints.
     pub fn held(&self, model: &CompiledModel) -> Vec<f64> {
         let states = self.rates.len();
         let names = model.observable_names();
@@ -152,18 +152,18 @@ impl Linearisation {
 }
 
 impl Instance<'_> {
-    /// Computes Jacobians at these parameters, by machine code.
+    /// Returns an evaluator of Jacobians at these parameters, with machine code.
     ///
     /// # Errors
-    /// What cannot be differentiated, and a mass matrix that is not positive definite.
+    /// Terms that cannot be differentiated, or a mass matrix that is not positive definite.
     pub fn jacobian_evaluator(&self) -> Result<JacobianEvaluator, Error> {
         self.interpreter()?;
         let differentiated = self.model().differentiated()?;
         Ok(self.jacobians(&differentiated.program, differentiated.code()))
     }
 
-    /// The same for a few evaluations: no machine code is made for it. Pivots need not be positive; then
-    /// what is asked of it must not rest on accelerations.
+    /// Returns an evaluator of Jacobians without machine code, for a few evaluations. It does not
+    /// check that the mass matrix is positive definite, so its accelerations may be invalid.
     pub(crate) fn interpreted_jacobians(&self) -> Result<JacobianEvaluator, Error> {
         let program = &self.model().differentiated()?.program;
         Ok(self.jacobians(program, None))
@@ -181,11 +181,11 @@ impl Instance<'_> {
         }
     }
 
-    /// Whether any rate, or any switching function, depends on each state. The angle of a rotation
-    /// that nothing restrains is one that none feels.
+    /// Returns true for each state that a rate or a switching function depends on. An unrestrained
+    /// rotation angle, for example, has no influence.
     ///
     /// # Errors
-    /// As [`Instance::jacobian_evaluator`].
+    /// Same as [`Instance::jacobian_evaluator`].
     pub fn felt_states(&self) -> Result<Vec<bool>, Error> {
         let program = &self.model().differentiated()?.program;
         let mut felt = vec![false; program.states()];
@@ -211,11 +211,11 @@ impl Instance<'_> {
         Ok(felt)
     }
 
-    /// The model linearised at a time (s) about a state and inputs, SI.
+    /// Linearises the model about a time (s), a state and inputs, SI.
     ///
     /// # Errors
-    /// As [`Instance::jacobian_evaluator`], and a derivative without a limit at the point, at the place of its
-    /// term.
+    /// Same as [`Instance::jacobian_evaluator`], and a derivative that has no finite limit at the
+    /// point, with the place of its term.
     pub fn linearise(&self, point: Point<'_>) -> Result<Linearisation, Error> {
         let mut evaluator = self.interpreter()?;
         let mut jacobians = self.interpreted_jacobians()?;
@@ -246,11 +246,12 @@ impl Instance<'_> {
         })
     }
 
-    /// Why there is no linearisation about a point.
+    /// Returns the error for a point without a linearisation, with the places of all terms without
+    /// a derivative.
     fn not_linear(&self, point: Point<'_>) -> Error {
         let model = self.model().model();
         let message = format!(
-            "the model `{}` has no linearisation there: a derivative has no finite limit",
+            "the model `{}` has no linearisation at this point: a derivative has no finite limit",
             model.name
         );
         let places = without_derivative(model, self.model().orders(), self.values(), point);
@@ -262,21 +263,21 @@ impl Instance<'_> {
             return Error::Request(message);
         };
         let found = Diagnostic::error(message)
-            .at(*first, "has no derivative there")
-            .help("linearise elsewhere, or smooth it: sqrt(v^2 + e^2) in place of abs(v)");
-        let found = others
-            .iter()
-            .fold(found, |found, place| found.also(*place, "nor has this"));
+            .at(*first, "has no derivative at this point")
+            .help("linearise at another state (--state), or use a smooth term: sqrt(v^2 + e^2) instead of abs(v)");
+        let found = others.iter().fold(found, |found, place| {
+            found.also(*place, "has no derivative either")
+        });
         Diagnostics::one(model.source.clone(), found).into()
     }
 }
 
-/// How many modes a field has.
+/// Returns the number of modes of a field.
 fn order(program: &Program, field: FieldId) -> usize {
     program.fields[field.index()].order
 }
 
-/// Where a Jacobian's nonzeros stand; every program with Jacobians has all of them.
+/// Returns the layout of a Jacobian; `None` if the program has no such Jacobian.
 fn layout(program: &Program, of: Jacobian) -> Option<Layout> {
     let jacobians = &program.outputs.jacobians;
     let place = jacobians.iter().position(|known| known.name == of.name())?;
@@ -329,7 +330,7 @@ pull = { value = "k*x + u", unit = "N" }
 "#;
 
     #[test]
-    fn a_term_without_a_derivative_is_named_at_its_place() {
+    fn linearisation_error_names_term_without_derivative() {
         for force in [
             "F*dot(x)/abs(dot(x))",
             "F*sqrt(abs(x)/l)",
@@ -361,7 +362,7 @@ pull = { value = "k*x + u", unit = "N" }
     }
 
     #[test]
-    fn a_linear_model_is_its_own_linearisation() {
+    fn linearisation_of_linear_model_is_exact() {
         let model = CompiledModel::of_text("driven.toml", DRIVEN, Orders::Declared);
         let model = model.expect("a model");
         let run = model.with(&[("k", 18.0)]).expect("an instance");

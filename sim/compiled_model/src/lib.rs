@@ -1,10 +1,11 @@
-//! A derived model that can be run: what the command line, sweeps, studies, discovery and every
-//! other host bind to.
+//! Compiled models: the interface that the command line, sweeps, studies, discovery and the Python
+//! package use to evaluate and simulate a specification.
 //!
-//! A [`CompiledModel`] owns what is made of a specification once, its program, machine code and
-//! piecewise-linear form; an [`Instance`] is that model at one set of parameter values, and
-//! simulates; a [`Motion`] says which [`Solver`] it comes from and why. Nothing is derived or
-//! integrated here: that is the business of `codegen` and `sim`.
+//! A [`CompiledModel`] holds the derived program of a specification, its machine code and its
+//! piecewise-linear form. An [`Instance`] is a compiled model at one set of parameter values; it
+//! simulates, linearises and finds equilibria. A [`Motion`] is the result, with the [`Solver`]
+//! that computed it and the reason for that choice. The crate `codegen` derives the equations; the
+//! crate `sim` integrates them.
 //!
 //! ```
 //! use eomgen_compiled_model::{CompiledModel, Orders, Solver};

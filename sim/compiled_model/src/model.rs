@@ -1,5 +1,4 @@
-//! A model with all that is made of it once: its equations, program, machine code and
-//! piecewise-linear form.
+//! Compiled models: equations, program, machine code and piecewise-linear form of a specification.
 
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
@@ -21,22 +20,23 @@ use crate::error::Error;
 use crate::sliding::Sided;
 use crate::typical_sizes::typical_sizes;
 
-/// The modal truncation orders that a model is derived at.
+/// Modal truncation orders at which a model is derived.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Orders<'o> {
-    /// Those that the specification declares.
+    /// The orders that the specification declares.
     Declared,
-    /// This one for every field.
+    /// The same order for every field.
     All(usize),
-    /// One for each field, in the order of the specification.
+    /// One order per field, in the order of the specification.
     Each(&'o [usize]),
 }
 
 impl Orders<'_> {
-    /// The order of each field of a model.
+    /// Returns the order of each field of a model.
     ///
     /// # Errors
-    /// An order above the limit, orders where there is no field, or as many as there are not.
+    /// An order above the limit, an order for a model without fields, or the wrong number of
+    /// orders.
     pub fn of(self, model: &Model) -> Result<Vec<usize>, Error> {
         let one = match self {
             Self::Declared => None,
@@ -62,12 +62,11 @@ impl Orders<'_> {
     }
 }
 
-/// The program whose rates take sides of surfaces as inputs, and its machine code.
+/// Program whose rates take the sides of surfaces as inputs, and its machine code.
 type SidedProgram = (Program, Option<Arc<dyn MachineCode>>);
 
-/// A derived model that can be run at any values of its independent parameters. Machine code
-/// and the piecewise-linear form are made when they are first asked for, once; the model may
-/// be shared between threads.
+/// A derived model, independent of parameter values. Machine code, Jacobians and the
+/// piecewise-linear form are made at their first use and kept. Threads may share the model.
 pub struct CompiledModel {
     model: Model,
     orders: Vec<usize>,
@@ -82,20 +81,20 @@ pub struct CompiledModel {
 }
 
 impl CompiledModel {
-    /// Reads, checks and derives a specification. Its warnings are dropped: who shows them reads
-    /// it with [`eomgen_model_spec::load`] and goes on with [`CompiledModel::derive`].
+    /// Reads, checks and derives a specification. Warnings are dropped; to show them, read with
+    /// [`eomgen_model_spec::load`] and call [`CompiledModel::derive`].
     ///
     /// # Errors
-    /// [`Error::Specification`] with what is wrong, each at its place.
+    /// [`Error::Specification`] with every error at its place.
     pub fn load(path: impl AsRef<Path>, orders: Orders<'_>) -> Result<Self, Error> {
         let Checked { model, .. } = eomgen_model_spec::load(path.as_ref())?;
         Self::derive(model, orders)
     }
 
-    /// The same from a text; `name` stands for its file in messages.
+    /// Checks and derives the specification in `text`. Messages use `name` as its file name.
     ///
     /// # Errors
-    /// As [`CompiledModel::load`].
+    /// Same as [`CompiledModel::load`].
     pub fn of_text(name: &str, text: &str, orders: Orders<'_>) -> Result<Self, Error> {
         let Checked { model, .. } = eomgen_model_spec::check(Source::new(name, text))?;
         Self::derive(model, orders)
@@ -104,19 +103,19 @@ impl CompiledModel {
     /// Derives a checked model.
     ///
     /// # Errors
-    /// [`Error::Specification`]: orders, parameter values that are not admissible, what cannot
-    /// be derived, and coordinates without inertia at the initial state.
+    /// [`Error::Specification`]: invalid orders or parameter values, terms that cannot be derived,
+    /// and coordinates without inertia at the initial state.
     pub fn derive(model: Model, orders: Orders<'_>) -> Result<Self, Error> {
         let orders = orders.of(&model)?;
         let derived = Variant::derive(&model, &orders)?;
         Ok(Self::new(model, orders, derived))
     }
 
-    /// The same for readers, and for who judges other parameters: also a model in which
-    /// something has no inertia at its own parameters and initial state.
+    /// Derives a checked model without checking inertia at its own parameters and initial state,
+    /// for example to read its equations or to run it at other parameters.
     ///
     /// # Errors
-    /// As [`CompiledModel::derive`], but those about inertia.
+    /// Same as [`CompiledModel::derive`], except those about inertia.
     pub fn derive_unjudged(model: Model, orders: Orders<'_>) -> Result<Self, Error> {
         let orders = orders.of(&model)?;
         let derived = Variant::derive_to_read(&model, &orders, &[])?;
@@ -138,33 +137,33 @@ impl CompiledModel {
         }
     }
 
-    /// The checked model.
+    /// Returns the checked model.
     pub fn model(&self) -> &Model {
         &self.model
     }
 
-    /// The order of each field.
+    /// Returns the order of each field.
     pub fn orders(&self) -> &[usize] {
         &self.orders
     }
 
-    /// The equations of motion.
+    /// Returns the equations of motion.
     pub fn equations(&self) -> &Equations {
         &self.equations
     }
 
-    /// The program of the equations.
+    /// Returns the program of the equations.
     pub fn program(&self) -> &Program {
         &self.program
     }
 
-    /// The names of the states: coordinates and modes, then their rates, then states of first order.
+    /// Returns the names of the states: coordinates and modes, their rates, then first-order
+    /// states.
     pub fn state_names(&self) -> Vec<String> {
         self.program.state_names()
     }
 
-    /// The SI units of the states: those of coordinates and modes, then the same per second, then
-    /// those of states of first order.
+    /// Returns the SI units of the states, in the order of [`CompiledModel::state_names`].
     pub fn state_units(&self) -> Vec<String> {
         let coordinates = self.model.coordinates.iter();
         let mut units: Vec<String> = coordinates.map(|known| known.unit.to_string()).collect();
@@ -178,28 +177,29 @@ impl CompiledModel {
         units
     }
 
-    /// Inputs where nobody gives them, SI: 0, and prescribed motion in the middle of its range, if it
+    /// Returns the default inputs, SI: 0, or the middle of the range for a prescribed motion that
     /// has one.
     pub fn usual_inputs(&self) -> Vec<f64> {
         let none = || vec![0.0; self.model.inputs.len()];
         self.model.typical_inputs(0.0).unwrap_or_else(|_| none())
     }
 
-    /// Typical sizes of the states in SI, by their units: powers of two to which the model's parameters, initial
-    /// values and ranges lead.
+    /// Returns the typical sizes of the states, SI: powers of two that follow from the units and
+    /// from the parameters, initial values and ranges of the model. See
+    /// [`TypicalSizes`](crate::TypicalSizes).
     pub fn typical_sizes(&self) -> &[f64] {
         let sizes = || typical_sizes(&self.model, &self.orders);
         self.typical_sizes.get_or_init(sizes)
     }
 
-    /// The names of the observables, `energy` and `power` last.
+    /// Returns the names of the observables; `energy` and `power` are the last two.
     pub fn observable_names(&self) -> Vec<String> {
         let observables = self.program.observables.iter();
         observables.map(|known| known.name.clone()).collect()
     }
 
-    /// The names of the independent parameters, those given by a number, in the order of their
-    /// values.
+    /// Returns the names of the independent parameters (those given by a number), in the order of
+    /// their values.
     pub fn parameter_names(&self) -> Vec<String> {
         let parameters = self.program.parameters.iter();
         parameters
@@ -207,29 +207,30 @@ impl CompiledModel {
             .collect()
     }
 
-    /// An evaluator of the program at these values of the independent parameters, SI: machine
-    /// code where this kind of machine is known, interpreted elsewhere, with the same numbers.
+    /// Returns an evaluator of the program at these values of the independent parameters, SI. It
+    /// runs machine code if the processor is supported, and otherwise interprets; the numbers are
+    /// the same.
     pub fn evaluator(&self, parameters: &[f64]) -> Evaluator {
         let code = self.code.get_or_init(|| eomgen_jit::code(&self.program));
         evaluator(&self.program, code.as_ref(), parameters)
     }
 
-    /// An evaluator that interprets the program: the same numbers as machine code, which takes longer to
-    /// make than a few evaluations.
+    /// Returns an evaluator that interprets the program. Machine code gives the same numbers, but
+    /// takes longer to generate than a few evaluations take.
     pub(crate) fn interpreter(&self, parameters: &[f64]) -> Evaluator {
         evaluator(&self.program, None, parameters)
     }
 
-    /// Derives the Jacobians, once, which are derived when they are first asked for.
+    /// Derives the Jacobians now. Otherwise they are derived at their first use.
     ///
     /// # Errors
-    /// What cannot be differentiated.
+    /// Terms that cannot be differentiated.
     pub fn differentiate(&self) -> Result<(), Error> {
         self.differentiated().map(|_| ())
     }
 
-    /// The program with the derivatives of the constraints, if there are any; lowered once, at these values of
-    /// all parameters, SI.
+    /// Returns the program of the constraints' derivatives, or `None` without constraints. It is
+    /// lowered once, at these values of all parameters, SI.
     pub(crate) fn constraint_program(&self, values: &[f64]) -> Option<&Program> {
         let made = self
             .constraints
@@ -237,7 +238,7 @@ impl CompiledModel {
         made.as_ref()
     }
 
-    /// The program with Jacobians.
+    /// Returns the program with Jacobians.
     pub(crate) fn differentiated(&self) -> Result<&Differentiated, Error> {
         let made = self
             .differentiated
@@ -245,12 +246,12 @@ impl CompiledModel {
         made.as_ref().map_err(|found| found.clone().into())
     }
 
-    /// The model with the sides of surfaces that may hold a motion as inputs, at these values of the
-    /// independent parameters, SI; nothing where no surface may, or where contacts would have to be held with
-    /// them.
+    /// Returns the model in which the sides of switching surfaces are inputs, at these values of
+    /// the independent parameters, SI. `None` if no surface can hold a motion, or if the model has
+    /// impacts.
     ///
     /// # Errors
-    /// What cannot be derived.
+    /// Terms that cannot be derived.
     pub fn sided(&self, parameters: &[f64]) -> Result<Option<Sided>, Error> {
         let made = self.sided.get_or_init(|| {
             if !may_hold(&self.equations) || !self.model.impacts.is_empty() {
@@ -269,10 +270,10 @@ impl CompiledModel {
         Ok(sided)
     }
 
-    /// The model's form that is linear between its switches.
+    /// Returns the piecewise-linear form of the model.
     ///
     /// # Errors
-    /// The term that is not linear there.
+    /// The term that is not piecewise linear.
     pub fn piecewise_linear(&self) -> Result<&PiecewiseLinear, &ExactError> {
         let made = self
             .piecewise_linear
@@ -281,8 +282,8 @@ impl CompiledModel {
     }
 }
 
-/// An evaluator of a program, by its machine code if there is some, prepared at these values of
-/// the independent parameters, SI.
+/// Returns an evaluator of a program at these values of the independent parameters, SI. It runs
+/// `code` if given, and otherwise interprets.
 pub(crate) fn evaluator(
     program: &Program,
     code: Option<&Arc<dyn MachineCode>>,

@@ -1,4 +1,4 @@
-//! A simulated motion, the solver it comes from, and why it is that one.
+//! Simulated motions, the solvers and the reasons for choosing or stopping one.
 
 use std::fmt;
 
@@ -9,21 +9,21 @@ use crate::audit::Audit;
 use crate::error::Error;
 use crate::projection::Moved;
 
-/// How to integrate.
+/// Solver of the equations of motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Solver {
-    /// [`Solver::Exact`] where the model is linear between its switches, else [`Solver::Rk`], and
-    /// [`Solver::Radau`] where the motion turns out to be stiff.
+    /// [`Solver::Exact`] if the model is piecewise linear, otherwise [`Solver::Rk`];
+    /// [`Solver::Radau`] if the motion turns out to be stiff.
     #[default]
     Auto,
-    /// From switch to switch without any error but rounding; for models that are linear
-    /// between their switches.
+    /// Exact propagation from event to event, with rounding errors only; for piecewise-linear
+    /// models.
     Exact,
-    /// Runge-Kutta of order 8 with location of the switching surfaces.
+    /// Runge-Kutta method of order 8 (Dormand and Prince) with event location.
     Rk,
-    /// Adams' multistep method of variable order, the paper's, with the same location.
+    /// Adams multistep method of variable order, as used in the paper, with event location.
     Adams,
-    /// Radau's implicit method of order 5 with the model's own Jacobian and the same location, for
+    /// Implicit Radau IIA method of order 5 with the model's Jacobian and event location, for
     /// stiff models.
     Radau,
 }
@@ -32,7 +32,7 @@ impl Solver {
     /// Every solver.
     pub const ALL: [Self; 5] = [Self::Auto, Self::Exact, Self::Rk, Self::Adams, Self::Radau];
 
-    /// Its name on the command line and in files.
+    /// Returns the name used on the command line and in files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Auto => "auto",
@@ -50,30 +50,30 @@ impl fmt::Display for Solver {
     }
 }
 
-/// A motion at the samples that a solver came to.
+/// A motion, sampled up to the time that the solver reached.
 #[derive(Clone, Debug)]
 pub struct Motion {
-    /// The states at the samples, the switches and the work.
+    /// States at the samples, number of events and solver statistics.
     pub trajectory: Trajectory,
-    /// What drove it.
+    /// Inputs of the motion.
     pub inputs: HeldInputs,
-    /// Who computed it; never [`Solver::Auto`].
+    /// Solver that computed the motion; never [`Solver::Auto`].
     pub solver: Solver,
-    /// Why [`Solver::Auto`] took that solver; none where the solver was asked for.
+    /// Reason for the choice of [`Solver::Auto`]; `None` if the solver was requested by name.
     pub choice: Option<Choice>,
-    /// Why the solver did not come to the end, if it did not.
+    /// Reason why the solver stopped early; `None` if it reached the end.
     pub stopped: Option<Stopped>,
-    /// What of the initial state was moved so that the constraints hold.
+    /// Changes of the initial state that make the constraints hold.
     pub moved: Vec<Moved>,
-    /// The energy balance, if it was asked for.
+    /// Energy balance, if requested.
     pub audit: Option<Audit>,
 }
 
 impl Motion {
-    /// The motion, if the solver came to the end.
+    /// Returns the motion if the solver reached the end.
     ///
     /// # Errors
-    /// [`Error::Stopped`] where it did not.
+    /// [`Error::Stopped`] if the solver stopped early.
     pub fn complete(self) -> Result<Self, Error> {
         match self.stopped {
             None => Ok(self),
@@ -82,39 +82,40 @@ impl Motion {
     }
 }
 
-/// Why a solver was taken.
+/// Reason for the choice of a solver.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Choice {
-    /// The model is linear between its switches.
+    /// The model is piecewise linear.
     PiecewiseLinear,
-    /// It is not: the reason names the term.
+    /// The model is not piecewise linear; the text names the term.
     NotLinear(String),
-    /// It is, but the exact solver does not follow this motion, for this reason.
+    /// The model is piecewise linear, but the exact solver cannot follow this motion, for this
+    /// reason.
     NotFollowed(String),
-    /// It is stiff: what settles so fast that an explicit solver has no end in sight.
+    /// The model is stiff; the text names the state and its settling time.
     Stiff(String),
 }
 
-/// Why a solver did not come to the end.
+/// Reason why a solver stopped early.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stopped {
-    /// Where the motion stands, s, if that is known.
+    /// Time reached, s, if known.
     pub t: Option<f64>,
-    /// What is wrong, with names, and what to do.
+    /// Cause, with names, and cure.
     pub reason: String,
-    /// What kind of reason that is.
+    /// Category of the cause.
     pub cause: Cause,
 }
 
-/// What kind of reason a solver has to stop.
+/// Category of the reason why a solver stopped early.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Cause {
-    /// Rates are infinite or not numbers, or the mass matrix is not positive definite.
+    /// Rates that are not finite, or a mass matrix that is not positive definite.
     NotFinite,
-    /// Switching surfaces are crossed too fast, or hold the motion.
+    /// Too many events per time, or a surface that holds the motion.
     Switching,
-    /// Stability keeps the steps of an explicit solver too short: what settles so fast.
+    /// Stiffness that limits the steps of an explicit solver; the text names the state.
     Stiff(String),
-    /// No step is short enough, or there are too many of them.
+    /// A step below the smallest length, or too many steps.
     Limit,
 }

@@ -1,4 +1,4 @@
-//! A time, a state and inputs by name: where a model is linearised, and where it may rest.
+//! Operating points: a time, a state and inputs, addressed by name.
 
 use eomgen_codegen::program::evaluator::Point;
 use eomgen_model_spec::suggest::did_you_mean;
@@ -10,16 +10,16 @@ use crate::model::CompiledModel;
 /// A time, a state and inputs, SI, in the order of the model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OperatingPoint {
-    /// The time, s.
+    /// Time, s.
     pub t: f64,
-    /// Coordinates and modes, then their rates.
+    /// Coordinates and modes, their rates, then first-order states.
     pub state: Vec<f64>,
-    /// The inputs.
+    /// Inputs.
     pub inputs: Vec<f64>,
 }
 
 impl OperatingPoint {
-    /// As evaluators take it.
+    /// Returns the point in the form that evaluators take.
     pub fn point(&self) -> Point<'_> {
         Point {
             t: self.t,
@@ -29,22 +29,23 @@ impl OperatingPoint {
     }
 }
 
-/// What can be set of an operating point, by its place.
+/// A quantity of an operating point that can be set, by its index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Setting {
-    /// The time.
+    /// Time.
     Time,
-    /// A number of the state.
+    /// Entry of the state.
     State(usize),
-    /// An input.
+    /// Input.
     Input(usize),
 }
 
 impl CompiledModel {
-    /// What a name stands for in an operating point: a coordinate, a mode, a rate, an input, or `t`.
+    /// Finds the quantity with this name: a coordinate, mode, rate, first-order state, input, or
+    /// `t`.
     ///
     /// # Errors
-    /// A name that none of them has.
+    /// An unknown name.
     pub fn setting(&self, name: &str) -> Result<Setting, Error> {
         let states = self.state_names();
         if let Some(place) = states.iter().position(|known| known == name) {
@@ -67,7 +68,7 @@ impl CompiledModel {
         )))
     }
 
-    /// The names of the first states and all inputs, for a message.
+    /// Returns the names of the first states and all inputs, for a message.
     fn settable(&self) -> Vec<String> {
         let inputs = self.model().inputs.iter().map(|input| input.name.clone());
         self.state_names()
@@ -79,11 +80,11 @@ impl CompiledModel {
 }
 
 impl Instance<'_> {
-    /// The initial state of the specification at the time 0 with inputs of 0, prescribed
-    /// motion in the middle of its range, some of them set, in SI.
+    /// Returns the initial state of the specification at time 0 with the default inputs, changed
+    /// by `settings` (SI).
     ///
     /// # Errors
-    /// An unknown name, a number that is not finite.
+    /// An unknown name, or a value that is not finite.
     pub fn operating_point(&self, settings: &[(&str, f64)]) -> Result<OperatingPoint, Error> {
         let mut point = OperatingPoint {
             t: 0.0,

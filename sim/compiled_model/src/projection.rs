@@ -1,12 +1,12 @@
-//! States brought onto the constraints of a model.
+//! Projection of states onto the constraints.
 //!
-//! With the stabilisation rate w the accelerations are a(w) = a(0) - 2 w P r - w^2 P g, where
-//! P = M^-1 A^T (A M^-1 A^T)^-1, g are the residuals of the holonomic constraints, and r the rates of
-//! these and the residuals of the nonholonomic ones. So two evaluations more, at
-//! w and -w for a large w, give P g and P r: the corrections of coordinates and rates that are the
-//! smallest by the kinetic energy (Newton's method with the mass matrix as its metric; E. Hairer,
-//! C. Lubich, G. Wanner, *Geometric Numerical Integration*, IV.4). They cost as much per mode as the
-//! rates do.
+//! With the stabilisation rate w the accelerations are a(w) = a(0) - 2 w P r - w^2 P g. Here P =
+//! M^-1 A^T (A M^-1 A^T)^-1, g are the residuals of the holonomic constraints, and r are their
+//! rates and the residuals of the nonholonomic constraints. Two more evaluations, at w and -w for
+//! a large w, give P g and P r. These are the smallest corrections of coordinates and rates in the
+//! norm of the kinetic energy: Newton's method with the mass matrix as its metric (E. Hairer, C.
+//! Lubich, G. Wanner, *Geometric Numerical Integration*, IV.4). Their cost per mode equals that of
+//! the rates.
 
 use std::cell::RefCell;
 
@@ -15,45 +15,46 @@ use eomgen_sim::inputs::HeldInputs;
 
 use crate::singular::SingularityWatch;
 
-/// The rate w, 1/s: so large that rounding of the accelerations is nothing beside w^2 times a residual
-/// worth correcting.
+/// The rate w, 1/s. It is so large that the rounding of the accelerations is negligible compared
+/// with w^2 times a residual worth correcting.
 pub(crate) const LARGE_RATE: f64 = 1_048_576.0;
 
-/// Corrections that are this small beside the state leave less than rounding: those of Newton's
-/// method are squared from one to the next.
+/// Relative size of the last correction. Newton's method squares the error, so the next correction
+/// would be below rounding.
 const LAST_CORRECTION: f64 = 1e-8;
 
-/// Corrections after a step, which begins on the constraints.
+/// Maximum number of corrections after a step, which begins on the constraints.
 const MOST_AFTER_A_STEP: usize = 8;
 
-/// What corrects states, at one set of parameters.
+/// Projection of states onto the constraints, at one set of parameters.
 pub(crate) struct Projection {
-    /// The model at the stabilisation rate w.
+    /// Model with the stabilisation rate w.
     pub plus: RefCell<Evaluator>,
-    /// At -w.
+    /// Model with the stabilisation rate -w.
     pub minus: RefCell<Evaluator>,
-    /// The stabilisation rate of the model itself, 1/s.
+    /// Stabilisation rate of the model itself, 1/s.
     pub own_rate: f64,
-    /// Finds singular positions that the motion passes.
+    /// Detector of singular positions along the motion.
     pub watch: RefCell<SingularityWatch>,
 }
 
-/// An initial value that was moved so that the constraints hold.
+/// An initial value that was changed to satisfy the constraints.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Moved {
-    /// The coordinate, mode or rate.
+    /// Name of the coordinate, mode or rate.
     pub name: String,
-    /// Its SI unit.
+    /// SI unit.
     pub unit: String,
-    /// The value that was asked for.
+    /// Requested value.
     pub from: f64,
-    /// The value that was taken.
+    /// Value used.
     pub to: f64,
 }
 
 impl Projection {
-    /// Corrects a state in place, at most so many times; how many evaluations of the rates that
-    /// took, nothing if it came to no end. The state is made of numbers as long as it was.
+    /// Corrects a state in place with at most `most` corrections. Returns the number of
+    /// evaluations of the rates, or `None` if the corrections do not converge. The state stays
+    /// finite if it was.
     pub(crate) fn correct(
         &self,
         own: &mut Evaluator,
@@ -105,8 +106,9 @@ impl Projection {
         None
     }
 
-    /// The same after a step. A state that cannot be corrected, or lies behind a singular position, is made
-    /// of no numbers then, which stops the motion.
+    /// Corrects a state after a step and returns the number of evaluations. If the correction
+    /// fails or the step passes a singular position, the state is filled with NaN, which stops the
+    /// motion.
     pub(crate) fn after_a_step(
         &self,
         own: &mut Evaluator,

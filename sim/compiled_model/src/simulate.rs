@@ -1,5 +1,5 @@
-//! From an initial state over time: which solver takes a motion, and what its errors say by
-//! number put in names. Solvers themselves are the crate `sim`'s.
+//! Simulation of an instance: choice of the solver, and errors with the names of states and
+//! surfaces. The crate `sim` contains the solvers.
 
 use std::cell::RefCell;
 
@@ -17,29 +17,29 @@ use crate::error::Error;
 use crate::instance::Instance;
 use crate::motion::{Cause, Choice, Motion, Solver, Stopped};
 
-/// The relative tolerance where nothing is said about it.
+/// Default relative tolerance.
 pub const DEFAULT_TOLERANCE: f64 = 1e-9;
 
-/// More explicit steps than this to the end, kept short by stability alone, and
-/// [`Solver::Auto`] takes an implicit solver: what that needs for all is a few times less.
+/// Maximum number of explicit steps, if stability limits their length, before [`Solver::Auto`]
+/// changes to the implicit solver. That solver needs a few times less time for the whole motion.
 const MOST_STIFF_STEPS: u64 = 100_000;
 
-/// What is to be simulated.
+/// Request for a simulation.
 #[derive(Clone, Copy, Debug)]
 pub struct Request<'r> {
-    /// The state at the first of the times, SI.
+    /// State at the first sample, SI.
     pub initial: &'r [f64],
-    /// The times of the samples, s, ascending.
+    /// Times of the samples, s, ascending.
     pub times: &'r [f64],
-    /// What drives the motion.
+    /// Inputs of the motion.
     pub inputs: &'r HeldInputs,
-    /// How to integrate.
+    /// Solver of the equations of motion.
     pub solver: Solver,
-    /// The relative tolerance of solvers that have one.
+    /// Relative tolerance; [`Solver::Exact`] ignores it.
     pub tolerance: f64,
-    /// The longest step of solvers that have a tolerance, s; see [`Settings::max_step`].
+    /// Longest step, s; [`Solver::Exact`] ignores it. See [`Settings::max_step`].
     pub max_step: f64,
-    /// Whether to compare the change of the energy with the work done; see [`Audit`].
+    /// Whether to compare the change of the energy with the work; see [`Audit`].
     pub audit: bool,
 }
 
@@ -51,7 +51,7 @@ impl Request<'_> {
         }
     }
 
-    /// The first and the last of the times, s.
+    /// Returns the first and the last sample time, s.
     pub fn span(&self) -> (f64, f64) {
         let first = self.times.first().copied().unwrap_or(0.0);
         (first, self.times.last().copied().unwrap_or(first))
@@ -59,13 +59,12 @@ impl Request<'_> {
 }
 
 impl Instance<'_> {
-    /// The states at the given times (s, ascending) of the motion that starts with `initial`
-    /// (SI) at the first of them.
+    /// Simulates from the state `initial` (SI) at the first of the times (s, ascending), and
+    /// returns the states at all of them.
     ///
     /// # Errors
-    /// A request that makes no sense, a solver that does not take the model, and
-    /// [`Error::Stopped`] where the motion could not be followed to the end;
-    /// [`Instance::follow`] keeps what was found until there.
+    /// An invalid request, a solver that does not support the model, and [`Error::Stopped`] if the
+    /// solver stops early. [`Instance::follow`] keeps the samples before such a stop.
     pub fn simulate(
         &self,
         initial: &[f64],
@@ -85,11 +84,12 @@ impl Instance<'_> {
         self.follow(&request, &mut |_| {})?.complete()
     }
 
-    /// The same, of the times that the solver comes to. `progress` is told the time of the motion.
+    /// Simulates a request and returns the samples up to the time that the solver reaches. Calls
+    /// `progress` with the time reached, s.
     ///
     /// # Errors
-    /// A request that makes no sense, a solver that does not take the model, a motion that
-    /// stops before it has begun.
+    /// An invalid request, a solver that does not support the model, or a solver that stops before
+    /// its first step.
     pub fn follow(
         &self,
         request: &Request<'_>,
@@ -109,8 +109,8 @@ impl Instance<'_> {
         };
         let is_free = request.solver == Solver::Auto;
         if request.inputs.moves() {
-            let reason = "the exact solver holds inputs between their samples, and these are functions of \
-                          the time";
+            let reason = "the exact solver holds inputs constant between samples, but these inputs are \
+                          functions of time";
             return match is_free {
                 true => self.chosen(
                     request,
@@ -127,7 +127,8 @@ impl Instance<'_> {
             }
             return Err(error.into());
         }
-        // Judged as for the other solvers, and it gives the switching functions their names.
+        // The evaluator rejects an indefinite mass matrix, as for the other solvers, and names the
+        // switching functions.
         let evaluator = RefCell::new(self.evaluator()?);
         let mut trajectory = Trajectory::default();
         let mut auditor = request.audit.then(|| self.auditor(None));
@@ -158,7 +159,7 @@ impl Instance<'_> {
         stopped(so_far, Stopped { t, reason, cause })
     }
 
-    /// With an explicit solver for any model, or an implicit one where the motion is stiff.
+    /// Simulates with the explicit solver, and again with the implicit one if the motion is stiff.
     fn chosen(
         &self,
         request: &Request<'_>,
@@ -182,7 +183,7 @@ impl Instance<'_> {
         self.general(request, &implicit, choice, progress)
     }
 
-    /// With a solver for any model.
+    /// Simulates with a solver that supports any model.
     fn general(
         &self,
         request: &Request<'_>,
@@ -193,25 +194,26 @@ impl Instance<'_> {
         let is_constrained = !self.model.model().constraints.is_empty();
         if !self.model.model().impacts.is_empty() && settings.method == Method::Adams {
             return Err(Error::Request(
-                "adams goes on from the steps before, which the impacts of this model cut off: use \
+                "the solver adams uses the preceding steps, which impacts of this model invalidate: use \
                  --solver rk or radau"
                     .to_owned(),
             ));
         }
         if is_constrained && settings.method == Method::Adams {
             return Err(Error::Request(
-                "adams goes on from the steps before, which the constraints of this model cut off \
-                 at every step: use --solver rk or radau"
+                "the solver adams uses the preceding steps, which the projection onto the constraints \
+                 invalidates: use --solver rk or radau"
                     .to_owned(),
             ));
         }
-        // First of all: it says more of constraints that follow from others than their pivots do.
+        // Before the evaluator, whose pivots give a less specific error for dependent constraints.
         let (initial, moved) =
             self.consistent_start(request.initial, request.span(), request.inputs)?;
         let evaluator = RefCell::new(self.evaluator()?);
         let mut system = self.driven(&evaluator, request.inputs)?;
         if settings.method == Method::Adams {
-            // It goes on from the steps before, which rest cuts off: it says where that is.
+            // The Adams method uses the preceding steps, so it cannot continue from sticking; it
+            // reports the time of sticking instead.
             system = system.with_sliding(None);
         }
         let solver = match settings.method {
@@ -266,17 +268,17 @@ impl Instance<'_> {
         }
     }
 
-    /// An auditor of a motion with a relative tolerance; none for an exact one.
+    /// Returns an auditor of a motion with a relative tolerance; `None` for an exact motion.
     fn auditor(&self, tolerance: Option<f64>) -> Auditor {
         let driven = self.driven_contact().map(|name| {
             format!(
-                "inputs move the contact of the impact `{name}`, which jumps where they do between samples"
+                "the distance of the impact `{name}` depends on inputs, so the contact jumps when they jump"
             )
         });
         Auditor::new(tolerance, self.model().typical_sizes(), driven)
     }
 
-    /// What kind of reason an error is.
+    /// Returns the category of an error.
     fn cause(&self, error: &SolveError) -> Cause {
         match error {
             SolveError::NotFinite { .. } | SolveError::NotPositiveDefinite { .. } => {
@@ -285,7 +287,9 @@ impl Instance<'_> {
             SolveError::Caught { .. } | SolveError::TooManySwitches { .. } => Cause::Switching,
             SolveError::Stiff { state, within, .. } => {
                 let state = &self.model.state_names()[*state];
-                Cause::Stiff(format!("stiff: `{state}` settles within {within:.1e} s"))
+                Cause::Stiff(format!(
+                    "the model is stiff: `{state}` settles within {within:.1e} s"
+                ))
             }
             SolveError::Request { .. }
             | SolveError::StepTooSmall { .. }
@@ -293,7 +297,7 @@ impl Instance<'_> {
         }
     }
 
-    /// The same of the exact solver's.
+    /// Returns the category of an error of the exact solver.
     fn cause_of_exact(&self, error: &ExactError) -> Cause {
         match error {
             ExactError::Stopped(error) => self.cause(error),
@@ -303,8 +307,7 @@ impl Instance<'_> {
         }
     }
 
-    /// The message of an error whose numbers stand for the states and for these switching functions, by
-    /// a solver.
+    /// Formats an error of a solver with the names of the states and of these switching functions.
     fn named(
         &self,
         (surfaces, solver): (&[Surface], Solver),
@@ -352,8 +355,9 @@ fn propagate(
     propagator.simulate_observed(trajectory, asked, request.inputs, observer)
 }
 
-/// Why the audit leaves out what the exact solver holds on a surface.
-const HELD: &str = "a surface held the motion, and the power of what holds it is not in the model";
+/// Reason for excluding steps during which the exact solver holds the motion on a surface.
+const HELD: &str =
+    "during sticking, the model does not give the power of the force that holds the motion";
 
 fn motion(
     trajectory: Trajectory,
@@ -372,9 +376,9 @@ fn motion(
     }
 }
 
-/// What was found before a solver stopped; an error if it stopped before it had begun.
+/// Returns the motion up to the stop; an error if the solver stopped before its first step.
 fn stopped(mut motion: Motion, why: Stopped) -> Result<Motion, Error> {
-    // A request that makes no sense may be refused where the motion begins.
+    // An invalid request may be found after the first sample.
     if motion.trajectory.times.len() <= usize::from(why.t.is_none()) {
         return Err(Error::Stopped {
             t: why.t,
@@ -385,7 +389,7 @@ fn stopped(mut motion: Motion, why: Stopped) -> Result<Motion, Error> {
     Ok(motion)
 }
 
-/// Whether the general solver may do better.
+/// Returns true if another solver may follow the motion.
 fn is_for_the_general(error: &ExactError) -> bool {
     matches!(error, ExactError::Held { .. } | ExactError::NotConverged)
 }

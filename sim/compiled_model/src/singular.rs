@@ -1,14 +1,14 @@
-//! Singular positions, in which constraints depend on each other.
+//! Detection of singular positions, at which constraints depend on each other.
 //!
-//! With the rows R of the constraints in the metric of the inertias, F = (R R^T)^(-1/2) R has orthonormal rows
-//! that turn smoothly along a motion. Where R loses rank and regains it, as that of a parallelogram does that
-//! folds flat, a direction of F changes its sign: F_1 F_2^T of the states before and after has the eigenvalue
-//! -1 there, however long the step between them is. Inside a step coordinates follow the cubic through
-//! coordinates and rates of both ends.
+//! With the rows R of the constraints in the metric of the inertias, F = (R R^T)^(-1/2) R has
+//! orthonormal rows that turn smoothly along a motion. If R loses rank and regains it, as when a
+//! parallelogram folds flat, one direction of F changes its sign. Then F_1 F_2^T of the states
+//! before and after has the eigenvalue -1, for any step length. Inside a step, coordinates follow
+//! the cubic through the coordinates and rates at both ends.
 //!
-//! The rounding of accelerations grows with the reciprocal square of the least singular value of R, so that
-//! steps may fail before the position itself. The motion is then continued from its last state by coordinates,
-//! rates and accelerations there.
+//! The rounding of accelerations grows with the reciprocal square of the least singular value of
+//! R, so steps may fail before the position is reached. The motion is then extrapolated from the
+//! coordinates, rates and accelerations of its last state.
 
 use eomgen_analysis::qr_iteration::symmetric_eigen;
 use eomgen_codegen::independence::rows::ConstraintRows;
@@ -17,50 +17,53 @@ use eomgen_codegen::program::evaluator::Point;
 use eomgen_sim::inputs::HeldInputs;
 use nalgebra::{DMatrix, DVector};
 
-/// Least eigenvalue of the symmetric part of F_1 F_2^T if no direction turned by more than 60 degrees.
+/// Least eigenvalue of the symmetric part of F_1 F_2^T if no direction turned by more than 60
+/// degrees.
 const TURNED_LITTLE: f64 = 0.5;
 
-/// Halvings of a step in the search for a singular position.
+/// Maximum number of halvings of a step in the search for a singular position.
 const MOST_HALVINGS: u32 = 40;
 
-/// Least singular value of the scaled rows at which constraints count as dependent.
+/// Least singular value of the scaled rows below which constraints count as dependent.
 const SINGULAR: f64 = 1e-3;
 
-/// Least singular value of the scaled rows from which a motion is continued to a singular position.
+/// Least singular value of the scaled rows below which a motion is extrapolated to a singular
+/// position.
 const NEAR: f64 = 0.1;
 
-/// Doublings of the time over which a motion is continued, from the resolution of the time on.
+/// Maximum number of doublings of the extrapolated time, from its rounding on.
 const MOST_DOUBLINGS: i32 = 52;
 
-/// A constraint is named with others if its part in their combination is no less beside the largest.
+/// Smallest coefficient of a constraint in the dependent combination, relative to the largest, at
+/// which an error names it.
 const TAKES_PART: f64 = 0.1;
 
-/// States before the present one that are remembered: the start of a step, and of the one before.
+/// Number of states kept before the present one: the starts of this step and the preceding one.
 const REMEMBERED: usize = 2;
 
 /// A state of a motion.
 struct Passed {
     t: f64,
     state: Vec<f64>,
-    /// F.
+    /// The orthonormal rows F.
     frame: DMatrix<f64>,
     /// Least singular value of the scaled rows.
     least: f64,
-    /// Combination of the constraints that belongs to it.
+    /// Combination of the constraints for the least singular value.
     combined: DVector<f64>,
 }
 
-/// States between or beyond known ones, by the time (s).
+/// States on a path, by the time (s).
 type Path<'p> = dyn Fn(f64) -> Vec<f64> + 'p;
 
-/// Follows the rows of the constraints along a motion.
+/// Detector of singular positions along a motion.
 pub(crate) struct SingularityWatch {
     rows: ConstraintRows,
     /// The names of the constraints.
     names: Vec<String>,
-    /// The largest length of each row so far: one may vanish by itself.
+    /// Largest length of each row up to now; a single row may vanish.
     lengths: Vec<f64>,
-    /// The last states, by their times.
+    /// Last states, in the order of time.
     passed: Vec<Passed>,
     found: Option<(f64, String)>,
 }
@@ -76,9 +79,9 @@ impl SingularityWatch {
         }
     }
 
-    /// Returns whether the motion passes a singular position on its way to a state from the last one before.
+    /// Returns true if the motion passes a singular position between the last state and this one.
     pub(crate) fn passes(&mut self, t: f64, state: &[f64], inputs: &HeldInputs) -> bool {
-        // Steps that led farther were taken back.
+        // The solver rejected steps to later times.
         self.passed.retain(|earlier| earlier.t < t);
         let Some(here) = self.at(t, state.to_vec(), inputs) else {
             return false;
@@ -98,8 +101,8 @@ impl SingularityWatch {
         false
     }
 
-    /// Returns the time (s) of the singular position at which the motion ended and a message; `None` if it
-    /// ended at none. The solver stopped at `t` (s) and `state`, with these rates.
+    /// Returns the time (s) of the singular position that stopped the motion, and a message;
+    /// `None` if there is none. The solver stopped at `t` (s) and `state`, with these rates.
     pub(crate) fn ended(
         &mut self,
         (t, state): (f64, &[f64]),
@@ -149,7 +152,7 @@ impl SingularityWatch {
         })
     }
 
-    /// The singular position of a step, if there is one.
+    /// Returns the singular position within a step, if there is one.
     fn fold_between(
         &mut self,
         a: &Passed,
@@ -163,7 +166,7 @@ impl SingularityWatch {
         first.or_else(|| self.search((&middle, b), path, inputs, MOST_HALVINGS))
     }
 
-    /// The singular position ahead of a state with these rates, if the motion continues to one.
+    /// Returns the singular position that the extrapolated motion reaches, if there is one.
     fn fold_ahead(&mut self, last: &Passed, rates: &[f64], inputs: &HeldInputs) -> Option<Passed> {
         let degrees = self.degrees();
         let path = |t: f64| {
@@ -190,7 +193,7 @@ impl SingularityWatch {
         self.rows.degrees_of_freedom()
     }
 
-    /// The singular position between two states on a path, if there is one.
+    /// Returns the singular position between two states on a path, if there is one.
     fn search(
         &mut self,
         (a, b): (&Passed, &Passed),
@@ -224,21 +227,21 @@ impl SingularityWatch {
             .collect();
         let what = match &names[..] {
             [one] => {
-                format!("the constraint {one} holds nothing any more, as its derivatives are all 0")
+                format!("the constraint {one} has no effect, because its derivative is zero")
             }
             several => format!(
-                "the constraints {} are no longer independent, as the derivative of one is made of those of the others",
+                "the constraints {} depend on each other, because their derivatives are linearly dependent",
                 several.join(", ")
             ),
         };
         format!(
-            "at t = {t:?} s the motion comes to a singular position: {what} there, and no accelerations follow; \
-             shorten the time, or keep the motion away from there (a stop, another start by --state)"
+            "at t = {t:?} s the motion reaches a singular position: {what}. The accelerations are not determined there; \
+             shorten the time, or avoid the position (add a stop, or choose another initial state with --state)"
         )
     }
 }
 
-/// The cubic through coordinates and rates of two states.
+/// Returns the cubic through the coordinates and rates of two states.
 fn cubic(a: &Passed, b: &Passed, degrees: usize) -> impl Fn(f64) -> Vec<f64> + use<> {
     let (begin, step) = (a.t, b.t - a.t);
     let (from, to) = (a.state.clone(), b.state.clone());

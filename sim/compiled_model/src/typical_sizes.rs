@@ -1,32 +1,33 @@
-//! Typical sizes of states by their units. The parameters, initial values and ranges of a model set the size of
-//! each base unit: the logarithms of their values, linear in those of the base units, are fitted by least squares.
-//! In other units all of them change alike, so that solvers, which compare states with these sizes, do the same.
+//! Typical sizes of states, derived from their units. The parameters, initial values and ranges of
+//! a model determine the size of each base unit: a least-squares fit of the logarithms of their
+//! values, which are linear in the logarithms of the base units. A change of units scales all
+//! sizes alike, so solvers that compare states with these sizes take the same steps.
 
 use eomgen_analysis::qr_iteration;
 use eomgen_model_spec::dimension::Dimension;
 use eomgen_model_spec::model::Model;
 use nalgebra::{DMatrix, DVector};
 
-/// Number of base units.
 const BASE_UNITS: usize = 7;
 
-/// Singular values below this part of the largest are 0: those values do not set a unit.
+/// Singular values below this fraction of the largest count as 0; their combination of units is
+/// undetermined.
 const RANK: f64 = 1e-9;
 
-/// Largest exponent of 2: squares of sizes stay finite.
+/// Largest exponent of 2, so that squares of sizes remain finite.
 const LARGEST_EXPONENT: f64 = 400.0;
 
-/// Sizes of the base units as logarithms to base 2; 0 for a unit that no value sets.
+/// Sizes of the base units as logarithms to base 2; 0 for a unit that no value determines.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TypicalSizes([f64; BASE_UNITS]);
 
 impl TypicalSizes {
-    /// The sizes that a model's values set at these orders of its fields.
+    /// Fits the sizes to the values of a model at these orders of its fields.
     pub fn new(model: &Model, orders: &[usize]) -> Self {
         Self(base_units(&values(model, orders)))
     }
 
-    /// The typical size of a quantity in SI, a power of two.
+    /// Returns the typical size of a quantity, SI, a power of two.
     pub fn size(&self, dimension: Dimension) -> f64 {
         let terms = exponents(dimension).into_iter().zip(self.0);
         let exponent: f64 = terms.map(|(exponent, unit)| exponent * unit).sum();
@@ -35,14 +36,14 @@ impl TypicalSizes {
     }
 }
 
-/// The typical size of each state in SI.
+/// Computes the typical size of each state, SI.
 pub(crate) fn typical_sizes(model: &Model, orders: &[usize]) -> Vec<f64> {
     let sizes = TypicalSizes::new(model, orders);
     let states = model.state_units(orders).into_iter();
     states.map(|unit| sizes.size(unit.dimension)).collect()
 }
 
-/// Values with their dimensions, SI.
+/// Returns all nonzero finite values with their dimensions, SI.
 fn values(model: &Model, orders: &[usize]) -> Vec<(f64, Dimension)> {
     let parameters = model
         .parameters
@@ -69,7 +70,7 @@ fn values(model: &Model, orders: &[usize]) -> Vec<(f64, Dimension)> {
         .collect()
 }
 
-/// The logarithms of the base units that fit those of the values best.
+/// Fits the logarithms of the base units to those of the values.
 fn base_units(values: &[(f64, Dimension)]) -> [f64; BASE_UNITS] {
     let exponents = values
         .iter()
@@ -105,7 +106,8 @@ mod tests {
 
     use super::typical_sizes;
 
-    /// A mass on a spring that hits a stop, with lengths and masses in other units.
+    /// Returns the sizes for a mass on a spring with a stop, with lengths and masses scaled by
+    /// powers of two.
     fn sizes(length: i32, mass: i32) -> Vec<f64> {
         let (length, mass) = (2f64.powi(length), 2f64.powi(mass));
         let text = format!(
@@ -135,7 +137,7 @@ stop = "1/2*k*deadzone(x, b)^2"
     }
 
     #[test]
-    fn sizes_follow_the_units_exactly() {
+    fn sizes_scale_exactly_with_units() {
         let own = sizes(0, 0);
         for (length, mass) in [(-17, -20), (17, 20), (-20, 20), (40, -40)] {
             let [l, m] = [length, mass].map(|power| 2f64.powi(power));
@@ -145,7 +147,7 @@ stop = "1/2*k*deadzone(x, b)^2"
     }
 
     #[test]
-    fn sizes_are_those_of_the_parameters() {
+    fn sizes_match_magnitudes_of_parameters() {
         let [x, phi, x_dot, phi_dot, force] = sizes(0, 0)[..] else {
             panic!("five states");
         };

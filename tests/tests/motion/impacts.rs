@@ -625,7 +625,7 @@ fn a_start_that_rounding_puts_into_a_contact_begins_on_it() {
     }
     for height in [-1e-7, -0.1] {
         let refusal = from(&[height, 0.0]).expect_err("it overlaps").to_string();
-        assert!(refusal.contains("below zero"), "{refusal}");
+        assert!(refusal.contains("is negative"), "{refusal}");
     }
 }
 
@@ -637,7 +637,7 @@ fn what_cannot_hold_is_said() {
     for (found, what) in [
         (
             at(&[-0.1, 0.0], Solver::Auto),
-            "`table` begins at -1.000000e-1 m",
+            "`table` is negative at the initial state (-1.000000e-1 m)",
         ),
         (at(&[1.0, 0.0], Solver::Adams), "rk or radau"),
         (at(&[1.0, 0.0], Solver::Exact), "rates jump"),

@@ -1,25 +1,24 @@
-//! The change of an energy that errors of a solver explain.
+//! Energy changes that a solver's errors can explain.
 
 use super::EnergyAt;
 
-/// How many times the energy may change by an error that the tolerance allows in every entry of
-/// the state, where no estimate of an error is relied on: from step to step, in the short step over
-/// a surface, at an impact.
+/// Factor on the energy change of an error at the tolerance in every entry of the state, if no
+/// error estimate applies: between steps, in the short step across a surface, at an impact.
 pub(crate) const ERROR_FACTOR: f64 = 30.0;
 
-/// Roundings of a time within which solvers locate a jump of the rates.
+/// Number of roundings of a time within which solvers locate a jump of the rates.
 const LOCATED: f64 = 16.0 * f64::EPSILON;
 
-/// The work (J) that is uncertain in a step until `t` (s) because times have rounding: a force that jumps in it
-/// acts from a time on that is known to that rounding.
+/// Returns the uncertain work (J) of a step until `t` (s): the time at which a force jumps is
+/// known to rounding only.
 pub(super) fn unlocated_work(t: f64, (first, last): (EnergyAt, EnergyAt)) -> f64 {
     LOCATED * t.abs() * first.power.abs().max(last.power.abs())
 }
 
-/// The change of a quantity of the state that errors explain: the sum over the entries of the
-/// changes by the error that the relative tolerance allows in each, beside the entry and the
-/// largest that it has been. Of errors of either sign the smaller change counts: a jump of the
-/// quantity beside the state is no error.
+/// Returns the change of a quantity that solver errors can explain: the sum over the entries of
+/// the state of its changes for an error at the relative tolerance. The error is relative to the
+/// entry plus its largest magnitude up to now. The smaller change of both signs counts, because a
+/// jump of the quantity near the state is no error.
 pub(crate) fn allowed_change(
     state: &[f64],
     sizes: &[f64],

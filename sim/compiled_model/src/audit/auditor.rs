@@ -1,56 +1,56 @@
-//! The energy balance of a motion, step by step.
+//! Energy balance of a motion, step by step.
 
 use eomgen_sim::ode::{Interior, ObservedStep, UNMOVED_PART};
 
 use super::allowed::{ERROR_FACTOR, allowed_change, unlocated_work};
 use super::{Audit, Energies, EnergyAt, Imbalance};
 
-/// How many times the energy may change by an error that the tolerance allows in every entry of the state, in a
-/// step whose length follows from an estimated error.
+/// Factor on the energy change of an error at the tolerance in every entry of the state, for a
+/// step with an error estimate.
 const ESTIMATE_FACTOR: f64 = 1000.0;
 
-/// A step that is shorter than this part of the one before leads over a surface.
+/// A step shorter than this fraction of the preceding one crosses a surface.
 const SHORT: f64 = 1e-3;
 
-/// A difference below this part of what was last found to be allowed is not looked at.
+/// Differences below this fraction of the last allowed change are not examined.
 const NEGLIGIBLE: f64 = 1e-2;
 
-/// The most panels of a quadrature by interpolated states.
+/// Maximum number of panels of a quadrature with interpolated states.
 const MOST_PANELS: usize = 4096;
 
-/// The same by states that take a step each.
+/// Maximum number of panels of a quadrature whose states need a step each.
 const MOST_RESOLVED_PANELS: usize = 16;
 
-/// Roundings of an energy that count as none.
+/// Rounding of an energy, relative to its magnitude.
 const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 
-/// The tolerance of a solver without one.
+/// Tolerance used for a solver without one.
 const EXACT_TOLERANCE: f64 = 1e-9;
 
-/// Keeps the energy balance of a motion while it goes on.
+/// Energy auditor of a motion in progress.
 #[derive(Debug)]
 pub(crate) struct Auditor {
     tolerance: f64,
-    /// True if steps have no error but rounding.
+    /// Whether steps have rounding errors only.
     is_exact: bool,
-    /// Why contacts are not judged, if they are not.
+    /// Reason why contacts are not audited; `None` if they are.
     driven_contacts: Option<String>,
-    /// The largest that each entry of the state has been.
+    /// Largest magnitude of each entry of the state.
     sizes: Vec<f64>,
-    /// The energy behind the last step.
+    /// Energy at the end of the last step, J.
     energy: Option<f64>,
-    /// What impacts have changed of it since, J.
+    /// Energy change at impacts since that step, J.
     pending: f64,
-    /// The last change that errors were found to explain, J.
+    /// Last change that errors can explain, J.
     last_allowed: f64,
-    /// The length of the last step with a known inside, s.
+    /// Length of the last step with a known interior, s.
     last_length: f64,
     pub(super) audit: Audit,
 }
 
 impl Auditor {
-    /// An auditor of a motion with a relative tolerance, none for an exact one, and with the typical sizes of its
-    /// states.
+    /// Creates an auditor of a motion with a relative tolerance (`None` for an exact motion) and
+    /// the typical sizes of its states.
     pub fn new(
         tolerance: Option<f64>,
         typical_sizes: &[f64],
@@ -72,12 +72,12 @@ impl Auditor {
         }
     }
 
-    /// The balance so far.
+    /// Returns the balance up to now.
     pub fn audit(&self) -> &Audit {
         &self.audit
     }
 
-    /// Judges a step.
+    /// Audits a step.
     pub fn step(&mut self, step: &mut ObservedStep<'_>, energies: &mut Energies<'_>) {
         let (start, end) = (step.start, step.end);
         self.raise_sizes(start.1);
@@ -93,7 +93,7 @@ impl Auditor {
             self.last_length = length;
         }
         let is_estimated = has_interior || length > SHORT * self.last_length;
-        // What is no number is not negligible.
+        // NaN is not negligible.
         let is_negligible = (change - work).abs() <= NEGLIGIBLE * self.last_allowed;
         if !is_negligible {
             let factor = match is_estimated && !self.is_exact {
@@ -113,7 +113,8 @@ impl Auditor {
         self.audit.work += work;
     }
 
-    /// Judges what changed the energy between two steps: a surface, or the return to constraints.
+    /// Audits an energy change between two steps, at a surface or by projection onto the
+    /// constraints.
     fn jump(&mut self, start: (f64, &[f64]), change: f64, energies: &mut Energies<'_>) {
         self.audit.energy_change += change;
         let is_negligible = change.abs() <= NEGLIGIBLE / ESTIMATE_FACTOR * self.last_allowed;
@@ -124,15 +125,15 @@ impl Auditor {
         }
     }
 
-    /// Notes a change of the energy that is larger than the tolerance, or no number.
+    /// Records an energy change that is NaN or exceeds the tolerance.
     fn judge(&mut self, t: f64, size: f64, tolerance: f64) {
         if size.abs() > tolerance || size.is_nan() {
             self.audit.note(Imbalance { t, size, tolerance });
         }
     }
 
-    /// The work of a step whose energy changes so, as accurately as is needed, and the change that
-    /// errors explain.
+    /// Returns the work of a step with this energy change, as accurately as needed, and the change
+    /// that errors can explain.
     fn look_closely(
         &mut self,
         step: &mut ObservedStep<'_>,
@@ -151,7 +152,7 @@ impl Auditor {
             if (change - work).abs() <= tolerance {
                 return (work, tolerance);
             }
-            // A part of the energy may be larger inside than at the ends.
+            // Part of the energy may be larger inside the step than at its ends.
             let middle = 0.5 * (step.start.0 + step.end.0);
             if let Some(state) = (step.inside)(middle, interior) {
                 let inside = self.allowed(energies, factor, &[(middle, &state)], &[]);
@@ -162,7 +163,7 @@ impl Auditor {
         (work, tolerance)
     }
 
-    /// Leaves out a step that cannot be judged, for a reason.
+    /// Excludes a step that cannot be audited, for a reason.
     pub fn leave_out(
         &mut self,
         step: &ObservedStep<'_>,
@@ -183,7 +184,8 @@ impl Auditor {
         why.get_or_insert_with(|| reason.to_owned());
     }
 
-    /// Books an impact at time `t` (s) that changes the state, where contacts that move do this work (J).
+    /// Audits an impact at time `t` (s) that changes the state, at which moving contacts do this
+    /// work (J).
     pub fn impact(
         &mut self,
         t: f64,
@@ -194,7 +196,7 @@ impl Auditor {
         let before = self.at(energies, (t, from)).energy;
         let after = self.at(energies, (t, to)).energy;
         let change = after - before;
-        // The step that leads here ends behind the impact.
+        // The step that ends here includes the impact.
         self.pending += change;
         self.audit.energy_change += change;
         if let Some(reason) = &self.driven_contacts {
@@ -212,7 +214,7 @@ impl Auditor {
         }
     }
 
-    /// Why closed contacts are not judged, if they are not.
+    /// Returns the reason why closed contacts are not audited; `None` if they are.
     pub fn driven_contacts(&self) -> Option<&str> {
         self.driven_contacts.as_deref()
     }
@@ -232,7 +234,7 @@ impl Auditor {
         }
     }
 
-    /// The change of the energy that errors at these states explain.
+    /// Returns the energy change that errors at these states can explain.
     fn allowed(
         &mut self,
         energies: &mut Energies<'_>,

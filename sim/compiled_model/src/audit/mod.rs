@@ -1,10 +1,10 @@
-//! Energy audit of a motion: along every step the change of the energy is compared with the work,
-//! the integral of the power. What is left and exceeds the errors that the solver's tolerance
-//! allows is energy from nothing, whatever its cause.
+//! Energy audit of a motion: compares the energy change of every step with the work, the integral
+//! of the power. A difference beyond the errors that the solver's tolerance allows indicates an
+//! error of the equations or of the solver.
 //!
-//! Changes at impacts are booked by themselves: less the work of contacts that move, they may not be gains.
-//! Contacts at rest do no work unless they move with the time. A contact whose distance depends on inputs is
-//! left out: it jumps where held inputs do.
+//! Energy changes at impacts are separate: minus the work of moving contacts, they must not be
+//! gains. Contacts at rest do work only if they move with time. Contacts whose distance depends on
+//! inputs are not audited, because the distance jumps with held inputs.
 
 mod allowed;
 mod auditor;
@@ -21,14 +21,14 @@ pub(crate) type Energies<'e> = dyn FnMut(f64, &[f64]) -> EnergyAt + 'e;
 /// Energy and power of a state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct EnergyAt {
-    /// J.
+    /// Energy, J.
     pub energy: f64,
-    /// W.
+    /// Power, W.
     pub power: f64,
 }
 
 impl EnergyAt {
-    /// Of the observables of a model, `energy` and `power` last.
+    /// Reads them from the observables of a model, of which they are the last two.
     pub fn of(observables: &[f64]) -> Self {
         match observables {
             [.., energy, power] => Self {
@@ -43,47 +43,47 @@ impl EnergyAt {
     }
 }
 
-/// The energy balance of a motion.
+/// Energy balance of a motion.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Audit {
     /// Change of the energy from the first step to the last, J.
     pub energy_change: f64,
-    /// Integral of the power, and the work of contacts that move, J.
+    /// Integral of the power plus the work of moving contacts, J.
     pub work: f64,
-    /// Change of the energy at impacts less that work, J; losses are negative.
+    /// Change of the energy at impacts minus that work, J; losses are negative.
     pub impacts: f64,
-    /// Change of the energy in what could not be judged, J.
+    /// Change of the energy in steps and impacts that were not audited, J.
     pub unaudited: f64,
-    /// Steps and impacts that changed the energy by more than errors explain.
+    /// Number of steps and impacts whose energy change exceeds the tolerance.
     pub faults: u64,
-    /// The first of them.
+    /// First fault.
     pub first_fault: Option<Imbalance>,
-    /// The largest of them.
+    /// Largest fault.
     pub largest_fault: Option<Imbalance>,
-    /// Evaluations of energy and power.
+    /// Number of evaluations of energy and power.
     pub evaluations: u64,
-    /// Why some of the motion was not judged, if it was not.
+    /// Reason why part of the motion was not audited; `None` if all was.
     pub not_applicable: Option<String>,
 }
 
-/// A change of the energy that nothing explains.
+/// An unexplained change of the energy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Imbalance {
-    /// When, s.
+    /// Time, s.
     pub t: f64,
-    /// The energy gained, J; lost if it is negative.
+    /// Energy gained, J; negative if lost.
     pub size: f64,
-    /// What errors of the solver explain, J.
+    /// Energy that the solver's errors can explain, J.
     pub tolerance: f64,
 }
 
 impl Audit {
-    /// The part of the energy's change that neither work nor impacts explain, J.
+    /// Returns the change of the energy that neither work nor impacts explain, J.
     pub fn unexplained(&self) -> f64 {
         self.energy_change - self.work - self.impacts - self.unaudited
     }
 
-    /// A sentence on the first change of the energy that nothing explains, if there is one.
+    /// Returns a warning about the first unexplained change of the energy, if there is one.
     pub fn warning(&self) -> Option<String> {
         let Imbalance { t, size, tolerance } = self.first_fault?;
         let (verb, size) = if size < 0.0 {
@@ -93,11 +93,14 @@ impl Audit {
         };
         let more = match self.faults {
             1 => String::new(),
-            count => format!("; {count} steps do so, {:.4e} J in all", self.unexplained()),
+            count => format!(
+                "; {count} steps do so, with {:.4e} J in total",
+                self.unexplained()
+            ),
         };
         Some(format!(
-            "the motion {verb} {size:.4e} J without work at t = {t} s, where errors of the solver \
-             explain {tolerance:.1e} J{more}: the equations or the solver are wrong there"
+            "the motion {verb} {size:.4e} J without work at t = {t} s, but the solver's error can \
+             explain only {tolerance:.1e} J{more}: check the forces and energies of the model, or reduce the tolerance"
         ))
     }
 

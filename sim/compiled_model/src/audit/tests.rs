@@ -1,4 +1,4 @@
-//! The auditor on motions that are known.
+//! The auditor on motions with a known energy balance.
 
 use eomgen_sim::ode::ObservedStep;
 
@@ -12,7 +12,8 @@ fn oscillator(_: f64, state: &[f64]) -> EnergyAt {
     }
 }
 
-/// The audit of the oscillator's motion in steps of 0.1 s, tampered with from step 20 on.
+/// Audits the oscillator's motion in steps of 0.1 s, with states changed by `tamper` from step 20
+/// on.
 fn audited(tamper: impl Fn(&mut [f64; 2]), energies: &mut Energies<'_>) -> Audit {
     let mut auditor = Auditor::new(Some(1e-9), &[1.0; 2], None);
     let state = |t: f64| [t.cos(), -t.sin()];
@@ -33,14 +34,14 @@ fn audited(tamper: impl Fn(&mut [f64; 2]), energies: &mut Energies<'_>) -> Audit
 }
 
 #[test]
-fn an_exact_motion_has_no_fault() {
+fn exact_motion_has_no_fault() {
     let audit = audited(|_| {}, &mut oscillator);
     assert_eq!(audit.faults, 0);
     assert!(audit.evaluations < 40 * 20, "{}", audit.evaluations);
 }
 
 #[test]
-fn a_tampered_state_is_a_fault_with_its_time_and_size() {
+fn fault_of_changed_state_has_its_time_and_size() {
     let audit = audited(|state| state[1] *= 1.0 + 1e-4, &mut oscillator);
     let fault = audit.first_fault.expect("a fault");
     assert!((fault.t - 2.1).abs() < 1e-12);
@@ -49,7 +50,7 @@ fn a_tampered_state_is_a_fault_with_its_time_and_size() {
 }
 
 #[test]
-fn an_energy_that_jumps_beside_the_state_is_a_fault() {
+fn jump_of_energy_is_a_fault() {
     // x falls through cos(2.05) between 2.0 and 2.1 s.
     let wall = 2.05_f64.cos();
     let mut jump = |t: f64, state: &[f64]| EnergyAt {
@@ -62,8 +63,8 @@ fn an_energy_that_jumps_beside_the_state_is_a_fault() {
 }
 
 #[test]
-fn work_that_is_done_is_no_fault_and_work_that_is_not_is_one() {
-    // The energy grows by 0.2 J/s by the work of a force, or by nothing.
+fn energy_change_without_work_is_a_fault() {
+    // The energy grows by 0.1 t^2, with or without the power of a force.
     let mut pushed = |t: f64, state: &[f64]| EnergyAt {
         energy: oscillator(t, state).energy + 0.1 * t * t,
         power: 0.2 * t,
@@ -79,7 +80,7 @@ fn work_that_is_done_is_no_fault_and_work_that_is_not_is_one() {
 }
 
 #[test]
-fn an_impact_may_lose_energy_and_not_gain_it() {
+fn only_energy_gain_at_impact_is_a_fault() {
     let mut auditor = Auditor::new(Some(1e-9), &[1.0; 2], None);
     auditor.impact(1.0, (&[0.0, -1.0], &[0.0, 0.5]), 0.0, &mut oscillator);
     assert_eq!(auditor.audit().faults, 0);

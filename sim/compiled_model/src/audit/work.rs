@@ -1,14 +1,14 @@
-//! The work of a step: quadrature of the power.
+//! Work of a step: quadrature of the power.
 
 use eomgen_sim::ode::{Interior, ObservedStep};
 
 use super::auditor::Auditor;
 use super::{Energies, EnergyAt};
 
-/// The error of a quadrature beside the change of the energy that is allowed.
+/// Allowed error of a quadrature, relative to the allowed change of the energy.
 const QUADRATURE_ERROR: f64 = 0.1;
 
-/// Nodes and weights of Gauss' quadrature of order 8 on (0, 1).
+/// Nodes and weights of Gauss quadrature of order 8 on (0, 1).
 const GAUSS: [(f64, f64); 4] = [
     (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
     (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
@@ -17,7 +17,8 @@ const GAUSS: [(f64, f64); 4] = [
 ];
 
 impl Auditor {
-    /// The integral of the power over a step by Simpson's rule, and whether the inside is known.
+    /// Integrates the power over a step by Simpson's rule; returns false if the interior is
+    /// unknown.
     pub(super) fn simpson(
         &mut self,
         step: &mut ObservedStep<'_>,
@@ -36,8 +37,9 @@ impl Auditor {
         }
     }
 
-    /// The integral of the power over a step, panels halved until that changes little beside
-    /// what is allowed; and how uncertain it is if nothing is known of the inside.
+    /// Integrates the power over a step and halves panels until the change is small compared with
+    /// `allowed`. Returns the work and its uncertainty, J; the latter is nonzero if the interior
+    /// is unknown.
     pub(super) fn work(
         &mut self,
         step: &mut ObservedStep<'_>,

@@ -1,27 +1,28 @@
-//! The linearised equations at one point of a search, in numbers that do not depend on units.
+//! Linearised equations at one point of a search, scaled so that units do not matter.
 
 use eomgen_analysis::qr_iteration;
 use nalgebra::{DMatrix, DVector};
 
-/// A singular value is zero if it is this small beside the largest.
+/// Singular values below this fraction of the largest count as 0.
 const RANK: f64 = 1e-12;
 
-/// Equations are about linear along a way if the change of the accelerations' slope is at most this part
-/// of it.
+/// Largest change of the accelerations' slope along a step, relative to the slope, at which the
+/// equations count as linear.
 const STRAIGHT: f64 = 0.5;
 
-/// The accelerations and the rates of states of first order at a point, and their derivatives by
+/// Accelerations and rates of first-order states at a point, and their derivatives with respect to
 /// the unknowns.
 pub(super) struct Linear {
     pub accelerations: DVector<f64>,
     pub matrix: DMatrix<f64>,
-    /// How large each acceleration or a term of it has been so far.
+    /// Largest magnitude of each acceleration or of its terms up to now.
     pub sizes: DVector<f64>,
 }
 
 impl Linear {
-    /// The smallest change of the unknowns that makes the linearised accelerations least. An unknown is
-    /// measured by its natural scale, or, without one, by what it does to the accelerations.
+    /// Computes the smallest change of the unknowns that minimises the linearised accelerations.
+    /// Each unknown is scaled by its natural scale or, without one, by its effect on the
+    /// accelerations.
     pub fn step(&self, scales: &[Option<f64>]) -> DVector<f64> {
         let rows = self.sizes.map(positive);
         let relative = |row: usize, column: usize| self.matrix[(row, column)] / rows[row];
@@ -41,7 +42,8 @@ impl Linear {
         step.component_mul(&units)
     }
 
-    /// Whether the accelerations' slope along a way to another point is about the same there.
+    /// Returns true if the slope of the accelerations along `way` is nearly the same at another
+    /// point.
     pub fn is_straight_to(&self, there: &Self, way: &DVector<f64>) -> bool {
         let rows = self.sizes.map(positive);
         let slope = |linear: &Self| (&linear.matrix * way).component_div(&rows);
@@ -49,7 +51,7 @@ impl Linear {
         (&there - &here).norm() <= STRAIGHT * here.norm().max(there.norm())
     }
 
-    /// The sum of the squares of the accelerations, each in parts of its size.
+    /// Returns the sum of the squares of the accelerations relative to these sizes.
     pub fn measured_by(&self, sizes: &DVector<f64>) -> f64 {
         let parts = self.accelerations.iter().zip(sizes);
         parts
@@ -57,19 +59,19 @@ impl Linear {
             .sum()
     }
 
-    /// Returns true if all accelerations are below this part of their sizes.
+    /// Returns true if all accelerations are below this fraction of their sizes.
     pub fn is_below(&self, part: f64) -> bool {
         self.rows_above(part).is_empty()
     }
 
-    /// Returns the rows of the accelerations that are not below this part of their sizes.
+    /// Returns the rows of the accelerations that are not below this fraction of their sizes.
     pub fn rows_above(&self, part: f64) -> Vec<usize> {
         let rows = self.relative().enumerate();
         let above = rows.filter(|(_, own)| own.is_nan() || *own > part);
         above.map(|(row, _)| row).collect()
     }
 
-    /// Which acceleration is the largest beside its size, and what it is, SI.
+    /// Returns the row of the largest acceleration relative to its size, and its value, SI.
     pub fn worst(&self) -> (usize, f64) {
         let worst = self
             .relative()
@@ -78,7 +80,7 @@ impl Linear {
         worst.map_or((0, 0.0), |(row, _)| (row, self.accelerations[row]))
     }
 
-    /// The sign of the acceleration of a coordinate: 0 if it is rounding.
+    /// Returns the sign of the acceleration of a coordinate; 0 if it is rounding.
     pub fn direction_of(&self, coordinate: usize) -> f64 {
         let value = self.accelerations.get(coordinate).copied().unwrap_or(0.0);
         match self.sizes.get(coordinate) {

@@ -1,9 +1,9 @@
-//! Equilibria: states that stay as they are, at rest or turning and travelling steadily.
+//! Equilibria: steady states, at rest or with constant speeds.
 //!
-//! At an equilibrium all accelerations and all rates of states of first order are 0. Rates of coordinates
-//! are 0 too, but along [cyclic directions](Instance::cyclic_directions), where a constant speed changes
-//! nothing. The search keeps the speeds that the start has; if there is no equilibrium with them, it looks
-//! for the speeds as well. How it finds one is the business of `search` and `linear`.
+//! At an equilibrium all accelerations and all rates of first-order states are 0. Rates of
+//! coordinates are 0 too, except along [cyclic directions](Instance::cyclic_directions), along
+//! which any constant speed is possible. The search keeps the given speeds; if it finds no
+//! equilibrium with them, the speeds become unknowns as well.
 
 mod linear;
 mod search;
@@ -19,36 +19,37 @@ use self::search::{Search, Unknown};
 
 pub use self::stability::Stability;
 
-/// A state is no equilibrium if a rate is this large beside the terms it is the sum of.
+/// Smallest rate that counts as nonzero, relative to its largest term.
 const NOT_ZERO: f64 = 1e-6;
 
-/// Speeds agree with a cyclic direction if they differ by no more than this part of the largest of their kind.
+/// Largest difference of equal speeds, relative to the largest speed of the same unit.
 const SAME_SPEED: f64 = 1e-9;
 
-/// A state that stays as it is.
+/// An equilibrium of a model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Equilibrium {
-    /// Where it is.
+    /// Operating point of the equilibrium.
     pub at: OperatingPoint,
-    /// The accelerations, and then the rates of states of first order, that are left of rounding,
-    /// SI, in the order of the coordinates and of the states.
+    /// Remaining accelerations of the coordinates, then rates of the first-order states, SI.
     pub residual: Vec<f64>,
-    /// The names of the rates that are not 0: where it runs steadily.
+    /// Names of the nonzero rates, which stay constant.
     pub running: Vec<String>,
-    /// The names of the coordinates, rates, inputs and states of first order that were looked for.
+    /// Names of the coordinates, rates, inputs and first-order states that were unknowns of the
+    /// search.
     pub free: Vec<String>,
-    /// Whether forces depend on the time there: then it is one at that instant alone.
+    /// Whether the rates depend on time. If true, the point is an equilibrium at that instant
+    /// only.
     pub depends_on_time: bool,
 }
 
-/// Changes of a state that is no equilibrium, by name; empty at an equilibrium.
+/// Reasons why a state is no equilibrium, by name; empty at an equilibrium.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Departure {
-    /// Rates that are not 0, except constant speeds along cyclic directions.
+    /// Nonzero rates, except constant speeds along cyclic directions.
     pub moving: Vec<String>,
-    /// Rates whose accelerations are not 0 compared with their terms.
+    /// Rates whose accelerations are nonzero, relative to their terms.
     pub accelerating: Vec<String>,
-    /// States of first order whose rates are not 0 compared with their terms.
+    /// First-order states whose rates are nonzero, relative to their terms.
     pub changing: Vec<String>,
 }
 
@@ -59,28 +60,30 @@ impl Departure {
     }
 }
 
-/// Where the search begins and what it leaves alone, SI.
+/// Start and fixed values of a search for an equilibrium, SI.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct EquilibriumRequest<'r> {
-    /// Values in place of those of the initial state, where the search begins.
+    /// Values that replace those of the initial state at the start of the search.
     pub start: &'r [(&'r str, f64)],
-    /// Values that stay.
+    /// Values that stay fixed.
     pub fixed: &'r [(&'r str, f64)],
 }
 
 impl Instance<'_> {
-    /// The equilibrium nearest to the start. Coordinates and states of first order are free but for those
-    /// that are fixed. Inputs are 0 or as given; if coordinates, speeds or such states are fixed, the inputs
-    /// that are not are free: they hold the machine there.
+    /// Finds the equilibrium nearest to the start. Coordinates and first-order states are
+    /// unknowns, except fixed ones. Inputs have their default or given values. If coordinates,
+    /// speeds or first-order states are fixed, the inputs that are not fixed are unknowns too and
+    /// hold the machine there.
     ///
     /// # Errors
-    /// An unknown name; a rate other than 0 of a coordinate whose value matters; a start outside a declared
-    /// range; and [`Error::Stopped`] where no equilibrium is found.
+    /// An unknown name, a nonzero rate of a coordinate that is not cyclic, a start outside a
+    /// declared range, and [`Error::Stopped`] if no equilibrium is found.
     pub fn equilibrium(&self, request: EquilibriumRequest<'_>) -> Result<Equilibrium, Error> {
         let given = [request.start, request.fixed].concat();
         let mut at = self.operating_point(&given)?;
         self.check_ranges(&at)?;
-        // With residuals among the accelerations, where these are zero the constraints hold.
+        // At a nonzero stabilisation rate the accelerations contain the residuals of the
+        // constraints.
         let holding = self.stabilised(1.0);
         let directions = match self.is_at_rest(&at) {
             true => Vec::new(),
@@ -94,7 +97,7 @@ impl Instance<'_> {
         let residual = match first {
             Ok(residual) => residual,
             Err(error) => {
-                // No machine with these speeds: it may have others.
+                // No equilibrium at these speeds: search for the speeds too.
                 let directions = holding.cyclic_directions(&start)?;
                 let speeds = self.free_speeds(&directions, request.fixed)?;
                 if speeds.is_empty() {
@@ -118,18 +121,18 @@ impl Instance<'_> {
         })
     }
 
-    /// Returns true if a state stays as it is, as [`Instance::departure`] tells.
+    /// Returns true if a state is an equilibrium; see [`Instance::departure`].
     ///
     /// # Errors
-    /// As [`Instance::jacobian_evaluator`].
+    /// Same as [`Instance::jacobian_evaluator`].
     pub fn is_equilibrium(&self, at: &OperatingPoint) -> Result<bool, Error> {
         Ok(self.departure(at)?.is_none())
     }
 
-    /// Returns the rates, accelerations and states of first order that keep a state from being an equilibrium.
+    /// Returns the rates, accelerations and first-order states that are not steady.
     ///
     /// # Errors
-    /// As [`Instance::jacobian_evaluator`].
+    /// Same as [`Instance::jacobian_evaluator`].
     pub fn departure(&self, at: &OperatingPoint) -> Result<Departure, Error> {
         let holding = self.stabilised(1.0);
         let mut found = Departure::default();
@@ -151,7 +154,7 @@ impl Instance<'_> {
         Ok(found)
     }
 
-    /// The names of the rates that are not 0.
+    /// Returns the names of the nonzero rates.
     fn running(&self, at: &OperatingPoint) -> Vec<String> {
         let rates = self.degrees()..2 * self.degrees();
         let names = self.model().state_names();
@@ -170,8 +173,8 @@ impl Instance<'_> {
             .all(|rate| *rate == 0.0)
     }
 
-    /// What is looked for if speeds are given: all coordinates and states of first order that are not fixed,
-    /// and inputs that hold those that are.
+    /// Returns the unknowns at given speeds: all coordinates and first-order states that are not
+    /// fixed, and the inputs that are not fixed if a state is.
     fn free(&self, at: &OperatingPoint, fixed: &[(&str, f64)]) -> Result<Vec<Unknown>, Error> {
         let fixed = fixed.iter().map(|(name, _)| self.model().setting(name));
         let fixed = fixed.collect::<Result<Vec<Setting>, Error>>()?;
@@ -189,7 +192,7 @@ impl Instance<'_> {
         Ok(free.map(Unknown::Setting).collect())
     }
 
-    /// The speeds along cyclic directions that nothing fixes.
+    /// Returns the speeds along cyclic directions that no fixed value determines.
     fn free_speeds(
         &self,
         directions: &[Vec<f64>],
@@ -219,7 +222,7 @@ impl Instance<'_> {
         let rates = &mut at.state[degrees..2 * degrees];
         rates.fill(0.0);
         for direction in directions {
-            // Of the coordinates that move along it, those that were given a speed decide.
+            // The mean over the coordinates with a given speed.
             let moving = || {
                 direction
                     .iter()
@@ -234,7 +237,8 @@ impl Instance<'_> {
         }
     }
 
-    /// Returns the names of the rates that differ between two states, compared with the largest of their kind.
+    /// Returns the names of the rates that differ between two states, relative to the largest rate
+    /// of the same unit.
     fn other_speeds(&self, one: &OperatingPoint, other: &OperatingPoint) -> Vec<String> {
         let model = self.model();
         let (units, names) = (
@@ -252,7 +256,7 @@ impl Instance<'_> {
         differing.map(|place| names[place].clone()).collect()
     }
 
-    /// Refuses a given rate other than 0 of a coordinate that may not move steadily.
+    /// Rejects a nonzero rate of a coordinate that is not cyclic.
     fn check_speeds(
         &self,
         at: &OperatingPoint,
@@ -272,15 +276,15 @@ impl Instance<'_> {
             {
                 let coordinate = &self.model().state_names()[coordinate];
                 return Err(Error::Request(format!(
-                    "{name} = {value}: in an equilibrium all rates are 0 but those of coordinates on whose \
-                     value nothing depends; forces depend on `{coordinate}`"
+                    "{name} = {value}: at an equilibrium, a rate is nonzero only if no force depends on its \
+                     coordinate; forces depend on `{coordinate}`. Set {name} to 0"
                 )));
             }
         }
         Ok(())
     }
 
-    /// Refuses coordinates and inputs outside the ranges that the specification declares.
+    /// Rejects coordinates and inputs outside their declared ranges.
     fn check_ranges(&self, at: &OperatingPoint) -> Result<(), Error> {
         let model = self.model().model();
         let refused = |error| Error::model(model, error);
@@ -295,7 +299,7 @@ impl Instance<'_> {
                 && !(*low..=*high).contains(value)
             {
                 return Err(Error::Request(format!(
-                    "{name} = {value} is outside its range {low} to {high} (SI): begin inside, or declare a \
+                    "{name} = {value} is outside its range {low} to {high} (SI): start inside it, or declare a \
                      wider range"
                 )));
             }
@@ -304,7 +308,7 @@ impl Instance<'_> {
     }
 }
 
-/// Whether an unknown is a coordinate that a cyclic direction alone moves: it stays where it is.
+/// Returns true if an unknown is the only coordinate of a cyclic direction; it keeps its value.
 fn is_cyclic(unknown: &Unknown, directions: &[Vec<f64>]) -> bool {
     let Unknown::Setting(Setting::State(place)) = unknown else {
         return false;

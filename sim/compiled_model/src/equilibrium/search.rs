@@ -1,9 +1,9 @@
-//! The search for an equilibrium: the method of Gauss and Newton with the emitted Jacobians.
+//! Search for an equilibrium: Gauss-Newton steps with the emitted Jacobians.
 //!
-//! A step goes as far as the linearised equations are right along it (P. Deuflhard, *Newton Methods for
-//! Nonlinear Problems*, 3.2), so that the search follows the path from its start and does not jump to
-//! another equilibrium; no coordinate moves by more than a part of its natural scale, or out of its
-//! declared range.
+//! A step is shortened until the linearised equations are accurate along it (P. Deuflhard, *Newton
+//! Methods for Nonlinear Problems*, 3.2). The search thus follows the path from its start and does
+//! not jump to another equilibrium. No coordinate moves by more than a fraction of its natural
+//! scale, or out of its declared range.
 
 use eomgen_codegen::program::evaluator::Evaluator;
 use nalgebra::{DMatrix, DVector};
@@ -15,37 +15,39 @@ use crate::operating_point::{OperatingPoint, Setting};
 
 use super::linear::Linear;
 
-/// Steps before the search is given up; near an equilibrium ten are enough.
+/// Maximum number of steps; near an equilibrium ten are enough.
 const MAX_STEPS: usize = 300;
 
-/// Halvings of a step before it is given up.
+/// Maximum number of halvings of a step.
 const MAX_HALVINGS: i32 = 40;
 
-/// Halvings of a step before one is taken along which the equations bend, as across a kink.
+/// Number of halvings after which a step is accepted although the equations are not linear along
+/// it, for example across a kink.
 const MAX_STRAIGHT_HALVINGS: i32 = 12;
 
-/// Halvings of a step from where all is zero already: what it gains is rounding.
+/// Maximum number of halvings of a step if all accelerations are zero already; the remaining gain
+/// is rounding.
 const HALVINGS_AT_THE_END: i32 = 2;
 
-/// The longest step, in parts of a coordinate's natural scale.
+/// Longest step, relative to a coordinate's natural scale.
 const LONGEST_STEP: f64 = 0.25;
 
-/// A displacement off a place where no step helps, in parts of a coordinate's natural scale.
+/// Displacement from a point at which no step helps, relative to a coordinate's natural scale.
 const NUDGE: f64 = 1.0 / 1024.0;
 
-/// Displacements before the search is given up.
+/// Maximum number of such displacements.
 const MAX_NUDGES: usize = 3;
 
-/// An acceleration is zero if it is this small beside the largest that the search has met in its
-/// equation, or the terms that it is the sum of.
+/// Largest acceleration that counts as zero, relative to the largest value or term of its equation
+/// in this search.
 const ZERO: f64 = 1e-10;
 
-/// What is looked for.
+/// An unknown of the search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Unknown {
-    /// A coordinate, a state of first order or an input.
+    /// Coordinate, first-order state or input.
     Setting(Setting),
-    /// The speed along a cyclic direction, by its place.
+    /// Speed along a cyclic direction, by its index.
     Speed(usize),
 }
 
@@ -55,9 +57,9 @@ pub(super) struct Search<'i, 'm> {
     jacobians: JacobianEvaluator,
     directions: Vec<Vec<f64>>,
     unknowns: Vec<Unknown>,
-    /// Natural scales of the unknowns, where there are.
+    /// Natural scales of the unknowns, if known.
     scales: Vec<Option<f64>>,
-    /// Ranges of the unknowns, where they are declared.
+    /// Ranges of the unknowns, if declared.
     ranges: Vec<Option<(f64, f64)>>,
 }
 
@@ -92,7 +94,7 @@ impl<'i, 'm> Search<'i, 'm> {
         })
     }
 
-    /// Moves to an equilibrium, and gives the accelerations that are left there.
+    /// Moves `at` to an equilibrium and returns the remaining accelerations.
     pub fn run(&mut self, at: &mut OperatingPoint) -> Result<Vec<f64>, Error> {
         let mut here = self.linearised(at)?;
         let mut nudges = 0;
@@ -102,7 +104,7 @@ impl<'i, 'm> Search<'i, 'm> {
             }
             let step = here.step(&self.scales);
             let moved = match self.advanced(at, &here, &step) {
-                // Where nothing gets smaller any more, rounding is all that is left.
+                // No step reduces the accelerations, which are zero up to rounding.
                 None if here.is_below(ZERO) || nudges == MAX_NUDGES => break,
                 None => {
                     nudges += 1;
@@ -122,8 +124,9 @@ impl<'i, 'm> Search<'i, 'm> {
         Err(self.not_found(at, &here))
     }
 
-    /// The longest part of a step along which accelerations get less and the equations are about linear;
-    /// if that is none, the longest along which accelerations get less.
+    /// Returns the longest shortened step that reduces the accelerations and along which the
+    /// equations are nearly linear. If there is none, returns the longest that reduces the
+    /// accelerations.
     fn advanced(
         &mut self,
         at: &OperatingPoint,
@@ -156,7 +159,7 @@ impl<'i, 'm> Search<'i, 'm> {
         bent
     }
 
-    /// The part of a step that moves no unknown further than its scale admits.
+    /// Returns the fraction of a step that keeps every unknown within [`LONGEST_STEP`].
     fn longest_part(&self, step: &DVector<f64>) -> f64 {
         let parts = step.iter().zip(&self.scales);
         let part = |(change, scale): (&f64, &Option<f64>)| match scale {
@@ -166,7 +169,8 @@ impl<'i, 'm> Search<'i, 'm> {
         parts.map(part).fold(1.0, f64::min)
     }
 
-    /// A little off, as the accelerations point: where no step helps, forces may be at their largest.
+    /// Returns a point displaced in the direction of the accelerations. If no step helps, forces
+    /// may have an extremum.
     fn nudged(&mut self, at: &OperatingPoint, here: &Linear) -> Option<(OperatingPoint, Linear)> {
         let change = DVector::from_fn(self.unknowns.len(), |place, _| {
             match (self.unknowns[place], self.scales[place]) {
@@ -181,7 +185,7 @@ impl<'i, 'm> Search<'i, 'm> {
         (way.amax() > 0.0).then_some((trial, there))
     }
 
-    /// The accelerations at a point, and their derivatives by the unknowns.
+    /// Returns the accelerations at a point and their derivatives with respect to the unknowns.
     pub fn linearised(&mut self, at: &OperatingPoint) -> Result<Linear, Error> {
         let degrees = self.instance.model().program().degrees_of_freedom();
         let states = at.state.len();
@@ -214,8 +218,8 @@ impl<'i, 'm> Search<'i, 'm> {
             .chain(matrix.iter())
             .all(|number| number.is_finite())
         {
-            let reason = "an acceleration or its derivative is no finite number there: look for a stiffness \
-                          or a mass that is too large or too small"
+            let reason = "an acceleration or its derivative is not finite at this state: check for a stiffness or \
+                          mass that is too large or too small, or start at another state (--state)"
                 .to_owned();
             return Err(Error::Request(reason));
         }
@@ -238,7 +242,7 @@ impl<'i, 'm> Search<'i, 'm> {
         })
     }
 
-    /// The point with its unknowns changed, within their ranges, and by how much they are.
+    /// Returns the point with its unknowns changed within their ranges, and the changes.
     fn moved(&self, at: &OperatingPoint, change: &DVector<f64>) -> (OperatingPoint, DVector<f64>) {
         let degrees = self.instance.model().program().degrees_of_freedom();
         let (mut moved, mut way) = (at.clone(), DVector::zeros(change.len()));
@@ -267,13 +271,13 @@ impl<'i, 'm> Search<'i, 'm> {
         (moved, way)
     }
 
-    /// Whether any rate depends on the time at a point.
+    /// Returns true if a rate depends on time at a point.
     pub fn depends_on_time(&mut self, at: &OperatingPoint) -> bool {
         let by_time = self.jacobians.dense(Jacobian::RatesByTime, at.point());
         by_time.iter().any(|rate| *rate != 0.0)
     }
 
-    /// The names of the unknowns.
+    /// Returns the names of the unknowns.
     pub fn names(&self) -> Vec<String> {
         let model = self.instance.model();
         let (states, degrees) = (model.state_names(), model.program().degrees_of_freedom());
@@ -294,7 +298,6 @@ impl<'i, 'm> Search<'i, 'm> {
         let degrees = self.instance.model().program().degrees_of_freedom();
         let states = self.instance.model().state_names();
         let (row, left) = here.worst();
-        // Rows are the accelerations, then the rates of states of first order.
         let place = if row < degrees { row } else { row + degrees };
         let at_the_end = self
             .unknowns
@@ -308,14 +311,14 @@ impl<'i, 'm> Search<'i, 'm> {
             });
         let range = match at_the_end {
             Some((Unknown::Setting(Setting::State(place)), _)) => {
-                format!(", and {} at the end of its range", states[*place])
+                format!(", {} is at the limit of its range", states[*place])
             }
             _ => String::new(),
         };
         let name = states.get(place).map_or("", String::as_str);
         let reason = format!(
-            "no equilibrium was found near the initial state: where the search ended, at {name} = {:e}{range}, \
-             {name} still has the acceleration or rate {left:e} (SI); begin nearer to one with --state, or fix \
+            "no equilibrium was found near the initial state: the search ended at {name} = {:e}{range}, \
+             with the acceleration or rate {left:e} (SI) of {name}; start nearer to an equilibrium (--state), or fix \
              a coordinate (--fix) so that inputs hold it",
             at.state.get(place).copied().unwrap_or(0.0)
         );

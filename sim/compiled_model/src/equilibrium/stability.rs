@@ -1,4 +1,4 @@
-//! Stability of an equilibrium, by the eigenvalues of the model linearised there.
+//! Stability of an equilibrium, from the eigenvalues of the linearised model.
 
 use std::fmt;
 
@@ -8,7 +8,7 @@ use crate::error::Error;
 use crate::instance::Instance;
 use crate::operating_point::OperatingPoint;
 
-/// A real part is 0 if it is this small beside the largest eigenvalue.
+/// Largest real part of an eigenvalue that counts as 0, relative to the largest magnitude.
 const ZERO: f64 = 1e-9;
 
 /// Stability of an equilibrium of the linearised model.
@@ -16,7 +16,7 @@ const ZERO: f64 = 1e-9;
 pub enum Stability {
     /// Every small motion decays.
     Asymptotic,
-    /// The slowest small motion neither decays nor grows, and linearisation does not decide.
+    /// The slowest small motion neither decays nor grows, so the linearisation is inconclusive.
     Marginal,
     /// Some small motion grows.
     Unstable,
@@ -33,10 +33,10 @@ impl fmt::Display for Stability {
 }
 
 impl Instance<'_> {
-    /// The stability of an equilibrium within the motions that constraints allow.
+    /// Returns the stability of an equilibrium for small motions that satisfy the constraints.
     ///
     /// # Errors
-    /// As [`Instance::linearise`], and eigenvalues that cannot be computed.
+    /// Same as [`Instance::linearise`], and eigenvalues that cannot be computed.
     pub fn stability(&self, at: &OperatingPoint) -> Result<Stability, Error> {
         let linear = self.linearise(at.point())?;
         let degrees = self.model().program().degrees_of_freedom();

@@ -1,10 +1,10 @@
-//! Equilibria against closed forms.
+//! Equilibria compared with closed forms.
 
 use crate::{CompiledModel, EquilibriumRequest, Error, Instance, Orders};
 
 use super::Equilibrium;
 
-/// A pendulum with a motor, its angle from below.
+/// A pendulum with a motor; its angle is measured from the lowest position.
 const PENDULUM: &str = r#"
 [model]
 name = "pendulum"
@@ -41,7 +41,7 @@ fn model() -> CompiledModel {
 }
 
 #[test]
-fn the_nearest_equilibrium_is_found() {
+fn pendulum_equilibria_match_closed_forms() {
     let model = model();
     let run = model.at_declared().expect("an instance");
     let found = fixed(&run, &[]).expect("an equilibrium");
@@ -64,7 +64,7 @@ fn the_nearest_equilibrium_is_found() {
 }
 
 #[test]
-fn where_there_is_none_it_is_said() {
+fn impossible_equilibria_and_invalid_requests_are_rejected() {
     let model = model();
     let run = model.at_declared().expect("an instance");
     for given in [&[("u", 20.0)][..], &[("theta", 0.3), ("u", 0.0)]] {
@@ -84,7 +84,7 @@ fn where_there_is_none_it_is_said() {
 }
 
 #[test]
-fn a_pendulum_goes_to_the_nearer_equilibrium() {
+fn search_finds_nearer_equilibrium_of_pendulum() {
     use std::f64::consts::{FRAC_PI_2, PI};
     let model = model();
     let run = model.at_declared().expect("an instance");
@@ -107,7 +107,7 @@ fn a_pendulum_goes_to_the_nearer_equilibrium() {
         .at
         .state[0];
     assert!(found.abs() < 1e-9 || (found - PI).abs() < 1e-9, "{found}");
-    // The slope of the force is exactly 0 where a level pendulum's angle is measured from level.
+    // At 0, the slope of the force is exactly 0 if the angle is measured from the horizontal.
     let level = PENDULUM.replace("-m*g*l*cos(theta)", "m*g*l*sin(theta)");
     let model = compiled(&level.replace("2.8", "0"));
     let run = model.at_declared().expect("an instance");
@@ -116,7 +116,7 @@ fn a_pendulum_goes_to_the_nearer_equilibrium() {
 }
 
 #[test]
-fn a_search_stays_within_the_declared_range() {
+fn search_stays_within_declared_range() {
     let within = PENDULUM.replace("initial = 2.8", "range = [0.4, 4], initial = 1.2");
     let model = compiled(&within);
     let run = model.at_declared().expect("an instance");
@@ -137,7 +137,7 @@ fn a_search_stays_within_the_declared_range() {
 }
 
 #[test]
-fn a_spring_of_two_rates_is_in_equilibrium_beyond_its_kink() {
+fn search_crosses_kink_of_bilinear_spring() {
     let text = PENDULUM
         .replace(
             "-m*g*l*cos(theta)",
@@ -154,7 +154,7 @@ fn a_spring_of_two_rates_is_in_equilibrium_beyond_its_kink() {
     assert!((found - 0.015).abs() < 1e-12, "{found}");
 }
 
-/// A disc on a shaft with friction, its motor, and a bob that swings out as it turns.
+/// A disc on a shaft with friction and a motor, and a bob that swings out as it turns.
 const GOVERNOR: &str = r#"
 [model]
 name = "governor"
@@ -181,17 +181,17 @@ motor = { on = "phi", value = "T + u" }
 "#;
 
 #[test]
-fn steady_running_is_an_equilibrium() {
+fn governor_at_steady_speed_is_equilibrium() {
     let model = compiled(GOVERNOR);
     let run = model.at_declared().expect("an instance");
-    // T = c omega at 8 rad/s; the bob stands out by cos(theta) = g/(l omega^2).
+    // T = c omega at 8 rad/s; the angle of the bob follows from cos(theta) = g/(l omega^2).
     let right = (9.81 / (0.4 * 64.0_f64)).acos();
     let found = from(&run, &[("theta", 1.0)]).expect("steady running");
     assert!((found.at.state[2] - 8.0).abs() < 1e-8, "{found:?}");
     assert!((found.at.state[1] - right).abs() < 1e-8, "{found:?}");
     assert!(found.free.contains(&"phi_dot".to_owned()), "{found:?}");
     assert!(run.is_equilibrium(&found.at).expect("an answer"));
-    // At a speed that is fixed the motor holds it.
+    // At a fixed speed the motor input is an unknown.
     let found = run.equilibrium(EquilibriumRequest {
         start: &[("theta", 1.0)],
         fixed: &[("phi_dot", 10.0)],

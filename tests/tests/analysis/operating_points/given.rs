@@ -200,7 +200,7 @@ fn frequencies_of_stiffnesses_of_any_size_are_found() {
     let endless = run(&["modes", &model, "--set", "k=1e308", "--set", "m=1e-10"]);
     let said = String::from_utf8_lossy(&endless.stderr).into_owned();
     assert_eq!(endless.status.code(), Some(2));
-    assert!(said.contains("no finite number"), "{said}");
+    assert!(said.contains("not finite"), "{said}");
 }
 
 #[test]
