@@ -12,7 +12,7 @@ use crate::certification::document;
 use crate::emission::source;
 use crate::error::{Error, Result, say, say_json, warn};
 use crate::model::{derive, load};
-use crate::output::write_file;
+use crate::output::{SCHEMA, write_file};
 use crate::progress::Note;
 
 /// The specification whose variants are checked in.
@@ -86,7 +86,8 @@ fn different_sources(root: &Path, variants: &[CheckedIn], check: bool) -> Result
 
 fn say_what_differs(files: usize, different: &[String], check: bool, json: bool) -> Result {
     if json {
-        let document = json!({"files": files, "different": different, "written": !check});
+        let document =
+            json!({"schema": SCHEMA, "files": files, "different": different, "written": !check});
         return say_json(&document);
     }
     let verb = if check { "differ" } else { "written" };

@@ -8,6 +8,7 @@ use serde_json::{Map, Value, json};
 
 use crate::error::warn;
 use crate::figures::Shown;
+use crate::output::SCHEMA;
 
 /// The parts below which quantiles are given.
 const PARTS: [f64; 7] = [0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99];
@@ -62,7 +63,7 @@ impl Statistics {
         let of = |measured: &Measured| {
             let mut entry = json!({
                 "unit": measured.column.unit,
-                "about": measured.column.about,
+                "description": measured.column.about,
                 "count": measured.summary.as_ref().map_or(0, |summary| summary.count),
             });
             if let Some(summary) = &measured.summary {
@@ -70,8 +71,8 @@ impl Statistics {
                 entry["mean"] = json!(summary.mean);
                 entry["sd"] = json!(summary.sd);
                 entry["standard_error"] = json!(summary.standard_error);
-                entry["least"] = json!(summary.quantile(0.0));
-                entry["greatest"] = json!(summary.quantile(1.0));
+                entry["min"] = json!(summary.quantile(0.0));
+                entry["max"] = json!(summary.quantile(1.0));
                 entry["quantiles"] = Value::Object(quantiles.into_iter().collect());
                 let pairs = self.samples.names().zip(&measured.correlations);
                 let pairs = pairs.map(|(name, found)| (name.to_owned(), json!(found)));
@@ -81,7 +82,7 @@ impl Statistics {
         };
         let measured: Map<String, Value> = self.measured.iter().map(of).collect();
         json!({
-            "schema": 1,
+            "schema": SCHEMA,
             "model": self.model,
             "samples": self.samples.count,
             "seed": self.samples.seed,

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use crate::error::{Error, Result, warn};
 use crate::figures::draw;
-use crate::output::write_file;
+use crate::output::{SCHEMA, write_file};
 use crate::parquet_file::encode;
 use crate::sample_statistics::{Statistics, statistics};
 
@@ -84,6 +84,7 @@ impl Finished {
         let files = self.files.iter().map(|file| file.display().to_string());
         let failed = self.failed.iter().cloned();
         let mut document = json!({
+            "schema": SCHEMA,
             "points": self.points,
             "failed": failed.collect::<std::collections::BTreeMap<_, _>>(),
             "files": files.collect::<Vec<_>>(),

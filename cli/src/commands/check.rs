@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 use crate::arguments::Check;
 use crate::error::{Error, Result, say, say_json, warn_of};
 use crate::model::orders;
+use crate::output::SCHEMA;
 
 /// A model that passed, the orders of its fields, and warnings.
 struct Examined {
@@ -22,7 +23,8 @@ pub fn run(options: &Check) -> Result {
         Ok(found) => found,
         Err(error) => {
             if let (true, Error::Specification(found)) = (options.output.json, &error) {
-                let document = json!({"passed": false, "diagnostics": found.records()});
+                let document =
+                    json!({"schema": SCHEMA, "passed": false, "diagnostics": found.records()});
                 say_json(&document)?;
             }
             return Err(error);
@@ -50,6 +52,7 @@ fn examined(options: &Check) -> Result<Examined> {
 
 fn record(examined: &Examined) -> Value {
     json!({
+        "schema": SCHEMA,
         "passed": true,
         "model": examined.model.name,
         "orders": examined.orders,

@@ -7,7 +7,7 @@ use serde_json::json;
 use crate::arguments::Dataset;
 use crate::error::{Error, Result, say, say_bytes, say_json, warn};
 use crate::model::load;
-use crate::output::write_file;
+use crate::output::{SCHEMA, write_file};
 
 /// Runs the command.
 pub fn run(options: &Dataset) -> Result {
@@ -26,7 +26,7 @@ pub fn run(options: &Dataset) -> Result {
         }
     }
     match (&options.out, options.output.json) {
-        (out, true) => say_json(&json!({ "schema": 1, "out": out, "dataset": text })),
+        (out, true) => say_json(&json!({ "schema": SCHEMA, "out": out, "dataset": text })),
         (Some(out), false) => say(&format!(
             "{}: check the lines that are marked as guessed\n",
             out.display()

@@ -60,8 +60,8 @@ fn print(as_json: bool, result: &Value, out: &Path) -> Result {
             word("on"),
             word("status")
         );
-        if let Some(says) = effect["next_experiment"]["says"].as_str() {
-            text += &format!("    {says}\n");
+        if let Some(proposal) = effect["next_experiment"]["text"].as_str() {
+            text += &format!("    {proposal}\n");
         }
     }
     for (name, gap) in result["gap"].as_object().into_iter().flatten() {

@@ -16,7 +16,7 @@ use crate::checked_in;
 use crate::emission;
 use crate::error::{Error, Result, say, say_json, warn};
 use crate::model::{load, orders};
-use crate::output::write_file;
+use crate::output::{SCHEMA, write_file};
 
 /// The answer to `--check` for a single model.
 const CHECK_WITHOUT_ALL: &str = "`--check` compares the checked-in variants only, as `generate --all \
@@ -66,6 +66,7 @@ fn one(options: &Generate, spec: &Path, out: &Path) -> Result {
         .collect();
     if options.output.json {
         let document = json!({
+            "schema": SCHEMA,
             "model": variant.program.name,
             "orders": variant.equations.graph.orders(),
             "file": files[0],

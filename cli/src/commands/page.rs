@@ -6,7 +6,7 @@ use crate::arguments::Page;
 use crate::emission::without_impacts;
 use crate::error::{Result, say_json};
 use crate::model::{derive, load, orders};
-use crate::output::Destination;
+use crate::output::{Destination, SCHEMA};
 use crate::page::playable;
 use crate::settings::stabilised;
 
@@ -22,7 +22,7 @@ pub fn run(options: &Page) -> Result {
     destination.write(page.as_bytes())?;
     if options.output.json {
         let document = json!({
-            "schema": 1,
+            "schema": SCHEMA,
             "model": compiled.program().name,
             "orders": compiled.orders(),
             "file": options.out.display().to_string(),

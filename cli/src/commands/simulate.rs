@@ -10,7 +10,7 @@ use crate::history;
 use crate::model::{derive, load, orders};
 use crate::motion::{columns, follow, in_words, table};
 use crate::operating_point::initial_state;
-use crate::output::Destination;
+use crate::output::{Destination, SCHEMA};
 use crate::ranges::warn_of_ranges;
 use crate::samples::{check_size, inputs, times};
 use crate::settings::{with_inputs, with_settings};
@@ -100,6 +100,7 @@ fn summary(
     let work = motion.trajectory.work;
     if options.output.json {
         let document = json!({
+            "schema": SCHEMA,
             "file": file.to_string(),
             "solver": motion.solver.name(),
             "rows": rows,

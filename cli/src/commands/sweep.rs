@@ -7,6 +7,7 @@ use crate::arguments::Sweep;
 use crate::engines::{self, Submitted};
 use crate::error::{Result, say, say_json};
 use crate::model::load;
+use crate::output::SCHEMA;
 use crate::progress::Bar;
 use crate::settings::{borrowed, settings};
 use crate::sweep_files::finish;
@@ -30,7 +31,7 @@ pub fn run(options: &Sweep) -> Result {
     let folder = Folder::open(&options.out, job).map_err(refused)?;
     if let Some(engine) = options.engine {
         let Submitted { document, text } = engines::submit(engine, options)?;
-        return end(options, document, json!({}), &text);
+        return end(options, json!({ "schema": SCHEMA }), document, &text);
     }
     let mut bar = None;
     let mut progress = |computed: usize, whole: usize| {
@@ -41,7 +42,7 @@ pub fn run(options: &Sweep) -> Result {
     let done =
         eomgen_sweep::run(&folder, &measures, shard, threads, &mut progress).map_err(refused)?;
     drop(bar);
-    let counts = json!({ "computed": done.computed, "found": done.found });
+    let counts = json!({ "schema": SCHEMA, "computed": done.computed, "resumed": done.found });
     let summary = format!(
         "{} points computed, {} were there\n",
         done.computed, done.found

@@ -4,6 +4,7 @@ use serde_json::json;
 
 use crate::arguments::Tour;
 use crate::error::{Error, Result, say, say_bytes};
+use crate::output::SCHEMA;
 use crate::tour::{TourResult, walk};
 
 /// Runs the command.
@@ -27,6 +28,7 @@ fn summary(json: bool, walked: &TourResult) -> String {
     let (page, passed) = (walked.page.display(), walked.certificate.passed);
     if json {
         let document = json!({
+            "schema": SCHEMA,
             "page": page.to_string(),
             "passed": passed,
             "checks": checks,

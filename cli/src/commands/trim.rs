@@ -43,7 +43,7 @@ fn document(compiled: &CompiledModel, found: &Equilibrium, stability: Stability)
             json!({ "coordinates": units, "inputs": input_units }),
         ),
         ("free".to_owned(), json!(found.free)),
-        ("running".to_owned(), json!(found.running)),
+        ("steady_rates".to_owned(), json!(found.running)),
         ("residual".to_owned(), json!(found.residual)),
         ("stability".to_owned(), json!(stability.to_string())),
     ]);

@@ -16,7 +16,7 @@ fn line(name: &str, formula: &str) -> Line {
 /// A report with `text` wherever a specification could put it.
 fn report(text: &str) -> Report {
     Report {
-        schema: 1,
+        schema: 2,
         model: text.to_owned(),
         title: text.to_owned(),
         orders: vec![4],

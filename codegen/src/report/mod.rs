@@ -33,7 +33,7 @@ impl Report {
         };
         let guards = equations.guards.iter();
         Self {
-            schema: 1,
+            schema: 2,
             model: model.name.clone(),
             title: model.title.clone(),
             orders: graph.orders().to_vec(),

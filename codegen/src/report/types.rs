@@ -124,5 +124,6 @@ pub struct Solution {
     /// Operations per call in the chosen order.
     pub operations: usize,
     /// Operations per call in the most expensive order of the coordinates.
+    #[serde(rename = "max_operations")]
     pub dearest: usize,
 }

@@ -13,7 +13,7 @@ use crate::report::result::{
 use crate::report::summary::Summary;
 
 /// The version of both documents.
-const SCHEMA: u32 = 1;
+const SCHEMA: u32 = 2;
 
 impl Comparison {
     /// Its verdict's word in documents.
@@ -65,15 +65,15 @@ impl Discovery {
         document["rejected"] = Value::Array(rejected.collect());
         document["not_testable"] = Value::Array(not_testable.collect());
         document["closure"] = json!({"train": self.closure.train, "test": self.closure.test});
-        document["ladder"] = self.ladder();
+        document["steps"] = self.steps();
         document["validation"] = self.validation();
         document["unfinished"] = json!(self.unfinished);
         document
     }
 
     /// The test gap step by step, in standard deviations of the noise.
-    fn ladder(&self) -> Value {
-        let step = |step: &crate::report::result::Step| json!({"added": step.added, "test_in_noises": step.test_rms});
+    fn steps(&self) -> Value {
+        let step = |step: &crate::report::result::Step| json!({"added": step.added, "test_rms_over_noise": step.test_rms});
         let mut steps: Vec<Value> = self.steps.iter().map(step).collect();
         if let Some(last) = steps.last_mut() {
             last["validated"] = json!(self.validation.as_ref().map(|found| found.passed));
@@ -87,8 +87,8 @@ impl Discovery {
                 "passed": found.passed,
                 "checks": found.checks,
                 "failed": found.failed,
-                "train_in_noises": self.resimulation.train,
-                "test_in_noises": self.resimulation.test,
+                "train_rms_over_noise": self.resimulation.train,
+                "test_rms_over_noise": self.resimulation.test,
             })
         };
         self.validation.as_ref().map_or(Value::Null, found)
@@ -138,7 +138,7 @@ fn rejected(of: &RejectedEffect, files: Option<&[ExperimentFile]>) -> Value {
     let mut entry = at(&of.at);
     entry["reason"] = json!(of.reason);
     entry["p_value"] = json!(of.p_values.map(|(own, _)| own));
-    entry["p_value_of_all"] = json!(of.p_values.map(|(_, all)| all));
+    entry["p_value_adjusted"] = json!(of.p_values.map(|(_, all)| all));
     let Some(files) = files else { return entry };
     entry["experiment"] = json!(of.experiment);
     if let Some(next) = &of.next_experiment {
@@ -154,15 +154,15 @@ fn effect(of: &FoundEffect, files: &[ExperimentFile]) -> Value {
     entry["parameters"] = estimates(&of.parameters);
     entry["term"] = json!(of.term);
     entry["evidence"] = json!({
-        "held_out_gap_falls_by": of.statistics.held_out,
-        "standard_errors": of.statistics.held_out_errors,
-        "information": of.statistics.information,
+        "held_out_gap_reduction": of.statistics.held_out,
+        "held_out_z_score": of.statistics.held_out_errors,
+        "log_likelihood_gain": of.statistics.information,
         "t": of.statistics.t,
         "p_value": of.statistics.p_value,
-        "p_value_of_all": of.adjusted_p_value,
+        "p_value_adjusted": of.adjusted_p_value,
     });
     if let Some(order) = &of.order {
-        entry["order"] = json!({"per_turn_of": order.angle, "order": order.order});
+        entry["order"] = json!({"angle": order.angle, "order": order.order});
     }
     if let Some(load) = &of.load {
         entry["load"] = json!(load);
@@ -181,23 +181,23 @@ fn next_experiment(next: &NextExperiment, files: &[ExperimentFile]) -> Value {
     let member = |of: &MemberAt| json!({"effect": of.effect, "on": of.on});
     let pair = |pair: &Pair| {
         json!({
-            "true": member(&pair.truth),
-            "rival": member(&pair.rival),
+            "simulated": member(&pair.truth),
+            "alternative": member(&pair.rival),
             "separation": pair.separation,
             "channel": pair.channel,
         })
     };
     json!({
-        "says": sentences(next, files),
+        "text": sentences(next, files),
         "file": next.file.map(|file| &files[file].name),
         "input": next.input,
         "form": next.form,
         "separation": next.separation,
         "pairs": next.pairs.iter().map(pair).collect::<Vec<Value>>(),
-        "shows_from": next.shows.as_ref().map(|shown| {
+        "smallest_detectable": next.shows.as_ref().map(|shown| {
             json!({&shown.what: {"value": shown.from, "unit": shown.unit}})
         }),
-        "left_out": next.left_out.iter().map(member).collect::<Vec<Value>>(),
+        "excluded": next.left_out.iter().map(member).collect::<Vec<Value>>(),
         "reason": next.reason,
         "bounds": next.bounds,
     })

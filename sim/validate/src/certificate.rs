@@ -5,7 +5,7 @@ use serde::{Serialize, Serializer};
 pub use crate::coverage::Coverage;
 
 /// Version of the certificate format.
-pub const SCHEMA: u32 = 1;
+pub const SCHEMA: u32 = 2;
 
 /// Results of all checks of one model at one order.
 #[derive(Clone, Debug, Serialize)]
@@ -282,7 +282,7 @@ mod tests {
             Check::not_applicable("skipped", 0.0, "no field"),
         ];
         let json = serde_json::to_value(Certificate::new(arm(), None, checks)).unwrap_or_default();
-        assert_eq!(json["schema"], 1);
+        assert_eq!(json["schema"], 2);
         assert_eq!((&json["model"], &json["order"]), (&"arm".into(), &4.into()));
         assert_eq!(
             json["generator"],

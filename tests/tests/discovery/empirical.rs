@@ -67,9 +67,9 @@ fn a_force_that_no_catalogue_holds_becomes_an_expression() {
         "{}",
         found["closure"]
     );
-    let ladder = found["ladder"].as_array().expect("a list");
-    assert_eq!(ladder[1]["added"][0], "empirical on q");
-    assert!(number(&ladder[1]["test_in_noises"]) < number(&ladder[0]["test_in_noises"]));
+    let steps = found["steps"].as_array().expect("a list");
+    assert_eq!(steps[1]["added"][0], "empirical on q");
+    assert!(number(&steps[1]["test_rms_over_noise"]) < number(&steps[0]["test_rms_over_noise"]));
 
     // What was written is a sound model that explains both records.
     assert_eq!(
@@ -77,10 +77,10 @@ fn a_force_that_no_catalogue_holds_becomes_an_expression() {
         "{}",
         found["validation"]
     );
-    assert_eq!(ladder[1]["validated"], true);
+    assert_eq!(steps[1]["validated"], true);
     // Run as written it leaves the noise, within the tenth by which discovery calls that the floor:
     // numbers that moved by less than half of their uncertainty are not written.
-    for set in ["train_in_noises", "test_in_noises"] {
+    for set in ["train_rms_over_noise", "test_rms_over_noise"] {
         let left = number(&found["validation"][set]);
         assert!(left < 1.1, "{set}: {left}");
     }

@@ -221,7 +221,7 @@ fn friction_that_differs_by_direction_is_told_from_what_does_not() {
     let (machine, folder) = (one_way(&specification, &force), folder());
     let next = machine.is_told(folder.path(), "asymmetric_friction", "x");
     let is_alike = |pair: &&Value| {
-        [&pair["true"]["effect"], &pair["rival"]["effect"]]
+        [&pair["simulated"]["effect"], &pair["alternative"]["effect"]]
             .iter()
             .all(|effect| **effect != "asymmetric_friction")
     };
@@ -232,11 +232,11 @@ fn friction_that_differs_by_direction_is_told_from_what_does_not() {
         let separation = pair["separation"].as_f64().expect("a number");
         assert!(separation < 1e-3, "{next:#}");
     }
-    let says = next["says"].as_str().expect("a sentence");
+    let says = next["text"].as_str().expect("a sentence");
     assert!(says.contains("does not tell viscous friction"), "{says}");
 
     let rival = |pair: &&Value| {
-        pair["true"]["effect"] == "asymmetric_friction" && pair["rival"]["on"] == "c"
+        pair["simulated"]["effect"] == "asymmetric_friction" && pair["alternative"]["on"] == "c"
     };
     let predicted = pairs.iter().find(rival).expect("a pair");
     let predicted = predicted["separation"].as_f64().expect("a number");
@@ -353,6 +353,6 @@ fn what_is_played_stays_within_what_was_recorded_where_nothing_is_said() {
                 .all(|x| *x < 1.1 * most && *x > -0.1 * most)
         );
     } else {
-        assert!(next["says"].as_str().is_some_and(|says| !says.is_empty()));
+        assert!(next["text"].as_str().is_some_and(|says| !says.is_empty()));
     }
 }

@@ -111,7 +111,7 @@ fn a_certificate_beside_the_source_is_about_that_source() {
     let generate = ["generate", &spec, "--certify", "--out", &place];
     accepted(&[&generate[..], &asked].concat());
     let certificate = document(&read(&out, "certificate.json"));
-    assert_eq!(certificate["schema"], 1);
+    assert_eq!(certificate["schema"], 2);
     assert_eq!(certificate["model"], "stamping_lever");
     assert_eq!(certificate["passed"], true);
     assert_eq!(certificate["specification_sha256"], sha256(LEVER));

@@ -288,7 +288,7 @@ fn strict_simulation_ends_with_1_if_energy_comes_from_nothing() {
     assert_eq!(warned, has_faults);
     let strict = run(&[&simulate[..], &["--strict"]].concat());
     assert_eq!(strict.status.code(), Some(i32::from(has_faults)));
-    let unexplained = audit["unexplained"].as_f64().expect("a number");
+    let unexplained = audit["residual"].as_f64().expect("a number");
     assert_eq!(unexplained.abs() > 1e-6, has_faults, "{audit}");
 }
 

@@ -49,7 +49,7 @@ fn the_page_has_a_row_for_every_claim() {
             "| `{}` | {} | {} | {} | {} | {} |",
             text("id"),
             text("place"),
-            text("says"),
+            text("statement"),
             word(&assumed["verdict"]),
             word(&assumed["strict"]),
             evidence.replace('|', "\\|"),

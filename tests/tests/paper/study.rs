@@ -43,7 +43,7 @@ fn a_study_leaves_what_its_document_names() {
     let document = study("frequency", &out);
     assert_eq!(
         (&document["schema"], &document["study"]),
-        (&Value::from(1), &Value::from("frequency"))
+        (&Value::from(2), &Value::from("frequency"))
     );
     let figures = list(&document, "figures");
     for number in 11..=15 {

@@ -40,14 +40,14 @@ fn with_json_every_command_prints_one_document() {
     let (arm, emps) = (spec("planetary_arm"), spec("emps"));
     let checked = document(&["check", &arm, "--order", "2"], 0);
     assert_eq!(checked["state"].as_array().map(Vec::len), Some(10));
-    assert_eq!(document(&["derive", &arm], 0)["schema"], 1);
+    assert_eq!(document(&["derive", &arm], 0)["schema"], 2);
     assert_eq!(
         document(&["generate", &arm, "--out", &out], 0)["orders"],
         serde_json::json!([4])
     );
     assert!(document(&["generate", "--all", "--check"], 0)["files"].is_u64());
     let certificate = document(&["validate", &emps], 0);
-    assert_eq!(certificate["schema"], 1);
+    assert_eq!(certificate["schema"], 2);
     assert_eq!(certificate["passed"], true);
     for key in ["name", "value", "tolerance", "passed", "skipped"] {
         assert!(

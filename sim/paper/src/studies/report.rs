@@ -59,7 +59,7 @@ impl Study {
             })
         });
         let mut document = json!({
-            "schema": 1,
+            "schema": 2,
             "study": name,
             "model": model.name,
             "parameters": parameters(model),

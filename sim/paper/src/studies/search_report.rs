@@ -62,7 +62,7 @@ pub fn document(request: &Request, assumed: &[Judgement], found: &Found) -> Valu
         .zip(shares(&found.screened))
         .map(|((claim, judged), share)| {
             json!({
-                "id": claim.id, "place": claim.place, "says": claim.says,
+                "id": claim.id, "source": claim.place, "statement": claim.says,
                 "rule": format!("{:?}", claim.rule),
                 "assumed": {
                     "verdict": judged.holding.letter().to_string(),
@@ -84,7 +84,7 @@ pub fn document(request: &Request, assumed: &[Judgement], found: &Found) -> Valu
     });
     let pairs = exclusive(&found.screened);
     json!({
-        "schema": "eomgen-search-1",
+        "schema": 2,
         "sets": request.sets,
         "seed": request.seed,
         "ranges": ranges.collect::<Vec<_>>(),
@@ -100,7 +100,7 @@ pub fn document(request: &Request, assumed: &[Judgement], found: &Found) -> Valu
             "lose_at_most_one": share_with(&found.neighbours, most.saturating_sub(1)),
             "lose_at_most_two": share_with(&found.neighbours, most.saturating_sub(2)),
         },
-        "never_together": pairs.iter()
+        "incompatible": pairs.iter()
             .map(|(one, other)| [CLAIMS[*one].id, CLAIMS[*other].id])
             .collect::<Vec<_>>(),
     })
