@@ -1,24 +1,26 @@
-//! Powers of two that bring the rows and columns of a matrix of rates to like size: states have
-//! different units, and the numbers of a matrix depend on them.
+//! Balancing of rate matrices by powers of two, because states with different units give entries
+//! of very different size.
 
 use nalgebra::DMatrix;
 use nalgebra::linalg::balancing::balance_parlett_reinsch;
 
-/// Squares of larger entries overflow, and balancing never ends, 1/s.
+/// Largest entry of a matrix that can be balanced, 1/s. Squares of larger entries overflow, and
+/// balancing does not terminate.
 pub(crate) const LARGEST: f64 = 1e150;
 
-/// Entries below this part of the largest one do not take part in the balance: what matters
-/// that little must not decide on the scale of a state.
+/// Entries below this fraction of the largest entry do not affect the balance, so that negligible
+/// couplings do not determine the scale of a state.
 const NEGLIGIBLE: f64 = 1e-6;
 
-/// The largest entry is due to units if a balance of all entries makes it smaller by this factor.
+/// Reduction of the largest entry by a balance of all entries, above which that entry is an effect
+/// of the units.
 const BY_UNITS: f64 = 1e3;
 
-/// Diagonal of D, powers of two, for which the entries of D^-1 A D have like size. `guess`: a first
-/// guess of it. The entries of A are smaller than [`LARGEST`].
+/// Returns the diagonal of D, powers of two, for which the entries of D^-1 A D have similar size.
+/// `guess` is the initial diagonal. The entries of A must be below [`LARGEST`].
 pub(crate) fn balance(matrix: &DMatrix<f64>, guess: Vec<f64>) -> Vec<f64> {
     let all = balance_above(matrix, guess.clone(), 0.0);
-    // The second time around the large entries are balanced among themselves.
+    // The second pass balances the large entries among themselves.
     let twice = |scale| {
         let once = balance_above(matrix, scale, NEGLIGIBLE);
         balance_above(matrix, once, NEGLIGIBLE)
@@ -30,14 +32,14 @@ pub(crate) fn balance(matrix: &DMatrix<f64>, guess: Vec<f64>) -> Vec<f64> {
     large
 }
 
-/// D^-1 A D.
+/// Returns D^-1 A D.
 pub(crate) fn scaled(matrix: &DMatrix<f64>, scale: &[f64]) -> DMatrix<f64> {
     DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| {
         matrix[(i, j)] * scale[j] / scale[i]
     })
 }
 
-/// A balance of the entries that are not below a part of the largest one.
+/// Balances the entries that are not below the fraction `part` of the largest entry.
 fn balance_above(matrix: &DMatrix<f64>, mut scale: Vec<f64>, part: f64) -> Vec<f64> {
     let scaled = scaled(matrix, &scale);
     let least = part * scaled.amax();
@@ -54,8 +56,8 @@ mod tests {
     use nalgebra::DMatrix;
 
     #[test]
-    fn a_pressure_in_pascals_is_balanced_like_one_in_megapascals() {
-        // Position, speed and pressure of a cylinder, whose natural frequency is 231 rad/s.
+    fn balance_does_not_depend_on_unit_of_pressure() {
+        // Position, speed and pressure of a cylinder with the natural frequency 231 rad/s.
         let rates = |unit: f64| {
             let entries = [
                 [0.0, 1.0, 0.0],

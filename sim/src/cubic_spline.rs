@@ -1,22 +1,21 @@
-//! The cubic spline through samples, with both of its derivatives: a curve whose rate and second rate
-//! are continuous.
+//! Cubic splines with continuous first and second derivatives.
 //!
-//! The third derivative does not jump at the second and the last but one sample ("not-a-knot"; de
-//! Boor, *A Practical Guide to Splines*, chapter IV), so that a cubic is reproduced to its ends. Beyond
-//! the samples the first or the last value holds.
+//! The third derivative is continuous at the second and the last but one sample ("not-a-knot"; de
+//! Boor, *A Practical Guide to Splines*, chapter IV), so a cubic is reproduced up to its ends.
+//! Outside the samples the spline has the constant value of the first or last sample.
 
 /// A cubic spline through samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CubicSpline {
     times: Vec<f64>,
     values: Vec<f64>,
-    /// The second derivative at each sample.
+    /// Second derivative at each sample.
     curvatures: Vec<f64>,
 }
 
 impl CubicSpline {
-    /// Through values at ascending times, s; none without a sample, or where times do not ascend or
-    /// something is no finite number.
+    /// Fits a spline through values at ascending times, s. Returns `None` without samples, or if
+    /// the times do not ascend or a number is not finite.
     pub fn through(times: Vec<f64>, values: Vec<f64>) -> Option<Self> {
         let ascending = times.windows(2).all(|pair| pair[0] < pair[1]);
         let finite = times.iter().chain(&values).all(|number| number.is_finite());
@@ -31,7 +30,7 @@ impl CubicSpline {
         })
     }
 
-    /// Value, rate and second rate at a time, s.
+    /// Returns the value and its first and second derivative at a time, s.
     pub fn at(&self, t: f64) -> [f64; 3] {
         let last = self.times.len() - 1;
         if t < self.times[0] {
@@ -56,8 +55,8 @@ impl CubicSpline {
     }
 }
 
-/// The second derivatives at the samples: a straight line through two of them, a parabola through
-/// three, and from four on the third derivative does not jump next to the ends.
+/// Computes the second derivatives at the samples: a line through two samples, a parabola through
+/// three, and a not-a-knot spline from four on.
 fn curvatures(times: &[f64], values: &[f64]) -> Vec<f64> {
     let count = times.len();
     if count < 3 {
@@ -74,7 +73,7 @@ fn curvatures(times: &[f64], values: &[f64]) -> Vec<f64> {
     if count == 3 {
         return vec![right[0] / (3.0 * (step[0] + step[1])); 3];
     }
-    // Tridiagonal in the inner samples: the outer ones are extrapolated from the two beside them.
+    // Tridiagonal in the inner samples; the outer ones are extrapolated from their two neighbours.
     let inner = count - 2;
     let mut diagonal: Vec<f64> = (0..inner).map(|k| 2.0 * (step[k] + step[k + 1])).collect();
     let mut lower: Vec<f64> = step[..inner].to_vec();
@@ -85,8 +84,8 @@ fn curvatures(times: &[f64], values: &[f64]) -> Vec<f64> {
     let (last, before) = (step[count - 2], step[count - 3]);
     diagonal[inner - 1] += last * (1.0 + last / before);
     lower[inner - 1] -= last * last / before;
-    // Elimination without pivoting: the matrix is diagonally dominant but for the outer rows, whose
-    // pivots stay positive.
+    // No pivoting: the matrix is diagonally dominant except in the outer rows, whose pivots remain
+    // positive.
     for k in 1..inner {
         let factor = lower[k] / diagonal[k - 1];
         diagonal[k] -= factor * upper[k - 1];
@@ -117,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn a_cubic_is_reproduced_to_its_ends() {
+    fn spline_reproduces_cubic_up_to_its_ends() {
         let times = [0.0, 0.3, 0.5, 1.1, 1.2, 2.0];
         let of = |t: f64| 1.0 - 2.0 * t + 0.5 * t * t - 0.7 * t * t * t;
         for count in 4..=6 {
@@ -136,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sine_is_met_by_the_fourth_power_of_the_step() {
+    fn spline_of_sine_converges_with_order_four() {
         let error = |count: u32| {
             let times: Vec<f64> = (0..=count)
                 .map(|k| 6.0 * f64::from(k) / f64::from(count))
@@ -160,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn few_samples_and_times_beyond_them_are_held() {
+    fn few_samples_give_polynomials_and_constant_ends() {
         assert_eq!(spline(&[1.0], |_| 3.0).at(5.0), [3.0, 0.0, 0.0]);
         let line = spline(&[1.0, 3.0], |t| 2.0 * t);
         assert_eq!(line.at(2.0), [4.0, 2.0, 0.0]);

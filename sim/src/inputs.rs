@@ -1,4 +1,4 @@
-//! Inputs of a model over time.
+//! Inputs of a model as functions of time.
 
 use std::borrow::Cow;
 use std::fmt::Debug;
@@ -6,14 +6,14 @@ use std::sync::Arc;
 
 use crate::cubic_spline::CubicSpline;
 
-/// Inputs as a function of time, evaluated at every time that a solver looks at.
+/// Inputs as a function of time, evaluated at every time of a solver's evaluations.
 pub trait InputFunction: Debug + Send + Sync {
-    /// Writes the inputs at time `t` (s) to `out`, which has as many entries as there are inputs.
-    /// A function without a value there writes NaN, which ends the motion.
+    /// Writes the inputs at time `t` (s) to `out`, one entry per input. A NaN, for a time outside
+    /// the function's domain, stops the motion.
     fn write(&self, t: f64, out: &mut [f64]);
 }
 
-/// A function that gives some inputs next to each other.
+/// A function for consecutive inputs.
 #[derive(Clone, Debug)]
 struct GivenInputs {
     place: usize,
@@ -28,16 +28,17 @@ impl PartialEq for GivenInputs {
     }
 }
 
-/// Inputs that are constant between the times of a record, but for prescribed motion, which follows
-/// a spline through its samples with the spline's rates. Before the first sample the
-/// first one holds, after the last one the last. Some inputs may be functions of time instead.
+/// Inputs of a motion. Each is constant between samples, prescribed (a spline through its samples,
+/// with its rates) or a function of time. Before the first sample the first value applies, after
+/// the last sample the last.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeldInputs {
     times: Vec<f64>,
-    /// One row per time, one number per input.
+    /// Values, one row per time, one column per input.
     values: Vec<f64>,
     count: usize,
-    /// Prescribed motion: its place among the inputs, its rate and second rate being the next two.
+    /// Prescribed motions: the index of each input, followed by its rate and second rate, and its
+    /// spline.
     prescribed: Vec<(usize, CubicSpline)>,
     functions: Vec<GivenInputs>,
     /// Times at which functions jump, ascending, s.
@@ -45,7 +46,7 @@ pub struct HeldInputs {
 }
 
 impl HeldInputs {
-    /// Inputs that are zero at all times.
+    /// Returns `count` inputs that are zero at all times.
     pub fn zero(count: usize) -> Self {
         Self {
             times: vec![0.0],
@@ -57,7 +58,7 @@ impl HeldInputs {
         }
     }
 
-    /// Inputs that are the same at all times.
+    /// Returns constant inputs.
     pub fn constant(values: Vec<f64>) -> Self {
         Self {
             times: vec![0.0],
@@ -69,8 +70,8 @@ impl HeldInputs {
         }
     }
 
-    /// Inputs from rows of `count` numbers, one row for each of the ascending times (s), each
-    /// held until the next; none if there is no row, or not as many numbers as rows hold.
+    /// Returns inputs that keep each of the rows of `count` numbers from its time (s, ascending)
+    /// until the next. Returns `None` without rows, or if the numbers of rows and times differ.
     pub fn new(times: Vec<f64>, values: Vec<f64>, count: usize) -> Option<Self> {
         let whole = !times.is_empty() && values.len() == times.len() * count;
         whole.then_some(Self {
@@ -83,15 +84,15 @@ impl HeldInputs {
         })
     }
 
-    /// The same with the input at a place following a spline, its rate and second rate the next
-    /// two inputs.
+    /// Sets the input at index `place` to a spline, and the next two inputs to its rate and second
+    /// rate.
     #[must_use]
     pub fn with_prescribed(mut self, place: usize, spline: CubicSpline) -> Self {
         self.prescribed.push((place, spline));
         self
     }
 
-    /// The same with `count` inputs from a place on given by a function.
+    /// Sets `count` inputs from index `place` on to a function of time.
     #[must_use]
     pub fn with_function(
         mut self,
@@ -107,8 +108,8 @@ impl HeldInputs {
         self
     }
 
-    /// The same with times (s) at which functions jump: steps of solvers end there. Times that are
-    /// no numbers are left out.
+    /// Sets the times (s) at which functions jump, so that solvers end a step there. Times that
+    /// are not finite are ignored.
     #[must_use]
     pub fn with_breaks(mut self, mut breaks: Vec<f64>) -> Self {
         breaks.retain(|time| time.is_finite());
@@ -117,12 +118,12 @@ impl HeldInputs {
         self
     }
 
-    /// Whether an input moves between samples.
+    /// Returns true if an input varies between samples.
     pub fn moves(&self) -> bool {
         !(self.prescribed.is_empty() && self.functions.is_empty())
     }
 
-    /// The inputs at a time, in the order of the model.
+    /// Returns the inputs at a time (s), in the order of the model.
     pub fn at(&self, t: f64) -> Cow<'_, [f64]> {
         let held = self.held_at(t);
         if !self.moves() {
@@ -139,14 +140,15 @@ impl HeldInputs {
         Cow::Owned(inputs)
     }
 
-    /// The inputs of the last sample, prescribed motion as well.
+    /// Returns the inputs of the last sample at or before a time (s), without prescribed motion
+    /// and functions.
     pub fn held_at(&self, t: f64) -> &[f64] {
         let row = self.times_until(t).saturating_sub(1);
         &self.values[row * self.count..(row + 1) * self.count]
     }
 
-    /// How many of the times are not after `t`. Most records are sampled evenly: there the answer is
-    /// looked up, and searched only where it is not.
+    /// Returns the number of sample times at or before `t`. Evenly spaced times are found by
+    /// division, others by bisection.
     fn times_until(&self, t: f64) -> usize {
         if self.count == 0 {
             return 0;
@@ -155,7 +157,7 @@ impl HeldInputs {
         let (first, last) = (times[0], times[times.len() - 1]);
         let part = (t - first) / (last - first);
         let near = ((part * (times.len() - 1) as f64) as usize).min(times.len());
-        // Rounding may lead to a neighbour.
+        // Rounding may give a neighbour.
         for count in [near + 1, near + 2, near] {
             let is_before = count == 0 || times.get(count - 1).is_some_and(|time| *time <= t);
             let is_after = times.get(count).is_none_or(|time| *time > t);
@@ -166,7 +168,7 @@ impl HeldInputs {
         times.partition_point(|time| *time <= t)
     }
 
-    /// The next time after `t` at which an input changes.
+    /// Returns the next time (s) after `t` at which an input jumps.
     pub fn next_change(&self, t: f64) -> Option<f64> {
         if self.count == 0 {
             return None;
@@ -179,7 +181,7 @@ impl HeldInputs {
         }
     }
 
-    /// The times of the samples, in s.
+    /// Returns the times of the samples, s.
     pub fn times(&self) -> &[f64] {
         &self.times
     }
@@ -190,7 +192,7 @@ mod tests {
     use super::HeldInputs;
 
     #[test]
-    fn an_input_is_held_from_its_sample_to_the_next() {
+    fn input_is_held_until_next_sample() {
         let held = HeldInputs {
             times: vec![0.0, 1.0, 2.0],
             values: vec![5.0, 6.0, 7.0],
@@ -209,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn uneven_times_are_found_as_even_ones_are() {
+    fn held_row_is_found_for_even_and_uneven_times() {
         let even: Vec<f64> = (0..50).map(|k| 0.1 * f64::from(k)).collect();
         let uneven: Vec<f64> = even.iter().map(|t| t * t * t).collect();
         for times in [even, uneven, vec![2.0]] {
@@ -230,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn no_input_never_changes() {
+    fn zero_inputs_never_change() {
         assert_eq!(HeldInputs::zero(0).next_change(0.0), None);
         assert_eq!(*HeldInputs::zero(2).at(3.0), [0.0, 0.0]);
     }
@@ -245,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn a_function_is_evaluated_at_every_time_and_its_breaks_are_changes() {
+    fn function_varies_with_time_and_changes_at_its_breaks() {
         let held = HeldInputs::constant(vec![5.0, 6.0])
             .with_function(1, 1, std::sync::Arc::new(Ramp))
             .with_breaks(vec![3.0, f64::NAN, 1.0]);

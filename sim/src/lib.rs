@@ -1,11 +1,18 @@
 //! Solvers for derived models.
 //!
-//! [`ode`] integrates any model and locates its switches; [`piecewise_linear`] propagates a model
-//! that is linear between its switches exactly; [`exponential`] steps through one that nearly is,
-//! with its derivatives by initial states. [`sliding_modes`] decides which surfaces hold a motion. [`inputs`] are what drives a motion. How a model is
-//! derived is the business of `codegen`, which solver takes it that of the compiled model.
+//! | module | purpose |
+//! | --- | --- |
+//! | [`ode`] | integrates any model and locates events |
+//! | [`piecewise_linear`] | propagates piecewise-linear models exactly from event to event |
+//! | [`exponential`] | integrates nearly piecewise-linear models with tangent vectors |
+//! | [`sliding_modes`] | finds the surfaces that hold a motion |
+//! | [`variational`] | measures the growth of a tangent vector |
+//! | [`inputs`] | inputs over time |
+//! | [`cubic_spline`] | prescribed motion through samples |
 //!
-//! A mass on a spring with play, by the general solver and exactly:
+//! The crate `codegen` derives the models; the crate `compiled_model` chooses the solver.
+//!
+//! A mass on a spring with play, solved by the general and by the exact solver:
 //!
 //! ```
 //! use eomgen_sim::inputs::HeldInputs;

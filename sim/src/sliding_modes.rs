@@ -1,39 +1,40 @@
-//! Which of several switching surfaces hold a motion that stands on them: its sliding mode (A. F. Filippov).
+//! Sliding modes: the switching surfaces that hold a motion on them (A. F. Filippov).
 //!
-//! With s_i between -1 and 1 in the place of sign(g_i) the rates are g' = c + W s. A surface holds
-//! the motion where its rate is zero, and lets it go to the side s_i = 1 or -1 where its rate leads
-//! there. That is a linear complementarity problem with bounds; of friction W is -J M^-1 J^T times the
-//! friction's levels, and the rates that solve it are unique.
+//! With s_i between -1 and 1 instead of sign(g_i), the rates of the switching functions are g' = c
+//! + W s. A surface holds the motion if its rate is zero, and releases it to the side s_i = 1 or
+//! -1 if its rate has that sign. This is a linear complementarity problem with bounds. For
+//! friction, W is -J M^-1 J^T times the friction levels, and the rates that solve the problem are
+//! unique.
 
 use eomgen_analysis::qr_iteration;
 use nalgebra::{DMatrix, DVector};
 
-/// Parts of a rate that are this small beside its terms are rounding.
+/// Rates below this fraction of their terms count as rounding.
 const ROUNDING: f64 = 1e-10;
 
-/// Singular values that are this small beside the largest belong to surfaces that follow from others.
+/// Singular values below this fraction of the largest belong to dependent surfaces.
 pub const DEPENDENT: f64 = 1e-10;
 
-/// So many changes for each surface take that of the largest error, then the first one is taken,
-/// which comes to an end (K. G. Murty, *Linear Complementarity*, chapter 11).
+/// Number of changes per surface that select the largest error. After these, the first error is
+/// selected, which is guaranteed to terminate (K. G. Murty, *Linear Complementarity*, chapter 11).
 const LARGEST_FIRST: usize = 4;
 
-/// All cases are tried of so many surfaces at most.
+/// Maximum number of surfaces for which all cases are tried.
 const MOST_TO_TRY: usize = 7;
 
-/// What a surface does to a motion that stands on it.
+/// Effect of a surface on a motion that is on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict {
-    /// It holds it, with this number in the place of the sign.
+    /// The surface holds the motion; the number replaces the sign.
     Holds(f64),
-    /// It bears all it can to this side, and the motion stays, as other surfaces hold it.
+    /// The surface exerts its largest force to this side, and other surfaces hold the motion.
     Bears(f64),
-    /// It lets it go to this side.
+    /// The surface releases the motion to this side.
     LetsGo(f64),
 }
 
 impl Verdict {
-    /// The number in the place of the sign.
+    /// Returns the number that replaces the sign.
     pub fn sign(self) -> f64 {
         match self {
             Self::Holds(s) | Self::Bears(s) | Self::LetsGo(s) => s,
@@ -41,25 +42,27 @@ impl Verdict {
     }
 }
 
-/// How a motion comes to stand on a surface.
+/// Arrival of a motion on a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arrival {
-    /// The side to which it goes, -1 or 1, where the surface cannot hold it.
+    /// Side to which the motion leaves, -1 or 1, if the surface cannot hold it.
     pub side: f64,
-    /// Whether the surface held it so far and would have to bear more than it can to this side.
+    /// Whether the surface held the motion until now and would need more than its largest force to
+    /// this side.
     pub is_overcome: bool,
 }
 
-/// The rates of the functions g that the surfaces are the zeros of, g' = c + W s, where s stands in the place of
-/// their signs.
+/// Rates of the switching functions on their surfaces, g' = c + W s, with s instead of their
+/// signs.
 pub struct Rates {
-    /// W, in the unit of each row's function per second.
+    /// Matrix W, in the unit of each row's function per second.
     pub w: DMatrix<f64>,
-    /// c, in the same units.
+    /// Vector c, in the same units.
     pub c: DVector<f64>,
 }
 
-/// What each surface does to a motion that came to them so. Nothing where no answer was found.
+/// Decides the effect of each surface on a motion with these arrivals. Returns `None` if no
+/// solution is found.
 pub fn decide(rates: &Rates, arrivals: &[Arrival]) -> Option<Vec<Verdict>> {
     let count = arrivals.len();
     let begins = |(i, arrival): (usize, &Arrival)| {
@@ -90,12 +93,13 @@ pub fn decide(rates: &Rates, arrivals: &[Arrival]) -> Option<Vec<Verdict>> {
 }
 
 impl Rates {
-    /// Whether the rates on both sides of a surface may lead back to it.
+    /// Returns true if the rates on both sides of a surface can point towards it.
     fn may_hold(&self, i: usize) -> bool {
         self.w[(i, i)] < 0.0
     }
 
-    /// The numbers in the place of the signs: the smallest that hold where no side is given.
+    /// Returns the values that replace the signs: the given sides, and for the other surfaces the
+    /// smallest values that hold.
     fn signs(&self, sides: &[Option<f64>]) -> DVector<f64> {
         let mut s = DVector::from_iterator(sides.len(), sides.iter().map(|s| s.unwrap_or(0.0)));
         let held = held(sides);
@@ -108,7 +112,8 @@ impl Rates {
         s
     }
 
-    /// By how much a surface is not what it was taken for, in numbers s.
+    /// Returns the violation of the assumed case of a surface at the values s; positive if
+    /// violated.
     fn error(&self, sides: &[Option<f64>], s: &DVector<f64>, i: usize) -> f64 {
         match sides[i] {
             None => s[i].abs() - 1.0,
@@ -121,7 +126,7 @@ impl Rates {
         }
     }
 
-    /// The rate of a surface's function, and how large its terms are.
+    /// Returns the rate of a surface's function and the size of its terms.
     fn rate(&self, s: &DVector<f64>, i: usize) -> (f64, f64) {
         let terms = (0..s.len()).map(|j| self.w[(i, j)] * s[j]);
         terms.fold((self.c[i], self.c[i].abs()), |(sum, size), term| {
@@ -129,7 +134,7 @@ impl Rates {
         })
     }
 
-    /// Whether those without a side are held.
+    /// Returns true if the rates of all surfaces without a side are zero.
     fn are_held(&self, sides: &[Option<f64>], s: &DVector<f64>) -> bool {
         held(sides).into_iter().all(|i| {
             let (rate, size) = self.rate(s, i);
@@ -147,7 +152,7 @@ impl Rates {
         (0..sides.len()).map(verdict).collect()
     }
 
-    /// Whether a surface's rate is zero where those of others are.
+    /// Returns true if the rate of a surface vanishes whenever those of the held surfaces do.
     fn follows(&self, held: &[usize], i: usize) -> bool {
         if held.is_empty() {
             return false;
@@ -161,7 +166,7 @@ impl Rates {
         own != 0.0 && (own - through).abs() <= 1e-8 * own.abs()
     }
 
-    /// The first of all cases that is an answer.
+    /// Tries all cases and returns the first solution.
     fn by_trial(&self, count: usize) -> Option<Vec<Verdict>> {
         let cases = 3_usize.pow(count as u32);
         (0..cases).find_map(|case| {
@@ -178,12 +183,12 @@ impl Rates {
     }
 }
 
-/// Those without a side.
+/// Returns the surfaces without a side.
 fn held(sides: &[Option<f64>]) -> Vec<usize> {
     (0..sides.len()).filter(|i| sides[*i].is_none()).collect()
 }
 
-/// The smallest x with W x = b, or with as small a difference as there can be.
+/// Returns the smallest least-squares solution x of W x = b.
 pub fn least(w: DMatrix<f64>, b: DVector<f64>) -> DVector<f64> {
     if b.len() <= 1 {
         let divided = b.zip_map(&w.column_sum(), |b, w| b / w);
@@ -218,7 +223,7 @@ mod tests {
         }
     }
 
-    /// Frictions of random directions in so many dimensions, and a load.
+    /// Returns friction in random directions in a space of this dimension, with a load.
     fn frictions(seed: u64, count: usize, dimensions: usize) -> Rates {
         let mut numbers = Numbers(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
         let j = DMatrix::from_fn(count, dimensions, |_, _| numbers.next());
@@ -231,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn every_surface_holds_or_lets_go_to_the_side_its_rate_leads_to() {
+    fn random_frictions_satisfy_complementarity() {
         for seed in 1..3000 {
             let count = 1 + (seed % 8) as usize;
             let rates = frictions(seed, count, 1 + (seed / 8 % 7) as usize);
@@ -251,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn two_frictions_at_one_place_bear_together_what_they_can() {
+    fn two_frictions_on_one_surface_add_their_levels() {
         let rates = |load: f64| Rates {
             w: DMatrix::from_row_slice(2, 2, &[-1.0, -2.0, -1.0, -2.0]),
             c: DVector::from_element(2, load),
@@ -268,7 +273,7 @@ mod tests {
     }
 
     #[test]
-    fn a_surface_that_pushes_away_is_gone_over() {
+    fn repelling_surface_is_crossed() {
         let rates = Rates {
             w: DMatrix::from_element(1, 1, 2.0),
             c: DVector::from_element(1, 0.5),

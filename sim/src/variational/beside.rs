@@ -5,31 +5,33 @@ use std::cell::{Cell, RefCell};
 use super::saltation::{Surfaces, delay};
 use crate::ode::System;
 
-/// A change of the rates over a switch that is smaller than this part of them is none: with a
-/// kink the rates on both sides differ by what the step over the surface changes.
+/// Largest change of the rates over a surface, relative to the rates, that counts as none: at a
+/// kink the rates differ only by the change over the step.
 const NO_JUMP: f64 = 1e-9;
 
-/// A system of n states y with a vector v beside them, v' = J(t, y) v with J the derivatives of the
-/// rates by the state: the state is y and then v, 2 n numbers. Over a switching surface g(t, y) = 0
-/// where the rates jump from f- to f+, v jumps by the saltation matrix,
+/// A system with a tangent vector: its state is the state y of a system, then a vector v with v' =
+/// J(t, y) v, where J are the derivatives of the rates with respect to the state; 2 n numbers. On
+/// a switching surface g(t, y) = 0 at which the rates jump from f- to f+, the saltation matrix
+/// transforms v:
 ///
 /// ```text
 /// v+ = v- + (f+ - f-) (dg/dy v-) / (dg/dt + dg/dy f-)
 /// ```
 ///
-/// (R. I. Leine and H. Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems,
-/// Springer 2004, section 7.3), with the derivatives of g by differences.
+/// (R. I. Leine and H. Nijmeijer, *Dynamics and Bifurcations of Non-Smooth Mechanical Systems*,
+/// Springer 2004, section 7.3). The derivatives of g are finite differences.
 pub struct Beside<'s, S: System + ?Sized> {
     system: &'s S,
-    /// How large each state is, for differences.
+    /// Size of each state, for finite differences.
     sizes: Vec<f64>,
     jacobian: RefCell<Vec<f64>>,
-    /// When the motion went over several surfaces at once, s.
+    /// Time at which the motion crossed several surfaces at once, s.
     together: Cell<Option<f64>>,
 }
 
 impl<'s, S: System + ?Sized> Beside<'s, S> {
-    /// Puts a vector beside a system whose states are about so large, 0 where that is not known.
+    /// Adds a tangent vector to a system. `sizes` are magnitudes of its states for finite
+    /// differences, 0 if unknown.
     pub fn new(system: &'s S, sizes: Vec<f64>) -> Self {
         let states = system.states();
         Self {
@@ -40,8 +42,8 @@ impl<'s, S: System + ?Sized> Beside<'s, S> {
         }
     }
 
-    /// When the motion went over surfaces together, s, where v has no direction: which of them came
-    /// first decides about it.
+    /// Returns the time (s) at which the motion crossed several surfaces at once, if it did. There
+    /// the order of the crossings, and thus v, is not determined.
     pub fn together(&self) -> Option<f64> {
         self.together.get()
     }
@@ -95,8 +97,8 @@ impl<S: System + ?Sized> System for Beside<'_, S> {
     fn cross(&self, (before, start): (f64, &[f64]), t: f64, y: &mut [f64]) {
         let states = self.system.states();
         let (start, (y, v)) = (&start[..states], y.split_at_mut(states));
-        // As far before the start as the end is behind it: the start itself may lie on the
-        // surface to the last bit, where the rates are those of either side.
+        // The start of the step can be on the surface up to the last bit, where the rates of
+        // either side are possible. So evaluate as far before it as the end is behind it.
         let mirrored = start.iter().zip(&*y).map(|(start, end)| 2.0 * start - end);
         let near: Vec<f64> = mirrored.collect();
         let near = (2.0 * before - t, &*near);

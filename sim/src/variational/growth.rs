@@ -1,47 +1,47 @@
-//! The growth of a tangent vector, from stretch to stretch.
+//! Growth of a tangent vector over intervals.
 
 use super::beside::Beside;
 use crate::ode::{Settings, SolveError, System, Trajectory, simulate};
 
-/// Samples that say how large states are.
+/// Number of samples for the sizes of states.
 const LOOKS: usize = 64;
 
-/// Within a stretch a vector is followed in pieces over which it shrinks by e^-4 at most, so that the
-/// solver's error, which is a part of the largest length, stays a small part of the last.
+/// Largest shrinkage exponent of a vector over one piece of an interval. The solver's error is
+/// relative to the largest length, so it remains a small fraction of the last one.
 const MOST_SHRINKAGE: f64 = 4.0;
 
-/// The most pieces of a stretch.
+/// Maximum number of pieces of an interval.
 const MOST_PIECES: u32 = 4096;
 
-/// How long and how often the growth is measured.
+/// Times of the measurements of growth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stretches {
-    /// Time before anything is measured, s; the vector turns into place in its second half.
+    /// Time before the first measurement, s. The vector aligns in its second half.
     pub transient: f64,
     /// Time between two measurements, s.
     pub interval: f64,
-    /// How many measurements.
+    /// Number of measurements.
     pub intervals: usize,
 }
 
-/// The growth of the tangent vector.
+/// Measured growth of a tangent vector.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Growths {
-    /// ln |v_after| / |v_before| over every interval.
+    /// Growth exponents ln(|v_after| / |v_before|) of the intervals.
     pub growths: Vec<f64>,
-    /// Switches over the whole time.
+    /// Number of events over the whole time.
     pub switches: u64,
 }
 
-/// Why a tangent vector could not be followed.
+/// Error of the measurement of growth.
 #[derive(Clone, Debug, PartialEq)]
 pub enum GrowthError {
-    /// The motion could not be.
+    /// The simulation of the motion failed.
     Motion(SolveError),
-    /// At this time, s, the motion goes over several switching surfaces together or touches one:
-    /// neighbouring motions do not stay neighbours there.
+    /// At this time, s, the motion crosses several switching surfaces at once or touches one, so
+    /// neighbouring motions do not remain close.
     Together(f64),
-    /// The vector has shrunk to nothing or grown beyond all numbers.
+    /// The length of the vector underflowed or overflowed.
     NoLength,
 }
 
@@ -51,15 +51,16 @@ impl From<SolveError> for GrowthError {
     }
 }
 
-/// The growth of the distance to a neighbour of the motion from `initial` at t = 0.
+/// Measures the growth of a tangent vector along the motion from `initial` at t = 0.
 ///
-/// The system has to know its own Jacobian: differences reach over switching surfaces. `felt`: whether any rate or switching function depends on each state; the others, such as the
-/// angle of a rotation that nothing restrains, are left out of the length. `settings` limits all
-/// steps together.
+/// The system must implement its own Jacobian: finite differences would cross switching surfaces.
+/// `felt` is true for each state that a rate or a switching function depends on; the others, such
+/// as the angle of an unrestrained rotation, do not count in the length. `settings` limits the
+/// number of all steps together.
 ///
 /// # Errors
-/// A motion that cannot be followed, or whose neighbours do not stay neighbours; times that make no
-/// sense, no state that is felt.
+/// A motion that cannot be simulated, neighbouring motions that do not remain close, invalid
+/// times, or no state with an influence.
 pub fn growths<S: System + ?Sized>(
     system: &S,
     initial: &[f64],
@@ -96,7 +97,7 @@ pub fn growths<S: System + ?Sized>(
     })
 }
 
-/// A motion with a vector of length 1 beside it.
+/// A motion with a tangent vector of length 1.
 struct Carried<'a, S: System + ?Sized> {
     system: &'a S,
     felt: &'a [bool],
@@ -104,14 +105,15 @@ struct Carried<'a, S: System + ?Sized> {
     t: f64,
     y: Vec<f64>,
     v: Vec<f64>,
-    /// How large each state has been.
+    /// Largest magnitude of each state up to now.
     sizes: Vec<f64>,
     pieces: u32,
     switches: u64,
 }
 
 impl<'a, S: System + ?Sized> Carried<'a, S> {
-    /// The first unit vector of what is felt, turned a little towards the others.
+    /// Starts with the first unit vector of the states that count, turned slightly towards the
+    /// others.
     fn new(system: &'a S, initial: &[f64], felt: &'a [bool], settings: &Settings) -> Self {
         let mut turned = std::iter::once(1.0).chain((2..).map(|k: u32| 0.1 / f64::from(k)));
         let mut entry = |felt: &bool| {
@@ -137,7 +139,7 @@ impl<'a, S: System + ?Sized> Carried<'a, S> {
         carried
     }
 
-    /// Follows the motion alone until `end`, s.
+    /// Simulates without the vector until `end`, s.
     fn settle(&mut self, end: f64) -> Result<(), GrowthError> {
         if end <= self.t {
             return Ok(());
@@ -154,7 +156,7 @@ impl<'a, S: System + ?Sized> Carried<'a, S> {
         Ok(())
     }
 
-    /// Follows motion and vector until `end`, s, and says by which exponent the vector has grown.
+    /// Simulates motion and vector until `end`, s, and returns the growth exponent of the vector.
     fn follow(&mut self, end: f64) -> Result<f64, GrowthError> {
         let (begin, mut growth, mut least) = (self.t, 0.0, 0.0_f64);
         for piece in 1..=self.pieces {
@@ -208,7 +210,7 @@ impl<'a, S: System + ?Sized> Carried<'a, S> {
         }
     }
 
-    /// Counts what a motion took; its last state.
+    /// Counts steps and events of a motion and returns its last state.
     fn reckon(&mut self, motion: Trajectory) -> Vec<f64> {
         let work = motion.work;
         let steps = work.steps + work.rejected + work.trials;
@@ -222,7 +224,7 @@ impl<'a, S: System + ?Sized> Carried<'a, S> {
 mod tests {
     use super::*;
 
-    /// x'' = -x - c x' + cos(1.3 t), and a damper and a step of force where x > 0.2.
+    /// Oscillator x'' = -x - c x' + cos(1.3 t), with a damper and a force step for x > 0.2.
     struct Struck {
         c: f64,
         damper: f64,
@@ -260,7 +262,7 @@ mod tests {
     const FELT: [bool; 2] = [true; 2];
 
     #[test]
-    fn a_linear_oscillator_has_minus_half_its_damping() -> Result<(), GrowthError> {
+    fn growth_of_linear_oscillator_is_minus_half_its_damping() -> Result<(), GrowthError> {
         let system = Struck {
             c: 0.3,
             damper: 0.0,
@@ -274,7 +276,7 @@ mod tests {
         };
         let settings = Settings::default();
         let found = growths(&system, &[0.1, 0.0], &FELT, &stretches, &settings)?;
-        // A vector comes back to its direction after half a period of its own.
+        // A vector returns to its direction after half a period.
         for growth in found.growths {
             assert!((growth / period + 0.15).abs() < 1e-8, "{growth}");
         }
@@ -282,7 +284,7 @@ mod tests {
     }
 
     #[test]
-    fn a_jump_of_the_rates_takes_neighbours_as_two_motions_show() -> Result<(), GrowthError> {
+    fn growth_over_jump_matches_two_neighbouring_motions() -> Result<(), GrowthError> {
         for (damper, force) in [(2.0, 0.0), (0.0, 0.5), (-0.4, 0.3), (1.0, -0.2)] {
             let system = Struck {
                 c: 0.1,

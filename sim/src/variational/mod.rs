@@ -1,11 +1,10 @@
-//! How fast neighbouring motions part, for any model: the variational equation along a motion of
-//! the general solver.
+//! Variational equations: the growth of a tangent vector along a motion of the general solver, for
+//! any model.
 //!
-//! The pipeline: a [`Beside`] is a [`System`](crate::ode::System) with one tangent vector beside
-//! its state, v' = J v, which the `saltation` matrix takes over a located switch; [`growths`]
-//! follows it from stretch to stretch and measures how its length grows (Benettin, Galgani, Giorgilli
-//! and Strelcyn, Meccanica 15 (1980) 9-30). What is linear between its switches has the same exactly in
-//! [`piecewise_linear`](crate::piecewise_linear).
+//! A [`Beside`] is a [`System`](crate::ode::System) with a tangent vector v, v' = J v, which the
+//! `saltation` matrix transforms at events. [`growths`] integrates it over intervals and measures
+//! the growth of its length (Benettin, Galgani, Giorgilli and Strelcyn, Meccanica 15 (1980) 9-30).
+//! [`piecewise_linear`](crate::piecewise_linear) has an exact version for piecewise-linear models.
 
 mod beside;
 mod growth;

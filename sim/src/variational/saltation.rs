@@ -1,18 +1,18 @@
-//! How much later or earlier a neighbouring motion comes to a switching surface.
+//! Time difference between a motion and a neighbouring motion at a switching surface.
 
 use crate::ode::System;
 
-/// Differences are taken over this part of a state's size: wide enough for the rounding of a
-/// switching function, narrow enough for its bend.
+/// Width of finite differences relative to the size of a state: wide compared with the rounding of
+/// a switching function, narrow compared with its curvature.
 const STEP: f64 = 1e-3;
 
-/// Times that agree within this part are of one surface, written twice.
+/// Largest relative difference of times that belong to the same surface, written twice.
 const SAME: f64 = 1e-6;
 
-/// The switching functions of a system and how large its states are.
+/// Switching functions of a system, and the sizes of its states.
 pub(super) struct Surfaces<'a, S: System + ?Sized> {
     pub system: &'a S,
-    /// For differences; 0 where it is not known.
+    /// Sizes of the states for finite differences; 0 if unknown.
     pub sizes: &'a [f64],
 }
 
@@ -23,7 +23,7 @@ impl<S: System + ?Sized> Surfaces<'_, S> {
         guards
     }
 
-    /// The derivatives of all functions by the time and the states, a row for each variable.
+    /// Returns the derivatives of all functions: one row for time, then one per state.
     fn derivatives(&self, t: f64, y: &[f64], time: f64) -> Vec<Vec<f64>> {
         let quotient = |(above, below): (Vec<f64>, Vec<f64>), width: f64| -> Vec<f64> {
             let pairs = above.into_iter().zip(below);
@@ -36,7 +36,7 @@ impl<S: System + ?Sized> Surfaces<'_, S> {
         let mut moved = y.to_vec();
         for state in 0..y.len() {
             let size = self.sizes[state].max(y[state].abs());
-            // What has not moved yet is as large as its unit.
+            // A state that has been 0 up to now has the size of its unit.
             let step = STEP * if size > 0.0 { size } else { 1.0 };
             let (high, low) = (y[state] + step, y[state] - step);
             moved[state] = high;
@@ -50,9 +50,9 @@ impl<S: System + ?Sized> Surfaces<'_, S> {
     }
 }
 
-/// How much later (s) than a motion its neighbour at the distance `v` comes to the surface between two
-/// points, `from` being the rates on the near side. Nothing where there are several surfaces and
-/// different times, or where the motion only touches.
+/// Returns the delay (s) with which the neighbour at the distance `v` reaches the surface between
+/// two points; `from` are the rates on the near side. `None` if there are several surfaces with
+/// different delays, or if the motion only touches the surface.
 pub(super) fn delay<S: System + ?Sized>(
     surfaces: &Surfaces<'_, S>,
     (before, near): (f64, &[f64]),
@@ -61,7 +61,8 @@ pub(super) fn delay<S: System + ?Sized>(
     v: &[f64],
 ) -> Option<f64> {
     let (near, far) = (surfaces.at(before, near), surfaces.at(t, beyond));
-    // In a time in which the state changes by a part of its size, to see a clock in a surface.
+    // The shortest time in which a state changes by its size, to resolve a dependence of surfaces
+    // on time.
     let times = from.iter().zip(surfaces.sizes);
     let times = times.filter(|(rate, size)| **rate != 0.0 && **size > 0.0);
     let time = times
