@@ -1,4 +1,4 @@
-//! Why nothing could be compared or searched.
+//! Errors of the comparison and of the search.
 
 use crate::ids::WindowId;
 use std::fmt;
@@ -13,51 +13,51 @@ use eomgen_sim::piecewise_linear::ExactError;
 /// What is said where somebody asked to stop.
 const STOPPED: &str = "stopped as asked";
 
-/// What can go wrong on the way from a specification and records to a result.
+/// Error between reading a specification and returning a result.
 #[derive(Clone, Debug)]
 pub enum DiscoverError {
-    /// A specification that does not check or cannot be derived.
+    /// The specification is invalid or its equations cannot be derived.
     Model(Box<ModelError>),
-    /// An edit that a specification does not admit.
+    /// An edit of the specification is impossible.
     Edit(Box<EditError>),
-    /// A user's effect that does not leave a specification.
+    /// An effect of the user that makes a specification invalid.
     Effect {
-        /// The effect.
+        /// Name of the effect.
         effect: String,
-        /// The place it was written to.
+        /// Site of the effect.
         on: String,
-        /// What was wrong.
+        /// Error of the edit.
         error: Box<EditError>,
     },
-    /// Records, or their labels, that are refused.
+    /// The records or their labels are rejected.
     Records(Box<Refusal>),
-    /// Initial states are to be read from the record, and no channel shows this state.
+    /// Initial states must be read from the record, but no channel measures this state.
     StateNotMeasured(String),
-    /// No motion can be followed: where, and what is expected.
+    /// No motion can be simulated in these windows.
     Unfollowed(Unfollowed),
-    /// No motion of a candidate's own model can be followed.
+    /// The motion of a candidate's model cannot be simulated.
     CandidateUnfollowed,
-    /// A candidate that changes no output.
+    /// The candidate changes no output.
     NotExcited,
-    /// Somebody asked to stop.
+    /// Stop was requested.
     Stopped,
 }
 
-/// The windows through which a model's motion cannot be followed.
+/// Windows in which the motion of a model cannot be simulated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unfollowed {
-    /// How many there are.
+    /// Number of failed windows.
     pub count: usize,
-    /// Of how many.
+    /// Number of all windows.
     pub of: usize,
-    /// When the first begins, s.
+    /// Start of the first failed window, s.
     pub first: f64,
-    /// The record in which that is.
+    /// Record of that window.
     pub record: String,
 }
 
 impl Unfollowed {
-    /// Some of all windows; none if there are none.
+    /// Summarises failed windows; `None` if there are none.
     pub fn of(windows: &Windows<'_>, unfollowed: &[WindowId]) -> Option<Self> {
         let window = &windows.list[*unfollowed.first()?];
         Some(Self {
@@ -69,24 +69,24 @@ impl Unfollowed {
     }
 }
 
-/// Why a model's motion cannot be followed.
+/// Reason why the motion of a model cannot be simulated.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SimulationError {
-    /// At these parameters the mass matrix is not positive definite.
+    /// The mass matrix is not positive definite at these parameters.
     MassMatrix,
-    /// The exact propagator does not take the part that is linear between switches.
+    /// The exact propagator rejects the part that is linear between switches.
     Propagator(ExactError),
-    /// The exponential integrator stopped, and why.
+    /// The exponential integrator failed for this reason.
     Integrator(String),
-    /// The solver with error control stopped.
+    /// The solver with error control failed.
     Solver(SolveError),
-    /// A part of it moves too fast beside the samples.
+    /// A part of the motion is too fast for the sampling.
     TooFast,
-    /// The motion grows beyond all bounds.
+    /// The state diverged.
     Unbounded,
     /// The records give the motion, but not that of all states.
     NotGiven,
-    /// Somebody asked to stop.
+    /// Stop was requested.
     Stopped,
 }
 

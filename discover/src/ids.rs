@@ -1,12 +1,12 @@
-//! Which one of several is meant: an index with a type of its own for every kind of thing, so that
-//! none is taken for another. Lists are indexed by them; only where rows and columns of matrices are
-//! meant is [`index`](ChannelId::index) asked for.
+//! Typed indices, one type for each kind of object, so that they cannot be confused. Lists are
+//! indexed by them; [`index`](ChannelId::index) returns the number for rows and columns of
+//! matrices.
 
-/// Windows that stand together.
+/// Consecutive windows.
 pub type WindowRange = std::iter::Map<std::ops::Range<usize>, fn(usize) -> WindowId>;
 
 impl WindowId {
-    /// Windows that stand together, in order.
+    /// Returns consecutive windows in order.
     pub fn range(indices: std::ops::Range<usize>) -> WindowRange {
         indices.map(Self::new as fn(usize) -> Self)
     }

@@ -1,627 +1,630 @@
-//! Every constant that decides something, in one place, with its reason.
+//! Constants that decide the search and the estimation, each with its reason.
 
 use crate::interval::Interval;
 
-/// Standard deviation of a sensor's gain before it is estimated: a calibrated sensor.
+/// Prior standard deviation of the gain of a sensor: a calibrated sensor.
 pub const GAIN_PRIOR: f64 = 0.01;
 
-/// Standard deviation of a sensor's bias, in standard deviations of its noise.
+/// Prior standard deviation of the bias of a sensor, in standard deviations of its noise.
 pub const BIAS_PRIOR: f64 = 10.0;
 
-/// Standard deviation of a sensor's delay, in samples: held somewhere between two of them.
+/// Prior standard deviation of the delay of a sensor, in samples: the value is held at an unknown
+/// time between two samples.
 pub const DELAY_PRIOR: f64 = 0.5;
 
-/// Standard deviation of a window's initial state around where the window before ended, in
-/// ranges of the state's own motion: next to nothing is known, yet a state that the window
-/// does not show stays where it may be.
+/// Prior standard deviation of the initial state of a window around the end of the previous window,
+/// in ranges of the state. It carries almost no information, but keeps states that the window does
+/// not show near the prior.
 pub const INITIAL_STATE_PRIOR: f64 = 0.02;
 
-/// Range of a state that nothing moves: a change that moves the outputs by this part of the noise,
-/// which no record shows.
+/// Range of a state that nothing excites: the change that moves the outputs by this fraction of the
+/// noise.
 pub const UNMOVED_STATE: f64 = 1e-3;
 
-/// If a motion cannot be followed through a record, ranges come from its first half, quarter and so on:
-/// the number of halvings.
+/// Maximum number of halvings of a record for the estimate of the ranges. A record is halved if its
+/// motion diverges.
 pub const MOST_HALVINGS: u32 = 6;
 
-/// So many times less is known of the initial state of a coordinate that a candidate adds: what
-/// it does goes with the candidate's parameter, which is not known yet.
+/// Factor on the prior standard deviation of the initial state of a coordinate that a candidate
+/// adds, because the parameters of the candidate are still unknown.
 pub const ADDED_STATE: f64 = 10.0;
 
-/// A shape, such as the speed at which friction has fallen or the deflection at which a stop is met, is
-/// searched within these factors of its usual size, for friction a tenth of the usual speed. What has not fallen at a third of that speed
-/// is no friction near rest: it would take over what another friction does at every speed.
+/// Factors of the typical size within which a shape parameter is searched, such as the Stribeck
+/// speed or the deflection of an end stop. The typical size for friction is a tenth of the usual
+/// speed. A friction that has not fallen at a third of that speed is no Stribeck friction: it would
+/// replace another friction at every speed.
 pub const SHAPE_RANGE: Interval = Interval::new(0.02, 3.0);
 
-/// Columns that agree to this part of their square are one: products of doubles know no
-/// better.
+/// Relative squared difference below which two columns are equal: the limit of double precision.
 pub const RIDGE: f64 = 1e-11;
 
-/// An effect is accepted if the gap on held-out records falls by this part: less matters to
-/// nobody, and luck reaches it.
+/// Minimum relative reduction of the gap on held-out records for an accepted effect. A smaller
+/// reduction has no practical value and can be due to chance.
 pub const HELD_OUT: f64 = 0.05;
 
-/// And if that fall is this many standard errors over blocks of time.
+/// Minimum of that reduction in standard errors over blocks of time.
 pub const STANDARD_ERRORS: f64 = 2.0;
 
-/// And if half the fall of the whitened squares is this large: some hundred candidates are
-/// screened, of which the luckiest reaches ln 100 = 5.
+/// Minimum of half the reduction of the whitened squares. The best of a hundred useless candidates
+/// reaches ln 100 = 5.
 pub const INFORMATION: f64 = 10.0;
 
-/// And if its parameters are this many standard deviations, correlated residuals allowed for.
+/// Minimum size of the parameters of an accepted effect in standard deviations, with correlated
+/// residuals included.
 pub const SIGNIFICANCE: f64 = 5.0;
 
-/// And if what it does to the channel that shows it best, and nothing else can do, is this many
-/// standard deviations of the noise: what is smaller may be anything that repeats by chance.
+/// Minimum influence of an effect on the channel that shows it best, in standard deviations of the
+/// noise. Only the part that no other unknown explains counts. A smaller influence may be anything
+/// that repeats by chance.
 pub const SIZE: f64 = 1.0;
 
-/// Nothing is left to be found where the gap is within this factor of the floor.
+/// Ratio of the gap to the noise floor below which nothing is left to find.
 pub const AT_FLOOR: f64 = 1.1;
 
-/// Candidates whose responses agree by more than this are both fitted.
+/// Similarity of two responses above which both candidates are fitted.
 pub const INDISTINGUISHABLE: f64 = 0.95;
 
-/// And they are one class if the held-out gaps that they leave differ by less than
-/// `STANDARD_ERRORS`, or by less than this part, and the training gaps by less than this part or
-/// `INFORMATION`: what is so small may come from how they were fitted.
+/// Relative difference below which two candidates form one class. Their held-out gaps differ by
+/// less than this or by less than `MIN_REDUCTION_STANDARD_ERRORS`, and their training gaps by less
+/// than this or by less than `MIN_INFORMATION_GAIN`. So small a difference may come from the fit
+/// itself.
 pub const DISTINGUISHED: f64 = 0.01;
 
-/// Candidates whose responses agree by more than this are two names of one thing: they are one
-/// class unless what they leave differs by `HELD_OUT`, because windows with impacts may end in
-/// different folds.
+/// Similarity of two responses above which the candidates are two names of one effect. They form
+/// one class unless their residuals differ by `MIN_HELD_OUT_REDUCTION`, because windows with
+/// impacts may end in different folds.
 pub const SAME: f64 = 1.0 - 1e-6;
 
-/// A response of which less than this part is its own is indistinguishable from the nuisances,
-/// unless that part explains `ENOUGH`.
+/// Fraction of a response that is independent of the nuisances, below which the candidate is
+/// indistinguishable from them, unless that fraction explains `MIN_EXPLAINED_FRACTION`.
 pub const UNEXPLAINED_FRACTION: f64 = 0.01;
 
-/// The most effects that are added.
+/// Maximum number of added effects.
 pub const MOST_EFFECTS: usize = 4;
 
-/// The most candidates that are fitted in full in one round.
+/// Maximum number of full fits in one round.
 pub const MOST_FITS: usize = 4;
 
-/// A further excitation window is searched, unless what is accepted leaves less than so many
-/// floors: what one excitation window shows may stand in for what another shows better.
+/// Ratio of the gap to the noise floor below which no further excitation window is searched. Above
+/// it, an effect of one excitation window may replace another that a further window shows better.
 pub const CLOSE: f64 = 1.5;
 
-/// Or less than this part of the residuals that were there: it is most of the answer, and what is
-/// still to come shows better once it is in.
+/// Remaining fraction of the residuals below which an accepted effect is most of the answer.
+/// Further effects show more clearly once it is in the model.
 pub const MOST_OF: f64 = 0.3;
 
-/// A candidate is fitted if screening promises that it takes this part of the squares away: a
-/// fifth of what a fall of the held-out gap by `HELD_OUT` comes to, because a straight line
-/// promises less of what saturates, such as damping.
+/// Predicted reduction of the squares above which a candidate is fitted: a fifth of the reduction
+/// that corresponds to `MIN_HELD_OUT_REDUCTION`, because the linear prediction is too low for
+/// saturating effects such as damping.
 pub const PROMISE: f64 = 0.02;
 
-/// Where much more than noise is left, effects are far from small and a straight line promises
-/// a part of what they do: this part is enough there.
+/// The same limit when the residuals are much larger than the noise. Effects are then large, and
+/// the linear prediction is too low.
 pub const PROMISE_FAR: f64 = 0.005;
 
-/// Much more than noise are so many standard deviations.
+/// Residual RMS above which the residuals are much larger than the noise, in standard deviations.
 pub const MUCH_IS_LEFT: f64 = 3.0;
 
-/// Where more than `CLOSE` floors are left, a candidate whose preliminary fit leaves no less than this part
-/// of the squares is not fitted in full: of a hundred such that were, none was accepted.
+/// Maximum remaining fraction of the squares after a preliminary fit that is continued with a full
+/// fit, if the gap exceeds `MAX_FLOOR_RATIO_TO_STOP` floors. Of a hundred candidates above this
+/// limit none was accepted.
 pub const HELPS: f64 = 0.95;
 
-/// So many candidates are fitted side by side before it is decided whether more are worth it:
-/// one per core of a small machine.
+/// Number of candidates that are fitted in parallel before the next decision: one for each core of
+/// a small machine.
 pub const FITS_AT_ONCE: usize = 2;
 
-/// A pair is fitted if screening promises that it leaves this part of the squares that the best
-/// single one does.
+/// Predicted ratio of the squares of a pair to those of the best single candidate, below which the
+/// pair is fitted.
 pub const PAIR_PROMISE: f64 = 0.8;
 
-/// Two effects cancel if what either does is this many times what both do together: with less noise
-/// neither would be there.
+/// Ratio of the influence of either effect to that of both, above which two effects cancel. With
+/// less noise neither would be selected.
 pub const CANCELS: f64 = 3.0;
 
-/// Effects that repeat with an angle, a dozen for every angle, are screened only where no
-/// other promises this part of the gap. What promises so much is fitted, however little of it is
-/// its own.
+/// Fraction of the gap that makes further candidates unnecessary. Effects that repeat with an
+/// angle, a dozen for each angle, are screened only if no other candidate promises this fraction. A
+/// candidate that promises it is always fitted, even if it is similar to the nuisances.
 pub const ENOUGH: f64 = 0.5;
 
-/// The most candidates, or pairs of them, that are fitted to the beginnings of the windows in
-/// one round.
+/// Maximum number of candidates, or pairs, with a preliminary fit in one round.
 pub const MOST_PRELIMINARY_FITS: usize = 8;
 
-/// Candidates are fitted in full only if, fitted to the beginnings of the windows, they
-/// leave less than this times the squares of the best one.
+/// Ratio of the squares to those of the best preliminary fit, below which a candidate is fitted in
+/// full.
 pub const RIVAL: f64 = 1.5;
 
-/// A term of the model may be deleted if its parameter is this many standard deviations of its
-/// prior from 0 at most.
+/// Maximum distance of a parameter from 0, in standard deviations of its prior, for which its term
+/// may be deleted.
 pub const PRIOR_REACH: f64 = 3.0;
 
-/// The null model keeps declared parameters and sensors within so many standard deviations of
-/// their priors. Beyond, with `STANDARD_ERRORS` of the estimate to spare, it is an effect: one in
-/// four hundred is by chance.
+/// Limit of the null model for declared parameters and sensors, in standard deviations of their
+/// priors. A larger deviation, by `MIN_REDUCTION_STANDARD_ERRORS` standard deviations of the
+/// estimate, is an effect; one in four hundred occurs by chance.
 pub const SHIFTED: f64 = 3.0;
 
-/// How much wider uncertainties of effects are than a straight line at the estimate makes them: rounding
-/// by encoders that goes with the signal, initial states that hold each other, and the bends of the
-/// model are not in it. Of some forty estimates of effects made for this, two in three were
-/// within 1.645 of the narrower ones.
+/// Factor on the linearised uncertainty of effects. The linearisation omits quantisation that
+/// depends on the signal, correlated initial states and the curvature of the model. Two in three of
+/// forty test estimates were within 1.645 narrower standard deviations.
 pub const WIDER: f64 = 1.8;
 
-/// What of a misfit that a right model would not leave looks like what an effect does, so that
-/// the effect's size is off by it: chosen on one seed of the blind suite, with 62 sizes.
+/// Fraction of the misfit above the noise floor that resembles the response of an effect and so
+/// biases its size. Chosen on one seed of the blind suite, with 62 sizes.
 pub const MISFIT_ALIKE: f64 = 0.3;
 
-/// A residual force is spoken of if it explains this part of the squares: less is seen in every
-/// record once windows are fitted.
+/// Minimum fraction of the squares that a reported residual force explains. Every fitted record
+/// shows less than this.
 pub const STANDS_OUT: f64 = 0.1;
 
-/// A residual force is said to be a function of its rate or position if that explains this part of
-/// what a force that is free in every window does.
+/// Minimum fraction, relative to a force that is free in each window, explained by a force that is
+/// reported as a function of rate or position.
 pub const STATE_EXPLAINS: f64 = 0.6;
 
-/// It is described by a simple function, or two, if these explain this part of what a line with
-/// many bends does.
+/// Minimum fraction, relative to a piecewise linear force, explained by one or two simple functions
+/// that describe the force.
 pub const IS_SIMPLE: f64 = 0.9;
 
-/// A force in another equation explains nearly as much if it explains this part.
+/// Fraction, relative to the best equation, above which a force in another equation explains nearly
+/// as much.
 pub const AS_WELL: f64 = 0.9;
 
-/// A straight line at a motion that is off is right to about this part of the force that is
-/// sought: springs and friction that were hidden on purpose came out 1 to 5 % off.
+/// Relative error of the linearised force at a wrong motion: hidden springs and friction were
+/// estimated with errors of 1 to 5 %.
 pub const STRAIGHT: f64 = 0.05;
 
-/// An expression that has no name is sought only where so many floors are left, on training and
-/// on test records: less may be what fits of what has a name did not reach.
+/// Ratio of the gap to the noise floor, on training and on test records, above which an unnamed
+/// expression is searched. A smaller gap may remain from the fit of the named effects.
 pub const UNNAMED_FROM: f64 = 2.0;
 
-/// It is accepted only if it closes this part of the gap to the floor, on both: what is missing
-/// and is a function of rates, positions and inputs can be closed, what is none cannot.
+/// Minimum fraction of the gap to the floor, on training and on test records, that an accepted
+/// unnamed expression closes. A missing function of rates, positions and inputs can reach it; other
+/// effects cannot.
 pub const UNNAMED_CLOSES: f64 = 0.5;
 
-/// The most terms that it has: more are read by nobody.
+/// Maximum number of terms of an unnamed expression. More terms are unreadable.
 pub const UNNAMED_TERMS: usize = 3;
 
-/// A term more must take this part of the squares that are left without it.
+/// Minimum fraction of the remaining squares that each further term explains.
 pub const TERM_TAKES: f64 = 0.25;
 
-/// The most equations of motion in which an expression is sought, of those in which a force
-/// explains nearly as much: what hangs together stiffly is indistinguishable anyway.
+/// Maximum number of equations of motion in which an expression is searched, among those whose
+/// force explains nearly as much. Stiffly coupled equations are indistinguishable.
 pub const UNNAMED_EQUATIONS: usize = 3;
 
 // Models and their records.
 
-/// What a late sensor shows is interpolated to this part of the noise: less is not seen.
+/// Maximum interpolation error of the output of a delayed sensor, as a fraction of the noise.
 pub const INTERPOLATED: f64 = 0.25;
 
-/// Quantities are computed at most so many times from sample to sample: what would need more
-/// is hardly sampled.
+/// Maximum number of computed outputs per sample interval. A motion that needs more is
+/// undersampled.
 pub const MOST_BETWEEN: usize = 4;
 
-/// The cut-off of the zero-phase smoothing, in parts of the sampling frequency. A record is sampled
-/// for what it is to show; what moves faster than a fiftieth of that is noise or quantisation to an
-/// initial value.
+/// Cut-off frequency of the zero-phase smoothing, as a fraction of the sampling frequency. For an
+/// initial value, faster motion is noise or quantisation.
 pub const SMOOTHING_CUT_OFF: f64 = 0.02;
 
-/// Samples from which the first value and the first slope of a column are read: a dozen average the
-/// noise, and a parabola still follows the motion over so few.
+/// Number of samples for the first value and slope of a column. A dozen samples average the noise,
+/// and a parabola still fits the motion over them.
 pub const FIRST_SAMPLES: usize = 12;
 
-/// Samples at the beginning of a record over which columns are compared with the model as it is:
-/// later what the model lacks has led it away.
+/// Number of samples at the beginning of a record over which columns are compared with the model.
+/// Later the missing effects have moved the model too far away.
 pub const CHECKED_SAMPLES: usize = 1000;
 
-/// A channel that moves by fewer standard deviations of its noise, a straight line taken out, shows
-/// nothing.
+/// Minimum detrended motion of a checked channel, in standard deviations of its noise.
 pub const CHECKED_MOTION: f64 = 20.0;
 
-/// Columns whose correlation is above this are one quantity.
+/// Correlation above which two columns are one quantity.
 pub const FOLLOWS: f64 = 0.98;
 
-/// A channel whose correlation with the model is below this does not follow it: what a model lacks
-/// leaves most of the motion.
+/// Correlation with the model below which a channel does not follow it. Missing effects leave most
+/// of the motion intact.
 pub const ASTRAY: f64 = 0.5;
 
-/// A factor between columns is a given one if it agrees to this part of it: a hundredth for what
-/// parameters may be off, and as much again for what is lacking.
+/// Relative tolerance of a known unit factor between columns: 1 % for wrong parameters and 1 % for
+/// missing effects.
 pub const AGREES: f64 = 0.02;
 
-/// A factor between a column and the model is one, or minus one, to this: what the model lacks may
-/// change its size so far.
+/// Tolerance of a factor of one, or minus one, between a column and the model. Missing effects may
+/// change the amplitude this much.
 pub const NEAR_ONE: f64 = 0.2;
 
-/// Switches per simulated second beyond which a trial motion is given up, 1/s: ten times as many as
-/// the stiffest contact of the shipped machines makes.
+/// Maximum number of switches per simulated second of a trial motion, 1/s: ten times the number of
+/// the stiffest contact of the shipped models.
 pub const FASTEST_SWITCHING: f64 = 1e5;
 
-/// In so many parts of one step from sample to sample a motion is followed at most: what is faster, such as a
-/// drive that is late by a thousandth of a sample, is given up, because nothing shows it and each part takes its time.
+/// Maximum number of parts of one step between samples. A faster process, such as a drive with a
+/// lag of a thousandth of a sample, is not visible, and each part costs time.
 pub const MOST_PARTS: f64 = 4096.0;
 
-/// Samples on which the number of steps from sample to sample is tried: some periods of what a record
-/// is sampled for.
+/// Number of samples on which the number of steps per sample is tested.
 pub const STEP_TEST_SAMPLES: usize = 100;
 
-/// Steps from sample to sample are tried up to two to this power; what needs more is left to a solver
-/// with error control.
+/// Base-2 logarithm of the maximum number of fixed steps per sample. Above it a solver with error
+/// control is used.
 pub const MOST_STEP_DOUBLINGS: u32 = 7;
 
-/// The root mean square error of steps of one length, in standard deviations of the noise, with which
-/// a simulation is compared.
+/// Maximum RMS error of fixed steps in a simulation that is compared, in standard deviations of the
+/// noise.
 pub const STEP_ERROR: f64 = 0.2;
 
-/// The root of the sum of squares, over all numbers of the records, of the error of Runge-Kutta steps, in
-/// standard deviations of the noise: it moves no estimate by more than this part of its standard
-/// deviation.
+/// Maximum root of the summed squared errors of Runge-Kutta steps over all measured numbers, in
+/// standard deviations of the noise. It shifts each estimate by at most this fraction of its
+/// standard deviation.
 pub const SUMMED_STEP_ERROR: f64 = 0.1;
 
-/// Relative error of one step of the solver with error control: far below any sensor's noise.
+/// Relative tolerance of the solver with error control: far below the noise of any sensor.
 pub const SOLVER_TOLERANCE: f64 = 1e-7;
 
-/// The most steps of that solver in one window: some seconds.
+/// Maximum number of steps of that solver in one window: some seconds of computation.
 pub const MOST_SOLVER_STEPS: u64 = 400_000;
 
 // Fits.
 
-/// The parts of a window over which initial states are fitted, one after the other: a short motion
-/// is nearly linear in its initial state. Chosen on the development seeds of the blind suite.
+/// Successive fractions of a window over which initial states are fitted. A short motion is nearly
+/// linear in its initial state. Chosen on the development seeds of the blind suite.
 pub const HORIZONS: [f64; 4] = [0.08, 0.25, 0.5, 1.0];
 
-/// Others, for another try: where impacts fold the outputs, one sequence may end in the wrong fold
-/// and another in the right one.
+/// Fractions of a second attempt. If impacts fold the outputs, one sequence may end in a wrong
+/// local minimum and the other in the right one.
 pub const OTHER_HORIZONS: [f64; 5] = [0.05, 0.12, 0.3, 0.7, 1.0];
 
-/// Parts of a record that are followed side by side from another estimate's initial states: one per
-/// core of a small machine, and not more on a larger one, so that results do not depend on the
-/// machine.
+/// Number of parts of a record that are processed in parallel from initial states of another
+/// estimate. It is independent of the machine, so that results are too.
 pub const CHAINS: usize = 2;
 
-/// A step of the continuation that lowers the cost by less than this part is the last: each follows
-/// all windows anew.
+/// Relative decrease of the cost below which the continuation ends: each step simulates all windows
+/// again.
 pub const CONTINUATION_DECREASE: f64 = 0.02;
 
-/// The most steps by secants, where tangents lead nowhere. Chosen on the development seeds of the
-/// blind suite.
+/// Maximum number of secant steps if tangents fail. Chosen on the development seeds of the blind
+/// suite.
 pub const SECANT_STEPS: usize = 6;
 
-/// A secant changes an unknown by this part of its scale at first.
+/// First change of an unknown for a secant, as a fraction of its scale.
 pub const FIRST_SECANT: f64 = 0.1;
 
-/// Then by what moves the outputs by this part of the residuals: far above the small folds of
-/// impacts, and no farther than the estimate is off.
+/// Output change of a secant, as a fraction of the residuals: far above the small folds due to
+/// impacts, and no larger than the error of the estimate.
 pub const SECANT_MOVES: f64 = 0.3;
 
-/// Within this factor a secant is as large as wanted.
+/// Factor within which the output change of a secant is accepted.
 pub const SECANT_NEAR: f64 = 3.0;
 
-/// A Gauss-Newton step that lowers the cost by less than this part is the last: what is gained is
-/// far below what a threshold asks of an effect.
+/// Relative decrease of the cost below which Gauss-Newton steps end: far below the thresholds for
+/// an effect.
 pub const LEAST_DECREASE: f64 = 1e-3;
 
-/// Parts of a step of the unknowns that are tried, one after the other.
+/// Successive trial fractions of a step of the unknowns.
 pub const STEP_PARTS: [f64; 3] = [1.0, 0.3, 0.05];
 
-/// Damping of a step of the unknowns where no part of it helps, in norms of its columns.
+/// Successive damping factors of a step of the unknowns if no fraction of it decreases the cost, in
+/// norms of the columns.
 pub const STEP_DAMPING: [f64; 4] = [0.0, 0.03, 1.0, 30.0];
 
-/// Damping of an initial state's step, in weights of its prior: where a state's impacts fold the
-/// outputs, only shorter steps along what is well determined help.
+/// Successive damping factors of the step of an initial state, in weights of its prior. If impacts
+/// fold the outputs, only short steps along well determined directions decrease the cost.
 pub const INITIAL_STATE_DAMPING: [f64; 5] = [0.0, 1e2, 1e4, 1e6, 1e9];
 
-/// The most steps of an initial state over one part of a window.
+/// Maximum number of steps of an initial state over one fraction of a window.
 pub const INNER_STEPS: usize = 6;
 
-/// The most Gauss-Newton steps over whole windows between two followings of them. Chosen on the
-/// development seeds of the blind suite.
+/// Maximum number of Gauss-Newton steps over whole windows before their initial states are
+/// estimated again. Chosen on the development seeds of the blind suite.
 pub const FULL_STEPS: usize = 4;
 
-/// The most further steps over beginnings of windows before whole ones are fitted.
+/// Maximum number of further steps over the beginnings of windows before whole windows are fitted.
 pub const FURTHER_STEPS: usize = 12;
 
-/// What leaves more standard deviations than this over whole windows is not worth following anew, and what
-/// leaves so many times what a fit leaves is no place to begin beside it.
+/// Residual RMS over whole windows, in standard deviations, above which the initial states are not
+/// estimated again. Also the ratio to the RMS of a fit above which a start is rejected.
 pub const HOPELESS: f64 = 8.0;
 
-/// What begins where a fit ended, and leaves so many times what that leaves of the training records after the
-/// first steps, is judged as it stands.
+/// Ratio of the training RMS after the first steps to that of the fit of a warm start, above which
+/// the result is judged without further steps.
 pub const FAR: f64 = 3.0;
 
-/// Windows are followed anew so often at most.
+/// Maximum number of renewed estimates of the initial states.
 pub const REFRESHES: usize = 2;
 
-/// And only while that lowers the cost by this part.
+/// Relative decrease of the cost below which the initial states are not estimated again.
 pub const REFRESH_DECREASE: f64 = 0.005;
 
-/// The most windows over which candidates are linearised, spread evenly over the records: screening
-/// a hundred candidates costs less than one full fit then.
+/// Maximum number of windows for the linearisation of candidates, spread evenly over the records.
+/// Screening a hundred candidates then costs less than one full fit.
 pub const MOST_WINDOWS: usize = 40;
 
-/// Windows that are enough to compare a few equations of motion.
+/// Number of windows that suffices to compare a few equations of motion.
 pub const FEW_WINDOWS: usize = 20;
 
-/// Blocks of time into which a set of windows is parted to judge what differs by chance: enough for
-/// a standard error, and each longer than residuals are correlated.
+/// Number of blocks of time for standard errors of a set of windows. Each block is longer than the
+/// correlation of the residuals.
 pub const BLOCKS: usize = 40;
 
-/// The most steps of the continuation while unknowns are far away.
+/// Maximum number of steps of the continuation.
 pub const CONTINUATION_STEPS: usize = 5;
 
-/// Steps of a preliminary fit where initial states are read from the record.
+/// Maximum number of steps of a preliminary fit if initial states are read from the record.
 pub const PRELIMINARY_STEPS: usize = 3;
 
-/// A difference quotient moves the outputs by this part of what the residual is: far above
-/// rounding, and over the small folds that impacts leave in the outputs.
+/// Output change of a difference quotient, as a fraction of the residuals: far above rounding and
+/// above the small folds due to impacts.
 pub const QUOTIENT: f64 = 0.3;
 
-/// A difference quotient is not taken over more than this part of a state's own range.
+/// Maximum difference for a quotient, as a fraction of the range of the state.
 pub const LARGEST_QUOTIENT: f64 = 0.03;
 
-/// The part of each window, from its beginning, to which preliminary fits are made: a motion is
-/// nearly linear there in whatever changes it. Chosen on the development seeds of the blind suite.
+/// Fraction of each window, from its beginning, for preliminary fits. The motion is nearly linear
+/// in the unknowns there. Chosen on the development seeds of the blind suite.
 pub const FIRST_PART: f64 = 0.25;
 
-/// So many of `HORIZONS` lead up to it.
+/// Number of initial-state horizons of a preliminary fit.
 pub const FIRST_HORIZONS: usize = 2;
 
-/// A step of an initial state that lowers its window's cost by less than this part is the last.
+/// Relative decrease of the cost of a window below which the steps of its initial state end.
 pub const INNER_DECREASE: f64 = 1e-2;
 
-/// An autocorrelation below this is none: white noise of a few hundred samples shows as much by
-/// chance.
+/// Autocorrelation below which residuals are uncorrelated. White noise of a few hundred samples
+/// reaches this by chance.
 pub const CORRELATED: f64 = 0.05;
 
-/// A time between samples may be longer than a step by this part of it: samples come late or early.
+/// Fraction of a step by which the time between samples may exceed it.
 pub const JITTER: f64 = 0.1;
 
-/// A parameter's difference quotient is taken over this part of its scale.
+/// Difference for the quotient by a parameter, as a fraction of its scale.
 pub const PARAMETER_QUOTIENT: f64 = 0.01;
 
-/// Neighbouring motions that come along with an integrated one are off by this part at most, but for
-/// impacts.
+/// Maximum relative error of tangent vectors that are integrated with a motion, without impacts.
 pub const TANGENT_ERROR: f64 = 0.1;
 
-/// A central difference is taken over this part of a parameter's scale or a state's range: far above
-/// rounding, and its error falls with the square.
+/// Difference for a central quotient, as a fraction of the scale of a parameter or the range of a
+/// state: far above rounding. Its error decreases with the square.
 pub const CENTRAL_QUOTIENT: f64 = 0.001;
 
-/// The most of the last Gauss-Newton steps of a fit: a valley along what the records hardly show is
-/// curved, and the better it is seen, the shorter they are.
+/// Maximum number of final Gauss-Newton steps. A poorly determined direction is a curved valley and
+/// needs short steps.
 pub const LAST_STEPS: usize = 12;
 
-/// The most corrections of the initial states after a step of the unknowns; each removes most of the error
-/// that is left.
+/// Maximum number of corrections of the initial states after a step of the unknowns. Each removes
+/// most of the remaining error.
 pub const CORRECTIONS: usize = 4;
 
-/// The last steps of a fit go on while they lower the cost by this part of what one standard deviation
-/// is worth.
+/// Decrease of the cost, as a fraction of one squared standard deviation, below which the final
+/// steps end.
 pub const LEAST_INFORMATION: f64 = 0.01;
 
-/// A sensor's, whose outputs are linear in it, over this part.
+/// Difference for the quotient by a sensor unknown, as a fraction of its scale. The outputs are
+/// linear in it.
 pub const SENSOR_QUOTIENT: f64 = 0.1;
 
 // The catalogue.
 
-/// The largest file of a user's effects that is read, in bytes: a thousand effects.
+/// Maximum size of an effects file of the user, in bytes: a thousand effects.
 pub const LARGEST_EFFECTS_FILE: u64 = 1 << 20;
 
-/// Shaft orders, per turn, at which effects that repeat with an angle are tried, beside numbers of
-/// teeth: those of unbalance, joints, small pinions and the poles of motors.
+/// Shaft orders, per turn, of candidates that repeat with an angle, in addition to numbers of
+/// teeth: those of unbalance, joints, small pinions and motor poles.
 pub const SHAFT_ORDERS: [u32; 8] = [1, 2, 3, 4, 6, 8, 12, 24];
 
-/// The highest order of which a wave is sought in the residual force over an angle: more than twice the
-/// poles of the usual motors.
+/// Maximum order, per turn, in the spectrum of the residual force over an angle: more than twice
+/// the number of poles of usual motors.
 pub const HIGHEST_ORDER: u32 = 48;
 
-/// So many orders of that spectrum, per angle, are candidates beside the usual ones.
+/// Maximum number of orders from that spectrum, per angle, in addition to `SHAFT_ORDERS`.
 pub const MOST_ORDERS: usize = 4;
 
 // Screening.
 
-/// A candidate is linearised at a size that changes accelerations by this part of their own size,
-/// in any direction: small beside them, large beside rounding.
+/// Relative change of the accelerations for the linearisation of a candidate: small, but large
+/// compared with rounding.
 pub const SMALL_CHANGE: f64 = 1e-4;
 
-/// A change is small and above rounding if these factors bring it there.
+/// Factors within which such a change is accepted.
 pub const SMALL_NEAR: Interval = Interval::new(0.1, 1e3);
 
-/// A search for a size that starts at one SI unit ends if the next size would differ by less than this
-/// factor, so that results do not depend on units.
+/// Factors between successive sizes within which the search for a size ends, so that results are
+/// independent of units.
 pub const SAME_SIZE: Interval = Interval::new(1.0 - 1e-9, 1.0 + 1e-9);
 
-/// Every so many samples of a window such a size is looked for.
+/// Stride of the samples of a window in that search.
 pub const SAMPLED: usize = 5;
 
-/// A candidate's response by simulation is taken at the size that moves the outputs by this part of
-/// the residuals.
+/// Output change of a simulated response, as a fraction of the residuals.
 pub const RESPONSE_MOVES: f64 = 0.3;
 
-/// Parts of the size that screening promises among which a fit begins with the best: a straight
-/// line leads far beyond where impacts fold the outputs, and not far enough where an effect that
-/// grows does less and less.
+/// Fractions of the predicted size from which a fit begins; the best is used. The linear prediction
+/// is too large if impacts fold the outputs, and too small for effects that saturate.
 pub const INITIAL_PARTS: [f64; 5] = [1.0, 0.3, 0.1, 3.0, 10.0];
 
-/// How many times its usual size a shape is where a fit is started anew from another: as far from it
-/// to either side.
+/// Factors of the typical shape from which a fit is restarted.
 pub const OTHER_SHAPES: [f64; 2] = [0.4, 2.5];
 
-/// Corrections of a size that started at a typical one once it is near the wanted one. Each costs a motion.
+/// Maximum number of corrections of a size that is close to the target. Each costs a simulation.
 pub const SIZE_CORRECTIONS: usize = 2;
 
-/// Attempts to find the size at which a candidate is linearised or simulated.
+/// Maximum number of attempts to find the size for a linearisation or simulation.
 pub const SIZE_ATTEMPTS: usize = 8;
 
-/// Each attempt changes the size by this factor at most.
+/// Maximum change of the size per attempt, as a factor.
 pub const SIZE_FACTOR: f64 = 1e6;
 
-/// Within these factors of `RESPONSE_MOVES` a response is as large as wanted.
+/// Factors of `RESPONSE_OUTPUT_CHANGE` within which a response is accepted.
 pub const RESPONSE_NEAR: Interval = Interval::new(0.2, 5.0);
 
 // The residual force.
 
-/// Shaft orders, per turn, over which a residual force is shown.
+/// Shaft orders, per turn, of the profile of a residual force.
 pub const FORCE_ORDERS: [u32; 10] = [1, 2, 3, 4, 6, 8, 12, 16, 24, 36];
 
-/// The most frequencies over which a residual force is shown: a picture shows no more.
+/// Maximum number of frequencies of the profile of a residual force.
 pub const MOST_FREQUENCIES: usize = 12;
 
-/// Bends of a force over a whole turn.
+/// Number of knots of a force over a whole turn.
 pub const TURN_BENDS: usize = 12;
 
-/// Between both sides of a turning point lies this part of the largest rate.
+/// Rate difference across a turning point, as a fraction of the largest rate.
 pub const TURNING: f64 = 1e-3;
 
-/// A force is taken that moves the outputs by this part of the residuals.
+/// Output change due to a trial force, as a fraction of the residuals.
 pub const FORCE_MOVES: f64 = 0.3;
 
-/// A first one changes accelerations by this part of their own.
+/// Relative change of the accelerations due to the first trial force.
 pub const FIRST_FORCE: f64 = 1e-4;
 
-/// It need not be nearer to what is wanted than by this factor.
+/// Factor within which the output change of a trial force is accepted.
 pub const FORCE_NEAR: f64 = 10.0;
 
 /// Factor by which a force is reduced if its motion leaves the domain of the model.
 pub const FORCE_SHRINKS: f64 = 1e3;
 
-/// Rounds in which the usual size of a force that differs from window to window is found: it
-/// changes by less than a part in a hundred by then.
+/// Number of iterations for the variance of a force that differs between windows. It then changes
+/// by less than 1 %.
 pub const VARIANCE_ROUNDS: usize = 12;
 
-/// A point of a profile is drawn if its standard deviation is below this part of the largest force.
+/// Maximum standard deviation of a drawn point of a profile, as a fraction of the largest force.
 pub const DRAWN: f64 = 0.5;
 
-/// And a profile if so many of its points are.
+/// Minimum number of points of a drawn profile.
 pub const DRAWN_POINTS: usize = 2;
 
-/// Bends of a force over the rate, on either side of rest.
+/// Number of knots of a force over the rate on each side of rest.
 pub const RATE_BENDS: usize = 5;
 
-/// Bends of a force over the position.
+/// Number of knots of a force over the position.
 pub const POSITION_BENDS: usize = 9;
 
-/// Bends of a force over the time of a window.
+/// Number of knots of a force over the time of a window.
 pub const TIME_BENDS: usize = 8;
 
-/// So many of the frequencies are the lowest whole numbers of periods per window.
+/// Number of profile frequencies that are the lowest whole numbers of periods per window.
 pub const FIRST_FREQUENCIES: usize = 4;
 
-/// Higher ones follow by this ratio.
+/// Ratio between successive higher frequencies.
 pub const FREQUENCY_RATIO: f64 = 1.6;
 
-/// A period lasts so many samples at least: less is not resolved.
+/// Minimum number of samples per period.
 pub const PERIOD_SAMPLES: f64 = 4.0;
 
 // Expressions without a name.
 
-/// The highest degree of a product: with more, expressions differ in little but their ends.
+/// Maximum degree of a product. Expressions of higher degree differ only near the ends of the
+/// range.
 pub const MOST_DEGREE: u32 = 3;
 
-/// Where a force over a position may begin to act, on either side, in parts of the largest position; where it does
-/// is fitted.
+/// Trial positions of a kink of a force over a position, on each side, as fractions of the largest
+/// position. The position itself is fitted.
 pub const KINKS: [f64; 4] = [0.2, 0.4, 0.6, 0.8];
 
-/// A step over the rate is made within this part of the largest rate: as steep as friction near
-/// rest is seldom seen to be otherwise, and no jump, so that it can be multiplied.
+/// Width of the smoothed sign over the rate, as a fraction of the largest rate. Measured friction
+/// near rest is rarely steeper, and a smooth factor can be multiplied.
 pub const STEEP: f64 = 0.03;
 
 // The report.
 
-/// What leaves more floors than this, in any channel, may be something else than what it is called: it
-/// is provisional. A bump stop that came out as friction and a spring left 41.
+/// Remaining gap of a channel, in noise floors, above which the name of an effect is provisional.
+/// An end stop that was named as friction and a spring left 41.
 pub const MAY_STAND_IN: f64 = 3.0;
 
-/// The most a right model leaves, in floors of a channel: noise is drawn anew in each record.
+/// Maximum gap of a channel for a correct model, in noise floors. Noise differs in each record.
 pub const ONE_FLOOR: f64 = 1.5;
 
-/// A nuisance from this part of `SHIFTED` on stands at its bound: an estimate ends within rounding
-/// of it.
+/// Fraction of `MAX_PRIOR_DEVIATION` above which a nuisance is at its bound, because estimates end
+/// within rounding of it.
 pub const AT_BOUND: f64 = 0.99;
 
-/// Channels are late alike if the least of their delays is at least this part of the greatest.
+/// Minimum ratio of the smallest to the largest delay of channels with a common delay.
 pub const LATE_ALIKE: f64 = 0.9;
 
-/// Where nothing was found, a parameter or a sensor is written back if its estimate moved by this
-/// part of its standard deviation. With an effect all are: they were estimated together.
+/// Minimum change of an estimate, in its standard deviations, that is written back if no effect was
+/// found. With an effect, all estimates are written because they were estimated together.
 pub const WRITTEN_FROM: f64 = 0.5;
 
-/// A line stands out of a spectrum, averaged over n windows, if it exceeds the mean of the others by this
-/// factor over the square root of n: of white noise, one spectrum in some thousand holds such a line.
+/// Ratio of a spectral line to the mean of the others above which it is a peak, divided by the root
+/// of the number of windows. One spectrum of white noise in about a thousand has such a line.
 pub const SPECTRAL_PEAK: f64 = 10.0;
 
-/// First line of a window's spectrum that is a frequency: fewer periods cannot be told from a drift, whose
-/// straight line is removed and which the taper spreads.
+/// First line of the spectrum of a window that is interpreted as a frequency. Fewer periods cannot
+/// be distinguished from drift, which detrending and the taper spread.
 pub const FIRST_LINE: usize = 3;
 
-/// A ratio between the residuals of slow and of fast motion below this is not worth a word.
+/// Minimum reported ratio between the residuals of slow and of fast motion.
 pub const WORTH_SAYING: f64 = 1.5;
 
-/// Records contradict each other only where each alone leaves less than the fit of all by this
-/// factor: what is missing in a model bends its parameters a little in every record.
+/// Ratio of the RMS of the joint fit to that of the fit of each single record, above which records
+/// contradict each other. A missing effect changes the parameters slightly in each record.
 pub const CONTRADICTS: f64 = 2.0;
 
-/// And where their values differ by this part: less is what one machine does on two days.
+/// Minimum relative difference of the values in records that contradict each other. One machine
+/// varies by less between two days.
 pub const CONTRADICTING_PART: f64 = 0.1;
 
 // The next experiment.
 
-/// What is played separates two members if it leaves the wrong one this many standard deviations of the
-/// noise in the channel that shows it best: then it leaves three floors, and nobody takes it for right.
+/// Minimum residual RMS of the wrong member of a class in the channel that shows it best, in
+/// standard deviations of the noise: three noise floors.
 pub const SEPARATES: f64 = 3.0;
 
-/// The most samples of an experiment of which nobody said how long it lasts: a hundred of it are simulated.
+/// Maximum number of samples of an experiment without a given duration. A hundred experiments are
+/// simulated.
 pub const EXPERIMENT_SAMPLES: f64 = 4000.0;
 
-/// The most steps that a solver with error control may take from sample to sample of an experiment, and the most
-/// surfaces that a motion may cross there, on average: of a hundred inputs those that take more, as where a load
-/// holds a machine by friction, are not worth minutes. Teeth that rattle cross a few.
+/// Maximum mean number of solver steps, and of switching surface crossings, per sample of an
+/// experiment. Slower inputs, such as a load that a machine holds by friction, are skipped;
+/// rattling teeth cross a few surfaces per sample.
 pub const EXPERIMENT_STEPS: usize = 20;
 
-/// Sizes of an input that are tried, in parts of its range: what moves far leaves its limits at the
-/// larger ones.
+/// Trial amplitudes of an input, as fractions of its range. Large amplitudes may violate the
+/// limits.
 pub const EXPERIMENT_SIZES: [f64; 6] = [1.0, 0.5, 0.25, 0.1, 0.05, 0.02];
 
-/// A rate of a spring or a damper of more terms, written out, is compared with nothing: those of machines
-/// have a handful, and what is multiplied out has more and more.
+/// Maximum number of expanded terms of the rate of a spring or damper that is compared. Rates of
+/// real machines have a handful of terms.
 pub const MOST_TERMS_OF_A_RATE: usize = 64;
 
-/// And so is one that holds a higher power.
+/// Maximum power in such a rate.
 pub const HIGHEST_POWER_OF_A_RATE: u8 = 8;
 
-/// The band of a recorded input is where this part of its power is.
+/// Fraction of the power of a recorded input that defines its frequency band.
 pub const RECORDED_POWER: f64 = 0.99;
 
-/// How far beyond what was recorded a channel may go, in parts of that: records of one motion differ by
-/// so much.
+/// Fraction of the recorded range by which a channel may exceed it: records of one motion differ
+/// this much.
 pub const LIMIT_MARGIN: f64 = 0.05;
 
-/// So many of the inputs that promise most by a straight line are tried with rivals fitted anew.
+/// Number of experiments, the best by linear prediction, for which the rivals are fitted again.
 pub const EXPERIMENTS_REFITTED: usize = 3;
 
-/// What an experiment shows of something small: [`SEPARATES`], but for what a straight line is off by.
+/// Minimum separation by linear prediction of an experiment that shows a small effect:
+/// `MIN_SEPARATION_IN_NOISE` less the error of the linearisation.
 pub const SHOWS: f64 = 2.0;
 
-/// What could not be tested is looked at once for each effect and place, so many in all: what would show
-/// one often shows the next.
+/// Maximum number of untestable effects for which an experiment is searched. The experiment of one
+/// often shows the next.
 pub const MOST_SHOWN: usize = 3;
 
-/// How far something moves the outputs where it is taken to be small, in standard deviations of the
-/// noise: a straight line holds there.
+/// Output change of an effect of small size, in standard deviations of the noise. The linearisation
+/// holds there.
 pub const SHOWN_BY: f64 = 3.0;
 
-/// And how near that its size is chosen.
+/// Factors within which that size is accepted.
 pub const SHOWN_WITHIN: Interval = Interval::new(1.0, 10.0);
 
-/// The most steps of such a fit: far from where records left it a rival that has not come as near as it
-/// can would seem to be told.
+/// Maximum number of steps of such a fit. A rival that is not fully converged would appear to be
+/// separated.
 pub const REFIT_STEPS: usize = 30;
 
-/// And parts of a step, until it helps.
+/// Successive trial fractions of a step of that fit.
 pub const REFIT_PARTS: [f64; 4] = [1.0, 0.5, 0.2, 0.05];
 
-/// Steps of Newton's method to the inputs that a given motion takes: one where second rates are linear in
-/// them, a few more where a drive saturates.
+/// Maximum number of Newton steps for the inputs of a given motion. One step suffices if second
+/// derivatives are linear in the inputs.
 pub const REQUIRED_STEPS: usize = 12;
 
-/// A difference quotient by such an input is taken over the noise of its sensor, and over no less than
-/// this part of the input.
+/// Minimum difference for the quotient by such an input, as a fraction of the input. Otherwise the
+/// difference is the noise of its sensor.
 pub const REQUIRED_QUOTIENT: f64 = 1e-6;
 
-/// By how much second rates may be off at these inputs, in parts of themselves: far more than rounding
-/// makes of a regular system, far less than any sensor shows.
+/// Maximum relative error of the second derivatives at these inputs: far above rounding in a
+/// regular system, far below the resolution of any sensor.
 pub const REQUIRED_ERROR: f64 = 1e-9;

@@ -1,4 +1,4 @@
-//! Flexible bodies of a model: fields whose deflection is a length, with the mass that is spread along them.
+//! Flexible bodies of a model: fields whose deflection is a length, with their distributed mass.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use eomgen_model_spec::model::{Expr, ExprKind, Model, Term};
 use crate::catalogue::effect::SiteKind;
 use crate::catalogue::site::{Site, text};
 
-/// All flexible bodies of a model.
+/// Returns the flexible bodies of a model.
 pub(super) fn arms(model: &Model) -> Vec<Site> {
     let arm = |term: &Term| {
         // What is spread along the body; a mass at its end is none.

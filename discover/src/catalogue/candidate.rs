@@ -1,5 +1,5 @@
-//! Candidates: an effect of the catalogue at a place of a model, with its placeholders filled. A
-//! candidate can write itself into a specification.
+//! Candidates: an effect of the catalogue at a site of a model, with its placeholders filled. A
+//! candidate can be written into a specification.
 
 use std::collections::BTreeMap;
 
@@ -21,66 +21,67 @@ use crate::model::specification_texts::SpecificationTexts;
 use crate::model::unknowns::{What, sign_bounds};
 use crate::thresholds;
 
-/// The effect of a parameter that is off.
+/// Effect name of a shifted parameter.
 pub const PARAMETER_OFFSET: &str = "parameter_shift";
 
-/// An effect at a place.
+/// An effect at a site.
 #[derive(Clone, Debug)]
 pub struct Candidate {
-    /// The effect's name.
+    /// Name of the effect.
     pub effect: String,
-    /// The place's name.
+    /// Name of the site.
     pub on: String,
-    /// The angle and the order with which it repeats.
+    /// Angle and order, per turn, of a periodic effect.
     pub order: Option<(String, u32)>,
-    /// What transmits the load with which it grows.
+    /// Name of the spring or mesh whose load scales the effect.
     pub load: Option<String>,
-    /// Whether it changes what happens between teeth with play.
+    /// Whether the effect acts on a mesh with play.
     pub on_mesh: bool,
-    /// The stiffness, if all that it does is to scale one.
+    /// Stiffness parameter of an effect that only scales a stiffness.
     pub scaled: Option<String>,
-    /// Its parameters.
+    /// Parameters of the effect.
     pub parameters: Vec<CandidateParameter>,
-    /// What the effect is.
+    /// Description of the effect.
     pub says: String,
-    /// What would show it best.
+    /// Experiment that shows the effect best.
     pub experiment: String,
     pub(crate) changes: Vec<Edit>,
-    /// The line that says most of the change.
+    /// Main line of the change.
     pub term: String,
-    /// The unknown of the null model that gives up its prior, if that is the effect.
+    /// Unknown of the null model that loses its prior, if that is the effect.
     pub dropped_prior: Option<What>,
 }
 
-/// A parameter that is absent at infinity is nearly absent at this multiple of its typical size.
+/// Multiple of the typical size at which a parameter counts as infinite.
 pub(super) const NEARLY_INFINITE: f64 = 1e12;
 
-/// A parameter of a candidate.
+/// Parameter of a candidate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CandidateParameter {
-    /// Its name in the specification.
+    /// Name in the specification.
     pub name: String,
-    /// Its unit.
+    /// Unit.
     pub unit: String,
-    /// Whether it must not be negative.
+    /// Whether the parameter must not be negative.
     pub positive: bool,
-    /// Whether the effect is absent where it is infinite.
+    /// Whether the effect vanishes at infinity instead of 0.
     pub inverse: bool,
-    /// The size it must have for the effect to be itself, if it does not scale the effect.
+    /// Initial size of a shape parameter, which does not scale the effect.
     pub shape: Option<f64>,
-    /// What a parameter is shifted from that the model has already, or that is not 0 where the effect is absent.
+    /// Reference value and bounds of a parameter that exists already or that is not 0 without the
+    /// effect.
     pub offset: Option<ParameterOffset>,
-    /// Typical size of a quantity in its unit, SI.
+    /// Typical size in the unit of the parameter, SI.
     pub typical_size: f64,
     pub(crate) doc: String,
 }
 
-/// What is known of a parameter of the model that may be off.
+/// Reference value and bounds of a shifted parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParameterOffset {
-    /// Its value in the specification, SI.
+    /// Value in the specification, SI.
     pub from: f64,
-    /// Its admissible values, SI.
+    /// Admissible values, SI.
     pub bounds: Interval,
     /// The number of its units that one SI unit is.
     per_si: f64,
@@ -89,7 +90,7 @@ pub struct ParameterOffset {
 }
 
 impl ParameterOffset {
-    /// Of a parameter that the effect brings with it, which has this value where the effect is absent.
+    /// Describes a parameter that an effect adds with this value if the effect is absent.
     pub(crate) fn new_from(from: f64, bounds: Interval) -> Self {
         Self {
             from,
@@ -101,12 +102,12 @@ impl ParameterOffset {
 }
 
 impl CandidateParameter {
-    /// Its value where the effect is absent; 0 for what the model does not have yet.
+    /// Returns the value without the effect; 0 for a new parameter.
     pub fn base(&self) -> f64 {
         self.offset.as_ref().map_or(0.0, |offset| offset.from)
     }
 
-    /// The value of a parameter where its effect is absent, or nearly.
+    /// Returns the value of the parameter at which the effect vanishes, or nearly vanishes.
     pub fn absent(&self) -> f64 {
         match (self.inverse, self.shape) {
             (_, Some(shape)) => shape,
@@ -115,7 +116,7 @@ impl CandidateParameter {
         }
     }
 
-    /// The number of its units that one SI unit is.
+    /// Returns the value of one SI unit in the unit of the parameter.
     pub fn per_si(&self) -> f64 {
         self.offset.as_ref().map_or(1.0, |offset| offset.per_si)
     }
@@ -139,7 +140,7 @@ impl CandidateParameter {
 }
 
 impl Candidate {
-    /// Its effect and place, and its order or its load where there are several.
+    /// Returns effect and site, with order or load if there are several.
     pub fn label(&self) -> String {
         let plain = format!("{} on {}", self.effect, self.on);
         match (&self.order, &self.load) {
@@ -149,7 +150,7 @@ impl Candidate {
         }
     }
 
-    /// Whether it is a number that is off, of the model, of a sensor or of an input: nothing that varies.
+    /// Returns true for a constant error of a parameter, a sensor or an input.
     pub(crate) fn is_offset(&self) -> bool {
         let faults = InputFault::ALL.map(InputFault::effect);
         self.dropped_prior.is_some()
@@ -157,8 +158,8 @@ impl Candidate {
             || faults.contains(&self.effect.as_str())
     }
 
-    /// Whether one is a shift of the stiffness that the other scales: two names of one thing where the
-    /// stiffness is of one spring alone.
+    /// Returns true if one candidate shifts the stiffness that the other scales. Both are one
+    /// effect if the stiffness belongs to a single spring.
     pub(crate) fn is_other_name_of(&self, other: &Self) -> bool {
         let shifts = |one: &Self, other: &Self| {
             one.effect == PARAMETER_OFFSET && other.scaled.as_ref() == Some(&one.on)
@@ -166,15 +167,16 @@ impl Candidate {
         shifts(self, other) || shifts(other, self)
     }
 
-    /// Whether it is the same effect at the same place, of whatever order.
+    /// Returns true if effect and site are equal, at any order.
     pub fn is_same_as(&self, other: &Self) -> bool {
         (&self.effect, &self.on) == (&other.effect, &other.on)
     }
 
-    /// A specification's text with this effect, at these values of its parameters.
+    /// Returns a specification with the effect at these values of its parameters.
     ///
     /// # Errors
-    /// A place of the edits that the text lacks.
+    ///
+    /// An edit whose place is missing in the text.
     pub fn written(
         &self,
         text: &str,
@@ -190,10 +192,11 @@ impl Candidate {
         edit::apply(&Source::new(name, text), &edits)
     }
 
-    /// A specification's text and its linear part's with this effect at these values.
+    /// Returns the specification and its linear part with the effect at these values.
     ///
     /// # Errors
-    /// A place of the edits that the text lacks, in words.
+    ///
+    /// An edit whose place is missing in the text.
     pub fn added(
         &self,
         problem: &EstimationProblem<'_>,
@@ -214,7 +217,7 @@ impl Candidate {
     }
 }
 
-/// All candidates for a model. `motion`: how its places move, as far as it is known.
+/// Returns the candidates for a model. `motion`: known motion of the sites.
 pub fn candidates<'e>(
     model: &Model,
     effects: impl IntoIterator<Item = &'e Effect>,
@@ -361,7 +364,7 @@ fn candidate(
     })
 }
 
-/// An unknown of the null model that gives up its prior.
+/// Returns the candidate that removes the prior of an unknown of the null model.
 pub fn dropped_prior(
     effect: &str,
     on: &str,
@@ -385,8 +388,8 @@ pub fn dropped_prior(
     }
 }
 
-/// A parameter of the model that may be off though nobody said so; none where it is 0 or no
-/// number.
+/// Returns the candidate that shifts a parameter without a declared uncertainty; `None` if the
+/// parameter is 0 or not a number.
 pub fn offset_of(parameter: &Parameter) -> Option<Candidate> {
     let ParameterValue::Number(from) = parameter.value else {
         return None;
@@ -424,7 +427,7 @@ pub fn offset_of(parameter: &Parameter) -> Option<Candidate> {
     })
 }
 
-/// Names that a new one must not have.
+/// Returns the names that are used in the model.
 pub(crate) fn names(model: &Model) -> Vec<String> {
     let lists = [
         model

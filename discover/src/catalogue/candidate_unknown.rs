@@ -1,23 +1,23 @@
-//! A candidate's parameter as something to be estimated.
+//! Parameters of candidates as unknowns of an estimation.
 
 use crate::catalogue::candidate::{CandidateParameter, NEARLY_INFINITE};
 use crate::interval::Interval;
 use crate::model::unknowns::{Unknown, What};
 use crate::thresholds;
 
-/// A candidate's parameter with its bounds and the size tried, SI.
+/// Parameter of a candidate with bounds and trial size, SI.
 #[derive(Clone, Debug)]
 pub struct CandidateUnknown {
     /// The unknown.
     pub unknown: Unknown,
-    /// Its value where the effect is absent, SI.
+    /// Value without the effect, SI.
     pub base: f64,
-    /// Whether it shapes the effect without scaling it; its value is then kept.
+    /// Whether the parameter shapes the effect without scaling it. Its value is then fixed.
     pub is_shape: bool,
 }
 
 impl CandidateUnknown {
-    /// A candidate's parameter as an unknown.
+    /// Converts a parameter of a candidate to an unknown.
     pub fn of(parameter: &CandidateParameter) -> Self {
         let low = match (parameter.inverse, parameter.positive) {
             (true, _) => 1.0 / (NEARLY_INFINITE * parameter.typical_size),

@@ -1,4 +1,4 @@
-//! The edits of an effect: what they add, or what they replace and where.
+//! Edits of an effect: additions and substitutions.
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::edit::Section;

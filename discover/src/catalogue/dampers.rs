@@ -1,5 +1,5 @@
-//! Dampers beside a spring: parts `1/2*d*dot(p)^2` of the dissipation, and `-d*dot(p)` of a force on `p`, whose
-//! rate is that of what deflects, or in proportion to it, however either is written.
+//! Dampers parallel to a spring: parts `1/2*d*dot(p)^2` of the dissipation and `-d*dot(p)` of a
+//! force on `p`. Their rate is proportional to that of the deflection, in any notation.
 
 use eomgen_model_spec::ast::BinaryOperator;
 use eomgen_model_spec::edit::Section;
@@ -9,7 +9,7 @@ use crate::catalogue::polynomial::Polynomial;
 use crate::catalogue::products::{is_fixed, square, summands};
 use crate::catalogue::site::{Damper, text};
 
-/// All dampers of a model that act on the rate of a deflection alone.
+/// Returns the dampers of a model that depend only on the rate of a deflection.
 pub(super) fn dampers(model: &Model, deflection: &Expr) -> Vec<Damper> {
     let rate = Polynomial::of(model, deflection).and_then(|deflection| deflection.rate());
     let Some(rate) = rate else {

@@ -1,37 +1,37 @@
-//! Effects as data: each a list of edits with placeholders.
+//! Effects as data: lists of edits with placeholders.
 
 use eomgen_model_spec::edit::Section;
 
 /// An effect.
 #[derive(Clone, Debug)]
 pub struct Effect {
-    /// Its name in results.
+    /// Name in results.
     pub name: String,
-    /// The kind of place it may have.
+    /// Kind of its sites.
     pub site: SiteKind,
-    /// What it is, as the end of a sentence.
+    /// Description, as the end of a sentence.
     pub says: String,
-    /// What would show it best.
+    /// Experiment that shows it best.
     pub experiment: String,
-    /// Whether it repeats with an angle, so that it is tried at several shaft orders.
+    /// Whether the effect is periodic in an angle and tried at several shaft orders.
     pub orders: bool,
-    /// Whether it is tried with each load of a spring or of a pair of teeth.
+    /// Whether the effect is tried with the load of each spring or mesh.
     pub loads: bool,
-    /// Its parameters, at least one.
+    /// Parameters, at least one.
     pub parameters: Vec<EffectParameter>,
-    /// What it changes, at least one thing.
+    /// Edits, at least one.
     pub edits: Vec<Change>,
-    /// Whether it is from a user's file.
+    /// Whether the effect is from a file of the user.
     pub is_own: bool,
 }
 
-/// The placeholder of a damper's term, in edits that replace it.
+/// Placeholder of the term of a damper in edits that replace it.
 pub const DAMPER: &str = "damper";
 
-/// The kinds of places.
+/// Kind of a site.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SiteKind {
-    /// Anything that moves and can be held: an angle or a position.
+    /// A movable angle or position.
     Axis,
     /// An angle.
     Angle,
@@ -46,14 +46,14 @@ pub enum SiteKind {
 }
 
 impl Effect {
-    /// Whether it brings something that moves by itself.
+    /// Returns true if the effect adds a coordinate or a state.
     pub fn adds_states(&self) -> bool {
         let adds = |edit: &Change| matches!(edit, Change::State { .. } | Change::Coordinate { .. });
         self.edits.iter().any(adds)
     }
 
-    /// Whether all that it does is to scale a spring's stiffness: a number of the model that is off does the
-    /// same.
+    /// Returns true if the effect only scales the stiffness of a spring. A shifted parameter does
+    /// the same.
     pub fn scales_stiffness(&self) -> bool {
         let scales = |edit: &Change| matches!(edit, Change::Substitution { within: Within::Site, find, .. } if find == "{k}");
         self.site == SiteKind::Spring && self.edits.iter().all(scales)
@@ -61,7 +61,7 @@ impl Effect {
 }
 
 impl SiteKind {
-    /// The kinds by their words in a file.
+    /// Kinds by their keywords in a file.
     pub const WORDS: [(&'static str, Self); 6] = [
         ("axis", Self::Axis),
         ("angle", Self::Angle),
@@ -71,8 +71,8 @@ impl SiteKind {
         ("input", Self::Input),
     ];
 
-    /// The placeholders that a site of this kind fills; `{root}`, `{stiffness}` and a spring's `{k}`
-    /// where it has them.
+    /// Returns the placeholders of a site of this kind. `{root}`, `{stiffness}` and the `{k}` of a
+    /// spring exist only at some sites.
     pub fn placeholders(self) -> &'static [&'static str] {
         match self {
             Self::Axis | Self::Angle => &["on", "unit", "force"],
@@ -93,117 +93,116 @@ impl SiteKind {
     }
 }
 
-/// A parameter of an effect.
+/// Parameter of an effect.
 #[derive(Clone, Debug)]
 pub struct EffectParameter {
-    /// Its name, with more behind it where that is taken.
+    /// Name; a suffix is added if the name is used already.
     pub name: String,
-    /// Its unit, with placeholders.
+    /// Unit, with placeholders.
     pub unit: String,
-    /// Whether it must not be negative.
+    /// Whether the value must not be negative.
     pub positive: bool,
-    /// What it is.
+    /// Description.
     pub doc: String,
-    /// The effect is absent where it is infinite, not where it is 0.
+    /// Whether the effect vanishes at infinity instead of 0.
     pub inverse: bool,
-    /// How large it is at first, where it shapes the effect without scaling it.
+    /// Initial size of a parameter that shapes the effect without scaling it.
     pub shape: Option<Shape>,
 }
 
-/// A parameter that shapes an effect: a part of how the site moves.
+/// Initial size of a shape parameter: a fraction of the motion of the site.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shape {
-    /// Of what of the motion.
+    /// Quantity that sets the scale.
     pub scale: Scale,
-    /// So much.
+    /// Fraction of that quantity.
     pub share: f64,
 }
 
-/// What of a site's motion a shape is a part of.
+/// Quantity of the motion of a site.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
-    /// Its usual rate.
+    /// Usual rate.
     Rate,
-    /// How far it goes from 0.
+    /// Largest distance from 0.
     Travel,
 }
 
 impl Scale {
-    /// The scales by their words in a file.
+    /// Scales by their keywords in a file.
     pub const WORDS: [(&'static str, Self); 2] = [("rate", Self::Rate), ("travel", Self::Travel)];
 }
 
-/// One change of the specification.
+/// A change of the specification.
 #[derive(Clone, Debug)]
 pub enum Change {
     /// A term of an energy or of the dissipation.
     Term {
-        /// Which of them.
+        /// Section of the term.
         section: Section,
-        /// Its name.
+        /// Name.
         name: String,
-        /// Its expression.
+        /// Expression.
         value: String,
     },
-    /// A definition, to be used by other changes.
+    /// A definition for other changes.
     Definition {
-        /// Its name, which is a placeholder of the effect.
+        /// Name, which is also a placeholder of the effect.
         name: String,
-        /// Its expression.
+        /// Expression.
         value: String,
     },
     /// A force.
     Force {
-        /// Its name.
+        /// Name.
         name: String,
-        /// What it works on.
+        /// Expression that the force acts on.
         on: String,
-        /// Its expression.
+        /// Expression.
         value: String,
     },
     /// A coordinate.
     Coordinate {
-        /// Its name, which is a placeholder of the effect.
+        /// Name, which is also a placeholder of the effect.
         name: String,
-        /// Its unit.
+        /// Unit.
         unit: String,
-        /// What it is.
+        /// Description.
         doc: String,
     },
     /// A state of first order.
     State {
-        /// Its name, which is a placeholder of the effect.
+        /// Name, which is also a placeholder of the effect.
         name: String,
-        /// Its unit.
+        /// Unit.
         unit: String,
-        /// Its rate.
+        /// Rate.
         rate: String,
-        /// What it is.
+        /// Description.
         doc: String,
     },
-    /// Something replaced.
+    /// A substitution.
     Substitution {
-        /// Where.
+        /// Terms in which expressions are replaced.
         within: Within,
-        /// What.
+        /// Replaced expression.
         find: String,
-        /// By what.
+        /// New expression.
         replace: String,
     },
 }
 
-/// Where something is replaced.
+/// Terms in which an expression is replaced.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Within {
     /// These terms of the kinetic energy.
     Kinetic(Vec<String>),
-    /// All terms of a pair of teeth, that of a spring, or of the kinetic energy of a body and of what it
-    /// carries.
+    /// All terms of a mesh or of a spring, or the kinetic energy of a body and its load.
     Site,
-    /// The dampers beside a spring, each by itself.
+    /// Each damper parallel to a spring.
     Dampers,
     /// All definitions and observables.
     Measured,
-    /// Wherever an input stands.
+    /// Each occurrence of an input.
     Input,
 }

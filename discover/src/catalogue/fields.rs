@@ -1,9 +1,9 @@
-//! Keys of a table in a file of effects that hold text, a list or a new name.
+//! Readers of texts, lists and new names in a file of effects.
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
 use eomgen_model_spec::table::{Entry, Record, Written};
 
-/// The elements of a list, at least one.
+/// Reads the elements of a list; reports an empty list.
 pub(super) fn some<'d>(
     record: &Record<'d>,
     key: &str,
@@ -22,7 +22,7 @@ pub(super) fn some<'d>(
     Some(list)
 }
 
-/// The text of a key that is needed, and says something.
+/// Reads the text of a required key; reports an empty text.
 pub(super) fn text(
     record: &Record<'_>,
     key: &str,
@@ -38,7 +38,7 @@ pub(super) fn text(
     Some(written)
 }
 
-/// The name of something that is added to a specification.
+/// Reads the name of an addition to a specification.
 pub(super) fn new_name(record: &Record<'_>, found: &mut Diagnostics) -> Option<String> {
     let written = text(record, "name", "\"T_c\"", found)?;
     let letter = |c: char| c.is_ascii_alphabetic();

@@ -1,5 +1,5 @@
-//! A file of effects: what its entries say, with every word, key and placeholder known. What an
-//! effect does in a specification is checked where it is placed.
+//! Reader of a file of effects. All keywords, keys and placeholders are checked here; the effect on
+//! a specification is checked at each site.
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
 use eomgen_model_spec::source::Source;
@@ -15,7 +15,8 @@ use super::placeholders::Placeholders;
 /// Reads a file of effects.
 ///
 /// # Errors
-/// All that is wrong with it.
+///
+/// All errors in the file.
 pub fn read(source: &Source) -> Result<Vec<Effect>, Diagnostics> {
     toml_file::read(source, |entries, found| {
         let file = Name {

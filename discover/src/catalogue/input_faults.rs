@@ -1,4 +1,4 @@
-//! Inputs that act otherwise than they are recorded, as candidates: each a single unknown.
+//! Errors of inputs as candidates, each with a single unknown.
 
 use eomgen_compiled_model::TypicalSizes;
 use eomgen_model_spec::model::{Input, Model};
@@ -9,7 +9,7 @@ use crate::model::input_faults::InputFault;
 use crate::model::input_places::{in_the_place_of, replaceable};
 use crate::model::unknowns::What;
 
-/// What a fault is, and what would show it best.
+/// Returns the description of a fault and the experiment that shows it best.
 pub(crate) fn words(fault: InputFault) -> (&'static str, &'static str) {
     match fault {
         InputFault::Gain => (
@@ -23,8 +23,8 @@ pub(crate) fn words(fault: InputFault) -> (&'static str, &'static str) {
     }
 }
 
-/// The faults of a model's inputs of which it holds no parameter yet. `path`: the specification's, for
-/// messages.
+/// Returns the faults of the inputs without a parameter in the model. `path`: path of the
+/// specification, for messages.
 pub fn input_faults(model: &Model, path: &str) -> Vec<Candidate> {
     let inputs = replaceable(model);
     let all = inputs.flat_map(|input| InputFault::ALL.map(|fault| candidate(model, input, fault)));

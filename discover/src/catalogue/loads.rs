@@ -1,5 +1,5 @@
-//! What springs and teeth transmit: the forces of parts `1/2*k*p^2` of the potential energy, of what
-//! deflects itself or of what is left of it beyond a play.
+//! Loads that springs and meshes transmit: forces of parts `1/2*k*p^2` of the potential energy,
+//! with `p` a deflection or the part of it beyond a play.
 
 use eomgen_model_spec::model::{Expr, ExprKind, Function, Model, Term};
 
@@ -7,18 +7,18 @@ use crate::catalogue::products::{Square, is_fixed, square, summands};
 use crate::catalogue::site::text;
 use crate::catalogue::springs::{is_deflection, name_of, units};
 
-/// A force between what a spring or a pair of teeth joins.
+/// Force that a spring or a mesh transmits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Load {
-    /// The name of the term, with that of the stiffness where it holds several.
+    /// Name of the term, followed by the name of the stiffness if the term has several.
     pub name: String,
-    /// The force, as an expression of the specification.
+    /// Force as an expression of the specification.
     pub force: String,
-    /// Its unit.
+    /// Unit of the force.
     pub unit: &'static str,
 }
 
-/// All loads of a model.
+/// Returns the loads of a model.
 pub fn loads(model: &Model) -> Vec<Load> {
     let terms = model.potential.iter();
     terms.flat_map(|term| of_term(model, term)).collect()

@@ -1,4 +1,4 @@
-//! Teeth and couplings with play: functions with play of what deflects, a coordinate, a definition or an
+//! Meshes and couplings with play: functions with play of a coordinate, a definition or an
 //! expression of these.
 
 use std::collections::BTreeMap;
@@ -12,7 +12,7 @@ use crate::catalogue::effect::SiteKind;
 use crate::catalogue::site::{Site, text};
 use crate::catalogue::springs::{is_deflection, units};
 
-/// All meshes of a model.
+/// Returns the meshes of a model.
 pub(super) fn meshes(model: &Model) -> Vec<Site> {
     let deflections = deflections(model);
     let found = deflections.iter().filter_map(|of| mesh(model, of));
@@ -56,7 +56,7 @@ fn is_same(model: &Model, one: &Expr, other: &Expr) -> bool {
     plain(one) == plain(other)
 }
 
-/// The coordinates that are deflections with play.
+/// Returns the coordinates that are deflections with play.
 pub(super) fn mesh_coordinates(model: &Model) -> Vec<CoordinateId> {
     let coordinate = |deflection: &Expr| match deflection.kind {
         ExprKind::Coordinate(id) => Some(id),
@@ -99,7 +99,7 @@ fn has_play(model: &Model, expr: &Expr, deflection: &Expr) -> bool {
     found
 }
 
-/// The parameters that say how much play there is.
+/// Returns the parameters that define the size of a play.
 pub fn plays(model: &Model) -> Vec<String> {
     let mut found: Vec<String> = Vec::new();
     for (_, _, value) in values(model) {

@@ -1,11 +1,10 @@
-//! What a model may lack: the effects that come with the program and a user's ([`effect`]), the
-//! places of a model where they may sit ([`site`], [`sites`], `arms`, [`meshes`], `springs` and the `dampers` beside
-//! them, read by `products` and `polynomial`), what `loads` these bear, how they move ([`usual_motion`]), and both together as
-//! [`candidate`]s (the edits of an effect at a place: [`template`]; its parameters as unknowns:
-//! [`candidate_unknown`]). What
-//! effects do is decided by nobody but the specification. How a file of effects is read is in
-//! `file` with `change`, `placeholders` and `fields`. Inputs that act otherwise than recorded are
-//! candidates of their own ([`input_faults`]).
+//! Catalogue of missing effects: effects of the program and of the user ([`effect`]), the sites of
+//! a model ([`site`], [`sites`], `arms`, [`meshes`], `springs` and their `dampers`, read by
+//! `products` and `polynomial`), the `loads` at these sites and their [`usual_motion`]. A
+//! [`candidate`] is an effect at a site: the edits of a [`template`] and its parameters as unknowns
+//! ([`candidate_unknown`]). Effects are defined by edits of the specification only. A file of
+//! effects is read in `file` with `change`, `placeholders` and `fields`. Errors of inputs are
+//! separate candidates ([`input_faults`]).
 
 mod arms;
 pub mod candidate;
@@ -40,11 +39,12 @@ use crate::thresholds;
 /// The catalogue that comes with the program.
 const BUILT_IN: &str = include_str!("catalogue.toml");
 
-/// The effects that come with the program, then those of a user's file; one of the same name
-/// replaces the built-in.
+/// Loads the effects of the program and those of a user's file. A user's effect replaces the
+/// built-in effect of the same name.
 ///
 /// # Errors
-/// All that is wrong with the user's file, with its places.
+///
+/// All errors in the user's file, with line and column.
 pub fn effects(own: Option<&Path>) -> Result<Vec<Effect>, Diagnostics> {
     let mut effects = file::read(&Source::new("catalogue.toml", BUILT_IN))?;
     if let Some(path) = own {

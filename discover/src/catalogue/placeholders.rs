@@ -1,5 +1,5 @@
-//! Names in braces within the texts of an effect: all of them known, and the expressions around
-//! them sound.
+//! Placeholders in the texts of an effect. All must be known, and the expressions around them
+//! valid.
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
 use eomgen_model_spec::suggest::did_you_mean;
@@ -7,16 +7,16 @@ use eomgen_model_spec::table::{Record, Written};
 
 use super::fields::text;
 
-/// What the texts of an effect may hold.
+/// Placeholders that the texts of an effect may contain.
 pub(super) struct Placeholders {
-    /// What may stand in braces.
+    /// Known names.
     pub(super) known: Vec<String>,
     /// What does.
     pub(super) used: Vec<String>,
 }
 
 impl Placeholders {
-    /// Notes the placeholders of a text.
+    /// Reports unknown placeholders of a text.
     pub(super) fn note(&mut self, written: &Written, found: &mut Diagnostics) {
         let mut begin = 0;
         while let Some(open) = written.text[begin..].find(['{', '}']) {
@@ -46,7 +46,7 @@ impl Placeholders {
     }
 }
 
-/// An expression with placeholders.
+/// Reads an expression with placeholders.
 pub(super) fn expression(
     record: &Record<'_>,
     key: &str,

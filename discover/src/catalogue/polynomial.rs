@@ -1,5 +1,5 @@
-//! Polynomials in coordinates, their rates and parameters, as sums of products that are written in one
-//! way only: by them two expressions are the same however a specification writes them.
+//! Polynomials in coordinates, their rates and parameters, in a canonical form. They compare
+//! expressions independently of their notation.
 
 use std::collections::BTreeMap;
 
@@ -25,17 +25,17 @@ enum Letter {
 /// A product of letters with their powers, which are not 0.
 type Monomial = BTreeMap<Letter, i32>;
 
-/// A sum of products, each with its factor.
+/// Sum of products, each with its factor.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Polynomial(BTreeMap<Monomial, f64>);
 
 impl Polynomial {
-    /// The polynomial that an expression is; none if it is something else, or too long.
+    /// Expands an expression; `None` if it is not a polynomial or too long.
     pub(super) fn of(model: &Model, expr: &Expr) -> Option<Self> {
         Reader::new(model).polynomial(expr)
     }
 
-    /// Its derivative by the time; none if it holds a rate.
+    /// Returns the time derivative; `None` if the polynomial contains a rate.
     pub(super) fn rate(&self) -> Option<Self> {
         let mut sum = Self::default();
         for (monomial, factor) in &self.0 {
@@ -54,8 +54,8 @@ impl Polynomial {
         Some(sum)
     }
 
-    /// Whether two rates are in proportion, whatever the factor: both linear in the rates of coordinates, and
-    /// every coefficient of the one is to the other's as all are. Zero is in proportion to nothing.
+    /// Returns true if two rates are proportional: both are linear in the rates of coordinates, and
+    /// all coefficients have the same ratio. Zero is proportional to nothing.
     pub(super) fn is_proportional_to(&self, other: &Self) -> bool {
         let (Some(own), Some(others)) = (self.coefficients(), other.coefficients()) else {
             return false;

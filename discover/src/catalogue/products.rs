@@ -1,10 +1,10 @@
-//! Terms of an energy or of the dissipation taken apart: sums into summands, and these into a square and what
-//! is fixed beside it.
+//! Decomposition of terms of an energy or of the dissipation: sums into summands, and summands into
+//! a square and its constant factors.
 
 use eomgen_model_spec::ast::BinaryOperator;
 use eomgen_model_spec::model::{Expr, ExprKind, Model};
 
-/// What a sum adds up; what it takes away is left out.
+/// Returns the summands of a sum, without subtracted parts.
 pub(super) fn summands(expr: &Expr) -> Vec<&Expr> {
     let mut found = Vec::new();
     summands_of(expr, &mut found);
@@ -22,17 +22,17 @@ fn summands_of<'m>(expr: &'m Expr, found: &mut Vec<&'m Expr>) {
     }
 }
 
-/// The only square in a product of what is fixed otherwise.
+/// The only square in a product with constant factors.
 pub(super) struct Square<'m> {
     /// The square.
     pub(super) whole: &'m Expr,
-    /// What is squared.
+    /// Squared expression.
     pub(super) base: &'m Expr,
-    /// The parameters among what is fixed beside it.
+    /// Parameters among the constant factors.
     pub(super) parameters: Vec<String>,
 }
 
-/// The only square in a product; none if the product holds anything else that is not fixed.
+/// Returns the only square in a product; `None` if the product contains another variable factor.
 pub(super) fn square<'m>(model: &Model, product: &'m Expr) -> Option<Square<'m>> {
     let (mut found, mut parameters) = (None, Vec::new());
     factors(model, product, &mut found, &mut parameters)?;
@@ -73,7 +73,7 @@ fn factors<'m>(
     }
 }
 
-/// Whether an expression is made of parameters and numbers alone; notes the parameters.
+/// Returns true if an expression contains only parameters and numbers, and appends the parameters.
 pub(super) fn is_fixed(model: &Model, expr: &Expr, parameters: &mut Vec<String>) -> bool {
     match &expr.kind {
         ExprKind::Number(_) | ExprKind::Pi => true,

@@ -1,5 +1,4 @@
-//! A place for effects, and how the specification writes what stands there. Which places a model has is
-//! found in `sites`.
+//! Sites of effects. The sites of a model are found in `sites`.
 
 use std::collections::BTreeMap;
 
@@ -8,33 +7,33 @@ use eomgen_model_spec::model::{Expr, Model};
 
 use crate::catalogue::effect::SiteKind;
 
-/// A place for effects.
+/// Site of an effect.
 #[derive(Clone, Debug)]
 pub struct Site {
-    /// What kind of place it is.
+    /// Kind of the site.
     pub kind: SiteKind,
-    /// Its name in results.
+    /// Name in results.
     pub name: String,
-    /// What fills the placeholders.
+    /// Values of the placeholders.
     pub arguments: BTreeMap<&'static str, String>,
-    /// The terms that make up a mesh or hold a spring, or those of the kinetic energy that move with a body.
+    /// Terms that make up a mesh or a spring, or terms of the kinetic energy that move with a body.
     pub terms: Vec<(Section, Vec<String>)>,
-    /// The dampers beside a spring.
+    /// Dampers parallel to a spring.
     pub dampers: Vec<Damper>,
 }
 
-/// A damper that acts on the rate of a spring's deflection.
+/// Damper that acts on the rate of the deflection of a spring.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Damper {
-    /// Where it stands: in the dissipation or among the forces.
+    /// Section of the damper: the dissipation or the forces.
     pub section: Section,
-    /// The term that it is a part of.
+    /// Term that contains it.
     pub term: String,
-    /// The part, as the specification writes it.
+    /// The part in the notation of the specification.
     pub part: String,
 }
 
-/// An expression as the specification writes it.
+/// Returns an expression in the notation of the specification.
 pub(super) fn text(model: &Model, expr: &Expr) -> String {
     let span = expr.span;
     let written = model

@@ -1,5 +1,5 @@
-//! Where effects may sit in a model: axes and angles, which are found here, meshes with play, flexible bodies,
-//! springs and inputs, with the arguments that fill the placeholders of an effect there.
+//! Sites of effects in a model: axes and angles, which are found here, meshes with play, flexible
+//! bodies, springs and inputs, with their placeholder values.
 
 use std::collections::BTreeSet;
 
@@ -13,7 +13,7 @@ use crate::catalogue::site::Site;
 use crate::catalogue::springs::springs;
 use crate::model::input_places::replaceable;
 
-/// All places of a model.
+/// Returns the sites of a model.
 pub fn sites(model: &Model) -> Vec<Site> {
     let mut found = axes(model, &mesh_coordinates(model));
     found.extend(meshes(model));

@@ -1,5 +1,5 @@
-//! Springs of a model: parts `1/2*k*p^2` of terms of the potential energy, with what deflects as
-//! the specification writes it: a coordinate, a definition, or any expression of these.
+//! Springs of a model: parts `1/2*k*p^2` of terms of the potential energy, with a coordinate, a
+//! definition or an expression of these as the deflection `p`.
 
 use std::collections::BTreeSet;
 
@@ -14,7 +14,7 @@ use crate::catalogue::effect::SiteKind;
 use crate::catalogue::products::{Square, is_fixed, square, summands};
 use crate::catalogue::site::{Site, text};
 
-/// All springs of a model.
+/// Returns the springs of a model.
 pub(super) fn springs(model: &Model) -> Vec<Site> {
     model
         .potential
@@ -59,7 +59,8 @@ fn of_term(model: &Model, term: &Term) -> Vec<Site> {
     springs.iter().enumerate().filter_map(site).collect()
 }
 
-/// The name of a spring: that of its term, of several in one term with that of the stiffness behind it.
+/// Returns the name of a spring: the name of its term, followed by that of the stiffness if the
+/// term has several springs.
 pub(super) fn name_of(term: &Term, parameters: &[String], number: usize, is_only: bool) -> String {
     match (parameters, is_only) {
         (_, true) => term.name.clone(),
@@ -68,7 +69,8 @@ pub(super) fn name_of(term: &Term, parameters: &[String], number: usize, is_only
     }
 }
 
-/// The units of what deflects and of a force on it; none if it is neither an angle nor a length.
+/// Returns the units of a deflection and of its force; `None` if the deflection is neither an angle
+/// nor a length.
 pub(super) fn units(model: &Model, deflection: &Expr) -> Option<(&'static str, &'static str)> {
     let dimension = dimension(model, deflection)?;
     match (dimension == Dimension::NONE, dimension == Dimension::LENGTH) {
@@ -90,7 +92,7 @@ fn spring<'m>(model: &Model, product: &'m Expr) -> Option<Spring<'m>> {
     (!spring.parameters.is_empty() && is_deflection(model, base)).then_some(spring)
 }
 
-/// Whether an expression is a position: sums of coordinates, times what is fixed.
+/// Returns true if an expression is a position: a sum of coordinates with constant factors.
 pub(super) fn is_deflection(model: &Model, expr: &Expr) -> bool {
     is_position(model, expr, &mut BTreeSet::new())
 }

@@ -1,4 +1,4 @@
-//! A change of the catalogue instantiated at a place of a model, as edits of a specification.
+//! Changes of the catalogue at a site of a model, as edits of a specification.
 
 use std::collections::BTreeMap;
 
@@ -11,8 +11,8 @@ use crate::catalogue::effect::{Change, DAMPER, SiteKind, Within};
 use crate::catalogue::site::{Damper, Site};
 use crate::model::input_places::standing;
 
-/// The edits that a change of the catalogue comes to with these arguments;
-/// none if an argument is missing, or what is replaced is not there.
+/// Returns the edits of a change with these arguments; `None` if an argument or the replaced
+/// expression is missing.
 pub(crate) fn edits(
     model: &Model,
     change: &Change,
@@ -205,7 +205,7 @@ fn holding(model: &Model, site: &Site, name: &str) -> Vec<(Section, Vec<String>)
         .collect()
 }
 
-/// A text with its placeholders filled; none if an argument is missing.
+/// Returns a text with its placeholders filled; `None` if an argument is missing.
 pub(crate) fn instantiated(text: &str, arguments: &BTreeMap<String, String>) -> Option<String> {
     let mut out = String::new();
     let mut rest = text;
@@ -219,7 +219,7 @@ pub(crate) fn instantiated(text: &str, arguments: &BTreeMap<String, String>) -> 
     Some(out)
 }
 
-/// A name that is not taken, near the wanted one; it is taken then.
+/// Returns an unused name similar to the wanted one and marks it as used.
 pub(crate) fn free_name(wanted: &str, site: &str, taken: &mut Vec<String>) -> String {
     let mut name = wanted.to_owned();
     if taken.contains(&name) {
@@ -234,7 +234,7 @@ pub(crate) fn free_name(wanted: &str, site: &str, taken: &mut Vec<String>) -> St
     name
 }
 
-/// The names of a model's terms and forces.
+/// Returns the names of the terms and forces of a model.
 pub(crate) fn terms(model: &Model) -> Vec<String> {
     let energies = model
         .kinetic

@@ -1,5 +1,5 @@
-//! A user's effects at the places of a specification: what they add must be a specification, and
-//! one that has no place there is said, because it will not be tried.
+//! Check of a user's effects at the sites of a specification. The result must be a valid
+//! specification, and effects without a site are reported.
 
 use eomgen_model_spec::source::Source;
 
@@ -9,11 +9,12 @@ use crate::catalogue::sites::sites;
 use crate::catalogue::usual_motion::UsualMotion;
 use crate::error::DiscoverError;
 
-/// Writes each of the user's effects into a specification wherever it has a place; returns those
-/// that have none.
+/// Writes each effect of the user into a specification at each of its sites. Returns the effects
+/// without a site.
 ///
 /// # Errors
-/// What is wrong with a specification that an effect leaves.
+///
+/// Errors of a specification with an effect.
 pub fn check(effects: &[Effect], path: &str, text: &str) -> Result<Vec<String>, DiscoverError> {
     let Ok(checked) = eomgen_model_spec::check(Source::new(path, text)) else {
         // What is wrong with the specification itself is said where it is read.

@@ -1,4 +1,4 @@
-//! How what effects act on moves in the records: what their shapes are measured by.
+//! Usual motion at the sites of a model, from the records. It sets the scale of shape parameters.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -11,28 +11,29 @@ use crate::catalogue::effect::Scale;
 use crate::catalogue::site::Site;
 use crate::interval::Interval;
 
-/// How places of a model move, as far as it is known.
+/// Known motion at the sites of a model.
 #[derive(Clone, Debug, Default)]
 pub struct UsualMotion {
-    /// The root mean square of the rate of an axis, by its name, SI.
+    /// RMS of the rate of an axis, by its name, SI.
     pub rates: BTreeMap<String, f64>,
-    /// Where what an effect acts on goes, by its expression, SI.
+    /// Range of an expression that an effect acts on, by the expression, SI.
     pub travels: BTreeMap<String, Interval>,
-    /// Orders, per turn, of which there is most in the residual force over an angle, by its
-    /// expression.
+    /// Strongest orders, per turn, of the residual force over an angle, by the expression of the
+    /// angle.
     pub orders: BTreeMap<String, Vec<u32>>,
     /// Typical sizes of quantities of the model.
     pub sizes: TypicalSizes,
 }
 
 impl UsualMotion {
-    /// The typical size of a quantity in a unit, SI.
+    /// Returns the typical size of a quantity in a unit, SI.
     pub(super) fn typical_size(&self, unit: &str) -> f64 {
         let dimension = Unit::parse(unit).map_or(Dimension::NONE, |unit| unit.dimension);
         self.sizes.size(dimension)
     }
 
-    /// The quantity of which a shape at a site is a part, in a unit; its typical size if that is not known.
+    /// Returns the quantity that scales a shape parameter at a site, in a unit; the typical size if
+    /// the motion is unknown.
     pub(super) fn scale(&self, scale: Scale, site: &Site, unit: &str) -> f64 {
         let known = match scale {
             Scale::Rate => self.rates.get(&site.name).copied(),
@@ -44,14 +45,13 @@ impl UsualMotion {
         known.unwrap_or_else(|| self.typical_size(unit))
     }
 
-    /// Whether an angle goes through a period of an order; it does where nobody knows how far it
-    /// goes.
+    /// Returns true if an angle covers a period of an order, or if its range is unknown.
     pub(super) fn covers(&self, angle: &Site, order: u32) -> bool {
         let covers = |travel: &Interval| f64::from(order) * (travel.high - travel.low) >= TAU;
         self.travel(angle).is_none_or(covers)
     }
 
-    /// The orders of the residual force over an angle.
+    /// Returns the orders of the residual force over an angle.
     pub(super) fn orders(&self, angle: &Site) -> &[u32] {
         let on = angle.arguments.get("on");
         let orders = on.and_then(|on| self.orders.get(on));

@@ -1,6 +1,6 @@
-//! Which few terms of an unnamed expression explain the residual best: all sets of one, two and
-//! three of them, to first order along the fitted motion. Whether they are accepted is decided
-//! where they are fitted in full.
+//! Selection of the terms of an unnamed expression that explain the residual best: all sets of one,
+//! two and three terms, to first order along the fitted motion. The acceptance is decided after a
+//! full fit.
 
 use crate::ids::{BasisFunctionId, EquationId};
 use nalgebra::{DMatrix, DVector};
@@ -16,17 +16,17 @@ use crate::residual_force::force_response::{ForceColumns, force_responses, opera
 use crate::residual_force::regression::{Regression, Sizes};
 use crate::thresholds;
 
-/// A sum of terms in an equation.
+/// Sum of terms in an equation.
 pub struct Expression {
-    /// The equation.
+    /// Equation of motion.
     pub equation: Equation,
-    /// What its quantities are divided by.
+    /// Scales of its quantities.
     pub scales: Scales,
-    /// Its terms.
+    /// Terms.
     pub terms: Vec<Term>,
-    /// How much of each, N or N m.
+    /// Coefficients of the terms, N or N m.
     pub sizes: Vec<f64>,
-    /// The part of the squares that it is expected to explain.
+    /// Expected explained fraction of the squares.
     pub part: f64,
 }
 
@@ -36,8 +36,8 @@ struct Set {
     sizes: Sizes,
 }
 
-/// The best expression in one of some equations; none where no set
-/// of terms stands out, or neighbouring motions cannot be followed.
+/// Returns the best expression in a set of equations; `None` if no set of terms is significant or
+/// tangent vectors are not available.
 pub fn chosen(
     problem: &EstimationProblem<'_>,
     fit: &Fit,

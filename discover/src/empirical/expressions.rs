@@ -1,68 +1,67 @@
-//! Expressions that have no name: products of few functions of a rate, a position and the inputs,
-//! each divided by how large it becomes in the training records. They can be computed along a
-//! motion and written into a specification. Which of them a force is made of is decided
-//! elsewhere.
+//! Unnamed expressions: products of few functions of a rate, a position and the inputs, each
+//! divided by its largest value in the training records. They can be evaluated along a motion and
+//! written into a specification.
 
 use std::f64::consts::TAU;
 
 use crate::residual_force::equations::OperatingPoint;
 use crate::thresholds::{self, STEEP};
 
-/// What a factor is a function of.
+/// Argument of a factor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Of {
     /// The rate.
     Rate,
     /// The position.
     Position,
-    /// An input, by its position in the model.
+    /// Input, by its index in the model.
     Input(usize),
 }
 
-/// A function of one quantity, in parts of its scale; waves are functions of an angle itself.
+/// Function of one scaled quantity; waves are functions of the unscaled angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Function {
-    /// A power.
+    /// Power with this exponent.
     Power(u32),
-    /// The size.
+    /// Absolute value.
     Size,
-    /// The square with the sign.
+    /// Square with the sign of the argument.
     Signed,
-    /// The sign, made steep.
+    /// Smooth sign function.
     Step,
-    /// A cosine, so many times per turn.
+    /// Cosine of this order per turn.
     Cosine(u32),
-    /// A sine.
+    /// Sine of this order per turn.
     Sine(u32),
-    /// What lies above a kink.
+    /// Part above a kink at this position.
     Above(f64),
-    /// What lies below a kink at so much below 0.
+    /// Part below a kink at minus this position.
     Below(f64),
 }
 
-/// A product of functions; none is 1.
+/// Product of functions; the empty product is 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Term {
-    /// Its factors.
+    /// Factors.
     pub factors: Vec<(Of, Function)>,
 }
 
-/// What quantities are divided by, SI; one that is 0 does not move.
+/// Scales of the quantities, SI; 0 for a quantity that does not move.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scales {
-    /// The rate.
+    /// Scale of the rate.
     pub rate: f64,
-    /// The position.
+    /// Scale of the position.
     pub position: f64,
-    /// Each input.
+    /// Scale of each input.
     pub inputs: Vec<f64>,
 }
 
-/// What a specification calls the quantities and their scales.
+/// Names of the quantities and of their scales in a specification.
 pub struct Words {
-    /// What a force works on.
+    /// Expression that the force acts on.
     pub on: String,
-    /// The scales of rate and position.
+    /// Scales of rate and position.
     pub scales: [String; 2],
     /// Each input with its scale.
     pub inputs: Vec<(String, String)>,
@@ -117,7 +116,7 @@ impl Function {
 }
 
 impl Term {
-    /// Its value where a motion stands.
+    /// Returns the value at an operating point.
     pub fn at(&self, operating_point: &OperatingPoint, inputs: &[f64], scales: &Scales) -> f64 {
         let factor = |(of, function): &(Of, Function)| {
             let (value, scale) = match of {
@@ -130,7 +129,7 @@ impl Term {
         self.factors.iter().map(factor).product()
     }
 
-    /// Where it has a kink, in parts of the scale.
+    /// Returns the position of the kink as a fraction of the scale.
     pub fn kink(&self) -> Option<f64> {
         self.factors
             .iter()
@@ -140,7 +139,7 @@ impl Term {
             })
     }
 
-    /// The same with its kink elsewhere.
+    /// Returns the term with its kink at this position.
     #[must_use]
     pub fn with_kink(mut self, at: f64) -> Self {
         for (_, function) in &mut self.factors {
@@ -151,7 +150,8 @@ impl Term {
         self
     }
 
-    /// As a specification writes it, times a parameter, its kink where another parameter says.
+    /// Returns the term in the notation of the specification, times a parameter, with another
+    /// parameter as the position of its kink.
     pub fn text(&self, parameter: &str, kink: &str, arguments: &Words) -> String {
         let mut text = parameter.to_owned();
         for (of, function) in &self.factors {
@@ -171,7 +171,7 @@ impl Term {
         text
     }
 
-    /// Whether it takes a quantity in parts of its scale.
+    /// Returns true if the term contains this quantity divided by its scale.
     pub fn scales(&self, wanted: Of) -> bool {
         let takes = |(of, function): &(Of, Function)| *of == wanted && function.is_scaled();
         self.factors.iter().any(takes)
@@ -182,7 +182,7 @@ impl Term {
     }
 }
 
-/// All terms that are tried where a force works on an angle, or not, that goes so far.
+/// Returns the terms for a force on a coordinate. `width`: range of the coordinate.
 pub fn terms(scales: &Scales, is_angle: bool, width: f64) -> Vec<Term> {
     use Function::{Above, Below, Cosine, Power, Signed, Sine, Size, Step};
     let rates = [Power(1), Size, Power(2), Signed, Power(3), Step].map(|f| (Of::Rate, f));

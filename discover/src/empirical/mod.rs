@@ -1,7 +1,7 @@
-//! What nothing in the catalogue explains: an expression of few terms in the equation of motion
-//! where the residual force sits. It is fitted as any effect is and must hold on the held-out
-//! records by more than any effect; it is called empirical and gets no other name. Which terms
-//! there are is in `expressions`, which are promising in `chosen`.
+//! Empirical expressions for a gap that no effect of the catalogue explains: an expression of few
+//! terms in the equation of motion with the largest residual force. It is fitted like an effect and
+//! must pass a stricter test on held-out records. Its status is `empirical`, without another name.
+//! `expressions` defines the terms, and `chosen` selects them.
 
 pub mod chosen;
 pub mod expressions;
@@ -27,12 +27,12 @@ use crate::search::found::{Accepted, Found, Rejected, TestGap};
 use crate::search::rejection::Rejection;
 use crate::thresholds;
 
-/// The name of what has none.
+/// Effect name of an unnamed expression.
 pub const EMPIRICAL: &str = "empirical";
 
-/// Adds an expression without a name where nothing is named: what something named leaves may be
-/// its own misfit. A number that is off, and leaves much, stands in for something that varies: an
-/// expression that leaves clearly less takes its place.
+/// Adds an unnamed expression if no effect is named. After a named effect the gap may be its own
+/// misfit. If only a shifted parameter was accepted and a large gap remains, an expression with a
+/// clearly smaller gap replaces it.
 pub fn unnamed(
     problem: &EstimationProblem<'_>,
     found: &mut Found,
