@@ -1,5 +1,4 @@
-//! Within what an experiment stays: what the dataset file says, and where it says nothing what the
-//! records justify, because what was played before can be played again.
+//! Bounds of an experiment: those of the dataset file, and otherwise those of the recorded motion.
 
 use eomgen_analysis::spectrum::periodogram;
 use eomgen_records::samples::{FEWEST_SAMPLES, typical_step};
@@ -9,40 +8,41 @@ use crate::interval::Interval;
 use crate::model::problem::EstimationProblem;
 use crate::thresholds;
 
-/// Within what an experiment stays, SI.
+/// Bounds of an experiment, SI.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bounds {
-    /// How long it lasts, s.
+    /// Duration, s.
     pub duration: f64,
-    /// The time between the samples at which it is predicted, s.
+    /// Time between the samples of the prediction, s.
     pub sample: f64,
-    /// So many of these are one of what is played: records are sampled no less often than they were.
+    /// Number of samples for which a played value is held, because the inputs of the records are
+    /// not sampled faster.
     pub hold: usize,
-    /// Of the inputs that have columns and are not held at one value.
+    /// Bounds of the inputs that have columns and are not fixed.
     pub inputs: Vec<InputBounds>,
-    /// Of each channel's quantity.
+    /// Admissible range of each channel.
     pub channels: Vec<Interval>,
-    /// Where these come from, in a sentence.
+    /// Origin of the bounds as a sentence.
     pub words: String,
 }
 
-/// The bounds of one input, SI.
+/// Bounds of one input, SI.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InputBounds {
-    /// Its place among the model's inputs.
+    /// Index among the inputs of the model.
     pub place: usize,
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its values.
+    /// Range of the values.
     pub range: Interval,
-    /// The fastest change, per s.
+    /// Maximum rate of change, per s.
     pub rate: f64,
-    /// The frequencies of what swings, Hz.
+    /// Frequency band of periodic inputs, Hz.
     pub band: Interval,
 }
 
 impl Bounds {
-    /// The bounds of a dataset. `inputs`: the names of the model's inputs.
+    /// Computes the bounds of a dataset. `inputs`: names of the inputs of the model.
     pub fn of(problem: &EstimationProblem<'_>, inputs: &[String]) -> Self {
         let dataset = problem.dataset;
         let said = &dataset.experiment;
@@ -124,7 +124,8 @@ impl Bounds {
         }
     }
 
-    /// Why it is no record, if so: it lasts less than half a window, or has too few samples.
+    /// Returns the reason why the experiment is too short for a record: less than half a window or
+    /// too few samples; `None` if it is long enough.
     pub fn too_short(&self, window: Option<f64>) -> Option<String> {
         let least = (0.5 * window.unwrap_or(0.0)).max(FEWEST_SAMPLES as f64 * self.sample);
         (self.duration < least).then(|| {
@@ -136,7 +137,7 @@ impl Bounds {
         })
     }
 
-    /// The times of its samples, s.
+    /// Returns the sample times, s.
     pub fn times(&self) -> Vec<f64> {
         let count = (self.duration / self.sample).round() as usize + 1;
         (0..count).map(|k| self.sample * k as f64).collect()

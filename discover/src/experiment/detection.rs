@@ -1,5 +1,6 @@
-//! Which experiment shows best what the records could not: how small it may be for the model without it,
-//! fitted to the experiment too, to leave what separates.
+//! Search for the experiment that shows an undetectable effect best: the experiment with the
+//! smallest size of the effect for which the model without it, fitted to the experiment as well,
+//! leaves the required separation.
 
 use rayon::prelude::*;
 
@@ -26,17 +27,17 @@ const CORRECTIONS: usize = 4;
 const CORRECTED: Interval = Interval::new(0.2, 5.0);
 const CLOSE_ENOUGH: Interval = Interval::new(0.9, 1.1);
 
-/// An experiment that a fit takes.
+/// An experiment with the prediction of a fit.
 pub struct Played<'p> {
-    /// Which of the proposals.
+    /// Index of the proposal.
     pub place: usize,
-    /// What is played.
+    /// Proposed input.
     pub proposal: &'p Proposal,
-    /// What the fit leaves of it.
+    /// Prediction without the effect.
     pub without: Prediction,
 }
 
-/// An effect that the records could not have shown, of whatever size.
+/// An effect that the records cannot show at any size.
 pub struct Hidden<'f> {
     problem: &'f EstimationProblem<'f>,
     /// The model without it.
@@ -63,13 +64,13 @@ enum Place {
 /// An experiment that shows an effect.
 #[derive(Clone, Debug)]
 pub struct Detection {
-    /// Which of the proposals.
+    /// Index of the proposal.
     pub proposal: usize,
-    /// The size from which on it does, SI; that which was tried where nothing tells it.
+    /// Smallest detectable size, SI; the trial size if no experiment shows the effect.
     pub size: f64,
-    /// What the model without it leaves then.
+    /// Residual of the model without the effect at that size.
     pub separation: Separation,
-    /// What the sensors show with it: a column for each channel.
+    /// Predicted sensor outputs with the effect, one column per channel.
     pub predicted: Vec<Vec<f64>>,
 }
 
@@ -86,10 +87,11 @@ struct Tried<'t> {
 }
 
 impl<'f> Hidden<'f> {
-    /// An effect beside what a fit has.
+    /// Adds a candidate to a fit.
     ///
     /// # Errors
-    /// What is wrong with the specification with it.
+    ///
+    /// Errors of the specification with the candidate.
     pub fn of(
         problem: &'f EstimationProblem<'f>,
         without: &'f Rival<'f>,
@@ -144,7 +146,7 @@ impl<'f> Hidden<'f> {
         })
     }
 
-    /// What scales it, at a size: its value as a specification states it, SI.
+    /// Returns the scaling parameter at a size in the form of the specification, SI.
     pub fn stated(&self, size: f64) -> f64 {
         let value = self.unknown.admissible(self.base + size);
         self.unknown.what.stated(value)
@@ -264,8 +266,8 @@ impl<'f> Hidden<'f> {
         best
     }
 
-    /// The experiment of some that shows the smallest size. `None` where none of them can be played or
-    /// shows anything at all.
+    /// Returns the experiment with the smallest detectable size; `None` if no experiment is
+    /// admissible or has an effect.
     pub fn best(&self, within: (&Bounds, &[f64]), family: &[Played<'_>]) -> Option<Detection> {
         // What is small in one experiment nearly is in the next.
         let usual = 1e-3 * self.unknown.scale;

@@ -1,5 +1,5 @@
-//! Which experiment separates the members of a class best: the largest of the least separation, over
-//! the pairs that some experiment separates at all.
+//! Search for the experiment that separates the members of a class best: the maximum of the
+//! smallest separation over the pairs that any experiment separates.
 
 use rayon::prelude::*;
 
@@ -10,59 +10,62 @@ use crate::experiment::separation::{Rival, Separation};
 use crate::model::problem::EstimationProblem;
 use crate::thresholds;
 
-/// Fitted models that the records do not tell apart.
+/// Fitted models that the records cannot distinguish.
 pub struct Members<'f> {
-    /// What all fits share.
+    /// Problem of all fits.
     pub problem: &'f EstimationProblem<'f>,
-    /// One for each.
+    /// Fit of each member.
     pub rivals: Vec<Rival<'f>>,
 }
 
-/// An experiment and what it comes to.
+/// An experiment and its separations.
 #[derive(Clone, Debug)]
 pub struct Discrimination {
-    /// Which of the proposals.
+    /// Index of the proposal.
     pub proposal: usize,
-    /// One for each pair of members.
+    /// Separation of each pair of members.
     pub pairs: Vec<PairSeparation>,
-    /// What the sensors show of each member: a column for each channel.
+    /// Predicted sensor outputs of each member, one column per channel.
     pub predicted: Vec<Vec<Vec<f64>>>,
 }
 
-/// How far two members are apart.
+/// Separation of two members.
 #[derive(Clone, Debug)]
 pub struct PairSeparation {
-    /// The members.
+    /// Indices of the members.
     pub members: [usize; 2],
-    /// What the second leaves of what the first predicts, and the first of what the second does.
+    /// Residual of the second after a fit to the prediction of the first, and the reverse.
     pub separations: [Separation; 2],
 }
 
 impl PairSeparation {
-    /// The lesser of both, in standard deviations of the noise: which of the members is true nobody
-    /// knows.
+    /// Returns the smaller separation, in standard deviations of the noise, because the true member
+    /// is unknown.
     pub fn least(&self) -> f64 {
         let [one, other] = &self.separations;
         one.size.min(other.size)
     }
 }
 
-/// Why there is no experiment.
+/// Reason why no experiment is proposed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum NoExperiment {
-    /// The model has no input that is driven and may move.
+    /// The model has no driven input with a range.
     NoInput,
-    /// None of so many inputs stays within the limits; this is what most of them leave.
+    /// None of this number of inputs stays within the limits. Most of them violate the limit of
+    /// this quantity.
     Leaves(usize, String),
-    /// None of so many can be followed.
+    /// None of this number of inputs can be simulated.
     Unfollowed(usize),
 }
 
 impl Members<'_> {
-    /// The experiment that separates them best of a family. What nothing separates does not decide.
+    /// Returns the experiment of a family that separates the members best. Pairs that no experiment
+    /// separates are ignored.
     ///
     /// # Errors
-    /// Why there is none.
+    ///
+    /// The reason why no experiment is possible.
     pub fn best(
         &self,
         bounds: &Bounds,

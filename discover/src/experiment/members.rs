@@ -1,4 +1,4 @@
-//! The members of a class, each fitted to the records in the place of what was named.
+//! Members of a class, each fitted to the records in place of the named effect.
 
 use crate::catalogue::candidate::Candidate;
 use crate::fit::fitted::Fit;
@@ -12,8 +12,9 @@ use crate::search::pool::Pool;
 use crate::search::screening::screening;
 use crate::thresholds;
 
-/// Fits of what the records do not tell from an accepted effect, each in its place beside whatever else
-/// was accepted; none for one that cannot be fitted there. `context`: that of the search.
+/// Fits each candidate that is indistinguishable from an accepted effect in its place, together
+/// with the other accepted effects. The fit is `None` if it fails. `context`: context of the
+/// search.
 pub fn equivalent_fits(
     context: Context<'_>,
     found: &Found,

@@ -1,12 +1,11 @@
-//! The next experiment: for what the records do not tell apart an input within bounds that does,
-//! simulated with the fitted models.
+//! Proposal of the next experiment: an admissible input that distinguishes the candidates of a
+//! class, simulated with the fitted models.
 //!
-//! The files, in the order in which they read each other: [`waveform`] (forms of an input), [`bounds`]
-//! (within which it stays), [`proposal`] (inputs within these), [`prediction`] (what a fitted model
-//! does then), [`separation`] (what another leaves of that, once it is fitted to it as well),
-//! [`discrimination`] (the input that separates best), [`detection`] (the one that shows best what the
-//! records could not), `members` (fits of a class), `played` (the
-//! file), [`next`] (the result).
+//! The files in the order of their dependence: [`waveform`] (forms of an input), [`bounds`],
+//! [`proposal`] (admissible inputs), [`prediction`] (response of a fitted model), [`separation`]
+//! (residual of another model after a fit to that response), [`discrimination`] (input that
+//! separates best), [`detection`] (input that shows an undetectable effect best), `members` (fits
+//! of a class), `played` (the CSV file), [`next`] (the result).
 
 pub mod bounds;
 pub mod detection;
@@ -39,7 +38,7 @@ use crate::search::context::Context;
 use crate::search::found::Found;
 use crate::thresholds;
 
-/// The next experiments for what was found. `context`: that of the search.
+/// Proposes the next experiments for the result of a search. `context`: context of the search.
 pub fn experiments(context: Context<'_>, found: &Found) -> Experiments {
     let problem = context.problem;
     let inputs = &found.null.model.specification().inputs;

@@ -1,4 +1,4 @@
-//! The next experiments as results.
+//! Next experiments as results.
 
 use std::fmt;
 
@@ -6,19 +6,19 @@ use crate::catalogue::candidate::Candidate;
 use crate::experiment::bounds::Bounds;
 use crate::experiment::discrimination::NoExperiment;
 
-/// All experiments.
+/// All proposed experiments.
 #[derive(Clone, Debug, Default)]
 pub struct Experiments {
-    /// What is to be played.
+    /// Files of the inputs.
     pub files: Vec<ExperimentFile>,
-    /// For each accepted effect what separates its class; none where it is no class.
+    /// Experiment that separates the class of each accepted effect; `None` if the effect is unique.
     pub of_effects: Vec<Option<NextExperiment>>,
-    /// For each rejected one what would show it; none where that was not asked.
+    /// Experiment that shows each rejected effect; `None` if none was searched.
     pub of_rejected: Vec<Option<NextExperiment>>,
 }
 
 impl Experiments {
-    /// None for so many accepted and rejected effects.
+    /// Creates a result without experiments for these numbers of accepted and rejected effects.
     pub fn none(accepted: usize, rejected: usize) -> Self {
         Self {
             files: Vec::new(),
@@ -28,17 +28,17 @@ impl Experiments {
     }
 }
 
-/// A member of a class.
+/// Member of a class.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MemberAt {
-    /// The effect.
+    /// Name of the effect.
     pub effect: String,
-    /// Its place.
+    /// Name of its site.
     pub on: String,
 }
 
 impl MemberAt {
-    /// Of a candidate.
+    /// Converts a candidate.
     pub fn of(candidate: &Candidate) -> Self {
         Self {
             effect: candidate.effect.clone(),
@@ -46,37 +46,37 @@ impl MemberAt {
         }
     }
 
-    /// As words.
+    /// Returns effect and site as words.
     pub fn words(&self) -> String {
         format!("{} on {}", self.effect.replace('_', " "), self.on)
     }
 }
 
-/// An experiment that can be played.
+/// An experiment as a file.
 #[derive(Clone, Debug)]
 pub struct ExperimentFile {
-    /// The file's name: `experiment.csv`, then `experiment_2.csv` and so on.
+    /// Name of the file: `experiment.csv`, `experiment_2.csv`, ...
     pub name: String,
-    /// Its text.
+    /// Text of the file.
     pub text: String,
-    /// The input that is played.
+    /// Name of the driven input.
     pub input: String,
-    /// That input's SI unit.
+    /// SI unit of that input.
     pub unit: String,
-    /// The times of its samples, s.
+    /// Sample times, s.
     pub times: Vec<f64>,
-    /// Its values, SI.
+    /// Values, SI.
     pub values: Vec<f64>,
-    /// The two members that it separates least of those that it separates, or the model with what it
-    /// shows and without that.
+    /// The two separated members with the smallest separation, or the model with and without an
+    /// undetectable effect.
     pub members: [String; 2],
-    /// What the sensors show of the first, and of the second fitted to that: a column for each channel,
-    /// SI.
+    /// Predicted sensor outputs of the first member, and of the second fitted to them, one column
+    /// per channel, SI.
     pub predicted: [Vec<Vec<f64>>; 2],
 }
 
 impl ExperimentFile {
-    /// The name of one of several, counted from 0.
+    /// Returns the name of the file with this index.
     pub(super) fn numbered(place: usize) -> String {
         match place {
             0 => "experiment.csv".to_owned(),
@@ -85,56 +85,56 @@ impl ExperimentFile {
     }
 }
 
-/// How far an experiment separates two members.
+/// Separation of two members by an experiment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pair {
-    /// The one whose prediction is taken for the truth.
+    /// Member whose prediction is taken as the truth.
     pub truth: MemberAt,
-    /// The one that is fitted to it.
+    /// Member that is fitted to it.
     pub rival: MemberAt,
-    /// The root mean square of what that leaves, in standard deviations of the noise.
+    /// RMS residual of the rival, in standard deviations of the noise.
     pub separation: f64,
-    /// The channel that shows it best.
+    /// Channel with the largest residual.
     pub channel: String,
 }
 
-/// How small something may be to be shown.
+/// Smallest detectable size of an effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shown {
-    /// What scales it.
+    /// Parameter that scales the effect.
     pub what: String,
-    /// From which value on it is shown, in its unit.
+    /// Smallest detectable value, in `unit`.
     pub from: f64,
-    /// The unit.
+    /// Unit.
     pub unit: String,
 }
 
-/// What would tell the members of a class apart, or show what the records could not.
+/// Experiment that distinguishes the members of a class or shows an undetectable effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NextExperiment {
-    /// Which of the files; none if nothing within the bounds separates them.
+    /// Index of its file; `None` if no admissible input separates the members.
     pub file: Option<usize>,
-    /// The input; none if nothing can be played.
+    /// Name of the input; `None` if no input can be played.
     pub input: Option<String>,
-    /// What is played on it, in words.
+    /// Description of the waveform.
     pub form: Option<String>,
-    /// The least separation of the pairs that are separated, in standard deviations of the noise; the
-    /// least of all if none is.
+    /// Smallest separation of the separated pairs, in standard deviations of the noise; of all
+    /// pairs if none is separated.
     pub separation: Option<f64>,
-    /// All pairs, either way.
+    /// All pairs, in both directions.
     pub pairs: Vec<Pair>,
     /// Members that could not be fitted.
     pub left_out: Vec<MemberAt>,
-    /// Of what the records could not show, how small it may be.
+    /// Smallest detectable size of an undetectable effect.
     pub shows: Option<Shown>,
-    /// Why nothing can be played, if so.
+    /// Reason why no input can be played.
     pub reason: Option<String>,
-    /// Where the bounds come from.
+    /// Origin of the bounds.
     pub bounds: String,
 }
 
 impl NextExperiment {
-    /// None, for a reason.
+    /// Creates a result without an experiment for this reason.
     pub(super) fn none(reason: &str, bounds: &Bounds) -> Self {
         Self {
             file: None,

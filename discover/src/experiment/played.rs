@@ -1,4 +1,4 @@
-//! An experiment as a file that a rig can play: columns `t` and the driven inputs, in the units of the
+//! CSV file of an experiment for a test rig: columns `t` and the driven inputs, in the units of the
 //! dataset.
 
 use eomgen_records::experiment::Played;
@@ -6,7 +6,7 @@ use eomgen_records::experiment::Played;
 use crate::experiment::bounds::Bounds;
 use crate::experiment::proposal::{Proposal, rest};
 
-/// The text of `experiment.csv`.
+/// Returns the text of `experiment.csv`.
 pub(super) fn text(
     (bounds, times): (&Bounds, &[f64]),
     proposal: &Proposal,

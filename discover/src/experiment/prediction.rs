@@ -1,4 +1,4 @@
-//! What a fitted model does when an input is played, and whether it stays within its limits.
+//! Response of a fitted model to a proposed input, and check of the limits.
 
 use std::path::PathBuf;
 
@@ -15,25 +15,25 @@ use crate::model::problem::EstimationProblem;
 use crate::model::simulation::{Motion, Simulation};
 use crate::thresholds;
 
-/// A record that an experiment is predicted to leave, without noise.
+/// Predicted record of an experiment, without noise.
 #[derive(Clone, Debug)]
 pub struct Prediction {
-    /// The state at each sample.
+    /// State at each sample.
     pub states: Vec<Vec<f64>>,
-    /// What the sensors show: the only one of a list.
+    /// Sensor outputs, as a list of one record.
     pub records: Vec<Record>,
 }
 
-/// Why an experiment is not proposed.
+/// Reason why an experiment is not proposed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Excluded {
-    /// The motion cannot be followed.
+    /// The motion cannot be simulated.
     Unfollowed,
-    /// This channel, or a coordinate, would leave its limits.
+    /// This channel or coordinate would leave its limits.
     Leaves(String),
 }
 
-/// A model at fixed parameters, to be driven by experiments.
+/// A model at fixed parameters for the simulation of experiments.
 pub struct Predictor<'a> {
     problem: &'a EstimationProblem<'a>,
     /// The model, which is a fit's or has something more.
@@ -45,14 +45,14 @@ pub struct Predictor<'a> {
 }
 
 impl<'a> Predictor<'a> {
-    /// A fit's own model. None where there is no motion at its parameters.
+    /// Creates a predictor of the fitted model; `None` if it cannot be simulated at its parameters.
     pub fn of(problem: &'a EstimationProblem<'a>, fit: &'a Fit) -> Option<Self> {
         let theta = &fit.train.estimate.theta;
         let values = fit.shooting(problem).values(theta);
         Self::with(problem, (fit, theta), &fit.model, &values)
     }
 
-    /// Another model at these parameters, seen by the sensors of a fit's unknowns.
+    /// Creates a predictor of another model at these parameters, with the sensors of a fit.
     pub fn with(
         problem: &'a EstimationProblem<'a>,
         (fit, theta): (&'a Fit, &[f64]),
@@ -77,10 +77,11 @@ impl<'a> Predictor<'a> {
         })
     }
 
-    /// What it leaves of an experiment.
+    /// Simulates an experiment.
     ///
     /// # Errors
-    /// Why that is not proposed.
+    ///
+    /// The reason why the experiment is not proposed.
     pub fn predicted(
         &mut self,
         bounds: &Bounds,

@@ -1,4 +1,4 @@
-//! Inputs that may be played within bounds: each form on each input, in several sizes, the others at
+//! Admissible inputs: each waveform on each input at several amplitudes, with the other inputs at
 //! rest.
 
 use eomgen_sim::inputs::HeldInputs;
@@ -8,23 +8,23 @@ use crate::experiment::waveform::Waveform;
 use crate::interval::Interval;
 use crate::thresholds;
 
-/// An input that may be played.
+/// An admissible input.
 #[derive(Clone, Debug)]
 pub struct Proposal {
-    /// Its place among the model's inputs.
+    /// Index among the inputs of the model.
     pub place: usize,
-    /// Its name.
+    /// Name of the input.
     pub name: String,
-    /// Its form.
+    /// Waveform.
     pub waveform: Waveform,
-    /// What it is, in words.
+    /// Description of the waveform and amplitude.
     pub form: String,
-    /// Its value at each sample, SI.
+    /// Value at each sample, SI.
     pub values: Vec<f64>,
 }
 
 impl Proposal {
-    /// All that is tried, at these times, s.
+    /// Returns all trial inputs at these times, s.
     pub fn family(bounds: &Bounds, times: &[f64]) -> Vec<Self> {
         let mut family: Vec<Self> = Vec::new();
         let played_at: Vec<f64> = times.iter().copied().step_by(bounds.hold).collect();
@@ -51,7 +51,7 @@ impl Proposal {
         family
     }
 
-    /// The model's inputs, of which there are `count`, with this one played.
+    /// Returns the `count` inputs of the model, with this one played.
     pub fn inputs(&self, bounds: &Bounds, times: &[f64], count: usize) -> HeldInputs {
         let mut row = vec![0.0; count];
         for other in &bounds.inputs {
@@ -67,7 +67,7 @@ impl Proposal {
     }
 }
 
-/// Where an input is at rest: at 0, or as near to it as it may be.
+/// Returns the rest value of an input: 0 or the nearest admissible value.
 pub fn rest(range: Interval) -> f64 {
     range.clamp(0.0)
 }

@@ -1,7 +1,7 @@
-//! How far a rival stays from what another model predicts of an experiment, once it is fitted to that
-//! and to the records that are there: what it can imitate by a change of its unknowns that these
-//! records allow, or by the windows' initial states, does not count. The criterion of T-optimal designs
-//! (Atkinson and Fedorov, Biometrika 62, 1975), of estimates that records hold.
+//! Separation of a rival model: its residual from the prediction of another model after a fit to
+//! that prediction and to the existing records. A change of its unknowns that these records allow,
+//! or of initial states, does not count. Criterion of T-optimal designs (Atkinson and Fedorov,
+//! Biometrika 62, 1975), with the information of the records.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -25,7 +25,7 @@ use crate::model::problem::EstimationProblem;
 use crate::model::unknowns::Unknown;
 use crate::thresholds;
 
-/// A fit that may explain what another predicts.
+/// Fit that may imitate the prediction of another model.
 pub struct Rival<'f> {
     /// The fit.
     pub fit: &'f Fit,
@@ -35,25 +35,25 @@ pub struct Rival<'f> {
     unknowns: Vec<Unknown>,
 }
 
-/// What a rival leaves of a prediction once it is fitted to it.
+/// Residual of a rival after a fit to a prediction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Separation {
-    /// The root mean square of the channel that shows it best, in standard deviations of its noise.
+    /// RMS residual of the channel that shows it best, in standard deviations of its noise.
     pub size: f64,
-    /// That channel's place.
+    /// Index of that channel.
     pub channel: usize,
-    /// What the rival's sensors show, a column for each channel, NaN where it is not compared.
+    /// Sensor outputs of the rival, one column per channel; NaN at samples that are not compared.
     pub seen: Vec<Vec<f64>>,
 }
 
 impl<'f> Rival<'f> {
-    /// A fit with what its records tell of it.
+    /// Uses the information of the records of a fit.
     pub fn of(problem: &EstimationProblem<'_>, fit: &'f Fit) -> Self {
         Self::with(fit, information_of(problem, fit))
     }
 
-    /// A fit with what was declared of it alone: had the records held something more, they would have
-    /// told something else.
+    /// Uses only the declared priors of a fit. A large effect would have changed the information of
+    /// the records.
     pub fn declared(fit: &'f Fit) -> Self {
         let sd = |unknown: &Unknown| unknown.prior.map_or(f64::INFINITY, |prior| prior.sd);
         let weights = fit.unknowns.iter().map(|unknown| 1.0 / sd(unknown));
@@ -73,9 +73,9 @@ impl<'f> Rival<'f> {
         }
     }
 
-    /// The root mean square over all channels of what it leaves of a prediction by a model whose states
-    /// `truth` has before it is fitted to that: it leaves no more by a straight line. None where it
-    /// cannot be followed.
+    /// Returns the RMS over all channels of the difference from the prediction of model `truth`
+    /// before a fit. It is an upper bound of [`Rival::leaves_by_tangents`]. `None` if the motion
+    /// cannot be simulated.
     pub fn leaves_unfitted(
         &self,
         problem: &EstimationProblem<'_>,
@@ -87,8 +87,8 @@ impl<'f> Rival<'f> {
         })
     }
 
-    /// The root mean square over all channels of what it leaves of a prediction by a model whose states
-    /// `truth` has, by a straight line; none where it cannot be followed.
+    /// Returns the RMS over all channels of the residual after a linearised fit to the prediction
+    /// of model `truth`; `None` if the motion cannot be simulated.
     pub fn leaves_by_tangents(
         &self,
         problem: &EstimationProblem<'_>,
@@ -120,8 +120,8 @@ impl<'f> Rival<'f> {
         left.is_finite().then_some(left)
     }
 
-    /// What it leaves of a prediction once it is fitted to that and to its own records; none where it
-    /// cannot be followed.
+    /// Returns the residual after a fit to a prediction and to the rival's own records; `None` if
+    /// the motion cannot be simulated.
     pub fn separation(
         &self,
         problem: &EstimationProblem<'_>,

@@ -1,5 +1,5 @@
-//! Forms of an input over time, between -1 and 1: what experimenters play. Multisines have the phases
-//! of Schroeder (IEEE Trans. Inf. Theory 16, 1970), which keep their crests low.
+//! Waveforms between -1 and 1 of the inputs of experiments. Multisines have Schroeder phases (IEEE
+//! Trans. Inf. Theory 16, 1970) and so a low crest factor.
 
 use std::f64::consts::PI;
 
@@ -11,37 +11,38 @@ const TONES: usize = 12;
 /// The levels of a staircase, forth and back.
 const LEVELS: [f64; 10] = [0.2, 0.4, 0.6, 0.8, 1.0, -0.2, -0.4, -0.6, -0.8, -1.0];
 
-/// A form of an input.
+/// Waveform of an input.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Waveform {
-    /// A sum of sines spread evenly over the octaves of a band, Hz.
+    /// Sum of sines, evenly spaced over the octaves of a band, Hz.
     Multisine(Interval),
-    /// A cosine whose frequency rises through a band, Hz, by equal factors in equal times.
+    /// Cosine with an exponentially rising frequency through a band, Hz.
     Chirp(Interval),
-    /// To and fro between both ends, so many times.
+    /// Steps between both ends, with this number of periods.
     Square(u32),
-    /// Forth, twice as long back, and forth, so many times: what has mass ends where it began.
+    /// Steps of relative durations 1, 2 and 1 with alternating signs, with this number of periods.
+    /// A mass returns to its start.
     Shuttle(u32),
-    /// Straight to one end, to the other, and back to rest, so many times.
+    /// Linear motion to one end, to the other and back to rest, with this number of periods.
     Triangle(u32),
-    /// The upper end all the time, or the lower one.
+    /// Constant value at one end.
     Constant {
-        /// Whether it is the upper one.
+        /// Whether the upper end is used.
         is_upper: bool,
     },
-    /// One end for this part of the time, then rest.
+    /// One end for a fraction of the duration, then rest.
     Release {
-        /// Whether it is the upper one.
+        /// Whether the upper end is used.
         is_upper: bool,
-        /// The part.
+        /// Fraction of the duration.
         part: f64,
     },
-    /// Five levels up to the upper end, then five down to the lower.
+    /// Five levels up to the upper end, then five down to the lower end.
     Staircase,
 }
 
 impl Waveform {
-    /// All that is tried within a band, Hz.
+    /// Returns all trial waveforms in a band, Hz.
     pub fn family(band: Interval) -> Vec<Self> {
         let middle = (band.low * band.high).sqrt();
         let mut family = vec![
@@ -60,7 +61,8 @@ impl Waveform {
         family
     }
 
-    /// Its values at times from 0 to `duration`, s; none where it does not fit into that.
+    /// Returns the values at times from 0 to `duration`, s; `None` if the waveform is too slow for
+    /// the duration.
     pub fn sampled(&self, times: &[f64], duration: f64) -> Option<Vec<f64>> {
         let at = |of: &dyn Fn(f64) -> f64| times.iter().map(|t| of(t / duration)).collect();
         Some(match *self {
@@ -101,7 +103,7 @@ impl Waveform {
         })
     }
 
-    /// What it is, in words.
+    /// Returns a description of the waveform.
     pub fn words(&self) -> String {
         let times = |count: u32| match count {
             1 => "once".to_owned(),

@@ -1,20 +1,20 @@
-//! What drives neighbouring motions: how the accelerations of neighbouring models differ.
+//! Differences between the accelerations of similar models, which drive tangent vectors.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_sim::exponential::Drives;
 
 use crate::model::simulation::NeighbourDrives;
 
-/// The equations of a neighbouring model.
+/// Equations of a model with one changed parameter.
 pub(crate) struct MovedEvaluator<'c> {
-    /// The equations.
+    /// Evaluator of the equations.
     pub evaluator: &'c mut Evaluator,
-    /// By how much a parameter differs, SI.
+    /// Change of the parameter, SI.
     pub size: f64,
 }
 
-/// Differences between the accelerations of a model and of others, per size, as drives of
-/// neighbouring motions.
+/// Differences between the accelerations of a model and of others, per unit of change, as drives of
+/// tangent vectors.
 pub(crate) struct AccelerationDifferences<'c> {
     base: &'c mut Evaluator,
     moved: Vec<MovedEvaluator<'c>>,
@@ -22,7 +22,7 @@ pub(crate) struct AccelerationDifferences<'c> {
 }
 
 impl<'c> AccelerationDifferences<'c> {
-    /// Others with the sizes by which they differ.
+    /// Combines the evaluators of the model and of the changed models.
     pub fn new(base: &'c mut Evaluator, moved: Vec<MovedEvaluator<'c>>) -> Self {
         let states = base.program().states();
         Self {
@@ -32,7 +32,7 @@ impl<'c> AccelerationDifferences<'c> {
         }
     }
 
-    /// Each as the drive of a neighbouring motion.
+    /// Returns the differences as drives of tangent vectors.
     pub fn drives(&mut self) -> NeighbourDrives<'_> {
         NeighbourDrives {
             count: self.moved.len(),

@@ -1,4 +1,4 @@
-//! Records fitted one by one, beside the fit of all together.
+//! Fits of single records, for comparison with the joint fit.
 
 use crate::fit::fitted::Fit;
 use crate::fit::full;
@@ -9,26 +9,26 @@ use eomgen_records::dataset::Dataset;
 use eomgen_records::record::Record;
 use eomgen_records::windows::Windows;
 
-/// What a record says alone.
+/// Fit of a single record.
 pub struct Alone {
-    /// Its name.
+    /// Name of the record.
     pub name: String,
-    /// Its place in the dataset.
+    /// Index of the record in the dataset.
     pub record: Place,
-    /// What the fit of all records leaves of it, in standard deviations.
+    /// Residual RMS of the joint fit, in standard deviations.
     pub together: f64,
-    /// What its own leaves.
+    /// Residual RMS of the single fit, in standard deviations.
     pub rms: f64,
-    /// Its own estimates and their standard deviations, SI.
+    /// Estimates of the single fit and their standard deviations, SI.
     pub estimates: Vec<(f64, f64)>,
 }
 
-/// A record's place in the dataset.
+/// Index of a record in the dataset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
-    /// Among those to learn from.
+    /// Index among the training records.
     Train(usize),
-    /// Among those to be judged by.
+    /// Index among the test records.
     Test(usize),
 }
 
@@ -42,15 +42,15 @@ impl Place {
     }
 }
 
-/// The places of all records.
+/// Returns the indices of all records.
 pub fn places(dataset: &Dataset) -> Vec<Place> {
     let train = (0..dataset.train.len()).map(Place::Train);
     let test = (0..dataset.test.len()).map(Place::Test);
     train.chain(test).collect()
 }
 
-/// A record fitted by itself, its parameters as far off as it takes, with an unknown more if there is
-/// one; none if it cannot be.
+/// Fits a single record with wide bounds of the parameters and optionally one more unknown; `None`
+/// if the fit fails.
 pub fn alone(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
@@ -115,7 +115,7 @@ fn estimates(fit: &Fit) -> Vec<(f64, f64)> {
     pairs.map(|(value, sd)| (*value, *sd)).collect()
 }
 
-/// The most that a fit leaves of any record, in standard deviations.
+/// Returns the largest residual RMS of a fit over the records, in standard deviations.
 pub fn most_left(problem: &EstimationProblem<'_>, fit: &Fit) -> f64 {
     let train =
         (0..problem.dataset.train.len()).filter_map(|k| left_of(&problem.train, &fit.train, k));

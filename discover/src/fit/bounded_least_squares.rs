@@ -1,4 +1,4 @@
-//! Linear least squares with bounds, by active sets: small, dense and deterministic.
+//! Linear least squares with bounds by an active-set method, dense and deterministic.
 
 use crate::interval::Interval;
 use eomgen_analysis::qr_iteration;
@@ -11,8 +11,8 @@ const MOST_CHANGES: usize = 200;
 /// A slope that is this part of the largest one is none.
 const FLAT: f64 = 1e-10;
 
-/// The x within `bounds` (which hold 0) for which |A x - b| is smallest. Unbounded
-/// directions that change nothing stay 0.
+/// Returns the x within `bounds`, which contain 0, that minimises |A x - b|. Unbounded directions
+/// without influence remain 0.
 pub fn least_squares(a: &DMatrix<f64>, b: &DVector<f64>, bounds: &[Interval]) -> DVector<f64> {
     let columns = a.ncols();
     let mut x = DVector::zeros(columns);

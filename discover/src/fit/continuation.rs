@@ -1,6 +1,6 @@
-//! Estimation from far away: for every trial of the unknowns the initial states are followed anew
-//! through the records, because those that were fitted at wrong unknowns hold on to what impacts
-//! folded. Once that is near, [`crate::fit::gauss_newton`] goes on.
+//! Estimation from distant initial values. Each trial of the unknowns estimates the initial states
+//! again along the records, because initial states fitted at wrong unknowns stay in local minima
+//! due to impacts. The result is refined in [`crate::fit::gauss_newton`].
 
 use crate::ids::UnknownId;
 use nalgebra::DVector;
@@ -13,18 +13,18 @@ use crate::fit::sensitivity::WindowDerivatives;
 use crate::fit::shooting::{Residual, Shooting};
 use crate::thresholds;
 
-/// How initial states are found at given unknowns, from those at others if they are known:
-/// what is known before, and the states.
+/// Function that estimates the initial states at given unknowns, from those at other unknowns if
+/// these are known. Returns the prior and the states.
 pub type Follow<'f> = dyn Fn(&[f64], Option<&[Vec<f64>]>) -> InitialStates + 'f;
 
-/// Where a continuation ended.
+/// Result of a continuation.
 #[derive(Default)]
 pub struct Continued {
-    /// What is known of the windows' initial states.
+    /// Prior of the initial states of the windows.
     pub prior: InitialStatePrior,
     /// The estimate.
     pub estimate: Estimate,
-    /// Whether further steps would help little.
+    /// Whether further steps would decrease the cost only slightly.
     pub is_converged: bool,
 }
 
@@ -45,7 +45,7 @@ struct Continuation<'a> {
     sizes: Vec<f64>,
 }
 
-/// Approaches the best unknowns from the best of some, by so many steps.
+/// Runs the continuation from the best of several guesses, for at most `steps` steps.
 pub fn continuation(
     shooting: &Shooting<'_>,
     guesses: &[Vec<f64>],
@@ -60,7 +60,7 @@ pub fn continuation(
     present
 }
 
-/// Goes on where tangents lead nowhere though the residual is much more than noise.
+/// Continues with secants if tangents fail and the residual is far above the noise.
 pub fn continuation_by_secants(
     shooting: &Shooting<'_>,
     present: &mut Continued,
@@ -69,7 +69,7 @@ pub fn continuation_by_secants(
     Continuation::new(shooting, follow).go(present, thresholds::SECANT_STEPS, Derivatives::Secants);
 }
 
-/// Derivatives at an estimate with secants in the place of tangents for what has no prior.
+/// Replaces the derivatives by unknowns without a prior with secants.
 pub fn secants(
     shooting: &Shooting<'_>,
     estimate: &Estimate,

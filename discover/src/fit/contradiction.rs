@@ -1,5 +1,5 @@
-//! Records that contradict each other: each fitted alone, then seen beside the fit of all together.
-//! What is off in one record only, as another payload or another supply, is no property of the machine.
+//! Contradicting records: fits of single records compared with the joint fit. A property that
+//! differs in one record, such as a payload or a supply voltage, is not a property of the machine.
 
 use eomgen_model_spec::model::{Parameter, ParameterValue};
 use rayon::prelude::*;
@@ -13,10 +13,11 @@ use crate::thresholds;
 /// How many records are fitted side by side before it is asked whether more are needed.
 const AT_ONCE: usize = 2;
 
-/// The contradictions among the records of a fit that leaves a gap, in sentences. Parameters, declared
-/// ones or those of what was found, to which two records alone give different values, where each alone
-/// is explained much better than all together. Or records that are not explained alone where others are, with the
-/// parameters that would explain them. `floor`: what a right model would leave, in standard deviations.
+/// Returns sentences on contradicting records of a fit with a gap. Two records contradict each
+/// other if their single fits give different values of a declared or found parameter and each
+/// single fit is much better than the joint fit. A record that cannot be fitted on its own while
+/// others can is reported with the parameters that would explain it. `floor`: noise floor, in
+/// standard deviations.
 pub fn contradictions(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
@@ -223,7 +224,7 @@ fn said(fit: &Fit, name: &str, place: usize, a: &Alone, b: &Alone) -> String {
     )
 }
 
-/// An estimate and its standard deviation, SI, in a parameter's unit.
+/// Returns an estimate and its standard deviation, given in SI, in the unit of a parameter.
 pub(crate) fn stated(parameter: Option<&Parameter>, (value, sd): (f64, f64)) -> String {
     match parameter {
         Some(p) => format!(

@@ -1,5 +1,5 @@
-//! A fitted specification: what was estimated, how well it is known, and what it leaves. How it
-//! is found is in [`crate::fit::full`].
+//! Fitted specification: estimates, uncertainties and residuals. The algorithm is in
+//! [`crate::fit::full`].
 
 use crate::fit::prior::InitialStatePrior;
 use crate::fit::residuals::Residuals;
@@ -13,55 +13,56 @@ use crate::thresholds;
 
 /// A fitted specification.
 pub struct Fit {
-    /// Its texts.
+    /// Texts of the specification.
     pub texts: SpecificationTexts,
-    /// Its model, ready to run.
+    /// Compiled model.
     pub model: EstimationModel,
-    /// What was estimated.
+    /// Unknowns of the fit.
     pub unknowns: Vec<Unknown>,
-    /// One standard deviation of each if the model is right, with correlated residuals allowed for and
-    /// no window's initial state known from the window before.
+    /// Standard deviation of each unknown if the model is correct, with correlated residuals and
+    /// without priors from preceding windows.
     pub sd: Vec<f64>,
-    /// The same by which effects are judged, [`thresholds::WIDER`]: their model may be wrong.
+    /// Standard deviation of each unknown for the test of effects, larger by [`thresholds::WIDER`],
+    /// because the model may be wrong.
     pub wider_sd: Vec<f64>,
-    /// How far off each would be by a misfit of one standard deviation of the noise in every sample
-    /// that looks like what the unknown does.
+    /// Error of each unknown due to a misfit of one standard deviation of the noise in each sample
+    /// that resembles the response of the unknown.
     pub by_alike_misfit: Vec<f64>,
-    /// The range of each state.
+    /// Range of each state.
     pub ranges: Vec<f64>,
-    /// What was known of the training windows' initial states.
+    /// Prior of the initial states of the training windows.
     pub prior: InitialStatePrior,
-    /// How much priors count.
+    /// Weight of the priors.
     pub prior_weight: f64,
-    /// Its residuals on the training records.
+    /// Residuals of the training records.
     pub train: Residuals,
-    /// Its residuals on the test records.
+    /// Residuals of the test records.
     pub test: Residuals,
 }
 
 impl Fit {
-    /// Whether an unknown is held by one of its bounds.
+    /// Returns true if an unknown is at one of its bounds.
     pub fn is_held(&self, id: UnknownId) -> bool {
         let (value, bounds) = (self.train.estimate.theta[id], self.unknowns[id].bounds);
         value <= bounds.low || value >= bounds.high
     }
 
-    /// The root mean square of its residuals on all records, in standard deviations.
+    /// Returns the residual RMS of all records, in standard deviations.
     pub fn rms(&self) -> f64 {
         (0.5 * (self.train.rms.powi(2) + self.test.rms.powi(2))).sqrt()
     }
 
-    /// One standard deviation of an unknown as it is reported, with what a model that leaves more than a
-    /// right one, of `floor` standard deviations of the noise, may be off by. What is left is not noise,
-    /// and looks in part like what the unknown does.
+    /// Returns the reported standard deviation of an unknown. It includes the possible error due to
+    /// the part of the misfit above `floor`, the noise floor in standard deviations of the noise.
+    /// The misfit is not noise and may resemble the response of the unknown.
     pub fn sd_beside_misfit(&self, id: UnknownId, floor: f64) -> f64 {
         let left = (self.train.rms.powi(2) - floor.powi(2)).max(0.0).sqrt();
         let misfit = thresholds::MISFIT_ALIKE * left * self.by_alike_misfit[id];
         self.wider_sd[id].hypot(misfit)
     }
 
-    /// Unknowns to begin with where something is added: parameters and sensors that took up what
-    /// it does begin anew.
+    /// Returns start values of the unknowns for a fit with a further effect. Parameters and sensors
+    /// that imitated the effect are reset.
     pub fn restarted(&self) -> Vec<f64> {
         let known = self.unknowns.iter().zip(&self.train.estimate.theta);
         known
@@ -69,19 +70,19 @@ impl Fit {
             .collect()
     }
 
-    /// What was estimated, with which it is.
+    /// Returns the unknowns with their indices.
     pub fn unknowns(&self) -> impl Iterator<Item = (UnknownId, &Unknown)> {
         UnknownId::first(self.unknowns.len()).zip(&self.unknowns)
     }
 
-    /// The values of some unknowns as a specification states them, SI.
+    /// Returns the values of unknowns in the form of the specification, SI.
     pub fn stated(&self, unknowns: &[UnknownId]) -> Vec<f64> {
         let theta = &self.train.estimate.theta;
         let of = |id: &UnknownId| self.unknowns[*id].what.stated(theta[*id]);
         unknowns.iter().map(of).collect()
     }
 
-    /// The training windows to be explained by the fit's own model.
+    /// Returns the training windows with the model of the fit.
     pub fn shooting<'a>(&'a self, problem: &'a EstimationProblem<'a>) -> Shooting<'a> {
         Shooting::new(
             problem,
@@ -92,7 +93,8 @@ impl Fit {
         )
     }
 
-    /// A state of the fit's model as one of another model: states that only the other has are 0.
+    /// Converts a state of this model to one of another model. States of only the other model are
+    /// 0.
     pub fn mapped(&self, model: &EstimationModel, state: &[f64]) -> Vec<f64> {
         if state.is_empty() {
             return Vec::new();
@@ -100,17 +102,19 @@ impl Fit {
         model.mapped(&self.model, state)
     }
 
-    /// Whether it leaves no more than a right model would.
+    /// Returns true if the residual is within the limit of a correct model.
     pub fn is_at_floor(&self, floor: f64) -> bool {
         self.leaves_less(thresholds::AT_FLOOR * floor)
     }
 
-    /// Whether it leaves less than so many standard deviations, on both sets of records.
+    /// Returns true if the residual RMS is below `rms` standard deviations on training and test
+    /// records.
     pub fn leaves_less(&self, rms: f64) -> bool {
         self.train.rms.max(self.test.rms) < rms
     }
 
-    /// Whether it leaves less than another by what is asked of an effect, on both sets of records.
+    /// Returns true if the residual is below that of another fit by the margin required of an
+    /// effect, on training and test records.
     pub fn leaves_clearly_less(&self, other: &Self) -> bool {
         let better = 1.0 - thresholds::HELD_OUT;
         self.train.rms < better * other.train.rms && self.test.rms < better * other.test.rms

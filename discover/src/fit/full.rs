@@ -1,5 +1,5 @@
-//! A specification fitted to the records in full: from a preliminary fit to unknowns with their
-//! uncertainty and to its residuals on the records it was fitted to and on the others.
+//! Full fit of a specification: from a preliminary fit to estimates with uncertainties and
+//! residuals on training and test records.
 
 use crate::error::DiscoverError;
 use crate::fit::continuation::{continuation, continuation_by_secants, secants};
@@ -40,10 +40,11 @@ struct Converged {
     is_far: bool,
 }
 
-/// Fits a specification: its unknowns from `theta`, then its residuals.
+/// Fits a specification from start values `theta` and computes its residuals.
 ///
 /// # Errors
-/// What is wrong with the text, or why no motion can be followed.
+///
+/// An invalid text, or a motion that cannot be simulated.
 pub fn fit(
     problem: &EstimationProblem<'_>,
     texts: SpecificationTexts,
@@ -56,10 +57,11 @@ pub fn fit(
     )
 }
 
-/// Fits everything to the whole windows, from a preliminary fit.
+/// Continues a preliminary fit over the whole windows.
 ///
 /// # Errors
-/// As for [`fit`].
+///
+/// As [`fit`].
 pub fn complete(
     problem: &EstimationProblem<'_>,
     preliminary: PreliminaryFit,

@@ -1,8 +1,8 @@
-//! Estimation by separable Gauss-Newton steps on multiple shooting (Bock 1983): each window's
-//! initial state is projected out of its own residuals (variable projection: Golub and Pereyra
-//! 1973) by a QR factorisation, and what remains depends on the unknowns alone. Steps
-//! are shortened until they help; every window may decide for itself how far its initial
-//! state follows, because impacts fold the outputs.
+//! Estimation by separable Gauss-Newton steps on multiple shooting (Bock 1983). The initial state
+//! of each window is eliminated from its residuals by a QR factorisation (variable projection:
+//! Golub and Pereyra 1973), so that the reduced problem depends on the unknowns only. Steps are
+//! shortened until the cost decreases. Each window chooses its own step of the initial state,
+//! because impacts fold the outputs.
 
 use crate::ids::WindowId;
 use crate::interval::Interval;
@@ -19,18 +19,18 @@ use crate::thresholds;
 /// An estimate.
 #[derive(Clone, Debug, Default)]
 pub struct Estimate {
-    /// The unknowns.
+    /// Unknowns.
     pub theta: Vec<f64>,
-    /// The initial state of each window.
+    /// Initial state of each window.
     pub initial_states: Vec<Vec<f64>>,
-    /// The sum of squares of the residuals of each window, in standard deviations; not finite where
-    /// there is no motion.
+    /// Sum of squared residuals of each window, in standard deviations; not finite if the
+    /// simulation failed.
     pub squares: Vec<f64>,
-    /// The sum of all, with what the priors add.
+    /// Sum over the windows, with the priors.
     pub cost: f64,
 }
 
-/// Estimates the unknowns and the windows' initial states from given ones.
+/// Estimates unknowns and initial states from start values.
 pub fn damped_gauss_newton(
     shooting: &Shooting<'_>,
     prior: &InitialStatePrior,
@@ -54,7 +54,7 @@ pub fn damped_gauss_newton(
     present
 }
 
-/// The size of the residuals, in standard deviations, at least one.
+/// Returns the size of the residuals, in standard deviations, at least one.
 pub fn level(shooting: &Shooting<'_>, estimate: &Estimate) -> f64 {
     let finite = estimate.squares.iter().filter(|s| s.is_finite());
     let (sum, count) = finite.fold((0.0, 0), |(sum, n), s| (sum + s, n + 1));
@@ -64,8 +64,8 @@ pub fn level(shooting: &Shooting<'_>, estimate: &Estimate) -> f64 {
     (sum / numbers).sqrt().max(1.0)
 }
 
-/// Residuals and derivatives of every window at an estimate; quotients are taken over the size of its
-/// residuals.
+/// Computes the residuals and derivatives of all windows at an estimate. Difference quotients are
+/// taken over the size of its residuals.
 pub(crate) fn derivatives_at(
     shooting: &Shooting<'_>,
     at: &Estimate,
@@ -73,7 +73,7 @@ pub(crate) fn derivatives_at(
     linearised(shooting, &at.theta, &at.initial_states, level(shooting, at))
 }
 
-/// The cost at these unknowns and initial states.
+/// Evaluates the cost at these unknowns and initial states.
 pub fn evaluated(
     shooting: &Shooting<'_>,
     prior: &InitialStatePrior,
@@ -85,7 +85,7 @@ pub fn evaluated(
     totalled(shooting, prior, theta, initial_states, squares)
 }
 
-/// The sum of squares of a window; infinite where its motion cannot be followed.
+/// Returns the sum of squares of a window; infinite if the simulation failed.
 pub(crate) fn square(residual: &Option<Residual>) -> f64 {
     residual.as_ref().map_or(f64::INFINITY, Residual::square)
 }
@@ -125,7 +125,7 @@ fn totalled(
     }
 }
 
-/// The unknowns a part of a change further, as far as that is admissible.
+/// Returns the unknowns after a fraction of a change, within the bounds.
 pub(crate) fn moved_unknowns(
     shooting: &Shooting<'_>,
     present: &Estimate,
@@ -142,7 +142,7 @@ pub(crate) fn moved_unknowns(
         .collect()
 }
 
-/// The windows' derivatives once their initial states are free.
+/// Eliminates the initial states from the derivatives of the windows.
 pub(crate) fn reduced_blocks(
     prior: &InitialStatePrior,
     present: &Estimate,
@@ -171,7 +171,7 @@ fn step(
     step_with(shooting, prior, present, linear, |next| next)
 }
 
-/// Returns the next estimate after a correction, if there is one that is better.
+/// Returns the next estimate after a correction, if it has a lower cost.
 pub(crate) fn step_with(
     shooting: &Shooting<'_>,
     prior: &InitialStatePrior,
@@ -196,7 +196,7 @@ pub(crate) fn step_with(
     None
 }
 
-/// The bounded least-squares step of the unknowns.
+/// Returns the bounded least-squares step of the unknowns.
 pub(crate) fn change_of_unknowns(
     shooting: &Shooting<'_>,
     present: &Estimate,
@@ -226,7 +226,8 @@ pub(crate) fn change_of_unknowns(
     least_squares(&a, &b, &bounds)
 }
 
-/// The estimate at new unknowns: each window's initial state follows as far as it helps.
+/// Returns the estimate at new unknowns. Each window takes the step of its initial state that
+/// decreases its cost most.
 pub(crate) fn followed(
     shooting: &Shooting<'_>,
     prior: &InitialStatePrior,
@@ -283,8 +284,8 @@ pub(crate) fn followed(
     totalled(shooting, prior, theta, initial_states, squares)
 }
 
-/// Corrects the initial states after a long step of the unknowns: by steps with the derivatives where that
-/// step began and the residuals where it ended, for each window as long as that helps.
+/// Corrects the initial states after a long step of the unknowns, with the derivatives at its start
+/// and the residuals at its end, for each window until its cost stops decreasing.
 pub(crate) fn with_states_corrected(
     shooting: &Shooting<'_>,
     prior: &InitialStatePrior,
@@ -380,9 +381,8 @@ fn some_squares(
     parts.into_iter().flatten().collect()
 }
 
-/// One window's initial state, the unknowns held, by damped steps over a growing part of the
-/// window: a short motion is nearly linear in its initial state, a long one is folded by
-/// impacts.
+/// Fits the initial state of one window at fixed unknowns by damped steps over a growing part of
+/// the window. A short motion is nearly linear in its initial state; impacts fold a long one.
 pub fn inner_solve(
     sensitivities: &mut SensitivityEvaluator<'_>,
     prior: &InitialStatePrior,

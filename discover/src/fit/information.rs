@@ -1,4 +1,4 @@
-//! What a set of windows tells of the unknowns: a factor of their information matrix.
+//! Information of a set of windows on the unknowns: a factor of the information matrix.
 
 use nalgebra::DMatrix;
 
@@ -12,8 +12,8 @@ use crate::ids::WindowId;
 use crate::model::problem::EstimationProblem;
 use crate::thresholds;
 
-/// A triangular R with R'R the information of the windows and of the unknowns' priors, initial states
-/// free: a change d of the unknowns adds |R d|^2 squared standard deviations.
+/// Returns a triangular R with R'R the information of windows and priors of the unknowns, initial
+/// states free. A change d of the unknowns adds |R d|^2 squared standard deviations to the cost.
 pub(crate) fn information_factor(
     shooting: &Shooting<'_>,
     prior: &InitialStatePrior,
@@ -29,7 +29,7 @@ pub(crate) fn information_factor(
     triangular_factor(&record_factor(count, prior, initial_states, linear), &rows)
 }
 
-/// The same of the windows alone, for so many unknowns.
+/// Returns the same factor without the priors of the unknowns, of which there are `count`.
 pub(crate) fn record_factor(
     count: usize,
     prior: &InitialStatePrior,
@@ -46,7 +46,8 @@ pub(crate) fn record_factor(
     factor.view((0, 0), (count, count)).into_owned()
 }
 
-/// The same of a fit's training windows, as far as its misfit lets them be trusted.
+/// Returns the information factor of the training windows of a fit, reduced according to its
+/// misfit.
 pub fn information_of(problem: &EstimationProblem<'_>, fit: &Fit) -> DMatrix<f64> {
     let shooting = Shooting {
         prior_weight: fit.prior_weight,

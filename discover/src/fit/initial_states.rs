@@ -1,5 +1,5 @@
-//! Where the windows' initial states come from: followed through the record from window to
-//! window, or read from a record smoothed without delay.
+//! Initial states of the windows: estimated along the record from window to window, or read from a
+//! record smoothed without delay.
 
 use crate::ids::{WindowId, WindowRange};
 use rayon::prelude::*;
@@ -17,7 +17,7 @@ use crate::thresholds;
 use eomgen_records::dataset::{Channel, Initial, Quantity};
 use eomgen_records::windows::{Window, Windows};
 
-/// Initial states of all windows at these unknowns.
+/// Estimates the initial states of all windows at these unknowns.
 pub fn at_unknowns(
     problem: &EstimationProblem<'_>,
     shooting: &Shooting<'_>,
@@ -49,10 +49,11 @@ pub fn at_unknowns(
     Ok(followed(shooting, theta, known, horizons, before))
 }
 
-/// Initial states of all windows at these unknowns, found as they are in a fit.
+/// Estimates the initial states of all windows at these unknowns with the procedure of a fit.
 ///
 /// # Errors
-/// If they are to be read from the record and no channel shows a coordinate.
+///
+/// The initial states must be read from the record and no channel measures a coordinate.
 pub fn best(
     problem: &EstimationProblem<'_>,
     shooting: &Shooting<'_>,
@@ -86,7 +87,8 @@ pub fn best(
     Ok(best.collect())
 }
 
-/// Initial states that follow unknowns, by so many horizons.
+/// Returns a function that estimates initial states for given unknowns, with this number of
+/// horizons.
 pub fn following<'f>(
     problem: &'f EstimationProblem<'f>,
     shooting: &'f Shooting<'f>,
@@ -99,7 +101,7 @@ pub fn following<'f>(
     })
 }
 
-/// One standard deviation of what is known of each state from the window before.
+/// Returns the standard deviation of the prior of each state from the preceding window.
 pub fn spread(ranges: &[f64]) -> Vec<f64> {
     ranges
         .iter()
@@ -107,8 +109,8 @@ pub fn spread(ranges: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// Initial states that are known as well as what one window carries to the next; nothing is known where
-/// they are read from the record and not estimated.
+/// Returns the prior of these initial states with the standard deviation of a carried state. It is
+/// infinitely wide if initial states are read from the record and not estimated.
 pub fn known_as(
     problem: &EstimationProblem<'_>,
     states: &[Vec<f64>],
@@ -193,8 +195,8 @@ fn followed(
     }
 }
 
-/// Where each window's motion from these initial states leaves the next window that follows
-/// it; nothing for the first windows of records.
+/// Returns the end state of each window's preceding window; `None` for the first windows of
+/// records.
 pub fn carried(
     shooting: &Shooting<'_>,
     theta: &[f64],
@@ -313,8 +315,8 @@ fn read_smoothed(
     Ok(initial_states)
 }
 
-/// Takes for known of each window what the motion of the one before carries there: it holds at these
-/// unknowns, not at others.
+/// Sets the prior mean of each window to the end state of the preceding window, which is valid at
+/// these unknowns only.
 pub(crate) fn carry(
     shooting: &Shooting<'_>,
     prior: &mut InitialStatePrior,

@@ -1,5 +1,5 @@
-//! A fit linearised over beginnings of windows, or whole ones: what candidates and forces do to
-//! first order is set beside this.
+//! Linearisation of a fit over the beginnings of windows, or over whole windows. The first-order
+//! responses of candidates and forces are compared with it.
 
 use crate::fit::fitted::Fit;
 use crate::fit::gauss_newton::{Estimate, evaluated, level};
@@ -12,37 +12,37 @@ use crate::ids::WindowId;
 use crate::model::problem::EstimationProblem;
 use crate::thresholds;
 
-/// A window at the fit: residual, derivatives by state and by unknowns.
+/// Residual and derivatives of each window at the fit.
 pub type Base = Vec<Option<StateProjection>>;
 
-/// Where candidates are linearised: beginnings of windows, over which a motion is nearly linear
-/// in whatever changes it, with initial states that suit these parts.
+/// Linearisation point of candidates: beginnings of windows, in which the motion is nearly linear
+/// in the unknowns, with initial states fitted to these parts.
 pub struct LinearisedFit {
-    /// The part of each window that is linearised.
+    /// Fraction of each window.
     pub part: f64,
     /// The windows.
     pub windows: Vec<WindowId>,
-    /// The estimate there.
+    /// Estimate for these parts.
     pub estimate: Estimate,
     /// Residuals and derivatives.
     pub base: Base,
-    /// The size of the residuals, in standard deviations.
+    /// Size of the residuals, in standard deviations.
     pub level: f64,
 }
 
-/// A linearised fit with what it was made of.
+/// A linearised fit with its problem.
 #[derive(Clone, Copy)]
 pub struct Linearisation<'a> {
-    /// The residuals' derivatives.
+    /// Derivatives of the residuals.
     pub at: &'a LinearisedFit,
-    /// What all fits share.
+    /// Problem of all fits.
     pub problem: &'a EstimationProblem<'a>,
     /// The fit.
     pub fit: &'a Fit,
 }
 
 impl LinearisedFit {
-    /// The beginnings of the windows at a fit, so much of each.
+    /// Linearises a fit over a fraction of each window.
     pub fn of(problem: &EstimationProblem<'_>, fit: &Fit, part: f64) -> Self {
         let (prior, estimate) = beginnings(problem, fit, part);
         let whole = fit.shooting(problem);
@@ -69,7 +69,7 @@ impl LinearisedFit {
         }
     }
 
-    /// Every other window where there are many.
+    /// Keeps every other window if there are many.
     pub fn with_few_windows(&self) -> Self {
         let every = self.windows.len().div_ceil(thresholds::FEW_WINDOWS).max(1);
         let windows = self.windows.iter().step_by(every).copied();

@@ -1,10 +1,10 @@
-//! A specification fitted to records by multiple shooting: residuals of windows ([`shooting`]),
-//! how they depend on initial states and unknowns ([`sensitivity`]), initial states eliminated
-//! ([`variable_projection`]), steps ([`gauss_newton`] with [`bounded_least_squares`],
-//! [`continuation`] from far away, `whole_motions` where unknowns share a direction),
-//! [`initial_states`]; a [`preliminary`] fit and a [`full`] one, the `uncertainty` of what is
-//! estimated, the [`residuals`] that are left, the [`mod@noise_floor`] that a right model would leave,
-//! and the [`contradiction`]s among records, each fitted [`alone`].
+//! Fits of a specification to records by multiple shooting: residuals of windows ([`shooting`]),
+//! their derivatives ([`sensitivity`]), elimination of initial states ([`variable_projection`]),
+//! steps ([`gauss_newton`] with [`bounded_least_squares`], [`continuation`] for distant start
+//! values, `whole_motions` for collinear unknowns), [`initial_states`], a [`preliminary`] and a
+//! [`full`] fit, the `uncertainty` of the estimates, the remaining [`residuals`], the
+//! [`mod@noise_floor`] of a correct model, and [`contradiction`]s between records that are fitted
+//! [`alone`].
 
 pub(crate) mod acceleration_differences;
 pub mod alone;

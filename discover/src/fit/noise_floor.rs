@@ -1,7 +1,7 @@
-//! The noise floor: what residuals a right model would leave. A replica of the records (a
-//! parametric bootstrap: Efron 1979), simulated by the fitted model with the sensors' noise, goes
-//! the same way as the records themselves, so that noise, what a motion's own sensitivity makes of
-//! it, and what finding initial states costs are all in it.
+//! Noise floor: residuals of a correct model. A replica of the records (parametric bootstrap: Efron
+//! 1979), simulated by the fitted model with the noise of the sensors, is processed like the
+//! records. The floor so includes noise, its amplification by the motion, and the error of the
+//! initial states.
 
 use crate::fit::fitted::Fit;
 use crate::fit::gauss_newton::evaluated;
@@ -15,16 +15,16 @@ use eomgen_records::windows::Windows;
 use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
-/// What a right model would leave.
+/// Residuals of a correct model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NoiseFloor {
-    /// The root mean square of each channel, SI.
+    /// RMS of each channel, SI.
     pub channels: Vec<f64>,
-    /// The root mean square of all, in standard deviations.
+    /// RMS of all channels, in standard deviations.
     pub rms: f64,
 }
 
-/// The floor at a fit; `seed` draws the noise.
+/// Computes the noise floor of a fit. `seed`: seed of the noise.
 pub fn noise_floor(problem: &EstimationProblem<'_>, fit: &Fit, seed: u64) -> NoiseFloor {
     let noise_alone = NoiseFloor {
         channels: problem.noise.clone(),

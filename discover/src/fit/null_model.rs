@@ -1,4 +1,4 @@
-//! The null model: the specification with its declared unknowns alone, fitted.
+//! Null model: the specification fitted with its declared unknowns only.
 
 use crate::error::{DiscoverError, Unfollowed};
 use crate::fit::fitted::Fit;
@@ -9,10 +9,11 @@ use crate::model::problem::EstimationProblem;
 use crate::model::specification_texts::SpecificationTexts;
 use crate::model::unknowns::{Unknown, What, of_null_model};
 
-/// Fits the model with its declared unknowns alone.
+/// Fits the model with its declared unknowns only.
 ///
 /// # Errors
-/// Why no motion can be followed, or where it cannot.
+///
+/// The windows and the reason if the motion cannot be simulated.
 pub fn null_fit(problem: &EstimationProblem<'_>, text: &str) -> Result<Fit, DiscoverError> {
     let model = problem.model(text, None)?;
     let values: Vec<(String, f64)> = model

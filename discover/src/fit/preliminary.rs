@@ -1,5 +1,4 @@
-//! Fits before they are made in full: to the beginnings of windows, or as a straight line promises
-//! them.
+//! Preliminary fits: to the beginnings of windows, or by a linear prediction.
 
 use crate::error::DiscoverError;
 use crate::fit::continuation::continuation;
@@ -14,15 +13,16 @@ use crate::model::specification_texts::SpecificationTexts;
 use crate::model::unknowns::Unknown;
 use crate::thresholds;
 
-/// A specification fitted to the beginnings of the windows.
+/// Specification fitted to the beginnings of the windows.
 pub struct PreliminaryFit {
-    /// The cost there, in standard deviations, with what priors add.
+    /// Cost, in squared standard deviations, with the priors.
     pub cost: f64,
-    /// What is known of the initial states of whole windows, where they begin there already.
+    /// Prior of the initial states of whole windows, if the fit uses these already.
     pub(crate) whole: Option<InitialStatePrior>,
-    /// What leaves more standard deviations than this of whole windows is not worth following them anew.
+    /// Residual RMS of whole windows, in standard deviations, above which the initial states are
+    /// not estimated again.
     pub(crate) most: f64,
-    /// Whether further steps over beginnings of windows would help little.
+    /// Whether further steps over the beginnings of windows would decrease the cost only slightly.
     pub(crate) is_converged: bool,
     pub(crate) texts: SpecificationTexts,
     pub(crate) model: EstimationModel,
@@ -32,24 +32,25 @@ pub struct PreliminaryFit {
     pub(crate) initial_states: Vec<Vec<f64>>,
 }
 
-/// A fit whose motions another begins with.
+/// Fit whose motions are the start of another fit.
 #[derive(Clone, Copy)]
 pub struct WarmStart<'f> {
     /// The fit.
     pub fit: &'f Fit,
-    /// The cost that the other is expected to come to, in squared standard deviations.
+    /// Expected cost of the other fit, in squared standard deviations.
     pub cost: f64,
-    /// Where the other leaves more standard deviations than this of the training records, its windows are not
-    /// followed anew: it is not worth that.
+    /// Residual RMS of the training records, in standard deviations, above which the other fit does
+    /// not estimate the initial states again.
     pub most: f64,
 }
 
-/// Fits the model's unknowns to the beginnings of the windows, which tells good ones from
-/// bad ones at a part of the cost. `texts`: the specification's, and its linear part's;
-/// `guesses`: unknowns to begin with, of which the best is taken.
+/// Fits the unknowns to the beginnings of the windows, which separates good from bad candidates at
+/// a fraction of the cost. `texts`: texts of the specification and of its linear part; `guesses`:
+/// start values, of which the best is used.
 ///
 /// # Errors
-/// As for [`crate::fit::full::fit`].
+///
+/// As [`crate::fit::full::fit`].
 pub fn preliminary(
     problem: &EstimationProblem<'_>,
     texts: SpecificationTexts,
@@ -105,12 +106,13 @@ pub fn preliminary(
     })
 }
 
-/// The model's unknowns as they are expected, with whole windows started where those of a fit
-/// begin: close to a fit a straight line says enough. `guesses`: unknowns to begin with, at least one;
-/// the first is taken that is not hopeless beside the fit, or else what leaves least.
+/// Starts a fit from the initial states of another fit, whose linearisation predicts the unknowns.
+/// `guesses`: at least one set of start values; the first that is acceptable relative to the other
+/// fit is used, otherwise the one with the lowest cost.
 ///
 /// # Errors
-/// As for [`crate::fit::full::fit`].
+///
+/// As [`crate::fit::full::fit`].
 pub fn expected(
     problem: &EstimationProblem<'_>,
     texts: SpecificationTexts,

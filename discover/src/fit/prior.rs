@@ -1,36 +1,36 @@
-//! What is known of the windows' initial states before their samples are looked at.
+//! Priors of the initial states of windows.
 
 use crate::ids::WindowId;
 use crate::thresholds;
 use nalgebra::{DMatrix, DVector};
 
-/// Where that comes from.
+/// Source of the mean of a prior.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// From the dataset: where the machine was at the beginning of the record.
+    /// The dataset: the known state at the beginning of the record.
     Stated,
-    /// From the window before, whose motion ends there.
+    /// The end state of the preceding window.
     Carried,
-    /// From the first samples of a record, as far as these show it: it is known to about the range of
-    /// each state.
+    /// The first samples of a record. States that they do not show are known to about their range.
     Measured,
 }
 
-/// What is known before of each window's initial state: mean and standard deviation.
+/// Prior of the initial state of each window: mean and standard deviation.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct InitialStatePrior {
-    /// One state per window.
+    /// Mean of each window.
     pub mean: Vec<Vec<f64>>,
-    /// One standard deviation per state, where the mean is stated or carried.
+    /// Standard deviation of each state, if the mean is from the dataset or the preceding window.
     pub sd: Vec<f64>,
-    /// Where each mean comes from; all are carried where nothing stands here.
+    /// Source of each mean. If empty, all means are from the preceding window.
     pub sources: Vec<Source>,
-    /// Rows that bring measured initial states to unit variance, if the covariance of the states is known.
+    /// Rows that transform measured initial states to unit variance, if the covariance of the
+    /// states is known.
     pub whitening: Option<DMatrix<f64>>,
 }
 
 impl InitialStatePrior {
-    /// What it adds to the cost of a window that begins so.
+    /// Returns the cost of an initial state of a window.
     pub fn cost(&self, window: WindowId, start: &[f64]) -> f64 {
         let Some(mean) = self.mean.get(window.index()) else {
             return 0.0;
@@ -40,8 +40,7 @@ impl InitialStatePrior {
         (self.rows(window) * deviation).norm_squared()
     }
 
-    /// Rows of the least-squares problem of a window's initial state: a deviation from the mean times these
-    /// is in standard deviations.
+    /// Returns the rows that transform the deviation from the mean to standard deviations.
     pub fn rows(&self, window: WindowId) -> DMatrix<f64> {
         let source = self.sources.get(window.index());
         match (&self.whitening, source) {
@@ -50,7 +49,7 @@ impl InitialStatePrior {
         }
     }
 
-    /// Rows that damp a step of an initial state.
+    /// Returns the rows that damp a step of an initial state.
     pub fn damping_rows(&self) -> DMatrix<f64> {
         match &self.whitening {
             Some(rows) => rows / thresholds::INITIAL_STATE_PRIOR,
@@ -58,8 +57,8 @@ impl InitialStatePrior {
         }
     }
 
-    /// The same with nothing carried from window to window: what a motion at these unknowns carries does
-    /// not hold at others, and would say more of them than records do.
+    /// Returns the prior without means from preceding windows. They are valid at the present
+    /// unknowns only and would add information that the records do not contain.
     pub fn without_carried(&self) -> Self {
         let unknown = |source: &Source| match source {
             Source::Stated => Source::Stated,
@@ -71,7 +70,7 @@ impl InitialStatePrior {
         }
     }
 
-    /// One standard deviation of each state of a window.
+    /// Returns the standard deviation of each state of a window.
     pub fn sd_in(&self, window: WindowId) -> impl Iterator<Item = f64> {
         let source = self.sources.get(window.index());
         let times = match source.unwrap_or(&Source::Carried) {
@@ -88,11 +87,11 @@ fn reciprocals(sds: impl Iterator<Item = f64>) -> DMatrix<f64> {
     DMatrix::from_diagonal(&DVector::from_vec(weights))
 }
 
-/// Initial states of windows, and what was known of them before.
+/// Initial states of windows and their prior.
 #[derive(Clone, Debug, Default)]
 pub struct InitialStates {
-    /// What was known.
+    /// The prior.
     pub prior: InitialStatePrior,
-    /// One state per window.
+    /// State of each window.
     pub states: Vec<Vec<f64>>,
 }

@@ -1,4 +1,4 @@
-//! The spectrum of a fit's residuals, and what stands out of it.
+//! Spectrum of the residuals of a fit and its peaks.
 
 use eomgen_analysis::spectrum::{PowerSpectrum, Trend, welch};
 
@@ -13,17 +13,17 @@ use eomgen_records::windows::{Window, judged};
 /// The fewest samples of a window that has a spectrum.
 const FEWEST: usize = 16;
 
-/// What a spectrum shows.
+/// Peak of a spectrum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SpectralPeak {
-    /// A line at this frequency, Hz.
+    /// Line at this frequency, Hz.
     At(f64),
-    /// Most of it is slower than a few periods per window.
+    /// Most of the power is below a few periods per window.
     Slow,
 }
 
-/// The frequency at which the residual of the channel that shows most of it is largest, Hz; none if no
-/// frequency stands out.
+/// Returns the peak frequency of the residual of the channel with the largest residual, Hz; `None`
+/// if there is no peak.
 pub fn peak_frequency(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<f64> {
     let sizes = &fit.train.normalised_rms;
     let worst = ChannelId::first(sizes.len()).max_by(|a, b| sizes[*a].total_cmp(&sizes[*b]))?;
@@ -33,7 +33,7 @@ pub fn peak_frequency(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<f64>
     }
 }
 
-/// What stands out of the spectrum of a channel's residuals on the training records.
+/// Returns the spectral peak of the residuals of a channel on the training records.
 pub fn training_peak(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
@@ -49,9 +49,9 @@ pub fn training_peak(
     peak(&spectrum, count)
 }
 
-/// The spectrum of a channel's residuals, and over how many windows it is a mean. Every window begins from a
-/// state of its own: its straight line is removed and its ends are tapered, so that neither its beginning nor
-/// its length shows. Windows shorter than the longest are left out.
+/// Returns the spectrum of the residuals of a channel and the number of averaged windows. Each
+/// window starts from its own state, so its linear trend is removed and its ends are tapered.
+/// Windows shorter than the longest are ignored.
 pub fn residual_spectrum(
     windows: &[(&Window, &[f64])],
     channel: usize,

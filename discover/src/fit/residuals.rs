@@ -1,5 +1,5 @@
-//! What an estimate leaves on a set of records: per channel, per block of time, and over how many
-//! samples it hangs together.
+//! Residuals of an estimate on a set of records: per channel, per block of time, and their
+//! correlation.
 
 use crate::fit::gauss_newton::Estimate;
 use crate::fit::shooting::Shooting;
@@ -7,30 +7,30 @@ use crate::ids::WindowId;
 use crate::thresholds;
 use eomgen_records::windows::{Window, judged};
 
-/// The residuals of one set of records.
+/// Residuals of a set of records.
 #[derive(Clone, Debug, Default)]
 pub struct Residuals {
     /// Initial states, unknowns and sums of squares.
     pub estimate: Estimate,
     /// Residuals of each window, in standard deviations.
     pub residuals: Vec<Vec<f64>>,
-    /// For each block of time the sum of squares.
+    /// Sum of squares of each block of time.
     pub blocks: Vec<f64>,
-    /// The root mean square of each channel, SI.
+    /// RMS of each channel, SI.
     pub channels: Vec<f64>,
-    /// The same in standard deviations.
+    /// RMS of each channel, in standard deviations.
     pub normalised_rms: Vec<f64>,
-    /// The root mean square of all, in standard deviations.
+    /// RMS of all channels, in standard deviations.
     pub rms: f64,
-    /// How many samples a residual is correlated over.
+    /// Number of samples over which a residual is correlated.
     pub correlation: f64,
-    /// The windows in which the motion cannot be followed; the others alone are in all this.
+    /// Windows whose simulation failed. The other fields contain the remaining windows only.
     pub unfollowed: Vec<WindowId>,
 }
 
 impl Residuals {
-    /// The same, infinite where the motion cannot be followed in some window: what remains there is
-    /// not known, and the other windows do not stand for it.
+    /// Returns the residuals, with infinite values if the simulation of a window failed, because
+    /// the other windows do not represent it.
     pub fn whole(mut self) -> Self {
         if !self.unfollowed.is_empty() {
             self.rms = f64::INFINITY;
@@ -42,15 +42,15 @@ impl Residuals {
 }
 
 impl Residuals {
-    /// Variance of estimates, as a multiple of that under white noise of one standard deviation: at least 1, plus
-    /// what the residuals' own variance adds because they are correlated. Residuals far below the noise add
-    /// nothing: their correlation is that of rounding.
+    /// Returns the variance of estimates relative to white noise of one standard deviation. It is
+    /// at least 1, plus the variance of the residuals due to their correlation. Residuals far below
+    /// the noise add nothing: their correlation is due to rounding.
     pub(crate) fn inflation(&self) -> f64 {
         let variance = self.rms * self.rms;
         variance.max(1.0) + (self.correlation - 1.0) * variance
     }
 
-    /// What an estimate leaves.
+    /// Computes the residuals of an estimate.
     pub fn of(shooting: &Shooting<'_>, estimate: Estimate) -> Self {
         let channels = shooting.channels();
         let residuals = shooting.residuals(&estimate.theta, &estimate.initial_states);
@@ -90,8 +90,8 @@ impl Residuals {
     }
 }
 
-/// One channel's residuals at the samples of a window, in standard deviations; NaN at samples that are not
-/// compared, or missing, and if the motion cannot be followed.
+/// Returns the residuals of one channel at the samples of a window, in standard deviations; NaN at
+/// samples that are missing or not compared, and if the simulation failed.
 pub(crate) fn residual_column(
     window: &Window,
     residual: &[f64],
@@ -121,8 +121,9 @@ fn blocks(residuals: &[Vec<f64>]) -> Vec<f64> {
     residuals.iter().flat_map(of_window).collect()
 }
 
-/// The samples over which a residual is correlated: one plus twice the sum of its positive
-/// autocorrelations, up to the first that is not, for the channel where it is longest.
+/// Returns the number of samples over which a residual is correlated: one plus twice the sum of its
+/// autocorrelations up to the first that is not positive, for the channel with the longest
+/// correlation.
 pub(crate) fn correlation(residuals: &[Vec<f64>], channels: usize) -> f64 {
     let of_channel = |channel: usize| {
         let columns: Vec<Vec<f64>> = residuals

@@ -1,6 +1,5 @@
-//! How windows' outputs depend on their initial states and on the unknowns: by neighbouring motions
-//! that come along where the model is run by the exponential integrator, otherwise by difference
-//! quotients.
+//! Derivatives of the outputs of windows by initial states and unknowns: by tangent vectors if the
+//! exponential integrator is used, otherwise by difference quotients.
 
 use crate::ids::WindowId;
 use eomgen_codegen::program::evaluator::Evaluator;
@@ -16,21 +15,21 @@ use crate::thresholds;
 use eomgen_records::windows::Window;
 use eomgen_sim::exponential::MovedParameters;
 
-/// A window's residuals and derivatives.
+/// Residuals of a window and their derivatives.
 #[derive(Clone)]
 pub struct WindowDerivatives {
-    /// Simulated minus measured, in standard deviations: row by row, a number per channel; 0 where
-    /// nothing was measured.
+    /// Simulated minus measured, in standard deviations: a row per sample, a number per channel; 0
+    /// for missing measurements.
     pub residual: DVector<f64>,
-    /// By the initial state.
+    /// Derivatives by the initial state.
     pub by_state: DMatrix<f64>,
-    /// By the unknowns.
+    /// Derivatives by the unknowns.
     pub by_unknown: DMatrix<f64>,
-    /// The state at the window's end.
+    /// State at the end of the window.
     pub last: Vec<f64>,
 }
 
-/// The model at the unknowns and at neighbouring values of each parameter.
+/// The model at the unknowns and at changed values of each parameter.
 pub struct SensitivityEvaluator<'a> {
     shooting: Shooting<'a>,
     base: Simulation<'a>,
@@ -61,12 +60,12 @@ enum Neighbour<'a> {
 }
 
 impl<'a> SensitivityEvaluator<'a> {
-    /// A state moved to where the model lives.
+    /// Moves a state into the domain of the model.
     pub fn admissible(&self, state: Vec<f64>) -> Vec<f64> {
         self.shooting.model.admissible(state)
     }
 
-    /// The evaluator at these unknowns, if there is a motion.
+    /// Creates the evaluator at these unknowns; `None` if the model cannot be simulated.
     pub fn new(shooting: &Shooting<'a>, theta: &[f64], level: f64) -> Option<Self> {
         let values = shooting.values(theta);
         let mut base = shooting.model.simulation(&values).ok()?;
@@ -106,7 +105,7 @@ impl<'a> SensitivityEvaluator<'a> {
         })
     }
 
-    /// The evaluator at these unknowns, which are not differentiated by.
+    /// Creates the evaluator at these unknowns without derivatives by them.
     pub fn frozen(shooting: &Shooting<'a>, theta: &[f64], level: f64) -> Option<Self> {
         let values = shooting.values(theta);
         Some(Self {
@@ -119,12 +118,12 @@ impl<'a> SensitivityEvaluator<'a> {
         })
     }
 
-    /// From here on only this part of a window is compared, from its beginning.
+    /// Compares only this fraction of each window, from its beginning.
     pub fn truncate(&mut self, part: f64) {
         self.shooting.part = part;
     }
 
-    /// The state that a window's motion reaches at a time, s.
+    /// Returns the state of the motion of a window at a time, s.
     pub fn carried(&mut self, window: WindowId, start: &[f64], until: f64) -> Option<Vec<f64>> {
         let samples = &self.shooting.windows.list[window];
         let inputs = self.shooting.windows.inputs(samples);
@@ -135,13 +134,13 @@ impl<'a> SensitivityEvaluator<'a> {
         states.into_iter().next_back()
     }
 
-    /// A window's residuals alone.
+    /// Computes the residuals of a window.
     pub fn residual(&mut self, window: WindowId, start: &[f64]) -> Option<Residual> {
         let shooting = self.shooting;
         shooting.residual(&mut self.base, &self.sensors, window, start)
     }
 
-    /// A window's residuals and derivatives.
+    /// Computes the residuals and derivatives of a window.
     pub fn linear(&mut self, window: WindowId, start: &[f64]) -> Option<WindowDerivatives> {
         let found = match self.base.carries_tangents() {
             true => self.by_tangents(window, start)?,
@@ -222,8 +221,8 @@ impl<'a> SensitivityEvaluator<'a> {
         })
     }
 
-    /// What drives do to a window's residuals, a column for each; none if neighbouring motions
-    /// do not come along.
+    /// Returns the response of the residuals of a window to each drive, one column per drive;
+    /// `None` if tangent vectors are not available.
     pub(crate) fn drive_response(
         &mut self,
         window: WindowId,
@@ -384,8 +383,8 @@ impl<'a> SensitivityEvaluator<'a> {
     }
 }
 
-/// Residuals and derivatives of every window. `level`: the size of the residuals, in
-/// standard deviations, over which quotients are taken.
+/// Computes the residuals and derivatives of all windows. `level`: size of the residuals, in
+/// standard deviations, for difference quotients.
 pub fn linearised(
     shooting: &Shooting<'_>,
     theta: &[f64],

@@ -1,7 +1,5 @@
-//! Multiple shooting (Bock 1983): what the windows' outputs are at a state for each and at the
-//! unknowns, and how far they are from what was measured, in standard deviations of the sensors'
-//! noise. How they depend on both is found in [`crate::fit::sensitivity`]; what to make of it is
-//! decided elsewhere.
+//! Multiple shooting (Bock 1983): residuals of the windows at their initial states and at the
+//! unknowns, in standard deviations of the noise. Derivatives are in [`crate::fit::sensitivity`].
 
 use crate::ids::{ChannelId, WindowId, WindowRange};
 use rayon::prelude::*;
@@ -13,60 +11,60 @@ use crate::model::simulation::Simulation;
 use crate::model::unknowns::{Unknown, What, expected_input_delay};
 use eomgen_records::windows::{LONGEST_DELAY, LONGEST_LEAD, Window, Windows, judged};
 
-/// The sensors' part of the unknowns.
+/// Unknowns of the sensors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sensors {
-    /// One gain per channel.
+    /// Gain of each channel.
     pub gain: Vec<f64>,
-    /// One bias per channel, SI.
+    /// Bias of each channel, SI.
     pub bias: Vec<f64>,
-    /// One delay per channel, s.
+    /// Delay of each channel, s.
     pub delay: Vec<f64>,
 }
 
-/// Windows to be explained by a model.
+/// Windows and the model that is fitted to them.
 #[derive(Clone, Copy)]
 pub struct Shooting<'a> {
     /// The model.
     pub model: &'a EstimationModel,
     /// The windows.
     pub windows: &'a Windows<'a>,
-    /// The noise of each channel, SI.
+    /// Noise of each channel, SI.
     pub noise: &'a [f64],
     /// The unknowns.
     pub unknowns: &'a [Unknown],
-    /// The delay of the input where it is not estimated, s.
+    /// Delay of the inputs if it is not estimated, s.
     pub input_delay: f64,
-    /// The range of each state, where initial states are estimated.
+    /// Range of each state, if initial states are estimated.
     pub ranges: Option<&'a [f64]>,
-    /// How often quantities are computed from sample to sample.
+    /// Number of computed outputs per sample interval.
     pub output_rate: OutputRate,
-    /// The part of each window that is compared, from its beginning.
+    /// Compared fraction of each window, from its beginning.
     pub part: f64,
-    /// How much the unknowns' priors count against the residuals: the square of the misfit that
-    /// noise does not explain, times the samples over which it is correlated. A misfit says
-    /// nothing of a sensor beyond its own size.
+    /// Weight of the priors of the unknowns against the residuals: the squared ratio of the misfit
+    /// to the noise, times the number of correlated samples. A misfit contains no information on a
+    /// sensor beyond its own size.
     pub prior_weight: f64,
 }
 
-/// A window's residuals.
+/// Residuals of a window.
 pub struct Residual {
-    /// Simulated minus measured, in standard deviations: row by row, a number per channel; 0 where
-    /// nothing was measured.
+    /// Simulated minus measured, in standard deviations: a row per sample, a number per channel; 0
+    /// for missing measurements.
     pub values: Vec<f64>,
-    /// The state at the window's end.
+    /// State at the end of the window.
     pub last: Vec<f64>,
 }
 
 impl Residual {
-    /// The sum of squares.
+    /// Returns the sum of squares.
     pub fn square(&self) -> f64 {
         self.values.iter().map(|r| r * r).sum()
     }
 }
 
 impl<'a> Shooting<'a> {
-    /// Windows to be explained by a model.
+    /// Combines windows and a model.
     pub fn new(
         problem: &'a EstimationProblem<'a>,
         model: &'a EstimationModel,
@@ -87,12 +85,12 @@ impl<'a> Shooting<'a> {
         }
     }
 
-    /// How many channels there are.
+    /// Returns the number of channels.
     pub fn channels(&self) -> usize {
         self.noise.len()
     }
 
-    /// The model's parameters at these unknowns.
+    /// Returns the parameters of the model at these unknowns.
     pub fn values(&self, theta: &[f64]) -> Vec<f64> {
         let mut values = self.model.values.clone();
         for (unknown, value) in self.unknowns.iter().zip(theta) {
@@ -105,7 +103,7 @@ impl<'a> Shooting<'a> {
         values
     }
 
-    /// The sensors at these unknowns.
+    /// Returns the sensor values at these unknowns.
     pub fn sensors(&self, theta: &[f64]) -> Sensors {
         // What is expected of a sensor holds until it is estimated.
         let expected = || self.model.sensors.iter();
@@ -143,8 +141,8 @@ impl<'a> Shooting<'a> {
         sensors
     }
 
-    /// The residuals of every window from these initial states; none where a motion cannot be
-    /// followed.
+    /// Computes the residuals of all windows from these initial states; `None` for a failed
+    /// simulation.
     pub fn residuals(&self, theta: &[f64], initial_states: &[Vec<f64>]) -> Vec<Option<Residual>> {
         let (values, sensors) = (self.values(theta), self.sensors(theta));
         self.by_threads(|windows| {
@@ -160,7 +158,7 @@ impl<'a> Shooting<'a> {
         })
     }
 
-    /// One window's residuals.
+    /// Computes the residuals of one window.
     pub fn residual(
         &self,
         simulation: &mut Simulation<'_>,
@@ -180,13 +178,13 @@ impl<'a> Shooting<'a> {
         })
     }
 
-    /// When the quantities of a window, as far as it is compared, are computed.
+    /// Returns the output times of the compared part of a window.
     pub fn output_times<'w>(&self, window: &'w Window) -> OutputTimes<'w> {
         let samples = samples_in(window, self.part);
         self.output_rate.times(&window.times[..samples])
     }
 
-    /// What the sensors show of a window's quantities, a row per sample.
+    /// Returns the sensor outputs for the quantities of a window, a row per sample.
     pub fn seen(&self, times: &OutputTimes<'_>, sensors: &Sensors, quantities: &[f64]) -> Vec<f64> {
         let channels = self.channels();
         let samples = times.samples();
@@ -214,12 +212,13 @@ impl<'a> Shooting<'a> {
         seen
     }
 
-    /// Differences from what was measured, in standard deviations.
+    /// Returns the differences from the measurements, in standard deviations.
     pub(crate) fn normalised(&self, window: &Window, seen: &[f64]) -> Vec<f64> {
         self.differences(window, seen, |seen, measured| seen - measured)
     }
 
-    /// A function of what is seen and measured, in standard deviations; 0 where nothing counts.
+    /// Applies a function to sensor outputs and measurements, in standard deviations; 0 for samples
+    /// that are not compared.
     pub(crate) fn differences(
         &self,
         window: &Window,
@@ -241,8 +240,7 @@ impl<'a> Shooting<'a> {
             .collect()
     }
 
-    /// Shares the windows out to the threads, neighbours together, and puts the answers in
-    /// order.
+    /// Distributes consecutive windows over the threads and returns the results in order.
     pub(crate) fn by_threads<T: Send>(
         &self,
         work: impl Fn(WindowRange) -> Vec<T> + Send + Sync,
@@ -260,7 +258,7 @@ impl<'a> Shooting<'a> {
     }
 }
 
-/// How many samples a part of a window holds.
+/// Returns the number of samples in a fraction of a window.
 pub(crate) fn samples_in(window: &Window, part: f64) -> usize {
     let count = window.times.len();
     ((part * count as f64) as usize).clamp(count.min(8), count)

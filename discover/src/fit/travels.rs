@@ -1,4 +1,4 @@
-//! How far expressions of a model go along a fit's motions.
+//! Ranges of expressions of a model along the motions of a fit.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,8 +14,8 @@ use crate::model::estimation_model::EstimationModel;
 use crate::model::problem::EstimationProblem;
 use crate::thresholds;
 
-/// The smallest and the largest value of each expression along the training windows of a fit, SI;
-/// nothing of what cannot be followed.
+/// Returns the smallest and largest value of each expression along the training windows of a fit,
+/// SI, without windows whose simulation failed.
 pub fn travels(
     problem: &EstimationProblem<'_>,
     fit: &Fit,

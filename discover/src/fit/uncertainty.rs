@@ -1,4 +1,5 @@
-//! How well unknowns are known at an estimate, were the residuals white noise of one standard deviation.
+//! Uncertainty of unknowns at an estimate, for residuals that are white noise of one standard
+//! deviation.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -8,17 +9,18 @@ use crate::fit::prior::InitialStatePrior;
 use crate::fit::sensitivity::WindowDerivatives;
 use crate::fit::shooting::Shooting;
 
-/// One standard deviation of an unknown, in two parts. Both are infinite where nothing tells it.
+/// Standard deviation of an unknown in two parts. Both are infinite if the unknown is not
+/// observable.
 #[derive(Clone, Copy)]
 pub(crate) struct Uncertainty {
-    /// What noise in the records makes of it.
+    /// Part due to noise in the records.
     pub by_noise: f64,
-    /// What the priors of the unknowns make of it: nuisances may be off by as much as they say.
+    /// Part due to the priors of the unknowns, within which nuisances may vary.
     pub by_priors: f64,
 }
 
 impl Uncertainty {
-    /// Both parts, where noise makes `wider` times as much.
+    /// Returns the total standard deviation with the part due to noise multiplied by `wider`.
     pub fn sd(self, wider: f64) -> f64 {
         (wider * self.by_noise).hypot(self.by_priors)
     }
@@ -32,7 +34,8 @@ impl Uncertainty {
     }
 }
 
-/// The uncertainty of each unknown: the largest by several approximations of the windows' derivatives.
+/// Returns the uncertainty of each unknown: the largest over several approximations of the
+/// derivatives.
 pub(crate) fn uncertainties(
     shooting: &Shooting<'_>,
     prior: &InitialStatePrior,

@@ -1,6 +1,6 @@
-//! A window's derivatives with its initial state projected out, by a QR factorisation (variable
-//! projection: Golub and Pereyra, SIAM J. Numer. Anal. 10, 1973): what remains
-//! depends on the unknowns alone.
+//! Elimination of the initial state from the derivatives of a window by a QR factorisation
+//! (variable projection: Golub and Pereyra, SIAM J. Numer. Anal. 10, 1973). The result depends on
+//! the unknowns only.
 
 use crate::ids::{UnknownId, WindowId};
 use nalgebra::{DMatrix, DVector};
@@ -10,12 +10,16 @@ use crate::fit::sensitivity::WindowDerivatives;
 
 /// A window with its initial state eliminated.
 pub struct ReducedBlock {
-    /// R of the QR factorisation of [by state | by unknowns | residual], priors included.
+    /// R of the QR factorisation of [by state
+    ///
+    /// by unknowns
+    ///
+    /// residual], with the priors.
     pub factor: DMatrix<f64>,
     states: usize,
 }
 
-/// Eliminates a window's initial state.
+/// Eliminates the initial state of a window.
 pub fn reduced_block(
     linear: &WindowDerivatives,
     prior: &InitialStatePrior,
@@ -58,7 +62,7 @@ pub fn reduced_block(
 }
 
 impl ReducedBlock {
-    /// What the unknowns and the residual look like once the initial state is free.
+    /// Returns the columns of unknowns and residual after the elimination.
     pub fn unknowns(&self) -> DMatrix<f64> {
         let remaining = self.factor.ncols() - self.states;
         self.factor
@@ -66,8 +70,8 @@ impl ReducedBlock {
             .into_owned()
     }
 
-    /// The initial state's step for a step of the unknowns, damped in every state by so many
-    /// of its prior's weights.
+    /// Returns the step of the initial state for a step of the unknowns, with a damping in weights
+    /// of its prior.
     pub fn initial_state_step(
         &self,
         unknowns: &DVector<f64>,
@@ -91,12 +95,13 @@ impl ReducedBlock {
     }
 }
 
-/// A window's derivatives with the means to take its initial state out of any column.
+/// Derivatives of a window with the factorisation that eliminates the initial state from any
+/// column.
 #[derive(Clone)]
 pub struct StateProjection {
     /// The residual.
     pub residual: DVector<f64>,
-    /// By the unknowns.
+    /// Derivatives by the unknowns.
     pub by_unknown: DMatrix<f64>,
     /// By the initial state, with the priors' rows below.
     by_state: DMatrix<f64>,
@@ -105,7 +110,7 @@ pub struct StateProjection {
 }
 
 impl StateProjection {
-    /// Takes a window's derivatives.
+    /// Factorises the derivatives of a window.
     pub fn new(
         linear: &WindowDerivatives,
         prior: &InitialStatePrior,
@@ -136,7 +141,7 @@ impl StateProjection {
         }
     }
 
-    /// Products of columns, the residual last, with the initial state free.
+    /// Returns the products of columns, the residual last, after the elimination.
     pub fn products(&self, columns: &DMatrix<f64>) -> DMatrix<f64> {
         let (rows, count) = columns.shape();
         let states = self.by_state.ncols();
@@ -153,7 +158,7 @@ impl StateProjection {
         whole - along.transpose() * along
     }
 
-    /// A residual with the initial state free: what it cannot do away with.
+    /// Returns the part of a residual that the initial state cannot remove.
     pub fn projected(&self, residual: &DVector<f64>) -> DVector<f64> {
         let (rows, states) = (residual.len(), self.by_state.ncols());
         if states == 0 {
@@ -167,7 +172,7 @@ impl StateProjection {
     }
 }
 
-/// The triangular factor of two blocks of rows.
+/// Returns the triangular factor of two stacked blocks of rows.
 pub fn triangular_factor(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<f64> {
     let columns = a.ncols();
     let mut both = DMatrix::zeros((a.nrows() + b.nrows()).max(columns), columns);
@@ -176,17 +181,17 @@ pub fn triangular_factor(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<f64> {
     both.qr().r()
 }
 
-/// What the prior of a nuisance adds to products of columns.
+/// Contribution of the prior of a nuisance to products of columns.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct PriorTerm {
-    /// One over its variance, as much as priors count.
+    /// One over the variance, times the weight of the priors.
     pub weight: f64,
-    /// How far the nuisance is from its mean, SI.
+    /// Deviation of the nuisance from its mean, SI.
     pub deviation: f64,
 }
 
-/// Adds a prior, or takes it away where its weight is negative, to the products of a nuisance
-/// with itself and with the residual, which stands last.
+/// Adds a prior, or subtracts it if its weight is negative, to the products of a nuisance with
+/// itself and with the residual, which is the last column.
 pub(crate) fn add_prior(products: &mut DMatrix<f64>, nuisance: UnknownId, prior: PriorTerm) {
     let PriorTerm { weight, deviation } = prior;
     let (row, last) = (nuisance.index(), products.ncols() - 1);

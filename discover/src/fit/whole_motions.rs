@@ -1,6 +1,7 @@
-//! The last steps of a fit, to the minimum of the cost with a wide prior of the initial states. Derivatives
-//! are exact if the model is linear between switches. For other models central differences of whole motions
-//! are used if the records hardly determine one direction of the unknowns.
+//! Final steps of a fit to the minimum of the cost with a wide prior of the initial states.
+//! Derivatives are exact if the model is linear between switches. For other models central
+//! differences of whole motions are used if the records hardly determine one direction of the
+//! unknowns.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -34,8 +35,9 @@ fn is_ill_conditioned(
         && DMatrix::from_columns(&columns).singular_values().min() < thresholds::TANGENT_ERROR
 }
 
-/// Returns rows that bring a state's deviation from its mean along the windows' motions to unit covariance:
-/// the ends of a stiff spring move together, so they start together.
+/// Returns rows that transform the deviation of a state from its mean along the motions of the
+/// windows to unit covariance. The ends of a stiff spring move together, and so must their initial
+/// states.
 pub(crate) fn whitening(shooting: &Shooting<'_>, estimate: &Estimate) -> Option<DMatrix<f64>> {
     let ranges = shooting.ranges?;
     let mut simulation = shooting
@@ -67,7 +69,7 @@ pub(crate) fn whitening(shooting: &Shooting<'_>, estimate: &Estimate) -> Option<
     ))
 }
 
-/// Takes the last steps of a fit; returns the estimate and the derivatives there.
+/// Takes the final steps of a fit; returns the estimate and the derivatives there.
 pub(crate) fn settled(
     shooting: &Shooting<'_>,
     prior: &mut InitialStatePrior,
