@@ -26,9 +26,7 @@ pub fn follow(instance: &Instance<'_>, request: &Request<'_>) -> Result<Motion> 
         ));
     }
     if let Some(Choice::Stiff(reason)) = &motion.choice {
-        warn(&format!(
-            "note: solved by radau, because the motion is {reason}"
-        ));
+        warn(&format!("note: solved by radau, because {reason}"));
     }
     note_moved("initial state", &motion.moved);
     Ok(motion)

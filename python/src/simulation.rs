@@ -158,12 +158,12 @@ fn followed(
 /// Why a solver was taken.
 fn in_words(choice: &Choice) -> String {
     match choice {
-        Choice::PiecewiseLinear => "the model is linear between its switches".to_owned(),
-        Choice::NotLinear(term) => format!("the model is not linear between its switches: {term}"),
+        Choice::PiecewiseLinear => "the model is piecewise linear".to_owned(),
+        Choice::NotLinear(term) => format!("the model is not piecewise linear: {term}"),
         Choice::NotFollowed(reason) => {
             format!("the exact solver does not follow this motion: {reason}")
         }
-        Choice::Stiff(reason) => format!("the motion is {reason}"),
+        Choice::Stiff(reason) => reason.clone(),
     }
 }
 

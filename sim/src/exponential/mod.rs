@@ -1,16 +1,19 @@
-//! An exponential integrator with location of switches: the motion of a model that is linear
-//! between its switching surfaces, but for small terms, in steps of one length.
+//! Exponential integrator with event location, for models that are piecewise linear except for
+//! small terms, at a fixed step.
 //!
-//! A step takes the linear part exactly, by a matrix made once for each regime; terms that are
-//! not linear are held over it and corrected at its end (the exponential method of Heun, of
-//! second order). Where a surface is crossed within a step, the crossing is found by the cubic
-//! through both ends and the step is made in parts. What a propagator from switch to switch
-//! does to rounding this does to a small part of any sensor's noise, several times faster, and
-//! neighbouring motions come with it. The files: `types`, `kernels` (products),
-//! `surfaces`, `regime` and `regime_rates` (matrices of a step), `parameter_derivatives`, `crossing` (where a step meets a surface), `parts`
-//! (steps through surfaces), `release` (when a surface no longer holds the motion), `remainder` and `remainder_at` (what is not linear), `tangents`, `slopes`
-//! and `differences` (what these feel of that). The method: Hochbruck and Ostermann, Exponential
-//! integrators, Acta Numerica 19 (2010).
+//! A step propagates the linear part exactly with a matrix that is computed once per regime.
+//! Nonlinear terms are constant over the step and corrected at its end (exponential Heun method,
+//! order 2; Hochbruck and Ostermann, *Exponential integrators*, Acta Numerica 19 (2010)). The
+//! cubic through both ends of a step locates crossings of surfaces; such a step is made in parts.
+//! The error is a small fraction of the noise of any sensor. The method is several times faster
+//! than exact propagation and carries tangent vectors. The files:
+//!
+//! | task | files |
+//! | --- | --- |
+//! | matrices of a step | `regime`, `regime_rates`, `parameter_derivatives`, `kernels` |
+//! | surfaces and events | `surfaces`, `crossing`, `parts`, `release` |
+//! | nonlinear terms | `remainder`, `remainder_at` |
+//! | tangent vectors | `tangents`, `slopes`, `differences` |
 
 mod crossing;
 mod differences;
@@ -60,11 +63,11 @@ const MOST_STEPS: f64 = 256.0;
 const JITTER: f64 = 1e-4;
 
 impl ExponentialIntegrator {
-    /// An integrator of a model at its parameters, for samples so far apart, s, in so many times the
-    /// steps that its linear part needs.
+    /// Prepares a model at its parameters, for samples with the distance `sample` (s).
+    /// `refinement` multiplies the number of steps that the linear part needs.
     ///
     /// # Errors
-    /// A model that is not of a kind that can be integrated, or moves too fast beside the samples.
+    /// An unsupported model, or a motion that is too fast for the samples.
     pub fn new(
         mut evaluator: AffineEvaluator,
         sample: f64,
@@ -102,14 +105,15 @@ impl ExponentialIntegrator {
         })
     }
 
-    /// Takes the typical sizes of the states, 1 without them: differences by states at rest at 0 follow them.
+    /// Sets the typical sizes of the states, 1 by default. They scale finite differences for
+    /// states near 0.
     pub fn with_typical_sizes(mut self, sizes: &[f64]) -> Self {
         self.typical_sizes = sizes.to_vec();
         self
     }
 
-    /// Differentiates by parameters: for each of them values to one side of `own`, the parameters of the
-    /// evaluator, or to both.
+    /// Adds tangent vectors of parameters. For each parameter, `moved` has values on one or both
+    /// sides of `own`, the parameters of the evaluator.
     pub fn differentiate_by(&mut self, own: &[f64], moved: Vec<Vec<MovedParameters>>) {
         self.regimes.clear();
         self.known.clear();
@@ -118,13 +122,13 @@ impl ExponentialIntegrator {
         self.moved = moved;
     }
 
-    /// Gives up motions that cross more surfaces: one that friction holds without a regime of its own
-    /// crosses back and forth in every step, which takes a hundred times as long.
+    /// Limits the number of surface crossings of a motion. Friction that sticks in an unsupported
+    /// way crosses its surface in every step, which takes a hundred times as long.
     pub fn limit_crossings(&mut self, most: usize) {
         self.most_crossings = most;
     }
 
-    /// Degrees of freedom of the model.
+    /// Returns the degrees of freedom of the model.
     pub fn degrees_of_freedom(&self) -> usize {
         self.degrees
     }
@@ -134,11 +138,11 @@ impl ExponentialIntegrator {
         self.states - self.degrees
     }
 
-    /// Runs from `initial` at the first of the samples (s, ascending) to the last; `show` is
-    /// given each sample's place, the state there and the neighbouring motions.
+    /// Simulates from `initial` at the first sample (s, ascending) to the last. Calls `show` with
+    /// the index of each sample, the state and the tangent vectors.
     ///
     /// # Errors
-    /// Why the motion cannot be followed, in words.
+    /// A message if the motion cannot be simulated.
     pub fn run(
         &mut self,
         initial: &[f64],
@@ -166,7 +170,7 @@ impl ExponentialIntegrator {
                 motion.t = until;
             }
             if motion.state.iter().any(|x| !x.is_finite()) {
-                return Err("the motion grows beyond all bounds".to_owned());
+                return Err("the state diverged".to_owned());
             }
             show(place, &motion.state, options.tangents.as_deref());
         }
@@ -238,7 +242,7 @@ impl ExponentialIntegrator {
     /// The regime with these sides.
     fn regime(&mut self, sides: &[Side]) -> Result<usize, String> {
         self.known_regime(sides)
-            .ok_or_else(|| "a regime cannot be prepared".to_owned())
+            .ok_or_else(|| "the matrices of a regime are not finite, or a surface holds the motion in an unsupported way".to_owned())
     }
 
     fn known_regime(&mut self, sides: &[Side]) -> Option<usize> {

@@ -13,12 +13,12 @@ use crate::balancing::scaled;
 /// below this.
 const SERIES_NORM: f64 = 0.5;
 
-/// Independent parameters (SI, in the order of the model's program) at which one of them differs.
+/// Independent parameters (SI, in the order of the model's program) with one changed value.
 #[derive(Clone, Debug)]
 pub struct MovedParameters {
-    /// All values.
+    /// Values of all parameters.
     pub values: Vec<f64>,
-    /// The difference of the one, SI.
+    /// Change of that parameter, SI.
     pub change: f64,
 }
 

@@ -87,7 +87,7 @@ impl ExponentialIntegrator {
             }
             self.crossings += 1;
             if self.crossings > self.most_crossings {
-                return Err("surfaces are crossed too often".to_owned());
+                return Err("events follow each other too fast".to_owned());
             }
             if rest <= 0.0 {
                 self.prepare(motion);

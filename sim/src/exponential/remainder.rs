@@ -4,14 +4,13 @@
 use super::regime::Regime;
 use super::surfaces::{Row, Surfaces};
 
-/// What a model adds to its linear part.
+/// Terms that a model adds to its piecewise-linear part.
 pub trait Force {
-    /// Writes the accelerations that they add at a state, each part of the model on the sides
-    /// of its own surfaces.
+    /// Writes the added accelerations at a state; each term uses the sides of its own surfaces.
     fn at(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut [f64]);
 
-    /// Writes the value of each of the linear part's guards in the whole model; false where
-    /// that is the linear part's anywhere.
+    /// Writes the value of each guard of the piecewise-linear part in the whole model. Returns
+    /// false if all are always those of the piecewise-linear part.
     fn at_guards(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut Vec<f64>) -> bool;
 }
 

@@ -17,14 +17,14 @@ const DRIVEN_STEPS: usize = 2;
 /// A neighbouring motion through a part of a step is right to this part of its size.
 const PART_ERROR: f64 = 1e-9;
 
-/// Differences of accelerations that drive neighbouring motions.
+/// Differences of accelerations that drive tangent vectors.
 pub trait Drives {
-    /// For each driven vector the difference of each acceleration at a state, one after the
+    /// Writes the difference of each acceleration at a state, for one driven vector after the
     /// other.
     fn at(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut [f64]);
 }
 
-/// Nothing is driven.
+/// No driven tangent vectors.
 pub struct Free;
 
 impl Drives for Free {
@@ -41,18 +41,18 @@ pub(super) struct Reached<'r> {
     pub rate: f64,
 }
 
-/// Tangent vectors that go along.
+/// Selection of tangent vectors.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Directions {
-    /// Tangent vectors of all initial states.
+    /// Whether to include the tangent vectors of all initial states.
     pub by_state: bool,
-    /// The number of parameters by which the integrator differentiates, from the first.
+    /// Number of parameters with a tangent vector, from the first.
     pub by_parameter: usize,
-    /// The number of tangent vectors that accelerations drive.
+    /// Number of tangent vectors driven by accelerations.
     pub driven: usize,
 }
 
-/// Tangent vectors: those of the initial state first, then those of parameters, then the driven ones.
+/// Tangent vectors of the initial state, then of parameters, then driven ones.
 pub struct Tangents<'d> {
     states: usize,
     degrees: usize,
@@ -60,9 +60,9 @@ pub struct Tangents<'d> {
     free: usize,
     by_parameter: usize,
     driven: usize,
-    /// Numbers from one vector to the next.
+    /// Number of entries from one vector to the next.
     pub stride: usize,
-    /// The vectors.
+    /// Entries of all vectors.
     pub vectors: Vec<f64>,
     next: Vec<f64>,
     /// The state of the motion at the time of the vectors, and a later one.

@@ -1,4 +1,4 @@
-//! The integrator, where a motion stands, and what goes along with it.
+//! Types of the exponential integrator.
 
 use std::collections::HashMap;
 
@@ -10,7 +10,7 @@ use super::remainder::{Force, RegimeDifference, Remainder};
 use super::surfaces::{Side, Surfaces};
 use super::tangents::Tangents;
 
-/// A model at fixed parameters, ready to be integrated.
+/// Integrator of a model at fixed parameters.
 pub struct ExponentialIntegrator {
     pub(super) evaluator: AffineEvaluator,
     pub(super) surfaces: Surfaces,
@@ -36,12 +36,12 @@ pub struct ExponentialIntegrator {
     pub(super) moved: Vec<Vec<MovedParameters>>,
 }
 
-/// Why a model is not integrated in steps of one length.
+/// Reason why the fixed-step integrator does not support a model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NotIntegrated {
-    /// It is not of that kind.
+    /// Unsupported terms, or invalid parameters.
     Kind,
-    /// So many steps from sample to sample would be needed.
+    /// Too many steps between two samples; the number required.
     Steps(f64),
 }
 
@@ -65,13 +65,13 @@ pub(super) struct Motion {
     pub(super) change: Vec<f64>,
 }
 
-/// Who goes along.
+/// Optional additions to a simulation.
 pub struct Options<'c, 'd> {
-    /// What adds accelerations to the linear ones.
+    /// Accelerations that are added to those of the linear part.
     pub force: Option<&'c mut dyn Force>,
-    /// Neighbouring motions.
+    /// Tangent vectors.
     pub tangents: Option<&'c mut Tangents<'d>>,
 }
 
-/// Who is shown the samples: each one's place, the state there and the neighbouring motions.
+/// Callback for each sample: its index, the state and the tangent vectors.
 pub type Show<'s> = dyn FnMut(usize, &[f64], Option<&Tangents<'_>>) + 's;

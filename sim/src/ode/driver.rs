@@ -33,14 +33,11 @@ const MANY: usize = 2;
 /// In a step that is this short beside the time, times inside are rounding.
 const SHORTEST_SEEN: f64 = 1e-12;
 
-/// Simulates `system` from `initial` over `span` (begin, end; s) and returns the states
-/// at `samples` (s, ascending, inside the span). `progress` is called with the time
-/// after every step.
+/// Simulates `system` from `initial` over `span` (begin, end; s) and returns the states at
+/// `samples` (s, ascending, inside the span). Calls `progress` with the time after every step.
 ///
 /// # Errors
-///
-/// If the request makes no sense, a rate is not finite, or a limit of `settings` is
-/// reached; see [`SolveError`].
+/// An invalid request, a rate that is not finite, or a limit of `settings`; see [`SolveError`].
 pub fn simulate<S: System + ?Sized>(
     system: &S,
     initial: &[f64],
@@ -55,12 +52,11 @@ pub fn simulate<S: System + ?Sized>(
     Ok(trajectory)
 }
 
-/// The same, with the initial state, the span and the samples in one; `trajectory`, which is
-/// empty before, holds all that was found, also where the solver had to stop.
+/// Simulates like [`simulate`] into an empty `trajectory`, which keeps all results up to an error.
+/// The request is the initial state, the span and the samples.
 ///
 /// # Errors
-///
-/// As for [`simulate`].
+/// Same as [`simulate`].
 pub fn simulate_into<S: System + ?Sized>(
     trajectory: &mut Trajectory,
     system: &S,

@@ -1,85 +1,85 @@
-//! Why a simulation could not be finished.
+//! Errors of a simulation.
 
 use std::fmt;
 
 use super::names::Names;
 
-/// What is said where the mass matrix is not positive definite.
-pub const NOT_POSITIVE: &str =
-    "the mass matrix is not positive definite: a mass, inertia or length is zero or negative";
+/// Message for a mass matrix that is not positive definite.
+pub const NOT_POSITIVE: &str = "the mass matrix is not positive definite: check for a mass, inertia or length that is zero or negative";
 
-/// Why a simulation could not be finished; times in s.
+/// Reason why a simulation stopped; times in s.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SolveError {
-    /// The request makes no sense.
+    /// The request is invalid.
     Request {
-        /// What is wrong with it and what would be right.
+        /// Cause and cure.
         problem: String,
     },
-    /// A rate is infinite or not a number there, or after the shortest step from there.
+    /// A rate is not finite at this time, or after the shortest step from it.
     NotFinite {
-        /// When.
+        /// Time, s.
         t: f64,
-        /// The index of the state variable.
+        /// Index of the state.
         state: usize,
     },
-    /// The mass matrix is not positive definite, or the motion leads to where it is not.
+    /// The mass matrix is not positive definite on the motion.
     NotPositiveDefinite {
-        /// When.
+        /// Time, s.
         t: f64,
-        /// The index of the coordinate whose inertia, given those before it, is not positive.
+        /// Index of the coordinate whose pivot, after elimination of those before it, is not
+        /// positive.
         coordinate: usize,
     },
-    /// No step is short enough for the tolerance.
+    /// The shortest step exceeds the tolerance.
     StepTooSmall {
-        /// Where the solver stands.
+        /// Time reached, s.
         t: f64,
-        /// The step that was refused, s.
+        /// Length of the rejected step, s.
         step: f64,
-        /// The index of the state variable that changes fastest there, in parts of its size.
+        /// Index of the state that changes fastest relative to its size.
         state: usize,
     },
-    /// The system is stiff: what decays fastest keeps the steps so short that there would be no
-    /// end within the limit on steps.
+    /// The system is stiff: stability keeps the steps so short that the limit on steps would be
+    /// exceeded.
     Stiff {
-        /// Where the solver stands.
+        /// Time reached, s.
         t: f64,
-        /// The index of the state variable that decays fastest.
+        /// Index of the state that decays fastest.
         state: usize,
-        /// How long that takes, s.
+        /// Time of that decay, s.
         within: f64,
-        /// How many more steps there would be.
+        /// Estimated number of further steps.
         steps: f64,
     },
     /// The limit on steps is reached.
     TooManySteps {
-        /// Where the solver stands.
+        /// Time reached, s.
         t: f64,
-        /// The limit.
+        /// Limit on steps.
         steps: u64,
-        /// The index of the state variable that changes fastest there, in parts of its size.
+        /// Index of the state that changes fastest relative to its size.
         state: usize,
     },
-    /// The motion is held on a switching surface: the rates lead onto it from both sides.
+    /// A switching surface holds the motion: the rates on both sides point towards it.
     Caught {
-        /// Where the solver stands.
+        /// Time reached, s.
         t: f64,
-        /// The index of the switching function.
+        /// Index of the switching function.
         guard: usize,
     },
-    /// Switching surfaces are crossed too fast.
+    /// Events follow each other too fast.
     TooManySwitches {
-        /// Where the solver stands.
+        /// Time reached, s.
         t: f64,
-        /// The index of the switching function crossed last.
+        /// Index of the last switching function.
         guard: usize,
-        /// The limit, 1/s.
+        /// Limit, 1/s.
         rate: f64,
     },
 }
 
 impl SolveError {
-    /// Where the solver stands, s; nothing if it has not begun.
+    /// Returns the time reached, s; `None` if the simulation had not started.
     pub fn time(&self) -> Option<f64> {
         match *self {
             Self::Request { .. } => None,
@@ -93,7 +93,7 @@ impl SolveError {
         }
     }
 
-    /// What is wrong, when, with which quantity, and what to do.
+    /// Returns the message with cause, time, place and cure.
     pub fn named(&self, names: &Names<'_>) -> String {
         match self {
             Self::Request { problem } => problem.clone(),
@@ -106,13 +106,13 @@ impl SolveError {
             ),
             Self::NotPositiveDefinite { t, coordinate } => format!(
                 "at t = {t:?} s the mass matrix is not positive definite: the inertia of {} is \
-                 zero or negative there, and no acceleration follows; check what the kinetic \
-                 energy is in that position",
+                 zero or negative, so no acceleration is determined; check the kinetic energy \
+                 in that position",
                 names.state(*coordinate)
             ),
             Self::StepTooSmall { t, step, state } => format!(
-                "at t = {t:?} s no step meets the tolerance (last tried: {step:e} s): {} changes \
-                 too fast there. The state diverges, or its rate is singular; check the \
+                "at t = {t:?} s no step meets the tolerance (last step: {step:e} s), because {} changes \
+                 too fast. The state diverges, or its rate is singular; check the \
                  parameters, loosen the tolerance, or shorten the time",
                 names.state(*state)
             ),
@@ -123,23 +123,23 @@ impl SolveError {
                 steps,
             } => format!(
                 "stopped at t = {t:?} s: the model is stiff. {} settles within {within:.1e} s, \
-                 which keeps the steps of an explicit solver so short that {steps:.1e} more of \
-                 them were needed; take the solver radau, which is implicit, or soften what makes \
-                 it settle (a stiff spring or damper, a smooth friction that is too steep)",
+                 so an explicit solver would need {steps:.1e} more steps; use the implicit solver \
+                 radau, or soften the cause (a stiff spring or damper, or a smooth friction law \
+                 that is too steep)",
                 names.state(*state)
             ),
             Self::TooManySteps { t, steps, state } => format!(
-                "stopped at t = {t:?} s after {steps} steps: {} moves too fast there for so long \
-                 a time; loosen the tolerance or shorten the time",
+                "stopped at t = {t:?} s after {steps} steps: {} moves too fast for such a \
+                 long time; loosen the tolerance or shorten the time",
                 names.state(*state)
             ),
             Self::Caught { t, guard } => format!(
-                "at t = {t:?} s the motion is held where {}: {}",
+                "at t = {t:?} s the motion stays on the switching surface on which {}: {}",
                 names.surface(*guard),
                 names.held(*guard)
             ),
             Self::TooManySwitches { t, guard, rate } => format!(
-                "at t = {t:?} s the motion crosses the place where {} more than {rate:e} times a \
+                "at t = {t:?} s the motion crosses the switching surface on which {} more than {rate:e} times per \
                  second: {}",
                 names.surface(*guard),
                 names.held(*guard)

@@ -1,32 +1,28 @@
-//! A general solver for y' = f(t, y) with switching surfaces.
+//! General solvers for y' = f(t, y) with switching surfaces.
 //!
-//! The pipeline: a [`System`] is evaluated under `watch`, which notices when a trial
-//! leaves the regime the step began in; a `stepper` makes single steps, those of the
-//! Dormand-Prince method of order 8 (`dormand_prince`) or of Adams' method of variable
-//! order (`adams`, of `attempt`s that continue a `history`), or of Radau's implicit method of order 5
-//! for stiff systems (`radau`, each a `collocation`); `crossing` approaches a switching
-//! surface by steps that stay on one side and then steps over it, `grazing` finds what a step
-//! passed over, and `resolution` keeps steps so short that they see what switching functions do; `driver` strings these
-//! together into a [`Trajectory`], with the `passage` over surfaces and the `limits`, `stiffness` being asked whether there will be an end; an
-//! `error` says why there is none, with `names`. A step therefore never averages over a kink or a jump
-//! of the right-hand side, which is what ruins the order of a method applied blindly.
+//! A [`System`] is evaluated under `watch`, which detects a trial state outside the regime in
+//! which the step began. A `stepper` makes single steps: `dormand_prince` (Runge-Kutta, order 8),
+//! `adams` (multistep, variable order; with `attempt` and `history`) or `radau` (implicit, order
+//! 5; with `collocation`). `crossing` approaches a switching surface by steps on one side and then
+//! steps across it. `grazing` finds surfaces that a step passed over, and `resolution` limits
+//! steps so that they resolve the switching functions. `driver` combines these into a
+//! [`Trajectory`], with `passage`, `limits` and `stiffness`. No step averages over a kink or jump
+//! of the right-hand side, which would reduce the order of the method.
 //!
-//! The Runge-Kutta steps come from the crate `differential-equations`. What its interpolation
-//! between steps gives is in version 0.7 of order 4 instead of 7, and `continuous_extension` mends
-//! it: states inside a step have its accuracy and cost no evaluation. The tables of its Verner
-//! methods carry eleven digits.
-//! Its predictor-corrector method is no multistep method of variable step: it replaces
-//! its memory by three Runge-Kutta steps after every step, without control of their
-//! error, so Adams' method is written here.
+//! The Runge-Kutta steps come from the crate `differential-equations`. Its interpolation within
+//! steps has order 4 instead of 7 in version 0.7; `continuous_extension` corrects this without
+//! further evaluations. The coefficients of its Verner methods have only eleven digits. Its
+//! predictor-corrector method restarts from three Runge-Kutta steps after every step, without
+//! error control, so the Adams method is implemented here.
 //!
 //! # Tolerance
 //!
-//! `tolerance` is relative and holds for every component by itself: a step's estimated
-//! error in component i stays below `tolerance` times (|y_i| + the largest |y_i| so
-//! far), in the root-mean-square over the components. Nothing is said about units, so
-//! mesh deflections of micrometres and rotations of several radians get the same number
-//! of digits. Before a component moves, [`UNMOVED_PART`] of its typical size ([`System::typical_sizes`]) counts
-//! as its largest magnitude.
+//! `tolerance` is relative and applies to each component: the estimated error of a step in
+//! component i stays below `tolerance` times (|y_i| + the largest |y_i| up to now), as a root mean
+//! square over the components. It does not depend on units: deflections of micrometres and
+//! rotations of several radians get the same number of digits. Until a component moves,
+//! [`UNMOVED_PART`] of its typical size ([`System::typical_sizes`]) counts as its largest
+//! magnitude.
 
 mod adams;
 mod attempt;

@@ -1,39 +1,39 @@
-//! What the numbers in an error stand for, in the words of the specification.
+//! Names of states and switching functions, for messages.
 
-/// A switching function as people know it.
+/// Name of a switching function.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Surface {
-    /// What changes its sign.
+    /// Formula that changes its sign.
     pub formula: String,
-    /// Whether it is a speed, as that of dry friction is.
+    /// Whether the formula is a speed, as for dry friction.
     pub is_speed: bool,
 }
 
-/// Why a solver does not follow a motion that dry friction holds at rest.
+/// Reason why a solver does not support sticking.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Unfollowed {
-    /// The model does not tell which force holds.
+    /// The model does not determine the force that holds.
     #[default]
     Formula,
-    /// The method of Adams goes on from the steps before.
+    /// The Adams method needs the preceding steps.
     Adams,
     /// The model has impacts.
     Impacts,
 }
 
-/// The names of a system's state variables, coordinates first, and its switching functions.
+/// Names of a system's states, coordinates first, and of its switching functions.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Names<'a> {
-    /// In the order of the state.
+    /// Names of the states, in their order.
     pub states: &'a [String],
-    /// In the order of the switching functions.
+    /// Names of the switching functions, in their order.
     pub surfaces: &'a [Surface],
-    /// Why a motion at rest is not followed.
+    /// Reason why sticking is not supported.
     pub unfollowed: Unfollowed,
 }
 
 impl Names<'_> {
-    /// A state variable, a coordinate or a rate.
+    /// Returns the name of a state.
     pub(crate) fn state(&self, index: usize) -> String {
         match self.states.get(index) {
             Some(name) => format!("`{name}`"),
@@ -41,7 +41,7 @@ impl Names<'_> {
         }
     }
 
-    /// Where a switching function vanishes.
+    /// Returns the condition on a switching surface.
     pub(crate) fn surface(&self, index: usize) -> String {
         match self.surfaces.get(index) {
             Some(surface) => format!("`{}` is zero", surface.formula),
@@ -49,32 +49,33 @@ impl Names<'_> {
         }
     }
 
-    /// What to do where a motion does not leave a surface, as far as it is known what that is.
+    /// Returns reason and cure if a motion does not leave a surface, as far as the surface is
+    /// known.
     pub(crate) fn held(&self, index: usize) -> String {
         match self.surfaces.get(index).map(|surface| surface.is_speed) {
             Some(true) => {
                 let (reason, cure) = match self.unfollowed {
-                    Unfollowed::Adams => ("the solver adams", "take the solver rk, or "),
-                    Unfollowed::Impacts => ("a model with impacts", ""),
+                    Unfollowed::Adams => ("by the solver adams", "use the solver rk, or "),
+                    Unfollowed::Impacts => ("for a model with impacts", ""),
                     Unfollowed::Formula => {
-                        ("a speed that holds piecewise functions or an exponent", "")
+                        ("for a speed with piecewise functions or an exponent", "")
                     }
                 };
                 format!("{STICKS} {reason}; {cure}{SMOOTH}")
             }
             Some(false) => CHATTERS.to_owned(),
-            None => "replace the jump there by a steep smooth function".to_owned(),
+            None => "replace the jump by a steep smooth function".to_owned(),
         }
     }
 }
 
-/// Dry friction and its like.
-const STICKS: &str =
-    "there it sticks, as dry friction holds a body at rest, which is not supported for";
+/// Sticking under dry friction.
+const STICKS: &str = "it sticks, as a body at rest under dry friction, which is not supported";
 
-/// The law to write instead.
-const SMOOTH: &str = "write a smooth law, tanh(v/v_0) with a small speed v_0 in place of sign(v)";
+/// Alternative to dry friction.
+const SMOOTH: &str =
+    "write a smooth law, such as tanh(v/v_0) with a small speed v_0 instead of sign(v)";
 
-/// A force that jumps at a place.
-const CHATTERS: &str = "there it chatters, as the forces on both sides lead back to it. Let what \
-    jumps there grow over a small distance instead, as a stiff spring does";
+/// Chattering at a jump of the force over a position.
+const CHATTERS: &str = "it chatters, because the forces on both sides lead back to it. Replace the \
+    jump by a continuous force over a small distance, such as a stiff spring";

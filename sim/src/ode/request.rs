@@ -1,10 +1,10 @@
-//! Whether what is asked of the solver makes sense.
+//! Checks of a simulation request.
 
 use super::error::SolveError;
 use super::settings::{LOOSEST_TOLERANCE, Settings, TIGHTEST_TOLERANCE};
 use super::system::System;
 
-/// Refuses a request that makes no sense: lengths, order, range, rates at the start.
+/// Rejects an invalid request: lengths, order, ranges, and rates at the start.
 pub fn check<S: System + ?Sized>(
     system: &S,
     initial: &[f64],
@@ -15,19 +15,17 @@ pub fn check<S: System + ?Sized>(
     let refuse = |problem: String| Err(SolveError::Request { problem });
     if initial.is_empty() || initial.len() != system.states() {
         return refuse(format!(
-            "the initial state has {} entries where the system has {}",
+            "the initial state has {} entries, but the system has {} states",
             initial.len(),
             system.states()
         ));
     }
     if let Some(index) = initial.iter().position(|y| !y.is_finite()) {
-        return refuse(format!(
-            "entry {index} of the initial state is not a finite number"
-        ));
+        return refuse(format!("entry {index} of the initial state is not finite"));
     }
     if !(begin.is_finite() && end.is_finite() && begin < end) {
         return refuse(format!(
-            "the end of the simulation, {end} s, must lie after {begin} s"
+            "the end of the simulation, {end} s, must be later than its start, {begin} s"
         ));
     }
     let ascending = samples.windows(2).all(|pair| pair[0] <= pair[1]);
@@ -39,7 +37,7 @@ pub fn check<S: System + ?Sized>(
     }
     if !(TIGHTEST_TOLERANCE..=LOOSEST_TOLERANCE).contains(&settings.tolerance) {
         return refuse(format!(
-            "the tolerance {} must lie between {TIGHTEST_TOLERANCE:e} and {LOOSEST_TOLERANCE}",
+            "the tolerance {} must be between {TIGHTEST_TOLERANCE:e} and {LOOSEST_TOLERANCE}",
             settings.tolerance
         ));
     }
@@ -52,7 +50,7 @@ pub fn check<S: System + ?Sized>(
     check_rates(system, begin, initial)
 }
 
-/// The rates at the start are finite.
+/// Rejects rates at the start that are not finite.
 fn check_rates<S: System + ?Sized>(system: &S, t: f64, y: &[f64]) -> Result<(), SolveError> {
     let mut rates = vec![0.0; system.states()];
     system.rates(t, y, &mut rates);

@@ -1,17 +1,16 @@
-//! One step of the classical Runge-Kutta method. Which steps, and what is made of them, is
-//! decided elsewhere.
+//! The classical Runge-Kutta method of order 4.
 
-/// At each of a step's four slopes the part of the step that has passed.
+/// Time of each of the four slopes, relative to the step.
 const PARTS: [f64; 4] = [0.0, 0.5, 0.5, 1.0];
 
-/// Room for a step of a model with so many states.
+/// Classical Runge-Kutta steps, with reused memory.
 pub struct RungeKutta {
     slopes: [Vec<f64>; 4],
     trial: Vec<f64>,
 }
 
 impl RungeKutta {
-    /// For so many states.
+    /// Allocates memory for a number of states.
     pub fn new(states: usize) -> Self {
         Self {
             slopes: [(); 4].map(|()| vec![0.0; states]),
@@ -19,8 +18,8 @@ impl RungeKutta {
         }
     }
 
-    /// Moves a state on from a time by a length, s. `rates` is given the number of the slope, the
-    /// time and the state there, and writes the rates.
+    /// Advances a state from the time `begin` by the step `h`, s. `rates` receives the index of
+    /// the slope (0 to 3), the time and the state, and writes the rates.
     pub fn step(
         &mut self,
         state: &mut [f64],

@@ -1,58 +1,55 @@
-//! How accurate, and how long to try.
+//! Method, tolerance and limits of a simulation.
 
-/// A component that has not moved yet counts as this part of its typical size.
+/// Size that a component has until it moves, as a fraction of its typical size.
 pub const UNMOVED_PART: f64 = 1e-9;
 
-/// Smallest size of a component over which differences are taken, as a part of its typical size.
+/// Smallest size of a component for finite differences, as a fraction of its typical size.
 const DIFFERENCE_PART: f64 = 1e-3;
 
-/// The step of a forward difference by a component with a value and a typical size.
+/// Returns the step of a forward difference with respect to a component, from its value and
+/// typical size.
 pub fn difference_step(value: f64, typical_size: f64) -> f64 {
     f64::EPSILON.sqrt() * value.abs().max(DIFFERENCE_PART * typical_size)
 }
 
-/// The tightest tolerance: below it rounding hides the error estimate.
+/// Smallest tolerance; below it, rounding dominates the error estimate.
 pub(super) const TIGHTEST_TOLERANCE: f64 = 1e-14;
 
-/// The loosest tolerance that still means something.
+/// Largest tolerance.
 pub(super) const LOOSEST_TOLERANCE: f64 = 1e-1;
 
-/// How to step.
+/// Integration method.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
-    /// Runge-Kutta steps of order 8 by Dormand and Prince.
+    /// Dormand-Prince Runge-Kutta method of order 8.
     #[default]
     DormandPrince853,
-    /// The multistep method of Adams with variable order, which begins anew behind every
-    /// switching surface.
+    /// Adams multistep method of variable order; it restarts after every event.
     Adams,
-    /// Radau's implicit Runge-Kutta steps of order 5, for stiff systems.
+    /// Implicit Radau IIA Runge-Kutta method of order 5, for stiff systems.
     Radau,
 }
 
-/// Method, accuracy and limits of a simulation.
+/// Method, tolerance and limits of a simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// How to step.
+    /// Integration method.
     pub method: Method,
-    /// Relative error of one step, 1e-14 to 0.1; see the module's page.
+    /// Relative error of one step, 1e-14 to 0.1; see the [module](super).
     pub tolerance: f64,
-    /// The longest step, s. Whatever lasts less long, such as a pulse of an input, may fall
-    /// between the evaluations of longer steps and have no effect.
+    /// Longest step, s. Longer steps may miss a shorter effect, such as a pulse of an input.
     pub max_step: f64,
-    /// Give up after this many steps, rejected ones and those towards a switching
-    /// surface included.
+    /// Maximum number of steps, including rejected steps and those towards a switching surface.
     pub max_steps: u64,
-    /// Give up when what decays fastest keeps the steps of an explicit method so short that more
-    /// than this many of them were needed to the end.
+    /// Maximum number of steps of an explicit method on a stiff system. The simulation stops as
+    /// soon as stability would require more.
     pub max_steps_if_stiff: u64,
-    /// Give up when switching surfaces are crossed faster than this, per second of
-    /// simulated time and averaged over a few hundred crossings.
+    /// Maximum number of events per second of simulated time, averaged over a few hundred events.
     pub max_switch_rate: f64,
 }
 
 impl Settings {
-    /// The default limits with `tolerance`.
+    /// Returns the default settings with this tolerance.
     pub fn with_tolerance(tolerance: f64) -> Self {
         Self {
             tolerance,

@@ -1,100 +1,98 @@
-//! What the solver needs to know of a system.
+//! The interface between a system and its solver.
 
 use super::settings::difference_step;
 
-/// A step that a solver has made, for those who observe a motion. Looking at it changes nothing.
+/// An accepted step, for observers. Reading it does not change the motion.
 pub struct ObservedStep<'s> {
-    /// Time (s) and state at its start.
+    /// Time (s) and state at the start.
     pub start: (f64, &'s [f64]),
-    /// Time (s) and state at its end. What jumps at a breakpoint has not jumped yet.
+    /// Time (s) and state at the end, before any jump at a breakpoint.
     pub end: (f64, &'s [f64]),
-    /// The state at a time (s) inside; `None` if it cannot be had.
+    /// Returns the state at a time (s) inside the step; `None` if it is not available.
     pub inside: &'s mut dyn FnMut(f64, Interior) -> Option<Vec<f64>>,
 }
 
-/// How to find a state inside a step.
+/// Method for states inside a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Interior {
-    /// By interpolation, without evaluations of the rates.
+    /// Interpolation, without evaluations of the rates.
     Interpolated,
-    /// By a shorter step from the same start, if that is more accurate.
+    /// A shorter step from the same start, if that is more accurate.
     Resolved,
 }
 
 /// A system y' = f(t, y) whose right-hand side is smooth between switching surfaces.
 pub trait System {
-    /// The number of state variables.
+    /// Returns the number of states.
     fn states(&self) -> usize;
 
     /// Writes y' at time `t` and state `y` to `out`; all have [`System::states`] entries.
     fn rates(&self, t: f64, y: &[f64], out: &mut [f64]);
 
-    /// Typical sizes of the states, in their own units: [`System::states`] entries. Solvers compare states
-    /// near 0 with them.
+    /// Returns the typical sizes of the states, [`System::states`] entries in the units of the
+    /// states. Solvers compare states near 0 with them.
     fn typical_sizes(&self) -> Vec<f64> {
         vec![1.0; self.states()]
     }
 
-    /// Writes the derivatives of the rates by the state at time `t` and state `y` to `out`, row by
-    /// row: entry (i, j), of y_i' by y_j, at `i * states + j`. Implicit methods ask for it. By
-    /// forward differences unless the system knows better.
+    /// Writes the derivatives of the rates with respect to the state at time `t` and state `y` to
+    /// `out`, row-major: dy_i'/dy_j at `i * states + j`. Implicit methods use it. The default
+    /// takes forward differences.
     fn jacobian(&self, t: f64, y: &[f64], out: &mut [f64]) {
         jacobian_by_differences(self, t, y, out);
     }
 
-    /// The number of switching surfaces.
+    /// Returns the number of switching surfaces.
     fn guard_count(&self) -> usize {
         0
     }
 
-    /// Writes the value of each switching function to `out`, which has
-    /// [`System::guard_count`] entries. The right-hand side may have a kink or a jump
-    /// where one of them changes its sign, and nowhere else.
+    /// Writes the value of each switching function to `out`, [`System::guard_count`] entries. The
+    /// right-hand side may have a kink or jump only on a sign change of one of them.
     fn guards(&self, _t: f64, _y: &[f64], _out: &mut [f64]) {}
 
-    /// The first coordinate whose inertia, given those before it, is not positive at time `t`
-    /// and state `y`, if the system knows of one: its index in the state.
+    /// Returns the index of the first coordinate whose pivot in the mass matrix, after elimination
+    /// of those before it, is not positive at time `t` and state `y`; `None` if there is none or
+    /// the system does not check.
     fn indefinite(&self, _t: f64, _y: &[f64]) -> Option<usize> {
         None
     }
 
-    /// Brings the state `y` at time `t` back onto what the motion keeps exactly, such as the
-    /// constraints of a mechanism, from which steps stray by their errors. Returns how many
-    /// evaluations of the rates that took: 0 where there is nothing to keep.
+    /// Projects the state `y` at time `t` onto invariants such as constraints, from which steps
+    /// drift. Returns the number of evaluations of the rates; 0 without invariants.
     fn project(&self, _t: f64, _y: &mut [f64]) -> u64 {
         0
     }
 
-    /// The next time after `t` at which the right-hand side is not smooth in time (the
-    /// next sample of a recorded input, say); no step reaches across it.
+    /// Returns the next time after `t` at which the right-hand side is not smooth in time, for
+    /// example the next sample of an input. No step crosses it.
     fn next_breakpoint(&self, _t: f64) -> Option<f64> {
         None
     }
 
-    /// The motion has gone over a switching surface: `before` (time and state) is on its near
-    /// side, `t` and `y` are just beyond it. Changes in `y` what jumps there, as the distance to a
-    /// neighbouring motion does that is carried beside the motion.
+    /// Changes `y` after an event: `before` (time and state) is on the near side of the switching
+    /// surface, `t` and `y` are just beyond it. Impacts and tangent vectors jump here.
     fn cross(&self, _before: (f64, &[f64]), _t: f64, _y: &mut [f64]) {}
 
-    /// From here on rates go on smoothly over surfaces that may hold a motion, as they are on these sides
-    /// of them: for each switching function -1, 1, or 0 where it is not known. With none they are
-    /// those of the side where a state is, again. A system that does not know how may leave it.
+    /// Fixes the sides of surfaces that may hold a motion, so that the rates continue smoothly
+    /// across them: -1, 1, or 0 (unknown) per switching function. `None` restores the rates of the
+    /// side on which the state is. A system may ignore it.
     fn keep_sides(&self, _sides: Option<&[f64]>) {}
 
-    /// The motion has come to `t` and `y`, and what drives it may jump here. Returns the
-    /// switching functions whose surfaces have caught the motion since this was last asked, or let it
-    /// go, each with whether the motion came from its negative side, or goes to its positive one. Such
-    /// a function need not change its sign.
+    /// Updates sticking at `t` and `y`, where inputs may jump. Returns the switching functions
+    /// whose surfaces began or ceased to hold the motion since the last call. The boolean is true
+    /// if the motion came from the negative side, or leaves to the positive side. The sign of such
+    /// a function need not change.
     fn caught_or_let_go(&self, _t: f64, _y: &[f64]) -> Vec<(usize, bool)> {
         Vec::new()
     }
 
-    /// Whether [`System::observe_step`] is to be called.
+    /// Returns true if the solver must call [`System::observe_step`].
     fn is_observing(&self) -> bool {
         false
     }
 
-    /// Takes note of a step that the solver has accepted.
+    /// Observes an accepted step.
     fn observe_step(&self, _step: &mut ObservedStep<'_>) {}
 }
 
@@ -156,8 +154,7 @@ impl<S: System + ?Sized> System for &S {
     }
 }
 
-/// The derivatives of the rates by the state, as [`System::jacobian`] has them, by forward
-/// differences, each over a part of the state's size.
+/// Computes [`System::jacobian`] by forward differences.
 pub fn jacobian_by_differences<S: System + ?Sized>(system: &S, t: f64, y: &[f64], out: &mut [f64]) {
     let states = y.len();
     let mut base = vec![0.0; states];

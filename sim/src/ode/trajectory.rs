@@ -1,40 +1,40 @@
-//! What a simulation leaves.
+//! Results of a simulation.
 
-/// A switching surface crossed.
+/// An event: the crossing of a switching surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Switch {
-    /// When, s.
+    /// Time, s.
     pub t: f64,
-    /// The index of the switching function.
+    /// Index of the switching function.
     pub guard: usize,
-    /// Whether the function is positive from here on.
+    /// Whether the function is positive after the event.
     pub to_positive: bool,
 }
 
-/// What was done to get there.
+/// Solver statistics.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Work {
-    /// Steps that advanced the solution.
+    /// Number of accepted steps.
     pub steps: u64,
-    /// Steps refused by the error estimate.
+    /// Number of steps rejected by the error estimate.
     pub rejected: u64,
-    /// Trial steps for samples and for the approach to switching surfaces.
+    /// Number of trial steps for samples and for the approach to switching surfaces.
     pub trials: u64,
-    /// Evaluations of the right-hand side.
+    /// Number of evaluations of the right-hand side.
     pub evaluations: u64,
 }
 
-/// States at the times asked for, the switches between them and the work.
+/// States at the samples, events and solver statistics.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Trajectory {
-    /// The times of the samples, s.
+    /// Times of the samples, s.
     pub times: Vec<f64>,
-    /// The state at each of these times.
+    /// State at each sample.
     pub states: Vec<Vec<f64>>,
-    /// The state at the end of the simulated span.
+    /// State at the end of the simulated time.
     pub last: Vec<f64>,
-    /// The switching surfaces crossed, in order.
+    /// Events, in order of time.
     pub switches: Vec<Switch>,
-    /// What was done.
+    /// Solver statistics.
     pub work: Work,
 }

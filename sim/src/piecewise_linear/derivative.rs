@@ -1,4 +1,4 @@
-//! The rates of the state at one state, as the exact solver has them.
+//! Rates at one state, as computed by the exact solver.
 
 use super::clock::Clock;
 use super::dependents::{Asking, Standing};
@@ -7,21 +7,21 @@ use super::parallel_guards::Cell;
 use super::propagator::Propagator;
 use crate::ode::SolveError;
 
-/// Rates of the state with their sizes.
+/// Rates of the state with the sizes of their terms.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rates {
-    /// The rates, one per state.
+    /// Rates, one per state.
     pub values: Vec<f64>,
-    /// The sum of the magnitudes of what each is made of.
+    /// Sum of the magnitudes of the terms of each rate.
     pub sizes: Vec<f64>,
 }
 
 impl Propagator {
-    /// The rates at a time, s, a state and inputs, in the regime that a motion from there
-    /// begins in; on a switching surface, where the sides differ, those of its lower side.
+    /// Returns the rates at a time (s), a state and inputs, in the regime of a motion that starts
+    /// there. On a switching surface these are the rates of the lower side.
     ///
     /// # Errors
-    /// If there are not as many states and inputs as the model has.
+    /// A number of states or inputs that differs from the model's.
     pub fn rates(&mut self, t: f64, state: &[f64], inputs: &[f64]) -> Result<Rates, ExactError> {
         if state.len() != self.states || inputs.len() < self.inputs {
             let problem = format!("expected {} states and {} inputs", self.states, self.inputs);

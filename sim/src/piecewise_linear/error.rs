@@ -1,44 +1,44 @@
-//! Why a motion cannot be propagated exactly.
+//! Errors of exact propagation.
 
 use std::fmt;
 
 use crate::ode::{Names, SolveError};
 
-/// Why a motion cannot be propagated exactly; times in s.
+/// Reason why a motion cannot be propagated exactly; times in s.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ExactError {
-    /// The model is not linear between its switching surfaces.
+    /// The model is not piecewise linear.
     NotLinear {
-        /// The term in the way.
+        /// Term that is not piecewise linear.
         formula: String,
     },
     /// The model has constraints.
     Constrained,
-    /// Rates jump at impacts.
+    /// The model has impacts, at which rates jump.
     Impacts,
-    /// The model itself is at fault.
+    /// The model is invalid.
     Model(String),
-    /// A coefficient is infinite or not a number.
+    /// A coefficient is not finite.
     NotFinite,
     /// The mass matrix is not positive definite.
     NotPositiveDefinite,
     /// A dead zone has a negative half-width.
     NegativeHalfWidth,
-    /// The eigenvalues of a regime could not be found.
+    /// The eigenvalue iteration of a regime did not converge.
     NotConverged,
-    /// The motion is held on a switching surface by rates that are not linear there.
+    /// A surface on which the rates are not linear holds the motion.
     Held {
-        /// When.
+        /// Time, s.
         t: f64,
-        /// The index of the switching function.
+        /// Index of the switching function.
         guard: usize,
     },
-    /// Stopped for a reason that any solver may have.
+    /// A reason that applies to any solver.
     Stopped(SolveError),
 }
 
 impl ExactError {
-    /// Where the motion stands, s, if it had begun.
+    /// Returns the time reached, s; `None` if the simulation had not started.
     pub fn time(&self) -> Option<f64> {
         match self {
             Self::Held { t, .. } => Some(*t),
@@ -47,35 +47,33 @@ impl ExactError {
         }
     }
 
-    /// What is wrong, when, with which quantity, and what to do.
+    /// Returns the message with cause, time, place and cure.
     pub fn named(&self, names: &Names<'_>) -> String {
         match self {
             Self::NotLinear { formula } => format!(
-                "the model is not linear between its switches: `{formula}`; the general solver \
-                 (--solver rk) takes any model"
+                "the model is not piecewise linear, because of `{formula}`; use the general solver \
+                 (--solver rk), which supports any model"
             ),
-            Self::Constrained => {
-                "the model has constraints, which the exact solver does not solve \
-                 for; the general solver (--solver rk) does"
-                    .to_owned()
-            }
-            Self::Impacts => "the model has impacts, at which rates jump, and the exact solver \
-                 does not stop there; the general solver (--solver rk) does"
+            Self::Constrained => "the model has constraints, which the exact solver does not \
+                 support; use the general solver (--solver rk)"
+                .to_owned(),
+            Self::Impacts => "the model has impacts, at which rates jump. The exact solver \
+                 does not support them; use the general solver (--solver rk)"
                 .to_owned(),
             Self::Model(message) => message.clone(),
-            Self::NotFinite => "a coefficient of the equations of motion is infinite or not a \
-                 number: a mass, inertia or length is zero, or a parameter far too large"
+            Self::NotFinite => "a coefficient of the equations of motion is not finite: check \
+                 for a mass, inertia or length of zero, or a parameter that is far too large"
                 .to_owned(),
             Self::NotPositiveDefinite => crate::ode::NOT_POSITIVE.to_owned(),
             Self::NegativeHalfWidth => {
-                "the half-width of a dead zone is negative: expected 0 or more".to_owned()
+                "the half-width of a dead zone is negative; expected 0 or more".to_owned()
             }
-            Self::NotConverged => "the eigenvalues of the equations of motion could not be \
-                 found; the general solver (--solver rk) needs none"
+            Self::NotConverged => "the eigenvalue iteration of the equations of motion did not \
+                 converge; use the general solver (--solver rk), which needs no eigenvalues"
                 .to_owned(),
             Self::Held { t, guard } => format!(
-                "at t = {t:?} s the motion is held where {}, by forces that are not linear \
-                 there; the exact solver knows friction whose level is constant",
+                "at t = {t:?} s the motion sticks on the switching surface on which {}, with forces that are not \
+                 linear there; the exact solver supports sticking with a constant friction level only",
                 names.surface(*guard)
             ),
             Self::Stopped(error) => error.named(names),

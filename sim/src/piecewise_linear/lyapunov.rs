@@ -1,8 +1,8 @@
-//! Lyapunov exponents: how fast neighbouring motions part (Benettin, Galgani, Giorgilli and
-//! Strelcyn 1980), with tangent vectors that are carried exactly.
+//! Lyapunov exponents: the growth of tangent vectors, which are propagated exactly (Benettin,
+//! Galgani, Giorgilli and Strelcyn 1980).
 //!
-//! Coordinates that no rate and no switch feels, such as the angle of a rotation nothing
-//! restrains, have exponents of zero that say nothing; they are left out.
+//! Coordinates on which no rate and no switching function depends, such as an unrestrained
+//! rotation angle, have exponents of zero by construction; they are left out.
 
 use super::error::ExactError;
 use super::flow::Flow;
@@ -11,62 +11,63 @@ use super::tangent::Tangents;
 use crate::inputs::HeldInputs;
 use crate::ode::SolveError;
 
-/// How long and how often the growth of tangent vectors is measured.
+/// Request for Lyapunov exponents.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lyapunov {
-    /// Time before anything is measured, s; tangent vectors turn into place in its second half.
+    /// Time before the first measurement, s. The tangent vectors align in its second half.
     pub transient: f64,
     /// Time between two measurements, s.
     pub interval: f64,
-    /// How many measurements.
+    /// Number of measurements.
     pub intervals: usize,
-    /// How many exponents, the largest first.
+    /// Number of exponents, the largest first.
     pub exponents: usize,
 }
 
-/// The growth of tangent vectors.
+/// Measured growth of tangent vectors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Growth {
     /// Time between two measurements, s.
     pub interval: f64,
-    /// For each exponent the growth ln |v_after| / |v_before| over every interval. Divided by
-    /// the interval their means are the exponents, in 1/s, the largest first.
+    /// Growth exponents ln(|v_after| / |v_before|) of the intervals, for each tangent vector.
+    /// Their means divided by the interval are the Lyapunov exponents, 1/s, the largest first.
     pub growths: Vec<Vec<f64>>,
-    /// The state at the end of every interval.
+    /// State at the end of every interval.
     pub section: Vec<Vec<f64>>,
-    /// Switches over the whole time.
+    /// Number of events over the whole time.
     pub switches: u64,
 }
 
-/// A motion with tangent vectors beside it, to be followed on as long as one likes.
+/// A motion with tangent vectors, which can be continued.
 pub struct Carried {
     motion: Motion,
     frame: Frame,
 }
 
 impl Carried {
-    /// For each tangent vector ln |v_after| / |v_before| over the last stretch.
+    /// Returns ln(|v_after| / |v_before|) of each tangent vector over the last interval.
     pub fn growth(&self) -> &[f64] {
         &self.frame.growth
     }
 
-    /// The state at the end of the last stretch.
+    /// Returns the state at the end of the last interval.
     pub fn state(&self) -> &[f64] {
         self.motion.state()
     }
 
-    /// Switches so far.
+    /// Returns the number of events up to now.
     pub fn switches(&self) -> u64 {
         self.motion.switches()
     }
 }
 
 impl Propagator {
-    /// The motion from `initial` at time `t`, s, on, with one tangent vector. Its length is
-    /// the root of the sum of (weight times entry)^2; what has the weight 0 is left out of it.
+    /// Starts a motion with one tangent vector from `initial` at time `t` (s). The length of the
+    /// vector is the root of the sum of (weight times entry)^2.
     ///
     /// # Errors
-    /// As for [`Propagator::start`], or if not every state has a weight.
+    /// Same as [`Propagator::start`], or a number of weights that differs from the number of
+    /// states.
     pub fn carried(
         &mut self,
         initial: &[f64],
@@ -84,11 +85,10 @@ impl Propagator {
         })
     }
 
-    /// Follows a motion and its tangent vectors on to a time, s; then these are orthonormal
-    /// again.
+    /// Continues a motion and its tangent vectors to a time (s), and orthonormalises the vectors.
     ///
     /// # Errors
-    /// As for [`Propagator::simulate`].
+    /// Same as [`Propagator::simulate`].
     pub fn carry(
         &mut self,
         carried: &mut Carried,
@@ -102,12 +102,11 @@ impl Propagator {
         Ok(())
     }
 
-    /// The growth of neighbouring motions, from `initial` at time `t`, s, on.
-    ///
-    /// At most as many exponents are given as there are states that matter.
+    /// Measures the growth of tangent vectors from `initial` at time `t` (s). The number of
+    /// exponents is limited to the number of states with an influence.
     ///
     /// # Errors
-    /// As for [`Propagator::simulate`], or if the request makes no sense.
+    /// Same as [`Propagator::simulate`], or an invalid request.
     pub fn lyapunov(
         &mut self,
         initial: &[f64],

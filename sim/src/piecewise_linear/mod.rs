@@ -1,22 +1,26 @@
-//! Exact simulation of models that are linear between their switching surfaces.
+//! Exact simulation of piecewise-linear models.
 //!
-//! Within a regime the motion is a sum of exponentials, a polynomial and the response to
-//! constant and sinusoidal forces; it is stepped from switch to switch with no error but
-//! rounding. The pipeline, one file each: [`model`] (what can be propagated), `parallel_guards`
-//! (families of switching surfaces), `sliding` (motion held on them), `schur`, `blocks`,
-//! `clustering`, `invariant`, `refine` and `decomposition` (a regime's matrix by parts that move
-//! by themselves),
-//! `modes`, `integrals`, `regime`, `event_function` and `step_table` (prepared for stepping), `simd_vectors`
-//! and `kernels` (numbers side by side), `forced` (forced polynomials), `flow`, `event_evaluation` and
-//! `cluster_flow` (the motion in a regime), `bounds` and `search` (the next switch, which
-//! cannot be missed), `clock` (with `error_free`), `visited` and `adjacent` (which regimes there are, and which border on each other),
-//! `outline`, `coincidence`, `dependents` and `transition` (surfaces that feel the sides of others),
-//! `standing_on` (several at once), `switching`, `departure` (from a surface that held the motion), [`propagator`] (from switch to
-//! switch),
-//! `follow` (to a time, with samples), `simulate`; for neighbouring motions `saltation`,
-//! `tangent`, [`neighbours`] and [`lyapunov`].
+//! Within a regime the motion is a sum of exponentials, a polynomial and the response to constant
+//! and sinusoidal forces. It is propagated from event to event with rounding errors only. The
+//! files:
 //!
-//! What is not linear between switches belongs to [`crate::ode`].
+//! | task | files |
+//! | --- | --- |
+//! | models and parallel switching surfaces | [`model`], `parallel_guards`, `sliding` |
+//! | decomposition of a regime's matrix into invariant parts | `schur`, `blocks`, `clustering`,
+//! `invariant`, `refine`, `decomposition` |
+//! | preparation of a regime | `modes`, `integrals`, `regime`, `event_function`, `step_table` |
+//! | SIMD | `simd_vectors`, `kernels` |
+//! | motion in a regime | `forced`, `flow`, `event_evaluation`, `cluster_flow` |
+//! | search for the next event, which cannot be missed | `bounds`, `search` |
+//! | time with two parts | `clock`, `error_free` |
+//! | regimes and their neighbours | `visited`, `adjacent` |
+//! | surfaces that depend on other surfaces | `outline`, `coincidence`, `dependents`,
+//! `transition`, `standing_on`, `switching`, `departure` |
+//! | simulation | [`propagator`], `follow`, `simulate` |
+//! | tangent vectors | `saltation`, `tangent`, [`neighbours`], [`lyapunov`] |
+//!
+//! The module [`crate::ode`] simulates all other models.
 
 mod adjacent;
 mod blocks;

@@ -1,4 +1,4 @@
-//! Which models can be propagated exactly, and what is derived once for all parameters.
+//! Piecewise-linear models, derived once for all parameter values.
 
 use eomgen_codegen::mechanics::affine::affine;
 use eomgen_codegen::mechanics::equations::derive;
@@ -11,9 +11,8 @@ use eomgen_model_spec::model::{Model, ParameterValue};
 use super::error::ExactError;
 use super::propagator::Propagator;
 
-/// A model that is linear between its switching surfaces, at one order: the coefficients of
-/// its equations as a program of the parameters. It may be shared between threads; each
-/// makes its own [`Propagator`]s from it.
+/// A piecewise-linear model at one truncation order: a program that computes the coefficients of
+/// its equations from the parameters. Threads may share it; each makes its own [`Propagator`]s.
 pub struct PiecewiseLinear {
     program: AffineProgram,
     /// Names of the guards' formulas are the caller's business; these are the parameters'.
@@ -24,7 +23,7 @@ impl PiecewiseLinear {
     /// Derives the coefficients of a model with fields of these orders.
     ///
     /// # Errors
-    /// If the model is not linear between its switching surfaces, or cannot be derived.
+    /// A model that is not piecewise linear, or that cannot be derived.
     pub fn of(model: &Model, orders: &[usize]) -> Result<Self, ExactError> {
         let equations =
             derive(model, orders).map_err(|error| ExactError::Model(error.message.clone()))?;
@@ -39,7 +38,7 @@ impl PiecewiseLinear {
             }
         }
         let affine = affine(equations).map_err(|_| ExactError::NotLinear {
-            formula: "a function over the modes that switches".to_owned(),
+            formula: "a switching function over modes".to_owned(),
         })?;
         let values = model
             .parameter_values()
@@ -52,18 +51,18 @@ impl PiecewiseLinear {
         })
     }
 
-    /// A propagator at the parameters of `model`, which is the one this was derived from or
-    /// one that differs in values alone.
+    /// Returns a propagator at the parameters of `model`, which may differ from the derived model
+    /// in values only.
     ///
     /// # Errors
-    /// If the model has other independent parameters, or its matrices are not finite.
+    /// Other independent parameters, or matrices that are not finite.
     pub fn propagator(&self, model: &Model) -> Result<Propagator, ExactError> {
         if !independent(model)
             .map(|(name, _)| name)
             .eq(self.independent.iter().map(String::as_str))
         {
             return Err(ExactError::Model(
-                "a parameter given by an expression was set to a number: derive the model again"
+                "a number replaces the expression of a parameter; derive the model again"
                     .to_owned(),
             ));
         }
@@ -74,24 +73,24 @@ impl PiecewiseLinear {
         self.at(&values)
     }
 
-    /// A propagator at these values of the independent parameters, SI, in the order of the
+    /// Returns a propagator at these values of the independent parameters, SI, in the order of the
     /// specification.
     ///
     /// # Errors
-    /// If the matrices are not finite or a dead zone has a negative half-width.
+    /// Matrices that are not finite, or a dead zone with a negative half-width.
     pub fn at(&self, values: &[f64]) -> Result<Propagator, ExactError> {
         Propagator::new(self.evaluator(values))
     }
 
-    /// What gives the matrices of any regime at these values of the independent parameters,
-    /// SI, in the order of the specification.
+    /// Returns an evaluator of the matrices of all regimes at these values of the independent
+    /// parameters, SI, in the order of the specification.
     pub fn evaluator(&self, values: &[f64]) -> AffineEvaluator {
         let mut evaluator = AffineEvaluator::new(self.program.clone());
         evaluator.set_parameters(values);
         evaluator
     }
 
-    /// The names of the independent parameters, in the order of their values.
+    /// Returns the names of the independent parameters, in the order of their values.
     pub fn parameters(&self) -> &[String] {
         &self.independent
     }

@@ -1,6 +1,5 @@
-//! A motion with its neighbours to first order: how the states at samples depend on the
-//! initial state. One propagator serves many motions at the same parameters, so that its
-//! regimes are prepared once.
+//! Derivatives of a motion with respect to its initial state. One propagator serves many motions
+//! at the same parameters, so that each regime is prepared once.
 
 use super::error::ExactError;
 use super::flow::Flow;
@@ -9,23 +8,23 @@ use super::propagator::{Change, Follow, Propagator, Segment};
 use super::tangent::Tangents;
 use crate::inputs::HeldInputs;
 
-/// A trajectory with its derivatives by initial states.
+/// States at the samples and their derivatives with respect to the initial state.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sensitivities {
-    /// The times of the samples, s.
+    /// Times of the samples, s.
     pub times: Vec<f64>,
-    /// The state at each of these times.
+    /// State at each sample.
     pub states: Vec<Vec<f64>>,
-    /// For each sample and each direction the derivative of the state.
+    /// Derivative of the state for each sample and each direction.
     pub derivatives: Vec<Vec<Vec<f64>>>,
 }
 
 impl Propagator {
-    /// Simulates from `initial` over `span` (begin, end; s) and carries these directions of
-    /// the initial state along; returns states and derivatives at `samples` (s, ascending).
+    /// Simulates from `initial` over `span` (begin, end; s) with these directions of the initial
+    /// state. Returns states and derivatives at `samples` (s, ascending).
     ///
     /// # Errors
-    /// As for [`Propagator::simulate`].
+    /// Same as [`Propagator::simulate`].
     pub fn neighbours(
         &mut self,
         initial: &[f64],

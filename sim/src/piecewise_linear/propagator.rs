@@ -35,7 +35,7 @@ const MOST_STEPS: f64 = 1e8;
 /// Over this many switches their rate is averaged.
 const SWITCHES_AVERAGED: u64 = 1024;
 
-/// Exact motion at fixed parameters.
+/// Exact propagator at fixed parameters.
 pub struct Propagator {
     pub(super) evaluator: AffineEvaluator,
     pub(super) families: Vec<ParallelGuards>,
@@ -55,11 +55,11 @@ pub struct Propagator {
     pub(super) saltations: Vec<DVector<f64>>,
     /// Decays up to this rate are slow beside what happens between switches, 1/s.
     pub(super) slow: f64,
-    /// Give up when switches come faster than this on average, 1/s.
+    /// Maximum average number of events per second; the simulation stops if it is exceeded.
     pub max_switch_rate: f64,
 }
 
-/// Where a motion stands.
+/// State of a motion in progress.
 #[derive(Clone, Debug)]
 pub struct Motion {
     pub(super) clock: Clock,
@@ -142,17 +142,17 @@ pub(super) struct Change<'a> {
 }
 
 impl Motion {
-    /// The time, s.
+    /// Returns the time reached, s.
     pub fn time(&self) -> f64 {
         self.clock.time()
     }
 
-    /// The state.
+    /// Returns the state.
     pub fn state(&self) -> &[f64] {
         &self.state
     }
 
-    /// How many switches there were.
+    /// Returns the number of events up to now.
     pub fn switches(&self) -> u64 {
         self.switches
     }
@@ -194,20 +194,20 @@ impl Propagator {
         })
     }
 
-    /// Numbers in the state.
+    /// Returns the number of states.
     pub fn states(&self) -> usize {
         self.states
     }
 
-    /// How many regimes have been entered so far.
+    /// Returns the number of regimes entered up to now.
     pub fn regimes(&self) -> usize {
         self.regimes.len()
     }
 
-    /// A motion from a state at a time, s.
+    /// Starts a motion from a state at a time (s).
     ///
     /// # Errors
-    /// If a regime cannot be prepared.
+    /// An invalid state, or a regime that cannot be prepared.
     pub fn start(
         &mut self,
         t: f64,
@@ -329,8 +329,8 @@ impl Propagator {
         }
         Err(SolveError::Request {
             problem: format!(
-                "at t = {:?} s there are {remaining:e} s to go in steps of at most {window:e} s, \
-                 with no end in sight; expected a shorter time, or parameters of a slower motion",
+                "at t = {:?} s the motion needs steps of at most {window:e} s for the remaining {remaining:e} s, \
+                 which are too many; shorten the time, or choose parameters of a slower motion",
                 motion.time()
             ),
         })

@@ -1,4 +1,4 @@
-//! A simulation with samples, in the form that the general solver gives.
+//! Simulation with samples, with the same results as the general solver.
 
 use super::error::ExactError;
 use super::flow::Flow;
@@ -7,19 +7,17 @@ use super::propagator::{Change, Follow, Propagator, Segment};
 use crate::inputs::HeldInputs;
 use crate::ode::{ObservedStep, Switch, Trajectory};
 
-/// Takes note of a step of the exact solver, and of whether a surface held the motion.
+/// Observer of the steps of the exact solver; the boolean is true if a surface holds the motion.
 pub type StepObserver<'o> = dyn FnMut(&mut ObservedStep<'_>, bool) + 'o;
 
 impl Propagator {
-    /// Simulates from `initial` over `span` (begin, end; s) and returns the states at
-    /// `samples` (s, ascending, inside the span). `progress` is called with the time that is
-    /// reached, at every switch and in between.
-    ///
-    /// There is no tolerance: samples and switches are right up to rounding.
+    /// Simulates from `initial` over `span` (begin, end; s) and returns the states at `samples`
+    /// (s, ascending, inside the span). Calls `progress` with the time reached, at every event and
+    /// in between. There is no tolerance: samples and events are exact up to rounding.
     ///
     /// # Errors
-    /// If the request makes no sense, a regime cannot be prepared, or switches come faster
-    /// than [`Propagator::max_switch_rate`].
+    /// An invalid request, a regime that cannot be prepared, or events faster than
+    /// [`Propagator::max_switch_rate`].
     pub fn simulate(
         &mut self,
         initial: &[f64],
@@ -34,12 +32,11 @@ impl Propagator {
         Ok(trajectory)
     }
 
-    /// The same, with the initial state, the span and the samples in one; `trajectory`, which
-    /// is empty before, holds all that was found, also where the motion could not be followed
-    /// to the end.
+    /// Simulates like [`Propagator::simulate`] into an empty `trajectory`, which keeps all results
+    /// up to an error. The request is the initial state, the span and the samples.
     ///
     /// # Errors
-    /// As for [`Propagator::simulate`].
+    /// Same as [`Propagator::simulate`].
     pub fn simulate_into(
         &mut self,
         trajectory: &mut Trajectory,
@@ -50,10 +47,10 @@ impl Propagator {
         self.simulate_observed(trajectory, request, inputs, (progress, None))
     }
 
-    /// As [`Propagator::simulate_into`], with an observer of the steps.
+    /// Simulates like [`Propagator::simulate_into`] with an observer of the steps.
     ///
     /// # Errors
-    /// As for [`Propagator::simulate`].
+    /// Same as [`Propagator::simulate`].
     pub fn simulate_observed(
         &mut self,
         trajectory: &mut Trajectory,

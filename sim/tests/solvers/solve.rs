@@ -150,7 +150,7 @@ fn a_body_caught_by_dry_friction_is_an_error_and_no_hang() {
             ..Names::default()
         })
     };
-    assert!(said(surface(true)).contains("where `v` is zero: there it sticks, as dry friction"));
+    assert!(said(surface(true)).contains("on which `v` is zero: it sticks"));
     // Adams is named to those who chose it only.
     assert!(!said(surface(true)).contains("adams"));
     // At a place it is no friction.

@@ -132,17 +132,17 @@ impl Contacts {
         let name = &self.names[place];
         Some(match cause {
             Overlap::Penetrated => format!(
-                "the distance of the impact `{name}` fell below zero: the bodies are forced into \
-                 each other, or hit each other without end. Check constraints and motions \
-                 prescribed there, or take a stiff spring in place of the impact"
+                "bodies overlap at the impact `{name}`: they are forced into each other, or impacts \
+                 follow each other without end. Check constraints and prescribed motions at this \
+                 contact, or use a stiff spring instead of the impact"
             ),
             Overlap::NoImpulse => format!(
-                "no impulses keep the bodies apart that touch at the impact `{name}`: other impacts \
-                 or constraints leave no way out. Take a stiff spring in place of one of them"
+                "no impulses separate the bodies at the impact `{name}`, because of other impacts or \
+                 constraints. Use a stiff spring instead of one of them"
             ),
             Overlap::Endless => format!(
-                "the impact `{name}` hits without end, {MOST_IN_A_ROW} times within the shortest \
-                 flights. Lower its restitution, or take a stiff spring in place of the impact"
+                "impacts at `{name}` follow each other without end ({MOST_IN_A_ROW} within the shortest \
+                 flights). Lower its restitution, or use a stiff spring instead of the impact"
             ),
         })
     }

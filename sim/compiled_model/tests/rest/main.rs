@@ -533,7 +533,7 @@ fn adams_stops_with_a_message_where_friction_holds() {
         .map(|error| error.to_string())
         .unwrap_or_default();
     assert!(
-        said.contains("there it sticks, as dry friction holds a body at rest"),
+        said.contains("it sticks, as a body at rest under dry friction"),
         "{said}"
     );
 }
