@@ -10,11 +10,8 @@ use crate::fit::sensitivity::WindowDerivatives;
 
 /// A window with its initial state eliminated.
 pub struct ReducedBlock {
-    /// R of the QR factorisation of [by state
-    ///
-    /// by unknowns
-    ///
-    /// residual], with the priors.
+    /// R of the QR factorisation of the columns by state, by unknowns and of the residual, with the
+    /// priors.
     pub factor: DMatrix<f64>,
     states: usize,
 }

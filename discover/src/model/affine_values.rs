@@ -1,5 +1,5 @@
-//! Values of a program that are affine in the state, found from its operations. A test with numbers would
-//! depend on units: a root of a pressure is flat at one pascal.
+//! Affine values of a program, found from its operations. A numerical test would depend on units:
+//! the root of a pressure is flat at one pascal.
 
 use eomgen_codegen::program::{Op, Program, ValueId};
 
@@ -14,8 +14,8 @@ enum Form {
     Other,
 }
 
-/// Returns whether some values are sums over states and a constant. Their factors depend on parameters
-/// alone.
+/// Returns true if the values are sums over states and a constant. The factors depend on parameters
+/// only.
 pub(crate) fn are_affine(program: &Program, values: &[ValueId]) -> bool {
     let mut forms = vec![Form::Other; program.values.len()];
     for id in program.reachable(values) {

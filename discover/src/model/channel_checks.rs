@@ -1,7 +1,6 @@
-//! Whether columns are what they are called: the model, as it is specified, is run through the
-//! beginning of a training record. A column that follows it with the other sign, with the
-//! factor between two units, or that follows another channel instead, has a wrong name. A
-//! model that lacks something makes none of these.
+//! Check of the columns of a dataset against the model, simulated over the beginning of a training
+//! record. An error is a column that follows the model with the opposite sign, with a unit factor,
+//! or that follows another channel. A missing effect causes none of these.
 
 use crate::model::problem::EstimationProblem;
 use crate::thresholds;
@@ -17,16 +16,18 @@ const FACTORS: [(f64, &str, &str); 6] = [
     (0.017_453_292_52, "1/57.3 of", ", as radians are of degrees"),
 ];
 
-/// A factor that lies between units, in words, of what is expected.
+/// Returns a description of a factor between two units, relative to `expected`; `None` for other
+/// factors.
 pub(crate) fn factor_of_units(factor: f64, expected: &str) -> Option<String> {
     let is_near = |unit: f64| (factor / unit - 1.0).abs() < thresholds::AGREES;
     let (_, times, as_units) = FACTORS.iter().find(|(unit, _, _)| is_near(*unit))?;
     Some(format!("{times} {expected}{as_units}"))
 }
 
-/// Looks at the columns of the first training record; returns what is worth a remark.
+/// Checks the columns of the first training record and returns remarks.
 ///
 /// # Errors
+///
 /// A column with a wrong name.
 pub fn check(problem: &EstimationProblem<'_>, text: &str) -> Result<Vec<String>, Refusal> {
     let mut notes = Vec::new();

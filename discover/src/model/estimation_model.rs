@@ -1,6 +1,6 @@
-//! A compiled model and what an estimation adds to it: its part that is linear between switches,
-//! the measured quantities among its outputs, and steps that are short enough beside the sensors'
-//! noise. It runs in [`crate::model::simulation`]; what is estimated with it is decided elsewhere.
+//! Compiled model for an estimation: its part that is linear between switches, the measured
+//! outputs, and steps that are short enough for the noise of the sensors. It is simulated in
+//! [`crate::model::simulation`].
 
 use eomgen_codegen::program::Program;
 use eomgen_codegen::program::evaluator::Evaluator;
@@ -32,27 +32,27 @@ use eomgen_sim::exponential::{ExponentialIntegrator, NotIntegrated};
 pub struct EstimationModel {
     /// The model.
     compiled: CompiledModel,
-    /// The names of the independent parameters, in the order of their values.
+    /// Names of the independent parameters, in the order of their values.
     pub parameters: Vec<String>,
-    /// The values the specification gives them, SI.
+    /// Values of the parameters in the specification, SI.
     pub values: Vec<f64>,
-    /// The names of the states.
+    /// Names of the states.
     pub states: Vec<String>,
     /// Where each coordinate lives, for those of which the specification says so.
     ranges: Vec<Option<(f64, f64)>>,
     linear: Option<LinearPart>,
     pub(crate) measured: MeasuredOutputs,
     channels: Vec<String>,
-    /// What is expected of each channel's sensor.
+    /// Expected values of the sensor of each channel.
     pub sensors: Vec<ExpectedSensor>,
-    /// The longest Runge-Kutta step, where the motion has no linear part; none where a solver
-    /// decides.
+    /// Longest Runge-Kutta step of a motion without a linear part; `None` for a solver with error
+    /// control.
     pub(crate) longest_step: Option<LongestStep>,
     /// The usual time from sample to sample, s, and into how many parts of it steps are made
     /// shorter where the linear part is not all.
     sample: f64,
     refinement: f64,
-    /// By which its simulations can be told to stop.
+    /// Stop request of its simulations.
     pub(crate) stop: Stop,
 }
 
@@ -76,11 +76,12 @@ struct LinearTerms {
 }
 
 impl EstimationModel {
-    /// Derives the model of a specification's text. `linear`: a text of the same model without
-    /// terms that are not linear between switches, if there are such terms.
+    /// Derives the model of a specification. `linear`: the text of the same model without terms
+    /// that are nonlinear between switches, if it has such terms.
     ///
     /// # Errors
-    /// What is wrong with the text.
+    ///
+    /// An invalid text.
     pub fn of(
         text: &str,
         linear: Option<&str>,
@@ -97,10 +98,11 @@ impl EstimationModel {
         Ok(model)
     }
 
-    /// The same with its equations alone, to be compared with another's.
+    /// Derives the equations only, for a comparison with another model.
     ///
     /// # Errors
-    /// As for [`EstimationModel::of`].
+    ///
+    /// As [`EstimationModel::of`].
     pub fn equations(
         text: &str,
         name: &str,
@@ -140,7 +142,7 @@ impl EstimationModel {
         })
     }
 
-    /// A state moved to where the model lives.
+    /// Moves a state into the domain of the model.
     pub fn admissible(&self, mut state: Vec<f64>) -> Vec<f64> {
         for (entry, range) in state.iter_mut().zip(&self.ranges) {
             if let Some((low, high)) = range {
@@ -150,7 +152,7 @@ impl EstimationModel {
         state
     }
 
-    /// A state of another model as one of this: states that only this has are 0.
+    /// Converts a state of another model to this one. States of only this model are 0.
     pub fn mapped(&self, other: &Self, state: &[f64]) -> Vec<f64> {
         let value = |name: &String| {
             let index = other.states.iter().position(|known| known == name);
@@ -159,7 +161,7 @@ impl EstimationModel {
         self.states.iter().map(value).collect()
     }
 
-    /// Whether a state is where the model lives.
+    /// Returns true if a state is in the domain of the model.
     pub fn admits(&self, state: &[f64]) -> bool {
         let ranged = state.iter().zip(&self.ranges);
         ranged
@@ -167,71 +169,70 @@ impl EstimationModel {
             .all(|(entry, (low, high))| (low..=high).contains(entry))
     }
 
-    /// The checked specification.
+    /// Returns the checked specification.
     pub fn specification(&self) -> &Model {
         self.compiled.model()
     }
 
-    /// Typical sizes of its states in SI, for solvers.
+    /// Returns the typical sizes of the states in SI, for solvers.
     pub(crate) fn typical_sizes(&self) -> &[f64] {
         self.compiled.typical_sizes()
     }
 
-    /// The program of its equations.
+    /// Returns the program of the equations.
     pub(crate) fn program(&self) -> &Program {
         self.compiled.program()
     }
 
-    /// The order of each field.
+    /// Returns the order of each field.
     pub fn orders(&self) -> &[usize] {
         self.compiled.orders()
     }
 
-    /// An independent parameter by its name.
+    /// Returns the index of an independent parameter.
     pub fn parameter(&self, name: &str) -> Option<ParameterId> {
         let index = self.parameters.iter().position(|known| known == name)?;
         Some(ParameterId::new(index))
     }
 
-    /// Sets an independent parameter among the values, SI.
+    /// Sets the value of an independent parameter, SI.
     pub fn set(&self, values: &mut [f64], parameter: &str, value: f64) {
         if let Some(parameter) = self.parameter(parameter) {
             values[parameter.index()] = value;
         }
     }
 
-    /// A measured channel by its name.
+    /// Returns the index of a measured channel.
     pub fn channel(&self, name: &str) -> Option<ChannelId> {
         let index = self.channels.iter().position(|channel| channel == name)?;
         Some(ChannelId::new(index))
     }
 
-    /// Degrees of freedom: as many coordinates come first in the state, then as many rates.
+    /// Returns the number of degrees of freedom. The state begins with this number of coordinates
+    /// and the same number of rates.
     pub fn degrees_of_freedom(&self) -> usize {
         self.compiled.program().degrees_of_freedom()
     }
 
-    /// How many states there are.
+    /// Returns the number of states.
     pub fn state_count(&self) -> usize {
         self.states.len()
     }
 
-    /// A text with no terms but those that are linear between switches is enough for the
-    /// whole model.
+    /// Returns true if the whole model is linear between switches.
     pub fn is_linear(&self) -> bool {
         matches!(self.linear, Some(LinearPart::Whole))
     }
 
-    /// The initial state that the specification gives.
+    /// Returns the initial state of the specification.
     pub fn initial(&self) -> Vec<f64> {
         let given = self.compiled.model().initial_state(self.compiled.orders());
         given.unwrap_or_else(|_| vec![0.0; self.state_count()])
     }
 
-    /// Decides in how many steps a motion goes from one output to the next, where that is not
-    /// known beforehand: as many as change its outputs by less than a part of the noise, tested
-    /// on the beginning of a record. `numbers`: how many numbers are fitted. Where there are none, a solver with error control goes on
-    /// deciding.
+    /// Chooses the number of fixed steps per output interval such that the outputs change by less
+    /// than a fraction of the noise, tested on the beginning of a record. `numbers`: number of
+    /// fitted numbers. If no number of steps suffices, a solver with error control remains in use.
     pub fn choose_steps(
         &mut self,
         record: &Record,
@@ -290,10 +291,11 @@ impl EstimationModel {
         self.longest_step = None;
     }
 
-    /// The model at these values of the independent parameters, ready to run.
+    /// Creates a simulation at these values of the independent parameters.
     ///
     /// # Errors
-    /// Values at which there is no motion; [`SimulationError::Stopped`].
+    ///
+    /// Values at which the model cannot be simulated; [`SimulationError::Stopped`].
     pub fn simulation(&self, values: &[f64]) -> Result<Simulation<'_>, SimulationError> {
         if self.stop.is_requested() {
             return Err(SimulationError::Stopped);
@@ -362,18 +364,18 @@ impl EstimationModel {
         Ok(simulation)
     }
 
-    /// The model's equations at these values, to be compared with others.
+    /// Creates an evaluator of the equations at these parameter values.
     pub(crate) fn evaluator(&self, values: &[f64]) -> Evaluator {
         self.compiled.evaluator(values)
     }
 
-    /// What of its state the channels measure at these values, where that is linear.
+    /// Returns the measured outputs as linear functions of the state, if they are linear.
     pub(crate) fn linear_outputs(&self, values: &[f64]) -> Option<LinearOutputs> {
         LinearOutputs::of(&self.measured, &mut self.evaluator(values))
     }
 }
 
-/// Whether a text's model is linear between its switches.
+/// Returns true if the model of a text is linear between switches.
 pub fn is_linear(text: &str, name: &str, order: Option<usize>) -> bool {
     compiled(text, name, order).is_ok_and(|compiled| compiled.piecewise_linear().is_ok())
 }

@@ -1,4 +1,5 @@
-//! Where a record begins and how far its states go, as far as records and model tell without a fit.
+//! Initial state of a record and ranges of the states, estimated from records and model without a
+//! fit.
 
 use eomgen_analysis::qr_iteration;
 use nalgebra::{DMatrix, DVector};
@@ -9,7 +10,7 @@ use crate::thresholds;
 use eomgen_records::dataset::{Channel, Initial, Quantity};
 use eomgen_records::record::Record;
 
-/// The first state of a record, as far as it is known.
+/// Estimates the first state of a record.
 pub fn first_state(
     model: &EstimationModel,
     record: &Record,
@@ -80,9 +81,9 @@ fn begin(times: &[f64], column: &[f64]) -> (f64, f64) {
     fitted.map_or((0.0, 0.0), |fitted| (fitted[0], fitted[1] / span))
 }
 
-/// How far each state ranges in the motion that the records' inputs cause, SI: the root mean
-/// square around its mean. `values`: the model's parameters, on which that may depend much; `noise`:
-/// one standard deviation of each channel, SI.
+/// Returns the range of each state in the motion due to the recorded inputs, SI: the RMS about the
+/// mean. `values`: parameters of the model, which may have a strong influence; `noise`: standard
+/// deviation of each channel, SI.
 pub fn ranges(
     model: &EstimationModel,
     values: &[f64],

@@ -1,5 +1,5 @@
-//! Motions that records give: the inputs that such a motion takes, which are what channels measure there
-//! (inverse dynamics). Nothing is integrated. How records state a motion is decided where they are read.
+//! Given motions: the required inputs, which channels measure, follow from inverse dynamics.
+//! Nothing is integrated.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use nalgebra::{DMatrix, DVector};
@@ -7,8 +7,8 @@ use nalgebra::{DMatrix, DVector};
 use crate::model::measured_outputs::{MeasuredInput, MeasuredOutputs};
 use crate::thresholds;
 
-/// A model along motions that records give. A record's row holds its inputs, then all coordinates, all
-/// rates and all second rates.
+/// A model along motions that records give. A row of a record holds its inputs, then all
+/// coordinates, all rates and all second derivatives.
 pub(crate) struct GivenMotion {
     /// How many inputs there are.
     inputs: usize,
@@ -20,7 +20,8 @@ pub(crate) struct GivenMotion {
 }
 
 impl GivenMotion {
-    /// Of a model whose inputs channels measure; none if it has states that no record gives.
+    /// Creates the given motion of a model with measured inputs; `None` if a state is missing in
+    /// the records.
     pub fn of(evaluator: &Evaluator, measured: &MeasuredOutputs) -> Option<Self> {
         let program = evaluator.program();
         let (states, degrees) = (program.states(), program.degrees_of_freedom());
@@ -33,15 +34,15 @@ impl GivenMotion {
         })
     }
 
-    /// The state of a record's row; none if that is another model's.
+    /// Returns the state in a row of a record; `None` if the row is from another model.
     pub fn state<'r>(&self, row: &'r [f64]) -> Option<&'r [f64]> {
         let is_own = row.len() == self.inputs + 3 * self.degrees;
         is_own.then(|| &row[self.inputs..self.inputs + 2 * self.degrees])
     }
 
-    /// The inputs at a record's row, with those that the motion takes: the second rates are the model's
-    /// with them. None where no inputs do that. Second rates are linear in most inputs: one step of Newton's
-    /// method finds these.
+    /// Returns the inputs at a row of a record, including the required ones, for which the model
+    /// has the recorded second derivatives; `None` if there are none. Second derivatives are linear
+    /// in most inputs, so that one Newton step suffices.
     pub fn required(&mut self, evaluator: &mut Evaluator, t: f64, row: &[f64]) -> Option<Vec<f64>> {
         let state = self.state(row)?;
         let given = &row[self.inputs + 2 * self.degrees..];

@@ -1,9 +1,8 @@
-//! Inputs that act otherwise than they are recorded: gain * (input + bias) in the place of an input, with
-//! parameters of the specification for both. A motor's torque constant that is off is such a gain, an
-//! amplifier's offset such a bias.
+//! Errors of inputs: `gain * (input + bias)` replaces an input, with two parameters of the
+//! specification. A wrong torque constant of a motor is a gain, an amplifier offset a bias.
 //!
-//! A delay of the input is one of all sensors, and estimated as such: initial states are free, and no model
-//! depends on when a motion begins but by its inputs.
+//! A delay of the input is estimated as a common delay of all sensors: initial states are free, and
+//! models depend on the starting time only through their inputs.
 
 use eomgen_model_spec::edit::{self, Edit, EditError, NewParameter, NewValue};
 use eomgen_model_spec::model::Input;
@@ -12,23 +11,23 @@ use eomgen_records::dataset::{Expected, InputPriors};
 
 use crate::model::input_places::in_the_place_of;
 
-/// The effect of an input that acts later than declared.
+/// Effect name of an input with an additional delay.
 pub const INPUT_DELAY: &str = "input_delay";
 
-/// How an input acts otherwise.
+/// Error of an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum InputFault {
-    /// By a factor.
+    /// A factor.
     Gain,
-    /// By a constant.
+    /// An offset.
     Bias,
 }
 
 impl InputFault {
-    /// Both.
+    /// Both errors.
     pub const ALL: [Self; 2] = [Self::Gain, Self::Bias];
 
-    /// Its word.
+    /// Returns the name of the error.
     pub fn word(self) -> &'static str {
         match self {
             Self::Gain => "gain",
@@ -36,7 +35,8 @@ impl InputFault {
         }
     }
 
-    /// The effect that it is where it is more than was declared, or nobody spoke of it.
+    /// Returns the name of the effect, used if the error exceeds its declared prior or none is
+    /// declared.
     pub fn effect(self) -> &'static str {
         match self {
             Self::Gain => "input_gain",
@@ -44,7 +44,7 @@ impl InputFault {
         }
     }
 
-    /// Its value where an input acts as it is recorded.
+    /// Returns the value without an error.
     pub fn absent(self) -> f64 {
         match self {
             Self::Gain => 1.0,
@@ -52,12 +52,12 @@ impl InputFault {
         }
     }
 
-    /// The parameter of a specification that holds it.
+    /// Returns the name of the parameter in the specification.
     pub fn parameter(self, input: &str) -> String {
         format!("{input}_{}", self.word())
     }
 
-    /// The parameter's unit.
+    /// Returns the unit of the parameter.
     pub fn unit(self, input: &Input) -> String {
         match self {
             Self::Gain => "1".to_owned(),
@@ -65,12 +65,12 @@ impl InputFault {
         }
     }
 
-    /// What the parameter is, in words.
+    /// Returns a description of the parameter.
     pub fn doc(self, input: &str) -> String {
         format!("{} of the input {input}", self.word())
     }
 
-    /// What stands in the place of an input.
+    /// Returns the expression that replaces an input.
     pub fn acting(self, input: &str) -> String {
         let parameter = self.parameter(input);
         match self {
@@ -87,7 +87,7 @@ impl InputFault {
     }
 }
 
-/// The fault whose parameter this is, of an input of which a dataset speaks, and what it says.
+/// Returns input, error and prior for a parameter that represents a declared error of an input.
 pub fn declared<'p>(
     inputs: &'p [InputPriors],
     parameter: &str,
@@ -100,17 +100,18 @@ pub fn declared<'p>(
     all.find(|(input, fault, _)| fault.parameter(input) == parameter)
 }
 
-/// The input of whose delay a dataset speaks, and what it says.
+/// Returns the input with a declared delay and the prior of the delay.
 pub fn delayed_input(inputs: &[InputPriors]) -> Option<(&str, Expected)> {
     let mut delayed = inputs.iter();
     delayed.find_map(|input| Some((input.name.as_str(), input.delay?)))
 }
 
-/// A specification's text in which the inputs of which a dataset speaks act as that says, to begin
-/// with. Parameters that are there already, from a search before, stay what they are.
+/// Returns a specification in which inputs have their declared errors as start values. Parameters
+/// from an earlier search are kept.
 ///
 /// # Errors
-/// An input in a place where nothing can be put, as an edit of the text.
+///
+/// An input that cannot be replaced in the text.
 pub fn with_declared(text: &str, path: &str, inputs: &[InputPriors]) -> Result<String, EditError> {
     let mut text = text.to_owned();
     for priors in inputs {

@@ -1,12 +1,11 @@
-//! Where inputs stand in a specification, and something else in their place. What that is, is said in
-//! [`crate::model::input_faults`] and in the catalogue.
+//! Occurrences of inputs in a specification and their replacement.
 
 use eomgen_model_spec::edit::{Edit, Section, Substitution};
 use eomgen_model_spec::model::{Expr, ExprKind, Input, Model, Term, written_name};
 use eomgen_model_spec::span::Span;
 
-/// The inputs in whose place something else may stand: prescribed motion has rates, which would have to
-/// follow.
+/// Returns the inputs that may be replaced. Prescribed motions are excluded because their rates
+/// would have to be replaced too.
 pub fn replaceable(model: &Model) -> impl Iterator<Item = &Input> {
     let inputs = model.inputs.iter();
     inputs.filter(|input| input.rate.is_none() && input.rate_of.is_none())
@@ -69,7 +68,7 @@ fn term(term: &Term) -> (&str, Span, &Expr) {
     (&term.name, term.span, &term.value)
 }
 
-/// Where an input stands: the entries of each section that hold it.
+/// Returns the entries of each section that contain an input.
 pub fn standing(model: &Model, input: &str) -> Vec<(Section, Vec<String>)> {
     let holds = |expr: &Expr| {
         let mut found = false;
@@ -101,7 +100,7 @@ pub fn standing(model: &Model, input: &str) -> Vec<(Section, Vec<String>)> {
     found
 }
 
-/// The edits that put an expression in the place of an input wherever it stands.
+/// Returns the edits that replace an input by an expression everywhere.
 pub fn in_the_place_of(model: &Model, input: &str, acting: &str) -> Vec<Edit> {
     let edits = standing(model, input).into_iter().map(|(section, terms)| {
         Edit::Substitute(Substitution {

@@ -1,11 +1,11 @@
-//! Measured quantities as linear functions of the state.
+//! Measured outputs as linear functions of the state.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 
 use crate::model::affine_values::are_affine;
 use crate::model::measured_outputs::MeasuredOutputs;
 
-/// Measured quantities as linear functions of the state.
+/// Measured outputs as linear functions of the state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinearOutputs {
     /// A row per channel, a column per state.
@@ -14,9 +14,9 @@ pub struct LinearOutputs {
 }
 
 impl LinearOutputs {
-    /// The quantities at an evaluator's parameters; none if they are not linear in the state, or
-    /// depend on more than it. Measured inputs and accelerations depend on more: a force changes them at
-    /// once.
+    /// Returns the outputs at the parameters of an evaluator; `None` if they are nonlinear or
+    /// depend on more than the state. Measured inputs and accelerations are excluded: a force
+    /// changes them at once.
     pub(crate) fn of(outputs: &MeasuredOutputs, evaluator: &mut Evaluator) -> Option<Self> {
         if outputs.has_rates() || !outputs.inputs().is_empty() {
             return None;
@@ -53,13 +53,13 @@ impl LinearOutputs {
         Some(Self { rows, constant })
     }
 
-    /// Appends the quantities at a state.
+    /// Appends the outputs at a state.
     pub fn append(&self, state: &[f64], values: &mut Vec<f64>) {
         let pairs = self.rows.iter().zip(&self.constant);
         values.extend(pairs.map(|(row, c)| c + product(row, state)));
     }
 
-    /// Appends the quantities' derivatives along a tangent vector.
+    /// Appends the derivatives of the outputs along a tangent vector.
     pub(crate) fn append_derivatives(&self, tangent: &[f64], values: &mut Vec<f64>) {
         values.extend(self.rows.iter().map(|row| product(row, tangent)));
     }

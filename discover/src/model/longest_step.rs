@@ -1,13 +1,14 @@
-//! How long steps may be where a motion is followed by steps of about one length.
+//! Maximum step size of an integration with nearly constant steps.
 
 use crate::thresholds;
 
-/// The longest step, s.
+/// Maximum step, s.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LongestStep(pub f64);
 
 impl LongestStep {
-    /// Into how many steps a time, s, is parted. Samples that come a little late need no more.
+    /// Returns the number of steps for an interval, s. A small delay of a sample needs no further
+    /// step.
     pub fn steps(self, time: f64) -> usize {
         let steps = (time / self.0 - thresholds::JITTER).ceil();
         steps.max(1.0) as usize

@@ -1,52 +1,52 @@
-//! Which of a model's states and observables the channels measure.
+//! States and observables of a model that channels measure.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_codegen::program::{Program, ValueId};
 use eomgen_compiled_model::Rest;
 use eomgen_records::dataset::{Channel, Quantity};
 
-/// Where a channel's quantity is found.
+/// Source of the quantity of a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Output {
-    /// A state, by its place.
+    /// State, by its index.
     State(usize),
-    /// An observable, by its place.
+    /// Observable, by its index.
     Observable(usize),
-    /// The rate of a state, by the state's place.
+    /// Rate of the state with this index.
     Rate(usize),
-    /// A derivative of an observable that holds accelerations.
+    /// Derivative of an observable that contains accelerations.
     Acceleration(ObservedAcceleration),
-    /// An input, by its place.
+    /// Input, by its index.
     Input(usize),
 }
 
-/// Places of an observed acceleration and of the observable that it is the time derivative of.
+/// Indices of an observed acceleration and of the observable whose time derivative it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ObservedAcceleration {
-    /// The derivative.
+    /// Index of the derivative.
     pub place: usize,
-    /// The observable that is differentiated. It holds rates.
+    /// Index of the differentiated observable, which contains rates.
     pub of: usize,
 }
 
-/// An input that is measured.
+/// A measured input.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MeasuredInput {
-    /// Its place among the inputs.
+    /// Index of the input.
     pub place: usize,
-    /// One standard deviation of its sensor's noise, SI.
+    /// Standard deviation of the noise of its sensor, SI.
     pub noise: f64,
 }
 
-/// Room for what a model computes beside its states.
+/// Work arrays for values other than states.
 pub(crate) struct Buffers {
     observables: Vec<f64>,
     rates: Vec<f64>,
-    /// What holds the motion that is looked at, where surfaces may: sign(0) = 0 does not.
+    /// Sticking surfaces of the motion, if any; evaluation with sign(0) = 0 does not show them.
     pub rest: Option<Rest>,
 }
 
-/// The measured quantities of a model, one per channel.
+/// Measured quantities of a model, one per channel.
 #[derive(Clone, Debug)]
 pub(crate) struct MeasuredOutputs {
     outputs: Vec<Output>,
@@ -60,8 +60,8 @@ pub(crate) struct MeasuredOutputs {
 }
 
 impl MeasuredOutputs {
-    /// The measured quantities of a program. `rates`: for each channel the place of the derivative of an
-    /// observable, if the channel measures one.
+    /// Finds the measured quantities of a program. `rates`: for each channel the source of the
+    /// derivative of an observable, if the channel measures one.
     pub fn new(channels: &[Channel], rates: &[Option<Output>], program: &Program) -> Self {
         let degrees_of_freedom = program.degrees_of_freedom();
         let channels_with_rates = channels.iter().zip(rates);
@@ -83,7 +83,7 @@ impl MeasuredOutputs {
         }
     }
 
-    /// The values of a program that are the observables among them.
+    /// Returns the values of the observables among the measured quantities.
     pub fn observable_values(&self, program: &Program) -> Vec<ValueId> {
         let of = |output: &Output| match output {
             Output::Observable(observable) => Some(program.observable_values[*observable]),
@@ -93,28 +93,28 @@ impl MeasuredOutputs {
         self.outputs.iter().filter_map(of).collect()
     }
 
-    /// How many there are.
+    /// Returns the number of quantities.
     pub fn count(&self) -> usize {
         self.outputs.len()
     }
 
-    /// Where the quantity of each channel is found.
+    /// Returns the source of the quantity of each channel.
     pub fn outputs(&self) -> &[Output] {
         &self.outputs
     }
 
-    /// Whether accelerations are measured: they jump where a force does, and a force adds to them at once.
+    /// Returns true if accelerations are measured. They jump with a force.
     pub fn has_rates(&self) -> bool {
         let is_rate = |output: &Output| matches!(output, Output::Rate(_) | Output::Acceleration(_));
         self.outputs.iter().any(is_rate)
     }
 
-    /// The inputs that are measured: what a motion takes that records give.
+    /// Returns the measured inputs, which a given motion determines.
     pub fn inputs(&self) -> &[MeasuredInput] {
         &self.inputs
     }
 
-    /// Room for what [`MeasuredOutputs::append`] computes.
+    /// Creates the work arrays for [`MeasuredOutputs::append`].
     pub fn buffers(&self) -> Buffers {
         Buffers {
             observables: vec![0.0; self.observables],
@@ -123,8 +123,8 @@ impl MeasuredOutputs {
         }
     }
 
-    /// Adds to a row of quantities at a point the effect of changes of the accelerations and of the rates of
-    /// states of first order. `over`: a short time, s, in which such changes move the rates a little.
+    /// Adds the effect of changes of the accelerations, and of the rates of first-order states, to
+    /// a row of quantities. `over`: a short time, s, in which such changes move the rates slightly.
     pub fn add_to_accelerations(
         &self,
         evaluator: &mut Evaluator,

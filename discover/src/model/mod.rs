@@ -1,8 +1,10 @@
-//! What is estimated, and on what: a specification's model that can be run and its measured
-//! outputs ([`estimation_model`], [`simulation`]), records cut into
-//! [`windows`](eomgen_records::windows), the [`unknowns`] with their priors, inputs that act otherwise than recorded ([`input_faults`]), and the estimation
-//! [`problem`] that all fits to one dataset share. [`channel_checks`] compares columns with what the
-//! model expects of them; [`output_times`] are where quantities are computed; `given_motion` is what a motion takes that the records give; [`smoothing`] has no delay; [`stop`] ends all of it early.
+//! Models and data of an estimation: the compiled model with its measured outputs
+//! ([`estimation_model`], [`simulation`]), records divided into
+//! [`windows`](eomgen_records::windows), the [`unknowns`] with their priors, errors of inputs
+//! ([`input_faults`]), and the [`problem`] that all fits to one dataset share. [`channel_checks`]
+//! compares columns with the model; [`output_times`] are the times of computed outputs;
+//! `given_motion` contains the inverse dynamics; [`smoothing`] has no delay; [`stop`] ends a search
+//! early.
 
 pub(crate) mod affine_values;
 pub mod channel_checks;

@@ -1,11 +1,11 @@
-//! What of a model lies beyond its linear part, as two compiled programs tell it: one of the
-//! whole model and one of that part.
+//! Nonlinear remainder: difference between the rates of the whole model and those of its linear
+//! part, from two compiled programs.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 
 use eomgen_sim::exponential::Force;
 
-/// What a model's rates are beyond those of its linear part, at fixed parameters.
+/// Rates of a model minus those of its linear part, at fixed parameters.
 pub(crate) struct NonlinearRemainder {
     whole: Evaluator,
     linear: Evaluator,
@@ -16,7 +16,7 @@ pub(crate) struct NonlinearRemainder {
 }
 
 impl NonlinearRemainder {
-    /// Both models with the same states.
+    /// Combines both models, which have the same states.
     pub fn new(whole: Evaluator, linear: Evaluator) -> Self {
         let states = whole.program().states();
         Self {

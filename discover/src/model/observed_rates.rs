@@ -1,13 +1,13 @@
-//! Rates and accelerations of observables among the channels: further observables of the model, which
-//! are derived with it.
+//! Measured rates and accelerations of observables, added to the model as further observables and
+//! derived with it.
 
 use eomgen_model_spec::model::{Model, ObservedRate};
 
 use crate::model::measured_outputs::{ObservedAcceleration, Output};
 use eomgen_records::dataset::{Channel, Quantity};
 
-/// Adds the derivatives of observables that channels measure to a model. Returns the place of each
-/// channel's derivative, if it measures one.
+/// Adds the derivatives of observables that channels measure to a model. Returns the source of the
+/// derivative of each channel, if it measures one.
 pub(crate) fn add_observed_rates(model: &mut Model, channels: &[Channel]) -> Vec<Option<Output>> {
     let mut of = |channel: &Channel| match channel.quantity {
         Quantity::ObservedRate(rate) => Some(add(model, rate)),

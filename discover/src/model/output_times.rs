@@ -1,5 +1,5 @@
-//! The times at which a model's quantities are computed so that what a late sensor shows can be
-//! interpolated: at the samples, and where these are too far apart for that, at times between.
+//! Times of computed outputs: the samples, and times between them if the interpolation of a delayed
+//! sensor needs them.
 
 use std::borrow::Cow;
 
@@ -7,14 +7,14 @@ use eomgen_records::dataset::Dataset;
 
 use crate::thresholds;
 
-/// How often quantities are computed from sample to sample.
+/// Number of computed outputs per sample interval.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OutputRate(usize);
 
-/// The times at which quantities are computed, s.
+/// Times of computed outputs, s.
 #[derive(Clone, Debug)]
 pub struct OutputTimes<'s> {
-    /// The samples' times, and those between.
+    /// Sample times and intermediate times.
     pub times: Cow<'s, [f64]>,
     rate: usize,
 }

@@ -1,5 +1,5 @@
-//! What all fits to one dataset share: its windows, the standard deviation of its channels' noise,
-//! and the models of specifications ready to run along them.
+//! Data shared by all fits to one dataset: windows, noise of the channels, and compilation of
+//! specifications.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -15,54 +15,54 @@ use eomgen_records::dataset::{Dataset, Start};
 use eomgen_records::record::Record;
 use eomgen_records::windows::Windows;
 
-/// What all fits to one dataset share.
+/// Data shared by all fits to one dataset.
 pub struct EstimationProblem<'d> {
     /// The dataset.
     pub dataset: &'d Dataset,
-    /// The noise of each channel, SI.
+    /// Noise of each channel, SI.
     pub noise: Vec<f64>,
-    /// How often quantities are computed from sample to sample.
+    /// Number of computed outputs per sample interval.
     pub output_rate: OutputRate,
-    /// The windows to fit to.
+    /// Training windows.
     pub train: Windows<'d>,
-    /// The windows held out.
+    /// Held-out windows.
     pub test: Windows<'d>,
-    /// The order of the model's fields, if not their own.
+    /// Order of the fields of the model; `None` for their default.
     pub order: Option<usize>,
-    /// The specification's path, for messages.
+    /// Path of the specification, for messages.
     pub path: String,
-    /// The states of the specification's own model; others are candidates'.
+    /// States of the specification's own model. Other states are from candidates.
     pub states: Vec<String>,
-    /// By which all of it can be told to stop.
+    /// Stop request of the search.
     pub stop: Stop,
-    /// How many hypotheses were judged by the test records.
+    /// Number of hypotheses tested on the test records.
     pub judged: Judged,
 }
 
-/// How many hypotheses were judged by the test records, on all threads: so many p-values there are to
-/// choose from.
+/// Number of hypotheses tested on the test records, over all threads, for the correction of
+/// p-values.
 #[derive(Debug, Default)]
 pub struct Judged(AtomicUsize);
 
 impl Judged {
-    /// One more.
+    /// Counts one more hypothesis.
     pub fn count(&self) {
         self.0.fetch_add(1, Ordering::Relaxed);
     }
 
-    /// So many.
+    /// Returns the number of hypotheses.
     pub fn number(&self) -> usize {
         self.0.load(Ordering::Relaxed)
     }
 
-    /// A p-value over all of them (Bonferroni), however they depend on each other.
+    /// Returns a p-value corrected for all hypotheses (Bonferroni), valid for any dependence.
     pub fn adjusted(&self, p_value: f64) -> f64 {
         (p_value * self.number().max(1) as f64).min(1.0)
     }
 }
 
 impl<'d> EstimationProblem<'d> {
-    /// The problem of a dataset and of a specification's text.
+    /// Prepares the problem of a dataset and of a specification.
     pub fn new(dataset: &'d Dataset, order: Option<usize>, path: &str, text: &str) -> Self {
         let states = || {
             let model = eomgen_model_spec::check(Source::new(path, text))
@@ -89,11 +89,12 @@ impl<'d> EstimationProblem<'d> {
         }
     }
 
-    /// The model of a text, ready to run on these records. `linear`: the text without terms
-    /// that are not linear between switches, where there are such.
+    /// Compiles the model of a text for these records. `linear`: the text without terms that are
+    /// nonlinear between switches, if it has such terms.
     ///
     /// # Errors
-    /// What is wrong with the text; [`DiscoverError::Stopped`].
+    ///
+    /// An invalid text; [`DiscoverError::Stopped`].
     pub fn model(
         &self,
         text: &str,
@@ -110,18 +111,19 @@ impl<'d> EstimationProblem<'d> {
         Ok(model)
     }
 
-    /// The first state of a record, as far as it is known.
+    /// Estimates the first state of a record.
     pub fn first_state(&self, model: &EstimationModel, record: &Record) -> Vec<f64> {
         first_state::first_state(model, record, &self.dataset.channels, &self.dataset.initial)
     }
 
-    /// Whether initial states are fitted: not where they are read from the record, or the motion is given.
+    /// Returns true if initial states are fitted. They are not if they are read from the record or
+    /// if the motion is given.
     pub fn estimates_initial_states(&self) -> bool {
         self.dataset.start == Start::Fitted && !self.dataset.gives_motion()
     }
 
-    /// The range of each state in the training records. That of a coordinate which a candidate
-    /// adds, and which nobody has seen move yet, counts several times.
+    /// Returns the range of each state in the training records. The range of a coordinate that a
+    /// candidate adds is multiplied by a factor because its motion is unknown.
     pub fn ranges(&self, model: &EstimationModel, values: &[f64]) -> Vec<f64> {
         let first = self.first_state(model, &self.dataset.train[0]);
         let mut ranges =

@@ -1,7 +1,7 @@
-//! A model at fixed parameters as it runs: by the exponential integrator where it has a linear
-//! part, propagated from switch to switch where steps of one length would have to be too short,
-//! otherwise by Runge-Kutta steps or a solver with error control; or as the records give it. Measured quantities come along,
-//! and their derivatives where neighbouring motions do.
+//! Simulation of a model at fixed parameters: by the exponential integrator if the model has a
+//! linear part, by exact propagation between switches if fixed steps would be too short, otherwise
+//! by Runge-Kutta steps or a solver with error control. A given motion is read from the records.
+//! Outputs are computed with the motion, and derivatives with tangent vectors.
 
 use std::cell::RefCell;
 
@@ -45,60 +45,60 @@ pub struct Simulation<'m> {
     given: Option<GivenMotion>,
     /// The most steps of the solver with error control in one motion.
     most_steps: u64,
-    /// Whether to follow no motion any more.
+    /// Stop request that ends simulations.
     pub(crate) stop: Stop,
 }
 
-/// What drives neighbouring motions: so many differences of the accelerations.
+/// Drives of tangent vectors: differences of accelerations.
 pub struct NeighbourDrives<'d> {
-    /// How many.
+    /// Number of drives.
     pub count: usize,
-    /// What they are along a motion.
+    /// Values along a motion.
     pub drives: &'d mut dyn Drives,
 }
 
-/// A motion with neighbouring ones.
+/// A motion with tangent vectors.
 #[derive(Clone, Debug, Default)]
 pub struct LinearisedMotion {
-    /// The motion's own outputs.
+    /// Outputs of the motion.
     pub outputs: Outputs,
-    /// The states at the samples.
+    /// States at the samples.
     pub states: Vec<Vec<f64>>,
-    /// For each sample a row of derivatives per initial state, one number per channel.
+    /// Derivatives by the initial states: for each sample a row per state, one number per channel.
     pub by_state: Vec<f64>,
-    /// The same for each parameter, then for each drive.
+    /// Derivatives by each parameter, then by each drive, in the same layout.
     pub by_drive: Vec<f64>,
 }
 
-/// A motion and what is measured of it.
+/// A motion and its outputs.
 #[derive(Clone, Debug, Default)]
 pub struct Motion {
-    /// The state at each sample.
+    /// State at each sample.
     pub states: Vec<Vec<f64>>,
-    /// The channels' quantities: a row per sample, a number per channel.
+    /// Quantities of the channels: a row per sample, a number per channel.
     pub outputs: Vec<f64>,
 }
 
-/// Outputs of a window: a row per sample, a number per channel; and the state at the end.
+/// Outputs of a window and its end state.
 #[derive(Clone, Debug, Default)]
 pub struct Outputs {
-    /// Row by row.
+    /// Row per sample, number per channel.
     pub values: Vec<f64>,
-    /// The state at the last sample.
+    /// State at the last sample.
     pub last: Vec<f64>,
 }
 
 /// Outputs of a window with their derivatives by its initial state.
 #[derive(Clone, Debug, Default)]
 pub struct OutputTangents {
-    /// The motion's own outputs.
+    /// Outputs of the motion.
     pub outputs: Outputs,
-    /// For each sample a row of derivatives per initial state, one number per channel.
+    /// Derivatives: for each sample a row per initial state, one number per channel.
     pub by_state: Vec<f64>,
 }
 
 impl<'m> Simulation<'m> {
-    /// A simulation by Runge-Kutta steps, or by a solver where there are none.
+    /// Creates a simulation by Runge-Kutta steps, or by a solver if no step size is given.
     pub(crate) fn new(
         (measured, typical_sizes): (&'m MeasuredOutputs, &'m [f64]),
         evaluator: Evaluator,
@@ -123,7 +123,7 @@ impl<'m> Simulation<'m> {
         }
     }
 
-    /// Takes an integrator for the linear part, and what lies beyond that.
+    /// Selects an integrator for the linear part, with a nonlinear remainder.
     pub(crate) fn integrate(
         &mut self,
         integrator: ExponentialIntegrator,
@@ -133,30 +133,30 @@ impl<'m> Simulation<'m> {
         self.remainder = remainder;
     }
 
-    /// Takes a propagator for the motion.
+    /// Selects an exact propagator.
     pub(crate) fn propagate(&mut self, mut propagator: Propagator) {
         propagator.max_switch_rate = thresholds::FASTEST_SWITCHING;
         self.propagator = Some(propagator);
     }
 
-    /// Takes what surfaces do where they hold a motion; a solver follows that, and steps of one length
-    /// do not.
+    /// Adds sticking surfaces. A solver with error control is then used, because fixed steps do not
+    /// handle them.
     pub(crate) fn hold(&mut self, sided: Sided) {
         self.sided = Some(sided);
         self.longest_step = None;
     }
 
-    /// Takes what surfaces do where they hold a motion, for accelerations that are measured there.
+    /// Adds sticking surfaces for measured accelerations.
     pub(crate) fn measure_at_rest(&mut self, sided: Option<Sided>) {
         self.resting = sided;
     }
 
-    /// Takes the motion that records give, in the place of one of its own.
+    /// Selects the motion of the records instead of a simulated one.
     pub(crate) fn give(&mut self, given: GivenMotion) {
         self.given = Some(given);
     }
 
-    /// Gives up motions that take the solver with error control more steps, or cross more surfaces.
+    /// Limits the number of solver steps and of surface crossings; a motion that exceeds it fails.
     pub fn limit(&mut self, most: usize) {
         self.most_steps = most as u64;
         if let Some(integrator) = &mut self.integrator {
@@ -164,36 +164,37 @@ impl<'m> Simulation<'m> {
         }
     }
 
-    /// Whether the exponential integrator runs it.
+    /// Returns true if the exponential integrator is used.
     pub(crate) fn is_integrated(&self) -> bool {
         self.integrator.is_some()
     }
 
-    /// Whether neighbouring motions come along.
+    /// Returns true if tangent vectors are available.
     pub fn carries_tangents(&self) -> bool {
         self.integrator.is_some() && self.linear_outputs.is_some()
     }
 
-    /// Returns true if derivatives by parameters are exact: the whole model is linear between switches.
+    /// Returns true if derivatives by parameters are exact: the whole model is linear between
+    /// switches.
     pub(crate) fn differentiates_exactly(&self) -> bool {
         self.carries_tangents() && self.remainder.is_none()
     }
 
-    /// The measured quantities, where they are linear in the state.
+    /// Returns the outputs if they are linear in the state.
     pub fn linear_outputs(&self) -> Option<&LinearOutputs> {
         self.linear_outputs.as_ref()
     }
 
-    /// Differentiates by parameters: for each of them values to its sides; `own`: those of the model, all
-    /// of which are those of its linear part.
+    /// Selects the parameters of the derivatives: for each the values on both sides. `own`: values
+    /// of the model, whose parameters are all in its linear part.
     pub(crate) fn differentiate_by(&mut self, own: &[f64], moved: Vec<Vec<MovedParameters>>) {
         if let Some(integrator) = &mut self.integrator {
             integrator.differentiate_by(own, moved);
         }
     }
 
-    /// The motion from an initial state with neighbouring ones, where these come along: of every
-    /// initial state, if `by_state`, of so many parameters by which it is differentiated, and driven ones.
+    /// Simulates a motion with tangent vectors, if available: by each initial state if `by_state`,
+    /// by this number of parameters, and by the drives.
     pub fn linearised(
         &mut self,
         initial: &[f64],
@@ -246,10 +247,12 @@ impl<'m> Simulation<'m> {
         Some(found)
     }
 
-    /// The states at the samples (s, ascending) of a motion that starts at the first of them.
+    /// Returns the states at the samples (s, ascending) of a motion that starts at the first
+    /// sample.
     ///
     /// # Errors
-    /// Why the motion cannot be followed.
+    ///
+    /// The reason why the simulation failed.
     pub fn states(
         &mut self,
         initial: &[f64],
@@ -337,9 +340,11 @@ impl<'m> Simulation<'m> {
         Some(states)
     }
 
-    /// The channels' quantities at the samples of a motion that starts at the first of them.
+    /// Returns the quantities of the channels at the samples of a motion that starts at the first
+    /// sample.
     ///
     /// # Errors
+    ///
     /// As [`Simulation::states`].
     pub fn outputs(
         &mut self,
@@ -354,10 +359,11 @@ impl<'m> Simulation<'m> {
         })
     }
 
-    /// The states at the samples of a motion that starts at the first of them, and what the channels
-    /// measure there.
+    /// Returns states and quantities of the channels at the samples of a motion that starts at the
+    /// first sample.
     ///
     /// # Errors
+    ///
     /// As [`Simulation::states`].
     pub fn motion(
         &mut self,
@@ -375,10 +381,9 @@ impl<'m> Simulation<'m> {
         Ok(Motion { states, outputs })
     }
 
-    /// The channels' quantities and their derivatives by each initial state, if the exact
-    /// propagator takes the motion: for each sample a row of derivatives per state, one number
-    /// per channel. `steps`: over how much of each state a nonlinear observable is
-    /// differentiated.
+    /// Returns the quantities of the channels and their derivatives by each initial state, if the
+    /// exact propagator is used: for each sample a row per state, one number per channel. `steps`:
+    /// difference in each state for nonlinear observables.
     pub fn tangents(
         &mut self,
         initial: &[f64],
@@ -461,7 +466,7 @@ impl<'m> Simulation<'m> {
             .append(evaluator, point, &mut self.buffers, values);
     }
 
-    /// The rates of a state.
+    /// Returns the rates of a state.
     pub fn rates(&mut self, t: f64, state: &[f64], inputs: &[f64]) -> Vec<f64> {
         let mut rates = vec![0.0; state.len()];
         let point = Point { t, state, inputs };

@@ -1,12 +1,11 @@
-//! Smoothing without delay: a Butterworth low-pass run forwards and backwards. Which records
-//! are smoothed, and what for, is decided elsewhere.
+//! Zero-phase smoothing: a Butterworth low-pass filter, run forwards and backwards.
 
 use std::f64::consts::PI;
 
 use crate::thresholds;
 
-/// A column smoothed by a second-order Butterworth filter, forwards and backwards; missing
-/// samples are bridged by lines first.
+/// Smooths a column by a second-order Butterworth filter, forwards and backwards. Missing samples
+/// are interpolated first.
 pub fn smoothed(times: &[f64], column: &[f64]) -> Vec<f64> {
     let mut values = bridged(times, column);
     let padding = values
@@ -22,7 +21,7 @@ pub fn smoothed(times: &[f64], column: &[f64]) -> Vec<f64> {
     values
 }
 
-/// The slope of a smooth column, by central differences.
+/// Returns the slope of a smooth column by central differences.
 pub fn sloped(times: &[f64], values: &[f64]) -> Vec<f64> {
     let last = values.len() - 1;
     (0..values.len())
@@ -33,7 +32,7 @@ pub fn sloped(times: &[f64], values: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// Missing samples replaced by the line between their neighbours.
+/// Replaces missing samples by linear interpolation.
 pub fn bridged(times: &[f64], column: &[f64]) -> Vec<f64> {
     let mut values = column.to_vec();
     let known: Vec<usize> = (0..values.len())

@@ -1,16 +1,16 @@
-//! A specification's text and its linear part's.
+//! Text of a specification and of its linear part.
 
 /// Two texts of one specification.
 #[derive(Clone, Debug)]
 pub struct SpecificationTexts {
     /// The whole specification.
     pub whole: String,
-    /// The same without terms that are not linear between switches, where there are such.
+    /// The specification without terms that are nonlinear between switches, if it has such terms.
     pub linear: String,
 }
 
 impl SpecificationTexts {
-    /// The texts of a specification all of which counts as linear until it is derived.
+    /// Takes the whole specification as linear until it is derived.
     pub fn of(text: &str) -> Self {
         Self {
             whole: text.to_owned(),

@@ -1,4 +1,4 @@
-//! How a search is told to stop.
+//! Stop request of a search.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 
 use crate::error::DiscoverError;
 
-/// A request to stop, made on any thread. What is computed between it and the end of the search is
-/// worth nothing: no motion can be followed any more.
+/// Request to stop a search, from any thread. All later simulations fail, so that later results are
+/// invalid.
 #[derive(Clone, Debug)]
 pub struct Stop {
     is_requested: Arc<AtomicBool>,
@@ -30,17 +30,17 @@ impl Default for Stop {
 }
 
 impl Stop {
-    /// Asks to stop.
+    /// Requests a stop.
     pub fn request(&self) {
         self.is_requested.store(true, Ordering::Relaxed);
     }
 
-    /// Whether somebody asked, or the time is over.
+    /// Returns true if a stop was requested or the time limit has passed.
     pub fn is_requested(&self) -> bool {
         self.is_requested.load(Ordering::Relaxed) || self.is_late()
     }
 
-    /// One that ends the search so long from now, with what is known by then.
+    /// Creates a request that ends the search after a time, with the results until then.
     pub fn after(most: Duration) -> Self {
         Self {
             most: Some(most),
@@ -48,12 +48,12 @@ impl Stop {
         }
     }
 
-    /// How long the search may take.
+    /// Returns the time limit of the search.
     pub(crate) fn most(&self) -> Option<Duration> {
         self.most
     }
 
-    /// From now on the time may be over, if it is limited.
+    /// Starts the time limit, if there is one.
     pub(crate) fn arm(&self) {
         if let Some(most) = self.most {
             let limit = u64::try_from(most.as_nanos()).unwrap_or(u64::MAX - 1);
@@ -61,20 +61,21 @@ impl Stop {
         }
     }
 
-    /// Ends what a limit made of it: what is left to do has all the time it takes.
+    /// Removes the time limit for the remaining work.
     pub(crate) fn lift(&self) {
         self.limit.store(u64::MAX, Ordering::Relaxed);
     }
 
-    /// Whether the time is over.
+    /// Returns true if the time limit has passed.
     pub(crate) fn is_late(&self) -> bool {
         let limit = self.limit.load(Ordering::Relaxed);
         limit != u64::MAX && self.begin.elapsed() >= Duration::from_nanos(limit)
     }
 
-    /// Goes on unless somebody asked to stop, or the time is over.
+    /// Returns an error if a stop was requested or the time limit has passed.
     ///
     /// # Errors
+    ///
     /// [`DiscoverError::Stopped`].
     pub(crate) fn check(&self) -> Result<(), DiscoverError> {
         match self.is_requested() {

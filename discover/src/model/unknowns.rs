@@ -1,5 +1,5 @@
-//! What is estimated beside the windows' initial states: parameters of the model and how the
-//! sensors differ from what they measure, each with its prior and its bounds.
+//! Unknowns of an estimation in addition to the initial states: parameters of the model and errors
+//! of the sensors, each with prior and bounds.
 
 use crate::ids::ChannelId;
 use crate::interval::Interval;
@@ -12,25 +12,25 @@ use eomgen_records::record::Record;
 use eomgen_records::samples::typical_step;
 use eomgen_records::windows::{LONGEST_DELAY, LONGEST_LEAD};
 
-/// What an unknown is.
+/// Kind of an unknown.
 #[derive(Clone, Debug, PartialEq)]
 pub enum What {
-    /// A parameter, by name.
+    /// Parameter, by name.
     Parameter(String),
-    /// One over a parameter, by name: an effect that is absent where it is infinite.
+    /// Inverse of a parameter, by name, for an effect that vanishes at infinity.
     Inverse(String),
-    /// The gain of a channel.
+    /// Gain of a channel.
     Gain(ChannelId),
-    /// The bias of a channel, SI.
+    /// Bias of a channel, SI.
     Bias(ChannelId),
-    /// The delay of a channel, s.
+    /// Delay of a channel, s.
     Delay(ChannelId),
-    /// The delay of the input, s, by which all channels are late.
+    /// Common delay of all channels due to the input, s.
     InputDelay,
 }
 
 impl What {
-    /// The parameter that it is, or one over it.
+    /// Returns the name of the parameter, also for its inverse.
     pub fn parameter(&self) -> Option<&str> {
         match self {
             Self::Parameter(name) | Self::Inverse(name) => Some(name),
@@ -38,7 +38,7 @@ impl What {
         }
     }
 
-    /// Its value as a specification states it, from its estimate, SI.
+    /// Returns the value in the form of the specification, from its estimate, SI.
     pub fn stated(&self, value: f64) -> f64 {
         match self {
             Self::Inverse(_) => 1.0 / value,
@@ -51,31 +51,31 @@ impl What {
     }
 }
 
-/// What is known of a value before: a normal distribution, SI.
+/// Normal prior of a value, SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NormalPrior {
-    /// Its mean.
+    /// Mean.
     pub mean: f64,
-    /// Its standard deviation.
+    /// Standard deviation.
     pub sd: f64,
 }
 
-/// Something to be estimated.
+/// An unknown of an estimation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unknown {
-    /// What it is.
+    /// Kind of the unknown.
     pub what: What,
-    /// What it is called in messages.
+    /// Name in messages.
     pub label: String,
-    /// Where the estimate begins, SI.
+    /// Start value, SI.
     pub start: f64,
-    /// What is known of it before.
+    /// Prior.
     pub prior: Option<NormalPrior>,
-    /// The admissible values, SI.
+    /// Admissible values, SI.
     pub bounds: Interval,
-    /// The same where it need not be what was declared.
+    /// Admissible values without the declared prior, SI.
     pub limits: Interval,
-    /// A change that matters, SI.
+    /// Significant change, SI.
     pub scale: f64,
 }
 
@@ -85,12 +85,12 @@ impl Unknown {
         matches!(self.what, What::Parameter(_) | What::Inverse(_))
     }
 
-    /// A value moved into the bounds.
+    /// Returns the nearest admissible value.
     pub fn admissible(&self, value: f64) -> f64 {
         self.bounds.clamp(value)
     }
 
-    /// The same without what was declared of it.
+    /// Returns the unknown without its declared prior.
     pub fn without_prior(&self) -> Self {
         Self {
             prior: None,
@@ -116,8 +116,8 @@ impl Unknown {
     }
 }
 
-/// The unknowns of the null model: parameters declared uncertain, gains and biases of inputs of which
-/// the dataset speaks and, where there is more than noise to tell them from, the sensors.
+/// Returns the unknowns of the null model: parameters declared uncertain, declared gains and biases
+/// of inputs and, if the data can determine them, the sensors.
 pub fn of_null_model(dataset: &Dataset, model: &Model, values: &[(String, f64)]) -> Vec<Unknown> {
     let mut unknowns = Vec::new();
     for uncertain in &dataset.uncertain {
@@ -183,8 +183,8 @@ fn of_input_delay(dataset: &Dataset, model: &Model, step: f64) -> Option<Unknown
     })
 }
 
-/// The delay of the input before anything is fitted, s. Where the specification describes sensors, a fit
-/// has written the delay of the input into theirs.
+/// Returns the delay of the input before a fit, s. If the specification describes sensors, an
+/// earlier fit has added the delay of the input to theirs.
 pub fn expected_input_delay(inputs: &[InputPriors], model: &Model) -> f64 {
     let said = delayed_input(inputs).and_then(|(_, delay)| delay.mean);
     match model.sensors.is_empty() {
@@ -193,7 +193,7 @@ pub fn expected_input_delay(inputs: &[InputPriors], model: &Model) -> f64 {
     }
 }
 
-/// That a mean which the dataset gives is not added to what the specification has.
+/// Returns a note if the mean delay of the dataset is not added to that in the specification.
 pub fn note_of_input_delay(inputs: &[InputPriors], model: &Model) -> Option<String> {
     let (input, expected) = delayed_input(inputs)?;
     let mean = expected.mean.filter(|mean| *mean != 0.0)?;
@@ -204,8 +204,8 @@ pub fn note_of_input_delay(inputs: &[InputPriors], model: &Model) -> Option<Stri
     })
 }
 
-/// The unknowns of one sensor, with the priors of its channel, or the usual ones where that says
-/// nothing. What is known for certain is none of them.
+/// Returns the unknowns of a sensor, with the priors of its channel or the default priors. Values
+/// that are declared exact are not included.
 pub fn of_sensor(id: ChannelId, channel: &Channel, model: &Model, step: f64) -> Vec<Unknown> {
     let expected = ExpectedSensor::of(channel, model);
     let sd = |said: Option<Expected>, usual: f64| said.map_or(usual, |said| said.sd);
@@ -241,20 +241,21 @@ pub fn of_sensor(id: ChannelId, channel: &Channel, model: &Model, step: f64) -> 
     unknowns.into_iter().filter(is_open).collect()
 }
 
-/// What is expected of a sensor before anything is fitted.
+/// Values of a sensor before a fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExpectedSensor {
-    /// Its gain.
+    /// Gain.
     pub gain: f64,
-    /// Its bias, SI.
+    /// Bias, SI.
     pub bias: f64,
-    /// Its delay, s.
+    /// Delay, s.
     pub delay: f64,
 }
 
 impl ExpectedSensor {
-    /// As the specification says, else as the dataset does, else that of a true sensor: what a fit
-    /// wrote into the specification is where the next one begins.
+    /// Returns the values of the specification, otherwise of the dataset, otherwise of an ideal
+    /// sensor. A later search so continues from the values that a fit has written into the
+    /// specification.
     pub fn of(channel: &Channel, model: &Model) -> Self {
         let written = model.sensors.iter().find(|s| s.channel == channel.name);
         let said = |prior: Option<Expected>| prior.and_then(|prior| prior.mean);
@@ -273,7 +274,7 @@ impl ExpectedSensor {
     }
 }
 
-/// A parameter keeps its sign, and the bounds of the specification.
+/// Returns the bounds of a parameter in the specification, restricted to its sign.
 pub fn sign_bounds(parameter: &Parameter, value: f64) -> Interval {
     let of_sign = match value {
         v if v > 0.0 => Interval::new(0.0, f64::INFINITY),

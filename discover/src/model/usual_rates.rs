@@ -1,4 +1,4 @@
-//! How fast what is measured moves.
+//! Usual rates of measured quantities.
 
 use std::collections::BTreeMap;
 
@@ -7,8 +7,8 @@ use eomgen_model_spec::model::Model;
 use crate::model::smoothing::{sloped, smoothed};
 use eomgen_records::dataset::{Dataset, Quantity};
 
-/// The usual rate of every observable and coordinate that is measured, by its name in the model:
-/// the root mean square of its slope, or of the rate itself where that is measured or given.
+/// Returns the usual rate of each measured observable and coordinate, by its name in the model: the
+/// RMS of its slope, or of the rate if it is measured or given.
 pub fn usual_rates(dataset: &Dataset, model: &Model) -> BTreeMap<String, f64> {
     let record = &dataset.train[0];
     let mut rates = BTreeMap::new();

@@ -1,4 +1,4 @@
-//! Results put together from fits and from what the search found.
+//! Results from the fits and the search.
 
 use crate::ids::{ChannelId, UnknownId};
 use std::collections::BTreeMap;
@@ -19,7 +19,7 @@ use crate::report::result::{
 };
 use crate::search::found::{Accepted, Found, Rejected};
 
-/// The gap of each channel, before and after.
+/// Computes the gap of each channel before and after the search.
 pub(crate) fn gap(
     problem: &EstimationProblem<'_>,
     before: &Fit,
@@ -38,16 +38,16 @@ pub(crate) fn gap(
     })
 }
 
-/// What speaks for effects, or against them, beside what each closes.
+/// Evidence for the certainty of effects, besides their own statistics.
 #[derive(Clone, Copy)]
 pub(crate) struct Certainty {
-    /// Whether what is left and what was fitted beside them speak for nothing else.
+    /// Whether the remaining gap and the nuisances allow a definite name.
     pub is_sure: bool,
-    /// What a right model would leave, in standard deviations of the noise.
+    /// Noise floor, in standard deviations of the noise.
     pub floor: f64,
 }
 
-/// The effects that were accepted, by decreasing gap closed.
+/// Returns the accepted effects by decreasing closed gap.
 pub(crate) fn effects(
     problem: &EstimationProblem<'_>,
     found: &Found,
@@ -72,7 +72,7 @@ pub(crate) fn effects(
         .collect()
 }
 
-/// The effects that were not, testable or not.
+/// Returns the rejected effects, testable or not.
 pub(crate) fn rejected(
     judged: &Judged,
     found: &Found,
@@ -103,7 +103,7 @@ pub(crate) fn rejected(
     .collect()
 }
 
-/// The test gap step by step: of the model as it is, and after each round.
+/// Returns the test gap of the original model and after each round.
 pub(crate) fn steps(found: &Found) -> Vec<Step> {
     let mut steps = vec![Step {
         added: Vec::new(),
@@ -131,7 +131,7 @@ fn reason(rejected: &Rejected) -> String {
     }
 }
 
-/// The part of the gap that was closed; none where there was hardly one.
+/// Returns the closed fraction of the gap; `None` if there was almost no gap.
 pub(crate) fn closure(before: &Fit, after: &Fit, floor: &NoiseFloor) -> OnRecords<Option<f64>> {
     let closed = |before: f64, after: f64| {
         let part = (before - after) / (before - floor.rms);
@@ -211,7 +211,7 @@ fn found_effect(
     }
 }
 
-/// What was fitted beside the effects, with what was declared of it.
+/// Returns the nuisances of a fit with their declared priors.
 pub(crate) fn nuisances(problem: &EstimationProblem<'_>, fit: &Fit) -> Vec<Nuisance> {
     let of = |(id, unknown): (UnknownId, &Unknown)| {
         let prior = unknown.prior?;
@@ -244,7 +244,7 @@ pub(crate) fn nuisances(problem: &EstimationProblem<'_>, fit: &Fit) -> Vec<Nuisa
     fit.unknowns().filter_map(of).collect()
 }
 
-/// Nuisances that stand at their bounds, in words.
+/// Returns notes on nuisances at their bounds.
 pub(crate) fn bound_notes(nuisances: &[Nuisance]) -> Vec<String> {
     let at_bound = nuisances.iter().filter(|of| of.is_at_bound());
     let note = |of: &Nuisance| {
@@ -282,7 +282,7 @@ fn named(problem: &EstimationProblem<'_>, fit: &Fit, what: &What) -> Option<(Str
     }
 }
 
-/// Parameters of the null model, by their names.
+/// Returns the parameters of the null model by name.
 pub(crate) fn refitted(fit: &Fit, accepted: &[Accepted]) -> BTreeMap<String, Estimated> {
     let mut found = BTreeMap::new();
     for (id, unknown) in fit.unknowns() {
@@ -308,7 +308,7 @@ pub(crate) fn refitted(fit: &Fit, accepted: &[Accepted]) -> BTreeMap<String, Est
     found
 }
 
-/// The sensor of each channel.
+/// Returns the sensor of each channel.
 pub(crate) fn sensors(problem: &EstimationProblem<'_>, fit: &Fit) -> BTreeMap<String, Sensor> {
     let shooting = fit.shooting(problem);
     let sensors = shooting.sensors(&fit.train.estimate.theta);

@@ -1,4 +1,4 @@
-//! The next experiment in words, and drawn.
+//! Text and figures of the next experiment.
 
 use eomgen_page::{Figure, figure, section};
 use eomgen_plot::{Panel, Reference, Series, TimeHistory, time_history};
@@ -10,7 +10,7 @@ use crate::model::problem::EstimationProblem;
 use crate::report::quantity::{plain, quantity};
 use crate::thresholds;
 
-/// What to play, and what it comes to, as sentences.
+/// Returns sentences on the proposed input and its predicted result.
 pub(crate) fn sentences(next: &NextExperiment, files: &[ExperimentFile]) -> String {
     let (Some(input), Some(form), Some(separation)) = (&next.input, &next.form, next.separation)
     else {
@@ -58,7 +58,7 @@ fn not_told(next: &NextExperiment) -> String {
     }
 }
 
-/// What is to be played, and what the models predict of it.
+/// Draws the proposed inputs and the predictions of the models.
 pub(crate) fn drawn(problem: &EstimationProblem<'_>, files: &[ExperimentFile]) -> Markup {
     if files.is_empty() {
         return html! {};

@@ -1,4 +1,4 @@
-//! Results as JSON documents: `comparison.json` and `discovery.json`.
+//! JSON documents `comparison.json` and `discovery.json`.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +16,7 @@ use crate::report::summary::Summary;
 const SCHEMA: u32 = 2;
 
 impl Comparison {
-    /// Its verdict's word in documents.
+    /// Returns the verdict name of the documents.
     pub fn verdict(&self) -> &'static str {
         match self.has_gap {
             true => "gap_found",
@@ -24,7 +24,7 @@ impl Comparison {
         }
     }
 
-    /// The document.
+    /// Returns the document `comparison.json`.
     pub fn to_json(&self) -> Value {
         let gap = |gap: &ChannelGap| {
             json!({
@@ -42,7 +42,7 @@ impl Comparison {
 }
 
 impl Discovery {
-    /// The document.
+    /// Returns the document `discovery.json`.
     pub fn to_json(&self) -> Value {
         let gap = |gap: &ChannelGap| {
             json!({
@@ -115,14 +115,14 @@ fn on_records(both: OnRecords<f64>) -> Value {
     json!({"train": both.train, "test": both.test})
 }
 
-/// Estimates, by their names.
+/// Writes estimates by name.
 pub(crate) fn estimates(of: &BTreeMap<String, Estimated>) -> Value {
     let entry = |of: &Estimated| json!({"value": of.value, "sd": of.sd, "unit": of.unit});
     let entries = of.iter().map(|(name, of)| (name.clone(), entry(of)));
     Value::Object(entries.collect())
 }
 
-/// Sensors, by the names of their channels.
+/// Writes sensors by the name of their channel.
 pub(crate) fn sensors(of: &BTreeMap<String, Sensor>) -> Value {
     let entry = |of: &Sensor| json!({"bias": of.bias, "gain": of.gain, "delay": of.delay});
     let entries = of.iter().map(|(name, of)| (name.clone(), entry(of)));

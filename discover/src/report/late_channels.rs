@@ -1,4 +1,5 @@
-//! Channels that are all late alike: sensors do that together less often than an input that acts late.
+//! Check for a common delay of all channels, which is more often a delay of the input than of each
+//! sensor.
 
 use crate::fit::fitted::Fit;
 use crate::ids::UnknownId;
@@ -6,7 +7,7 @@ use crate::model::problem::EstimationProblem;
 use crate::model::unknowns::{NormalPrior, Unknown, What};
 use crate::thresholds;
 
-/// What it may mean that every channel came out as late as the fit admits, or later, and all by the same.
+/// Returns a note if all channels have the same delay at or beyond the bound of the fit.
 pub(crate) fn note_of_late_channels(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<String> {
     if fit
         .unknowns()

@@ -1,5 +1,4 @@
-//! What is left of the gap, in noise floors, and whether that is so much that what is named may be
-//! something else.
+//! Remaining gap in noise floors, and limit above which the name of an effect is provisional.
 
 use std::collections::BTreeMap;
 
@@ -7,18 +6,18 @@ use crate::report::quantity::plain;
 use crate::report::result::ChannelGap;
 use crate::thresholds;
 
-/// Of which model something is left.
+/// Model whose gap is reported.
 #[derive(Clone, Copy)]
 pub(crate) enum Stage {
-    /// Of the model as it is.
+    /// The original model.
     Before,
-    /// Of the model with what was found.
+    /// The model with the found effects.
     After,
 }
 
-/// What is left of the channel of which most is left on the records held out, in noise floors.
+/// Gap of the channel with the largest gap on the held-out records, in noise floors.
 pub(crate) struct Left {
-    /// So many times what a right model leaves.
+    /// Multiple of the noise floor.
     pub(crate) floors: f64,
     /// The same of the channel of which most is left on the training records.
     training: f64,
@@ -27,7 +26,7 @@ pub(crate) struct Left {
 }
 
 impl Left {
-    /// What is left of the channels' gap.
+    /// Finds the largest remaining gap of the channels.
     pub(crate) fn of(gap: &BTreeMap<String, ChannelGap>, stage: Stage) -> Self {
         let of = |gap: &ChannelGap| match (stage, gap.after) {
             (Stage::After, Some(after)) => after,
@@ -47,14 +46,15 @@ impl Left {
         }
     }
 
-    /// Whether so much is left, on either set of records, that what is named may stand in for
-    /// something else.
+    /// Returns true if the gap, on either set of records, is so large that another effect may be
+    /// missing.
     pub(crate) fn is_much(&self) -> bool {
         let most = self.floors.max(self.training);
         most > thresholds::MAY_STAND_IN || !self.floors.is_finite()
     }
 
-    /// That what is missing acts in the records held out alone: no search among records to learn from finds it.
+    /// Returns a note if the missing effect acts in the held-out records only. A search in the
+    /// training records cannot find it.
     pub(crate) fn note(&self) -> Option<String> {
         let is_hidden = self.training < thresholds::CLOSE
             && self.floors > thresholds::MAY_STAND_IN
@@ -69,7 +69,7 @@ impl Left {
         })
     }
 
-    /// As `1.2 noise floors in tip`.
+    /// Returns text such as `1.2 noise floors in tip`.
     pub(crate) fn words(&self) -> String {
         let number = match self.floors {
             floors if floors.is_nan() => return "an unknown part".to_owned(),
@@ -86,7 +86,7 @@ impl Left {
         }
     }
 
-    /// Behind `words`: what that means.
+    /// Returns an explanation that follows the text of `describe`.
     pub(crate) fn meaning(&self) -> &'static str {
         match self.floors < thresholds::ONE_FLOOR {
             true => ", about what a right model leaves",

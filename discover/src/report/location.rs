@@ -1,5 +1,4 @@
-//! Where the model and the records disagree, in plain sentences: which channel, when, at which
-//! speed, at which frequency.
+//! Sentences on the difference between model and records: channel, time, speed and frequency.
 
 use crate::fit::fitted::Fit;
 use crate::fit::residual_spectrum::{SpectralPeak, training_peak};
@@ -10,7 +9,7 @@ use crate::residual_force::types::ResidualForce;
 use crate::residual_force::wording::described;
 use crate::thresholds;
 
-/// The sentences: the equation in which a force is missing first, where that could be estimated.
+/// Returns the sentences, first the equation of the residual force if it was estimated.
 pub fn located(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
@@ -67,7 +66,7 @@ fn by_channel(problem: &EstimationProblem<'_>, fit: &Fit) -> String {
     text
 }
 
-/// The training window with the largest residuals; none if there is only one.
+/// Returns the training window with the largest residuals; `None` if there is only one window.
 pub(crate) fn worst_window(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<WindowId> {
     let squares = &fit.train.estimate.squares;
     let per_sample = |id: WindowId| squares[id] / problem.train.list[id].times.len() as f64;

@@ -1,8 +1,10 @@
-//! From records to a result: the whole way ([`run`]) from what is handed in ([`origin`]), the typed
-//! [`result`] put together in `discovery`, where model and records disagree ([`location`]), the
-//! specification with what was found ([`write_back`]) run again ([`mod@resimulation`]); how sure it is
-//! (`left`) and the answer in two sentences (`summary`); documents (`json`) and the page (`page`) with its `pictures` and what was measured over what is simulated
-//! (`overlay`), how numbers are written there (`quantity`), sizes that look like a wrong unit (`units`), noise of a motion that is given (`motion_noise`), channels that are all late (`late_channels`), and what was found, to be moved in the page (`playback`), and what to play next (`experiment`).
+//! Results of a comparison or search: the whole computation ([`run`]) from the input ([`origin`]),
+//! the [`result`] types filled in `discovery`, the [`location`] of the difference, the extended
+//! specification ([`write_back`]) and its simulation ([`mod@resimulation`]), the remaining gap
+//! (`left`) and the `summary` in two sentences, documents (`json`) and the page (`page`) with its
+//! `pictures` and the `overlay` of measurement and simulation, formatted numbers (`quantity`),
+//! sizes that suggest a wrong unit (`units`), noise of a given motion (`motion_noise`), a common
+//! delay (`late_channels`), the interactive model (`playback`), and the next `experiment`.
 
 mod discovery;
 mod experiment;

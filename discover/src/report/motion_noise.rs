@@ -1,4 +1,4 @@
-//! What noise of a motion that is given makes of the torques that it takes.
+//! Noise of the required torques due to noise of a given motion.
 
 use eomgen_records::dataset::Quantity;
 use eomgen_records::noise;
@@ -7,8 +7,8 @@ use crate::fit::fitted::Fit;
 use crate::ids::ChannelId;
 use crate::model::problem::EstimationProblem;
 
-/// For each torque a remark where what the model computes along the first training record is rougher than what was
-/// declared of the torque's noise: then noise of the motion is compared, and no effect.
+/// Returns a note for each torque whose computed value along the first training record is noisier
+/// than its declared noise. The comparison is then dominated by noise of the motion.
 pub(crate) fn notes_of_motion_noise(problem: &EstimationProblem<'_>, fit: &Fit) -> Vec<String> {
     let channels = problem.dataset.channels.iter();
     let channels = ChannelId::first(problem.noise.len()).zip(channels);

@@ -1,5 +1,5 @@
-//! From what a result came: the specification and the records with their hashes, the seed, the
-//! program and the day.
+//! Origin of a result: the specification and records with their hashes, the seed, the version and
+//! the date.
 
 use std::path::Path;
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -10,40 +10,40 @@ use eomgen_records::dataset::Dataset;
 /// A specification to be compared with records.
 #[derive(Clone, Copy, Debug)]
 pub struct Specification<'s> {
-    /// Its path, for messages.
+    /// Path, for messages.
     pub path: &'s str,
-    /// Its text.
+    /// Text.
     pub text: &'s str,
-    /// The order of its fields, if not their own.
+    /// Order of the fields; `None` for their default.
     pub order: Option<usize>,
 }
 
-/// From what a result came.
+/// Origin of a result.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Origin {
-    /// The program's version.
+    /// Version of the program.
     pub version: &'static str,
-    /// The day in universal time, `2026-11-23`.
+    /// Date in universal time, `2026-11-23`.
     pub date: String,
-    /// The seed of the bootstrap.
+    /// Seed of the bootstrap.
     pub seed: u64,
-    /// The specification, then the dataset's file, then its records.
+    /// Specification, dataset file and records.
     pub files: Vec<HashedFile>,
 }
 
 /// A file and its hash.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct HashedFile {
-    /// What it was: `specification`, `dataset`, `train[0]`, ...
+    /// Role: `specification`, `dataset`, `train[0]`, ...
     pub role: String,
-    /// Its path, as it was given.
+    /// Path as given.
     pub path: String,
-    /// SHA-256, 64 hexadecimal digits; none where it can no longer be read.
+    /// SHA-256, 64 hexadecimal digits; `None` if the file can no longer be read.
     pub sha256: Option<String>,
 }
 
 impl Origin {
-    /// Of a specification and records that are compared now.
+    /// Records the origin of a result that is computed now.
     pub(crate) fn of(specification: Specification<'_>, dataset: &Dataset, seed: u64) -> Self {
         let hashed = |role: &str, path: &Path| HashedFile {
             role: role.to_owned(),

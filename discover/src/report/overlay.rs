@@ -1,5 +1,5 @@
-//! Measured and simulated motion over each other: the first held-out record, and the stretch of the training
-//! records where the model as it was is furthest off.
+//! Measured and simulated motion in one figure: for the first held-out record, and for the part of
+//! the training records with the largest residuals of the original model.
 
 use eomgen_page::{Figure, figure};
 use eomgen_plot::{Panel, Series, TimeHistory, time_history};
@@ -18,7 +18,7 @@ const STRETCH: f64 = 0.1;
 /// The fewest samples of that part.
 const FEWEST: usize = 40;
 
-/// Both figures, of the model as it was and, where something was found, with that.
+/// Draws both figures for the original model and, if effects were found, for the extended model.
 pub(crate) fn overlay(
     problem: &EstimationProblem<'_>,
     before: &Fit,

@@ -1,4 +1,4 @@
-//! Pictures for a page: residuals of the test record, and the residual force.
+//! Figures of a page: residuals of the test record and the residual force.
 
 use eomgen_analysis::spectrum::PowerSpectrum;
 use eomgen_page::{Figure, figure, table};
@@ -13,7 +13,7 @@ use crate::model::problem::EstimationProblem;
 use crate::residual_force::figures::figures as figures_of_force;
 use crate::residual_force::types::ResidualForce;
 
-/// How the equations compare, and what the force in one of them is like.
+/// Draws the comparison of the equations and the profiles of the residual force.
 pub(crate) fn force_section(force: &ResidualForce, after: Option<&ResidualForce>) -> Markup {
     let percent = |part: f64| format!("{:.0} %", 100.0 * part.max(0.0));
     let rows = html! {
@@ -45,7 +45,7 @@ fn drawn(svg: &str) -> Markup {
     html! { @if !svg.is_empty() { (figure(Figure { svg, caption: "" })) } }
 }
 
-/// Residuals over time and their spectra, before and after.
+/// Draws residuals over time and their spectra, before and after the search.
 pub(crate) fn figures(
     problem: &EstimationProblem<'_>,
     before: &Fit,

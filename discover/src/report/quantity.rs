@@ -1,5 +1,5 @@
-//! Quantities as engineers write them: as many digits as are known, in a multiple of the unit that
-//! reads well.
+//! Formatted quantities: significant digits according to the uncertainty, and a readable multiple
+//! of the unit.
 
 use eomgen_plot::scaled_unit;
 
@@ -12,8 +12,8 @@ const PLAIN: std::ops::Range<f64> = 0.1..1e4;
 /// The same for units that take no prefix.
 const PLAIN_WITHOUT_PREFIX: std::ops::Range<f64> = 1e-3..1e5;
 
-/// A value with one standard deviation: `12.03 ± 0.02 N`, the deviation with one digit, or two where
-/// the first is 1. A deviation that is not known is left out.
+/// Formats a value with its standard deviation: `12.03 ± 0.02 N`. The deviation has one digit, or
+/// two if the first is 1. An unknown deviation is omitted.
 pub(crate) fn estimate(value: f64, sd: f64, unit: &str) -> String {
     if !(sd.is_finite() && sd > 0.0) {
         return quantity(value, 4, unit);
@@ -33,7 +33,7 @@ pub(crate) fn estimate(value: f64, sd: f64, unit: &str) -> String {
     with_unit(&format!("{value} ± {sd}"), &unit, true)
 }
 
-/// A value with so many digits: `5.73 mm`.
+/// Formats a value with this number of digits and a unit: `5.73 mm`.
 pub(crate) fn quantity(value: f64, digits: i32, unit: &str) -> String {
     if !value.is_finite() {
         return "not known".to_owned();
@@ -44,7 +44,7 @@ pub(crate) fn quantity(value: f64, digits: i32, unit: &str) -> String {
     with_unit(&text, &unit, false)
 }
 
-/// A plain number with so many digits: `57300`, `1.02`.
+/// Formats a number with this number of digits: `57300`, `1.02`.
 pub(crate) fn plain(value: f64, digits: i32) -> String {
     if !value.is_finite() {
         return "not known".to_owned();
@@ -52,12 +52,12 @@ pub(crate) fn plain(value: f64, digits: i32) -> String {
     to_place(value, exponent(value.abs()) - digits + 1)
 }
 
-/// A plain number with one digit after the point.
+/// Formats a number with one decimal place.
 pub(crate) fn to_tenths(value: f64) -> String {
     to_place(value, -1)
 }
 
-/// A part as percents; all but all is not called all.
+/// Formats a fraction in percent. A fraction below 1 is never shown as 100 %.
 pub(crate) fn percent(part: f64) -> String {
     match 100.0 * part {
         p if !p.is_finite() => "an unknown part".to_owned(),
@@ -117,7 +117,7 @@ fn to_place(value: f64, place: i32) -> String {
     }
 }
 
-/// A sentence of the documents with its numbers written for people: `±` and powers of ten.
+/// Replaces plain notation of numbers in a sentence by `±` and powers of ten.
 pub(crate) fn readable(text: &str) -> String {
     let words = text.split(' ').map(|word| match word {
         "+-" => "±".to_owned(),

@@ -1,5 +1,5 @@
-//! The specification that was written, run on the records: what is handed on is the text, not the
-//! fit from which it was written.
+//! Simulation of the extended specification on the records. It tests the written text instead of
+//! the fit.
 
 use crate::error::DiscoverError;
 use crate::fit::fitted::Fit;
@@ -10,20 +10,21 @@ use crate::fit::shooting::Shooting;
 use crate::model::problem::EstimationProblem;
 use eomgen_records::windows::Windows;
 
-/// What a specification leaves, root mean squares over all channels, in standard deviations.
+/// RMS residuals of a specification over all channels, in standard deviations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resimulation {
-    /// Of the training records.
+    /// For the training records.
     pub train: f64,
-    /// Of the test records.
+    /// For the test records.
     pub test: f64,
 }
 
-/// Runs a specification's text with its own numbers on the windows of a fit, from where that begins
-/// them, seen by the sensors that the text describes.
+/// Simulates a specification with its own numbers and sensors on the windows of a fit, from the
+/// initial states of that fit.
 ///
 /// # Errors
-/// What is wrong with the text.
+///
+/// An invalid text.
 pub fn resimulated(
     problem: &EstimationProblem<'_>,
     fit: &Fit,

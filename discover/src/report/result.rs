@@ -1,4 +1,4 @@
-//! The results of a comparison and of a search. They are serialised in `json`, and shown in
+//! Results of a comparison and of a search. They are written as JSON in `json` and as a page in
 //! `page`.
 
 use std::collections::BTreeMap;
@@ -12,99 +12,99 @@ use crate::report::resimulation::Resimulation;
 use crate::search::acceptance::TestStatistics;
 use crate::thresholds;
 
-/// A root mean square of each set of records.
+/// A value for each set of records.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OnRecords<T> {
-    /// Of the records that were fitted to.
+    /// For the training records.
     pub train: T,
-    /// Of the records held out.
+    /// For the held-out records.
     pub test: T,
 }
 
-/// An estimate, in its unit.
+/// An estimate with its unit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Estimated {
-    /// The value.
+    /// Value.
     pub value: f64,
-    /// One standard deviation.
+    /// Standard deviation.
     pub sd: f64,
-    /// The unit of both.
+    /// Unit of both.
     pub unit: String,
 }
 
-/// The root mean squares of a channel's residuals, in its SI unit.
+/// RMS residuals of a channel, in its SI unit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelGap {
-    /// The unit.
+    /// Unit.
     pub unit: String,
-    /// What a right model would leave.
+    /// Noise floor.
     pub floor: f64,
-    /// What the model leaves as it is.
+    /// RMS of the original model.
     pub before: OnRecords<f64>,
-    /// What it leaves with what was found; none in a comparison.
+    /// RMS of the model with the found effects; `None` in a comparison.
     pub after: Option<OnRecords<f64>>,
 }
 
-/// How a sensor differs from a true one.
+/// Errors of a sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensor {
-    /// In the channel's SI unit.
+    /// Bias in the SI unit of the channel.
     pub bias: f64,
-    /// Without unit.
+    /// Gain, without unit.
     pub gain: f64,
-    /// In s.
+    /// Delay, s.
     pub delay: f64,
 }
 
-/// What both a comparison and a search tell.
+/// Results of both a comparison and a search.
 #[derive(Clone, Debug)]
 pub struct Compared {
-    /// The dataset's title; empty where it has none.
+    /// Title of the dataset; may be empty.
     pub title: String,
-    /// The gap of each channel, by its name.
+    /// Gap of each channel, by its name.
     pub gap: BTreeMap<String, ChannelGap>,
-    /// Parameters of the null model, by their names.
+    /// Parameters of the null model, by name.
     pub refitted: BTreeMap<String, Estimated>,
-    /// The sensor of each channel, by its name.
+    /// Sensor of each channel, by the name of the channel.
     pub sensors: BTreeMap<String, Sensor>,
-    /// Where model and records disagree, in sentences.
+    /// Sentences on the location of the difference.
     pub location: String,
-    /// What is worth a remark.
+    /// Notes.
     pub notes: Vec<String>,
-    /// What was fitted beside what is sought, with what was declared of it.
+    /// Nuisances of the fit with their declared priors.
     pub nuisances: Vec<Nuisance>,
-    /// From what, and by which program, this came.
+    /// Origin of the result.
     pub origin: Origin,
-    /// Pictures for the page.
+    /// Figures of the page.
     pub(crate) pictures: Pictures,
 }
 
-/// Something fitted beside what is sought: what was declared of it, and what came out.
+/// A nuisance: declared and estimated value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nuisance {
-    /// A parameter's or an input's name; of a sensor its channel's.
+    /// Name of the parameter, input or channel.
     pub of: String,
-    /// `gain`, `bias` or `delay` of a sensor or an input; none for a parameter.
+    /// `gain`, `bias` or `delay` of a sensor or an input; `None` for a parameter.
     pub fault: Option<&'static str>,
-    /// What was declared, and one standard deviation of it, in the estimate's unit.
+    /// Declared mean and standard deviation, in the unit of the estimate.
     pub declared: (f64, f64),
-    /// What came out.
+    /// Estimated value.
     pub fitted: Estimated,
 }
 
 impl Nuisance {
-    /// How far it is from what was declared, in standard deviations of that.
+    /// Returns the distance from the declared mean, in declared standard deviations.
     pub fn deviations(&self) -> f64 {
         let (mean, sd) = self.declared;
         (self.fitted.value - mean) / sd
     }
 
-    /// Whether it is as far from what was declared as the fit admits.
+    /// Returns true if the estimate is at the bound of the fit.
     pub fn is_at_bound(&self) -> bool {
         self.deviations().abs() >= thresholds::AT_BOUND * thresholds::SHIFTED
     }
 
-    /// What it is called in a sentence.
+    /// Returns the name for a sentence.
     pub(crate) fn name(&self) -> String {
         match self.fault {
             Some(fault) => format!("the {fault} of {}", self.of),
@@ -113,74 +113,74 @@ impl Nuisance {
     }
 }
 
-/// Pictures, as parts of a page.
+/// Figures, as parts of a page.
 #[derive(Clone, Debug)]
 pub(crate) struct Pictures {
-    /// What was found, to be moved.
+    /// Interactive simulation.
     pub playback: Playback,
-    /// What was measured and what is simulated, over each other.
+    /// Measured and simulated motion.
     pub overlay: Markup,
     /// Residuals over time, and their spectra.
     pub residuals: Markup,
-    /// What to play next, and what is predicted of it.
+    /// Next experiments with their predictions.
     pub experiments: Markup,
-    /// The equation whose residual force is shown, and that force.
+    /// Equation of the residual force, and the profiles of the force.
     pub force: Option<(String, Markup)>,
 }
 
-/// What a comparison came to.
+/// Result of a comparison.
 #[derive(Clone, Debug)]
 pub struct Comparison {
-    /// Whether more is left than a right model would leave.
+    /// Whether the gap is larger than for a correct model.
     pub has_gap: bool,
-    /// What there is to tell.
+    /// Results that a search also has.
     pub compared: Compared,
 }
 
-/// What a search came to.
+/// Result of a search.
 #[derive(Clone, Debug)]
 pub struct Discovery {
-    /// In a word.
+    /// The verdict.
     pub verdict: Verdict,
-    /// What was accepted, by decreasing gap closed.
+    /// Accepted effects, by decreasing closed gap.
     pub effects: Vec<FoundEffect>,
-    /// What was tested and not accepted.
+    /// Tested and rejected effects.
     pub rejected: Vec<RejectedEffect>,
-    /// What these records could not have shown.
+    /// Effects that the records cannot show.
     pub not_testable: Vec<RejectedEffect>,
-    /// Experiments that would tell more, to be played.
+    /// Proposed experiments.
     pub experiments: Vec<ExperimentFile>,
-    /// The part of the gap that was closed; none where there was hardly one.
+    /// Closed fraction of the gap; `None` if there was almost no gap.
     pub closure: OnRecords<Option<f64>>,
-    /// The test gap step by step.
+    /// Test gap after each step.
     pub steps: Vec<Step>,
-    /// What there is to tell besides.
+    /// Results that a comparison also has.
     pub compared: Compared,
-    /// The specification as it was.
+    /// The original specification.
     pub original: String,
-    /// The specification with what was found.
+    /// The specification with the found effects.
     pub extended: String,
-    /// What that leaves when it is run on the records.
+    /// Residuals of the extended specification in a simulation of the records.
     pub resimulation: Resimulation,
-    /// Whether its equations are right, where that was asked.
+    /// Result of the validation of the equations, if it was requested.
     pub validation: Option<Validation>,
-    /// What is known of what the time did not suffice for; none where the search came to its end.
+    /// State of an unfinished search at its time limit; `None` if the search is complete.
     pub unfinished: Option<String>,
 }
 
-/// The verdict of a search.
+/// Verdict of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// Effects were accepted.
     EffectsFound,
-    /// No more is left than a right model would leave.
+    /// The gap is not larger than for a correct model.
     NoSignificantGap,
-    /// More is left, and nothing was accepted.
+    /// A gap remains, and no effect was accepted.
     Unexplained,
 }
 
 impl Verdict {
-    /// Its word in documents.
+    /// Returns the name in documents.
     pub fn word(self) -> &'static str {
         match self {
             Self::EffectsFound => "effects_found",
@@ -190,31 +190,31 @@ impl Verdict {
     }
 }
 
-/// An effect at a place.
+/// An effect and its site.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EffectAt {
-    /// The effect.
+    /// Name of the effect.
     pub effect: String,
-    /// The place.
+    /// Name of the site.
     pub on: String,
 }
 
-/// How sure an effect's name is.
+/// Certainty of the name of an effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
-    /// It is this effect.
+    /// The effect is identified.
     Named,
-    /// It explains the records best of all that was tried, and much is left, or a nuisance stands at
-    /// its bound: it may stand in for something else.
+    /// The effect explains the records best, but a large gap remains or a nuisance is at its bound.
+    /// Another effect may be the cause.
     Provisional,
-    /// It is this one or another of its equivalence class.
+    /// The effect is one of an equivalence class.
     Class,
-    /// It is an expression outside the catalogue.
+    /// The effect is an expression outside the catalogue.
     Empirical,
 }
 
 impl Status {
-    /// Its word in documents.
+    /// Returns the name in documents.
     pub fn word(self) -> &'static str {
         match self {
             Self::Named => "named",
@@ -225,76 +225,76 @@ impl Status {
     }
 }
 
-/// The angle with which an effect repeats, and how many times per turn.
+/// Angle and order of a periodic effect.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ShaftOrder {
     /// The angle.
     pub angle: String,
-    /// The order.
+    /// Order, per turn.
     pub order: u32,
 }
 
-/// An effect that was accepted.
+/// An accepted effect.
 #[derive(Clone, Debug)]
 pub struct FoundEffect {
-    /// What and where.
+    /// Effect and site.
     pub at: EffectAt,
-    /// What such an effect is, in words.
+    /// Description of the effect.
     pub says: String,
-    /// How sure its name is.
+    /// Certainty of its name.
     pub status: Status,
-    /// What the records do not distinguish from it.
+    /// Effects that the records cannot distinguish from it.
     pub equivalent: Vec<EffectAt>,
-    /// Its parameters, by their names.
+    /// Parameters by name.
     pub parameters: BTreeMap<String, Estimated>,
-    /// The line that says most of the change of the specification.
+    /// Main line of the change of the specification.
     pub term: String,
-    /// What spoke for it.
+    /// Statistics of its test.
     pub statistics: TestStatistics,
-    /// Its p-value over all hypotheses that were judged by the test records.
+    /// P-value corrected for all hypotheses tested on the test records.
     pub adjusted_p_value: Option<f64>,
-    /// With what it repeats.
+    /// Angle and order of a periodic effect.
     pub order: Option<ShaftOrder>,
-    /// The spring or the pair of teeth with whose load it grows.
+    /// Spring or mesh whose load scales the effect.
     pub load: Option<String>,
-    /// What would separate it from its equivalents, where it has some.
+    /// Experiment that separates it from its equivalents, if any.
     pub experiment: Option<String>,
-    /// What to play for that, as it was computed.
+    /// Proposed input for that experiment.
     pub next_experiment: Option<NextExperiment>,
 }
 
-/// An effect that was not accepted.
+/// A rejected effect.
 #[derive(Clone, Debug)]
 pub struct RejectedEffect {
-    /// What and where.
+    /// Effect and site.
     pub at: EffectAt,
-    /// Why.
+    /// Reason of the rejection.
     pub reason: String,
-    /// What would show it.
+    /// Experiment that shows the effect.
     pub experiment: String,
-    /// What to play for that, where it was computed.
+    /// Proposed input for that experiment, if it was computed.
     pub next_experiment: Option<NextExperiment>,
-    /// The probability that noise alone lets the test records speak for it as much, and the same over all
-    /// hypotheses that were judged by these; none where it was not fitted.
+    /// P-value of the test records, and the same corrected for all tested hypotheses; `None` if the
+    /// effect was not fitted.
     pub p_values: Option<(f64, f64)>,
 }
 
 /// A step of the search.
 #[derive(Clone, Debug)]
 pub struct Step {
-    /// What was added; nothing in the first.
+    /// Added effects; empty in the first step.
     pub added: Vec<String>,
-    /// The root mean square of the test records' residuals, in standard deviations of the noise.
+    /// RMS residual of the test records, in standard deviations of the noise.
     pub test_rms: f64,
 }
 
-/// What the checks of the extended specification's equations say.
+/// Result of the checks of the extended equations.
 #[derive(Clone, Debug)]
 pub struct Validation {
-    /// Whether all passed.
+    /// Whether all checks passed.
     pub passed: bool,
-    /// The checks that were made.
+    /// Executed checks.
     pub checks: Vec<String>,
-    /// Those of them that failed.
+    /// Failed checks.
     pub failed: Vec<String>,
 }

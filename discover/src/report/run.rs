@@ -1,4 +1,4 @@
-//! The whole way from a specification and records to a result.
+//! Comparison and search, from a specification and records to a result.
 
 use eomgen_records::dataset::Dataset;
 use maud::Markup;
@@ -42,7 +42,7 @@ use crate::search::context::Context;
 use crate::search::search;
 use crate::search::unconfirmed::Unconfirmed;
 
-/// Is told, line by line, what is being done.
+/// Receiver of progress lines.
 pub type Progress<'p> = dyn Fn(&str) + Sync + 'p;
 
 /// A fit, the floor there, and the residual force.
@@ -52,11 +52,11 @@ struct Null {
     force: Option<ResidualForce>,
 }
 
-/// Compares a specification with records. `seed` draws the noise of the bootstrap from which the
-/// noise floor is known.
+/// Compares a specification with records. `seed`: seed of the bootstrap of the noise floor.
 ///
 /// # Errors
-/// Records whose labels are wrong, or a model that does not run through them.
+///
+/// Wrong labels of the records, or a model that cannot be simulated on them.
 pub fn compare(
     specification: Specification<'_>,
     dataset: &Dataset,
@@ -102,12 +102,13 @@ pub fn compare(
     })
 }
 
-/// Finds what a specification lacks of what records show, among effects of a catalogue and, where
-/// none of them explains what is left, as an expression without a name.
+/// Searches for effects that explain the difference between a specification and records: effects of
+/// the catalogue and, if none explains it, an unnamed expression.
 ///
 /// # Errors
-/// Records whose labels are wrong, a model that does not run through them, or an effect that does
-/// not leave a specification.
+///
+/// Wrong labels of the records, a model that cannot be simulated on them, or an effect that makes
+/// the specification invalid.
 pub fn discover(
     specification: Specification<'_>,
     dataset: Dataset,
@@ -119,9 +120,10 @@ pub fn discover(
     discover_until(specification, dataset, catalogue, seed, progress, &stop)
 }
 
-/// The same, until somebody asks to stop.
+/// Searches as [`discover`], until a stop is requested.
 ///
 /// # Errors
+///
 /// As [`discover`]; [`DiscoverError::Stopped`].
 pub fn discover_until(
     specification: Specification<'_>,

@@ -1,5 +1,5 @@
-//! The answer in two sentences, for a page, a document and a terminal: first what it comes to and how
-//! sure it is, then what it rests on.
+//! Summary of a result for the page, the document and the terminal: first the result and its
+//! certainty, then the evidence.
 
 use crate::report::left::{Left, Stage};
 use crate::report::quantity::{estimate, percent};
@@ -7,21 +7,21 @@ use crate::report::result::{
     Comparison, Discovery, EffectAt, FoundEffect, Nuisance, OnRecords, Status, Verdict,
 };
 
-/// The sentence that comes first, and those behind it.
+/// The first sentence and the following ones.
 pub(crate) struct Summary {
-    /// What comes first.
+    /// First sentence.
     pub(crate) first: String,
-    /// What comes behind it.
+    /// Following sentences.
     pub(crate) rest: String,
 }
 
 impl Summary {
-    /// Both.
+    /// Returns both parts.
     pub(crate) fn text(&self) -> String {
         format!("{} {}", self.first, self.rest)
     }
 
-    /// Of a comparison.
+    /// Summarises a comparison.
     pub(crate) fn of_comparison(comparison: &Comparison) -> Self {
         let left = Left::of(&comparison.compared.gap, Stage::Before).words();
         match comparison.has_gap {
@@ -38,7 +38,7 @@ impl Summary {
         }
     }
 
-    /// Of a search.
+    /// Summarises a search.
     pub(crate) fn of_discovery(discovery: &Discovery) -> Self {
         let gap = &discovery.compared.gap;
         let [before, after] = [Stage::Before, Stage::After].map(|stage| Left::of(gap, stage));
@@ -167,7 +167,7 @@ fn named(effect: &FoundEffect) -> String {
     text
 }
 
-/// An effect's name as words, and its place.
+/// Returns name and site of an effect as words.
 pub(crate) fn words(at: &EffectAt) -> String {
     format!("{} on {}", at.effect.replace('_', " "), at.on)
 }

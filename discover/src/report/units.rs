@@ -1,4 +1,4 @@
-//! Sizes that look like a wrong unit.
+//! Check for estimates that suggest a wrong unit.
 
 use crate::fit::fitted::Fit;
 use crate::model::channel_checks::factor_of_units;
@@ -7,8 +7,7 @@ use crate::model::unknowns::What;
 use crate::search::found::Found;
 use eomgen_model_spec::model::ParameterValue;
 
-/// For each number that was found to be off by what lies between two units, a sentence that asks for
-/// these: nobody's torque constant is a thousand times too large.
+/// Returns a note for each estimate that is wrong by a factor between two units.
 pub(crate) fn notes_of_units(problem: &EstimationProblem<'_>, found: &Found) -> Vec<String> {
     let best = found.best();
     let unknowns = found.accepted.iter().flat_map(|effect| &effect.unknowns);

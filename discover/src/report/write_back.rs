@@ -1,5 +1,5 @@
-//! The specification with what was found: effects added, refitted numbers set, sensors
-//! described, every comment kept.
+//! Extended specification: effects added, refitted numbers set, sensors described, and all comments
+//! kept.
 
 use crate::ids::{ChannelId, UnknownId};
 use eomgen_model_spec::edit::{self, Edit, SetParameter, SetSensor};
@@ -13,10 +13,11 @@ use crate::model::unknowns::What;
 use crate::search::found::Accepted;
 use crate::thresholds;
 
-/// The text with effects and numbers of a fit.
+/// Returns the text with the effects and numbers of a fit.
 ///
 /// # Errors
-/// An edit that cannot be made, in words.
+///
+/// An edit that is not possible.
 pub fn extended(
     problem: &EstimationProblem<'_>,
     text: &str,

@@ -1,5 +1,4 @@
-//! What was tried and not taken, and what the records could not have shown: put together by reason,
-//! because most fail for the same one.
+//! Rejected and untestable effects, grouped by reason.
 
 use eomgen_page::{section, table};
 use maud::{Markup, html};
@@ -85,7 +84,7 @@ impl<'a> Group<'a> {
     }
 }
 
-/// What was tested and not taken: first what failed for a reason of its own.
+/// Lists the rejected effects, first those with a reason of their own.
 pub(super) fn rejected(list: &[RejectedEffect]) -> Markup {
     if list.is_empty() {
         return html! {};
@@ -102,7 +101,7 @@ pub(super) fn rejected(list: &[RejectedEffect]) -> Markup {
     )
 }
 
-/// What these records could not have shown, by what would show it.
+/// Lists the effects that the records cannot show, grouped by experiment.
 pub(super) fn not_testable(list: &[RejectedEffect], files: &[ExperimentFile]) -> Markup {
     if list.is_empty() {
         return html! {};

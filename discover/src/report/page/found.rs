@@ -1,4 +1,4 @@
-//! The effects that were found, how they were found, and what they change in the specification.
+//! Found effects, the steps of the search, and the change of the specification.
 
 use eomgen_page::{section, table};
 use maud::{Markup, html};
@@ -9,7 +9,7 @@ use crate::report::quantity::{estimate, percent, plain, readable};
 use crate::report::result::{Discovery, FoundEffect, Status, Step};
 use crate::report::summary::words;
 
-/// The effects; nothing where there are none, as the verdict says so.
+/// Lists the effects; empty if none were found, because the verdict reports this.
 pub(super) fn effects(effects: &[FoundEffect], files: &[ExperimentFile]) -> Markup {
     if effects.is_empty() {
         return html! {};
@@ -91,7 +91,7 @@ fn capitalised(text: &str) -> String {
     first.unwrap_or_default() + letters.as_str()
 }
 
-/// The test gap after each step, and whether the specification that was written is right.
+/// Lists the test gap after each step and the validation of the extended specification.
 pub(super) fn steps(discovery: &Discovery) -> Markup {
     let has_steps = discovery.steps.len() > 1;
     if !has_steps && discovery.validation.is_none() {
@@ -150,7 +150,7 @@ fn validation_line(discovery: &Discovery) -> Markup {
     }
 }
 
-/// Lines of the specification that were added or changed, with those they replace.
+/// Shows added and changed lines of the specification with the lines that they replace.
 pub(super) fn change(before: &str, after: &str) -> Markup {
     if before == after {
         return html! {};

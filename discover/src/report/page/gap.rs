@@ -1,4 +1,4 @@
-//! What is left of each channel, before and after.
+//! Gap of each channel before and after the search.
 
 use eomgen_page::table;
 use maud::{Markup, html};

@@ -1,10 +1,9 @@
-//! A page that an engineer can hand on: a verdict in words, what was measured and simulated over each
-//! other before and after, what was found and what was not, what was fitted beside it, what changed in
-//! the specification, and from what all this came.
+//! HTML page of a result: verdict, measured and simulated motion before and after, found and
+//! rejected effects, nuisances, changes of the specification, and origin.
 //!
-//! `verdict` is its first sentence, `gap` what is left of each channel, `found` the effects and how
-//! they were found, `alternatives` what was not taken, `nuisances` what was declared beside what
-//! came out, `origin` files and hashes.
+//! The files: `verdict` (first sentence), `gap` (gap of each channel), `found` (effects and steps),
+//! `alternatives` (rejected effects), `nuisances` (declared and estimated values), `origin` (files
+//! and hashes).
 
 mod alternatives;
 mod found;
@@ -24,7 +23,7 @@ use crate::report::quantity::readable;
 use crate::report::result::{Compared, Comparison, Discovery};
 
 impl Comparison {
-    /// The page, a complete HTML document that refers to nothing outside.
+    /// Returns the page as a self-contained HTML document.
     pub fn page(&self) -> String {
         let compared = &self.compared;
         whole(
@@ -39,7 +38,7 @@ impl Comparison {
 }
 
 impl Discovery {
-    /// The page, a complete HTML document that refers to nothing outside.
+    /// Returns the page as a self-contained HTML document.
     pub fn page(&self) -> String {
         let compared = &self.compared;
         whole(

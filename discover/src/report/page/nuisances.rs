@@ -1,4 +1,4 @@
-//! What was fitted beside what is sought: what was declared of it, and what came out.
+//! Nuisances of the fit: declared and estimated values.
 
 use eomgen_page::{section, table};
 use maud::{Markup, html};

@@ -1,10 +1,10 @@
-//! From what a page came.
+//! Origin of a page.
 
 use maud::{Markup, html};
 
 use crate::report::origin::Origin;
 
-/// The program, the day, the seed and the files with their hashes.
+/// Lists version, date, seed and files with their hashes.
 pub(super) fn files(origin: &Origin) -> Markup {
     html! {
         p {

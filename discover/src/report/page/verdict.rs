@@ -1,5 +1,4 @@
-//! The verdict in words: what was found, how much of the gap it closes, and what is left in noise
-//! floors.
+//! Verdict in words: found effects, closed gap, and remaining gap in noise floors.
 
 use maud::{Markup, html};
 

@@ -1,4 +1,4 @@
-//! Sliders for what was found: parameters of the specification that was written, and sensors.
+//! Sliders for the found values: parameters of the extended specification, and sensors.
 
 use eomgen_page::play::{Slider, printed};
 use maud::{Markup, html};
@@ -17,7 +17,7 @@ const DIGITS: i32 = 6;
 /// How far a sensor can be moved beyond what was found, in parts of that.
 const AROUND: f64 = 2.0;
 
-/// The sliders, and what sets them back.
+/// Writes the sliders and the reset button.
 pub(super) fn controls(
     problem: &EstimationProblem<'_>,
     best: &Fit,

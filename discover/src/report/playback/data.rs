@@ -1,4 +1,4 @@
-//! What the script is told, as JSON; columns of numbers as their bytes, in base 64.
+//! Data of the script as JSON, with numeric columns as bytes in base 64.
 
 use eomgen_page::play::{encoded, printed};
 use serde_json::{Value, json};

@@ -1,5 +1,5 @@
-//! Whether a page can compute a motion: explicit steps with the page's tolerance must be few enough
-//! and leave what the fit leaves.
+//! Check if a page can simulate a motion: explicit steps at the tolerance of the page must be few
+//! and must reproduce the residuals of the fit.
 
 use std::cell::RefCell;
 
@@ -25,11 +25,12 @@ const MOST_STEPS: u64 = 400_000;
 /// impacts unfold that, no motion is the motion, and the page would contradict the report.
 const DIFFERENT: f64 = 0.05;
 
-/// Whether explicit steps leave what the fit leaves, at the numbers of the specification that was
-/// written.
+/// Checks that explicit steps reproduce the residuals of the fit, with the numbers of the extended
+/// specification.
 ///
 /// # Errors
-/// Why a page cannot compute it, in words.
+///
+/// The reason why a page cannot simulate it, in words.
 pub(super) fn as_fitted(
     problem: &EstimationProblem<'_>,
     best: &Fit,

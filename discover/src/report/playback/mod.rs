@@ -1,9 +1,8 @@
-//! What was found, to be moved: a part of the page that computes the motion of the test record anew
-//! for every value of the found parameters, with the emitted module, and draws it over what was
-//! measured.
+//! Interactive part of a page: it simulates the test record with the emitted module for changed
+//! values of the found parameters, and draws it over the measurement.
 //!
-//! `stretch` is the part of the record that it holds, `followed` asks beforehand whether a page can
-//! compute it, `controls` has the sliders, `data` is what the script is told.
+//! `stretch` is the part of the record on the page, `followed` checks if a page can simulate it,
+//! `controls` has the sliders, `data` is the input of the script.
 
 mod controls;
 mod data;
@@ -31,19 +30,19 @@ const SCRIPT: [&str; 3] = [
     include_str!("panel.js"),
 ];
 
-/// A part of a page that computes, or why there is none.
+/// Interactive part of a page, or the reason why there is none.
 #[derive(Clone, Debug)]
 pub(crate) enum Playback {
-    /// What is shown, and the data of its script.
+    /// HTML of the part, and the data of its script.
     Computed { body: Markup, data: String },
-    /// There is something to move, but a page cannot compute it: why.
+    /// A page cannot simulate the model, for this reason.
     Still(String),
-    /// There is nothing to move.
+    /// There is no value to change.
     None,
 }
 
 impl Playback {
-    /// Of a specification with what was found, its text.
+    /// Builds the part for a specification with the found effects, given as text.
     pub(crate) fn of(
         problem: &EstimationProblem<'_>,
         (null, best): (&Fit, &Fit),
@@ -80,12 +79,12 @@ impl Playback {
         }
     }
 
-    /// The style of a page with this part.
+    /// Returns the style sheet of a page with this part.
     pub(crate) fn style() -> String {
         [play::STYLE, STYLE].concat()
     }
 
-    /// The script of a page with this part.
+    /// Returns the script of a page with this part.
     pub(crate) fn script() -> String {
         play::script(&SCRIPT)
     }

@@ -1,5 +1,4 @@
-//! The part of the test record that a page holds: windows from its beginning, as far as a file of
-//! bounded size takes them.
+//! Part of the test record on a page: windows from its beginning, limited by the file size.
 
 use eomgen_records::windows::judged;
 
@@ -15,36 +14,37 @@ const NUMBERS: usize = 24_000;
 /// The fewest samples of a window that is cut short.
 const FEWEST: usize = 32;
 
-/// Windows of the first test record, one after the other.
+/// Consecutive windows of the first test record.
 pub(super) struct Stretch {
-    /// The times of all samples, s.
+    /// Times of all samples, s.
     pub times: Vec<f64>,
-    /// A row per sample, a number per channel, NaN where missing.
+    /// Measurements: a row per sample, a number per channel; NaN for missing ones.
     pub measured: Vec<f64>,
-    /// The same, of the model as it was: simulated; NaN where it is not compared.
+    /// Simulation of the original model in the same layout; NaN for samples that are not compared.
     pub before: Vec<f64>,
-    /// The windows, in order of time.
+    /// Windows in the order of time.
     pub windows: Vec<Piece>,
-    /// For each channel what is left of these samples before and with what was found, SI.
+    /// RMS residual of each channel for these samples, before and after the search, SI.
     pub left: Vec<[f64; 2]>,
-    /// Whether it is the whole record.
+    /// Whether the excerpt is the complete record.
     pub is_whole: bool,
 }
 
-/// A window of a stretch.
+/// A window of the excerpt.
 pub(super) struct Piece {
-    /// Its place among the test windows.
+    /// Index among the test windows.
     pub window: usize,
-    /// Its first sample in the stretch.
+    /// Index of the first sample in the excerpt.
     pub first: usize,
-    /// How many samples it has here.
+    /// Number of samples in the excerpt.
     pub samples: usize,
-    /// Which of them are compared.
+    /// Samples that are compared.
     pub judged: std::ops::Range<usize>,
 }
 
 impl Stretch {
-    /// The beginning of the first test record; none where the fit cannot follow that.
+    /// Takes the beginning of the first test record; `None` if the simulation of the fit fails
+    /// there.
     pub fn of(problem: &EstimationProblem<'_>, null: &Fit, best: &Fit) -> Option<Self> {
         let channels = problem.noise.len();
         let inputs = problem.dataset.test.first()?.input_columns.len();
