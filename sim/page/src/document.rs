@@ -48,8 +48,7 @@ pub fn scripted_document(parts: &ScriptedDocument<'_>) -> String {
     around(parts.title, SCRIPT_POLICY, &head, &body)
 }
 
-/// Escapes `<` in JSON, so that it cannot end an HTML element, and hidden characters in its
-/// strings.
+/// Escapes hidden characters of JSON and `<`, so that it cannot end an HTML element.
 fn data_text(json: &str) -> String {
     let mut text = String::with_capacity(json.len());
     for letter in json.chars() {

@@ -9,7 +9,6 @@ use crate::formula::formula;
 use crate::number::number;
 use crate::parts::table;
 
-/// Maximum number of values of a coefficient.
 const SHOWN_VALUES: usize = 8;
 
 /// Returns the equations of a report, with formulas as MathML.

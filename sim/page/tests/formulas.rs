@@ -1,5 +1,4 @@
-//! Tests of derived formulas as MathML: well-formed for every specification, and formatted
-//! correctly.
+//! Tests of derived formulas as MathML: well-formed and formatted correctly.
 
 use std::path::{Path, PathBuf};
 

@@ -124,8 +124,7 @@ fn linear_ticks(range: Range, count: usize) -> Vec<Tick> {
         .collect()
 }
 
-/// Returns the multiples of `step` in a range. A tolerance keeps those at the ends in spite of
-/// rounding.
+/// Returns the multiples of `step` in a range, those at its ends included in spite of rounding.
 fn multiples(range: Range, step: f64) -> impl Iterator<Item = f64> {
     let first = (range.low / step - 1e-6).ceil();
     let last = (range.high / step + 1e-6).floor();

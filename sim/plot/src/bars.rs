@@ -41,8 +41,7 @@ const MARGINS: ((f64, f64), (f64, f64)) = ((78.0, 24.0), (54.0, 62.0));
 /// Height of a row of shares and of its bar, in px.
 const ROW: (f64, f64) = (20.0, 14.0);
 pub(super) const COLUMN: &str = "#56a0d3";
-/// Two strong colours for the parts of interest, grey and a pale one for the rest. All differ in
-/// lightness too.
+/// Two strong colours for the parts of interest, grey and a pale one; all differ in lightness.
 const PARTS: [&str; 4] = ["#0b4f86", "#56a0d3", "#c4c4c4", "#f2cfae"];
 
 const GRID: Stroke = line("#e6e6e6", "");
@@ -158,8 +157,7 @@ pub(super) fn draw_level(canvas: &mut Canvas, tick: &Tick, up: &Axis, (left, rig
     write(canvas, &tick.label, at, Anchor::End);
 }
 
-/// Draws vertical lines with their names above the frame, each name after the end of the previous
-/// one.
+/// Draws vertical lines with their names above the frame, without overlap.
 pub(super) fn draw_marks(canvas: &mut Canvas, marks: &[Reference], along: &Axis, up: &Axis) {
     let mut free_from = along.pixels.0;
     for mark in marks {

@@ -1,8 +1,7 @@
 //! Content of a figure: panels, series, reference lines. Values are in SI units; prefixes are
 //! chosen when the figure is drawn.
 //!
-//! Names such as `x_sp` or `theta_s_dot` are drawn as in the paper, with subscripts, Greek letters
-//! and dots.
+//! Names such as `theta_s_dot` are drawn with subscripts, Greek letters and dots.
 
 /// Quantities over time.
 #[derive(Clone, Debug, Default)]
@@ -53,8 +52,7 @@ pub struct Panel<'a> {
     pub title: String,
     /// Name of the ordinate, for example `x_sp`.
     pub quantity: String,
-    /// SI unit of the values as in specifications, for example `m` or `N m`; empty for a
-    /// dimensionless number.
+    /// SI unit of the values, for example `m` or `N m`; empty for a dimensionless number.
     pub unit: String,
     /// Curves; a legend is drawn for more than one.
     pub series: Vec<Series<'a>>,

@@ -194,8 +194,7 @@ impl Ordinate {
 }
 
 impl Place {
-    /// Computes the positions of a panel, given `(top, frame height)` and the left and right
-    /// `edges`.
+    /// Computes the positions of a panel from `(top, frame height)` and left and right `edges`.
     fn new(
         panel: &Panel<'_>,
         ordinate: Ordinate,

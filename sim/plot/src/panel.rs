@@ -1,5 +1,4 @@
-//! Drawing of one panel (grid, reference lines, curves, frame, ticks and text) and of the shared
-//! horizontal axis.
+//! Drawing of one panel and of the shared horizontal axis.
 
 use super::axis::{Axis, Scale, Tick};
 use super::canvas::{Anchor, Canvas, Stroke, Text};
@@ -11,8 +10,7 @@ use super::layout::{
 };
 use super::lettering::{fitted, width};
 
-/// Okabe and Ito's colours for colour-blind readers, without the yellow, which is too pale for thin
-/// lines.
+/// Okabe and Ito's colours for colour-blind readers, without the pale yellow.
 const COLOURS: [&str; 7] = [
     "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000",
 ];

@@ -1,5 +1,4 @@
-//! Plates: frames in rows, each with separate axes, for example a time history next to its
-//! spectrum.
+//! Plates: rows of frames with separate axes, for example a time history next to its spectrum.
 
 use super::axis::Scale;
 use super::canvas::Canvas;

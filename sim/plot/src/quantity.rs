@@ -44,8 +44,7 @@ impl Quantity {
         }
     }
 
-    /// Creates a label with a prefix, so that ticks are between 1 and 1000 for the `largest`
-    /// magnitude in SI.
+    /// Creates a label with a prefix, so that ticks up to `largest` in SI are between 1 and 1000.
     pub fn scaled(name: &str, unit: &str, largest: f64) -> Self {
         let (scale, unit) = scaled_unit(unit, largest);
         Self {
@@ -77,8 +76,7 @@ fn label(name: &str, unit: &str) -> String {
     }
 }
 
-/// Returns the exponent, a multiple of 3, with which a magnitude is between 1 and 1000; 0 for
-/// magnitudes near 0.
+/// Returns the multiple of 3 that scales a magnitude to between 1 and 1000; 0 near 0.
 fn engineering_exponent(largest: f64) -> i32 {
     if !(1e-100..1e100).contains(&largest) {
         return 0;

@@ -1,6 +1,5 @@
 //! Names in the notation of the paper: `theta_s_dot` is a dotted Greek letter with a subscript.
 
-/// Parts of a name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Symbol {
     /// Letter or word, with the dots of a rate or an acceleration.
@@ -40,8 +39,7 @@ pub(super) const DOT_ABOVE: char = '\u{307}';
 pub(super) const TWO_DOTS_ABOVE: char = '\u{308}';
 
 impl Symbol {
-    /// Splits an identifier. The part after the first underscore is the subscript, with commas for
-    /// further underscores.
+    /// Splits an identifier at its first underscore; further ones become commas of the subscript.
     pub fn parse(name: &str) -> Self {
         if let Some(stem) = name.strip_suffix("_ddot").filter(|stem| !stem.is_empty()) {
             return Self::parse(stem).marked(TWO_DOTS_ABOVE);

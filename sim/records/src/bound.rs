@@ -18,8 +18,7 @@ use crate::dataset::{
     Channel, Expected, Initial, InputPriors, Quantity, TransducerPriors, Uncertain,
 };
 
-/// Range of a parameter's relative standard deviation. A smaller one means exact, a larger one
-/// unknown.
+/// Range of a relative standard deviation: below it a parameter is exact, above it unknown.
 const RELATIVE: (f64, f64) = (1e-9, 1e6);
 
 pub struct Bound<'d> {
@@ -116,8 +115,7 @@ fn input_priors(
         column.gain.is_some() || column.bias.is_some() || column.delay.is_some()
     };
     for column in &description.inputs {
-        // A delay of one input is equivalent to a delay of the sensors only if the model has one
-        // input.
+        // With several inputs, a delay of one input is not equivalent to a delay of the sensors.
         if let (Some(delay), true) = (column.delay, model.inputs.len() > 1) {
             found.push(
                 Diagnostic::error("a delay of a single input is only estimated if the model has one input".to_owned())

@@ -17,8 +17,7 @@ const MOST_MISSING: f64 = 0.5;
 /// The unit or the noise is then wrong.
 const MOST_STANDARD_DEVIATIONS: f64 = 1e10;
 
-/// Fraction of samples at the largest or smallest value, with equal neighbours, beyond which a
-/// channel counts as clipped.
+/// Fraction of samples at an extreme, with equal neighbours, beyond which a channel is clipped.
 const CLIPPED: f64 = 0.02;
 
 /// RMS difference of two records, in standard deviations of the noise, below which they are the

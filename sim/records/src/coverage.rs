@@ -20,7 +20,6 @@ const FEWEST_COMPARED: usize = 10;
 /// Range of a channel, in standard deviations of its noise, below which it contains only noise.
 pub(crate) const STILL: f64 = 2.0;
 
-/// Checks both sets of records and returns notes.
 pub(crate) fn check(dataset: &Dataset, description: &Description) -> Result<Vec<String>, Refusal> {
     let wrong = |diagnostic: Diagnostic| Diagnostics::one(description.source.clone(), diagnostic);
     let mut notes = Vec::new();
@@ -82,8 +81,7 @@ fn duration(record: &Record) -> f64 {
     record.times[record.times.len() - 1] - record.times[0]
 }
 
-/// Checks that a record of a set is as long as one window, from its first sample to the one after
-/// its last.
+/// Checks that a record of a set is as long as one window, up to the sample after its last.
 fn whole_window(length: Number, set: &str, records: &[Record]) -> Result<(), Diagnostic> {
     // The extra half sample prevents a decision by rounding.
     let holds = |record: &Record| duration(record) + 1.5 * typical_step(&record.times);

@@ -43,8 +43,7 @@ pub struct Channel {
     pub priors: TransducerPriors,
 }
 
-/// Priors of a sensor: measured(t) = gain * quantity(t - delay) + bias. `None` means the default
-/// prior.
+/// Priors of a sensor, measured(t) = gain * quantity(t - delay) + bias; `None` for the default.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TransducerPriors {
     /// Prior of the gain.

@@ -3,8 +3,7 @@
 
 use std::f64::consts::PI;
 
-/// Frequency with half of the amplitude, relative to the new sampling rate: four fifths of the new
-/// Nyquist frequency.
+/// Frequency with half of the amplitude, relative to the new sampling rate.
 const CUT_OFF: f64 = 0.4;
 
 /// Half length of the low-pass filter, in kept samples. With a Hamming window it passes up to three
@@ -62,8 +61,7 @@ impl Decimation {
         }
     }
 
-    /// Decimates a column that is held between samples: returns the means until the next kept
-    /// sample.
+    /// Decimates a held column: returns the means until the next kept sample.
     pub fn held(&self, column: &[f64]) -> Vec<f64> {
         if !self.is_filtered() {
             return self.taken(column);
@@ -77,8 +75,7 @@ impl Decimation {
     }
 }
 
-/// Returns the weights of a Hamming-windowed sinc from its middle on. All weights together sum to
-/// 1.
+/// Returns a Hamming-windowed sinc with the sum 1, from its middle on.
 fn low_pass(every: usize) -> Vec<f64> {
     let reach = (REACH * every) as f64;
     let weight = |k: usize| {
@@ -92,8 +89,7 @@ fn low_pass(every: usize) -> Vec<f64> {
     weights.into_iter().map(|weight| weight / sum).collect()
 }
 
-/// Returns the filtered column at a sample. Beyond its ends the column continues by point
-/// reflection.
+/// Returns the filtered column at a sample; beyond its ends the column is reflected at a point.
 fn passed(column: &[f64], sample: usize, weights: &[f64]) -> f64 {
     let last = column.len() - 1;
     let at = |place: isize| match usize::try_from(place) {

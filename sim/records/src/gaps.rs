@@ -1,5 +1,4 @@
-//! Gaps in a record. The inputs in a gap are unknown, so the parts before and after become separate
-//! records.
+//! Gaps in a record. The inputs in a gap are unknown, so the parts become separate records.
 
 use crate::record::Record;
 use crate::samples::{FEWEST_SAMPLES, LOST, typical_step};
@@ -7,8 +6,7 @@ use crate::samples::{FEWEST_SAMPLES, LOST, typical_step};
 /// Number of gaps above which a record has uneven steps and is not split.
 const MOST: usize = 20;
 
-/// Splits a record at gaps and drops short parts. Returns the record itself if it has no gap. Adds
-/// the gaps to `notes`.
+/// Splits a record at gaps, which are added to `notes`, and drops short parts.
 pub(crate) fn unbroken(record: Record, notes: &mut Vec<String>) -> Vec<Record> {
     let step = typical_step(&record.times);
     let steps = record.times.windows(2).enumerate();

@@ -1,5 +1,4 @@
-//! Requirements on dataset files that give the motion, with measured forces and torques as
-//! channels.
+//! Requirements on dataset files that give the motion and measure forces and torques.
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
 use eomgen_model_spec::model::Model;
@@ -79,9 +78,8 @@ pub(crate) fn columns<'d>(
     columns
 }
 
-/// Returns the column of a coordinate with the unit `own`. The column's unit determines if it
-/// contains the position or the speed. `initial` is the position at the first sample if the file
-/// does not give it.
+/// Returns the column of a coordinate with the unit `own`; its unit decides between position and
+/// speed. `initial` is the default position at the first sample.
 fn given_column<'d>(
     given: &'d MotionColumn,
     own: &Unit,
@@ -151,8 +149,7 @@ pub(crate) fn notes_of_speeds(
     unstated.filter_map(note).collect()
 }
 
-/// Checks that a channel is admissible. With a given motion, channels measure inputs or quantities
-/// along the motion.
+/// Checks that a channel is admissible: with a given motion it measures an input or a quantity.
 ///
 /// # Errors
 /// A channel of a given quantity, or of an input if the motion is not given.

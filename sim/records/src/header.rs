@@ -7,16 +7,14 @@ use eomgen_model_spec::visible::visible;
 use crate::description::columns::ColumnKey;
 use crate::refusal::Refusal;
 
-/// Maximum number of samples of a record, about a hundred times more than a search handles in
-/// minutes.
+/// Maximum number of samples of a record, a hundred times more than a search handles in minutes.
 pub const MOST_SAMPLES: usize = 1_000_000;
 
 /// Columns of numbers; NaN for a missing one.
 #[derive(Clone, Debug, Default)]
 pub struct Table {
     pub columns: Vec<Vec<f64>>,
-    /// Line number of each row, from 1. Files without lines count as if the first line had the
-    /// names.
+    /// Line number of each row, from 1; in files without lines row 1 has number 2.
     pub lines: Vec<u64>,
 }
 

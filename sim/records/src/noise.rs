@@ -2,8 +2,7 @@
 
 use crate::unwrapping::median;
 
-/// Orders of the differences. Slow motion vanishes from differences of a high order, noise does
-/// not.
+/// Orders of the differences. At high orders slow motion vanishes and noise remains.
 const ORDERS: std::ops::RangeInclusive<usize> = 2..=8;
 
 /// Median absolute value of a normal distribution, in standard deviations.

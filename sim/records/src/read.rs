@@ -111,8 +111,7 @@ pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
     Ok(dataset)
 }
 
-/// Rejects a column of a prescribed motion, because `compare` and `discover` hold inputs constant
-/// between samples.
+/// Rejects columns of prescribed motion, because `compare` and `discover` hold inputs constant.
 fn prescribed_column(description: &Description, model: &Model) -> Option<Diagnostic> {
     let is_prescribed = |name: &str| {
         let mut inputs = model.inputs.iter();

@@ -42,14 +42,12 @@ pub struct Record {
 }
 
 impl Record {
-    /// Returns the samples of a coordinate with a given motion; `inputs` is the number of the
-    /// model's inputs.
+    /// Returns the samples of a given coordinate; `inputs` is the number of the model's inputs.
     pub fn given(&self, coordinate: usize, inputs: usize) -> Vec<f64> {
         self.column(inputs + coordinate)
     }
 
-    /// Returns the rate of a coordinate with a given motion; `coordinates` is the number of
-    /// coordinates.
+    /// Returns the rate of a given coordinate; `coordinates` is their number.
     pub fn given_rate(&self, coordinate: usize, coordinates: usize, inputs: usize) -> Vec<f64> {
         self.column(inputs + coordinates + coordinate)
     }
@@ -271,8 +269,7 @@ impl Columns<'_> {
         Ok(())
     }
 
-    /// Returns true if the input of a column is a prescribed motion, which is not held between
-    /// samples.
+    /// Returns true if the input of a column is a prescribed motion, which is not held.
     fn is_prescribed(&self, column: usize) -> bool {
         let fed = self.model.inputs.iter().zip(self.inputs);
         let mut fed = fed.filter(|(_, column)| column.is_some());
@@ -280,8 +277,7 @@ impl Columns<'_> {
             .is_some_and(|(input, _)| input.rate.is_some())
     }
 
-    /// Returns the inputs: held between samples, or a spline for prescribed motion. Columns of a
-    /// given motion follow.
+    /// Returns the inputs, held or splines of prescribed motion, and columns of a given motion.
     fn driving(&self, times: &[f64], columns: &[Vec<f64>], motion: Vec<Vec<f64>>) -> HeldInputs {
         let mut inputs = match motion.is_empty() {
             true => held(times, columns),

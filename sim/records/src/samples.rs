@@ -10,8 +10,7 @@ pub const FEWEST_SAMPLES: usize = 50;
 /// Minimum number of samples of inputs for a simulation.
 pub const FEWEST_OF_INPUTS: usize = 2;
 
-/// Maximum fraction of missing samples of an input, which is held over them, or of a given motion,
-/// which is interpolated.
+/// Maximum fraction of missing samples of a held input or an interpolated given motion.
 const MOST_HELD: f64 = 0.1;
 
 /// Step, relative to the usual one, above which there is a gap. Smaller deviations are jitter.
@@ -54,8 +53,7 @@ pub fn check_times(
     Ok(())
 }
 
-/// Checks that an input or a given motion has few missing samples. `what` is its name in the
-/// message.
+/// Checks that an input or a given motion, named `what` in the message, has few missing samples.
 ///
 /// # Errors
 /// A column with too many missing samples.

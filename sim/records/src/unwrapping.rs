@@ -6,12 +6,10 @@ use crate::samples::typical_step;
 /// Step, relative to the usual one, above which there is a gap.
 const GAP: f64 = 1.5;
 
-/// Largest difference, in periods, between extrapolations over a gap with the speeds before and
-/// after it.
+/// Largest difference, in periods, between extrapolations over a gap from its two sides.
 const MOST_UNKNOWN: f64 = 0.25;
 
-/// Number of steps whose median rate predicts the next value. A single outlier does not change the
-/// median.
+/// Number of steps whose median rate, robust against an outlier, predicts the next value.
 const RECENT: usize = 5;
 
 pub(crate) struct Unwrapped {
@@ -68,8 +66,7 @@ struct Wrapped {
 }
 
 impl Wrapped {
-    /// Returns the periods to add at a sample, relative to the sample before, for a motion with
-    /// this rate.
+    /// Returns the periods to add at a sample, relative to the one before, for a given rate.
     fn turns(&self, k: usize, rate: f64) -> f64 {
         let expected = rate * (self.times[k] - self.times[k - 1]);
         ((expected - (self.values[k] - self.values[k - 1])) / self.period).round()
@@ -80,8 +77,7 @@ impl Wrapped {
         step / (self.times[k] - self.times[k - 1])
     }
 
-    /// Returns the rate after a sample, if steps without a gap follow. `guess` is an approximate
-    /// rate.
+    /// Returns the rate after a sample, near `guess`, if steps without a gap follow.
     fn rate_from(&self, first: usize, guess: f64) -> Option<f64> {
         let mut rates = Vec::new();
         for k in first + 1..self.times.len().min(first + 1 + RECENT) {

@@ -5,8 +5,7 @@ use eomgen_sim::inputs::HeldInputs;
 use crate::record::Record;
 use crate::samples::typical_step;
 
-/// Samples at a window's start and end that a delayed, or early, sensor can read from outside of
-/// it.
+/// Samples at a window's start and end that a delayed or early sensor can read from outside.
 const MARGIN: (usize, usize) = (LONGEST_DELAY as usize, LONGEST_LEAD as usize);
 
 /// Largest delay of a sensor, in samples: a short filter and a bus together. As many samples at the

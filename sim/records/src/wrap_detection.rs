@@ -31,28 +31,24 @@ const BESIDE: usize = 5;
 pub(crate) struct WrapPattern {
     /// Size in the unit of the values. A usual period within the uncertainty is exact.
     pub period: f64,
-    /// Half width of the interval of the period; `None` if the jumps determine it to the resolution
-    /// of the sensor.
+    /// Half width of the period's interval; `None` if it is below the resolution of the sensor.
     pub uncertainty: Option<f64>,
     pub is_usual: bool,
     /// Time of the first jump.
     pub first: f64,
     pub count: usize,
     pub is_turn: bool,
-    /// True if the motion travels through the whole range, in one direction from one jump to the
-    /// next.
+    /// True if the motion travels through the whole range between jumps.
     pub travels: bool,
 }
 
 impl WrapPattern {
-    /// Returns true if the column is wrapped. An input can have any shape, so only jumps of a full
-    /// turn prove it.
+    /// Returns true if the column is wrapped. For an input, only jumps of a full turn prove it.
     pub fn is_wrapped(&self, is_input: bool) -> bool {
         self.is_turn || (self.travels && !is_input)
     }
 
-    /// Returns the number for a dataset file: a usual period in full, others to one digit beyond
-    /// their uncertainty.
+    /// Returns the number for a dataset file, to one digit beyond its uncertainty if not usual.
     pub fn written(&self, period: f64) -> String {
         if self.is_turn {
             return format!("{period}");
@@ -67,8 +63,7 @@ impl WrapPattern {
         format!("{}", rounded.unwrap_or(period))
     }
 
-    /// Returns the uncertainty of the period as a remark; `None` if it is below the resolution of
-    /// the sensor.
+    /// Returns the uncertainty of the period as a remark, unless the sensor does not resolve it.
     pub fn doubt(&self, period: f64) -> Option<String> {
         let own = self.uncertainty? / self.period * period;
         let rounded = format!("{own:.0e}").parse::<f64>().unwrap_or(own);

@@ -1,6 +1,5 @@
 //! Period of a wrapped column, estimated from its jumps. A jump is the period minus the motion of
-//! one sample, which follows from the steps around it. The scatter of regular steps gives the
-//! uncertainty.
+//! one sample; the scatter of the steps around it gives the uncertainty.
 
 use crate::unwrapping::median;
 
@@ -17,8 +16,7 @@ const DEVIATIONS: f64 = 2.0;
 /// Largest uncertainty, relative to the period, with which a usual period is proposed.
 const MOST_UNCERTAIN: f64 = 0.01;
 
-/// Fraction of the range below which changes of the steps are rounding, not the resolution of the
-/// sensor.
+/// Fraction of the range below which changes of the steps are rounding, not resolution.
 const ROUNDING: f64 = 1e-5;
 
 /// Powers of two at which counters overflow.
@@ -150,8 +148,7 @@ impl Steps<'_> {
         f64::sqrt(sum / f64::max(count, 1.0))
     }
 
-    /// Returns the smallest change between regular steps, 0 without any: the resolution of a sensor
-    /// with quantised values.
+    /// Returns the resolution of the sensor: the smallest change between regular steps, or 0.
     fn resolution(&self) -> f64 {
         let low = self.values.iter().copied().fold(f64::INFINITY, f64::min);
         let high = self

@@ -86,8 +86,7 @@ pub(crate) fn can_wrap(unit: &Unit) -> bool {
     [Dimension::NONE, Dimension::LENGTH].contains(&unit.dimension)
 }
 
-/// Unwraps the declared columns after the times of a table and returns notes. `range` is the file
-/// and the time range in use.
+/// Unwraps the declared columns and returns notes. `range` is the file and the time range in use.
 ///
 /// # Errors
 /// A wrapped column without `wrap`, a wrong period, or a gap inside the range with an unknown

@@ -144,8 +144,7 @@ impl Folder {
         self.write(&self.part(chunk), text.as_bytes())
     }
 
-    /// Removes unfinished files of interrupted runs. Requires that every chunk is complete and that
-    /// no process writes.
+    /// Removes files of interrupted runs. Every chunk must be complete and no process may write.
     pub(super) fn tidy(&self) -> Result<(), SweepError> {
         let parts = self.path.join(PARTS);
         let failed = |error| SweepError::file("clean up", &parts, &error);

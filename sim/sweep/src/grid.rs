@@ -144,8 +144,7 @@ impl Axis {
     }
 }
 
-/// All combinations of the values of some axes. Points are counted from 0; the last axis varies
-/// fastest.
+/// All combinations of the values of some axes. Points count from 0; the last axis varies fastest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
     axes: Vec<Axis>,
@@ -156,8 +155,7 @@ impl Grid {
     /// Creates the grid of the axes.
     ///
     /// # Errors
-    /// No axis, an invalid axis, a parameter that is varied twice, or more than [`MOST_POINTS`]
-    /// points.
+    /// No axis, an invalid or repeated axis, or more than [`MOST_POINTS`] points.
     pub fn new(axes: Vec<Axis>) -> Result<Self, SweepError> {
         let refused = |reason: String| Err(SweepError::Request(reason));
         if axes.is_empty() {

@@ -173,8 +173,7 @@ impl Job {
         &self.hash
     }
 
-    /// Returns the columns of the result: varied parameters, then each measure's columns and its
-    /// status.
+    /// Returns the columns: varied parameters, then each measure's columns and its status.
     pub fn columns(&self) -> Vec<Column> {
         let mut columns = self.plan.parameters.clone();
         for measure in &self.plan.measures {

@@ -1,6 +1,5 @@
-//! Maps over parameters: a grid of parameter values with measures at every point. Points are
-//! computed in parallel, in chunks that survive an interruption and that several machines can
-//! share.
+//! Maps over parameters: a grid of parameter values with measures at every point, computed in
+//! parallel in chunks that survive an interruption and that several machines can share.
 //!
 //! Modules in the order of the computation:
 //!

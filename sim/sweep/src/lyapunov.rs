@@ -23,8 +23,7 @@ pub struct Lyapunov<'a> {
 }
 
 impl<'a> Lyapunov<'a> {
-    /// Creates the measure over a window: once per forcing period, or in intervals of the second
-    /// half of a time.
+    /// Creates the measure: once per forcing period, or over the second half of a time.
     ///
     /// # Errors
     /// An invalid window, or a model that cannot be differentiated.

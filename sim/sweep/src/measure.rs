@@ -26,8 +26,7 @@ impl Column {
     }
 }
 
-/// Description of a measure. All of it enters the job's hash: measures with equal descriptions give
-/// equal numbers.
+/// Description of a measure, part of the job's hash: equal descriptions give equal numbers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Description {
     /// Name of the measure on the command line.
@@ -56,8 +55,7 @@ pub trait Measure: Sync {
 /// Worker with its own memory. Its results must not depend on previous points.
 pub trait Worker {
     /// Measures at a point. `settings` are the varied parameters in their declared units. `out` has
-    /// one number per column of [`Description::columns`]; it contains NaN before the call and is
-    /// valid only on success.
+    /// one number per column of [`Description::columns`], NaN before the call.
     ///
     /// # Errors
     /// The reason why the point has no number.

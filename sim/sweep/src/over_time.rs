@@ -122,8 +122,7 @@ impl<'a> OverTime<'a> {
         })
     }
 
-    /// Returns the times of the samples in s, from the start, and the index of the first sample in
-    /// the window.
+    /// Returns the times of the samples in s, and the index of the first one in the window.
     fn times(&self, instance: &Instance<'_>) -> Result<(Vec<f64>, usize), Failure> {
         let (begin, end) = self.times.range(instance)?;
         let sample = |place: usize| match place {

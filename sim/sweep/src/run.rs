@@ -24,9 +24,8 @@ pub struct Done {
 /// Range of a measure's numbers at a point, and its worker.
 type Place<'a> = (Range<usize>, Box<dyn Worker + 'a>);
 
-/// Computes the missing chunks of a shard. `measures` are in the order of the plan. `threads` is
-/// the number of threads, 0 for one per core. `progress` receives the number of computed points and
-/// of all points.
+/// Computes the missing chunks of a shard, with the plan's `measures` and `threads` threads (0: one
+/// per core). `progress` receives the numbers of computed points and of all points.
 ///
 /// # Errors
 /// Parts of another job in the folder, files that cannot be read or written, or threads that cannot
@@ -125,8 +124,7 @@ mod tests {
     use super::super::merge::merge;
     use super::*;
 
-    /// Returns 1/x, undefined at 0. Its memory contains previous results, which must not become
-    /// visible.
+    /// Returns 1/x, undefined at 0; previous results in its memory must not become visible.
     struct Reciprocal;
 
     impl Measure for Reciprocal {

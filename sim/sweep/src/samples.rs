@@ -17,9 +17,8 @@ use serde::{Deserialize, Serialize};
 use crate::error::SweepError;
 use crate::grid::MOST_POINTS;
 
-/// Maximum number of draws of a normal number within its bounds. The bounds are at least one
-/// standard deviation away, so all draws fail with a probability of 10^-30. The mean is used in
-/// that case.
+/// Maximum number of draws of a normal number within its bounds; then the mean is used. The bounds
+/// are at least one standard deviation away, so all draws fail with a probability of 10^-30.
 const MOST_DRAWS: usize = 64;
 
 /// Independent random samples of parameters.

@@ -2,8 +2,7 @@
 
 use super::error::SweepError;
 
-/// Part `number` of `count`, counted from 1. Chunks are assigned in turn, so that all shards share
-/// slow regions of the grid.
+/// Part `number` of `count`, from 1. Chunks are assigned in turn, to share slow regions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
     number: usize,

@@ -88,8 +88,7 @@ impl Times {
         })
     }
 
-    /// Returns the intervals for the measurement of growth: once per period, or over the second
-    /// half of the time.
+    /// Returns the intervals of growth: once per period, or over the second half of the time.
     ///
     /// # Errors
     /// Same as [`Times::range`].

@@ -213,8 +213,7 @@ impl Check {
     }
 }
 
-/// Largest deviation so far and its place. NaN counts as infinity. Without any deviation the value
-/// is infinity too.
+/// Largest deviation so far and its place. NaN counts as infinity, and so does no deviation at all.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Worst {
     value: f64,

@@ -43,8 +43,7 @@ pub struct Subject<'s> {
     pub outputs: Option<&'s dyn Fn() -> Result<Box<dyn Outputs>, String>>,
     /// Emitted source with the parameters of the specification, or the reason for its absence.
     pub emitted: Result<Emitted, String>,
-    /// Emitted source with kernels of regimes, or the reason for its absence. Its functions are not
-    /// compared.
+    /// Emitted source with kernels of regimes, or the reason for its absence.
     pub regimes: Result<Emitted, String>,
     /// State derivative of the exact solver, or the reason for its absence.
     pub exact: Result<&'s Derivative<'s>, String>,

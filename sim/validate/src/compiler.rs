@@ -21,8 +21,7 @@ pub struct Compiler {
 pub enum Optimization {
     /// Full, as in a release build: optimisation could change a number.
     Full,
-    /// No optimisation: compiles in a sixth of the time. For functions with many instances and few
-    /// calls.
+    /// No optimisation: compiles in a sixth of the time, for many instances with few calls.
     None,
 }
 
@@ -38,8 +37,7 @@ pub struct Output {
 }
 
 impl Compiler {
-    /// Finds the compiler of the environment variable `RUSTC`, or `rustc` on the path, and tests it
-    /// in `folder`.
+    /// Finds the compiler, `RUSTC` of the environment or `rustc`, and tests it in `folder`.
     ///
     /// # Errors
     /// A message if the compiler cannot be run.

@@ -14,8 +14,7 @@ const WEIGHTS: [f64; 4] = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Slope {
     pub value: f64,
-    /// Largest addend of the quantity itself. Over a step of length 1 the quantity changes by at
-    /// most a few of these.
+    /// Largest addend of the quantity. A step of length 1 changes it by at most a few of these.
     pub scale: f64,
 }
 

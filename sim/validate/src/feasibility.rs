@@ -29,9 +29,8 @@ pub(crate) fn cone_is_empty(rows: &[Vec<f64>]) -> bool {
     residual.norm() <= CONTRADICTION
 }
 
-/// Divides each row and column by the geometric mean of its largest and its smallest entry. This
-/// changes no answer, but a constant that is much smaller than another one would otherwise be
-/// treated as rounding error.
+/// Divides rows and columns by the geometric mean of their largest and smallest entries. Otherwise
+/// a constant that is much smaller than another one would be treated as rounding error.
 fn equilibrated(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let mut rows = rows.to_vec();
     let columns = rows.first().map_or(0, Vec::len);
@@ -100,8 +99,7 @@ pub(crate) fn nearest_point(rows: &[(Vec<f64>, f64)]) -> Option<Vec<f64>> {
     )
 }
 
-/// Returns the residual of the least-squares problem that combines the rows, each extended by 1, to
-/// (0, 1).
+/// Returns the residual of the combination of the rows, each extended by 1, nearest to (0, 1).
 fn residual(rows: &[DVector<f64>]) -> Option<DVector<f64>> {
     let size = rows.first()?.len();
     let columns: Vec<DVector<f64>> = rows.iter().map(|row| row.clone().push(1.0)).collect();

@@ -136,7 +136,6 @@ fn rates(
     })
 }
 
-/// Creates the variant of a model with every field at `order`; `parameters` are in SI.
 fn variant(model: &Model, order: usize, parameters: &[f64]) -> Result<Box<dyn Variant>, String> {
     let evaluator = Evaluator::new(program(model, order, parameters, &[])?);
     Ok(Box::new(Derived::new(evaluator)))

@@ -3,8 +3,7 @@
 use super::sampler::Sample;
 use nalgebra::DMatrix;
 
-/// Names of the Jacobians: of the rates and of the observables, by state, inputs and independent
-/// parameters.
+/// Jacobians of the rates and of the observables, by state, inputs and independent parameters.
 pub const JACOBIANS: [&str; 6] = [
     "rates_by_state",
     "rates_by_inputs",

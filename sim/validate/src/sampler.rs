@@ -41,8 +41,7 @@ pub struct Regimes {
     pub combinations: u64,
     /// Number of combinations that interval bounds prove to be empty.
     pub unreachable: u64,
-    /// Regimes in which to draw states. If there are too many to list, the regimes of random
-    /// states.
+    /// Regimes in which to draw states; those of random states if there are too many to list.
     pub visited: Vec<Regime>,
 }
 
@@ -86,8 +85,7 @@ impl<'o> Sampler<'o> {
         &self.sizes
     }
 
-    /// Returns the highest uncoupled frequency of a coordinate with all dead zones closed, in
-    /// rad/s, at least 1.
+    /// Returns the highest uncoupled frequency with all dead zones closed, in rad/s, at least 1.
     pub fn highest_frequency(&self) -> f64 {
         let (positions, rest) = self.sizes.split_at(self.oracle.size());
         let frequencies = positions
@@ -161,8 +159,7 @@ impl<'o> Sampler<'o> {
         Ok(None)
     }
 
-    /// Draws a state in `regime`; `None` if the search failed. Regimes with contradictory sides
-    /// have no state.
+    /// Draws a state in `regime`; `None` if the search failed or the sides are contradictory.
     pub fn draw_in(&mut self, regime: &Regime) -> Result<Option<Drawn>, OracleError> {
         let reach = self.reach;
         if self.remote.as_ref() != Some(regime)
@@ -257,8 +254,7 @@ impl<'o> Sampler<'o> {
                 continue;
             };
             if resting {
-                // Other switches move the quantity to zero. A change along its own slope would only
-                // cross zero.
+                // Other switches move the quantity to zero; its own slope would cross it.
                 let slopes = self.oracle.switch_slopes(index, *time, state, inputs)?;
                 right &= value.side() == *side && slopes.iter().all(|slope| *slope == 0.0);
                 continue;

@@ -1,5 +1,4 @@
-//! Moves a state into a regime by the shortest change that puts every switch on its side, to first
-//! order.
+//! Moves a state into a regime by the shortest change, to first order.
 
 use super::feasibility::nearest_point;
 use super::oracle::{Oracle, OracleError, Side, SwitchValue};

@@ -25,8 +25,7 @@ fn force(sample: &Sample) -> f64 {
 }
 
 impl SpringOutputs {
-    /// Returns the numbers. For the function with the fault, the last nonzero one is 0.1 % too
-    /// large.
+    /// Returns the numbers; if the function has the fault, the last nonzero one is 0.1 % larger.
     fn given(&self, name: &str, mut numbers: Vec<f64>) -> Vec<f64> {
         let last = numbers.iter_mut().rev().find(|number| **number != 0.0);
         if let (true, Some(number)) = (self.0 == name, last) {

@@ -6,8 +6,7 @@
 /// the specification. With n coordinates, the equations are M q'' + c = f.
 ///
 /// # Errors
-/// Methods return a message if they cannot be evaluated, for example if a pivot is not positive or
-/// a length does not match.
+/// Methods return a message if they cannot be evaluated, for example if a pivot is not positive.
 pub trait Variant {
     /// Returns the names of the generalised coordinates in the order of the state.
     fn coordinate_names(&self) -> Vec<String>;

@@ -1,5 +1,4 @@
-//! Common parts of pages that compute: the module and its integration (`motion.js`), drawing
-//! (`canvas.js`) and sliders.
+//! Common parts of pages that compute: integration (`motion.js`), drawing (`canvas.js`), sliders.
 
 mod slider;
 
@@ -24,8 +23,7 @@ pub fn encoded(bytes: &[u8]) -> String {
     STANDARD.encode(bytes)
 }
 
-/// Returns a script of these parts after the common ones. It is in a block, so that none of its
-/// names is global.
+/// Returns a script of these parts after the common ones, in a block without global names.
 pub fn script(parts: &[&str]) -> String {
     [
         "\"use strict\";\n{\n",

@@ -67,8 +67,7 @@ impl Units {
     }
 }
 
-/// Returns the edges of the cells around the values of a coordinate, one more than values, as
-/// positions along the axis.
+/// Returns the edges of a coordinate's cells, one more than values, as positions on the axis.
 pub fn cell_edges(coordinate: &Coordinate<'_>) -> Result<Vec<f64>, PlotError> {
     let units = units(coordinate);
     let values = coordinate.values.iter();

@@ -71,8 +71,7 @@ fn cells_have_their_colours() -> Result<(), PlotError> {
     let map = exponents(&columns, &rows, &[-8.0, 0.0, 8.0, NAN]);
     let picture = Picture::decode(&map_png(&map)?);
     assert_eq!((picture.width, picture.height), (1000, 760));
-    // Middles of the four quarters of the frame; its left edge is near 85 px, its right edge near
-    // 845 px.
+    // Middles of the four quarters of the frame, which is from 85 px to 845 px wide.
     let (left, right, low, high) = (280, 650, 530, 210);
     assert_eq!(picture.at(left, low), [0x05, 0x30, 0x61]);
     assert_eq!(picture.at(right, low), [0xff, 0xff, 0xff]);

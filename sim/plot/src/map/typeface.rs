@@ -1,5 +1,4 @@
-//! Text in pixels: DejaVu Sans with smooth edges. The font has the Greek letters, superscripts and
-//! dots of names and units.
+//! Text in pixels in DejaVu Sans, which has the Greek letters, superscripts and dots of names.
 
 use ab_glyph::{Font, FontRef, Glyph, GlyphId, PxScale, ScaleFont, point};
 
@@ -195,8 +194,7 @@ fn above(font: &FontRef<'static>, letter: &Glyph, mark: GlyphId) -> Glyph {
     mark.with_scale_and_position(letter.scale, at)
 }
 
-/// Returns the height of a line, from the lowest descender to the highest ascender, for a letter
-/// size.
+/// Returns the height from the lowest descender to the highest ascender, for a letter size.
 fn height(font: &FontRef<'static>, size: f64) -> PxScale {
     let em = font.units_per_em().unwrap_or(1000.0);
     PxScale::from(size as f32 * font.height_unscaled() / em)

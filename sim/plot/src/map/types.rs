@@ -18,8 +18,7 @@ pub struct Map<'a> {
     pub unit: String,
     /// Colour scale.
     pub shades: Shades,
-    /// Values row by row: column i and row j have `values[j * columns + i]`. A cell is grey if its
-    /// value is not finite.
+    /// Values row by row, `values[j * columns + i]`. A cell is grey if its value is not finite.
     pub values: &'a [f64],
 }
 
@@ -74,7 +73,6 @@ pub(super) const WHITE: Colour = [255; 3];
 pub(super) const GREY: Colour = [158; 3];
 /// Colour of the points of a diagram.
 pub(super) const INK: Colour = [0, 60, 110];
-/// Opacity of one point.
 pub(super) const OPACITY: f64 = 0.6;
 
 pub(super) fn empty(name: &str) -> PlotError {

@@ -1,5 +1,4 @@
-//! Figures of natural modes: the shape of every field over its length, and bars of the other
-//! coordinates.
+//! Figures of natural modes: shapes of fields, and bars of the other coordinates.
 
 mod amplitudes;
 mod field;
@@ -28,8 +27,7 @@ const OUT_OF_STEP: f64 = 0.02;
 ///
 /// # Errors
 ///
-/// [`PlotError`] without modes, for a mode without anything to draw, and for numbers that cannot be
-/// drawn.
+/// [`PlotError`] without modes, for a mode without content, and for numbers that cannot be drawn.
 pub fn modes(of: &Modes) -> Result<String, PlotError> {
     let Some(first) = of.modes.first() else {
         return Err(PlotError::NoPanels);

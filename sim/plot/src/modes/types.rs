@@ -11,8 +11,7 @@ pub struct Modes {
     pub modes: Vec<Mode>,
 }
 
-/// Natural mode. Amplitudes are complex, `[real, imaginary]`: the motion is the real part of each
-/// times exp(i omega t).
+/// Natural mode. The motion is the real part of `[real, imaginary]` times exp(i omega t).
 #[derive(Clone, Debug, Default)]
 pub struct Mode {
     /// Text of frequency and damping.
@@ -45,7 +44,6 @@ pub struct Bar {
     pub name: String,
     /// SI unit.
     pub unit: String,
-    /// Amplitude in the unit. Bars range from -1 to 1, or to the largest amplitude with the same
-    /// unit if that is larger.
+    /// Amplitude in the unit. Bars range from -1 to 1, or to the largest amplitude with this unit.
     pub amplitude: [f64; 2],
 }

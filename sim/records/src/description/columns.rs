@@ -1,5 +1,4 @@
-//! Tables `[time]`, `[inputs.NAME]`, `[motion.NAME]` and `[channels.NAME]`: columns of the records
-//! and priors of the sensors.
+//! Tables `[time]`, `[inputs.NAME]`, `[motion.NAME]` and `[channels.NAME]`.
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::span::Span;

@@ -1,5 +1,4 @@
-//! Dataset file: tables and keys with their places. Names of a model, units and numbers are checked
-//! elsewhere.
+//! Dataset file: tables and keys with their places. Names, units and numbers are checked elsewhere.
 
 pub mod columns;
 pub mod experiment;

@@ -56,8 +56,7 @@ struct Block<'t> {
 }
 
 impl<'t> Block<'t> {
-    /// Returns the block up to the last line or the one before, because the last line can be
-    /// truncated.
+    /// Returns the block up to the last complete line.
     fn of(lines: &'t [&'t str], separator: Separator, decimal: u8, comment: Option<char>) -> Self {
         let mut block = Self {
             lines,

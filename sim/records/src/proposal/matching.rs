@@ -65,8 +65,7 @@ pub(crate) struct Quantity {
     is_found_by_unit: bool,
 }
 
-/// Returns inputs, observables, coordinates with their rates and accelerations, and first-order
-/// states.
+/// Returns inputs, observables, coordinates with rates and accelerations, and first-order states.
 pub(crate) fn quantities(model: &Model) -> Vec<Quantity> {
     let quantity = |name: &str, unit: &Unit, is_input: bool| Quantity {
         name: name.to_owned(),
@@ -106,8 +105,7 @@ pub(crate) fn quantities(model: &Model) -> Vec<Quantity> {
     all
 }
 
-/// Returns rates and accelerations of observables. An observable with a rate in it has no
-/// acceleration.
+/// Returns rates of observables, and accelerations of observables without a rate in them.
 fn derivatives_of_observables(model: &Model) -> impl Iterator<Item = ObservedRate> {
     (1..=2).flat_map(move |times| {
         let observables = model.observables.iter().enumerate();

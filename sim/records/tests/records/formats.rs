@@ -1,6 +1,5 @@
 //! Tests of record formats: separators, decimal signs, comments, columns without names, parts of a
-//! file, decimation. Each is read to the numbers that were written, or rejected with place and
-//! cure.
+//! file, decimation. Each is read exactly or rejected with place and cure.
 
 mod wrapped;
 

@@ -69,8 +69,7 @@ impl Crossing {
         (from <= 0.0 && to > 0.0).then(|| -from / (to - from))
     }
 
-    /// Returns true if all crossings are at the same value, or at values for which the equations
-    /// are equal.
+    /// Returns true if all crossings are at one value, or at values with equal equations.
     fn is_one_value(&self, instance: &Instance<'_>, seen: &Seen) -> Result<bool, Failure> {
         let is_near = |point: &Vec<f64>| (point[self.state] - self.value).abs() < 0.5 * TAU;
         if !instance.is_angle(self.state) || seen.points.iter().all(is_near) {
@@ -129,8 +128,7 @@ pub fn crossings(
     Ok(seen)
 }
 
-/// Returns all crossings until there are enough or the time ends, either in every turn or only at
-/// the value itself.
+/// Returns crossings, in every turn or only at the value itself, until there are enough.
 fn followed(
     instance: &Instance<'_>,
     (crossing, in_every_turn): (&Crossing, bool),

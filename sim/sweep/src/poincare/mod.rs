@@ -24,8 +24,7 @@ use eomgen_analysis::poincare::LONGEST_PERIOD;
 use eomgen_compiled_model::{CompiledModel, Instance};
 use eomgen_sim::ode::{Settings, Trajectory, simulate};
 
-/// Samples per forcing period. One of them is on the section; all of them give the extent of the
-/// motion.
+/// Samples per forcing period: one is on the section, all give the extent of the motion.
 const LOOKS: usize = 8;
 
 /// Maximum number of points that become columns.

@@ -71,8 +71,7 @@ pub fn statistics(points: &[[f64; 2]]) -> Option<[f64; 4]> {
         .then_some(found)
 }
 
-/// Returns the comparisons for the motion `seen`. A coordinate is constant if it changes by at most
-/// `resolution` of its size.
+/// Returns comparisons; a coordinate is constant if it changes by at most `resolution` of its size.
 pub fn linear_parts(seen: &[[f64; 2]], resolution: f64) -> [Part; 2] {
     extents(seen.iter()).map(|(least, greatest)| {
         let extent = greatest - least;

@@ -14,8 +14,7 @@ pub fn place(model: &CompiledModel, name: &str) -> Result<usize, String> {
     })
 }
 
-/// Coordinate with its rate, or rate with its coordinate. The first is reported; both distinguish
-/// points.
+/// Coordinate with its rate, or rate with its coordinate. Only the first one is reported.
 #[derive(Clone, Debug)]
 pub struct Quantity {
     /// Name of the reported quantity.

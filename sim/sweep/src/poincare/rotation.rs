@@ -1,7 +1,6 @@
 //! Coordinates of a section that grow without bound, for example in rotating machines.
 //!
-//! A cyclic coordinate does not distinguish points. A periodic angle distinguishes them within a
-//! turn.
+//! A cyclic coordinate does not distinguish points; a periodic angle does, within a turn.
 
 use std::f64::consts::TAU;
 

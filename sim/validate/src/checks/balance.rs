@@ -11,22 +11,18 @@ use super::{ROW_TOLERANCE, unknowns};
 const NAME: &str = "power_balance";
 /// Number of steps to check, on all trajectories together.
 const STEPS: usize = 200;
-/// Maximum number of trajectories. A trajectory ends if the motion leaves the model's domain or
-/// comes to rest.
+/// Maximum number of trajectories. One ends where the motion leaves the domain or comes to rest.
 const TRAJECTORIES: usize = 20;
 /// Maximum number of halvings of a step. A jump of the rates would never be accepted.
 const HALVINGS: usize = 10;
-/// Largest difference between two half steps and one whole step, relative to the state and its
-/// size.
+/// Largest difference between two half steps and one step, relative to the state and its size.
 const ACCURACY: f64 = 1e-3;
-/// Magnitude in W below which products of terms are subnormal, so that their rounding error is not
-/// relative.
+/// Magnitude in W below which products of terms are subnormal, with a larger relative error.
 const REST: f64 = 1e-280;
 const SEED: u64 = 0xba1a_4ce5;
 
 /// Checks the power balance along trajectories from random states. Classical Runge-Kutta steps are
-/// at most a twelfth of the shortest uncoupled period of a coordinate, and shorter if coupled modes
-/// are faster.
+/// at most a twelfth of the shortest period, uncoupled or coupled.
 pub fn check(oracle: &Oracle, variant: &mut dyn Variant) -> Result<Check, OracleError> {
     let mut sampler = Sampler::new(oracle, SEED)?;
     let mut motion = Motion {

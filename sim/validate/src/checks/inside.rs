@@ -1,5 +1,4 @@
-//! Sampled states inside regimes. States on a switching surface are excluded, because both sides
-//! are correct there.
+//! Sampled states inside regimes. On a switching surface both sides are correct.
 
 use super::super::oracle::{Oracle, OracleError};
 use super::super::sampler::{Sample, Sampler};

@@ -1,5 +1,4 @@
-//! Compiles emitted source to a library and links it with a harness. The harness reads states and
-//! prints results as bits.
+//! Compiles emitted source to a library and links it with a harness that prints results as bits.
 
 use std::fmt::Write as _;
 use std::path::Path;

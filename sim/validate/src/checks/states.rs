@@ -239,9 +239,8 @@ impl Findings<'_> {
         })())
     }
 
-    /// Returns the expected power, the rate of T + V. If no energy depends explicitly on time, this
-    /// is the power of the forces. Otherwise the rate is computed along the motion with these
-    /// accelerations.
+    /// Returns the expected rate of T + V: the power of the forces or, if an energy depends
+    /// explicitly on time, the rate along the motion with these accelerations.
     fn power(&self, sample: &Sample, accelerations: &[f64]) -> Result<Conditioned, OracleError> {
         let Sample {
             time,

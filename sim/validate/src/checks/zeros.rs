@@ -145,8 +145,7 @@ fn zeros(oracle: &Oracle, sample: &Sample) -> Vec<(String, Sample)> {
     found
 }
 
-/// Returns the oracle's accelerations, then the rates of first-order states; `None` if one is not
-/// finite.
+/// Returns accelerations and rates of first-order states; `None` if one is not finite.
 fn accelerations(oracle: &Oracle, sample: &Sample) -> Result<Option<Vec<f64>>, OracleError> {
     let Sample {
         time,

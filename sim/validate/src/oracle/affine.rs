@@ -152,8 +152,7 @@ impl<'o> Forms<'o> {
         arguments: &[Tree],
     ) -> Option<Affine> {
         let arguments: Vec<Affine> = arguments.iter().map(|tree| self.of(tree)).collect();
-        // The value on a side is linear in the arguments, so values at unit arguments are
-        // coefficients.
+        // The value on a side is linear, so values at unit arguments are coefficients.
         let at = |numbers: &[f64]| functions::on_side(function, side, numbers);
         let constant = at(&vec![0.0; arguments.len()])?;
         let mut form = Affine::constant(constant);

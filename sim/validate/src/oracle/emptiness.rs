@@ -9,8 +9,7 @@ use crate::feasibility::cone_is_empty;
 use eomgen_model_spec::interval::Interval;
 use eomgen_model_spec::model::Function;
 
-/// Relative widening of bounds, so that a range with the width of a rounding error is not a
-/// contradiction.
+/// Relative widening of bounds, so that a range as narrow as rounding is no contradiction.
 const SLACK: f64 = 1e-9;
 
 /// Kind of an inequality: > 0 or >= 0.

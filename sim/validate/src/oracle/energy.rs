@@ -1,5 +1,4 @@
-//! Energies, their rates and powers, each with the magnitude of its terms as the scale of a
-//! balance.
+//! Energies, their rates and powers, each with the magnitude of its terms.
 
 use super::conditioned::Conditioned;
 use super::equations::RowTermKind;

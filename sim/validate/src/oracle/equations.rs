@@ -81,8 +81,7 @@ pub struct ConstraintRow {
 pub struct Residual {
     /// Sum of the row.
     pub value: f64,
-    /// Largest magnitude among the terms and `mass[j, k] q_k''` of the row, before cancellation
-    /// inside them.
+    /// Largest magnitude among the terms and `mass[j, k] q_k''` of the row, before cancellation.
     pub scale: f64,
 }
 
@@ -214,8 +213,7 @@ impl Equations {
         (0..self.size()).map(row).collect()
     }
 
-    /// Returns factors that scale rows and columns of the mass matrix to a unit diagonal, and the
-    /// scaled matrix.
+    /// Scales rows and columns of the mass matrix to a unit diagonal; returns the factors too.
     fn scaled_mass(&self) -> (DVector<f64>, DMatrix<f64>) {
         scaled(&self.mass)
     }
@@ -324,8 +322,7 @@ impl Equations {
             .collect()
     }
 
-    /// Returns the largest relative residual; infinity if the number of unknowns is wrong or one is
-    /// NaN.
+    /// Returns the largest relative residual; infinity for NaN or a wrong number of unknowns.
     pub fn worst_residual(&self, unknowns: &[f64]) -> f64 {
         if unknowns.len() != self.unknown_count() {
             return f64::INFINITY;
@@ -369,8 +366,7 @@ impl Equations {
     }
 }
 
-/// Returns factors that scale rows and columns of a positive definite matrix to a unit diagonal,
-/// and the scaled matrix.
+/// Scales a positive definite matrix to a unit diagonal; returns the factors too.
 fn scaled(matrix: &DMatrix<f64>) -> (DVector<f64>, DMatrix<f64>) {
     let scale = matrix.diagonal().map(|entry| entry.sqrt().recip());
     let scaled = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |row, column| {
@@ -387,8 +383,7 @@ fn has_pivots(scaled: &DMatrix<f64>) -> bool {
     })
 }
 
-/// Returns the sum of a row and its largest magnitude. Compensated summation (Neumaier) avoids
-/// additional rounding error.
+/// Returns a row's sum, compensated (Neumaier) against rounding, and its largest magnitude.
 fn residual(addends: impl Iterator<Item = Conditioned>) -> Residual {
     let (mut sum, mut rest, mut scale) = (0.0_f64, 0.0_f64, 0.0_f64);
     for Conditioned {

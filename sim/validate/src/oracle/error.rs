@@ -1,5 +1,4 @@
-//! Models that the oracle does not support. Such a model can be valid: the oracle only refuses to
-//! guess.
+//! Models, possibly valid, that the oracle does not support.
 
 use std::fmt;
 

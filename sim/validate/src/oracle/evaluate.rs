@@ -1,6 +1,5 @@
-//! Evaluation of a tree at a scene with derivatives in two directions. A time derivative in an
-//! expression adds a dual part along the motion. One such part is enough, because `lower` rejects
-//! accelerations.
+//! Evaluation of a tree at a scene with derivatives in two directions. A time derivative adds one
+//! dual part along the motion; `lower` rejects accelerations, which would need two.
 
 use super::conditioned::Conditioned;
 use super::functions;
@@ -13,8 +12,7 @@ use std::cell::Cell;
 /// Value with its derivatives in two directions.
 pub(super) type Number = HyperDual<Conditioned>;
 
-/// Number type of an evaluation: a value with its derivatives in two directions, or the same with
-/// its time derivative.
+/// Number with derivatives in two directions, optionally also with its time derivative.
 pub(super) trait Level: DualNum<Primitive = f64> + Copy {
     fn of(motion: Motion) -> Self;
     fn dot(pass: &Pass<'_>, tree: &Tree, frame: &Frame<'_>) -> Self;
@@ -230,8 +228,7 @@ impl<'s> Pass<'s> {
         self.scene.coordinate(index, self.directions)
     }
 
-    /// Returns the value of a definition. It contains no free place or index, so one value per pass
-    /// is enough.
+    /// Returns the value of a definition, one per pass because it contains no free place or index.
     fn definition<N: Level>(&self, index: usize) -> N {
         let kept = N::kept(self, index);
         if let Some(value) = kept.and_then(Cell::get) {

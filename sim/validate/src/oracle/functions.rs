@@ -6,8 +6,7 @@ use super::switches::Side;
 use eomgen_model_spec::model::Function;
 use num_dual::DualNum;
 
-/// Returns the value of `function` at `arguments`; NaN if an argument is missing, which a checked
-/// model excludes.
+/// Returns the value of a function; NaN if an argument is missing, which a checked model excludes.
 pub(super) fn apply<N>(function: Function, arguments: &[N]) -> N
 where
     N: DualNum<Primitive = f64> + Copy,

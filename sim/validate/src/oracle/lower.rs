@@ -1,6 +1,5 @@
 //! Conversion of the checked model's expressions to [`Tree`]. Parameters become numbers, domains
-//! become places, and constants are folded. Unsupported expressions are rejected here, so that an
-//! evaluation cannot fail.
+//! become places, constants are folded, and unsupported expressions are rejected.
 
 use super::OracleError;
 use super::evaluate::Pass;
@@ -35,8 +34,7 @@ impl<'m> Lowering<'m> {
         }
     }
 
-    /// Creates the converter with the fields' domains, the definitions and the first-order states
-    /// of `model` at `order`.
+    /// Creates the converter with domains, definitions and first-order states of `model`.
     pub fn of_model(
         model: &Model,
         order: usize,

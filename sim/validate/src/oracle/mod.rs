@@ -152,8 +152,7 @@ impl Oracle {
         self.input_rates.len()
     }
 
-    /// Returns inputs with which the model has inertia; 0 for inputs that are not prescribed
-    /// motions.
+    /// Returns inputs with which the model has inertia; 0 for inputs other than prescribed motions.
     pub fn typical_inputs(&self) -> &[f64] {
         &self.typical_inputs
     }

@@ -125,8 +125,7 @@ impl Oracle {
         Ok((0..self.size()).map(entry).collect())
     }
 
-    /// Returns M_jk = d^2 T/dq_j' dq_k' and the magnitudes of its entries. The lower half is a
-    /// mirror image.
+    /// Returns M_jk = d^2 T/dq_j' dq_k' and magnitudes of the entries; the lower half is mirrored.
     fn mass(&self, scene: &Scene<'_>) -> (DMatrix<f64>, DMatrix<f64>) {
         let size = self.size();
         let mut mass = DMatrix::zeros(size, size);

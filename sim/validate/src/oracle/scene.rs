@@ -1,6 +1,5 @@
-//! State and directions of differentiation for the evaluation of expressions. Field values at all
-//! places are computed once per state: w is linear in the modes, so w and its rate do not depend on
-//! the row.
+//! State and directions of differentiation for the evaluation of expressions. Field values do not
+//! depend on the row (w is linear in the modes), so they are computed once per state.
 
 use super::conditioned::Conditioned;
 use super::evaluate::Number;
@@ -227,8 +226,7 @@ impl<'s> Scene<'s> {
         Motion::new((value, rate), [first, second])
     }
 
-    /// Returns the factor of generalised coordinate `row` in a field value; 0 if it is not a mode
-    /// of the field.
+    /// Returns the factor of coordinate `row` in a field value; 0 if it is not a mode of the field.
     fn shape_of_row(&self, leaf: Leaf, set: usize, node: usize, row: usize) -> f64 {
         let modes = self.system.modes(leaf.field);
         if modes.contains(&row) {

@@ -149,8 +149,7 @@ fn solutions(derivative: u8, (sine, cosine): (f64, f64), exponentials: [f64; 2])
     [of_sine, of_cosine, parity * decaying, growing]
 }
 
-/// Returns the null vector of a singular matrix: the right singular vector of the smallest singular
-/// value.
+/// Returns the right singular vector of the smallest singular value.
 fn null_vector(matrix: Matrix4<f64>) -> Vector4<f64> {
     let decomposed = SVD::try_new(matrix, false, true, 5.0 * f64::EPSILON, ITERATIONS);
     let Some(decomposition) = decomposed else {

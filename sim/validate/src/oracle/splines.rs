@@ -17,7 +17,6 @@ use eomgen_model_spec::shape_table::ShapeTable;
 /// degree 12. The surplus covers coefficients that vary along the field.
 const NODES: usize = 8;
 
-/// Shape of a table over s in [0, 1].
 #[derive(Clone, Debug)]
 pub(super) struct SplineShape {
     knots: Vec<f64>,

@@ -92,8 +92,7 @@ pub(super) struct Imposed<'s> {
 }
 
 impl Imposed<'_> {
-    /// Returns the prescribed side of a function with these arguments, if it is one of the
-    /// switches.
+    /// Returns the prescribed side of a function with these arguments, if it is a switch.
     pub fn side(&self, function: Function, arguments: &[Tree]) -> Option<Side> {
         let (quantity, half_width) = switched_by(function, arguments)?;
         let known =
@@ -103,8 +102,7 @@ impl Imposed<'_> {
     }
 }
 
-/// Returns the quantity of a piecewise function and its half-width, if any; `None` for a smooth
-/// function.
+/// Returns quantity and half-width (if any) of a piecewise function; `None` for a smooth one.
 fn switched_by(function: Function, arguments: &[Tree]) -> Option<(Tree, Option<Tree>)> {
     match (function, arguments) {
         (Function::Abs | Function::Sign | Function::Above, [argument]) => {

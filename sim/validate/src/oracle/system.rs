@@ -39,8 +39,7 @@ impl System {
         tree.dependence(&self.dependences)
     }
 
-    /// Returns true if an expression with this dependence can depend on generalised coordinate
-    /// `row` or its rate.
+    /// Returns true if such an expression can depend on generalised coordinate `row` or its rate.
     pub fn concerns(&self, dependence: &Dependence, row: usize) -> bool {
         dependence.coordinates.contains(&row)
             || dependence

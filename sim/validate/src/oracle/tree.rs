@@ -31,7 +31,6 @@ pub(super) enum Tree {
     Coordinate(usize),
     State(usize),
     StateRate(usize),
-    /// Multiplier of a constraint.
     Multiplier(usize),
     Definition(usize),
     /// Field, or its derivative by the position, at the current place.

@@ -97,8 +97,7 @@ impl model::Coefficient<Eight> for f64 {
 
 type State = (f64, [f64; model::STATES], [f64; INPUTS]);
 
-/// Returns the number of results of eight states at once that differ from single states, and the
-/// number of all results.
+/// Counts the results of eight states that differ from single states, and all results.
 fn compare_lanes(states: &[State], coefficients: &model::Coefficients) -> [usize; 2] {
     let t = Eight(std::array::from_fn(|k| states[k].0));
     let state: [Eight; model::STATES] =

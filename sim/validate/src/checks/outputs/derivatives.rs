@@ -174,8 +174,7 @@ impl Known {
         places.map(|place| direction.parameters[*place]).collect()
     }
 
-    /// Returns the deviations of the rates. The change of the accelerations must cancel the change
-    /// of the rows.
+    /// Returns the deviations of the rates: accelerations and rows must change equally.
     fn of_rates(&self, change: &[f64], direction: &Direction, slopes: &[Slope]) -> Vec<f64> {
         let size = self.mass.nrows();
         let count = size + self.multipliers.len();

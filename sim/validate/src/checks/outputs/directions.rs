@@ -64,8 +64,7 @@ pub(super) fn directions(
     Ok(found)
 }
 
-/// Returns the sizes of independent parameters. Derived parameters and parameters equal to 0 have
-/// size 0.
+/// Returns the sizes of independent parameters; 0 for derived parameters and for zeros.
 pub(super) fn independent(judged: &Judged<'_>) -> Vec<f64> {
     let parameters = judged.model.parameters.iter().zip(judged.parameters);
     parameters

@@ -8,8 +8,7 @@ use crate::outputs::JACOBIANS;
 /// by its size. The rows are accurate to 1e-14 of that. The division by the step size increases
 /// this error, by a factor of 16 for the longest step and 65536 for the shortest.
 pub const DIFFERENCE_TOLERANCE: f64 = 1e-9;
-/// Step sizes, in sizes of the variables: a long one for smooth rows, short ones for rows with
-/// large higher derivatives.
+/// Step sizes: long for smooth rows, short for rows with large higher derivatives.
 pub(super) const STEPS: [f64; 5] = [
     1.0 / 16.0,
     1.0 / 128.0,

@@ -1,5 +1,4 @@
-//! Tests of wrapped columns: rejected with a cure, unwrapped by `wrap`, and distinguished from real
-//! jumps.
+//! Tests of wrapped columns: rejected with a cure, unwrapped by `wrap`, and unlike real jumps.
 
 use std::fmt::Write;
 
@@ -87,8 +86,7 @@ fn with(keys: &str) -> String {
     format!("{DESCRIPTION}{keys}\n")
 }
 
-/// Returns the largest difference of a channel from the angle in degrees, up to a constant number
-/// of turns.
+/// Returns the largest difference of a channel from the angle in degrees, up to full turns.
 fn error(values: &[f64], turn: f64, every: usize) -> f64 {
     let degrees = |k: usize| values[k].to_degrees() - angle(k * every, turn);
     let offset = (degrees(0) / 360.0).round() * 360.0;
