@@ -44,7 +44,7 @@ fn run(
 }
 
 #[test]
-fn an_integration_follows_the_exact_motion_through_its_switches() {
+fn integration_matches_exact_motion_through_events() {
     let model = rig();
     let exact = PiecewiseLinear::of(&model, &[4]).expect("piecewise linear");
     let values: Vec<f64> = exact_values(&model);
@@ -59,8 +59,8 @@ fn an_integration_follows_the_exact_motion_through_its_switches() {
     let mut integrator =
         ExponentialIntegrator::new(exact.evaluator(&values), 5e-4, 1.0).expect("can be integrated");
     let found = run(&mut integrator, &initial, &times, &inputs);
-    // Deflections of the meshes, the carrier's way and the beam's modes: of micrometres and
-    // millimetres; a sensor of the rig resolves 0.7 um.
+    // Deflections of the meshes, the carrier coordinate and the modes: micrometres to millimetres.
+    // A sensor of the rig resolves 0.7 um.
     for (sample, (a, b)) in found.iter().zip(&wanted.states).enumerate() {
         for place in 0..7 {
             let difference = (a[place] - b[place]).abs();
@@ -72,9 +72,9 @@ fn an_integration_follows_the_exact_motion_through_its_switches() {
     }
 }
 
-/// Whose surfaces rest on whole regions, which an integration would take to be negative there.
+/// Such surfaces are zero in whole regions, in which the integrator would treat them as negative.
 #[test]
-fn what_surfaces_of_surfaces_move_is_not_integrated() {
+fn nested_surfaces_are_rejected() {
     let text = r#"
 [model]
 name = "preload"
@@ -119,7 +119,7 @@ fn exact_values(model: &Model) -> Vec<f64> {
 }
 
 #[test]
-fn tangents_are_differences_of_neighbouring_motions() {
+fn tangents_match_differences_of_neighbouring_motions() {
     let model = rig();
     let exact = PiecewiseLinear::of(&model, &[4]).expect("piecewise linear");
     let values = exact_values(&model);
@@ -184,7 +184,7 @@ fn driven(driven: usize) -> Directions {
     }
 }
 
-/// A mass of 2 kg pushed by an input against dry friction of 3 N.
+/// A mass of 2 kg with an input force and dry friction of 3 N.
 fn sliding() -> Model {
     let text = r#"
 [model]
@@ -208,12 +208,13 @@ friction = { on = "x", value = "-T*sign(dot(x))" }
 }
 
 #[test]
-fn dry_friction_holds_and_lets_go() {
+fn dry_friction_sticks_and_releases() {
     let model = sliding();
     let exact = PiecewiseLinear::of(&model, &[]).expect("piecewise linear");
     let mut integrator = ExponentialIntegrator::new(exact.evaluator(&[2.0, 3.0]), 0.01, 1.0)
         .expect("can be integrated");
-    // Held for a second, 1 m/s^2 for the next, slowed down by 1.5 m/s^2, held again.
+    // Sticking for a second, 1 m/s^2 for the next, then decelerated by 1.5 m/s^2 until it sticks
+    // again.
     let inputs = HeldInputs::new(vec![0.0, 1.0, 2.0], vec![2.0, 5.0, 0.0], 1).expect("inputs");
     let times: Vec<f64> = (0..=400).map(|k| f64::from(k) * 0.01).collect();
     let states = run(&mut integrator, &[0.0, 0.0], &times, &inputs);
@@ -224,7 +225,7 @@ fn dry_friction_holds_and_lets_go() {
     assert!(states[400][1].abs() < 1e-12);
 }
 
-/// An acceleration of 1 drives the second of two vectors.
+/// An acceleration of 1 that drives the second of two vectors.
 struct Push;
 
 impl Drives for Push {
@@ -234,7 +235,7 @@ impl Drives for Push {
 }
 
 #[test]
-fn a_driven_tangent_is_the_motion_of_what_drives_it() {
+fn driven_tangent_matches_response_to_acceleration() {
     let model = sliding();
     let exact = PiecewiseLinear::of(&model, &[]).expect("piecewise linear");
     let mut integrator = ExponentialIntegrator::new(exact.evaluator(&[2.0, 3.0]), 0.01, 1.0)
@@ -296,7 +297,7 @@ friction = { on = "x", value = "-F*sign(dot(x))" }
 }
 
 #[test]
-fn a_release_within_a_step_is_located() {
+fn release_within_step_is_located() {
     let model = axis();
     let exact = PiecewiseLinear::of(&model, &[]).expect("piecewise linear");
     let values = exact_values(&model);
@@ -314,17 +315,17 @@ fn a_release_within_a_step_is_located() {
     let found = run(&mut integrator, &[0.0; 4], &times, &inputs);
     let differences = found.iter().zip(&wanted.states).map(|(a, b)| a[1] - b[1]);
     let most = differences.fold(0.0f64, |most, d| most.max(d.abs()));
-    // Released at the end of the step, it is 2 um off.
+    // With a release at the end of the step, the error is 2 um.
     assert!(most < 2e-9, "{most:e} m");
 }
 
 #[test]
-fn a_motion_that_is_held_is_not_driven_off_its_surface() {
+fn driven_tangent_stays_on_sticking_surface() {
     let model = sliding();
     let exact = PiecewiseLinear::of(&model, &[]).expect("piecewise linear");
     let mut integrator = ExponentialIntegrator::new(exact.evaluator(&[2.0, 3.0]), 0.01, 1.0)
         .expect("can be integrated");
-    // Held for a second, then 1 m/s^2.
+    // Sticking for a second, then 1 m/s^2.
     let inputs = HeldInputs::new(vec![0.0, 1.0], vec![2.0, 5.0], 1).expect("inputs");
     let times: Vec<f64> = (0..=200).map(|k| f64::from(k) * 0.01).collect();
     let mut push = Push;
@@ -350,7 +351,8 @@ fn a_motion_that_is_held_is_not_driven_off_its_surface() {
     assert!((driven[200] - 0.5).abs() < 1e-3, "{:e}", driven[200]);
 }
 
-/// Returns the derivatives of the motion at its samples by each independent parameter.
+/// Returns the derivatives of the motion at its samples with respect to each independent
+/// parameter.
 fn by_parameters(
     exact: &PiecewiseLinear,
     values: &[f64],
@@ -396,7 +398,7 @@ fn by_parameters(
 }
 
 #[test]
-fn derivatives_by_parameters_are_those_of_the_exact_motion_through_friction_and_play() {
+fn parameter_derivatives_match_exact_motion_with_friction_and_play() {
     let with_play = r#"
 [model]
 name = "play"
@@ -445,7 +447,7 @@ impact = { on = "alpha", value = "-d*dot(alpha)*above(alpha - beta - g)" }
                 moved[place] += change;
                 motion(&moved).states
             });
-            // Neighbouring motions diverge by impacts: later, differences are no derivatives.
+            // Impacts make neighbouring motions diverge; later differences are no derivatives.
             for state in 0..2 {
                 let wanted =
                     |sample: usize| (after[sample][state] - before[sample][state]) / (2.0 * step);

@@ -350,7 +350,8 @@ mod tests {
 
     use super::*;
 
-    /// The coefficients of the method follow from its nodes: the integrals of Lagrange's polynomials.
+    /// Returns the coefficients of the method from its nodes: the integrals of the Lagrange
+    /// polynomials.
     fn coefficients() -> Matrix3<f64> {
         let nodes = nodes();
         let powers = Matrix3::from_fn(|row, column| nodes[row].powi(column as i32));
@@ -361,7 +362,7 @@ mod tests {
     }
 
     #[test]
-    fn the_transform_makes_the_coefficients_a_number_and_a_pair() {
+    fn transform_separates_real_and_complex_eigenvalues() {
         let t = Matrix3::from_fn(|row, column| T[row][column]);
         let inverse = Matrix3::from_fn(|row, column| T_INVERSE[row][column]);
         assert!((t * inverse - Matrix3::identity()).abs().max() < 1e-14);
@@ -372,7 +373,7 @@ mod tests {
     }
 
     #[test]
-    fn the_error_of_interpolation_is_the_largest_between_the_nodes() {
+    fn interpolation_error_constant_is_its_maximum() {
         let [a, b, c] = nodes();
         let values = (0..=10_000).map(|i| {
             let s = f64::from(i) / 1e4;
@@ -386,9 +387,9 @@ mod tests {
     }
 
     #[test]
-    fn the_error_estimate_vanishes_for_polynomials_of_degree_3() {
-        // With y = s^p and h = 1, rates at the start are 0 for p > 1: the estimate compares the step
-        // with a formula of order 3.
+    fn error_estimate_vanishes_for_cubic_polynomials() {
+        // With y = s^p and h = 1, rates at the start are 0 for p > 1. The estimate compares the
+        // step with a formula of order 3.
         let weights = Vector3::from(weights_of_error());
         for power in 2..=3 {
             let stages = Vector3::from(nodes()).map(|node| node.powi(power));

@@ -288,7 +288,7 @@ fn horizon(start: &Point, length: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// y' = y cos t, so that the nodes of the method matter: y = exp(sin t).
+    /// y' = y cos t depends on the nodes of the method: y = exp(sin t).
     struct Growth;
 
     impl System for Growth {
@@ -301,7 +301,7 @@ mod tests {
         }
     }
 
-    /// The error at t = 4 with steps of 4/`steps`.
+    /// Returns the error at t = 4 with steps of 4/`steps`.
     fn error(steps: u32) -> f64 {
         let mut point = Point {
             t: 0.0,
@@ -315,13 +315,13 @@ mod tests {
     }
 
     #[test]
-    fn a_single_step_is_of_order_8() {
+    fn single_step_has_order_8() {
         let order = (error(8) / error(16)).log2();
         assert!((7.5..9.5).contains(&order), "order {order}");
     }
 
     #[test]
-    fn states_inside_a_step_are_of_order_7() {
+    fn states_inside_step_have_order_7() {
         let error = |length: f64| {
             let start = Point {
                 t: 0.0,
@@ -342,13 +342,13 @@ mod tests {
             });
             errors.fold(0.0, f64::max)
         };
-        // Within one step the error is of one order more.
+        // Within one step the error has one order more.
         let order = (error(1.0) / error(0.5)).log2();
         assert!((7.5..9.0).contains(&order), "order {order}");
     }
 
     #[test]
-    fn a_single_step_is_made_however_large_its_error() {
+    fn single_step_ignores_its_error() {
         for exponent in 0..300 {
             let start = Point {
                 t: 0.0,
@@ -361,7 +361,7 @@ mod tests {
     }
 
     #[test]
-    fn a_step_is_refused_where_the_error_is_too_large() {
+    fn step_with_large_error_is_rejected() {
         let start = Point {
             t: 0.0,
             y: vec![1.0],
@@ -381,7 +381,7 @@ mod tests {
     }
 
     #[test]
-    fn a_step_ends_exactly_where_it_must() {
+    fn step_ends_exactly_at_given_time() {
         let start = Point {
             t: 0.1,
             y: vec![1.0],

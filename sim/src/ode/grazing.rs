@@ -187,7 +187,8 @@ fn around(samples: [Sample; 3], new: Sample) -> [Sample; 3] {
 mod tests {
     use super::*;
 
-    /// Where a function on 0..1 is found to be negative, and after how many looks.
+    /// Returns the point on 0..1 at which a function is found negative, and the number of
+    /// evaluations.
     fn search(function: impl Fn(f64) -> f64) -> (Option<f64>, u32) {
         let mut looks = 0;
         let samples = [0.0, 0.5, 1.0].map(|at| Sample {
@@ -202,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn a_dip_below_zero_is_found_however_shallow() {
+    fn shallow_negative_minimum_is_found() {
         for depth in [1e-3, 1e-6, 1e-9] {
             for lowest in [0.1, 0.37, 0.5, 0.8] {
                 let (found, looks) = search(|at| 1.0 - (at - lowest).cos() - depth);
@@ -213,13 +214,13 @@ mod tests {
     }
 
     #[test]
-    fn what_turns_well_before_zero_costs_no_look() {
+    fn distant_minimum_needs_no_evaluation() {
         let (found, looks) = search(|at| 0.5 + (at - 0.4) * (at - 0.4));
         assert_eq!((found, looks), (None, 0));
     }
 
     #[test]
-    fn what_starts_on_the_surface_and_leaves_it_is_not_beyond() {
+    fn departure_from_surface_is_no_crossing() {
         let (found, _) = search(|at| at * at * at);
         assert_eq!(found, None);
     }

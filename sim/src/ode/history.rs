@@ -171,8 +171,8 @@ fn add(factor: f64, x: &[f64], y: &mut [f64]) {
 mod tests {
     use super::*;
 
-    /// The end of an integration of y' = f(t) from 0 with uneven steps and `order`,
-    /// beginning with exact values.
+    /// Integrates y' = f(t) from 0 with uneven steps and a fixed `order`, from exact initial
+    /// values.
     fn integral(f: impl Fn(f64) -> f64, exact: impl Fn(f64) -> f64, order: usize) -> (f64, f64) {
         let mut history = History::new();
         history.begin(&[f(0.0)]);
@@ -205,7 +205,7 @@ mod tests {
             let (t, y) = integral(|t| t.powi(power), exact, order);
             // Rounding in differences of `order` neighbours, a few digits for the highest.
             assert!((y / exact(t) - 1.0).abs() < 1e-11, "order {order}: {y}");
-            // One degree higher is not exact: the test sees the order.
+            // One degree higher is not exact, so the test depends on the order.
             let exact = |t: f64| t.powi(power + 2) / f64::from(power + 2);
             let (t, y) = integral(|t| t.powi(power + 1), exact, order);
             assert!((y / exact(t) - 1.0).abs() > 1e-13, "order {order}: {y}");
@@ -213,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn even_steps_have_the_coefficients_of_the_textbook() {
+    fn equal_steps_have_textbook_coefficients() {
         let mut history = History::new();
         history.begin(&[1.0]);
         for _ in 0..5 {

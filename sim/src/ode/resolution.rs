@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn a_step_of_many_waves_is_too_long_and_one_of_a_part_is_not() {
+    fn step_over_many_waves_is_too_long() {
         for length in [4.0, 7.0, 17.0, 29.0, 1000.0] {
             let factor = of(|t| 1.01 + (t + 0.3).sin(), length);
             assert!(factor < 1.0, "{length}: {factor}");
@@ -121,9 +121,10 @@ mod tests {
         }
     }
 
-    /// Quarters of many waves may look alike. Steps that grow from short ones do not come there.
+    /// Quarter points of many waves may coincide; steps that grow from short ones do not reach
+    /// that length.
     #[test]
-    fn steps_that_grow_stay_within_a_wave() {
+    fn growing_steps_stay_within_one_wave() {
         for offset in [1.0001, 1.01, 1.2, 0.9] {
             let mut resolution = Resolution::new(1e-9);
             let (mut t, mut length) = (0.1, 1e-6);
@@ -141,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn what_stays_away_or_moves_smoothly_costs_nothing() {
+    fn distant_or_smooth_functions_do_not_limit_steps() {
         assert_eq!(of(|t| 50.0 + t.sin(), 17.0), f64::INFINITY);
         assert_eq!(of(|t| 1.0 - t, 1.0), f64::INFINITY);
         assert_eq!(of(|t| 1e-3 + 2.0 * t - t * t, 1.0), f64::INFINITY);

@@ -50,7 +50,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_million_steps_do_not_drift() {
+    fn million_steps_do_not_drift() {
         let mut clock = Clock::at(0.0);
         for _ in 0..1_000_000 {
             clock = clock.plus(0.1);
@@ -63,15 +63,15 @@ mod tests {
     }
 
     #[test]
-    fn phases_keep_the_digits_of_the_time() {
+    fn phases_are_as_accurate_as_time() {
         let rate = 10.0 * std::f64::consts::PI;
         let clock = Clock::at(12_345.678);
         let (product, error) = two_product(rate, 12_345.678);
         let turn = 2.0 * std::f64::consts::PI;
-        // The same angle, reduced before the rounding error is added.
+        // Same angle, reduced before the rounding error is added.
         let angle = product.rem_euclid(turn);
         let wanted = Complex::new((angle + error).cos(), (angle + error).sin());
-        // 2 pi itself is rounded; the angle holds 6e4 turns of it.
+        // The rounding of 2 pi counts 6e4 times.
         assert!((clock.phase([rate, 0.0]) - wanted).norm() < 6.2e4 * 2.5e-16);
     }
 }

@@ -168,7 +168,7 @@ fn best_parts(schur: &SchurForm, zeros: usize) -> Found {
 mod tests {
     use super::*;
 
-    /// The matrix that the parts make.
+    /// Returns the sum of the parts and the sum of their projections.
     fn composed(found: &Decomposition) -> (DMatrix<f64>, DMatrix<f64>) {
         let integrals = &found.integrals;
         let mut matrix = &integrals.columns * &integrals.matrix * &integrals.rows;
@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn free_masses_and_an_oscillator() {
+    fn free_masses_and_oscillator_are_decomposed() {
         // Two free masses, one of them dragged, and an oscillator driven by the second rate.
         let matrix = DMatrix::from_row_slice(
             6,
@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn critically_damped_and_equal_oscillators() {
+    fn critically_damped_and_equal_oscillators_are_decomposed() {
         let mut matrix = DMatrix::zeros(8, 8);
         for body in 0..4 {
             matrix[(body, body + 4)] = 1.0;
@@ -224,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_moves() {
+    fn zero_matrix_is_decomposed() {
         let found = check(&DMatrix::zeros(4, 4), 1e-15);
         assert_eq!(found.integrals.matrix.nrows(), 4);
         assert!(found.parts.is_empty());
@@ -232,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_that_are_none_are_refused() {
+    fn non_finite_matrices_are_rejected() {
         let mut matrix = DMatrix::zeros(2, 2);
         matrix[(1, 0)] = f64::NAN;
         assert_eq!(

@@ -103,12 +103,11 @@ pub(super) fn factorial(k: usize) -> f64 {
 mod tests {
     use super::*;
 
-    /// The integral by a rule that shares nothing with the recursions.
+    /// Returns the integral by Simpson's rule, independent of the recursions.
     fn by_quadrature(nu: Complex<f64>, tau: f64, k: usize) -> Complex<f64> {
         let panels = 4000;
         let h = tau / panels as f64;
         let value = |s: f64| (nu * s).exp() * (tau - s).powi(k as i32) / factorial(k);
-        // Simpson's rule.
         (0..panels).fold(Complex::new(0.0, 0.0), |sum, panel| {
             let a = panel as f64 * h;
             sum + (value(a) + value(a + 0.5 * h) * 4.0 + value(a + h)) * (h / 6.0)
@@ -116,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn integrals_are_right_for_small_and_large_arguments() {
+    fn integrals_match_quadrature_for_small_and_large_arguments() {
         for nu in [
             Complex::new(0.0, 0.0),
             Complex::new(0.0, 1e-9),

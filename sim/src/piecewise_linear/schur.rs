@@ -106,8 +106,8 @@ mod tests {
     }
 
     #[test]
-    fn a_circle_of_the_iteration_is_left() {
-        // Two oscillators, a third rate beside one of them.
+    fn iteration_leaves_a_cycle() {
+        // Two oscillators, and a third rate near one of them.
         let mut matrix = DMatrix::zeros(5, 5);
         let entries = [
             (0, 3, 8.0),

@@ -203,7 +203,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn expm1_of_little_is_exponentials_less_one() {
+    fn expm1_of_small_arguments_matches_exponentials() {
         let rates = [
             Complex::new(-3.0, 40.0),
             Complex::new(0.0, 63.0),
@@ -226,14 +226,13 @@ mod tests {
             for (place, rate) in rates.iter().enumerate() {
                 let found = Complex::new(re.to_array()[place], im.to_array()[place]);
                 let wanted = expm1(rate * time);
-                // A few roundings of either.
                 assert!((found - wanted).norm() < 1e-15 * wanted.norm());
             }
         }
     }
 
     #[test]
-    fn expm1_of_large_arguments_is_exponentials_less_one() {
+    fn expm1_of_large_arguments_matches_exponentials() {
         for z in [Complex::new(-2.0, 7.0), Complex::new(1.5, -300.0)] {
             assert!((expm1(z) - (z.exp() - 1.0)).norm() < 1e-15 * z.exp().norm());
         }
@@ -249,7 +248,7 @@ mod tests {
             dispatch!(Level::new(), simd => packed.add_product(simd, &vector, &mut out));
             for row in 0..rows {
                 let wanted: f64 = (0..columns).map(|j| entry(row, j) * vector[j]).sum();
-                // Small integers and halves: no rounding.
+                // Small integers and halves have no rounding.
                 assert_eq!(numbers(&out)[row], 1.0 + wanted);
             }
         }

@@ -1,5 +1,5 @@
-//! Contacts much shorter than a step: an oscillator that touches a stiff wall with the very end of
-//! its swing. Its period is known in closed form, with the contact and without.
+//! Contacts much shorter than a step: an oscillator reaches a stiff wall only at the end of its
+//! swing. Its period is known in closed form, with and without contact.
 
 use std::f64::consts::PI;
 
@@ -30,7 +30,7 @@ impl System for Oscillator {
     }
 }
 
-/// The period of a swing of amplitude 1: a flight of frequency 1 and a contact of frequency
+/// Returns the period for the amplitude 1: a flight of frequency 1 and a contact of frequency
 /// sqrt(1 + k).
 fn period(wall: f64, stiffness: f64) -> f64 {
     let speed = ((1.0 - wall) * (1.0 + wall)).sqrt();
@@ -51,11 +51,11 @@ fn swing(method: Method, tolerance: f64, wall: f64, stiffness: f64, until: f64) 
 }
 
 #[test]
-fn a_contact_much_shorter_than_a_step_is_seen() {
+fn contact_shorter_than_step_is_detected() {
     const SWINGS: u32 = 20;
     let stiffness = 1e6;
     for method in [Method::DormandPrince853, Method::Adams, Method::Radau] {
-        // Depths that errors of the amplitude do not hide.
+        // Penetrations well above the error of the amplitude.
         let depths = [(1e-6, 1e-3), (1e-9, 1e-3), (1e-9, 1e-5)];
         let tight = [1e-3, 1e-5, 1e-7].map(|depth| (1e-12, depth));
         for (tolerance, depth) in depths.into_iter().chain(tight) {
@@ -70,10 +70,10 @@ fn a_contact_much_shorter_than_a_step_is_seen() {
     }
 }
 
-/// Half a joule, wherever the turning point lies beside the wall: each step may err by the tolerance, and
-/// the energy of a contact feels an error of the deflection by the root of the stiffness more.
+/// The energy is 0.5 J for every distance of the wall from the turning point. Each step may err by
+/// the tolerance; the energy of a contact is more sensitive by the root of the stiffness.
 #[test]
-fn a_swing_that_grazes_the_wall_keeps_its_energy() {
+fn grazing_contact_conserves_energy() {
     let tolerance = 1e-9;
     let depths = [1e-2, 5.5e-5, 4e-5, 1e-5, 3e-8, 1e-10, 1e-12];
     let walls = depths
@@ -98,7 +98,7 @@ fn a_swing_that_grazes_the_wall_keeps_its_energy() {
 }
 
 #[test]
-fn a_swing_that_stays_before_the_wall_has_no_contact() {
+fn swing_short_of_wall_has_no_contact() {
     for method in [Method::DormandPrince853, Method::Adams, Method::Radau] {
         let until = 20.0 * 2.0 * PI;
         let free = swing(method, 1e-9, 2.0, 1e6, until);
@@ -113,7 +113,7 @@ fn a_swing_that_stays_before_the_wall_has_no_contact() {
     }
 }
 
-/// x'' = 500, less v beyond a wall far from the origin.
+/// x'' = 500, minus v beyond a wall far from the origin.
 struct FarWall;
 
 impl FarWall {
@@ -144,7 +144,7 @@ impl System for FarWall {
 }
 
 #[test]
-fn a_wall_is_crossed_where_the_place_moves_by_less_than_its_rounding() {
+fn wall_is_crossed_if_motion_is_below_rounding_of_position() {
     for (method, distance) in [
         (Method::DormandPrince853, 4e-9),
         (Method::DormandPrince853, 4e-12),
@@ -159,7 +159,7 @@ fn a_wall_is_crossed_where_the_place_moves_by_less_than_its_rounding() {
         let initial = [FarWall::PLACE - distance, 2e-7];
         let motion = simulate(&FarWall, &initial, (0.0, 1e-3), &[], &settings, &mut |_| {});
         let motion = motion.unwrap_or_else(|error| panic!("{method:?} {distance}: {error}"));
-        // v = 5 (1 - exp(-100 t)) beyond.
+        // Beyond the wall v = 5 (1 - exp(-100 t)).
         let before = (2.0 * distance / 500.0_f64).sqrt();
         let entered = 500.0 * before;
         let decayed = (-100.0 * (1e-3 - before)).exp();

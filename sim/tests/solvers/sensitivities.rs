@@ -1,6 +1,5 @@
-//! Sensitivities of exact trajectories against difference quotients of whole trajectories,
-//! through many switches, and Lyapunov exponents against those of a system that has a
-//! closed form.
+//! Sensitivities of exact trajectories compared with difference quotients through many events, and
+//! Lyapunov exponents compared with a closed form.
 
 use std::path::Path;
 
@@ -27,7 +26,7 @@ fn values(model: &Model, exact: &PiecewiseLinear) -> Vec<f64> {
         .collect()
 }
 
-/// Largest difference and largest size.
+/// Returns the largest difference and the largest magnitude.
 fn compare(derivative: &[f64], plus: &[f64], minus: &[f64], step: f64) -> (f64, f64) {
     let quotient = plus.iter().zip(minus).map(|(a, b)| (a - b) / (2.0 * step));
     derivative
@@ -39,7 +38,7 @@ fn compare(derivative: &[f64], plus: &[f64], minus: &[f64], step: f64) -> (f64, 
 }
 
 #[test]
-fn derivatives_by_the_initial_state_are_those_of_whole_trajectories() {
+fn initial_state_derivatives_match_difference_quotients() {
     let model = model("planetary_arm.toml");
     let exact = PiecewiseLinear::of(&model, &[1]).expect("piecewise linear");
     let values = values(&model, &exact);
@@ -52,8 +51,8 @@ fn derivatives_by_the_initial_state_are_those_of_whole_trajectories() {
         let found = propagator
             .neighbours(&initial, (0.0, 0.06), &samples, &none, vec![direction])
             .expect("sensitivities");
-        // Well above the rounding of a trajectory over its step, well below what a switch
-        // takes: positions in m, rates in m/s.
+        // Steps well above the rounding of a trajectory and well below the effect of an event:
+        // positions in m, rates in m/s.
         let step = if state < initial.len() / 2 {
             1e-10
         } else {
@@ -70,14 +69,14 @@ fn derivatives_by_the_initial_state_are_those_of_whole_trajectories() {
         let (plus, minus) = (shifted(1.0), shifted(-1.0));
         for (k, derivative) in found.derivatives.iter().enumerate() {
             let (worst, size) = compare(&derivative[0], &plus.states[k], &minus.states[k], step);
-            // Rounding of 1e-14 m over the step, and the step times the curvature.
+            // Rounding of 1e-14 m divided by the step, and the step times the curvature.
             assert!(worst < 1e-3 * size, "{state}: {worst:e} of {size:e}");
         }
     }
 }
 
 #[test]
-fn exponents_of_a_damped_oscillator_are_its_decay() {
+fn lyapunov_exponents_of_damped_oscillator_equal_its_decay() {
     let text = "[model]\nname = \"mass\"\ntitle = \"A mass\"\n[parameters]\n\
                 m = { value = 2, unit = \"kg\" }\nk = { value = 50, unit = \"N/m\" }\n\
                 c = { value = 0.8, unit = \"N s/m\" }\nF = { value = 1, unit = \"N\" }\n\
@@ -97,8 +96,8 @@ fn exponents_of_a_damped_oscillator_are_its_decay() {
     let growth = propagator
         .lyapunov(&[0.1, 0.0], 0.0, &HeldInputs::zero(0), &request)
         .expect("exponents");
-    // Both exponents are -c/(2 m); what a vector turns within the last interval, over the
-    // whole time, is left.
+    // Both exponents are -c/(2 m), up to the rotation of a vector within the last interval divided
+    // by the whole time.
     for growths in &growth.growths {
         let mean = growths.iter().sum::<f64>() / (growths.len() as f64 * growth.interval);
         assert!((mean + 0.2).abs() < 5e-3, "{mean}");

@@ -1,4 +1,4 @@
-//! The general solver on problems with known solutions, and what it refuses.
+//! The general solver on problems with known solutions, and its errors.
 
 use std::f64::consts::PI;
 
@@ -18,27 +18,27 @@ fn run(
 }
 
 #[test]
-fn the_error_follows_the_tolerance_and_the_work_the_order() {
-    // y' = y cos t, not autonomous: y = exp(sin t).
+fn error_follows_tolerance_and_work_follows_order() {
+    // y' = y cos t has the solution y = exp(sin t).
     let system = smooth(1, |t, y, out| out[0] = y[0] * t.cos());
     let mut evaluations = Vec::new();
     for tolerance in [1e-5, 1e-9, 1e-13] {
         let trajectory = run(&system, &[1.0], 20.0, tolerance).expect("a trajectory");
         let error = (trajectory.last[0] - 20.0_f64.sin().exp()).abs();
-        // Each step errs by twice the tolerance of e at most, and y grows by e^2 at most.
+        // Each step errs by at most twice the tolerance times e, and y grows by at most e^2.
         let steps = trajectory.work.steps as f64;
         let bound = 2.0 * tolerance * steps * 3.0_f64.exp();
         assert!(error < bound, "{error:e} at {tolerance:e}");
         evaluations.push(trajectory.work.evaluations as f64);
     }
-    // Order 8: four digits more cost a factor 10^(4/8) = 3.2 in steps.
+    // Order 8: four more digits need 10^(4/8) = 3.2 times the steps.
     for pair in evaluations.windows(2) {
         assert!((2.0..4.5).contains(&(pair[1] / pair[0])), "{evaluations:?}");
     }
 }
 
 #[test]
-fn samples_have_the_accuracy_of_the_steps_and_do_not_change_them() {
+fn samples_are_as_accurate_as_steps_and_do_not_change_them() {
     let system = smooth(2, |_, y, out| out.copy_from_slice(&[y[1], -y[0]]));
     let samples: Vec<f64> = (0..=1000).map(|i| 0.01 * f64::from(i)).collect();
     let settings = Settings::with_tolerance(1e-12);
@@ -57,7 +57,7 @@ fn samples_have_the_accuracy_of_the_steps_and_do_not_change_them() {
     .expect("a trajectory");
     assert_eq!((with.times.as_slice(), last), (samples.as_slice(), 10.0));
     for (t, state) in with.times.iter().zip(&with.states) {
-        // Some tens of steps of the tolerance.
+        // A few dozen steps at the tolerance.
         assert!(
             (state[0] - t.sin()).abs() < 1e-10,
             "at {t}: {}",
@@ -70,7 +70,7 @@ fn samples_have_the_accuracy_of_the_steps_and_do_not_change_them() {
 }
 
 #[test]
-fn small_and_large_components_get_the_same_digits() {
+fn small_and_large_components_have_equal_relative_accuracy() {
     let rates = |_: f64, y: &[f64], out: &mut [f64]| {
         out.copy_from_slice(&[y[1], -y[0], y[3], -y[2]]);
     };
@@ -82,7 +82,7 @@ fn small_and_large_components_get_the_same_digits() {
 }
 
 #[test]
-fn a_dead_zone_oscillator_keeps_its_period() {
+fn dead_zone_oscillator_keeps_its_period() {
     let (b, frequency, speed) = (25e-6, 3e4, 0.02);
     let period = 2.0 * (PI / frequency + 2.0 * b / speed);
     let cycles = 200.0;
@@ -98,7 +98,7 @@ fn a_dead_zone_oscillator_keeps_its_period() {
     assert!(first.guard == 0 && first.to_positive);
     // The free flight is exact up to rounding.
     assert!((first.t - b / speed).abs() < 1e-12 * first.t, "{first:?}");
-    // Some thousand steps of 1e-12, as a drift of the speed over the whole time.
+    // A few thousand steps of 1e-12, as a drift of the speed over the whole time.
     let drift = 1e-10 * speed;
     assert!(
         (trajectory.last[1] - speed).abs() < drift,
@@ -113,9 +113,9 @@ fn a_dead_zone_oscillator_keeps_its_period() {
 }
 
 #[test]
-fn dry_friction_takes_the_same_from_every_half_cycle() {
+fn dry_friction_reduces_amplitude_equally_per_half_cycle() {
     let trajectory = run(&dry_friction(0.05), &[1.0, 0.0], 4.0 * PI, 1e-11).expect("a trajectory");
-    // Turning points at multiples of pi, each 2 friction closer to the middle.
+    // Turning points at multiples of pi, each closer to the middle by twice the friction.
     let turns: Vec<f64> = trajectory.switches.iter().map(|switch| switch.t).collect();
     assert!((3..=4).contains(&turns.len()), "{turns:?}");
     for (number, turn) in (1..).zip(turns) {
@@ -133,8 +133,8 @@ fn dry_friction_takes_the_same_from_every_half_cycle() {
 }
 
 #[test]
-fn a_body_caught_by_dry_friction_is_an_error_and_no_hang() {
-    // It turns at pi and stops at 2 pi, where the spring is weaker than the friction.
+fn sticking_without_support_is_an_error() {
+    // It turns at pi and stops at 2 pi, at which the spring force is below the friction.
     let error = run(&dry_friction(0.3), &[1.0, 0.0], 100.0, 1e-9).expect_err("it stops");
     let SolveError::Caught { t, guard: 0 } = error else {
         panic!("{error:?}")
@@ -151,15 +151,15 @@ fn a_body_caught_by_dry_friction_is_an_error_and_no_hang() {
         })
     };
     assert!(said(surface(true)).contains("on which `v` is zero: it sticks"));
-    // Adams is named to those who chose it only.
+    // Only users of adams see its name.
     assert!(!said(surface(true)).contains("adams"));
-    // At a place it is no friction.
+    // A position is no friction.
     assert!(said(surface(false)).contains("chatters") && !said(surface(false)).contains("tanh"));
     assert!(!error.to_string().contains("friction"));
 }
 
 #[test]
-fn no_step_reaches_across_a_breakpoint() {
+fn no_step_crosses_a_breakpoint() {
     // A staircase: the integral of the number of whole tenths.
     let breakpoints: Vec<f64> = (1..=10).map(|i| f64::from(i) / 10.0).collect();
     let stairs = breakpoints.clone();
@@ -180,17 +180,17 @@ fn no_step_reaches_across_a_breakpoint() {
 }
 
 #[test]
-fn a_stiff_system_is_slow_and_not_an_error() {
+fn stiff_system_is_slow_but_no_error() {
     // y' = -2e4 (y - cos t): steps are limited by stability, y follows cos t.
     let system = smooth(1, |t, y, out| out[0] = -2e4 * (y[0] - t.cos()));
     let trajectory = run(&system, &[1.0], 2.0, 1e-6).expect("a trajectory");
-    // Thousands of steps at the limit of stability, about 6/2e4 long.
+    // A few thousand steps at the limit of stability, about 6/2e4 long.
     assert!(
         (5_000..20_000).contains(&trajectory.work.steps),
         "{:?}",
         trajectory.work
     );
-    // cos t with its lag of (sin t)/2e4, and the tolerance.
+    // The lag of cos t is (sin t)/2e4; plus the tolerance.
     let followed = 2.0_f64.cos() + 2.0_f64.sin() / 2e4;
     assert!(
         (trajectory.last[0] - followed).abs() < 1e-5,
@@ -200,8 +200,8 @@ fn a_stiff_system_is_slow_and_not_an_error() {
 }
 
 #[test]
-fn a_singularity_is_reported_where_it_is() {
-    // y' = y^2 from 1: infinite at t = 1.
+fn singularity_is_reported_at_its_time() {
+    // y' = y^2 from 1 is infinite at t = 1.
     let error = run(
         &smooth(1, |_, y, out| out[0] = y[0] * y[0]),
         &[1.0],
@@ -216,11 +216,11 @@ fn a_singularity_is_reported_where_it_is() {
 }
 
 #[test]
-fn rates_that_are_no_numbers_are_reported() {
+fn non_finite_rates_are_reported() {
     let from_the_start = smooth(2, |_, _, out| out.copy_from_slice(&[0.0, f64::NAN]));
     let error = run(&from_the_start, &[0.0, 0.0], 1.0, 1e-9).expect_err("no number");
     assert_eq!(error, SolveError::NotFinite { t: 0.0, state: 1 });
-    // The root of what turns negative at t = 0.5.
+    // The root of a term that is negative after t = 0.5.
     let later = smooth(1, |t, _, out| out[0] = (0.5 - t).sqrt());
     let error = run(&later, &[0.0], 1.0, 1e-9).expect_err("no number");
     let SolveError::NotFinite { t, state: 0 } = error else {
@@ -230,7 +230,7 @@ fn rates_that_are_no_numbers_are_reported() {
 }
 
 #[test]
-fn the_limit_on_steps_holds() {
+fn step_limit_stops_simulation() {
     let system = smooth(2, |_, y, out| out.copy_from_slice(&[y[1], -1e6 * y[0]]));
     let settings = Settings {
         max_steps: 1000,
@@ -252,12 +252,12 @@ fn the_limit_on_steps_holds() {
 }
 
 #[test]
-fn the_limit_on_switches_holds() {
+fn event_rate_limit_stops_simulation() {
     let settings = Settings {
         max_switch_rate: 100.0,
         ..Settings::with_tolerance(1e-9)
     };
-    // About 800 switches a second.
+    // About 800 events per second.
     let system = dead_zone(25e-6, 3e4);
     let error = simulate(
         &system,
@@ -275,7 +275,7 @@ fn the_limit_on_switches_holds() {
 }
 
 #[test]
-fn a_request_that_makes_no_sense_is_refused() {
+fn invalid_requests_are_rejected() {
     let system = smooth(1, |_, _, out| out[0] = 1.0);
     let refused = |initial: &[f64], span, samples: &[f64], tolerance, word: &str| {
         let settings = Settings::with_tolerance(tolerance);
@@ -297,8 +297,8 @@ fn a_request_that_makes_no_sense_is_refused() {
 }
 
 #[test]
-fn what_was_found_before_a_stop_is_kept() {
-    // y' = y^2 from 1: 1/(1 - t).
+fn rows_before_a_stop_are_kept() {
+    // y' = y^2 from 1 has the solution 1/(1 - t).
     let system = smooth(1, |_, y, out| out[0] = y[0] * y[0]);
     let samples: Vec<f64> = (0..200).map(|k| 0.01 * f64::from(k)).collect();
     for method in [Method::DormandPrince853, Method::Adams, Method::Radau] {
@@ -320,8 +320,8 @@ fn what_was_found_before_a_stop_is_kept() {
 }
 
 #[test]
-fn stiffness_is_said_long_before_the_limit_on_steps() {
-    // y follows a cosine within 1e-7 s; the other one is slow.
+fn stiffness_is_reported_before_step_limit() {
+    // The first state follows a cosine within 1e-7 s; the second is slow.
     let system = smooth(2, |t, y, out| {
         out[0] = -y[0];
         out[1] = -1e7 * (y[1] - t.cos());
@@ -356,7 +356,7 @@ fn stiffness_is_said_long_before_the_limit_on_steps() {
 }
 
 #[test]
-fn a_fast_vibration_is_not_called_stiff() {
+fn fast_vibration_is_not_stiff() {
     let system = smooth(2, |_, y, out| out.copy_from_slice(&[y[1], -1e14 * y[0]]));
     let settings = Settings {
         max_steps: 300_000,
@@ -377,7 +377,7 @@ fn a_fast_vibration_is_not_called_stiff() {
 }
 
 #[test]
-fn a_stiff_system_that_comes_to_its_end_is_not_stopped() {
+fn stiff_system_with_few_steps_is_not_stopped() {
     let system = smooth(1, |t, y, out| out[0] = -1e6 * (y[0] - t.cos()));
     let found = run(&system, &[1.0], 1.0, 1e-9).expect("an end");
     assert!(found.work.steps > 65_536 * 2);
@@ -403,7 +403,7 @@ impl System for Indefinite {
 }
 
 #[test]
-fn where_the_mass_matrix_is_not_positive_definite_the_coordinate_is_named() {
+fn indefinite_mass_matrix_error_names_coordinate() {
     for method in [Method::DormandPrince853, Method::Adams, Method::Radau] {
         let settings = Settings {
             method,
@@ -438,7 +438,7 @@ fn where_the_mass_matrix_is_not_positive_definite_the_coordinate_is_named() {
 }
 
 #[test]
-fn rows_between_steps_have_their_tolerance_and_cost_no_evaluation() {
+fn rows_between_steps_meet_tolerance_without_evaluations() {
     let system = smooth(2, |t, y, out| {
         out.copy_from_slice(&[y[0] * t.cos(), -y[0] * t.sin()]);
     });
@@ -467,18 +467,18 @@ fn rows_between_steps_have_their_tolerance_and_cost_no_evaluation() {
             (found.expect("a trajectory").last[0] - t.sin().exp()).abs()
         });
         let ends = ends.fold(0.0, f64::max);
-        // One order less than at the ends of steps that are as long as the tolerance lets them be.
+        // One order less than at the ends of the longest steps.
         assert!(
             worst < 20.0 * ends,
             "{worst:e} and {ends:e} at {tolerance:e}"
         );
         longest = f64::max(longest, 10.0 / with.work.steps as f64);
     }
-    // There are many rows in a step.
+    // Many rows per step.
     assert!(longest > 0.2, "{longest}");
 }
 
-/// x'' = -c x' - k x beside a surface that it never meets.
+/// x'' = -c x' - k x with a surface that it never reaches.
 fn swinging(c: f64, k: f64) -> impl System {
     Functions {
         guard_count: 1,
@@ -492,7 +492,7 @@ fn swinging(c: f64, k: f64) -> impl System {
 }
 
 #[test]
-fn samples_beside_a_surface_are_as_accurate_as_steps_and_interpolated_where_that_is() {
+fn samples_near_surface_are_as_accurate_as_steps() {
     let samples: Vec<f64> = (0..=20_000).map(|k| 0.001 * f64::from(k)).collect();
     let settings = Settings::with_tolerance(1e-9);
     let of = |system: &dyn System, start: [f64; 2], wanted: &dyn Fn(f64) -> f64| {
@@ -505,10 +505,11 @@ fn samples_beside_a_surface_are_as_accurate_as_steps_and_interpolated_where_that
         }
         found.work
     };
-    // Most steps that follow a swing tell their interior.
+    // Most steps that resolve a swing allow interpolation.
     let work = of(&swinging(0.0, 1.0), [1.0, 0.0], &|t| t.cos());
     assert!(work.trials < samples.len() as u64 / 10, "{work:?}");
-    // Those that stability keeps short, of x = 2 exp(-10 t) - exp(-20 t), end where they should and swing in between.
+    // Steps limited by stability, for x = 2 exp(-10 t) - exp(-20 t), are accurate at their ends
+    // and may oscillate between.
     let decay = |t: f64| 2.0 * (-10.0 * t).exp() - (-20.0 * t).exp();
     of(&swinging(30.0, 200.0), [1.0, 0.0], &decay);
 }

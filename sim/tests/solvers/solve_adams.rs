@@ -1,4 +1,4 @@
-//! The method of Adams on problems with known solutions, and against Runge-Kutta.
+//! The Adams method on problems with known solutions, and compared with Runge-Kutta.
 
 use std::f64::consts::PI;
 
@@ -22,7 +22,7 @@ fn run(
 }
 
 #[test]
-fn the_error_follows_the_tolerance_and_the_order_follows_it_too() {
+fn error_and_order_follow_tolerance() {
     let oscillator = smooth(2, |_, y, out| out.copy_from_slice(&[y[1], -y[0]]));
     let mut evaluations = Vec::new();
     for tolerance in [1e-4, 1e-8, 1e-12] {
@@ -32,19 +32,19 @@ fn the_error_follows_the_tolerance_and_the_order_follows_it_too() {
         let Trajectory { last, work, .. } = trajectory;
         let error = last[0].hypot(last[1] - 1.0);
         println!("{tolerance:e}: {error:e}, {work:?}");
-        // Errors add up: an undamped oscillator forgets nothing.
+        // Errors add up in an undamped oscillator.
         let bound = 2.0 * tolerance * work.steps as f64;
         assert!(error < bound, "{error:e} at {tolerance:e}");
         evaluations.push(work.evaluations as f64);
     }
-    // A method of fixed order p takes 10^(4/(p+1)) times the steps for four digits more;
-    // fewer than 2.5 times means that the order exceeds 9 towards the end.
+    // A method of fixed order p needs 10^(4/(p+1)) times the steps for four more digits. Less than
+    // 2.5 times means an order above 9 at the end.
     assert!(evaluations[1] < 4.0 * evaluations[0], "{evaluations:?}");
     assert!(evaluations[2] < 2.5 * evaluations[1], "{evaluations:?}");
 }
 
 #[test]
-fn states_inside_a_step_have_its_accuracy_and_cost_no_evaluation() {
+fn interpolated_states_meet_tolerance_without_evaluations() {
     let system = smooth(1, |t, y, out| out[0] = y[0] * t.cos());
     let samples: Vec<f64> = (0..=1000).map(|i| 0.01 * f64::from(i)).collect();
     let settings = adams(1e-11);
@@ -58,7 +58,7 @@ fn states_inside_a_step_have_its_accuracy_and_cost_no_evaluation() {
     )
     .expect("a trajectory");
     for (t, state) in with.times.iter().zip(&with.states) {
-        // Some hundred steps of twice the tolerance of e, growing by e^2 at most.
+        // A few hundred steps of twice the tolerance times e, growing by at most e^2.
         let error = state[0] - t.sin().exp();
         assert!(error.abs() < 1e-8, "at {t}: {error:e}");
     }
@@ -68,7 +68,7 @@ fn states_inside_a_step_have_its_accuracy_and_cost_no_evaluation() {
 }
 
 #[test]
-fn a_dead_zone_oscillator_keeps_its_period() {
+fn dead_zone_oscillator_keeps_its_period() {
     let (b, frequency, speed) = (25e-6, 3e4, 0.02);
     let period = 2.0 * (PI / frequency + 2.0 * b / speed);
     let cycles = 50.0;
@@ -81,21 +81,21 @@ fn a_dead_zone_oscillator_keeps_its_period() {
     assert!(first.guard == 0 && first.to_positive);
     // The free flight is exact up to rounding.
     assert!((first.t - b / speed).abs() < 1e-12 * first.t, "{first:?}");
-    // Some ten thousand steps of 1e-12, as a drift of the speed over the whole time.
+    // About ten thousand steps of 1e-12, as a drift of the speed over the whole time.
     let drift = 1e-8 * speed;
     assert!((trajectory.last[1] - speed).abs() < drift);
     assert!(trajectory.last[0].abs() < drift * cycles * period);
 }
 
 #[test]
-fn dry_friction_turns_where_it_must_and_catches_at_last() {
+fn dry_friction_turns_at_known_points_until_it_sticks() {
     let trajectory =
         run(&dry_friction(0.05), &[1.0, 0.0], 3.5 * PI, &adams(1e-11)).expect("a trajectory");
     let turns: Vec<f64> = trajectory.switches.iter().map(|switch| switch.t).collect();
     assert_eq!(turns.len(), 3);
     for (number, turn) in (1..).zip(turns) {
         let error = turn - PI * f64::from(number);
-        // Two hundred steps of 1e-11.
+        // About two hundred steps of 1e-11.
         assert!(error.abs() < 1e-8, "turn {number} is late by {error:e}");
     }
     let error = run(&dry_friction(0.3), &[1.0, 0.0], 100.0, &adams(1e-9)).expect_err("it stops");
@@ -106,8 +106,8 @@ fn dry_friction_turns_where_it_must_and_catches_at_last() {
 }
 
 #[test]
-fn no_step_and_no_memory_reach_across_a_breakpoint() {
-    // A staircase of ramps: y' jumps and bends at every tenth.
+fn no_step_or_history_crosses_a_breakpoint() {
+    // A staircase of ramps: y' has a jump and a kink at every tenth.
     let breakpoints: Vec<f64> = (1..=10).map(|i| f64::from(i) / 10.0).collect();
     let stairs = breakpoints.clone();
     let ramps = Functions {
@@ -123,7 +123,7 @@ fn no_step_and_no_memory_reach_across_a_breakpoint() {
 }
 
 #[test]
-fn what_cannot_be_integrated_is_reported_where_it_is() {
+fn singularities_are_reported_at_their_times() {
     let settings = adams(1e-9);
     let pole = smooth(1, |_, y, out| out[0] = y[0] * y[0]);
     let error = run(&pole, &[1.0], 2.0, &settings).expect_err("a pole");
@@ -140,11 +140,11 @@ fn what_cannot_be_integrated_is_reported_where_it_is() {
 }
 
 #[test]
-fn a_stiff_system_is_slow_and_not_an_error() {
+fn stiff_system_is_slow_but_no_error() {
     // y' = -1e4 (y - cos t): steps are limited by stability, y follows cos t.
     let system = smooth(1, |t, y, out| out[0] = -1e4 * (y[0] - t.cos()));
     let trajectory = run(&system, &[1.0], 1.0, &adams(1e-6)).expect("a trajectory");
-    // cos t with its lag of (sin t)/1e4, and the tolerance.
+    // The lag of cos t is (sin t)/1e4; plus the tolerance.
     let followed = 1.0_f64.cos() + 1.0_f64.sin() / 1e4;
     assert!((trajectory.last[0] - followed).abs() < 1e-5);
     // Steps of 1/1e4 to 2/1e4.

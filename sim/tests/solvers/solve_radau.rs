@@ -6,12 +6,12 @@ use std::f64::consts::PI;
 use super::systems::dead_zone;
 use eomgen_sim::ode::{Method, Settings, SolveError, System, Trajectory, simulate, simulate_into};
 
-/// A system made of functions, with its Jacobian.
+/// A system of closures, with its Jacobian.
 struct Stiff<R, J> {
     states: usize,
     rates: R,
     jacobian: J,
-    /// The place of a switching surface, as a value of the first state.
+    /// Value of the first state on a switching surface.
     surface: Option<f64>,
     breakpoints: Vec<f64>,
 }
@@ -79,7 +79,7 @@ fn run(
     simulate(system, initial, span, samples, settings, &mut |_| {})
 }
 
-/// The largest difference between a component of the rows and what it should be.
+/// Returns the largest difference between a component of the rows and its expected value.
 fn worst(found: &Trajectory, component: usize, expected: impl Fn(f64) -> f64) -> f64 {
     let rows = found.times.iter().zip(&found.states);
     let errors = rows.map(|(t, state)| (state[component] - expected(*t)).abs());
@@ -110,11 +110,11 @@ fn van_der_pol(m: f64) -> impl System {
 }
 
 #[test]
-fn van_der_pol_ends_where_the_test_set_says() {
+fn van_der_pol_matches_test_set() {
     // VDPOL of the Test Set for IVP Solvers (Mazzia and Magherini, Bari) with 1e6 and its
     // reference solution at t = 2.
     let reference = [1.706_167_732_170_469, -0.892_809_701_024_812_5];
-    // The time of a jump, which x passes within 1e-6, magnifies errors by some hundred.
+    // The time of a jump, which x passes within 1e-6, magnifies errors by a few hundred.
     for (tolerance, most) in [(1e-6, 5_000), (1e-8, 12_000), (1e-10, 35_000)] {
         let found = run(&van_der_pol(1e-6), &[2.0, 0.0], &[2.0], &radau(tolerance));
         let found = found.expect("an end");
@@ -128,7 +128,7 @@ fn van_der_pol_ends_where_the_test_set_says() {
 }
 
 #[test]
-fn rows_have_the_tolerance_and_cost_nothing_however_stiff() {
+fn rows_of_stiff_systems_meet_tolerance_without_evaluations() {
     // The second state follows a cosine within 1e-7 s.
     let system = stiff(
         2,
@@ -152,7 +152,7 @@ fn rows_have_the_tolerance_and_cost_nothing_however_stiff() {
 }
 
 #[test]
-fn steps_are_of_order_5_and_choose_their_length_by_an_error_of_order_3() {
+fn steps_have_order_5_and_error_estimates_order_3() {
     let system = stiff(
         2,
         |_: f64, y: &[f64], out: &mut [f64]| out.copy_from_slice(&[y[1], -y[0]]),
@@ -162,7 +162,7 @@ fn steps_are_of_order_5_and_choose_their_length_by_an_error_of_order_3() {
     let at = |tolerance| run(&system, &[1.0, 0.0], &end, &radau(tolerance)).expect("an end");
     let (rough, fine) = (at(1e-5), at(1e-9));
     let steps = (fine.work.steps as f64 / rough.work.steps as f64).log10();
-    // Four digits take 10 times the steps, and give five in each.
+    // Ten times the steps per four digits of tolerance give five digits.
     assert!((0.8..1.2).contains(&steps), "{steps}");
     let error = |found: &Trajectory| (found.last[0] - 1.0).hypot(found.last[1]);
     let order = (error(&rough) / error(&fine)).log10() / steps;
@@ -187,16 +187,17 @@ fn smoothed_friction(friction: f64, speed: f64) -> impl System {
 }
 
 #[test]
-fn smoothed_dry_friction_comes_to_rest_in_ten_thousand_evaluations() {
-    // Ten seconds, of which rest takes more than half; an explicit method makes millions there.
+fn smoothed_dry_friction_needs_few_evaluations() {
+    // Ten seconds, at rest for more than half of it; an explicit method needs millions of
+    // evaluations.
     let (friction, speed) = (2.0, 1e-6);
     let system = smoothed_friction(friction, speed);
     let found = run(&system, &[1.0, 0.0], &[10.0], &radau(1e-10)).expect("an end");
     assert!(found.work.evaluations < 10_000, "{:?}", found.work);
-    // At rest it creeps as fast as the friction that holds it asks for.
+    // At rest it creeps at the speed at which the smoothed friction balances the weight.
     let creep = -speed * (9.81 * found.last[0].sin() / friction).atanh();
     assert!((found.last[1] - creep).abs() < 1e-2 * creep.abs());
-    // Until it rests, against the explicit method of order 8: the rest is creep from there.
+    // Before the rest, compared with the explicit method of order 8; after it only creep.
     let rests = 2.5;
     let explicit = Settings::with_tolerance(1e-10);
     let until = |settings| run(&system, &[1.0, 0.0], &[rests], settings).expect("an end");
@@ -206,9 +207,9 @@ fn smoothed_dry_friction_comes_to_rest_in_ten_thousand_evaluations() {
 }
 
 #[test]
-fn a_loudspeaker_with_half_a_microhenry_follows_a_square_wave() {
-    // m x'' + c x' + k x = B q', L q'' + R q' + B x' = u with a current q', which settles within
-    // L/R = 6e-8 s.
+fn loudspeaker_with_small_inductance_matches_matrix_exponential() {
+    // m x'' + c x' + k x = B q', L q'' + R q' + B x' = u with a current q' that settles within L/R
+    // = 6e-8 s.
     let (m, c, k, b, l, r) = (0.02, 1.5, 2e3, 7.0, 0.5e-6, 8.0);
     let matrix = [
         [0.0, 0.0, 1.0, 0.0],
@@ -238,7 +239,8 @@ fn a_loudspeaker_with_half_a_microhenry_follows_a_square_wave() {
     };
     let found = run(&system, &[0.0; 4], &grid(0.1, 10), &radau(1e-9)).expect("an end");
     assert!(found.work.evaluations < 30_000, "{:?}", found.work);
-    // With the voltage as a fifth, constant state, an exponential per hundredth of a second.
+    // Matrix exponentials over hundredths of a second, with the voltage as a fifth, constant
+    // state.
     let mut augmented = nalgebra::Matrix5::<f64>::zeros();
     for (i, row) in matrix.iter().enumerate() {
         for (j, entry) in row.iter().enumerate() {
@@ -261,7 +263,7 @@ fn a_loudspeaker_with_half_a_microhenry_follows_a_square_wave() {
     }
 }
 
-/// x'' = -g, beyond the ground at 0 with a spring (1/s^2) and a damper (1/s) in addition.
+/// x'' = -g, and below 0 a spring (1/s^2) and a damper (1/s).
 fn falls_on(spring: f64, damper: f64) -> impl System {
     Stiff {
         surface: Some(0.0),
@@ -283,8 +285,8 @@ fn falls_on(spring: f64, damper: f64) -> impl System {
 }
 
 #[test]
-fn a_nearly_rigid_contact_throws_back_what_falls_on_it() {
-    // A contact of 3e-6 s between flights of half a second.
+fn nearly_rigid_contact_conserves_energy() {
+    // Contacts of 3e-6 s between flights of half a second.
     let (frequency, height, g) = (1e6, 0.3, 9.81_f64);
     let speed = (2.0 * g * height).sqrt();
     let contact = (PI + 2.0 * (g / (frequency * speed)).atan()) / frequency;
@@ -299,8 +301,8 @@ fn a_nearly_rigid_contact_throws_back_what_falls_on_it() {
 }
 
 #[test]
-fn what_falls_on_a_stiff_damper_comes_to_rest_on_it() {
-    // The contact creeps back within spring/damper = 1e-4 s, the speed is gone within 1e-6 s.
+fn fall_on_stiff_damper_ends_at_rest() {
+    // The contact creeps back within spring/damper = 1e-4 s; the speed decays within 1e-6 s.
     let system = falls_on(1e10, 1e6);
     let found = run(&system, &[0.1, 0.0], &[1.0], &radau(1e-9)).expect("an end");
     assert!((found.last[0] + 9.81e-10).abs() < 1e-13);
@@ -314,7 +316,7 @@ fn what_falls_on_a_stiff_damper_comes_to_rest_on_it() {
 }
 
 #[test]
-fn what_cannot_be_integrated_is_reported_where_it_is() {
+fn singularities_are_reported_at_their_times() {
     let none = |_: f64, _: &[f64], out: &mut [f64]| out.fill(0.0);
     for tolerance in [1e-3, 1e-9, 1e-13] {
         let pole = stiff(
@@ -330,7 +332,7 @@ fn what_cannot_be_integrated_is_reported_where_it_is() {
         let t = error.expect_err("a pole").time().expect("a time");
         assert!((t - 1.0).abs() < 10.0 * tolerance.max(1e-6), "{t}");
         assert!((98..=101).contains(&found.times.len()));
-        // Rates that are no numbers beyond a time; slopes that are infinite or no numbers.
+        // Rates that are NaN after a time, and derivatives that are infinite or NaN.
         let root = stiff(
             1,
             |t: f64, _: &[f64], out: &mut [f64]| out[0] = (0.5 - t).sqrt(),
@@ -345,8 +347,8 @@ fn what_cannot_be_integrated_is_reported_where_it_is() {
 }
 
 #[test]
-fn a_singular_matrix_of_the_iteration_is_got_around() {
-    // y' = a y with a h just the real eigenvalue of the method in the first step.
+fn singular_iteration_matrix_is_avoided() {
+    // y' = a y, where a h equals the real eigenvalue of the method in the first step.
     let rate = 3.637_834_252_744_496 / 1e-6;
     let system = stiff(
         1,
@@ -360,7 +362,7 @@ fn a_singular_matrix_of_the_iteration_is_got_around() {
     };
     let asked = (&[1e-9][..], (0.0, 1.0), &[][..]);
     let error = simulate_into(&mut found, &system, asked, &settings, &mut |_| {});
-    // It grows beyond all numbers, 1e317 times.
+    // It overflows: the growth is 1e317.
     let error = error.expect_err("no end");
     let t = rate * error.time().expect("a time");
     assert!((650.0..731.0).contains(&t), "{t}: {error}");
@@ -368,7 +370,7 @@ fn a_singular_matrix_of_the_iteration_is_got_around() {
 }
 
 #[test]
-fn switches_are_located_as_by_runge_kutta() {
+fn event_times_match_runge_kutta() {
     let system = dead_zone(0.3, 20.0);
     let times: Vec<f64> = (0..=50).map(|i| 0.2 * f64::from(i)).collect();
     let by_radau = run(&system, &[0.0, 0.7], &times, &radau(1e-10)).expect("a motion");

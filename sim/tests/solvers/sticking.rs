@@ -1,12 +1,12 @@
-//! Dry friction that holds and lets go, by the exact solver, against a set-valued time
-//! stepping: every step's friction impulses are those in their bounds that bring the speeds to
-//! zero, or as near as they can. It knows no surfaces, no regimes and no events.
+//! Sticking and release under dry friction in the exact solver, compared with a set-valued time
+//! stepping without surfaces, regimes and events. The friction impulses of every step stay within
+//! their bounds and bring the speeds as near to zero as possible.
 
 use eomgen_model_spec::source::Source;
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::piecewise_linear::PiecewiseLinear;
 
-/// A motor drives a load through a shaft with play, rubbed dry at one end or at both.
+/// A motor drives a load through a shaft with play, with dry friction at one end or both.
 fn drive(more: &str) -> String {
     format!(
         r#"
@@ -44,13 +44,13 @@ load_rubs = {{ on = "l", value = "-T_l*sign(dot(l))" }}
     )
 }
 
-/// Rubbed at the motor too, and in the shaft.
+/// More friction: at the motor and in the shaft.
 const MORE: &str = r#"
 motor_rubs = { on = "m", value = "-T_m*sign(dot(m))" }
 shaft_rubs = { on = "twist", value = "-T_s*sign(dot(m) - dot(l))" }
 "#;
 
-/// The numbers of such a drive.
+/// Parameters of such a drive.
 #[derive(Clone, Copy, Debug)]
 struct Drive {
     b: f64,
@@ -78,7 +78,7 @@ const K: f64 = 500.0;
 const D: f64 = 0.05;
 
 impl Drive {
-    /// The smooth torques and those of the shaft.
+    /// Smooth torques, including those of the shaft.
     fn torques(&self, t: f64, [m, l]: [f64; 2], [m_dot, l_dot]: [f64; 2]) -> [f64; 2] {
         let twist = m - l;
         let beyond = (twist.abs() - self.b).max(0.0).copysign(twist);
@@ -89,7 +89,7 @@ impl Drive {
         [motor - shaft, shaft]
     }
 
-    /// State after so many steps: coordinates, then rates.
+    /// State after a number of steps: coordinates, then rates.
     fn stepped(&self, until: f64, steps: u32) -> [f64; 4] {
         let h = until / f64::from(steps);
         let rubbed = [
@@ -107,7 +107,7 @@ impl Drive {
             let middle = [q[0] + 0.5 * h * v[0], q[1] + 0.5 * h * v[1]];
             let t = (f64::from(step) + 0.25) * h;
             let mut next = v;
-            // The dampers by the mean speed of the step.
+            // Dampers act with the mean speed of the step.
             for _ in 0..3 {
                 let mean = [0.5 * (v[0] + next[0]), 0.5 * (v[1] + next[1])];
                 let torques = self.torques(t, middle, mean);
@@ -138,8 +138,8 @@ impl Drive {
     }
 }
 
-/// The speeds after the friction impulses of a step: each within its bounds, and each that is
-/// not at a bound brings its speed to zero.
+/// Returns the speeds after the friction impulses of a step. Each impulse is within its bounds; if
+/// it is not at a bound, its speed is zero.
 fn with_friction(
     free: [f64; 2],
     h: f64,
@@ -180,7 +180,7 @@ fn equations(more: &str) -> PiecewiseLinear {
     PiecewiseLinear::of(&checked.model, &[]).expect("a piecewise-linear model")
 }
 
-/// The state at the end, and how many switches there were.
+/// Returns the state at the end and the number of events.
 fn exact(equations: &PiecewiseLinear, drive: &Drive, until: f64) -> (Vec<f64>, usize) {
     let mut propagator = equations.at(&drive.values()).expect("a propagator");
     let none = HeldInputs::zero(0);
@@ -189,9 +189,9 @@ fn exact(equations: &PiecewiseLinear, drive: &Drive, until: f64) -> (Vec<f64>, u
     (found.last, found.switches.len())
 }
 
-/// The stepping comes to the exact motion as its steps shrink: the largest difference, in parts
-/// of what angles and speeds reach, is of first order, less than a third with steps of an eighth,
-/// and small in the end.
+/// Asserts that the time stepping converges to the exact motion. The largest difference, relative
+/// to the largest angles and speeds, has first order: less than a third for steps of an eighth,
+/// and is small at the end.
 fn agree(drive: &Drive, until: f64) {
     let (wanted, _) = exact(&equations(MORE), drive, until);
     let sizes = [0.1, 0.1, 10.0, 10.0];
@@ -213,7 +213,7 @@ fn agree(drive: &Drive, until: f64) {
 }
 
 #[test]
-fn every_drive_of_a_grid_breaks_away_and_goes_on() {
+fn drives_of_a_parameter_grid_match_time_stepping() {
     let equations = equations("");
     for torque in 0..17 {
         for omega in 0..10 {
@@ -224,14 +224,14 @@ fn every_drive_of_a_grid_breaks_away_and_goes_on() {
                 ..PLAIN
             };
             let (_, switches) = exact(&equations, &drive, 10.0);
-            // Each turn of the motor a few, and some more where it bounces to rest in the play.
+            // A few events per turn of the motor, and more if it bounces in the play.
             assert!(switches < 10 * 500, "{drive:?}: {switches} switches");
         }
     }
 }
 
 #[test]
-fn a_load_that_breaks_away_moves_as_by_set_valued_stepping() {
+fn load_breaking_away_matches_time_stepping() {
     for (torque, omega) in [
         (0.6, 15.0),
         (0.6, 20.0),
@@ -251,10 +251,10 @@ fn a_load_that_breaks_away_moves_as_by_set_valued_stepping() {
 }
 
 #[test]
-fn a_torque_that_just_reaches_the_friction() {
+fn torque_near_friction_level_matches_time_stepping() {
     for part in [0.0, 1e-15, 1e-9, 1e-3, -1e-15, -1e-9] {
         let torque = 0.4 * (1.0 + part);
-        // Without play the shaft hands the torque on at once.
+        // Without play the shaft transmits the torque at once.
         for b in [0.0, 1e-5] {
             agree(
                 &Drive {
@@ -270,7 +270,7 @@ fn a_torque_that_just_reaches_the_friction() {
 }
 
 #[test]
-fn a_shaft_without_play_and_one_without_viscous_friction() {
+fn drives_without_play_or_damping_match_time_stepping() {
     agree(&Drive { b: 0.0, ..PLAIN }, 0.25);
     for b_m in [0.0, 1e-12, 1e-7] {
         agree(
@@ -285,7 +285,7 @@ fn a_shaft_without_play_and_one_without_viscous_friction() {
 }
 
 #[test]
-fn two_and_three_frictions_at_once() {
+fn two_and_three_frictions_match_time_stepping() {
     for (motor, shaft) in [(0.2, 0.0), (0.4, 0.0), (0.0, 0.1), (0.3, 0.2)] {
         for omega in [12.0, 40.0] {
             agree(

@@ -93,7 +93,7 @@ pub(super) fn balance(w: &[Vec<f64>], c: &[f64], rows: &[usize]) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    /// B B^T of a matrix with so many columns, and a right side, from a seed.
+    /// Returns B B^T of a random matrix with a number of columns, and a right side.
     fn problem(seed: u64, size: usize, columns: usize) -> (Vec<Vec<f64>>, Vec<f64>) {
         let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
         let mut number = || {
@@ -108,13 +108,13 @@ mod tests {
         let w = b
             .iter()
             .map(|row| b.iter().map(|other| dot(row, other)).collect());
-        // In the range of B, as the rates of distances are.
+        // In the range of B, like the rates of distances.
         let motion: Vec<f64> = (0..columns).map(|_| number()).collect();
         (w.collect(), b.iter().map(|row| dot(row, &motion)).collect())
     }
 
     #[test]
-    fn what_pushes_holds_and_what_leaves_does_not_push() {
+    fn random_problems_satisfy_complementarity() {
         for seed in 1..2000 {
             let size = 1 + (seed % 7) as usize;
             let (w, c) = problem(seed, size, 1 + (seed / 7 % 6) as usize);
@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn two_walls_that_are_one_are_held_once() {
+    fn duplicate_walls_share_one_force() {
         let w = vec![vec![2.0, 2.0], vec![2.0, 2.0]];
         let x = complementary(&w, &[-1.0, -1.0]);
         assert!((x[0] + x[1] - 0.5).abs() < 1e-15, "{x:?}");

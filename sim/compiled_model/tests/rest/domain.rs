@@ -1,6 +1,6 @@
-//! Trial steps that leave the domain of a function or overflow, where the motion does neither: against
-//! closed forms and the right values of an orifice by SciPy (LSODA and Radau at 1e-11, which agree
-//! to nine digits).
+//! Trial steps that leave the domain of a function or overflow although the motion does not.
+//! Compared with closed forms, and for an orifice with SciPy (LSODA and Radau at 1e-11, which
+//! agree to nine digits).
 
 use eomgen_compiled_model::{CompiledModel, Solver};
 
@@ -8,7 +8,7 @@ use super::{GENERAL, of_text, simulated};
 
 const STEPPING: [Solver; 3] = [Solver::Rk, Solver::Radau, Solver::Adams];
 
-/// A mass on a spring that an orifice of this law damps.
+/// A mass on a spring, damped by an orifice with this law.
 fn orifice(law: &str) -> CompiledModel {
     of_text(&format!(
         r#"
@@ -34,8 +34,8 @@ piston = {{ on = "x", value = "-A*p" }}
     ))
 }
 
-/// The deflection, rate and pressure of the orifice from 0.1 m at rest and from this pressure, at these
-/// times.
+/// Returns deflection, rate and pressure of the orifice at these times, from rest at 0.1 m with
+/// this pressure.
 const TIMES: [f64; 5] = [0.0, 0.01, 0.1, 0.5, 1.0];
 const ORIFICE: [(f64, [[f64; 3]; 4]); 3] = [
     (
@@ -76,7 +76,7 @@ fn agrees_with_scipy(law: &str, solvers: &[Solver], starts: usize) {
             let motion = run.simulate(&initial, &TIMES, &run.no_inputs(), *solver);
             let motion =
                 motion.unwrap_or_else(|error| panic!("{law}, {solver}, {pressure}: {error}"));
-            // Errors are relative to the largest that a state has been.
+            // Errors are relative to the largest magnitude of a state.
             let sizes = [0.1, 0.1, pressure.abs().max(4000.0)];
             for (state, right) in motion.trajectory.states[1..].iter().zip(right) {
                 for ((value, right), size) in state.iter().zip(right).zip(sizes) {
@@ -89,16 +89,16 @@ fn agrees_with_scipy(law: &str, solvers: &[Solver], starts: usize) {
 }
 
 #[test]
-fn flow_through_an_orifice_turns_round_as_in_scipy() {
+fn orifice_flow_reversal_matches_scipy() {
     agrees_with_scipy("sign(p)*sqrt(abs(p))", &STEPPING, 2);
     agrees_with_scipy("sign(p)*sqrt(abs(p))", &GENERAL, 3);
     agrees_with_scipy("sign(p)*abs(p)^0.5", &GENERAL, 3);
 }
 
-/// A pulse of pressure sets the mass in motion: its flow turns round at each end of its swing, where pressure
-/// and speed vanish together.
+/// After a pulse of pressure, the flow reverses at each end of the swing, at which pressure and
+/// speed vanish together.
 #[test]
-fn flow_that_turns_round_many_times_follows_scipy() {
+fn many_flow_reversals_match_scipy() {
     let model = orifice("sign(p)*sqrt(abs(p))");
     let run = model.at_declared().unwrap();
     let right = [
@@ -120,15 +120,15 @@ fn flow_that_turns_round_many_times_follows_scipy() {
 }
 
 #[test]
-fn laws_without_a_value_on_the_wrong_side_of_their_sign_turn_round_as_well() {
+fn laws_undefined_beyond_their_sign_change_match_scipy() {
     agrees_with_scipy("sign(p)*sqrt(p*sign(p))", &GENERAL, 2);
     agrees_with_scipy("(sqrt(max(p, 0)) - sqrt(max(-p, 0)))", &GENERAL, 3);
 }
 
-/// A mass at rest with cubic damping that is pushed from 3 s on, v = sqrt(F/c) tanh(sqrt(F c)(t - a)):
-/// steps have grown long by then. In any unit of its deflection.
+/// A mass at rest with cubic damping that is pushed from 3 s on: v = sqrt(F/c) tanh(sqrt(F c)(t -
+/// a)), in several units of the deflection. Steps are long before the push.
 #[test]
-fn steps_that_overflow_behind_a_push_are_shortened() {
+fn overflowing_steps_after_a_push_are_shortened() {
     let model = of_text(
         r#"
 [model]
@@ -167,10 +167,10 @@ damper = { on = "x", value = "-c*dot(x)*abs(dot(x))" }
     }
 }
 
-/// States that begin at or near the edge of the domain of their own rates: z' = -z ln z, so that ln z
-/// decays, and z' = -arcsin z from 1, whose slope is infinite there.
+/// States that start at or near the edge of the domain of their rates: z' = -z ln z, so that ln z
+/// decays, and z' = -arcsin z from 1, at which the slope is infinite.
 #[test]
-fn states_that_begin_at_the_edge_of_a_domain_leave_it() {
+fn states_starting_at_edge_of_domain_match_closed_forms() {
     let model = of_text(
         r#"
 [model]
@@ -188,7 +188,7 @@ m = "1/2*m*dot(x)^2"
 "#,
     );
     let times = [0.0, 0.5, 1.0, 2.0];
-    // With s = sin u by quadrature of cos u/u.
+    // With s = sin u, by quadrature of cos u/u.
     let right = [
         1.0,
         0.561_217_178_396_959_3,
@@ -211,9 +211,9 @@ m = "1/2*m*dot(x)^2"
     }
 }
 
-/// sqrt(0.5 - t) has no value behind 0.5 s: the message names the state and says why.
+/// sqrt(0.5 - t) is undefined after 0.5 s: the message names the state and the cause.
 #[test]
-fn a_motion_out_of_a_domain_stops_with_the_cause() {
+fn leaving_the_domain_stops_with_state_and_cause() {
     let model = of_text(
         r#"
 [model]

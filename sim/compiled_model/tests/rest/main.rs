@@ -1,7 +1,6 @@
-//! Machines that dry friction holds at rest, by the general solver: against a set-valued time stepping
-//! that knows no surfaces, no regimes and no events (every step's friction impulses are those in
-//! their bounds that bring the speeds to zero, or as near as they can), against closed forms, and against the
-//! exact solver where that follows.
+//! Sticking in the general solvers, compared with a set-valued time stepping (without surfaces,
+//! regimes and events; its friction impulses stay within their bounds and bring the speeds as near
+//! to zero as possible), with closed forms, and with the exact solver if it supports the motion.
 
 mod domain;
 mod rows;
@@ -14,7 +13,7 @@ use eomgen_compiled_model::{CompiledModel, Motion, Orders, Solver};
 use eomgen_sim::inputs::HeldInputs;
 use time_stepping::{Machine, Rubbing};
 
-/// The solvers that take steps and follow rest.
+/// Solvers with time steps that support sticking.
 const GENERAL: [Solver; 2] = [Solver::Rk, Solver::Radau];
 
 fn example(name: &str) -> CompiledModel {
@@ -46,7 +45,7 @@ fn simulated(
 }
 
 #[test]
-fn a_pendulum_stops_off_the_vertical_and_friction_bears_its_weight() {
+fn pendulum_sticks_off_the_vertical_with_friction_equal_to_weight() {
     let model = example("stopped_pendulum");
     let (m, l, g, t_c) = (0.15, 0.3, 9.81, 0.02);
     let machine = Machine {
@@ -65,14 +64,14 @@ fn a_pendulum_stops_off_the_vertical_and_friction_bears_its_weight() {
         let motion = simulated(&model, &[], &times, solver);
         let states = &motion.trajectory.states;
         machine.comes_to(([1.0], [0.0]), 10.0, &states[100], 2e-4);
-        // Held: nothing moves any more, not even by rounding that adds up.
+        // While sticking nothing moves, not even by accumulated rounding.
         assert!(states[100][0].abs() > 1e-3, "{:?}", states[100]);
         assert!((states[100][0] - states[60][0]).abs() < 1e-13);
         assert!(states[60..].iter().all(|state| state[1].abs() < 1e-14));
         let run = model.at_declared().unwrap();
         let observables = run.observables(&motion).unwrap();
         for (row, state) in observables[60..].iter().zip(&states[60..]) {
-            // `rubs`, the energy and the power.
+            // Observable `rubs`, energy and power.
             assert!(
                 (row[0] - m * g * l * state[0].sin()).abs() < 1e-12,
                 "{row:?}"
@@ -83,14 +82,14 @@ fn a_pendulum_stops_off_the_vertical_and_friction_bears_its_weight() {
     }
 }
 
-/// Where it slides the friction is at its level.
+/// Returns true if the friction is at its level during sliding.
 fn row_of_sliding(observables: &[Vec<f64>], states: &[Vec<f64>]) -> bool {
     let mut pairs = observables.iter().zip(states);
     pairs.all(|(row, state)| state[1].abs() < 1e-6 || row[0] == -0.02 * state[1].signum())
 }
 
 #[test]
-fn a_pendulum_is_let_go_by_a_motor_and_caught_again() {
+fn motor_releases_pendulum_until_it_sticks_again() {
     let model = example("stopped_pendulum");
     let (m, l, g, t_c) = (0.15, 0.3, 9.81, 0.02);
     for (torque, omega) in [(0.1, 3.0), (0.03, 2.0), (0.0201, 1.0)] {
@@ -114,7 +113,7 @@ fn a_pendulum_is_let_go_by_a_motor_and_caught_again() {
 }
 
 #[test]
-fn a_pendulum_turns_and_stops_where_its_energy_is_gone() {
+fn turning_points_and_rest_of_pendulum_match_energy() {
     let text = std::fs::read_to_string(
         Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/friction/stopped_pendulum.toml"),
     );
@@ -122,7 +121,7 @@ fn a_pendulum_turns_and_stops_where_its_energy_is_gone() {
     let (m, l, g) = (0.15, 0.3, 9.81);
     let (inertia, weight) = (m * l * l, m * g * l);
     for (level, speed) in [(0.25, 5.0), (0.02, 5.0), (0.1, -9.0), (0.03, 14.0)] {
-        // Turning points: what is left of the energy after the weight and the friction took theirs.
+        // Turning points follow from the energy minus the work of weight and friction.
         let (mut from, mut energy, mut sense) =
             (0.0, 0.5 * inertia * speed * speed, f64::signum(speed));
         let turns: Vec<f64> = std::iter::from_fn(|| {
@@ -162,8 +161,9 @@ fn a_pendulum_turns_and_stops_where_its_energy_is_gone() {
                 "{solver} {level} {speed}"
             );
         }
-        // The time stepping comes there too. What it is off by hangs on where within a step h it stops, between
-        // nothing and a h^2/8 of the deceleration a: it falls by no fixed factor.
+        // The time stepping reaches the same point. Its error depends on the time of the stop
+        // within a step h, from nothing to a h^2/8 with the deceleration a, so it has no fixed
+        // order.
         let machine = Machine {
             inverse_mass: &|_| [[1.0 / inertia]],
             forces: &|_, [theta], _| [-weight * f64::sin(theta)],
@@ -188,7 +188,7 @@ fn a_pendulum_turns_and_stops_where_its_energy_is_gone() {
 }
 
 #[test]
-fn a_mass_on_a_belt_sticks_and_slips_by_friction_that_falls_with_speed() {
+fn belt_with_falling_friction_sticks_and_slips() {
     let model = example("stribeck_belt");
     let machine = Machine {
         inverse_mass: &|_| [[1.0]],
@@ -208,13 +208,13 @@ fn a_mass_on_a_belt_sticks_and_slips_by_friction_that_falls_with_speed() {
     }
     let motion = simulated(&model, &[], &grid(20.0, 20), Solver::Auto);
     assert_eq!(motion.solver, Solver::Rk);
-    // It sticks and is pulled loose in every turn of 0.907 s.
+    // It sticks and is released once per period of 0.907 s.
     let switches = &motion.trajectory.switches;
     assert!(switches.len() > 40, "{}", switches.len());
 }
 
 #[test]
-fn a_cart_and_its_pole_rub_both() {
+fn cart_and_pole_with_friction_match_time_stepping() {
     let model = example("cart_pole");
     let (big, m, l, g) = (1.0, 0.3, 0.5, 9.81);
     for (rails, pivot, push, omega) in [
@@ -275,9 +275,9 @@ drive = { on = "x", value = "A*sin(omega*t)" }
 "#;
 
 #[test]
-fn a_drive_sticks_and_breaks_away_a_thousand_times() {
+fn drive_breaks_away_a_thousand_times_at_known_times() {
     let (f, a, omega) = (3.0_f64, 4.0_f64, 5.0_f64);
-    // It breaks away where A |sin(omega t)| = F, once in every half turn, and comes to rest in between.
+    // It breaks away if A |sin(omega t)| = F, once per half period, and sticks in between.
     let half = std::f64::consts::PI / omega;
     let away = |turn: usize| (f / a).asin() / omega + half * turn as f64;
     let until = 1000.0 * half;
@@ -295,7 +295,7 @@ fn a_drive_sticks_and_breaks_away_a_thousand_times() {
             assert!(pair[1].t > pair[0].t && pair[1].t < away(turn + 1));
             assert_eq!(pair[0].to_positive, turn % 2 == 0, "{solver} {turn}");
         }
-        // It goes to and fro: after every whole turn it rests where it did.
+        // After every period it rests at the same position.
         let states = &motion.trajectory.states;
         for turn in (2..1000).step_by(2) {
             let moved = states[turn][0] - states[2][0];
@@ -306,7 +306,7 @@ fn a_drive_sticks_and_breaks_away_a_thousand_times() {
 }
 
 #[test]
-fn frictions_that_hold_one_motion_bear_together_what_both_can() {
+fn two_frictions_on_one_motion_add_their_levels() {
     let text = r#"
 [model]
 name = "block"
@@ -339,7 +339,7 @@ both = { value = "-F*sign(dot(x)) - G*sign(3*dot(x))", unit = "N" }
             .iter()
             .zip(rows.iter().zip(&motion.trajectory.states))
         {
-            // It breaks away where r t = F + G.
+            // It breaks away if r t = F + G.
             let gone = (t - 3.0).max(0.0);
             assert!(
                 (state[0] - gone.powi(3) / 6.0).abs() < 1e-8,
@@ -351,7 +351,7 @@ both = { value = "-F*sign(dot(x)) - G*sign(3*dot(x))", unit = "N" }
 }
 
 #[test]
-fn a_jump_of_an_input_breaks_away_and_a_belt_that_jumps_takes_nothing_along() {
+fn jumps_of_force_and_belt_speed_release_the_block() {
     let text = r#"
 [model]
 name = "block"
@@ -371,8 +371,8 @@ pull = { on = "x", value = "u" }
 "#;
     let model = of_text(text);
     let run = model.at_declared().unwrap();
-    // Held for 1 s, pulled loose with 1 m/s^2 for 1 s, slowed down by 2 m/s^2 to rest at 2.5 s; at 3 s the
-    // belt begins to run at 1 m/s, which the block has after 0.5 s.
+    // Sticking for 1 s, accelerated by 1 m/s^2 for 1 s, then decelerated by 2 m/s^2 to rest at 2.5
+    // s. At 3 s the belt starts at 1 m/s, which the block reaches after 0.5 s.
     let times = vec![0.0, 1.0, 2.0, 3.0];
     let values = vec![1.5, 0.0, 3.0, 0.0, 0.0, 0.0, 0.0, 1.0];
     let inputs = HeldInputs::new(times, values, 2).unwrap();
@@ -394,7 +394,7 @@ pull = { on = "x", value = "u" }
 }
 
 #[test]
-fn a_relay_holds_a_state_of_first_order_and_a_weighted_rate() {
+fn relay_holds_first_order_state_and_weighted_rate() {
     let text = r#"
 [model]
 name = "servo"
@@ -423,7 +423,7 @@ swing = { on = "x", value = "K*sin(x*0.3/l)" }
     for solver in GENERAL {
         let motion = simulated(&model, &[], &grid(4.0, 40), solver);
         let states = &motion.trajectory.states;
-        // On the surface x + s x' = 0, the motion decays with s; y follows 0.2 t.
+        // On the surface x + s x' = 0 the motion decays with s; y follows 0.2 t.
         for (t, pair) in motion
             .trajectory
             .times
@@ -445,9 +445,9 @@ swing = { on = "x", value = "K*sin(x*0.3/l)" }
 }
 
 #[test]
-fn friction_beside_a_constraint_and_on_a_shaft_with_modes() {
-    // A bead on a circle, by a constraint, rubbed along the horizontal: it rests where the weight
-    // along the circle is less than the friction along it.
+fn friction_sticks_with_constraints_and_with_modes() {
+    // A bead on a circle, by a constraint, with friction along the horizontal. It rests if the
+    // weight along the circle is less than the friction along it.
     let text = r#"
 [model]
 name = "bead"
@@ -488,7 +488,7 @@ rub = { on = "x", value = "-F*sign(dot(x))" }
         machine.comes_to(([start], [0.0]), 6.0, &[angle, 0.0], 1e-4);
         assert!(motion.trajectory.last[2].abs() < 1e-10);
     }
-    // A disc on an elastic shaft that a brake holds: the shaft swings on by its modes.
+    // A disc with a brake on an elastic shaft, whose modes continue to vibrate.
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../model-spec/models");
     let text = std::fs::read_to_string(folder.join("shaft_and_disc.toml")).unwrap();
     let brake = "brake = { on = \"theta_d\", value = \"-T_b*sign(dot(theta_d))\" }";
@@ -523,7 +523,7 @@ rub = { on = "x", value = "-F*sign(dot(x))" }
 }
 
 #[test]
-fn adams_stops_with_a_message_where_friction_holds() {
+fn adams_stops_with_message_at_sticking() {
     let model = of_text(SLED);
     let run = model.at_declared().unwrap();
     let none = run.no_inputs();

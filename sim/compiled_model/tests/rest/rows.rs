@@ -1,11 +1,11 @@
-//! Random rows of masses between springs that rub.
+//! Random rows of masses with springs and dry friction.
 
 use eomgen_compiled_model::Solver;
 
 use super::time_stepping::{Machine, Rubbing};
 use super::{GENERAL, grid, of_text, simulated};
 
-/// A generator of numbers between 0 and 1.
+/// Pseudorandom numbers between 0 and 1.
 struct Numbers(u64);
 
 impl Numbers {
@@ -17,7 +17,8 @@ impl Numbers {
     }
 }
 
-/// A row's specification of its coordinates, kinetic and potential energies and forces.
+/// Returns the specification of a row from its coordinates, kinetic and potential energies and
+/// forces.
 fn specification([coordinates, kinetic, potential, forces]: &[String; 4]) -> String {
     format!(
         r#"
@@ -42,8 +43,9 @@ s = {{ value = 1, unit = "s" }}
     )
 }
 
-/// A row of masses between springs, each rubbed at the ground, on a belt or against the one before, and
-/// shaken. No two frictions hold one motion: what each of them bears then is not known.
+/// Returns a random row of masses between springs, each with friction at the ground, on a belt or
+/// at the preceding mass, with a periodic force. No two frictions hold one motion, because their
+/// forces would not be unique.
 fn random_row(seed: u64) -> String {
     let mut numbers = Numbers(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
     let mut number = |least: f64, most: f64| least + (most - least) * numbers.next();
@@ -93,7 +95,7 @@ fn random_row(seed: u64) -> String {
 }
 
 #[test]
-fn random_rows_rest_and_move_as_the_exact_solver_has_them() {
+fn random_rows_match_exact_solver() {
     let times = grid(4.0, 40);
     let (mut compared, mut held) = (0, 0);
     for seed in 1..=40 {
@@ -117,7 +119,7 @@ fn random_rows_rest_and_move_as_the_exact_solver_has_them() {
             let mut worst = 0.0_f64;
             for (place, (a, b)) in pairs.enumerate() {
                 worst = worst.max(difference(a, b));
-                // Powers too, but for a row that stands just at a switch.
+                // Powers as well, except for a row at an event.
                 let power = (rows[place][1] - reference[place][1]).abs();
                 assert!(power < 1e-3, "{seed} {solver} {place}: power {power:e}");
             }
@@ -129,8 +131,8 @@ fn random_rows_rest_and_move_as_the_exact_solver_has_them() {
     assert!(compared >= 25 && held > 300, "{compared} {held}");
 }
 
-/// A row of up to three masses between springs, shaken, each with dry friction at the ground, on a belt, and
-/// against the mass before, as many of these as there are.
+/// A row of up to three masses between springs with periodic forces, each with dry friction at the
+/// ground, on a belt and at the preceding mass.
 struct Row {
     count: usize,
     masses: [f64; 3],
@@ -208,7 +210,7 @@ impl Row {
         specification(&sections)
     }
 
-    /// Where the time stepping has it in the end, places and speeds.
+    /// Returns positions and speeds at the end from the time stepping.
     fn stepped(&self, until: f64, steps: u32) -> Vec<f64> {
         let count = self.count;
         let inside = |i: usize| i < count;
@@ -262,7 +264,7 @@ impl Row {
 }
 
 #[test]
-fn frictions_at_the_ground_and_between_neighbours_hold_as_the_time_stepping_has_them() {
+fn rows_with_several_frictions_match_time_stepping() {
     let until = 3.0;
     let times = grid(until, 60);
     for seed in (1..=60).chain([65, 91, 103, 151, 152, 167]) {

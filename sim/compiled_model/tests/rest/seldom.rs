@@ -1,4 +1,4 @@
-//! Machines that stand still most of the time, and what ends that is short: steps must not grow over it.
+//! Machines at rest most of the time, released by short events that long steps must not miss.
 
 use std::f64::consts::PI;
 
@@ -22,7 +22,7 @@ sled = "1/2*m*dot(x)^2"
 "#;
 
 #[test]
-fn a_push_that_is_hardly_more_than_friction_breaks_away_in_every_turn() {
+fn force_slightly_above_friction_breaks_away_every_period() {
     let text = format!(
         "{SHAKEN}rubs = {{ on = \"x\", value = \"-F*sign(dot(x))\" }}\n\
          drive = {{ on = \"x\", value = \"A*sin(omega*t)\" }}\n"
@@ -36,7 +36,7 @@ fn a_push_that_is_hardly_more_than_friction_breaks_away_in_every_turn() {
             let settings = [("A", a), ("omega", omega)];
             let motion = simulated(&model, &settings, &[0.0, until], solver);
             let switches = &motion.trajectory.switches;
-            // It breaks away and is caught twice in each turn.
+            // It breaks away and sticks twice per period.
             assert_eq!(switches.len(), 4 * turns as usize, "{solver} {a} {omega}");
             for (turn, pair) in switches.chunks(2).enumerate() {
                 let away = first + PI / omega * turn as f64;
@@ -50,7 +50,7 @@ fn a_push_that_is_hardly_more_than_friction_breaks_away_in_every_turn() {
 }
 
 #[test]
-fn pulses_that_switches_make_move_what_stands_still() {
+fn short_pulses_move_resting_mass() {
     let text =
         format!("{SHAKEN}drive = {{ on = \"x\", value = \"A*above(sin(omega*t) - 0.99)\" }}\n");
     let model = of_text(&text);
@@ -66,8 +66,9 @@ fn pulses_that_switches_make_move_what_stands_still() {
 }
 
 #[test]
-fn a_relay_is_crossed_until_it_holds_and_then_decays() {
-    // x'' = -F sign(x + tau x'): parabolas between the crossings, until |x'| < tau F there; then x' = -x/tau.
+fn relay_is_crossed_until_it_slides_and_decays() {
+    // x'' = -F sign(x + tau x'): parabolas between the crossings until |x'| < tau F, then x' =
+    // -x/tau.
     let text = r#"
 [model]
 name = "relay"
@@ -96,7 +97,7 @@ relay = { on = "x", value = "-F*sign(x + tau*dot(x))" }
             let a = pieces
                 .last()
                 .map_or(-1.0, |piece: &(f64, f64, f64, f64)| piece.3);
-            // x + tau v + (v + tau a) s + a s^2/2 = 0, but for s = 0 after a crossing.
+            // x + tau v + (v + tau a) s + a s^2/2 = 0, without the root s = 0 after a crossing.
             let (b, c) = (
                 v + tau * a,
                 if pieces.len() > 1 { 0.0 } else { x + tau * v },

@@ -1,14 +1,15 @@
-//! A set-valued time stepping that knows no surfaces, no regimes and no events: every step's friction impulses
-//! are those in their bounds that bring the speeds to zero, or as near as they can (J. J. Moreau).
+//! Set-valued time stepping without surfaces, regimes and events (J. J. Moreau). The friction
+//! impulses of every step stay within their bounds and bring the speeds as near to zero as
+//! possible.
 
-/// A dry friction: J v - b is the speed at which it slides, and the most that it bears.
+/// A dry friction: the sliding speed is J v - b; the level bounds the force.
 pub struct Rubbing<const N: usize> {
     pub along: [f64; N],
     pub drift: f64,
     pub level: f64,
 }
 
-/// A machine for the time stepping: M(q) v' = f(t, q, v) + frictions.
+/// A machine for the time stepping: M(q) v' = f(t, q, v) + friction.
 pub struct Machine<'m, const N: usize> {
     pub inverse_mass: &'m dyn Fn([f64; N]) -> [[f64; N]; N],
     pub forces: &'m dyn Fn(f64, [f64; N], [f64; N]) -> [f64; N],
@@ -16,7 +17,7 @@ pub struct Machine<'m, const N: usize> {
 }
 
 impl<const N: usize> Machine<'_, N> {
-    /// Places and speeds after so many steps.
+    /// Returns positions and speeds after a number of steps.
     pub fn stepped(&self, start: ([f64; N], [f64; N]), until: f64, steps: u32) -> Vec<f64> {
         let h = until / f64::from(steps);
         let (mut q, mut v) = start;
@@ -64,8 +65,7 @@ impl<const N: usize> Machine<'_, N> {
         [q, v].concat()
     }
 
-    /// The stepping comes to this state as its steps shrink: the difference is small in the end and
-    /// falls as a method of first order has it.
+    /// Asserts that the stepping converges to this state with order one.
     pub fn comes_to(&self, start: ([f64; N], [f64; N]), until: f64, wanted: &[f64], step: f64) {
         let difference = |steps: u32| {
             let found = self.stepped(start, until, steps);

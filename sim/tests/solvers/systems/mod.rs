@@ -2,7 +2,7 @@
 
 use eomgen_sim::ode::System;
 
-/// A system made of functions.
+/// A system of closures.
 pub struct Functions<R, G> {
     pub states: usize,
     pub rates: R,
@@ -51,7 +51,7 @@ pub fn smooth<R: Fn(f64, &[f64], &mut [f64])>(
     }
 }
 
-/// x'' = -k f_k(x, b): flights between two walls of springs.
+/// x'' = -k f_k(x, b): free motion between two elastic walls.
 pub fn dead_zone(b: f64, frequency: f64) -> impl System {
     Functions {
         states: 2,
