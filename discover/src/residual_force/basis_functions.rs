@@ -1,7 +1,6 @@
-//! Shapes of an unknown force: functions of where a motion stands, as sums of which a force is
-//! sought. A force over the rate may jump where the motion turns, as friction does; one over a
-//! position or over time is a line with bends; one that repeats is a wave. How much of each there is
-//! is estimated elsewhere.
+//! Basis functions of an unknown force. A force over the rate may jump at rest, as friction does; a
+//! force over position or time is piecewise linear; a periodic force is a wave. Coefficients are
+//! estimated elsewhere.
 
 use crate::ids::EquationId;
 use std::f64::consts::TAU;
@@ -9,7 +8,7 @@ use std::f64::consts::TAU;
 use crate::residual_force::equations::OperatingPoint;
 use crate::thresholds;
 
-/// What a force is a function of.
+/// Argument of a force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Over {
     /// The rate.
@@ -18,38 +17,38 @@ pub enum Over {
     Position,
     /// The position within a turn.
     Turn,
-    /// The time within a window, differently in each.
+    /// The time within a window; the force differs between windows.
     Time,
-    /// The angle, so many times per turn.
+    /// The angle, with this order per turn.
     Order(u32),
-    /// The time within a window, at a frequency in Hz, differently in each.
+    /// The time within a window, at this frequency, Hz; the force differs between windows.
     Frequency(f64),
 }
 
-/// A force of unknown size in an equation: a sum of shapes.
+/// Family of basis functions of a force in an equation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Family {
-    /// The equation in which it acts.
+    /// Equation in which the force acts.
     pub equation: EquationId,
-    /// What the force is a function of.
+    /// Argument of the force.
     pub over: Over,
-    /// Where it bends, in order; over the rate those of negative rates first, and 0 twice.
+    /// Knots in ascending order. Over the rate, 0 occurs twice.
     pub bends: Vec<f64>,
 }
 
-/// Where a motion stands in an equation, over all windows.
+/// Range of the motion in an equation over all windows.
 #[derive(Clone, Debug, Default)]
 pub struct Range {
-    /// The usual lowest and highest position.
+    /// Usual lowest and highest position.
     pub position: (f64, f64),
-    /// The usual largest rate either way.
+    /// Usual largest absolute rate.
     pub rate: f64,
-    /// The root mean square of position and rate.
+    /// RMS of position and rate.
     pub usual: (f64, f64),
 }
 
 impl Range {
-    /// The range of some positions; one in a hundred lies outside at either end.
+    /// Computes the range of operating points, without the outer 1 % at each end.
     pub fn of(operating_points: &[OperatingPoint]) -> Self {
         let sorted = |of: &dyn Fn(&OperatingPoint) -> f64| {
             let mut values: Vec<f64> = operating_points.iter().map(of).collect();
@@ -74,14 +73,14 @@ impl Range {
         }
     }
 
-    /// How far it goes.
+    /// Returns the width of the position range.
     pub fn width(&self) -> f64 {
         self.position.1 - self.position.0
     }
 }
 
 impl Family {
-    /// Over the rate.
+    /// Builds the family over the rate.
     pub fn over_rate(equation: EquationId, range: &Range) -> Self {
         // Closer near rest, where friction bends most.
         let last = (thresholds::RATE_BENDS - 1) as f64;
@@ -96,7 +95,7 @@ impl Family {
         }
     }
 
-    /// Over the position, or over a turn where that is gone through.
+    /// Builds the family over the position, or over a turn if the motion covers a full turn.
     pub fn over_position(equation: EquationId, range: &Range, is_angle: bool) -> Self {
         if is_angle && range.width() > TAU {
             let bend = |k: usize| TAU * k as f64 / thresholds::TURN_BENDS as f64;
@@ -116,7 +115,7 @@ impl Family {
         }
     }
 
-    /// Over the time of a window of this length, s.
+    /// Builds the family over the time of a window of this length, s.
     pub fn over_time(equation: EquationId, length: f64) -> Self {
         let bend = |k: usize| length * k as f64 / (thresholds::TIME_BENDS - 1) as f64;
         Self {
@@ -126,7 +125,7 @@ impl Family {
         }
     }
 
-    /// A wave.
+    /// Builds the sine and cosine of a wave.
     pub fn wave(equation: EquationId, over: Over) -> Self {
         Self {
             equation,
@@ -135,7 +134,7 @@ impl Family {
         }
     }
 
-    /// How many shapes it is a sum of.
+    /// Returns the number of basis functions.
     pub fn count(&self) -> usize {
         match self.over {
             Over::Order(_) | Over::Frequency(_) => 2,
@@ -143,7 +142,7 @@ impl Family {
         }
     }
 
-    /// The shapes where a motion stands.
+    /// Evaluates the basis functions at an operating point.
     pub fn at(&self, operating_point: &OperatingPoint, out: &mut [f64]) {
         out.fill(0.0);
         let mut wave = |phase: f64| {

@@ -1,6 +1,6 @@
-//! The equations of motion in which a force may be missing: one for every coordinate, angle and
-//! end of a flexible body. Along a motion each tells where it stands and how a force of one unit
-//! in it accelerates the model. What forces are tried is decided elsewhere.
+//! Equations of motion in which a force may be missing: one for each coordinate, angle and end of a
+//! flexible body. Along a motion they give the operating point and the accelerations due to a unit
+//! force.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_model_spec::edit::{self, Edit, NewForce, NewParameter, NewTerm, NewValue, Section};
@@ -18,42 +18,42 @@ use crate::model::problem::EstimationProblem;
 /// An equation of motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Equation {
-    /// What it is called in results.
+    /// Name in results.
     pub name: String,
-    /// What a force in it works on, as the specification writes it.
+    /// Expression that the force acts on, in the notation of the specification.
     pub on: String,
-    /// The unit of what it works on, `rad` or `m`.
+    /// Unit of that expression, `rad` or `m`.
     pub unit: &'static str,
-    /// Whether it is a deflection between teeth with play.
+    /// Whether the expression is the deflection of a mesh with play.
     pub is_mesh: bool,
 }
 
 impl Equation {
-    /// The unit of a force in it.
+    /// Returns the unit of the force.
     pub fn force_unit(&self) -> &'static str {
         if self.unit == "rad" { "N m" } else { "N" }
     }
 
-    /// The unit of its rate.
+    /// Returns the unit of the rate.
     pub fn rate_unit(&self) -> &'static str {
         if self.unit == "rad" { "rad/s" } else { "m/s" }
     }
 }
 
-/// Where a motion stands in an equation.
+/// Position, rate and time of a motion in an equation.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct OperatingPoint {
-    /// What a force works on, m or rad.
+    /// Position, m or rad.
     pub position: f64,
-    /// Its rate, m/s or rad/s.
+    /// Rate, m/s or rad/s.
     pub rate: f64,
-    /// The time from the window's beginning, s.
+    /// Time from the beginning of the window, s.
     pub time: f64,
 }
 
-/// The equations of a fitted model.
+/// Equations of a fitted model.
 pub struct Equations {
-    /// One after the other.
+    /// The equations.
     pub list: Vec<Equation>,
     model: EstimationModel,
     values: Vec<f64>,
@@ -70,7 +70,7 @@ struct PositionAndRate {
     rate: ObservableId,
 }
 
-/// The equations of a model, ready to be asked along a motion.
+/// Evaluator of the equations along a motion.
 pub struct EquationEvaluator {
     free: Evaluator,
     forced: Vec<Evaluator>,
@@ -80,7 +80,7 @@ pub struct EquationEvaluator {
 }
 
 impl Equations {
-    /// The equations of a fitted model; none if a force cannot be written into it.
+    /// Derives the equations of a fitted model; `None` if a force cannot be added to it.
     pub fn of(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<Self> {
         let list = equations(fit.model.specification());
         let names = |word: &str, number: usize| format!("{word}_of_equation_{number}");
@@ -149,7 +149,7 @@ impl Equations {
         })
     }
 
-    /// Ready to be asked.
+    /// Creates an evaluator of the equations.
     pub fn evaluator(&self) -> EquationEvaluator {
         let forced = self.forces.iter().map(|force| {
             let mut values = self.values.clone();
@@ -168,7 +168,7 @@ impl Equations {
 }
 
 impl EquationEvaluator {
-    /// Where each equation stands; time stays 0.
+    /// Appends the operating point of each equation, with time 0.
     pub fn operating_points(&mut self, point: Point<'_>, out: &mut Vec<OperatingPoint>) {
         self.free.observables(point, &mut self.observables);
         out.clear();
@@ -179,8 +179,8 @@ impl EquationEvaluator {
         }));
     }
 
-    /// For each equation what a force of one unit adds to the accelerations and to the rates of
-    /// states of first order, one equation after the other.
+    /// Appends, for each equation, the changes of the accelerations and of the rates of first-order
+    /// states due to a unit force.
     pub fn accelerations(&mut self, point: Point<'_>, out: &mut Vec<f64>) {
         let [free, forced] = &mut self.rates;
         let first = self.free.program().degrees_of_freedom();
@@ -193,7 +193,7 @@ impl EquationEvaluator {
         }
     }
 
-    /// The model's own rates.
+    /// Computes the rates of the model.
     pub fn rates(&mut self, point: Point<'_>, out: &mut [f64]) {
         self.free.rates(point, out);
     }

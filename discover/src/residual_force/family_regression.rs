@@ -1,5 +1,4 @@
-//! Families of shapes whose columns stand beside each other in one regression. Which families, and
-//! what follows from their sizes, is decided elsewhere.
+//! Regression of several families of basis functions at once.
 
 use crate::ids::{BasisFunctionId, FamilyId};
 use nalgebra::{DMatrix, DVector};
@@ -12,15 +11,20 @@ use crate::residual_force::force_response::{ForceColumns, force_responses};
 use crate::residual_force::regression::{Regression, Sizes};
 use crate::thresholds;
 
-/// ForceColumns of families with where each family's stand.
+/// Regression of families with the position of their columns.
 pub(crate) struct FamilyRegression {
+    /// Families of basis functions.
     pub families: Vec<Family>,
+    /// First column of each family.
     pub firsts: Vec<usize>,
+    /// Regression of all columns.
     pub regression: Regression,
+    /// Columns of each window.
     pub blocks: Vec<Option<DMatrix<f64>>>,
 }
 
 impl FamilyRegression {
+    /// Fits families of basis functions; `None` if tangent vectors are not available.
     pub fn at(of: Linearisation<'_>, equations: &Equations, families: Vec<Family>) -> Option<Self> {
         let mut firsts = Vec::new();
         let mut count = 0;
@@ -50,25 +54,28 @@ impl FamilyRegression {
         })
     }
 
+    /// Returns the columns of a family.
     pub fn range(&self, family: FamilyId) -> std::ops::Range<usize> {
         let first = self.firsts[family];
         first..first + self.families[family].count()
     }
 
+    /// Returns the coefficients of a family, equal in all windows.
     pub fn shared(&self, family: FamilyId) -> Sizes {
         let functions: Vec<BasisFunctionId> =
             self.range(family).map(BasisFunctionId::new).collect();
         self.regression.shared(&functions)
     }
 
-    /// The part of the squares that a family explains, beyond what as many numbers do by chance.
+    /// Returns the fraction of the squares that a family explains, less the fraction expected by
+    /// chance.
     pub fn part(&self, family: FamilyId) -> f64 {
         let found = self.shared(family);
         let chance = noise(self, found.decrease) * found.values.len() as f64;
         (found.decrease - chance) / self.regression.squares
     }
 
-    /// Over how many samples what a family leaves is correlated.
+    /// Returns the number of samples over which the residual of a family is correlated.
     pub fn correlation(&self, of: Linearisation<'_>, family: FamilyId, level: f64) -> f64 {
         let blocks = self.blocks.iter().flatten();
         let count = blocks.map(DMatrix::ncols).next().unwrap_or(0);
@@ -99,21 +106,21 @@ impl FamilyRegression {
         correlation(&residuals, of.problem.noise.len())
     }
 
-    /// What the variance of an uncorrelated unit residual is multiplied with: by the size of
-    /// what a family leaves, the samples over which that is correlated and what a straight line
-    /// does not see.
+    /// Returns the factor on the variance of a white unit residual: the residual of a family, its
+    /// correlation and the linearisation error.
     pub fn inflation(&self, of: Linearisation<'_>, family: FamilyId) -> f64 {
         let variance = noise(self, self.shared(family).decrease);
         variance * self.correlation(of, family, 1.0) * thresholds::WIDER * thresholds::WIDER
     }
 
+    /// Returns the first family with a matching argument.
     pub fn find(&self, wanted: impl Fn(Over) -> bool) -> Option<FamilyId> {
         let position = self.families.iter().position(|family| wanted(family.over));
         position.map(FamilyId::new)
     }
 }
 
-/// The mean square of the residuals once so much is explained.
+/// Returns the mean square of the residuals after a decrease of the squares.
 pub(crate) fn noise(regressed: &FamilyRegression, decrease: f64) -> f64 {
     ((regressed.regression.squares - decrease) / regressed.regression.numbers).max(1.0)
 }

@@ -1,5 +1,5 @@
-//! Pictures of the residual force: over time, rate, position, shaft order, frequency and amplitude,
-//! before and after. A bar at each point is one standard deviation to either side.
+//! Figures of the residual force over time, rate, position, shaft order, frequency and amplitude,
+//! before and after the search. Error bars are one standard deviation.
 
 use eomgen_plot::{Axes, Frame, Panel, Plate, Series, plate};
 
@@ -26,7 +26,7 @@ struct Picture {
     of: fn(&ResidualForce) -> &Profile,
 }
 
-/// The pictures of one equation; none if there is nothing to be drawn.
+/// Draws the profiles of one equation; empty if there is nothing to draw.
 pub fn figures(before: &ResidualForce, after: Option<&ResidualForce>) -> String {
     let equation = &before.equations[before.equation];
     let mut forces = vec![("before", before)];

@@ -1,5 +1,5 @@
-//! Motions with small forces beside the one without, by Runge-Kutta steps, where no integrator
-//! carries neighbouring motions. Which forces is decided elsewhere.
+//! Responses to small forces by difference quotients of Runge-Kutta motions, if tangent vectors are
+//! not available.
 
 use crate::ids::WindowId;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
@@ -15,7 +15,7 @@ use eomgen_sim::ode::runge_kutta::RungeKutta;
 /// Whether each of a step's four slopes is at its beginning, its middle or its end.
 const POINTS: [usize; 4] = [0, 1, 1, 2];
 
-/// A window of a model that is run by Runge-Kutta steps.
+/// A window of a model that is simulated by Runge-Kutta steps.
 pub(crate) struct SteppedWindow<'s> {
     shooting: &'s Shooting<'s>,
     sensors: Sensors,
@@ -53,7 +53,7 @@ struct Force {
 }
 
 impl<'s> SteppedWindow<'s> {
-    /// A window at these unknowns; none if a solver decides on its steps.
+    /// Creates the window at these unknowns; `None` if the model needs a solver with error control.
     pub fn new(shooting: &'s Shooting<'s>, theta: &[f64], window: WindowId) -> Option<Self> {
         let model = shooting.model;
         Some(Self {
@@ -69,8 +69,8 @@ impl<'s> SteppedWindow<'s> {
         })
     }
 
-    /// What each of some drives does to the outputs, in standard deviations per unit of the drive.
-    /// The drives are those along the motion without them. `level`: the size of the residuals, in
+    /// Returns the response of the outputs to each drive, in standard deviations per unit of the
+    /// drive, at fixed drives along the unforced motion. `level`: size of the residuals, in
     /// standard deviations.
     pub fn columns(
         &mut self,

@@ -1,7 +1,5 @@
-//! What forces of given shapes do to the windows' outputs, to first order: neighbouring motions
-//! that they drive. Where the model is run by the exponential integrator these come along;
-//! otherwise a motion with a small force is integrated beside the one without. What is made of them
-//! is decided elsewhere.
+//! First-order responses of the outputs to forces: by tangent vectors if the exponential integrator
+//! is used, otherwise by an integration with a small force.
 
 use crate::ids::EquationId;
 use eomgen_codegen::program::evaluator::Point;
@@ -16,15 +14,14 @@ use crate::residual_force::equations::{EquationEvaluator, Equations, OperatingPo
 use crate::residual_force::finite_difference_response::SteppedWindow;
 use eomgen_sim::exponential::Drives;
 
-/// Weights of shapes in the equations: where each equation stands, and a weight per column.
+/// Function that computes one weight per column from the operating points and the inputs.
 pub type Weights<'w> = dyn Fn(&[OperatingPoint], &[f64], &mut [f64]) + Sync + 'w;
 
-/// ForceColumns: the equation that each works in, and how their weights are found from where the
-/// equations stand and from the inputs.
+/// Equation and weights of each force column.
 pub struct ForceColumns<'w> {
-    /// The equation of each.
+    /// Equation of each column.
     pub equations: Vec<EquationId>,
-    /// Fills a weight per column.
+    /// Computes the weight of each column.
     pub weights: &'w Weights<'w>,
 }
 
@@ -74,8 +71,8 @@ impl Drives for ForceDrives<'_> {
     }
 }
 
-/// For each window a column per shape, in standard deviations per unit of force; none for a window
-/// whose motion cannot be followed. None if neighbouring motions cannot be followed at all.
+/// Returns a matrix for each window with one column per force, in standard deviations per unit of
+/// force; `None` for a failed simulation. Returns `None` if neither method is available.
 pub fn force_responses(
     of: Linearisation<'_>,
     equations: &Equations,
@@ -130,7 +127,7 @@ pub fn force_responses(
     Some(parts.into_iter().flatten().collect())
 }
 
-/// Where the equations stand along the windows' motions, at every sample.
+/// Returns the operating points of the equations along the motions of the windows at each sample.
 pub fn operating_points(
     of: Linearisation<'_>,
     equations: &Equations,

@@ -1,10 +1,10 @@
-//! The residual force: which equation of motion a missing force acts in, and what it looks like
-//! over time, rate, angle, shaft order, frequency and amplitude. It says where to look; which
-//! effects are accepted is decided without it. The files: `equations` in which a force may act,
-//! `basis_functions` that it may be a sum of, `force_response` (what these do to the outputs;
-//! `finite_difference_response`, where no neighbouring motions come along) and `regression` (how
-//! much of each there is), `family_regression` (families of them), `ranking` (equations compared),
-//! `ripple_orders` (waves over an angle compared; `orders_of_given_motion` where the motion is), `profiles` (one of them in detail), `wording` and `figures`; `types` is what is told.
+//! Residual force: the equation of motion with a missing force, and the profiles of the force over
+//! time, rate, angle, shaft order, frequency and amplitude. It shows the location of the gap;
+//! effects are accepted without it. The files: `equations`, `basis_functions` of the force,
+//! `force_response` (their responses; `finite_difference_response` without tangent vectors),
+//! `regression` (their coefficients), `family_regression`, `ranking` (comparison of equations),
+//! `ripple_orders` (comparison of waves over an angle; `orders_of_given_motion` for a given
+//! motion), `profiles` of one equation, `wording` and `figures`; `types` contains the results.
 
 pub mod basis_functions;
 pub mod equations;
@@ -37,8 +37,8 @@ use crate::residual_force::types::{Kind, ResidualForce};
 use crate::thresholds;
 use eomgen_records::samples::typical_step;
 
-/// The residual force of a fit, in an equation by its name or in the one where it explains most;
-/// none where neighbouring motions cannot be followed.
+/// Estimates the residual force of a fit, with the profiles of a named equation or of the best one;
+/// `None` if the responses cannot be computed.
 pub fn residual_force(
     problem: &EstimationProblem<'_>,
     fit: &Fit,

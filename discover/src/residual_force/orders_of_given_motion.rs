@@ -1,5 +1,5 @@
-//! What a motion takes beyond the model as a spectrum over its angles, where records give the motion: the
-//! residuals of the channels themselves, because nothing is integrated.
+//! Spectrum over the angles for a given motion, from the residuals of the channels, because nothing
+//! is integrated.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -22,9 +22,8 @@ struct Along {
     rate: f64,
 }
 
-/// For each coordinate that is an angle the orders, per turn, whose waves explain most of what a fit leaves
-/// of the training records, the best first: those of which the motion goes through a period, and which its
-/// samples resolve.
+/// Returns for each angle coordinate the orders, per turn, whose waves explain most of the training
+/// residuals, the best first. Only orders that the motion covers and its samples resolve are tried.
 pub(crate) fn orders(problem: &EstimationProblem<'_>, fit: &Fit) -> BTreeMap<String, Vec<u32>> {
     let coordinates = &fit.model.specification().coordinates;
     let angles = coordinates.iter().enumerate();

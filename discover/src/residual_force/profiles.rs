@@ -1,5 +1,5 @@
-//! What the residual force in one equation is like: its profiles over rate, position, time, shaft
-//! order, frequency and amplitude, with one standard deviation each.
+//! Profiles of the residual force in one equation over rate, position, time, shaft order, frequency
+//! and amplitude, with standard deviations.
 
 use crate::ids::{EquationId, FamilyId};
 use nalgebra::DVector;
@@ -12,15 +12,18 @@ use crate::residual_force::regression::{Each, Sizes, WindowSize};
 use crate::residual_force::types::{Profile, ResidualForce};
 use crate::thresholds;
 
-/// What profiles are read from.
+/// Data from which profiles are computed.
 pub(crate) struct Blocks<'b> {
+    /// Linearised fit.
     pub of: Linearisation<'b>,
+    /// Operating points of each window, sample and equation.
     pub operating_points: &'b [Vec<Vec<OperatingPoint>>],
+    /// Equation of the profiles.
     pub equation: EquationId,
 }
 
 impl Blocks<'_> {
-    /// All profiles of one equation.
+    /// Computes all profiles of the equation.
     pub fn profiles(&self, regressed: &FamilyRegression, range: &Range) -> ResidualForce {
         let [by_rate, by_position] = [0, 1].map(FamilyId::new);
         let decrease = [by_rate, by_position].map(|family| regressed.shared(family).decrease);

@@ -1,5 +1,5 @@
-//! The equations compared: in which a missing force explains most, whether that stands out, and
-//! the simple functions that it consists of.
+//! Comparison of the equations: the equation in which a force explains most, its significance, and
+//! the simple functions that describe the force.
 
 use crate::ids::{EquationId, FamilyId};
 use nalgebra::{DMatrix, DVector};
@@ -10,19 +10,23 @@ use crate::residual_force::family_regression::{FamilyRegression, noise};
 use crate::residual_force::types::{Kind, RankedEquation, Simple, SimplePart};
 use crate::thresholds;
 
-/// How the equations compare.
+/// Comparison of the equations.
 pub(crate) struct Ranking {
     equations: Vec<RankedEquation>,
+    /// Best equation.
     pub best: EquationId,
-    /// The family that the best one's force is of.
+    /// Best family of the best equation.
     pub family: FamilyId,
+    /// Whether that family is a function of rate or position.
     pub is_state: bool,
+    /// Explained fraction of the squares.
     pub part: f64,
+    /// Whether the force is significant.
     pub stands_out: bool,
 }
 
 impl Ranking {
-    /// Three families for each of some equations: over rate, position and time.
+    /// Compares three families for each equation: over rate, position and time.
     pub fn of(
         regressed: &FamilyRegression,
         all: &[EquationId],
@@ -77,7 +81,7 @@ impl Ranking {
         })
     }
 
-    /// The equations, the best first.
+    /// Returns the equations, the best first.
     pub fn ranking(&self) -> Vec<RankedEquation> {
         let mut ranking = self.equations.clone();
         let order = |of: &RankedEquation| {
@@ -92,8 +96,8 @@ impl Ranking {
     }
 }
 
-/// The simple functions, one or two, that a force over rate or position consists of nearly; nothing
-/// if it takes more.
+/// Returns the one or two simple functions that nearly describe a force over rate or position;
+/// empty if more are needed.
 pub(crate) fn simple(
     regressed: &FamilyRegression,
     family: FamilyId,

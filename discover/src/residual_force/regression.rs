@@ -1,7 +1,5 @@
-//! Residuals as a sum of unknown forces: how much of each of some shapes explains them best, once
-//! initial states and nuisances do what they can. Linear least squares, on products of columns
-//! in which each window's initial state is eliminated. Which shapes, and what they tell, is
-//! decided elsewhere.
+//! Regression of the residuals on unknown forces, with free initial states and nuisances. Linear
+//! least squares on products of columns from which the initial state of each window is eliminated.
 
 use crate::ids::BasisFunctionId;
 use crate::model::unknowns::NormalPrior;
@@ -16,15 +14,16 @@ use crate::thresholds;
 /// squares.
 const RIDGES: [f64; 3] = [thresholds::RIDGE, 1e-8, 1e-5];
 
-/// Products of columns of shapes with each other and with the residual.
+/// Products of force columns with each other and with the residual.
 pub struct Regression {
     /// Products of the shapes' columns, nuisances taken out.
     gram: DMatrix<f64>,
     /// Their products with the residual, negative.
     right: DVector<f64>,
-    /// The sum of squares that initial states and nuisances leave, in standard deviations.
+    /// Sum of squares after elimination of initial states and nuisances, in squared standard
+    /// deviations.
     pub squares: f64,
-    /// How many numbers there are.
+    /// Number of measured numbers.
     pub numbers: f64,
     /// The nuisances' products: with themselves, factored, and with columns and residual.
     nuisances: Option<(Cholesky<f64, Dyn>, DMatrix<f64>)>,
@@ -34,37 +33,37 @@ pub struct Regression {
     windows: Vec<DMatrix<f64>>,
 }
 
-/// Sizes of shapes.
+/// Coefficients of basis functions.
 #[derive(Clone, Debug)]
 pub struct Sizes {
-    /// One for each.
+    /// Values.
     pub values: DVector<f64>,
-    /// What one squared standard deviation of each, and their products, are times that of the
-    /// remaining residual.
+    /// Covariance, for a residual of unit variance.
     pub covariance: DMatrix<f64>,
-    /// How much they lower the sum of squares.
+    /// Decrease of the sum of squares.
     pub decrease: f64,
 }
 
-/// Sizes that differ from window to window.
+/// Coefficients that differ between windows.
 pub struct Each {
-    /// Those of each window; none where it has no motion.
+    /// Coefficients of each window; `None` without a motion.
     pub windows: Vec<Option<Sizes>>,
-    /// The part of the squares that they explain, beyond what as many numbers do by chance.
+    /// Explained fraction of the squares, less the fraction expected by chance.
     pub part: f64,
 }
 
-/// A size in one window.
+/// A coefficient in one window.
 #[derive(Clone, Copy, Debug)]
 pub struct WindowSize {
-    /// The size.
+    /// Value.
     pub value: f64,
-    /// What its squared standard deviation is times that of the residual.
+    /// Variance, for a residual of unit variance.
     pub variance: f64,
 }
 
 impl Regression {
-    /// Takes columns for each window, as many for each; none if no window has any.
+    /// Creates the regression from the columns of each window, whose number is equal; `None` if no
+    /// window has columns.
     pub fn new(at: &LinearisedFit, fit: &Fit, columns: &[Option<DMatrix<f64>>]) -> Option<Self> {
         let count = columns.iter().flatten().map(DMatrix::ncols).next()?;
         let theta = &at.estimate.theta;
@@ -124,8 +123,8 @@ impl Regression {
         })
     }
 
-    /// Sizes of some sums of columns, `of` with a row per column and one column per sum, the same
-    /// for all windows.
+    /// Fits linear combinations of columns, equal in all windows. `of`: a row per column and a
+    /// column per combination.
     pub fn sums(&self, places: std::ops::Range<usize>, of: &DMatrix<f64>) -> Sizes {
         let count = places.len();
         let gram = self.gram.view((places.start, places.start), (count, count));
@@ -137,7 +136,7 @@ impl Regression {
         )
     }
 
-    /// Sizes of basis functions, the same for all windows.
+    /// Fits basis functions with equal coefficients in all windows.
     pub fn shared(&self, functions: &[BasisFunctionId]) -> Sizes {
         let count = functions.len();
         let gram = DMatrix::from_fn(count, count, |r, c| {
@@ -147,8 +146,8 @@ impl Regression {
         sizes(&gram, &right, 0.0)
     }
 
-    /// Sizes that differ from window to window, nuisances held; of one usual size, so that what a
-    /// window does not show stays small. `noise`: the mean square of what noise leaves.
+    /// Fits coefficients that differ between windows, with fixed nuisances and a common variance,
+    /// so that unobservable coefficients remain small. `noise`: mean square of the noise.
     pub fn each(&self, places: std::ops::Range<usize>, noise: f64) -> Each {
         let (first, count) = (places.start, places.len());
         let systems = self.windows.iter().map(|window| {
@@ -189,7 +188,7 @@ impl Regression {
         }
     }
 
-    /// The size of one sum of columns in each window, nuisances held.
+    /// Fits one linear combination of columns in each window, with fixed nuisances.
     pub fn in_windows(
         &self,
         places: std::ops::Range<usize>,
@@ -208,8 +207,9 @@ impl Regression {
         self.windows.iter().map(one).collect()
     }
 
-    /// For each window the residual that sizes of all columns leave, in standard deviations.
-    /// `shared`: whether they are the same for all windows, and nuisances give way to them.
+    /// Returns the residual of each window after subtraction of all columns, in standard
+    /// deviations. `shared`: whether coefficients are equal in all windows and nuisances are fitted
+    /// again.
     pub fn remaining(
         &self,
         at: &LinearisedFit,

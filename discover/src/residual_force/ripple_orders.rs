@@ -1,4 +1,4 @@
-//! The residual force over angles as a spectrum: the orders, per turn, of which there is most.
+//! Spectrum of the residual force over angles: its strongest orders, per turn.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -15,9 +15,9 @@ use crate::residual_force::orders_of_given_motion;
 use crate::thresholds;
 use eomgen_records::samples::typical_step;
 
-/// For each angle, by its expression, the orders whose waves explain most of what a fit leaves, the
-/// best first: those of which the motion goes through a period, and which its samples resolve.
-/// Nothing where neighbouring motions cannot be followed.
+/// Returns for each angle, by its expression, the orders whose waves explain most of the residual,
+/// the best first. Only orders that the motion covers and its samples resolve are tried. Empty if
+/// the responses cannot be computed.
 pub fn ripple_orders(problem: &EstimationProblem<'_>, fit: &Fit) -> BTreeMap<String, Vec<u32>> {
     match problem.dataset.gives_motion() {
         true => orders_of_given_motion::orders(problem, fit),

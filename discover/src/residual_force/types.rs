@@ -1,68 +1,68 @@
-//! What is told of a residual force.
+//! Results of the estimation of a residual force.
 
 use crate::ids::EquationId;
 use crate::residual_force::equations::Equation;
 
-/// Numbers with one standard deviation each, over something.
+/// Values with standard deviations over an argument.
 #[derive(Clone, Debug, Default)]
 pub struct Profile {
-    /// Over which, in SI, ascending.
+    /// Arguments in SI units, ascending.
     pub over: Vec<f64>,
-    /// The force there, N or N m.
+    /// Force, N or N m.
     pub values: Vec<f64>,
-    /// One standard deviation.
+    /// Standard deviation.
     pub sd: Vec<f64>,
-    /// The part of the squares that it explains; of several waves that which explains most.
+    /// Explained fraction of the squares; for several waves, of the best one.
     pub part: f64,
-    /// The position of the wave that does.
+    /// Index of the best wave.
     pub peak: Option<usize>,
 }
 
-/// How well a force in an equation does.
+/// Explained fractions of an equation.
 #[derive(Clone, Debug)]
 pub struct RankedEquation {
     /// The equation.
     pub equation: EquationId,
-    /// The part of the squares that a force over its rate explains, or over its position.
+    /// Fraction explained by a force over rate or over position.
     pub by_state: f64,
-    /// The same of a force over time that differs from window to window.
+    /// Fraction explained by a force over time that differs between windows.
     pub by_time: f64,
 }
 
-/// What a force is a function of, as far as can be told.
+/// Argument of a force.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Kind {
-    /// Its rate: so much of simple functions of it.
+    /// The rate, with simple functions of it.
     Rate(Vec<SimplePart>),
-    /// Its position.
+    /// The position, with simple functions of it.
     Position(Vec<SimplePart>),
     /// Neither.
     Time,
 }
 
-/// So much of a simple function, in SI.
+/// A simple function with its coefficient, SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SimplePart {
     /// The function.
     pub function: Simple,
-    /// How much of it.
+    /// Coefficient.
     pub value: f64,
-    /// One standard deviation.
+    /// Standard deviation.
     pub sd: f64,
 }
 
-/// Simple functions of a rate or a position.
+/// Simple function of a rate or a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Simple {
-    /// The same everywhere.
+    /// Constant.
     Constant,
-    /// The sign.
+    /// Sign.
     Sign,
-    /// In proportion.
+    /// Linear.
     Linear,
-    /// In proportion to the size.
+    /// Absolute value.
     Size,
-    /// With the square and the sign.
+    /// Square with the sign of the argument.
     Square,
 }
 
@@ -70,32 +70,32 @@ pub enum Simple {
 pub struct ResidualForce {
     /// All equations.
     pub equations: Vec<Equation>,
-    /// Those in which a force explains something, the best first.
+    /// Equations in which a force explains a part of the residual, the best first.
     pub ranking: Vec<RankedEquation>,
-    /// The best.
+    /// Best equation.
     pub best: EquationId,
-    /// The one whose profiles these are.
+    /// Equation of the profiles.
     pub equation: EquationId,
-    /// What the force in the best is a function of; none if nothing stands out.
+    /// Argument of the force in the best equation; `None` if no force is significant.
     pub kind: Option<Kind>,
-    /// How much of the squares it explains.
+    /// Explained fraction of the squares.
     pub part: f64,
-    /// Over the rate.
+    /// Profile over the rate.
     pub rate: Profile,
-    /// Over the position, or within a turn.
+    /// Profile over the position, or within a turn.
     pub position: Profile,
-    /// Over the time of the first record, s.
+    /// Profile over the time of the first record, s.
     pub time: Profile,
-    /// The size over the shaft order; none for what does not turn.
+    /// Amplitude over the shaft order; empty for an expression that is not an angle.
     pub order: Profile,
-    /// The size over the frequency, Hz.
+    /// Amplitude over the frequency, Hz.
     pub frequency: Profile,
-    /// What opposes or drives the rate, over the largest rate of each window.
+    /// Force along the rate over the largest rate of each window.
     pub amplitude: Profile,
 }
 
 impl ResidualForce {
-    /// The name of the equation whose profiles these are.
+    /// Returns the name of the equation of the profiles.
     pub fn profiled_equation(&self) -> &str {
         &self.equations[self.equation].name
     }

@@ -1,11 +1,11 @@
-//! The residual force in plain words: on which equation, what it is like, and how much of the
-//! squares it explains. No more is said than its numbers support.
+//! Description of the residual force: equation, form and explained fraction, within the accuracy of
+//! its numbers.
 
 use crate::residual_force::equations::Equation;
 use crate::residual_force::types::{Kind, Profile, ResidualForce, Simple, SimplePart};
 use crate::thresholds;
 
-/// One sentence or two on the residual force of the model as it is.
+/// Describes the residual force of the original model in one or two sentences.
 pub fn described(force: &ResidualForce) -> String {
     let Some(kind) = &force.kind else {
         return "No force on a single equation stands out.".to_owned();
@@ -32,7 +32,7 @@ pub fn described(force: &ResidualForce) -> String {
     text
 }
 
-/// What is said of the residual force once something was found.
+/// Describes the residual force of the extended model.
 pub fn described_after(force: &ResidualForce) -> String {
     match &force.kind {
         None => "Once what was found is in the model, no force stands out.".to_owned(),

@@ -1,48 +1,49 @@
-//! The decision: whether a fit with an effect more is better than one without by so much that
-//! the effect is accepted. Every limit stands in [`crate::thresholds`].
+//! Acceptance test: the required improvement of a fit by a further effect. All limits are in
+//! [`crate::thresholds`].
 
 use crate::fit::fitted::Fit;
 use crate::ids::{EffectId, UnknownId};
 use crate::search::rejection::Rejection;
 use crate::thresholds;
 
-/// The statistics of an effect.
+/// Test statistics of an effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TestStatistics {
-    /// The part by which the test records' gap falls.
+    /// Relative reduction of the gap of the test records.
     pub held_out: f64,
-    /// How much the test records' squares fall, in standard errors over blocks of time.
+    /// Reduction of the squares of the test records, in standard errors over blocks of time.
     pub held_out_errors: f64,
-    /// Half the fall of the training records' squares, whitened.
+    /// Half the reduction of the whitened squares of the training records.
     pub information: f64,
-    /// How many standard deviations the effect is large; of several the smallest.
+    /// Size of the effect in standard deviations; the smallest of several effects.
     pub t: f64,
-    /// What the effect does to the channel that shows it best, in standard deviations.
+    /// Influence of the effect on the channel that shows it best, in standard deviations of the
+    /// noise.
     pub size: f64,
-    /// The probability that noise alone lets the test records speak for it as much; none where that was
-    /// not computed.
+    /// P-value of the test records; `None` if it was not computed.
     pub p_value: Option<f64>,
 }
 
 /// An unknown of an effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EffectUnknown {
-    /// Which of the unknowns of the fit it is.
+    /// Index among the unknowns of the fit.
     pub unknown: UnknownId,
-    /// Which of the effects that are tested together it belongs to.
+    /// Index of its effect among the tested effects.
     pub effect: EffectId,
-    /// Its value where the effect is absent, SI.
+    /// Value without the effect, SI.
     pub base: f64,
     /// Whether it shapes the effect without scaling it.
     pub is_shape: bool,
-    /// One standard deviation of the prior that it gave up, SI.
+    /// Standard deviation of its removed prior, SI.
     pub prior: Option<f64>,
 }
 
-/// Tests a fit with effects whose unknowns these are.
+/// Tests a fit with additional effects, given by their unknowns.
 ///
 /// # Errors
-/// Why they are not accepted.
+///
+/// The reason why they are rejected.
 pub fn acceptance_test(
     before: &Fit,
     after: &Fit,
@@ -64,11 +65,12 @@ pub fn acceptance_test(
     Ok(statistics)
 }
 
-/// Tests whether the records are explained better, however uncertain the sizes are: something
-/// declared that does the same makes them so.
+/// Tests if additional effects explain the records better, even if their sizes are uncertain
+/// because a declared nuisance has the same response.
 ///
 /// # Errors
-/// Why they are not.
+///
+/// The reason why they do not.
 pub fn explains(
     before: &Fit,
     after: &Fit,
@@ -93,7 +95,7 @@ pub fn explains(
     Ok(statistics)
 }
 
-/// What speaks for effects whose unknowns these are.
+/// Computes the test statistics of additional effects, given by their unknowns.
 pub fn test_statistics(before: &Fit, after: &Fit, own: &[EffectUnknown]) -> TestStatistics {
     let (old, new) = (&before.test, &after.test);
     let falls: Vec<f64> = (old.blocks.iter().zip(&new.blocks))
@@ -133,7 +135,7 @@ fn least_significance(fit: &Fit, own: &[EffectUnknown]) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// The size of one of the effects that are tested together, in standard deviations.
+/// Returns the size of one tested effect in standard deviations.
 pub fn significance(fit: &Fit, own: &[EffectUnknown], effect: EffectId) -> f64 {
     let scaling = own
         .iter()

@@ -1,6 +1,6 @@
-//! Others in the place of a round's answer: an effect on one shaft of a gear looks like the same
-//! effect on the next, and which of them is fitted better may be chance of where it began. What may
-//! be meant instead is fitted once more from where the answer ended.
+//! Alternatives to the result of a round. Effects on different shafts of a gear have similar
+//! responses, and the order of their fits may depend on the start values. Similar effects are
+//! fitted again from the end of the selected fit.
 
 use std::collections::BTreeMap;
 
@@ -18,8 +18,8 @@ use crate::search::pool::Pool;
 use crate::search::screening::{Prediction, screening};
 use crate::thresholds;
 
-/// Fits what may stand in the place of a fitted hypothesis from where that ended, and takes over
-/// what leaves less than it did before.
+/// Fits the alternatives to a hypothesis from the end of its fit and keeps the results with lower
+/// residuals.
 pub fn test_alternatives(
     pool: &Pool<'_>,
     fitted_hypotheses: &mut Vec<FittedHypothesis>,

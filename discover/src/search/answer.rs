@@ -1,4 +1,4 @@
-//! What a round answers: of the hypotheses that were tested the one that is named.
+//! Result of a round: the named hypothesis.
 
 use crate::search::alternatives::test_alternatives;
 use crate::search::pool::Pool;
@@ -6,7 +6,7 @@ use crate::search::round::Round;
 use crate::search::selected::{Selected, best_of, selected};
 use crate::search::tested::TestedPool;
 
-/// What is named of all that was tested; none if nothing is accepted.
+/// Returns the named hypothesis of all tested ones; `None` if none is accepted.
 pub fn answer(round: &Round<'_>, mut tested: Vec<TestedPool>) -> Option<Selected> {
     let least = |tested: &TestedPool| {
         let accepted = tested

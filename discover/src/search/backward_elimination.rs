@@ -1,4 +1,4 @@
-//! What was accepted, one effect less: a later effect may do what an earlier one was taken for.
+//! Backward elimination: an effect may become unnecessary after a later one is accepted.
 
 use crate::catalogue::candidate::Candidate;
 use crate::error::DiscoverError;
@@ -10,8 +10,8 @@ use crate::model::problem::EstimationProblem;
 use crate::search::found::{Accepted, Found, Rejected};
 use crate::thresholds;
 
-/// Takes away effects without which the records are explained as well, the least needed first.
-/// `progress` is told which.
+/// Removes effects that are not needed, the least important first. `progress` receives a line for
+/// each.
 pub fn eliminate_backwards(
     problem: &EstimationProblem<'_>,
     found: &mut Found,
@@ -56,10 +56,11 @@ fn is_as_good(with: &Fit, without: &Fit) -> bool {
     !worse(with.train.rms, without.train.rms) && !worse(with.test.rms, without.test.rms)
 }
 
-/// The fit with all effects but one, started where the fit with it ended.
+/// Fits the model with all accepted effects but one, from the end of the previous fit.
 ///
 /// # Errors
-/// As for [`full::fit`].
+///
+/// As [`full::fit`].
 pub(crate) fn without(
     problem: &EstimationProblem<'_>,
     found: &Found,

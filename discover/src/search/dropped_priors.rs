@@ -1,4 +1,4 @@
-//! Declared parameters, inputs and sensors that may be off by more than their priors allow, as candidates.
+//! Candidates for errors of declared parameters, inputs and sensors beyond their priors.
 
 use crate::catalogue::candidate::{self, Candidate};
 use crate::catalogue::input_faults;
@@ -7,7 +7,7 @@ use crate::model::input_faults::{INPUT_DELAY, declared, delayed_input};
 use crate::model::problem::EstimationProblem;
 use crate::model::unknowns::{Unknown, What};
 
-/// Declared parameters, inputs and sensors that may be off by more than their priors allow.
+/// Returns the candidates that remove the prior of a declared parameter, input or sensor.
 pub fn dropped_prior(problem: &EstimationProblem<'_>, fit: &Fit) -> Vec<Candidate> {
     let unknowns = fit
         .unknowns

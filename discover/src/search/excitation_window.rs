@@ -1,4 +1,4 @@
-//! Which part of motions is used while candidates are screened.
+//! Parts of the motions used for screening.
 
 use eomgen_model_spec::edit::{self, Edit, SetParameter};
 use eomgen_model_spec::source::Source;
@@ -10,20 +10,20 @@ use crate::model::problem::EstimationProblem;
 use crate::model::specification_texts::SpecificationTexts;
 use crate::thresholds;
 
-/// Which part of motions is used while candidates are screened.
+/// Part of the motions used for screening.
 #[derive(Clone, Copy, PartialEq)]
 pub enum ExcitationWindow {
-    /// The beginnings of windows, where a motion is nearly linear in whatever changes it.
+    /// Beginnings of windows, in which the motion is nearly linear in the unknowns.
     Beginnings,
-    /// Whole windows, which show more of what is slow.
+    /// Whole windows, which show slow effects better.
     Whole,
-    /// Whole windows of the model with all play closed: linear in what moves teeth by much more
-    /// than their play, and blind for what is smaller.
+    /// Whole windows of the model without play: linear for motions of the teeth much larger than
+    /// their play.
     BacklashRemoved,
 }
 
 impl ExcitationWindow {
-    /// The part of each window that is used.
+    /// Returns the used fraction of each window.
     pub fn part(self) -> f64 {
         match self {
             Self::Beginnings => thresholds::FIRST_PART,
@@ -32,7 +32,7 @@ impl ExcitationWindow {
     }
 }
 
-/// The model with all play closed, fitted; none if there is no play.
+/// Fits the model without play; `None` if it has no play.
 pub fn without_play(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<Fit> {
     let edits: Vec<Edit> = plays(fit.model.specification())
         .into_iter()

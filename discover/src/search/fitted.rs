@@ -1,4 +1,4 @@
-//! Hypotheses fitted, side by side: to the beginnings of windows, and in full.
+//! Parallel fits of hypotheses: preliminary fits to the beginnings of windows, and full fits.
 
 use std::fmt;
 
@@ -14,24 +14,24 @@ use crate::search::pool::Pool;
 use crate::search::rejection::Rejection;
 use crate::search::split_sample::SplitSample;
 
-/// A hypothesis fitted in full.
+/// A hypothesis with its full fit.
 pub struct FittedHypothesis {
-    /// The responses of its candidates.
+    /// Responses of its candidates.
     pub responses: Vec<ResponseId>,
-    /// Their unknowns.
+    /// Unknowns of its candidates.
     pub own: Vec<EffectUnknown>,
-    /// The fit with them.
+    /// Fit with the candidates.
     pub fit: Fit,
-    /// Whether they are accepted.
+    /// Result of the acceptance test.
     pub verdict: Result<TestStatistics, Rejection>,
-    /// Whether they explain the records, though their sizes may be uncertain: another name of what
-    /// is accepted.
+    /// Whether the candidates explain the records, even if their sizes are uncertain. They are then
+    /// equivalent to an accepted effect.
     pub explains: bool,
-    /// The probability that noise alone lets the test records speak for them as much.
+    /// P-value of the test records.
     pub p_value: Option<f64>,
 }
 
-/// Preliminary fits of hypotheses, side by side; the best first.
+/// Fits hypotheses to the beginnings of windows in parallel; the best first.
 pub fn preliminary_fits(
     pool: &Pool<'_>,
     hypotheses: Vec<Hypothesis>,
@@ -58,7 +58,7 @@ pub fn preliminary_fits(
     found
 }
 
-/// Preliminary fits fitted in full, side by side.
+/// Continues preliminary fits as full fits in parallel.
 pub fn full_fits(
     pool: &Pool<'_>,
     preliminaries: Vec<(Hypothesis, PreliminaryFit)>,

@@ -1,4 +1,4 @@
-//! What the search found, and what it rejected.
+//! Result of the search: accepted and rejected effects.
 
 use crate::catalogue::candidate::Candidate;
 use crate::fit::fitted::Fit;
@@ -6,62 +6,61 @@ use crate::ids::UnknownId;
 use crate::search::acceptance::TestStatistics;
 use crate::search::unconfirmed::Unconfirmed;
 
-/// An effect that was accepted.
+/// An accepted effect.
 #[derive(Clone, Debug)]
 pub struct Accepted {
-    /// The effect at its place.
+    /// The effect at its site.
     pub candidate: Candidate,
-    /// Which of the unknowns of the last fit are its own.
+    /// Its unknowns in the last fit.
     pub unknowns: Vec<UnknownId>,
-    /// Those that were indistinguishable from it.
+    /// Candidates that are indistinguishable from it.
     pub equivalent: Vec<Candidate>,
-    /// What spoke for it when it was added.
+    /// Test statistics when it was added.
     pub statistics: TestStatistics,
-    /// The gap on the test records.
+    /// Gap of the test records before and after.
     pub test_gap: TestGap,
 }
 
-/// The root mean square of the test records' residuals, in standard deviations.
+/// RMS residual of the test records, in standard deviations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TestGap {
-    /// Before an effect was added.
+    /// Without the effect.
     pub before: f64,
-    /// With it.
+    /// With the effect.
     pub after: f64,
 }
 
-/// A candidate that was not accepted, and why.
+/// A rejected candidate.
 #[derive(Clone, Debug)]
 pub struct Rejected {
-    /// The effect at its place.
+    /// The effect at its site.
     pub candidate: Candidate,
-    /// Why.
+    /// Reason of the rejection.
     pub reason: String,
-    /// Whether the record could not have shown it.
+    /// Whether the records cannot show the effect.
     pub not_testable: bool,
-    /// The probability that noise alone lets the test records speak for it as much; none where it was not
-    /// fitted.
+    /// P-value of the test records; `None` if the candidate was not fitted.
     pub p_value: Option<f64>,
 }
 
-/// What the search found.
+/// Result of the search.
 pub struct Found {
-    /// The model with its declared unknowns alone.
+    /// Fit of the model with its declared unknowns only.
     pub null: Fit,
-    /// The model with everything that was accepted; none if that is nothing.
+    /// Fit of the model with all accepted effects; `None` without accepted effects.
     pub last: Option<Fit>,
-    /// What was accepted, in the order in which it was.
+    /// Accepted effects in order of acceptance.
     pub accepted: Vec<Accepted>,
-    /// What was not.
+    /// Rejected candidates.
     pub rejected: Vec<Rejected>,
-    /// What explains the training records further, where held-out ones do not confirm it.
+    /// Hypothesis that explains the training records but not the held-out records.
     pub unconfirmed: Option<Unconfirmed>,
-    /// What is known of a round that the time did not suffice for, in a sentence.
+    /// State of a round that reached the time limit, as a sentence.
     pub unfinished: Option<String>,
 }
 
 impl Found {
-    /// The fit with everything that was accepted.
+    /// Returns the fit with all accepted effects.
     pub fn best(&self) -> &Fit {
         self.last.as_ref().unwrap_or(&self.null)
     }

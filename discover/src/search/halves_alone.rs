@@ -1,6 +1,6 @@
-//! Halves of pairs alone: where a pair explains the records and one of its effects comes to nothing
-//! there, the other may do without it. Alone it may have ended elsewhere, so that it is fitted from where
-//! the pair ended.
+//! Single effects of pairs: if a pair explains the records and one of its effects is negligible
+//! there, the other is fitted on its own from the end of the fit of the pair, because its earlier
+//! fit may have ended in another minimum.
 
 use crate::fit::preliminary::PreliminaryFit;
 use crate::ids::{EffectId, ResponseId};
@@ -10,8 +10,8 @@ use crate::search::hypothesis::{Hypothesis, half_alone};
 use crate::search::pool::Pool;
 use crate::thresholds;
 
-/// What is left of pairs without the half that comes to nothing, each effect once; nothing of pairs that
-/// leave much, or need both.
+/// Fits the remaining effect of pairs with a negligible one, each effect once. Pairs with large
+/// residuals, or that need both effects, are skipped.
 pub fn halves_alone(pool: &Pool<'_>, pairs: &[FittedHypothesis]) -> Vec<FittedHypothesis> {
     let mut known: Vec<ResponseId> = Vec::new();
     let mut preliminaries = Vec::new();

@@ -1,5 +1,5 @@
-//! Hypotheses: candidates to be fitted together, their unknowns, the specification with them, and
-//! how a fit begins.
+//! Hypotheses: candidates that are fitted together, their unknowns, the specification with them,
+//! and the start of a fit.
 
 use crate::error::DiscoverError;
 use crate::fit::fitted::Fit;
@@ -12,14 +12,14 @@ use crate::search::acceptance::EffectUnknown;
 use crate::search::pool::Pool;
 use crate::thresholds;
 
-/// Candidates to be fitted together, and a parameter whose term they replace.
+/// Candidates that are fitted together, and a parameter whose term they replace.
 #[derive(Clone)]
 pub struct Hypothesis {
-    /// The candidates' responses.
+    /// Responses of the candidates.
     pub responses: Vec<ResponseId>,
-    /// The parameter.
+    /// Parameter whose term is replaced.
     pub deleted: Option<UnknownId>,
-    /// The candidates' promised sizes, in order.
+    /// Predicted sizes of the candidates, in order.
     pub sizes: Vec<f64>,
 }
 
@@ -29,7 +29,7 @@ struct Extended {
     theta: Vec<f64>,
 }
 
-/// The names of a hypothesis' candidates, and of what they replace.
+/// Returns the names of the candidates and of the replaced term.
 pub fn label(pool: &Pool<'_>, hypothesis: &Hypothesis) -> String {
     let names = pool.label(&hypothesis.responses);
     let unknowns = &pool.context.fit.unknowns;
@@ -42,7 +42,7 @@ pub fn label(pool: &Pool<'_>, hypothesis: &Hypothesis) -> String {
     }
 }
 
-/// The unknowns of a hypothesis' effects in a fit with them.
+/// Returns the unknowns of the effects in a fit with the hypothesis.
 pub fn own_unknowns(pool: &Pool<'_>, hypothesis: &Hypothesis) -> Vec<EffectUnknown> {
     let mut next = pool.context.fit.unknowns.len();
     let mut own = Vec::new();
@@ -74,7 +74,7 @@ pub fn own_unknowns(pool: &Pool<'_>, hypothesis: &Hypothesis) -> Vec<EffectUnkno
     own
 }
 
-/// A preliminary fit with a hypothesis' candidates.
+/// Runs a preliminary fit with the candidates.
 pub fn preliminary(
     pool: &Pool<'_>,
     hypothesis: &Hypothesis,
@@ -106,7 +106,8 @@ pub fn preliminary(
     Ok(preliminary)
 }
 
-/// A preliminary fit with a hypothesis' candidates, shapes so many times their usual sizes.
+/// Runs a preliminary fit with the candidates and with shapes at this multiple of their typical
+/// sizes.
 pub fn with_shape(
     pool: &Pool<'_>,
     hypothesis: &Hypothesis,
@@ -126,8 +127,8 @@ pub fn with_shape(
     preliminary::preliminary(pool.context.problem, texts, unknowns, &[theta])
 }
 
-/// A hypothesis of one candidate, started from the motions of a fit with another. `shape_ratio`: how
-/// many times its usual size a shape is.
+/// Starts a hypothesis of one candidate from the motions of a fit with another. `shape_ratio`:
+/// multiple of the typical size of a shape.
 pub fn warm_started(
     pool: &Pool<'_>,
     hypothesis: &Hypothesis,
@@ -150,7 +151,8 @@ pub fn warm_started(
     preliminary::expected(pool.context.problem, texts, unknowns, &[theta], warm_start)
 }
 
-/// A hypothesis of one candidate, started where a pair that has it ended; `own`: its unknowns there, SI.
+/// Starts a hypothesis of one candidate from the end of the fit of a pair. `own`: its unknowns in
+/// that fit, SI.
 pub fn half_alone(
     pool: &Pool<'_>,
     hypothesis: &Hypothesis,

@@ -1,12 +1,12 @@
-//! The search: screen, fit the most promising in full, accept or reject, and again, until the
-//! floor is reached or nothing more is accepted.
+//! Search for missing effects: screening, full fits of the best candidates, acceptance or
+//! rejection, repeated until the noise floor is reached or no effect is accepted.
 //!
-//! The files, in the order in which they read each other: [`response`] by
-//! [`mod@variational_response`] or [`mod@perturbed_response`] ([`mod@responses`] chooses),
-//! [`screening`], [`acceptance`], [`split_sample`]; `motion_of_fit`, [`context`], [`pool`], [`hypothesis`], [`fitted`];
-//! `shape_restarts`, `singles`, `halves_alone`, `pairs`; [`tested`], [`parameter_offsets`], [`selected`],
-//! `alternatives`; `excitation_window`, `dropped_priors`, `round`, `answer`, `unfinished`, [`mod@unconfirmed`];
-//! [`found`], `rejected`, [`backward_elimination`].
+//! The files in the order of their dependence: [`response`] by [`mod@variational_response`] or
+//! [`mod@perturbed_response`] (selected in [`mod@responses`]), [`screening`], [`acceptance`],
+//! [`split_sample`]; `motion_of_fit`, [`context`], [`pool`], [`hypothesis`], [`fitted`];
+//! `shape_restarts`, `singles`, `halves_alone`, `pairs`; [`tested`], [`parameter_offsets`],
+//! [`selected`], `alternatives`; `excitation_window`, `dropped_priors`, `round`, `answer`,
+//! `unfinished`, [`mod@unconfirmed`]; [`found`], `rejected`, [`backward_elimination`].
 
 pub mod acceptance;
 mod alternatives;
@@ -56,11 +56,12 @@ use crate::search::unconfirmed::unconfirmed;
 use crate::search::unfinished::unfinished;
 use crate::thresholds;
 
-/// Searches for what a model lacks. `floor`: the gap that a right model would leave, in standard
-/// deviations. `progress` is told what is being done.
+/// Searches for the missing effects of a model. `floor`: noise floor, in standard deviations.
+/// `progress`: receiver of progress lines.
 ///
 /// # Errors
-/// Why no motion can be followed; [`DiscoverError::Stopped`].
+///
+/// A motion that cannot be simulated; [`DiscoverError::Stopped`].
 pub fn search(
     problem: &EstimationProblem<'_>,
     null: Fit,

@@ -1,4 +1,4 @@
-//! How the places of a model move at a fit.
+//! Usual motion at the sites of a model in a fit.
 
 use std::collections::BTreeSet;
 
@@ -12,7 +12,7 @@ use crate::fit::travels::travels;
 use crate::model::problem::EstimationProblem;
 use crate::model::usual_rates::usual_rates;
 
-/// The usual rates and the travels of a model's places; of orders nothing.
+/// Returns the usual rates and the ranges at the sites of a model, without orders.
 pub fn motion_of(problem: &EstimationProblem<'_>, fit: &Fit, sites: &[Site]) -> UsualMotion {
     let moving = sites
         .iter()

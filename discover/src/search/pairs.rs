@@ -1,5 +1,5 @@
-//! Pairs of candidates: those that promise clearly more than one alone, and others in the place of
-//! one of a pair's two effects.
+//! Pairs of candidates: pairs with a much better prediction than single candidates, and
+//! replacements of one effect of a pair.
 
 use crate::ids::{FittedId, ResponseId, UnknownId};
 use crate::model::unknowns::What;
@@ -12,7 +12,8 @@ use crate::search::rejection::Rejection;
 use crate::search::screening::{Prediction, Screening};
 use crate::thresholds;
 
-/// Pairs, and pairs in place of a term of the model. `singles`: what was fitted alone.
+/// Fits pairs of candidates, and pairs that replace a term of the model. `singles`: fitted single
+/// candidates.
 pub fn pairs(pool: &Pool<'_>, singles: &[FittedHypothesis]) -> Vec<FittedHypothesis> {
     // A sensor that runs to the end of what is admitted stands in for something else.
     let is_at_limit = |fitted: &&FittedHypothesis| {
@@ -121,9 +122,9 @@ fn best_pairs(pool: &Pool<'_>, ranking: &[ResponseId], at_limit: &[ResponseId]) 
     hypotheses
 }
 
-/// Pairs that share one half with a pair and whose other half looks like its other, or, where the pair
-/// leaves more than a right model, is the same effect elsewhere, if they were not fitted yet; the
-/// most similar first, at most [`thresholds::FITS_AT_ONCE`].
+/// Fits pairs that share one effect with a pair and whose other effect is similar to its other. If
+/// the pair has a larger gap than a correct model, the same effect at other sites is fitted too.
+/// The most similar are fitted first, at most [`thresholds::FITS_AT_ONCE`] and only new ones.
 pub fn other_halves(
     pool: &Pool<'_>,
     fitted_hypotheses: &[FittedHypothesis],

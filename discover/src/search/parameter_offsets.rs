@@ -1,6 +1,6 @@
-//! Parameters of the model that nobody called uncertain: candidates for being off where nothing
-//! else is accepted, and beside what is accepted where they look like it; and waves over an angle that
-//! look like it.
+//! Candidates for shifted parameters without a declared uncertainty. They are tried if no other
+//! effect is accepted, and compared with accepted effects that have a similar response, as are
+//! waves over an angle.
 
 use eomgen_compiled_model::TypicalSizes;
 
@@ -19,16 +19,16 @@ use crate::search::singles::similar;
 use crate::search::tested::TestedPool;
 use crate::thresholds;
 
-/// Parameters and waves that look like what was named.
+/// Parameters and waves with a response similar to that of the named effect.
 pub struct SimilarOffsets {
-    /// What was screened, what was named among it, and the fits of those that look like it.
+    /// Screened candidates, the named effect among them, and the fits of the similar candidates.
     pub tested: TestedPool,
-    /// The response of what was named.
+    /// Response of the named effect.
     pub selected: ResponseId,
 }
 
-/// The parameters of a model that no unknown moves, how its inputs may act otherwise than recorded, and
-/// what does the same as a shift of a stiffness.
+/// Returns the candidates for shifted parameters that are not unknowns, for errors of inputs, and
+/// for effects equivalent to a shifted stiffness.
 pub fn offsets(context: Context<'_>) -> Vec<Candidate> {
     let (fit, path) = (context.fit, &context.problem.path);
     let is_known = |name: &str| {
@@ -57,10 +57,11 @@ pub fn offsets(context: Context<'_>) -> Vec<Candidate> {
         .collect()
 }
 
-/// Parameters that look like what was named, and waves over its angle that do, fitted in its place: those that
-/// explain the records; and where what was named is such a parameter itself, sensors and declared parameters
-/// that look like it: a gain and a number of the model may be two names of one thing. None where nothing
-/// looks like it. The context's fit is what was fitted before anything was named.
+/// Fits parameters and waves over the angle of the named effect that have a similar response in its
+/// place and keeps those that explain the records. If the named effect is a shifted parameter,
+/// similar sensors and declared parameters are fitted too: a sensor gain and a model parameter may
+/// be equivalent. `None` if no candidate is similar. The fit of the context is the one before the
+/// effect was named.
 pub fn similar_offsets(context: Context<'_>, selected: &Candidate) -> Option<SimilarOffsets> {
     let offsets = offsets(context);
     let (offsets, called) = match offsets.iter().any(|offset| offset.is_same_as(selected)) {

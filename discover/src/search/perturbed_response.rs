@@ -1,5 +1,5 @@
-//! Responses of candidates by motions of their own models, each at a size that moves the
-//! outputs by a part of the misfit: whatever a candidate changes needs no code of its own then.
+//! Responses of candidates by simulation of their own models, each at a size that changes the
+//! outputs by a fraction of the misfit. No candidate needs code of its own.
 
 use crate::ids::WindowId;
 use nalgebra::{DMatrix, DVector};
@@ -19,8 +19,8 @@ use crate::model::unknowns::Unknown;
 use crate::search::response::CandidateResponse;
 use crate::thresholds;
 
-/// The responses of all candidates. Those of one effect at one place that differ in the order
-/// alone are of one size: it is searched for once.
+/// Computes the responses of all candidates. Candidates of one effect and site that differ only in
+/// the order share one size search.
 pub fn perturbed_responses(
     at: &LinearisedFit,
     problem: &EstimationProblem<'_>,

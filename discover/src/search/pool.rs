@@ -1,4 +1,4 @@
-//! Candidates with what they promise: the pool from which hypotheses are made.
+//! Pool of screened candidates from which hypotheses are formed.
 
 use crate::catalogue::candidate::Candidate;
 use crate::ids::ResponseId;
@@ -6,25 +6,25 @@ use crate::search::context::Context;
 use crate::search::screening::Screening;
 use crate::thresholds;
 
-/// Candidates to be fitted.
+/// Pool of screened candidates.
 #[derive(Clone, Copy)]
 pub struct Pool<'r> {
-    /// What it is about.
+    /// Context of the round.
     pub context: Context<'r>,
     /// The candidates.
     pub candidates: &'r [Candidate],
-    /// What they promise.
+    /// Screening results.
     pub screening: &'r Screening,
-    /// Whether that was seen over whole windows.
+    /// Whether the screening used whole windows.
     pub is_whole: bool,
-    /// The most candidates that get a preliminary fit.
+    /// Maximum number of preliminary fits.
     pub most: usize,
-    /// Parts of the promised sizes among which they begin with the best.
+    /// Fractions of the predicted sizes from which fits begin; the best is used.
     pub parts: &'r [f64],
 }
 
 impl<'r> Pool<'r> {
-    /// Candidates to be fitted, started as most are.
+    /// Creates a pool with the default start values.
     pub fn new(
         context: Context<'r>,
         candidates: &'r [Candidate],
@@ -41,7 +41,7 @@ impl<'r> Pool<'r> {
         }
     }
 
-    /// Candidates that promise enough, the best first.
+    /// Returns the candidates with a sufficient prediction, the best first.
     pub fn ranking(&self) -> Vec<ResponseId> {
         let screening = self.screening;
         let alone = screening.predicted(&[]).cost;
@@ -66,19 +66,19 @@ impl<'r> Pool<'r> {
         ranking
     }
 
-    /// The candidate of a response.
+    /// Returns the candidate of a response.
     pub fn candidate(&self, response: ResponseId) -> &Candidate {
         &self.candidates[self.screening.responses[response].candidate]
     }
 
-    /// The names of the candidates of some responses.
+    /// Returns the names of the candidates of these responses.
     pub fn label(&self, responses: &[ResponseId]) -> String {
         let labels = responses.iter().map(|r| self.candidate(*r).label());
         labels.collect::<Vec<_>>().join(" and ")
     }
 
-    /// Whether two candidates give a parameter the same name: one effect at two places. Of these
-    /// the next round may add the other.
+    /// Returns true if two candidates give a parameter the same name: one effect at two sites. The
+    /// next round may add the other.
     pub fn share_a_name(&self, a: ResponseId, b: ResponseId) -> bool {
         let (a, b) = (self.candidate(a), self.candidate(b));
         let has = |name: &str| b.parameters.iter().any(|other| other.name == name);

@@ -1,4 +1,4 @@
-//! What a round did not take, each with what failed and its figure.
+//! Rejected candidates of a round, with reason and figure.
 
 use crate::catalogue::candidate::Candidate;
 use crate::ids::ResponseId;
@@ -16,8 +16,8 @@ struct Reason {
     p_value: Option<f64>,
 }
 
-/// Notes what a round did not take, in the place of what an earlier round said of it. Within a round
-/// what came of a fit stays.
+/// Notes the rejected candidates of a round, which replace their entries from earlier rounds.
+/// Within a round, a result of a fit is kept.
 pub fn note_rejected(rejected: &mut Vec<Rejected>, round: &[TestedPool]) {
     let mut fitted: Vec<String> = Vec::new();
     for tested in round {

@@ -1,47 +1,47 @@
-//! Why an effect is not accepted.
+//! Reasons why an effect is rejected.
 
 use std::fmt;
 
 use crate::thresholds;
 
-/// What an effect lacks.
+/// Failed criterion of an effect.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Rejection {
-    /// A declared unknown that runs to the end of what is admitted.
+    /// A declared unknown at the end of its admissible range.
     AtLimit(String),
-    /// A parameter that a bound holds, with which the effect vanishes.
+    /// A parameter at a bound at which the effect vanishes.
     WrongSign(String),
-    /// An unknown that may be within its prior still.
+    /// An unknown that may be within its prior.
     WithinPrior {
-        /// Which.
+        /// Name of the unknown.
         name: String,
-        /// How many standard deviations of its prior it is off.
+        /// Distance from the prior mean, in standard deviations of the prior.
         off: f64,
-        /// One standard deviation of that.
+        /// Standard deviation of that distance.
         sd: f64,
     },
-    /// The part by which the gap of the test records falls is too small.
+    /// The relative reduction of the test gap is too small.
     HeldOut(f64),
-    /// The number of standard errors by which it falls is too small.
+    /// The reduction in standard errors is too small.
     StandardErrors(f64),
-    /// The information in the training records is less than this, which is asked for.
+    /// The information gain in the training records is too small.
     Information {
-        /// What there is.
+        /// Information gain.
         found: f64,
-        /// What is asked for.
+        /// Required gain.
         asked: f64,
     },
-    /// Its size in standard deviations is too small.
+    /// The size in standard deviations is too small.
     Significance(f64),
-    /// What it does is too small a part of the noise.
+    /// The influence relative to the noise is too small.
     Size(f64),
-    /// Beside another effect it leaves much.
+    /// A large residual remains next to another effect.
     LeavesMuch,
-    /// The parts of the gap that it closes on training and on test records are too small.
+    /// The closed fractions of the gap are too small.
     Closes {
-        /// On the training records.
+        /// Fraction closed on the training records.
         train: f64,
-        /// On the test records.
+        /// Fraction closed on the test records.
         test: f64,
     },
 }

@@ -1,15 +1,15 @@
-//! A candidate's response: what it does to the windows' outputs, to first order.
+//! Response of a candidate: its influence on the outputs of the windows, to first order.
 
 use nalgebra::DMatrix;
 
 use crate::catalogue::candidate_unknown::CandidateUnknown;
 
-/// What a candidate does.
+/// Response of a candidate.
 #[derive(Clone, Debug)]
 pub struct CandidateResponse {
-    /// Its parameters.
+    /// Parameters of the candidate.
     pub candidate_unknowns: Vec<CandidateUnknown>,
-    /// For each window a column per parameter that scales it, in standard deviations of the noise
-    /// per SI unit.
+    /// For each window one column per scaling parameter, in standard deviations of the noise per SI
+    /// unit.
     pub blocks: Vec<DMatrix<f64>>,
 }

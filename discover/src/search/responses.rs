@@ -1,6 +1,5 @@
-//! What candidates do to the windows' outputs, to first order: by neighbouring motions that they
-//! drive, where the fitted model is run by the exponential integrator and the candidate adds no
-//! state; otherwise by motions of the candidate's own model.
+//! Responses of candidates to first order: by tangent vectors if the exponential integrator is used
+//! and the candidate adds no state, otherwise by simulation of the candidate's own model.
 
 use crate::catalogue::candidate::Candidate;
 use crate::error::DiscoverError;
@@ -12,7 +11,7 @@ use crate::search::perturbed_response::perturbed_responses;
 use crate::search::response::CandidateResponse;
 use crate::search::variational_response::variational_responses;
 
-/// The responses of all candidates.
+/// Computes the responses of all candidates.
 pub fn responses(
     at: &LinearisedFit,
     problem: &EstimationProblem<'_>,

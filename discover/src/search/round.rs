@@ -1,6 +1,6 @@
-//! One round of the search: motions in one excitation window after the other until what
-//! is accepted leaves little, pairs if that leaves much, and parameters that nobody called
-//! uncertain.
+//! One round of the search: one excitation window after the other until the accepted effects leave
+//! a small residual, pairs if the residual is large, and shifted parameters without a declared
+//! uncertainty.
 
 use crate::catalogue::candidate::{Candidate, candidates};
 use crate::catalogue::effect::Effect;
@@ -22,16 +22,16 @@ use crate::search::singles::singles;
 use crate::search::tested::TestedPool;
 use crate::thresholds;
 
-/// What a round works with.
+/// Context of a round.
 pub struct Round<'l> {
-    /// What the round is about.
+    /// Context of the round.
     pub context: Context<'l>,
-    /// Whether nothing was found yet.
+    /// Whether no effect was accepted yet.
     pub is_first: bool,
 }
 
 impl Round<'_> {
-    /// All that was tested.
+    /// Tests candidates and returns all tested pools.
     pub fn round(&self) -> Vec<TestedPool> {
         let mut tested: Vec<TestedPool> = Vec::new();
         let mut seen: Vec<ExcitationWindow> = Vec::new();
@@ -132,9 +132,9 @@ impl Round<'_> {
         fitted.verdict.is_ok() && fitted.fit.is_at_floor(self.context.floor)
     }
 
-    /// Candidates screened in an excitation window and fitted one by one: what repeats with an
-    /// angle only if the others promise little, or come to little. None if the model has no play to
-    /// be closed, or somebody asked to stop.
+    /// Screens candidates in an excitation window and fits them one by one. Periodic candidates are
+    /// screened only if the others have a poor prediction or result. `None` if the model has no
+    /// play to remove or a stop was requested.
     pub(crate) fn tested_in(&self, window: ExcitationWindow) -> Option<TestedPool> {
         self.context.problem.stop.check().ok()?;
         let closed = match window {

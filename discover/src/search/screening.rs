@@ -1,7 +1,6 @@
-//! Screening: what each candidate does to the windows' outputs, to first order, with initial
-//! states and nuisances free to take up what they can. From these responses follow how much
-//! of the misfit each candidate, or a set of them, may explain, and which are similar. Whoever
-//! passes is fitted in full elsewhere.
+//! Screening: first-order responses of the candidates with free initial states and nuisances. They
+//! predict the explained part of the misfit for candidates and sets of candidates, and their
+//! similarity. Selected candidates are fitted in full elsewhere.
 
 use crate::ids::{CandidateId, ResponseId, UnknownId};
 use crate::interval::Interval;
@@ -25,28 +24,28 @@ use crate::thresholds;
 /// A screened candidate.
 #[derive(Clone, Debug)]
 pub struct ScreenedResponse {
-    /// The candidate.
+    /// Index of the candidate.
     pub candidate: CandidateId,
-    /// Its unknowns.
+    /// Unknowns of the candidate.
     pub candidate_unknowns: Vec<CandidateUnknown>,
     /// Where its columns stand.
     columns: std::ops::Range<usize>,
-    /// The nuisance that gives up its prior, if that is the effect.
+    /// Nuisance that loses its prior, if that is the effect.
     pub dropped_prior: Option<UnknownId>,
-    /// The part of what it does that initial states and nuisances cannot do as well.
+    /// Fraction of the response that initial states and nuisances cannot reproduce.
     pub unexplained_fraction: f64,
-    /// How much it lowers the sum of squares alone, in squared standard deviations.
+    /// Decrease of the sum of squares by this candidate, in squared standard deviations.
     pub decrease: f64,
-    /// The size at which it does.
+    /// Sizes at that decrease.
     pub values: Vec<f64>,
 }
 
-/// What a set of responses comes to by a straight line.
+/// Linear prediction for a set of responses.
 #[derive(Clone, Debug)]
 pub struct Prediction {
-    /// The sum of squares that remains, in squared standard deviations, with what priors add.
+    /// Remaining sum of squares, in squared standard deviations, with the priors.
     pub cost: f64,
-    /// How far each parameter is from where its effect is absent, in order, SI.
+    /// Difference of each parameter from its value without the effect, in order, SI.
     pub sizes: Vec<f64>,
 }
 
@@ -56,16 +55,16 @@ struct PriorsDropped<'s> {
     nuisances: Vec<UnknownId>,
 }
 
-/// A candidate that does nothing that could be seen.
+/// A candidate without a visible response.
 #[derive(Clone, Debug)]
 pub struct NotExcited {
-    /// The candidate.
+    /// Index of the candidate.
     pub candidate: CandidateId,
-    /// Why.
+    /// Reason.
     pub reason: DiscoverError,
 }
 
-/// All responses.
+/// Responses of all candidates.
 #[derive(Clone)]
 pub struct Screening {
     /// Products of all columns: nuisances, candidates, the residual last.
@@ -76,15 +75,15 @@ pub struct Screening {
     bounds: Vec<Interval>,
     /// The bounds of each nuisance once its prior is dropped.
     limits: Vec<Interval>,
-    /// The candidates that do something, in their order.
+    /// Candidates with a response, in their order.
     pub responses: Vec<ScreenedResponse>,
-    /// The candidates that do nothing that could be seen, with why.
+    /// Candidates without a visible response.
     pub not_excited: Vec<NotExcited>,
-    /// How many numbers there are.
+    /// Number of measured numbers.
     pub numbers: f64,
 }
 
-/// Screens candidates at a fit, over a part of each window.
+/// Screens candidates at a fit over a fraction of each window.
 pub fn screening(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
@@ -235,7 +234,7 @@ impl Screening {
         }
     }
 
-    /// What some responses come to together.
+    /// Returns the linear prediction for a set of responses.
     pub fn predicted(&self, responses: &[ResponseId]) -> Prediction {
         let mut columns: Vec<usize> = (0..self.nuisances).collect();
         for response in responses {
@@ -273,8 +272,8 @@ impl Screening {
         Prediction { cost, sizes }
     }
 
-    /// The same with a parameter of the model set to 0, its term deleted; none where that is
-    /// not admissible.
+    /// Returns the screening with a parameter of the model set to a value and its term deleted;
+    /// `None` if the value is not admissible.
     pub fn without(&self, nuisance: UnknownId, value: f64) -> Option<Self> {
         let Interval { low, high } = self.bounds[nuisance];
         if value == 0.0 || !(low..=high).contains(&-value) {
@@ -302,7 +301,7 @@ impl Screening {
         })
     }
 
-    /// The same with a nuisance held where it is.
+    /// Returns the screening with a fixed nuisance.
     pub fn held(mut self, nuisance: UnknownId) -> Self {
         self.bounds[nuisance] = Interval::ZERO;
         self
@@ -321,8 +320,8 @@ impl Screening {
         }
     }
 
-    /// Whether what responses do at these sizes cancels, nuisances taken out: each does much more than
-    /// all of them together.
+    /// Returns true if the responses cancel at these sizes after elimination of the nuisances: each
+    /// is much larger than their sum.
     pub fn cancels(&self, responses: &[ResponseId], sizes: &[f64]) -> bool {
         let dropped = self.without_priors(responses);
         let count = dropped.products.ncols();
@@ -396,9 +395,9 @@ impl Screening {
         }
     }
 
-    /// How similar two responses are, 0 to 1, once the nuisances are taken out: how well
-    /// either can do what the other does. One of several parameters can do what one of few does
-    /// even where its own best size is another.
+    /// Returns the similarity of two responses, 0 to 1, after elimination of the nuisances: how
+    /// well one reproduces the other. A candidate with several parameters can reproduce one with
+    /// few, even if its own best size differs.
     pub fn similarity(&self, a: ResponseId, b: ResponseId) -> f64 {
         let dropped = self.without_priors(&[a, b]);
         let by_b = self.done_by(&dropped, a, b);

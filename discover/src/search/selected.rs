@@ -1,5 +1,5 @@
-//! What is named of a round: the accepted hypothesis that leaves least, and whatever the records do
-//! not tell from it.
+//! Selection of the named effect of a round: the accepted hypothesis with the lowest residual, and
+//! the candidates that the records cannot distinguish from it.
 
 use crate::ids::{EffectId, FittedId, ResponseId};
 use std::cmp::Ordering;
@@ -17,24 +17,24 @@ use crate::search::screening::Screening;
 use crate::search::tested::TestedPool;
 use crate::thresholds;
 
-/// The accepted hypothesis that is named.
+/// The named hypothesis.
 pub struct Selected {
     /// Its candidates, in the order of its responses.
     pub candidates: Vec<Candidate>,
     /// The fitted hypothesis.
     pub fitted: FittedHypothesis,
-    /// What is indistinguishable from each of them.
+    /// Candidates that are indistinguishable from each of them.
     pub equivalent: Vec<Vec<Candidate>>,
-    /// Of a pair the half that was accepted alone.
+    /// Effect of a pair that was accepted on its own.
     pub half: Option<AcceptedHalf>,
 }
 
-/// One of two effects that was accepted alone: a step of the way.
+/// Effect of a pair that was accepted on its own, as an intermediate step.
 #[derive(Clone, Copy, Debug)]
 pub struct AcceptedHalf {
-    /// Which.
+    /// Index of the effect.
     pub effect: EffectId,
-    /// The root mean square of the test records' residuals that it left, in standard deviations.
+    /// RMS residual of the test records with that effect, in standard deviations.
     pub test_rms: f64,
 }
 
@@ -45,9 +45,9 @@ struct IndistinguishableHalf {
     response: ResponseId,
 }
 
-/// What is named of the fitted hypotheses of a round that explain the records; none if nothing is
-/// accepted. A parameter that nobody called uncertain is the less plausible answer: it is named
-/// only if it leaves clearly less than what looks like it.
+/// Selects the named hypothesis among the fitted ones of a round; `None` if none is accepted. A
+/// shifted parameter without a declared uncertainty is less plausible and is named only if its
+/// residual is clearly lower than that of similar candidates.
 pub fn selected(context: Context<'_>, tested: TestedPool) -> Option<Selected> {
     let selected = best(context, with_other_halves(context, tested))?;
     let [candidate] = &selected.candidates[..] else {
@@ -201,8 +201,8 @@ fn off(fitted: &FittedHypothesis) -> Option<f64> {
     all.map(|all| all.into_iter().fold(0.0, f64::max))
 }
 
-/// The accepted hypothesis that leaves least; a pair only if it leaves clearly less than the best
-/// single effect.
+/// Returns the accepted hypothesis with the lowest residual. A pair is selected only if its
+/// residual is clearly lower than that of the best single effect.
 pub fn best_of(fitted_hypotheses: &[FittedHypothesis]) -> Option<FittedId> {
     let rms = |id: &FittedId| fitted_hypotheses[*id].fit.rms();
     let least = |count: fn(usize) -> bool| {

@@ -1,13 +1,13 @@
-//! Shapes, such as the speed at which friction has fallen, tried at other sizes: a fit that began
-//! at the usual one may end in a minimum of its own.
+//! Restarts of shape parameters, such as the Stribeck speed, from other sizes, because a fit from
+//! the typical size may end in a local minimum.
 
 use crate::search::fitted::{FittedHypothesis, full_fits};
 use crate::search::hypothesis::{Hypothesis, with_shape};
 use crate::search::pool::Pool;
 use crate::thresholds;
 
-/// Fits what has a shape, helps and does not reach the floor from other shapes, and takes over
-/// what is accepted, or leaves less.
+/// Fits promising hypotheses with a shape parameter again from other shapes if they do not reach
+/// the noise floor. Accepted results and lower residuals are kept.
 pub fn reshape(pool: &Pool<'_>, fitted_hypotheses: &mut [FittedHypothesis]) {
     let is_there = |fitted: &FittedHypothesis| {
         fitted.verdict.is_ok() && fitted.fit.is_at_floor(pool.context.floor)

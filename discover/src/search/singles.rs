@@ -1,5 +1,4 @@
-//! Hypotheses of one candidate: those that screening promises most of, as far as they are worth a
-//! fit, and those that look like another.
+//! Hypotheses of one candidate: those with the best prediction, and those similar to another.
 
 use crate::fit::preliminary::PreliminaryFit;
 use crate::ids::{CandidateId, ResponseId};
@@ -9,7 +8,7 @@ use crate::search::pool::Pool;
 use crate::search::shape_restarts::reshape;
 use crate::thresholds;
 
-/// The best candidates alone and those that look like them, of those from this one on.
+/// Fits the best single candidates from index `from` on, and those similar to them.
 pub fn singles(pool: &Pool<'_>, from: CandidateId) -> Vec<FittedHypothesis> {
     let mut ranking = pool.ranking();
     ranking.retain(|response| pool.screening.responses[*response].candidate >= from);
@@ -60,8 +59,8 @@ pub fn singles(pool: &Pool<'_>, from: CandidateId) -> Vec<FittedHypothesis> {
     fitted_hypotheses
 }
 
-/// The candidates that look like one of them, as far as they promise enough, the most alike
-/// first; at most [`thresholds::MOST_FITS`].
+/// Fits candidates similar to one of them with a sufficient prediction, the most similar first; at
+/// most [`thresholds::MOST_FITS`].
 pub fn similar(pool: &Pool<'_>, response: ResponseId) -> Vec<FittedHypothesis> {
     let similarity = |other: &ResponseId| pool.screening.similarity(response, *other);
     let mut similar = pool.ranking();

@@ -1,9 +1,9 @@
-//! How likely what an effect explains of the held-out records is by chance: an exact test on a split
-//! sample (Cox, Biometrika 62, 1975). What the effect does there is known from the training records
-//! alone, so that without it the noise of the test records is independent of it; what initial states and
-//! unknowns can do is projected out of it. The part of the residuals along it is then Student's t, if noise
-//! is white and normal and the model linear in what is projected out; with correlated residuals so many
-//! fewer samples count.
+//! P-value of an effect on held-out records: an exact test on a split sample (Cox, Biometrika 62,
+//! 1975). The response of the effect is determined from the training records only, so that it is
+//! independent of the noise of the test records under the null hypothesis. Initial states and
+//! unknowns are projected out. The projection of the residuals on the response then has a Student t
+//! distribution, if the noise is white and normal and the model is linear in the projected
+//! unknowns. Correlated residuals reduce the number of samples.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -16,7 +16,7 @@ use crate::ids::WindowId;
 use crate::model::problem::EstimationProblem;
 use crate::search::acceptance::EffectUnknown;
 
-/// The held-out residuals of a fit, and what its unknowns do to them.
+/// Held-out residuals of a fit and their derivatives by its unknowns.
 pub struct SplitSample<'f> {
     fit: &'f Fit,
     /// What each unknown does to the residuals, of length 1: one row for each number of all windows.
@@ -26,8 +26,7 @@ pub struct SplitSample<'f> {
 }
 
 impl<'f> SplitSample<'f> {
-    /// The held-out records at a fit without the effects that are tested. None where a motion cannot be
-    /// followed.
+    /// Prepares the test for a fit without the tested effects; `None` if a simulation fails.
     pub fn of(problem: &EstimationProblem<'_>, fit: &'f Fit) -> Option<Self> {
         let shooting = Shooting {
             windows: &problem.test,
@@ -68,10 +67,10 @@ impl<'f> SplitSample<'f> {
         })
     }
 
-    /// The probability that noise alone gives the residuals at least as much of what a fit with an
-    /// effect takes away from them. Unknowns of the fit that gave up their priors for the effect are not
-    /// projected out of it: without it they are within their bounds, and what they leave speaks against
-    /// it. None where that is nothing, or cannot be followed.
+    /// Returns the probability that noise alone produces at least this projection of the residuals
+    /// on the response of an effect. Unknowns that lost their priors for the effect are not
+    /// projected out, because without it they are within their bounds. `None` if the response
+    /// vanishes or a simulation fails.
     pub fn p_value(&self, with: &Fit, own: &[EffectUnknown]) -> Option<f64> {
         let column = |fit: &Fit| {
             DVector::from_iterator(

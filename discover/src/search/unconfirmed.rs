@@ -1,4 +1,4 @@
-//! What the training records speak for, and the held-out ones do not.
+//! Hypotheses that the training records support and the held-out records do not.
 
 use crate::fit::fitted::Fit;
 use crate::ids::UnknownId;
@@ -7,18 +7,18 @@ use crate::search::rejection::Rejection;
 use crate::search::tested::TestedPool;
 use crate::thresholds;
 
-/// A hypothesis that explains training records, and that held-out records do not confirm.
+/// A hypothesis that explains the training records but not the held-out records.
 pub struct Unconfirmed {
-    /// What it holds, in words.
+    /// Description of the hypothesis.
     pub label: String,
-    /// Its unknowns in the fit with it.
+    /// Its unknowns in the fit.
     pub own: Vec<UnknownId>,
-    /// The fit with it.
+    /// Fit with the hypothesis.
     pub fit: Fit,
 }
 
-/// Of a round in which nothing was accepted the hypothesis that leaves least of the training records, if they
-/// speak for it and nothing but the held-out records speaks against it. `before`: the fit without it.
+/// Returns, for a round without an accepted effect, the hypothesis with the lowest training
+/// residual, if only the held-out records reject it. `before`: fit without it.
 pub fn unconfirmed(tested: &mut [TestedPool], before: &Fit) -> Option<Unconfirmed> {
     let accepted = |pool: &TestedPool| {
         let mut fitted = pool.fitted_hypotheses.iter();

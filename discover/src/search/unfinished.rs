@@ -1,9 +1,10 @@
-//! What is known of a round that the time did not suffice for.
+//! State of a round that reached the time limit.
 
 use crate::search::fitted::FittedHypothesis;
 use crate::search::tested::TestedPool;
 
-/// What leaves least so far, of what passed the decision or else of what was fitted, in a sentence.
+/// Returns a sentence on the accepted hypothesis with the lowest residual so far, or otherwise the
+/// fitted one.
 pub fn unfinished(tested: &[TestedPool]) -> String {
     let all = tested.iter().flat_map(|pool| {
         let fitted = pool.fitted_hypotheses.iter();

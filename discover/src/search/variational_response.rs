@@ -1,6 +1,6 @@
-//! Responses of candidates as neighbouring motions: along the fitted motion the accelerations
-//! of the candidate's model are compared with the fitted one's, and what they differ by drives
-//! a tangent vector. Hundreds of candidates are screened in one integration.
+//! Responses of candidates by tangent vectors: the difference between the accelerations of the
+//! candidate's model and of the fitted model along the fitted motion drives a tangent vector.
+//! Hundreds of candidates are screened in one integration.
 
 use crate::ids::CandidateId;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
@@ -47,8 +47,8 @@ struct MovedValues {
     size: f64,
 }
 
-/// For each candidate what it does, or why that cannot be seen; none where its own motion must
-/// tell.
+/// Returns the response of each candidate or the reason why it is not visible; `None` if the
+/// candidate's own model must be simulated.
 pub fn variational_responses(
     at: &LinearisedFit,
     problem: &EstimationProblem<'_>,
