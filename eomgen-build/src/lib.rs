@@ -94,7 +94,8 @@ pub fn generate_with(
     let root = std::env::var_os("CARGO_MANIFEST_DIR").map_or_else(PathBuf::new, PathBuf::from);
     let path = specification.as_ref();
     println!("cargo::rerun-if-changed={}", root.join(path).display());
-    let checked = eomgen_model_spec::load_from(&root, path).map_err(|found| refused(&found))?;
+    let checked =
+        eomgen_model_spec::load_from(&root, path).map_err(|found| specification_error(&found))?;
     let beside = path.parent().unwrap_or(Path::new(""));
     for table in checked
         .model
@@ -106,12 +107,12 @@ pub fn generate_with(
         println!("cargo::rerun-if-changed={}", file.display());
     }
     for warning in checked.warnings.records() {
-        println!("cargo::warning={}", line(&warning));
+        println!("cargo::warning={}", format_on_one_line(&warning));
     }
-    variants(&checked, orders, &outputs, &folder)
+    generate_variants(&checked, orders, &outputs, &folder)
 }
 
-fn variants(
+fn generate_variants(
     checked: &Checked,
     orders: &[usize],
     outputs: &[Output],
@@ -119,7 +120,7 @@ fn variants(
 ) -> Result<Vec<PathBuf>, Error> {
     let name = &checked.model.name;
     if orders.is_empty() {
-        return Ok(vec![variant(
+        return Ok(vec![generate_variant(
             checked,
             None,
             outputs,
@@ -131,12 +132,12 @@ fn variants(
             0 => format!("{name}_rigid.rs"),
             order => format!("{name}_order_{order}.rs"),
         };
-        variant(checked, Some(*order), outputs, &folder.join(file))
+        generate_variant(checked, Some(*order), outputs, &folder.join(file))
     };
     orders.iter().map(of).collect()
 }
 
-fn variant(
+fn generate_variant(
     checked: &Checked,
     order: Option<usize>,
     outputs: &[Output],
@@ -145,9 +146,10 @@ fn variant(
     let model = &checked.model;
     let orders = model.orders(order).map_err(|error| {
         let found = Diagnostics::one(model.source.clone(), error.diagnostic());
-        refused(&found)
+        specification_error(&found)
     })?;
-    let variant = Variant::derive_with(model, &orders, outputs).map_err(|found| refused(&found))?;
+    let variant = Variant::derive_with(model, &orders, outputs)
+        .map_err(|found| specification_error(&found))?;
     let text =
         emit(&variant.program, Packaging::Items).map_err(|error| Error(error.to_string()))?;
     write(path, &text)
@@ -162,7 +164,7 @@ fn write(path: &Path, text: &str) -> std::io::Result<()> {
     std::fs::rename(&beside, path)
 }
 
-fn refused(found: &Diagnostics) -> Error {
+fn specification_error(found: &Diagnostics) -> Error {
     Error(format!(
         "the specification has errors\n\n{}",
         found.render(false)
@@ -170,7 +172,7 @@ fn refused(found: &Diagnostics) -> Error {
 }
 
 /// Formats a finding on one line: cargo prints one line per warning.
-fn line(finding: &Record) -> String {
+fn format_on_one_line(finding: &Record) -> String {
     let place = match (finding.line, finding.column) {
         (Some(line), Some(column)) => format!("{}:{line}:{column}", finding.file),
         _ => finding.file.clone(),
@@ -212,7 +214,7 @@ mod tests {
     #[test]
     fn each_order_gives_one_file() {
         let folder = tempfile::tempdir().expect("a folder");
-        let paths = variants(&arm(), &[0, 2], &[], folder.path()).expect("generated");
+        let paths = generate_variants(&arm(), &[0, 2], &[], folder.path()).expect("generated");
         assert_eq!(
             names(&paths),
             ["planetary_arm_rigid.rs", "planetary_arm_order_2.rs"]
@@ -226,9 +228,10 @@ mod tests {
     #[test]
     fn empty_orders_use_those_of_the_specification() {
         let folder = tempfile::tempdir().expect("a folder");
-        let paths = variants(&checked(PENDULUM), &[], &[], folder.path()).expect("generated");
+        let paths =
+            generate_variants(&checked(PENDULUM), &[], &[], folder.path()).expect("generated");
         assert_eq!(names(&paths), ["p.rs"]);
-        let paths = variants(&arm(), &[], &[], folder.path()).expect("generated");
+        let paths = generate_variants(&arm(), &[], &[], folder.path()).expect("generated");
         let text = std::fs::read_to_string(&paths[0]).expect("readable");
         assert!(text.contains("ORDERS: [usize; 1] = [4]"), "{text}");
     }
@@ -237,7 +240,7 @@ mod tests {
     fn requested_functions_are_emitted() {
         let folder = tempfile::tempdir().expect("a folder");
         let outputs = [Output::Products, Output::GuardRates];
-        let paths = variants(&arm(), &[2], &outputs, folder.path()).expect("generated");
+        let paths = generate_variants(&arm(), &[2], &outputs, folder.path()).expect("generated");
         let text = std::fs::read_to_string(&paths[0]).expect("readable");
         for function in [
             "rates",
@@ -264,13 +267,15 @@ mod tests {
     #[test]
     fn impossible_orders_and_folders_are_reported() {
         let folder = tempfile::tempdir().expect("a folder");
-        let no_field = variants(&checked(PENDULUM), &[3], &[], folder.path()).expect_err("refused");
+        let no_field =
+            generate_variants(&checked(PENDULUM), &[3], &[], folder.path()).expect_err("refused");
         assert!(
             format!("{no_field:?}").contains("no field, so no order 3"),
             "{no_field}"
         );
         let nowhere = folder.path().join("missing");
-        let unwritten = variants(&checked(PENDULUM), &[], &[], &nowhere).expect_err("refused");
+        let unwritten =
+            generate_variants(&checked(PENDULUM), &[], &[], &nowhere).expect_err("refused");
         assert!(
             unwritten.to_string().starts_with("cannot write"),
             "{unwritten}"
@@ -281,7 +286,7 @@ mod tests {
     fn warnings_are_printed_on_one_line() {
         let text = format!("{PENDULUM}[inputs]\nu = {{ unit = \"N\" }}\n");
         let warnings = checked(&text).warnings.records();
-        let shown = line(&warnings[0]);
+        let shown = format_on_one_line(&warnings[0]);
         assert!(
             shown.starts_with("p.toml:10:1: the input `u` is not used; "),
             "{shown}"

@@ -35,7 +35,7 @@ impl Parse for Arguments {
             ));
         }
         if input.peek(Ident) && input.peek2(Token![=]) {
-            file(input)
+            parse_file(input)
         } else if input.peek(LitStr) {
             let message = format!("expected `spec = ` before the path\nhelp: {FORMS}");
             Err(input.error(message))
@@ -46,7 +46,7 @@ impl Parse for Arguments {
 }
 
 /// Parses `spec = "...", order = ..., with = [...]` in any order. Sections may follow `with`.
-fn file(input: ParseStream<'_>) -> syn::Result<Arguments> {
+fn parse_file(input: ParseStream<'_>) -> syn::Result<Arguments> {
     let begin = input.span();
     let (mut path, mut order, mut with) = (None, None, None);
     while !input.is_empty() {
@@ -68,9 +68,9 @@ fn file(input: ParseStream<'_>) -> syn::Result<Arguments> {
         }
         input.parse::<Token![=]>()?;
         let repeated = match key.to_string().as_str() {
-            "spec" => path.replace(path_after(&key, input)?).is_some(),
-            "order" => order.replace(order_after(&key, input)?).is_some(),
-            "with" => with.replace(outputs(input)?).is_some(),
+            "spec" => path.replace(parse_path(&key, input)?).is_some(),
+            "order" => order.replace(parse_order(&key, input)?).is_some(),
+            "with" => with.replace(parse_outputs(input)?).is_some(),
             _ => {
                 let message = format!(
                     "unknown argument `{key}`\nhelp: the arguments are spec, order and with"
@@ -98,7 +98,7 @@ fn file(input: ParseStream<'_>) -> syn::Result<Arguments> {
 }
 
 /// Parses `[jacobians, products]`.
-fn outputs(input: ParseStream<'_>) -> syn::Result<Vec<Output>> {
+fn parse_outputs(input: ParseStream<'_>) -> syn::Result<Vec<Output>> {
     let list;
     bracketed!(list in input);
     let names = list.parse_terminated(Ident::parse, Token![,])?;
@@ -109,8 +109,8 @@ fn outputs(input: ParseStream<'_>) -> syn::Result<Vec<Output>> {
     names.iter().map(output).collect()
 }
 
-fn path_after(key: &Ident, input: ParseStream<'_>) -> syn::Result<LitStr> {
-    let place = place(key, input);
+fn parse_path(key: &Ident, input: ParseStream<'_>) -> syn::Result<LitStr> {
+    let place = value_span(key, input);
     input.parse().map_err(|_| {
         let message = "expected a path in quotes\nhelp: the path of a TOML file from the root of \
                        your crate, such as spec = \"models/arm.toml\"";
@@ -118,8 +118,8 @@ fn path_after(key: &Ident, input: ParseStream<'_>) -> syn::Result<LitStr> {
     })
 }
 
-fn order_after(key: &Ident, input: ParseStream<'_>) -> syn::Result<Order> {
-    let place = place(key, input);
+fn parse_order(key: &Ident, input: ParseStream<'_>) -> syn::Result<Order> {
+    let place = value_span(key, input);
     let wrong = || {
         let most = eomgen_model_spec::model::MAX_ORDER;
         let message = format!(
@@ -139,7 +139,7 @@ fn order_after(key: &Ident, input: ParseStream<'_>) -> syn::Result<Order> {
 }
 
 /// Returns the token after a key, or the key if there is none.
-fn place(key: &Ident, input: ParseStream<'_>) -> Span {
+fn value_span(key: &Ident, input: ParseStream<'_>) -> Span {
     if input.is_empty() {
         key.span()
     } else {

@@ -12,12 +12,12 @@ use quote::quote;
 use syn::{Error, LitStr};
 
 use crate::arguments::{Arguments, Order};
-use crate::findings::{at_tokens, in_file, warnings_at_tokens, warnings_in_file};
-use crate::tables::sections;
-use crate::write::specification;
+use crate::findings::{error_in_file, errors_at_tokens, warnings_at_tokens, warnings_in_file};
+use crate::tables::parse_sections;
+use crate::write::write_specification;
 
 /// File name of an inline specification in findings.
-const IN_PLACE: &str = "model!";
+const INLINE_SOURCE_NAME: &str = "model!";
 
 /// Returns the items of a model, or `compile_error!` for each error. Paths are relative to
 /// `root`.
@@ -27,12 +27,12 @@ pub fn model(input: TokenStream, root: Option<&Path>) -> TokenStream {
 
 fn items(input: TokenStream, root: Option<&Path>) -> syn::Result<TokenStream> {
     match syn::parse2(input)? {
-        Arguments::File(path, order, outputs) => file(&path, order, &outputs, root),
-        Arguments::Sections(stream, outputs) => in_place(stream, &outputs),
+        Arguments::File(path, order, outputs) => expand_file(&path, order, &outputs, root),
+        Arguments::Sections(stream, outputs) => expand_inline(stream, &outputs),
     }
 }
 
-fn file(
+fn expand_file(
     path: &LitStr,
     order: Option<Order>,
     outputs: &[Output],
@@ -46,16 +46,16 @@ fn file(
     })?;
     let written = path.value();
     let checked = eomgen_model_spec::load_from(root, Path::new(&written))
-        .map_err(|found| refused(&found, &root.join(&written), place))?;
+        .map_err(|found| file_error(&found, &root.join(&written), place))?;
     let model = checked.model;
     let orders = model.orders(order.as_ref().map(|order| order.value));
     let orders = orders.map_err(|error| {
         let place = order.as_ref().map_or(place, |order| order.span);
-        Error::new(place, described(&error))
+        Error::new(place, describe_error(&error))
     })?;
-    let variant =
-        Variant::derive_with(&model, &orders, outputs).map_err(|found| in_file(&found, place))?;
-    let items = emitted(&variant)?;
+    let variant = Variant::derive_with(&model, &orders, outputs)
+        .map_err(|found| error_in_file(&found, place))?;
+    let items = emit_items(&variant)?;
     let warnings = warnings_in_file(&checked.warnings, place);
     let folder = Path::new(&written).parent().unwrap_or(Path::new(""));
     let tables = model.fields.iter().filter_map(|field| field.basis.table());
@@ -75,7 +75,7 @@ fn file(
     })
 }
 
-fn refused(found: &Diagnostics, path: &Path, place: Span) -> Error {
+fn file_error(found: &Diagnostics, path: &Path, place: Span) -> Error {
     match found.list().first() {
         Some(unreadable) if !path.is_file() => Error::new(
             place,
@@ -84,21 +84,22 @@ fn refused(found: &Diagnostics, path: &Path, place: Span) -> Error {
                 unreadable.message
             ),
         ),
-        _ => in_file(found, place),
+        _ => error_in_file(found, place),
     }
 }
 
-fn in_place(stream: TokenStream, outputs: &[Output]) -> syn::Result<TokenStream> {
-    let placed = specification(&sections(stream)?)?;
-    let source = Source::new(IN_PLACE, placed.text.as_str());
-    let checked = eomgen_model_spec::check(source).map_err(|found| at_tokens(&found, &placed))?;
+fn expand_inline(stream: TokenStream, outputs: &[Output]) -> syn::Result<TokenStream> {
+    let placed = write_specification(&parse_sections(stream)?)?;
+    let source = Source::new(INLINE_SOURCE_NAME, placed.text.as_str());
+    let checked =
+        eomgen_model_spec::check(source).map_err(|found| errors_at_tokens(&found, &placed))?;
     let model = checked.model;
     let orders = model
         .orders(None)
-        .map_err(|error| Error::new(Span::call_site(), described(&error)))?;
+        .map_err(|error| Error::new(Span::call_site(), describe_error(&error)))?;
     let variant = Variant::derive_with(&model, &orders, outputs)
-        .map_err(|found| at_tokens(&found, &placed))?;
-    let items = emitted(&variant)?;
+        .map_err(|found| errors_at_tokens(&found, &placed))?;
+    let items = emit_items(&variant)?;
     let warnings = warnings_at_tokens(&checked.warnings, &placed);
     let text = &placed.text;
     Ok(quote! {
@@ -109,7 +110,7 @@ fn in_place(stream: TokenStream, outputs: &[Output]) -> syn::Result<TokenStream>
     })
 }
 
-fn emitted(variant: &Variant) -> syn::Result<TokenStream> {
+fn emit_items(variant: &Variant) -> syn::Result<TokenStream> {
     let failed = |message: String| Error::new(Span::call_site(), message);
     emit(&variant.program, Packaging::Items)
         .map_err(|error| failed(error.to_string()))?
@@ -117,7 +118,7 @@ fn emitted(variant: &Variant) -> syn::Result<TokenStream> {
         .map_err(|error: proc_macro2::LexError| failed(error.to_string()))
 }
 
-fn described(error: &eomgen_model_spec::variant::ModelError) -> String {
+fn describe_error(error: &eomgen_model_spec::variant::ModelError) -> String {
     match &error.help {
         Some(help) => format!("{}\nhelp: {help}", error.message),
         None => error.message.clone(),

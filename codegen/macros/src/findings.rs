@@ -5,10 +5,10 @@ use proc_macro2::{Ident, Span, TokenStream};
 use quote::{quote, quote_spanned};
 use syn::Error;
 
-use crate::places::Placed;
+use crate::places::PlacedText;
 
 /// Converts findings on inline sections to errors at their tokens.
-pub fn at_tokens(found: &Diagnostics, placed: &Placed) -> Error {
+pub fn errors_at_tokens(found: &Diagnostics, placed: &PlacedText) -> Error {
     let mut errors = found.list().iter().map(|finding| {
         let text = message(finding, placed);
         match token_range(finding, placed) {
@@ -31,13 +31,13 @@ pub fn at_tokens(found: &Diagnostics, placed: &Placed) -> Error {
 }
 
 /// Converts findings on a file to one error at `place`, with the lines of the file.
-pub fn in_file(found: &Diagnostics, place: Span) -> Error {
+pub fn error_in_file(found: &Diagnostics, place: Span) -> Error {
     let text = format!("the specification has errors\n\n{}", found.render(false));
     Error::new(place, text)
 }
 
 /// Returns statements that produce a compiler warning for each finding on inline sections.
-pub fn warnings_at_tokens(found: &Diagnostics, placed: &Placed) -> TokenStream {
+pub fn warnings_at_tokens(found: &Diagnostics, placed: &PlacedText) -> TokenStream {
     let warnings = found.list().iter().map(|finding| {
         let (place, _) =
             token_range(finding, placed).unwrap_or((Span::call_site(), Span::call_site()));
@@ -66,20 +66,20 @@ fn warning(text: &str, place: Span) -> TokenStream {
     }
 }
 
-fn token_range(finding: &Diagnostic, placed: &Placed) -> Option<(Span, Span)> {
+fn token_range(finding: &Diagnostic, placed: &PlacedText) -> Option<(Span, Span)> {
     let primary = finding.primary.as_ref()?;
-    placed.tokens(primary.span)
+    placed.token_range(primary.span)
 }
 
 /// Joins message, labels and help of a finding: the compiler underlines only the primary place.
-fn message(finding: &Diagnostic, placed: &Placed) -> String {
+fn message(finding: &Diagnostic, placed: &PlacedText) -> String {
     let mut text = finding.message.clone();
     let primary = finding.primary.iter().filter(|label| label.text != "here");
     for Label { text: remark, .. } in primary.filter(|label| !label.text.is_empty()) {
         text.push_str(&format!("\n{remark}"));
     }
     for Label { span, text: remark } in &finding.secondary {
-        let shown = placed.shown(*span).unwrap_or_default();
+        let shown = placed.token_text(*span).unwrap_or_default();
         text.push_str(&format!("\n`{shown}`: {remark}"));
     }
     if let Some(help) = &finding.help {

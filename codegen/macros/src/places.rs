@@ -7,21 +7,21 @@ use proc_macro2::Span;
 
 /// Text and the tokens of its parts.
 #[derive(Default)]
-pub struct Placed {
+pub struct PlacedText {
     /// The text.
     pub text: String,
     /// Byte ranges in ascending order, without overlap.
     marks: Vec<(Range<usize>, Span)>,
 }
 
-impl Placed {
+impl PlacedText {
     /// Appends text that belongs to no token.
-    pub fn add(&mut self, text: &str) {
+    pub fn push(&mut self, text: &str) {
         self.text.push_str(text);
     }
 
     /// Appends the text of a token.
-    pub fn mark(&mut self, text: &str, span: Span) {
+    pub fn push_token(&mut self, text: &str, span: Span) {
         let start = self.text.len();
         self.text.push_str(text);
         self.marks.push((start..self.text.len(), span));
@@ -29,19 +29,19 @@ impl Placed {
 
     /// Returns the first and the last token of a byte range. Without a token in the range, both are
     /// the last token before it, else the first token of the text. `None` if the text has no token.
-    pub fn tokens(&self, bytes: Bytes) -> Option<(Span, Span)> {
-        let (first, last) = self.found(bytes)?;
+    pub fn token_range(&self, bytes: Bytes) -> Option<(Span, Span)> {
+        let (first, last) = self.mark_range(bytes)?;
         Some((self.marks[first].1, self.marks[last].1))
     }
 
     /// Returns the text of the tokens of a byte range.
-    pub fn shown(&self, bytes: Bytes) -> Option<&str> {
-        let (first, last) = self.found(bytes)?;
+    pub fn token_text(&self, bytes: Bytes) -> Option<&str> {
+        let (first, last) = self.mark_range(bytes)?;
         self.text
             .get(self.marks[first].0.start..self.marks[last].0.end)
     }
 
-    fn found(&self, bytes: Bytes) -> Option<(usize, usize)> {
+    fn mark_range(&self, bytes: Bytes) -> Option<(usize, usize)> {
         // An empty range counts as its next byte.
         let (start, end) = (bytes.start, bytes.end.max(bytes.start + 1));
         let first = self.marks.partition_point(|(range, _)| range.end <= start);

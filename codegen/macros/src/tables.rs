@@ -39,8 +39,8 @@ pub struct Table {
 ///
 /// # Errors
 /// The first token that does not fit the grammar.
-pub fn sections(stream: TokenStream) -> syn::Result<Vec<Entry>> {
-    let mut tokens = flat(stream).into_iter().peekable();
+pub fn parse_sections(stream: TokenStream) -> syn::Result<Vec<Entry>> {
+    let mut tokens = flatten_groups(stream).into_iter().peekable();
     let mut sections = Vec::new();
     while let Some(token) = tokens.next() {
         let key = match token {
@@ -70,12 +70,12 @@ pub fn sections(stream: TokenStream) -> syn::Result<Vec<Entry>> {
 }
 
 /// Removes the invisible groups that an outer macro puts around its arguments.
-fn flat(stream: TokenStream) -> Vec<TokenTree> {
+fn flatten_groups(stream: TokenStream) -> Vec<TokenTree> {
     let mut tokens = Vec::new();
     for token in stream {
         match token {
             TokenTree::Group(group) if group.delimiter() == Delimiter::None => {
-                tokens.extend(flat(group.stream()));
+                tokens.extend(flatten_groups(group.stream()));
             }
             other => tokens.push(other),
         }
@@ -88,12 +88,15 @@ fn table(group: &Group, depth: usize) -> syn::Result<Table> {
         let message = format!("braces are nested more than {MAX_DEPTH} deep");
         return Err(Error::new(group.span_open(), message));
     }
-    let tokens = flat(group.stream());
+    let tokens = flatten_groups(group.stream());
     let mut entries = Vec::new();
     let mut rest: &[TokenTree] = &tokens;
     while !rest.is_empty() {
         let (key, behind) = key(rest)?;
-        let length = behind.iter().position(is(',')).unwrap_or(behind.len());
+        let length = behind
+            .iter()
+            .position(is_punctuation(','))
+            .unwrap_or(behind.len());
         let value = value(&key, &behind[..length], depth)?;
         add(&mut entries, Entry { key, value })?;
         rest = behind.get(length + 1..).unwrap_or_default();
@@ -105,14 +108,16 @@ fn table(group: &Group, depth: usize) -> syn::Result<Table> {
     })
 }
 
-fn is(wanted: char) -> impl Fn(&TokenTree) -> bool {
+fn is_punctuation(wanted: char) -> impl Fn(&TokenTree) -> bool {
     move |token| matches!(token, TokenTree::Punct(mark) if mark.as_char() == wanted)
 }
 
 /// Splits an entry into its key and the tokens after the colon.
 fn key(tokens: &[TokenTree]) -> syn::Result<(Ident, &[TokenTree])> {
     match tokens {
-        [TokenTree::Ident(key), colon, rest @ ..] if is(':')(colon) || is('=')(colon) => {
+        [TokenTree::Ident(key), colon, rest @ ..]
+            if is_punctuation(':')(colon) || is_punctuation('=')(colon) =>
+        {
             Ok((key.clone(), rest))
         }
         [TokenTree::Ident(key), rest @ ..] => {
@@ -120,7 +125,7 @@ fn key(tokens: &[TokenTree]) -> syn::Result<(Ident, &[TokenTree])> {
             let message = format!("expected `:` after `{key}`\nhelp: {key}: ...");
             Err(Error::new(place, message))
         }
-        [first, ..] if is('#')(first) => Err(Error::new(
+        [first, ..] if is_punctuation('#')(first) => Err(Error::new(
             first.span(),
             "expected a name\nhelp: a comment begins with //; documentation is an entry's \
              doc: \"...\"",
@@ -147,14 +152,14 @@ fn value(key: &Ident, tokens: &[TokenTree], depth: usize) -> syn::Result<Value> 
             })
         }
         _ => {
-            refuse_two_entries(tokens)?;
+            reject_two_entries(tokens)?;
             Ok(Value::Tokens(tokens.to_vec()))
         }
     }
 }
 
 /// Rejects a value that contains `name:`, the start of the next entry.
-fn refuse_two_entries(tokens: &[TokenTree]) -> syn::Result<()> {
+fn reject_two_entries(tokens: &[TokenTree]) -> syn::Result<()> {
     for (index, token) in tokens.iter().enumerate().skip(1) {
         let TokenTree::Punct(mark) = token else {
             continue;

@@ -9,16 +9,16 @@ use proc_macro2::TokenStream;
 use toml_edit::{DocumentMut, TableLike};
 
 use crate::expand::model;
-use crate::places::Placed;
-use crate::tables::sections;
-use crate::write::specification;
+use crate::places::PlacedText;
+use crate::tables::parse_sections;
+use crate::write::write_specification;
 
-fn placed(text: &str) -> syn::Result<Placed> {
+fn placed(text: &str) -> syn::Result<PlacedText> {
     let stream: TokenStream = text.parse().expect("tokens");
-    specification(&sections(stream)?)
+    write_specification(&parse_sections(stream)?)
 }
 
-fn refused(text: &str) -> (Diagnostics, Placed) {
+fn refused(text: &str) -> (Diagnostics, PlacedText) {
     let placed = placed(text).expect("sections");
     let source = Source::new("model!", placed.text.as_str());
     let found = eomgen_model_spec::check(source).expect_err("refused");
@@ -30,7 +30,7 @@ fn pointed(text: &str) -> (String, String) {
     let (found, placed) = refused(text);
     let first = &found.list()[0];
     let span = first.primary.as_ref().expect("a place").span;
-    let shown = placed.shown(span).expect("tokens");
+    let shown = placed.token_text(span).expect("tokens");
     (first.message.clone(), shown.to_owned())
 }
 

@@ -4,37 +4,37 @@
 use proc_macro2::{Delimiter, Group, Ident, Span, TokenTree};
 use syn::Error;
 
-use crate::places::Placed;
+use crate::places::PlacedText;
 use crate::tables::{Entry, MAX_DEPTH, Table, Value};
 
 /// Writes these sections as a specification.
 ///
 /// # Errors
 /// An expression with brackets nested deeper than [`MAX_DEPTH`].
-pub fn specification(sections: &[Entry]) -> syn::Result<Placed> {
-    let mut placed = Placed::default();
+pub fn write_specification(sections: &[Entry]) -> syn::Result<PlacedText> {
+    let mut placed = PlacedText::default();
     for (index, section) in sections.iter().enumerate() {
-        placed.add(if index == 0 { "[" } else { "\n[" });
+        placed.push(if index == 0 { "[" } else { "\n[" });
         key(&mut placed, &section.key);
-        placed.add("]\n");
+        placed.push("]\n");
         let Value::Table(table) = &section.value else {
             continue;
         };
         for entry in &table.entries {
             self::entry(&mut placed, entry)?;
-            placed.add("\n");
+            placed.push("\n");
         }
     }
     Ok(placed)
 }
 
-fn entry(placed: &mut Placed, entry: &Entry) -> syn::Result<()> {
+fn entry(placed: &mut PlacedText, entry: &Entry) -> syn::Result<()> {
     key(placed, &entry.key);
-    placed.add(" = ");
+    placed.push(" = ");
     match &entry.value {
         Value::Table(inline) => table(placed, inline),
         Value::Text(text) => {
-            placed.mark(&format!("\"{}\"", escaped(&text.value())), text.span());
+            placed.push_token(&format!("\"{}\"", escape(&text.value())), text.span());
             Ok(())
         }
         Value::Tokens(tokens) => match tokens.as_slice() {
@@ -56,8 +56,8 @@ fn is_array(group: &Group) -> bool {
 }
 
 /// Writes values between brackets, for example the ends of a range.
-fn array(placed: &mut Placed, group: &Group) -> syn::Result<()> {
-    placed.mark("[", group.span_open());
+fn array(placed: &mut PlacedText, group: &Group) -> syn::Result<()> {
+    placed.push_token("[", group.span_open());
     let tokens: Vec<TokenTree> = group.stream().into_iter().collect();
     let mut elements: Vec<&[TokenTree]> = tokens.split(is_comma).collect();
     // A trailing comma leaves an empty element.
@@ -65,57 +65,57 @@ fn array(placed: &mut Placed, group: &Group) -> syn::Result<()> {
         elements.pop();
     }
     for (index, element) in elements.into_iter().enumerate() {
-        placed.add(if index == 0 { "" } else { ", " });
+        placed.push(if index == 0 { "" } else { ", " });
         expression(placed, element)?;
     }
-    placed.mark("]", group.span_close());
+    placed.push_token("]", group.span_close());
     Ok(())
 }
 
-fn table(placed: &mut Placed, table: &Table) -> syn::Result<()> {
-    placed.mark("{", table.open);
+fn table(placed: &mut PlacedText, table: &Table) -> syn::Result<()> {
+    placed.push_token("{", table.open);
     for (index, entry) in table.entries.iter().enumerate() {
-        placed.add(if index == 0 { " " } else { ", " });
+        placed.push(if index == 0 { " " } else { ", " });
         self::entry(placed, entry)?;
     }
-    placed.add(" ");
-    placed.mark("}", table.close);
+    placed.push(" ");
+    placed.push_token("}", table.close);
     Ok(())
 }
 
 /// Writes a name, quoted if TOML does not allow its letters in a bare key.
-fn key(placed: &mut Placed, key: &Ident) {
+fn key(placed: &mut PlacedText, key: &Ident) {
     let name = key.to_string();
     let bare = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'_';
     if name.bytes().all(bare) {
-        placed.mark(&name, key.span());
+        placed.push_token(&name, key.span());
     } else {
-        placed.mark(&format!("\"{}\"", escaped(&name)), key.span());
+        placed.push_token(&format!("\"{}\"", escape(&name)), key.span());
     }
 }
 
 /// Writes a number as it is, any other expression in quotes.
-fn expression(placed: &mut Placed, tokens: &[TokenTree]) -> syn::Result<()> {
+fn expression(placed: &mut PlacedText, tokens: &[TokenTree]) -> syn::Result<()> {
     let mut pieces = Vec::new();
     for token in tokens {
-        take_apart(token, 1, &mut pieces)?;
+        split_token(token, 1, &mut pieces)?;
     }
     let quote = if is_number(&pieces) { "" } else { "\"" };
-    placed.add(quote);
+    placed.push(quote);
     for (index, piece) in pieces.iter().enumerate() {
-        let apart = index > 0 && pieces[index - 1].word && (piece.word || piece.text == ".");
-        placed.add(if apart { " " } else { "" });
-        placed.mark(&escaped(&piece.text), piece.span);
+        let apart = index > 0 && pieces[index - 1].is_word && (piece.is_word || piece.text == ".");
+        placed.push(if apart { " " } else { "" });
+        placed.push_token(&escape(&piece.text), piece.span);
         // A trailing comma of the user gets no space.
         let goes_on = index + 1 < pieces.len();
-        placed.add(if goes_on && piece.text == "," {
+        placed.push(if goes_on && piece.text == "," {
             " "
         } else {
             ""
         });
     }
     // The quote has no token: a finding at the end of the expression points at the last token.
-    placed.add(quote);
+    placed.push(quote);
     Ok(())
 }
 
@@ -123,12 +123,18 @@ fn expression(placed: &mut Placed, tokens: &[TokenTree]) -> syn::Result<()> {
 struct Piece {
     text: String,
     /// True for a name or a literal, which needs a space before the next one.
-    word: bool,
+    is_word: bool,
     span: Span,
 }
 
-fn take_apart(token: &TokenTree, depth: usize, pieces: &mut Vec<Piece>) -> syn::Result<()> {
-    let mut add = |text: String, word: bool, span: Span| pieces.push(Piece { text, word, span });
+fn split_token(token: &TokenTree, depth: usize, pieces: &mut Vec<Piece>) -> syn::Result<()> {
+    let mut add = |text: String, word: bool, span: Span| {
+        pieces.push(Piece {
+            text,
+            is_word: word,
+            span,
+        })
+    };
     let group = match token {
         TokenTree::Group(group) => group,
         TokenTree::Punct(mark) => {
@@ -152,11 +158,11 @@ fn take_apart(token: &TokenTree, depth: usize, pieces: &mut Vec<Piece>) -> syn::
     };
     add(open.to_owned(), false, group.span_open());
     for inner in group.stream() {
-        take_apart(&inner, depth + 1, pieces)?;
+        split_token(&inner, depth + 1, pieces)?;
     }
     pieces.push(Piece {
         text: close.to_owned(),
-        word: false,
+        is_word: false,
         span: group.span_close(),
     });
     Ok(())
@@ -188,7 +194,7 @@ fn is_number(pieces: &[Piece]) -> bool {
 }
 
 /// Escapes text for a TOML string.
-fn escaped(text: &str) -> String {
+fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for letter in text.chars() {
         match letter {
