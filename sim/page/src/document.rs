@@ -35,8 +35,7 @@ pub struct ScriptedDocument<'a> {
     pub script: &'a str,
 }
 
-/// Returns a complete document with a script. It can use WebAssembly, but its content security
-/// policy forbids all loading.
+/// Returns a document with a script; its content security policy forbids all loading.
 pub fn scripted_document(parts: &ScriptedDocument<'_>) -> String {
     let data = data_text(parts.data);
     let head = html! { style { (PreEscaped(parts.style)) } };

@@ -29,8 +29,7 @@ pub struct Shares {
     pub title: String,
     /// Names of the parts, from left to right; at most four.
     pub parts: Vec<String>,
-    /// Name and shares of each whole, from top to bottom; the shares sum to 1. The sum of the first
-    /// two parts is written next to the bar, in per cent.
+    /// Name and shares (sum 1) of each whole; the sum of the first two is written beside the bar.
     pub rows: Vec<(String, Vec<f64>)>,
 }
 

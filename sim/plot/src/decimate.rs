@@ -1,5 +1,4 @@
-//! Decimation of many samples without a visible difference. For each column of pixels only the
-//! first, the lowest, the highest and the last sample remain.
+//! Decimation of samples to the first, lowest, highest and last one of each column of pixels.
 
 use std::collections::BTreeSet;
 
@@ -80,8 +79,7 @@ const STEP: f64 = 1.0;
 /// Distance below which points are indistinguishable, in px.
 const APART: f64 = 0.5;
 
-/// Returns the lines through samples in a plane, without samples near the last one kept. A sample
-/// with a coordinate that is not finite interrupts the line.
+/// Returns lines without samples near the last one kept, interrupted where one is not finite.
 pub(super) fn thinned(samples: impl Iterator<Item = Point>) -> Vec<Vec<Point>> {
     let mut lines: Vec<Vec<Point>> = Vec::new();
     let mut line: Vec<Point> = Vec::new();

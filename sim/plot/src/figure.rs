@@ -1,5 +1,4 @@
-//! Content of a figure: panels, series, reference lines. Values are in SI units; prefixes are
-//! chosen when the figure is drawn.
+//! Content of a figure: panels, series, reference lines. Values are in SI units.
 //!
 //! Names such as `theta_s_dot` are drawn with subscripts, Greek letters and dots.
 

@@ -1,5 +1,4 @@
-//! Positions of frames, labels and legends. All frames of a figure have the same left and right
-//! edge, so that equal times are on one vertical line.
+//! Positions of frames, labels and legends. All frames of a figure have the same edges.
 
 use super::axis::{Axis, Range, Scale, Tick, ticks};
 use super::error::{PlotError, is_drawable};
@@ -20,8 +19,7 @@ const TITLE_ROW: f64 = 24.0;
 const LEFT_OF_TICKS: f64 = 36.0;
 const LARGEST_REFERENCE_LABEL: f64 = 110.0;
 const LARGEST_LEGEND_LABEL: f64 = 260.0;
-/// Maximum number of characters for the curves of one figure, and for one column of pixels (four
-/// points such as `888.88,1555.55 `).
+/// Maximum characters for the curves of a figure, and for the four points of a pixel column.
 const CURVE_CHARACTERS: f64 = 180_000.0;
 const COLUMN_CHARACTERS: f64 = 60.0;
 
@@ -146,8 +144,7 @@ impl Layout {
 }
 
 impl Ordinate {
-    /// Returns the vertical axis of a panel, given both scales, the number of ticks and the
-    /// fraction to reserve at the top.
+    /// Returns the vertical axis of a panel from scales, number of ticks and space at the top.
     fn new(
         index: usize,
         panel: &Panel<'_>,

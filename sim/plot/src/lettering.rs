@@ -1,5 +1,4 @@
-//! Text in a figure: estimated width, truncation, and SVG with subscripts. The fonts of the reader
-//! are unknown, so widths are conservative estimates.
+//! Text in a figure: conservative width, truncation, and SVG with subscripts.
 
 use eomgen_model_spec::visible::visible;
 use maud::html;

@@ -13,8 +13,7 @@ use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 
 const MOST_MISSING: f64 = 0.5;
 
-/// Range of a channel, in standard deviations of its noise, beyond the resolution of any sensor.
-/// The unit or the noise is then wrong.
+/// Range in standard deviations beyond any sensor's resolution: the unit or noise is wrong.
 const MOST_STANDARD_DEVIATIONS: f64 = 1e10;
 
 /// Fraction of samples at an extreme, with equal neighbours, beyond which a channel is clipped.

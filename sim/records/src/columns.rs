@@ -15,8 +15,7 @@ const LARGEST_RECORD: u64 = 256 << 20;
 /// Reads columns of a file. A missing number, `NaN`, an infinity or an empty cell becomes NaN.
 ///
 /// # Errors
-/// A file that cannot be read or is too large, a missing column, or a cell that is not a number,
-/// with file, line and column.
+/// A file that is unreadable or too large, a missing column, or a cell that is not a number.
 pub fn read(path: &Path, format: &Format, wanted: &[&ColumnKey]) -> Result<Table, Refusal> {
     let bytes = bytes(path)?;
     if path.extension().is_some_and(|e| e == "parquet") {

@@ -16,8 +16,7 @@ use crate::record::Columns;
 use crate::refusal::Refusal;
 use crate::samples::FEWEST_OF_INPUTS;
 
-/// Reads the inputs of `model` from a record of a dataset and returns them with warnings. `record`
-/// is `train[0]`, `test[1]`, ... Channels are not read.
+/// Reads the inputs, without channels, of a record such as `train[0]`; returns warnings too.
 ///
 /// # Errors
 /// A problem of the dataset file or of the record.

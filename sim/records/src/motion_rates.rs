@@ -21,8 +21,7 @@ pub(crate) enum GivenKind {
     },
 }
 
-/// Returns a coordinate's samples, rates and second rates, from the cubic spline through the known
-/// samples; `None` without any.
+/// Returns samples, rates and second rates by a cubic spline; `None` without known samples.
 pub(crate) fn with_rates(times: &[f64], column: &[f64]) -> Option<[Vec<f64>; 3]> {
     let samples = times.iter().zip(column);
     let known = samples.filter(|(_, value)| value.is_finite());

@@ -171,8 +171,7 @@ impl Columns<'_> {
         )
     }
 
-    /// Appends rates and second rates to a given motion, before decimation. A low-pass filter of
-    /// all columns keeps them consistent.
+    /// Appends rates and second rates to a given motion, so that a filter keeps them consistent.
     fn add_rates(&self, place: &Path, table: &mut Table) -> Result<(), Refusal> {
         if self.motion.is_empty() {
             return Ok(());

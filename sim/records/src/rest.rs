@@ -13,8 +13,7 @@ const AT_REST: f64 = 4.0;
 /// Rate below which a coordinate is at rest, relative to the record's largest, without noise.
 const LEAST_RATE: f64 = 1e-9;
 
-/// Removes samples of inputs at rest of a coordinate on which they act, and returns notes. Static
-/// friction at rest is not determined by the model.
+/// Removes samples of inputs while their coordinate rests, where static friction is unknown.
 pub(crate) fn without_rest(dataset: &mut Dataset, model: &Model) -> Vec<String> {
     let mut notes = Vec::new();
     for place in 0..dataset.channels.len() {
@@ -86,8 +85,7 @@ fn holds(model: &Model, expr: &Expr, is: &dyn Fn(&ExprKind) -> bool) -> bool {
     found
 }
 
-/// Returns true for each sample at which one of these coordinates is at rest or reverses nearby.
-/// The direction of friction is unknown there.
+/// Returns true for samples where a coordinate rests or reverses, so that friction is unknown.
 fn at_rest(record: &Record, model: &Model, coordinates: &[usize]) -> Vec<bool> {
     let (inputs, count) = (model.inputs.len(), model.coordinates.len());
     let mut resting = vec![false; record.times.len()];

@@ -19,8 +19,7 @@ pub(crate) const LOST: f64 = 5.0;
 /// Relative deviation of a step from the usual one that counts as jitter.
 pub(crate) const JITTER: f64 = 0.1;
 
-/// Checks that times are finite and increasing, with at least `fewest` samples. `lines` are the
-/// line numbers of the samples.
+/// Checks for at least `fewest` finite, increasing times; `lines` are their line numbers.
 ///
 /// # Errors
 /// The first invalid line.

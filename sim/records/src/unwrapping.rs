@@ -19,9 +19,8 @@ pub(crate) struct Unwrapped {
     pub unknown: Vec<(f64, f64)>,
 }
 
-/// Unwraps a column with NaN for missing samples. The first sample keeps its value. Each further
-/// sample gets the number of periods that is nearest to the extrapolated motion. The motion may
-/// exceed half a period per sample if its rate changes by less.
+/// Unwraps a column from its first sample on. Each further sample gets the number of periods that
+/// is nearest to the extrapolated motion, which may exceed half a period per sample.
 pub(crate) fn unwrapped(times: &[f64], column: &[f64], period: f64) -> Unwrapped {
     let samples: Vec<usize> = (0..column.len())
         .filter(|sample| column[*sample].is_finite())

@@ -8,15 +8,13 @@ use crate::samples::typical_step;
 /// Samples at a window's start and end that a delayed or early sensor can read from outside.
 const MARGIN: (usize, usize) = (LONGEST_DELAY as usize, LONGEST_LEAD as usize);
 
-/// Largest delay of a sensor, in samples: a short filter and a bus together. As many samples at the
-/// start of each window are ignored.
+/// Largest delay of a sensor, in samples; as many are ignored at the start of each window.
 pub const LONGEST_DELAY: f64 = 8.0;
 
 /// Largest lead of a sensor, in samples: four standard deviations of its prior.
 pub const LONGEST_LEAD: f64 = 2.0;
 
-/// Returns the samples of a window to compare. Margins for delayed or early sensors are excluded,
-/// unless they are most of the window.
+/// Returns the samples to compare, without margins for delays unless these are most of the window.
 pub fn judged(samples: usize) -> std::ops::Range<usize> {
     let (begin, end) = MARGIN;
     begin.min(samples / 4)..samples - end.min(samples / 4)

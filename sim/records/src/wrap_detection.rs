@@ -8,8 +8,7 @@ use crate::wrap_period::{ColumnUnit, estimate_period};
 
 const FEWEST: usize = 10;
 
-/// Largest relative difference between the jumps of a column, between range and period, and between
-/// a declared and a detected period.
+/// Largest relative difference between jumps, between range and period, and between two periods.
 pub(crate) const ALIKE: f64 = 0.1;
 
 /// Minimum motion, in standard deviations of the noise.
@@ -73,8 +72,7 @@ impl WrapPattern {
     }
 }
 
-/// Returns the pattern of a wrapped column; `None` without jumps, or if they do not look like
-/// crossings of the range's ends.
+/// Returns the pattern of a wrapped column; `None` if no jumps look like ends of the range.
 pub(crate) fn wrap_pattern(times: &[f64], column: &[f64], unit: ColumnUnit) -> Option<WrapPattern> {
     let samples: Vec<usize> = (0..column.len())
         .filter(|sample| column[*sample].is_finite())
@@ -146,8 +144,7 @@ struct Crossing {
 }
 
 impl Crossing {
-    /// Returns true if the motion continues in its direction on both sides of the crossing. Returns
-    /// `None` if it stays within the noise on one side.
+    /// Returns true if the motion continues across the crossing; `None` if noise hides it.
     fn is_continued(&self, motion: &[f64], threshold: f64) -> Option<bool> {
         let level = 0.5 * (motion[self.before] + motion[self.after]);
         let away = |value: &&f64| (**value - level).abs() > threshold;

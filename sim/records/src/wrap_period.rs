@@ -9,8 +9,7 @@ const BESIDE: usize = 5;
 /// Uncertainty of the period, in standard errors.
 const STANDARD_ERRORS: f64 = 4.0;
 
-/// Minimum uncertainty of the period, in standard deviations of one jump. Noise determines the time
-/// of a jump in slow motion, and that error does not average out.
+/// Minimum uncertainty in standard deviations of one jump, because noise shifts jumps in time.
 const DEVIATIONS: f64 = 2.0;
 
 /// Largest uncertainty, relative to the period, with which a usual period is proposed.
@@ -39,8 +38,7 @@ pub(crate) struct ColumnUnit {
 pub(crate) struct Period {
     /// Exact if a single usual period is within the uncertainty.
     pub value: f64,
-    /// Half width of the interval of the period; `None` for a full turn, and for a usual period
-    /// that the jumps determine to the resolution of the sensor.
+    /// Half width of the period's interval; `None` if it is below the resolution, or a full turn.
     pub uncertainty: Option<f64>,
     pub is_usual: bool,
     pub is_turn: bool,

@@ -59,8 +59,7 @@ impl<'d> ReadColumn<'d> {
         full_turn(self.unit).map(|turn| self.unit.to_si(turn))
     }
 
-    /// Returns the declared period in SI. A rounded full or half turn becomes exact, because its
-    /// error would accumulate with every turn.
+    /// Returns the declared period in SI; a rounded full or half turn becomes exact.
     fn period(&self, number: Number) -> f64 {
         let period = self.unit.to_si(number.value);
         let turns = self.turn().into_iter().flat_map(|turn| [turn, 0.5 * turn]);
@@ -89,8 +88,7 @@ pub(crate) fn can_wrap(unit: &Unit) -> bool {
 /// Unwraps the declared columns and returns notes. `range` is the file and the time range in use.
 ///
 /// # Errors
-/// A wrapped column without `wrap`, a wrong period, or a gap inside the range with an unknown
-/// number of periods.
+/// A wrapped column without `wrap`, a wrong period, or a gap with an unknown number of periods.
 pub(crate) fn unwrap_columns(
     read: &[ReadColumn<'_>],
     (file, range): (&Path, Range<f64>),

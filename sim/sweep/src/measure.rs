@@ -62,8 +62,7 @@ pub trait Worker {
     fn measure(&mut self, settings: &[(&str, f64)], out: &mut [f64]) -> Result<(), Failure>;
 }
 
-/// Reason why a point has no number. The sweep continues: the numbers are NaN and the status column
-/// contains [`Failure::code`].
+/// Reason why a point has no number: the numbers are NaN, the status is [`Failure::code`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Failure {
     /// Inadmissible parameters.

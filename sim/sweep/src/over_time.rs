@@ -1,5 +1,4 @@
-//! Measures `max:NAME`, `rms:NAME` and `final:NAME`: statistics of a quantity over time. Samples
-//! are the same as the rows of `simulate`.
+//! Measures `max:NAME`, `rms:NAME` and `final:NAME`, with the same samples as `simulate`.
 
 use std::collections::BTreeMap;
 
@@ -68,8 +67,7 @@ pub struct OverTime<'a> {
 }
 
 impl<'a> OverTime<'a> {
-    /// Creates the measure `asked`, for example `max:tip`, of an observable, a coordinate or a
-    /// rate. Returns `None` for the name of another measure.
+    /// Creates the measure `asked`, for example `max:tip`; `None` for another measure's name.
     ///
     /// # Errors
     /// A quantity that the model does not have, or an invalid window.

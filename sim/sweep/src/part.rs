@@ -26,8 +26,7 @@ pub enum Found {
     Other,
 }
 
-/// Returns the bytes of a chunk with its numbers, point by point. All NaNs are written equally,
-/// because their sign and payload depend on the machine.
+/// Returns the bytes of a chunk; all NaNs are equal, because their bits depend on the machine.
 pub fn encode(job: &Job, chunk: usize, numbers: &[f64]) -> String {
     let mut text = header(job, chunk);
     text.reserve(numbers.len() * 17);

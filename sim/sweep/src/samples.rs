@@ -83,8 +83,7 @@ impl Samples {
     /// Creates samples of the uncertain parameters of a model, around their values.
     ///
     /// # Errors
-    /// A model without uncertain parameters, an uncertainty that is undefined at a parameter's
-    /// value, or a number of samples outside 1 to [`MOST_POINTS`].
+    /// No uncertain parameter, an undefined uncertainty, or an invalid number of samples.
     pub fn new(model: &Model, count: usize, seed: u64) -> Result<Self, SweepError> {
         let spreads = model.spreads();
         let spreads = spreads.map_err(|error| SweepError::Request(error.to_string()))?;

@@ -23,8 +23,7 @@ use crate::variant::Variant;
 use eomgen_compiled_model::{CompiledModel, Orders};
 use eomgen_sim::piecewise_linear::Propagator;
 
-/// Derives `model` with every field at `order` and returns its certificate. `emitted` is the source
-/// of that variant with `outputs`, as a single file.
+/// Derives `model` at `order` and returns its certificate; `emitted` is the source with `outputs`.
 ///
 /// # Errors
 /// [`ModelError`] if a parameter has no finite value.

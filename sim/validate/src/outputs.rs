@@ -13,8 +13,7 @@ pub const JACOBIANS: [&str; 6] = [
     "observables_by_parameters",
 ];
 
-/// Output functions of one variant. A function returns `None` if it was not requested. Observables
-/// are those of the specification, then `energy` and `power`.
+/// Output functions of one variant, `None` if not requested. Observables end in `energy`, `power`.
 pub trait Outputs {
     /// Returns the names of the requested outputs, as in `--with`.
     fn names(&self) -> Vec<String>;

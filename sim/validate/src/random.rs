@@ -1,5 +1,4 @@
-//! Pseudo-random numbers of the validation: SplitMix64 (Steele, Lea and Flood 2014). The same seed
-//! gives the same certificate on every machine.
+//! Pseudo-random numbers: SplitMix64 (Steele, Lea and Flood 2014), the same on every machine.
 
 use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};

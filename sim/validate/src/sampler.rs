@@ -220,8 +220,7 @@ impl<'o> Sampler<'o> {
         Ok(None)
     }
 
-    /// Returns true if all entries are within their ranges and within `LARGEST` times their sizes.
-    /// A move into a regime can violate both.
+    /// Returns true if all entries are within their ranges and `LARGEST` times their sizes.
     fn is_within(&self, sample: &Sample) -> bool {
         let ranges = self.oracle.ranges();
         let states = ranges.state.iter().zip(&sample.state);
@@ -234,8 +233,7 @@ impl<'o> Sampler<'o> {
         ranged && sized.all(|sized| sized)
     }
 
-    /// Changes one state entry per switch on the wrong side, by the linear change to the right
-    /// side. Returns true if no switch was on the wrong side.
+    /// Changes one entry per switch on the wrong side; returns true if there was none.
     fn correct(&mut self, sample: &mut Sample, regime: &Regime) -> Result<bool, OracleError> {
         let Sample {
             time,

@@ -40,8 +40,7 @@ pub(super) fn seek(
     is_inside(oracle, sample, regime)
 }
 
-/// Returns true if a state is in `regime` and a quantity at rest has no slope. A state that only
-/// crosses zero is not in the regime.
+/// Returns true if a state is in `regime` and every quantity at rest has no slope.
 fn is_inside(oracle: &Oracle, sample: &Sample, regime: &Regime) -> Result<bool, OracleError> {
     if Regime::of(oracle, sample)? != *regime {
         return Ok(false);

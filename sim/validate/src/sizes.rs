@@ -39,8 +39,7 @@ pub(super) fn of_state(oracle: &Oracle) -> Result<Vec<f64>, OracleError> {
     Ok(sizes)
 }
 
-/// Returns the sizes of the inputs: half of the range, or the geometric mean of the parameters of
-/// the same dimension, or 1 in SI.
+/// Returns the inputs' sizes: half the range, the mean of parameters of equal dimension, or 1.
 pub(super) fn of_inputs(oracle: &Oracle) -> Vec<f64> {
     let ranges = oracle.ranges();
     let inputs = ranges.inputs.iter().zip(&ranges.input_scales);
@@ -97,8 +96,7 @@ fn of_states(oracle: &Oracle, sizes: &[f64], inputs: &[f64]) -> Result<Vec<f64>,
         .collect())
 }
 
-/// Returns the sizes of the coordinates; 0 for modes. A coordinate is in a dead zone if the dead
-/// zone depends on no other coordinate.
+/// Returns the coordinates' sizes, 0 for modes, in dead zones that depend on no other one.
 fn of_coordinates(oracle: &Oracle, inputs: &[f64]) -> Result<Vec<f64>, OracleError> {
     let mut sizes = vec![1.0; oracle.size()];
     for row in oracle.modes().flatten() {

@@ -69,8 +69,7 @@ fn beam(order: usize, coupled: bool) -> Certificate {
     certificate(BEAM, order, &variants, &[], Err("not emitted".into()))
 }
 
-/// Returns the certificate of the preloaded mass. `kernel` is the force of its kernel within the
-/// play; `derivative` adds a fault to the exact derivative.
+/// Certifies the preloaded mass with the force `kernel` in the play, or a faulty `derivative`.
 fn preload(kernel: &str, derivative: bool) -> Certificate {
     let model = model(PRELOAD);
     let derivative = Preload::derivative(derivative);

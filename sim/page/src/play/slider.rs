@@ -30,8 +30,7 @@ pub struct Slider<'m> {
 }
 
 impl<'m> Slider<'m> {
-    /// Creates the slider of a parameter in its declared unit; `value` is in SI. Without declared
-    /// limits the slider goes from 0 to twice the value.
+    /// Creates the slider of a parameter, by default from 0 to twice its `value`, which is in SI.
     pub fn of_parameter(parameter: &'m Parameter, place: usize, value: f64) -> Self {
         let unit = &parameter.unit;
         let value = unit.from_si(value);

@@ -1,5 +1,4 @@
-//! Pictures over parameters as PNG: a quantity over two parameters in colours, and points over one
-//! parameter, as in a bifurcation diagram.
+//! Pictures over parameters as PNG: maps of two parameters, and points over one.
 //!
 //! [`map_png`] and [`scatter_png`] draw them. `frame` computes the axes, `shades` maps values to
 //! colours and draws their bar, `raster` contains the pixels and `typeface` writes text. Pixels are
@@ -66,8 +65,7 @@ pub fn map_png(map: &Map<'_>) -> Result<Vec<u8>, PlotError> {
     raster.png(&map.title)
 }
 
-/// Draws points over a parameter as a PNG of 1000 by 760 px. Overlapping points are darker,
-/// independent of their order.
+/// Draws points over a parameter as a PNG of 1000 by 760 px, darker where they overlap.
 ///
 /// # Errors
 ///

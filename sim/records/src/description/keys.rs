@@ -1,7 +1,6 @@
 //! Tables and keys of a dataset file, for the reader, its documentation and its schema.
 
-/// Tables with their keys. For tables with named entries, the keys of an entry. `title` and
-/// `source` are outside of all tables.
+/// Tables with their keys, or with the keys of their entries; not `title` and `source`.
 pub const TABLES: [(&str, &[&str]); 10] = [
     ("records", &RECORDS),
     ("format", &FORMAT),

@@ -1,5 +1,4 @@
-//! Detection of a text file's layout: the separator and decimal sign that give the longest block of
-//! lines with equally many numbers.
+//! Detection of separator and decimal sign: those with the longest block of lines of numbers.
 
 use crate::csv_file::parsed;
 use crate::description::format::{DECIMALS, Format, SEPARATORS, Separator};

@@ -144,8 +144,7 @@ const RULES: [(Rule, &str); 5] = [
     ),
 ];
 
-/// Matches columns and quantities, each once. Ambiguous candidates are not matched. Remaining
-/// columns are tried again with the end of their name as a unit.
+/// Matches unambiguous columns and quantities, lastly with the end of a name as a unit.
 pub(crate) fn matched(columns: &mut [FileColumn], quantities: &[Quantity]) -> Vec<Match> {
     let mut matches = Vec::new();
     by_rules(columns, quantities, &mut matches);

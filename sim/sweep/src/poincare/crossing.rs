@@ -60,8 +60,7 @@ impl Crossing {
         })
     }
 
-    /// Returns the fraction of the way between two points at which the motion crosses `value` in
-    /// the direction of the section, if it does.
+    /// Returns the fraction of the way at which the motion crosses `value` in the right direction.
     fn between(&self, value: f64, before: &[f64], after: &[f64]) -> Option<f64> {
         let sign = if self.is_upwards { 1.0 } else { -1.0 };
         let above = |y: &[f64]| sign * (y[self.state] - value);
@@ -98,8 +97,7 @@ pub struct Seen {
     pub between: Vec<Vec<f64>>,
 }
 
-/// Returns `kept` crossings of an instance's motion after the first `transient`. A section by a
-/// periodic angle is crossed in every turn.
+/// Returns `kept` crossings after the first `transient`, in every turn of a periodic angle.
 ///
 /// # Errors
 /// A motion that fails, or that has fewer crossings before the time `until`, in s.
@@ -158,8 +156,7 @@ fn followed(
 /// Switching surface of a section: the value, or the value in every turn.
 struct Surface<'c> {
     crossing: &'c Crossing,
-    /// Number of the current turn, if every turn has a section. It changes only at crossings, so
-    /// that a step over several turns ends at the first one.
+    /// Current turn, if every turn has a section. It changes only at crossings, so none is skipped.
     turn: Option<Cell<f64>>,
 }
 
@@ -182,8 +179,7 @@ impl Surface<'_> {
         });
     }
 
-    /// Returns the guard. Its sign alternates between turns, so that it is continuous when the
-    /// motion enters the next turn.
+    /// Returns the guard; its sign alternates between turns, so that it is continuous.
     fn guard(&self, y: &[f64]) -> f64 {
         let value = y[self.crossing.state];
         let Some(turn) = &self.turn else {
@@ -215,8 +211,7 @@ struct Watched<'c, S> {
 }
 
 impl<S: System> Watched<'_, S> {
-    /// Simulates a motion until the last crossing or the end of the time. Returns the samples from
-    /// the first crossing that counts.
+    /// Simulates up to the last crossing; returns the samples from the first one that counts.
     fn follow(
         &self,
         initial: &[f64],

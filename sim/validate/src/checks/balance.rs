@@ -93,8 +93,7 @@ impl Motion {
         Ok(())
     }
 
-    /// Returns the state after an accepted step. Halves the step size until two half steps agree
-    /// with the whole step, and doubles it for the next step.
+    /// Takes a step, halved until two half steps agree with it, and doubles it for the next one.
     fn advance(
         &self,
         variant: &mut dyn Variant,

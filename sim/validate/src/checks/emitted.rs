@@ -14,8 +14,7 @@ const NAME: &str = "emitted_rust";
 const STATES: usize = 100;
 const SEED: u64 = 0x0e31_77ed;
 
-/// Compiles `emitted` and compares it with `variant` and `functions` at random states. The value of
-/// the first check is the count of numbers with different bits.
+/// Compiles `emitted` and counts the numbers that differ from `variant` and `functions` by a bit.
 pub fn check(
     oracle: &Oracle,
     variant: &mut dyn Variant,

@@ -1,5 +1,4 @@
-//! Comparison of the exact solver's state derivative with the variant's rates, at states in every
-//! regime. Some states have a guard at rest at zero.
+//! Comparison of the exact solver's state derivative with the variant's rates in every regime.
 
 use super::super::certificate::{Check, Worst};
 use super::super::oracle::{Oracle, OracleError};
@@ -7,8 +6,7 @@ use super::super::variant::Variant;
 use super::inside::samples;
 
 const NAME: &str = "exact_derivative";
-/// Tolerance, relative to the sum of the magnitudes of a rate's terms. The linear equations sum the
-/// same terms in another order.
+/// Tolerance relative to the magnitudes of a rate's terms, which are summed in another order.
 const TOLERANCE: f64 = 1e-11;
 const STATES_PER_REGIME: usize = 20;
 const SEED: u64 = 0x0e4a_c7d5;

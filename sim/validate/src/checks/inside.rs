@@ -10,8 +10,7 @@ const NEARBY: f64 = 1e-6;
 /// Draws up to `per_regime` states in every regime and as many in any regime.
 ///
 /// # Errors
-/// [`OracleError`] as from [`Oracle::equations`]. The inner error is the variant's message or a
-/// message that no state was found.
+/// [`OracleError`] as from [`Oracle::equations`]; inside, the variant's message or no state.
 pub fn samples(
     oracle: &Oracle,
     variant: &mut dyn Variant,

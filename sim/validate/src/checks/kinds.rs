@@ -13,8 +13,7 @@ use super::super::variant::Variant;
 use super::linked::{Emitted, differences, line, run_linked};
 use std::path::Path;
 
-/// Tolerance of single precision, in error bounds. Number and bound are computed in double
-/// precision, which adds much less than 1e-6.
+/// Tolerance in error bounds; rounding in double precision adds much less than 1e-6.
 const SINGLE_TOLERANCE: f64 = 1.0 + 1e-6;
 /// Maximum number of states, compared in groups of eight for SIMD.
 const STATES: usize = 48;

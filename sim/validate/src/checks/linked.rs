@@ -7,8 +7,7 @@ use crate::compiler::{self, Compiler, Optimization};
 use crate::sampler::Sample;
 use crate::variant::Variant;
 
-/// Source text of a variant: a crate with `Parameters`, `Coefficients`, `Inputs` and functions of
-/// `(t, &state, &inputs, &coefficients)`.
+/// Source of a variant: a crate with `Parameters`, `Coefficients`, `Inputs` and functions.
 #[derive(Clone, Debug)]
 pub struct Emitted {
     /// Text of the crate root.
@@ -17,8 +16,7 @@ pub struct Emitted {
     pub input_fields: Vec<String>,
     /// Functions to compare.
     pub functions: Vec<EmittedFunction>,
-    /// Requested outputs, by their names in `--with`, if the source is generic over its trait
-    /// `Scalar`; `None` if its functions use only `f64`.
+    /// Requested outputs, by their names in `--with`; `None` if the functions use only `f64`.
     pub outputs: Option<Vec<String>>,
 }
 
@@ -216,8 +214,7 @@ pub fn differing_numbers(line: &str, expected: &[f64]) -> usize {
     expected.iter().filter(differs).count()
 }
 
-/// Counts the words that differ between two lines; a missing word differs. NaNs are equal, because
-/// arithmetic does not define their sign and payload.
+/// Counts the words that differ between two lines, missing ones included. All NaNs are equal.
 pub fn differences(found: &str, expected: &str) -> usize {
     let (found, expected): (Vec<_>, Vec<_>) =
         (found.split(' ').collect(), expected.split(' ').collect());

@@ -33,8 +33,7 @@ pub const ROW_TOLERANCE: f64 = 1e-12;
 /// Tolerance of entries of the mass matrix: about a thousand roundings. It is relative to the
 /// geometric mean of the two diagonal entries or to the terms that cancel in the entry.
 pub const MASS_TOLERANCE: f64 = 2e-13;
-/// Tolerance of the mass matrix's asymmetry, relative as above. An entry is a product of a few
-/// factors, possibly in another order in its mirror entry.
+/// Tolerance of the mass matrix's asymmetry, for products of a few factors in another order.
 pub const SYMMETRY_TOLERANCE: f64 = 1e-15;
 
 /// Returns the accelerations of a variant, then the rates of first-order states.

@@ -12,9 +12,8 @@ use nalgebra::DMatrix;
 const STATES: usize = 50;
 const SEED: u64 = 0x0e57_ed00;
 
-/// Compares mass matrices, velocity terms and forces of two orders of one model. `oracle` belongs
-/// to the smaller order and provides the scale of each row. The names of the checks are `name`
-/// followed by `_mass`, `_bias` and `_forces`.
+/// Compares mass matrices, velocity terms and forces of two orders. `oracle` belongs to the smaller
+/// one. The checks are `name` with `_mass`, `_bias` and `_forces`.
 pub fn check(
     name: &str,
     oracle: &Oracle,

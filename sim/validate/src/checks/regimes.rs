@@ -1,5 +1,4 @@
-//! Comparison of the compiled kernels of regimes with the variant's rates, at states in every
-//! regime. Some states have a guard at rest at zero.
+//! Comparison of the compiled kernels of regimes with the variant's rates in every regime.
 
 use super::super::certificate::{Check, Worst};
 use super::super::compiler::{Compiler, Optimization};
@@ -18,8 +17,7 @@ const MOST_KERNELS: usize = 100;
 const SURFACES: usize = u32::BITS as usize;
 const SEED: u64 = 0x2e61_3e5a;
 
-/// Compiles the kernels in `emitted` and compares them with `variant`. The value of the check is
-/// the count of different numbers.
+/// Compiles the kernels in `emitted` and counts the numbers that differ from `variant`.
 pub fn check(
     oracle: &Oracle,
     variant: &mut dyn Variant,

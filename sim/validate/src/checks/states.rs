@@ -23,8 +23,7 @@ const SEED: u64 = 0x0dd5_eed5;
 pub struct Reference {
     /// Name in the certificate.
     pub name: String,
-    /// Returns the deviation of accelerations from the reference at (time, state, inputs), relative
-    /// to the largest term of each row of the reference.
+    /// Deviation of accelerations at (time, state, inputs), relative to each row's largest term.
     #[expect(clippy::type_complexity, reason = "a plain function of four arguments")]
     pub deviation: Box<dyn Fn(f64, &[f64], &[f64], &[f64]) -> f64>,
 }
@@ -114,8 +113,7 @@ fn every_regime(coverage: &Coverage) -> Check {
     Check::not_run(NAME, 0.0, reason)
 }
 
-/// Returns true if T + V does not depend explicitly on time at several states. At a single state, a
-/// term that is linear in the rates can be too small to detect.
+/// Returns true if T + V does not depend explicitly on time at several states.
 fn is_scleronomic(oracle: &Oracle) -> Result<bool, OracleError> {
     let mut sampler = Sampler::new(oracle, SEED)?;
     for _ in 0..FEWEST {

@@ -1,5 +1,4 @@
-//! Rates and Jacobians at states with coordinates or rates equal to 0, for example at rest. Roots
-//! and quotients can be infinite or NaN there and nowhere else.
+//! Rates and Jacobians with coordinates or rates equal to 0, where roots or quotients can be NaN.
 
 use super::unknowns;
 use crate::certificate::{Check, Worst};
@@ -23,8 +22,7 @@ const ROUNDING: f64 = 1e-6;
 const RATES: &str = "rates_at_zeros";
 const JACOBIANS_THERE: &str = "jacobians_at_zeros";
 
-/// Checks that rates and Jacobians are finite. A state at which the oracle has no finite value or
-/// no derivative is excluded and reported.
+/// Checks that rates and Jacobians are finite, except where the oracle's are not.
 pub fn check(
     oracle: &Oracle,
     variant: &mut dyn Variant,
@@ -157,8 +155,7 @@ fn accelerations(oracle: &Oracle, sample: &Sample) -> Result<Option<Vec<f64>>, O
     Ok(found.filter(|found| found.iter().all(|number| number.is_finite())))
 }
 
-/// Returns true if the accelerations are differentiable: their deviation from a linear function of
-/// the state decreases with the step, or is rounding.
+/// Returns true if the deviation from a linear function decreases with the step, or is rounding.
 fn has_derivative(
     oracle: &Oracle,
     sample: &Sample,

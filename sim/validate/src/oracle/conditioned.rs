@@ -3,8 +3,7 @@
 //! error analysis (Wilkinson, Higham) in units of one rounding. Without cancellation the magnitude
 //! is that of the value. After cancellation it bounds the accuracy of the value.
 //!
-//! The values are those of plain `f64`, operation by operation. As the real type of dual numbers,
-//! these numbers also provide the magnitudes of derivatives.
+//! The values are those of plain `f64`; dual numbers of these give magnitudes of derivatives too.
 
 use num_dual::{DualNum, DualStruct, Mappable};
 use num_traits::{FromPrimitive, Inv, Num, One, Signed, Zero};

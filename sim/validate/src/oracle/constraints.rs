@@ -1,5 +1,4 @@
-//! Constraints at one state: derivatives by dual numbers, and right-hand sides for the
-//! accelerations. `equations` computes the multipliers.
+//! Constraints at one state: derivatives and right-hand sides for the accelerations.
 
 use super::Oracle;
 use super::OracleError;

@@ -1,5 +1,4 @@
-//! Double-double numbers of about 32 digits, with only the operations of the Gauss-Legendre rule
-//! and of the phase of a mode shape.
+//! Double-double numbers of about 32 digits, for Gauss-Legendre rules and phases of mode shapes.
 
 use std::ops::{Add, Mul, Sub};
 

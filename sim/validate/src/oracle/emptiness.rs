@@ -20,9 +20,8 @@ enum Relation {
 }
 
 impl Oracle {
-    /// Returns true if bounds prove that no state has these sides of the first switches, in the
-    /// order of [`Oracle::switches`]. `sizes` and `input_sizes` are typical sizes of the state and
-    /// the inputs. They only scale the inequalities.
+    /// Returns true if bounds prove that no state has these sides of the first switches of
+    /// [`Oracle::switches`]. `sizes` and `input_sizes` only scale the inequalities.
     ///
     /// States on the boundary of a range or of a function's domain are ignored.
     pub fn is_empty(&self, sides: &[Side], sizes: &[f64], input_sizes: &[f64]) -> bool {
@@ -51,8 +50,7 @@ impl Oracle {
         cone_is_empty(&self.homogeneous(&rows, &forms, sizes, input_sizes))
     }
 
-    /// Returns the rows and the bounds of their variables as a homogeneous system. Variables are in
-    /// units of their sizes; the last variable is 1.
+    /// Returns rows and bounds as a homogeneous system of scaled variables; the last one is 1.
     fn homogeneous(
         &self,
         rows: &[Affine],

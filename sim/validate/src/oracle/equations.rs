@@ -99,8 +99,7 @@ impl Residual {
     }
 }
 
-/// Minimum square of a pivot of the mass matrix, scaled to a unit diagonal. Below it, rounding
-/// decides if the matrix is positive definite.
+/// Minimum square of a pivot of the scaled mass matrix, below which rounding decides.
 const SMALLEST_PIVOT: f64 = 1e-13;
 
 impl Equations {
@@ -119,8 +118,7 @@ impl Equations {
             && rates.all(|rate| rate.value.is_finite() && rate.magnitude.is_finite())
     }
 
-    /// Returns true if the mass matrix is positive definite and the constraints are independent,
-    /// both with a margin over rounding.
+    /// Returns true if mass is positive definite and constraints independent, beyond rounding.
     pub fn is_definite(&self) -> bool {
         has_pivots(&self.scaled_mass().1)
             && (self.compliance()).is_some_and(|compliance| has_pivots(&scaled(&compliance).1))
@@ -218,8 +216,7 @@ impl Equations {
         scaled(&self.mass)
     }
 
-    /// Returns the scale of an entry of the mass matrix: the geometric mean of the two diagonal
-    /// entries, or the magnitude of the entry's terms.
+    /// Returns the scale of a mass entry: the geometric mean of two diagonals, or its magnitude.
     pub fn mass_scale(&self, row: usize, column: usize) -> f64 {
         let mean = (self.mass[(row, row)] * self.mass[(column, column)]).sqrt();
         mean.max(self.mass_magnitude[(row, column)])
@@ -239,8 +236,7 @@ impl Equations {
         sum
     }
 
-    /// Returns the accelerations by a dense Cholesky factorisation of the scaled mass matrix;
-    /// `None` if it is not positive definite.
+    /// Returns the accelerations by a Cholesky factorisation; `None` if not positive definite.
     pub fn accelerations(&self) -> Option<DVector<f64>> {
         let (scale, scaled) = self.scaled_mass();
         let mut right = self.right_side();
@@ -266,8 +262,7 @@ impl Equations {
         self.size() + self.state_rates.len()
     }
 
-    /// Returns the residual of every row for given unknowns (accelerations, then rates of
-    /// first-order states). Missing unknowns count as 0.
+    /// Returns each row's residual for accelerations, then first-order rates; missing ones are 0.
     pub fn residuals(&self, unknowns: &[f64]) -> Vec<Residual> {
         let rates = unknowns.get(self.size()..).unwrap_or_default();
         let rates = rates.iter().copied().chain(std::iter::repeat(0.0));
@@ -334,9 +329,8 @@ impl Equations {
             .fold(0.0, f64::max)
     }
 
-    /// Returns the largest distance of two sets of unknowns over all rows. The distance is |mass
-    /// (first - second)| relative to the row's scale at `first`, or |first - second| for rates of
-    /// first-order states.
+    /// Returns the largest distance of two sets of unknowns over all rows: |mass (first - second)|
+    /// relative to the row's scale at `first`, or |first - second| for first-order rates.
     pub fn distance(&self, first: &[f64], second: &[f64]) -> f64 {
         if first.len() != self.unknown_count() || second.len() != self.unknown_count() {
             return f64::INFINITY;

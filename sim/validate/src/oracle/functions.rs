@@ -18,8 +18,7 @@ where
     }
 }
 
-/// Returns the value of a piecewise function on a given side of its switch, independent of the
-/// arguments' actual side; `None` for a function without sides.
+/// Returns a piecewise function on a given side of its switch; `None` for a smooth one.
 pub(super) fn on_side<N>(function: Function, side: Side, arguments: &[N]) -> Option<N>
 where
     N: DualNum<Primitive = f64> + Copy,

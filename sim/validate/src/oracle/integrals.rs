@@ -124,8 +124,7 @@ impl Channel {
 }
 
 impl Scene<'_> {
-    /// Returns integral `index` with its derivatives in two directions. Returns `None` if they are
-    /// not cached (two positions, a value of another field).
+    /// Returns integral `index` in two directions; `None` if these derivatives are not cached.
     pub fn integral(&self, index: usize, directions: [Direction; 2]) -> Option<Number> {
         let integral = self.system.integrals.get(index)?;
         let table = self.integrals.get(index)?;

@@ -94,8 +94,7 @@ pub struct Oracle {
 }
 
 impl Oracle {
-    /// Creates the oracle of `model` at `order`. Parameters are in SI and in the order of the model
-    /// (see [`Model::parameter_values`]).
+    /// Creates the oracle of `model`; parameters as in [`Model::parameter_values`].
     ///
     /// # Errors
     /// [`OracleError`] if the model is not supported.

@@ -17,8 +17,7 @@ pub(super) fn lower_observables(lowering: &mut Lowering<'_>, model: &Model) -> V
 }
 
 impl Oracle {
-    /// Returns the observables at a state in the order of the specification, then T + V and its
-    /// rate. An unsupported observable is 0 with infinite magnitude.
+    /// Returns the observables, T + V and its rate; 0 with infinite magnitude if unsupported.
     pub fn observables(
         &self,
         time: f64,

@@ -1,5 +1,4 @@
-//! Places at which fields are evaluated: quadrature nodes of a domain and single positions, each
-//! with its mode shapes. They depend only on parameters.
+//! Quadrature nodes and single positions of a field, each with its mode shapes.
 //!
 //! Number of nodes: phi_S has the phase pi S over the domain. A product of two modes oscillates as
 //! cos(2 pi S s), a product of four (a quartic energy) as cos(4 pi S s). On [0, 1] a Gauss-Legendre

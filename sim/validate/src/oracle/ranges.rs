@@ -33,8 +33,7 @@ impl Ranges {
     }
 }
 
-/// Returns the nonzero magnitudes of the parameters of a dimension. The list is empty for
-/// dimensionless quantities, which need not be of one kind.
+/// Returns the nonzero magnitudes of parameters of a dimension; none for a dimensionless one.
 fn parameter_sizes(model: &Model, parameters: &[f64], dimension: Dimension) -> Vec<f64> {
     let known = model.parameters.iter().zip(parameters);
     let of_dimension = known.filter(|(parameter, _)| {

@@ -82,8 +82,7 @@ pub(super) struct Scene<'s> {
 }
 
 impl<'s> Scene<'s> {
-    /// Creates the scene of a state (coordinates, rates, first-order states). Without
-    /// accelerations, rates are constant.
+    /// Creates the scene of a state. Without accelerations, rates are constant.
     pub fn new(
         system: &'s System,
         time: f64,

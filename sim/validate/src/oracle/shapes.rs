@@ -1,5 +1,4 @@
-//! Mode shapes of uniform beams from their boundary conditions. The derivation uses closed
-//! formulas; this module shares none of them.
+//! Mode shapes of beams from boundary conditions, without the closed formulas of the derivation.
 //!
 //! The four solutions of phi'''' = z^4 phi have magnitudes of about 1:
 //!
@@ -161,8 +160,7 @@ fn null_vector(matrix: Matrix4<f64>) -> Vector4<f64> {
         .map_or_else(Vector4::zeros, |rows| rows.row(least).transpose())
 }
 
-/// Returns sin and cos of z s. Full turns are reduced exactly and the remaining angle is small, so
-/// the error does not increase with r.
+/// Returns sin and cos of z s. Full turns are exact, so the error does not increase with r.
 fn sine_cosine(half_waves: f64, delta: f64, position: DoubleDouble) -> (f64, f64) {
     let half_turns = DoubleDouble::product(half_waves, position.high);
     let quarter_turns = (2.0 * half_turns.high).round();

@@ -1,5 +1,4 @@
-//! Shapes of a table by cubic splines. The unknowns are second derivatives M_i at the knots,
-//! whereas the derivation uses slopes, so the two share no code.
+//! Shapes of a table by cubic splines with unknown second derivatives M_i, not slopes.
 //!
 //! Between two knots the second derivative is linear. The slope is continuous if
 //!

@@ -157,8 +157,7 @@ impl Oracle {
 }
 
 impl Oracle {
-    /// Returns the derivatives of quantity and half-width of switch `index` by every entry of the
-    /// state, every input and the time.
+    /// Returns the derivatives of quantity and half-width by every state entry, input and the time.
     pub fn switch_gradient(
         &self,
         index: usize,

@@ -81,8 +81,7 @@ impl LoweredForce {
     }
 }
 
-/// Converts terms, each addend separately. The scale of a row is its largest addend, and a term
-/// such as `a - b` can be small after cancellation.
+/// Converts each addend separately, because the scale of a row is its largest addend.
 pub(super) fn lower_terms(
     lowering: &mut Lowering<'_>,
     terms: &[Term],

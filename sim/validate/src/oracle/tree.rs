@@ -1,5 +1,4 @@
-//! Expressions of the oracle. Parameters are numbers, positions are lists of nodes, constants are
-//! folded. `lower` creates trees and `evaluate` evaluates them.
+//! Expressions of the oracle, with numbers for parameters and lists of nodes for positions.
 
 use eomgen_model_spec::ast::BinaryOperator;
 use eomgen_model_spec::model::Function;

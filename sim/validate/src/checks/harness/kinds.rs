@@ -1,5 +1,4 @@
-// Harness that compiles the emitted source, crate `model`, with other number types. The check
-// replaces the comments in capitals.
+// Harness for the emitted source, crate `model`; the check replaces comments in capitals.
 #![allow(unused, non_snake_case, clippy::all)]
 
 use model::{Function, FunctionOfTwo, Real, Scalar};
@@ -26,9 +25,8 @@ impl<const N: usize, const M: usize> Print for [[f64; N]; M] {
     }
 }
 
-/// Number in double precision with a bound of its error in single precision, by running error
-/// analysis to all orders (N. J. Higham, Accuracy and Stability of Numerical Algorithms, section
-/// 3.3).
+/// Number with a bound of its error in single precision, by running error analysis to all orders
+/// (N. J. Higham, Accuracy and Stability of Numerical Algorithms, section 3.3).
 #[derive(Clone, Copy, Debug)]
 struct Rounded {
     number: f64,

@@ -9,8 +9,7 @@ use eomgen_model_spec::model::ParameterValue;
 
 /// Maximum number of directions at a state. With more variables, random directions are used.
 const DIRECTIONS: usize = 40;
-/// Maximum number of coordinates for which all variables are used, and bound on the number of
-/// directions for larger models.
+/// Maximum number of coordinates to vary each variable, and of directions for larger models.
 const SMALL: (usize, usize) = (12, 8);
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,8 +19,7 @@ pub(super) enum Moved {
     Parameters,
 }
 
-/// Returns directions, each in one kind of variable. Small models use every variable in turn,
-/// larger ones some variables and sums of all.
+/// Returns directions in one kind of variable each: every variable, or some and sums of all.
 pub(super) fn directions(
     judged: &Judged<'_>,
     names: &[String],
