@@ -47,7 +47,7 @@ impl Verdict {
 pub struct Arrival {
     /// Side to which the motion leaves, -1 or 1, if the surface cannot hold it.
     pub side: f64,
-    /// Whether the surface held the motion until now and would need more than its largest force to
+    /// True if the surface held the motion until now and would need more than its largest force to
     /// this side.
     pub is_overcome: bool,
 }

@@ -39,7 +39,7 @@ pub struct Request<'r> {
     pub tolerance: f64,
     /// Longest step, s; [`Solver::Exact`] ignores it. See [`Settings::max_step`].
     pub max_step: f64,
-    /// Whether to compare the change of the energy with the work; see [`Audit`].
+    /// True to compare the change of the energy with the work; see [`Audit`].
     pub audit: bool,
 }
 

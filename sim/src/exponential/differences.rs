@@ -132,7 +132,8 @@ impl ExponentialIntegrator {
         size.max(OF_TYPICAL_SIZE * self.typical_sizes[place])
     }
 
-    /// Whether a surface lies between a motion's state and the same with one state changed.
+    /// Returns true if a surface lies between a motion's state and the same with one state
+    /// changed.
     fn sides_differ(
         &self,
         motion: &Motion,

@@ -21,7 +21,7 @@ pub struct Remainder {
     pub force: Vec<f64>,
     /// What is added to the function of each surface.
     pub moved: Vec<f64>,
-    /// Whether anything may be.
+    /// True if a surface may be moved.
     pub moves: bool,
     /// What it adds to the side of each surface that holds the motion, in the order of the regime's.
     pub borne: Vec<f64>,

@@ -12,7 +12,7 @@ pub struct Slopes {
     pub there: Vec<f64>,
     /// States by which some are not 0, in the order in which that was seen.
     pub active: Vec<usize>,
-    /// Whether each is known.
+    /// True if each is known.
     pub is_known: [bool; 2],
     pub asked: usize,
     pub base: Remainder,

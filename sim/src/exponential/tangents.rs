@@ -44,7 +44,7 @@ pub(super) struct Reached<'r> {
 /// Selection of tangent vectors.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Directions {
-    /// Whether to include the tangent vectors of all initial states.
+    /// True to include the tangent vectors of all initial states.
     pub by_state: bool,
     /// Number of parameters with a tangent vector, from the first.
     pub by_parameter: usize,
@@ -149,7 +149,7 @@ impl<'d> Tangents<'d> {
         (self.driven > 0 || self.slopes.is_some()) && self.pending >= DRIVEN_STEPS
     }
 
-    /// Whether there are steps that the vectors have not made.
+    /// Returns true if there are steps that the vectors have not made.
     pub fn is_behind(&self) -> bool {
         self.pending > 0
     }

@@ -350,9 +350,10 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         self.enter_regime()
     }
 
-    /// Whether samples inside the last step, which ends at `t` (s), are interpolated. Beside switching surfaces,
-    /// where states are to be right to the last digit, the interior is looked at first: that takes as long as a
-    /// sample that is not interpolated, and is worth it where there are many.
+    /// Returns true if samples inside the last step, which ends at `t` (s), are interpolated.
+    /// Beside switching surfaces, where states are to be right to the last digit, the interior is
+    /// looked at first: that takes as long as a sample that is not interpolated, and is worth it
+    /// where there are many.
     fn is_interior_told(&mut self, t: f64) -> bool {
         if !self.watched.has_guards() {
             return true;
@@ -394,7 +395,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     }
 }
 
-/// Whether a state is made of numbers, after a step from `begin` (s).
+/// Returns true if a state is made of numbers, after a step from `begin` (s).
 fn check_finite(begin: f64, state: &[f64]) -> Result<(), SolveError> {
     match state.iter().position(|entry| !entry.is_finite()) {
         Some(state) => Err(SolveError::NotFinite { t: begin, state }),

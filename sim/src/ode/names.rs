@@ -5,7 +5,7 @@
 pub struct Surface {
     /// Formula that changes its sign.
     pub formula: String,
-    /// Whether the formula is a speed, as for dry friction.
+    /// True if the formula is a speed, as for dry friction.
     pub is_speed: bool,
 }
 

@@ -21,7 +21,7 @@ pub struct Outcome {
 
 /// A method that stands at a point and can go on from there.
 pub trait Stepper: Sized {
-    /// Whether stability keeps its steps short where a system is stiff.
+    /// True if stability keeps its steps short where a system is stiff.
     const IS_EXPLICIT: bool;
 
     /// Steps from `start`, the first one of length `step` (s) at most.
@@ -78,8 +78,8 @@ pub trait Stepper: Sized {
     /// method made none to here.
     fn interpolated(&mut self, t: f64) -> Option<Vec<f64>>;
 
-    /// Whether interpolation inside the last step is as accurate as the step: one that stability keeps short
-    /// ends where it should, and may swing in between.
+    /// Returns true if interpolation inside the last step is as accurate as the step: one that
+    /// stability keeps short ends where it should, and may swing in between.
     fn tells_interior<S: System + ?Sized>(&mut self, watched: &Watched<'_, S>) -> bool {
         let _ = watched;
         true

@@ -102,14 +102,14 @@ impl Pace {
 struct Fastest {
     /// 1/s.
     rate: f64,
-    /// Whether they meet, rather than turn around each other.
+    /// True if they meet, rather than turn around each other.
     decays: bool,
     /// The state variable that has most to do with it.
     state: usize,
 }
 
 impl Fastest {
-    /// Whether it is what keeps steps of this length, s, from being longer.
+    /// Returns true if it is what keeps steps of this length, s, from being longer.
     fn limits(&self, step: f64) -> bool {
         let limit = if self.decays {
             LIMITED

@@ -7,7 +7,7 @@ pub struct Switch {
     pub t: f64,
     /// Index of the switching function.
     pub guard: usize,
-    /// Whether the function is positive after the event.
+    /// True if the function is positive after the event.
     pub to_positive: bool,
 }
 

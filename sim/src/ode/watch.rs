@@ -125,7 +125,7 @@ impl<'a, S: System + ?Sized> Watched<'a, S> {
             .set(sides.position(|(guard, side)| side * guard < 0.0));
     }
 
-    /// Whether there are switching surfaces at all.
+    /// Returns true if there are switching surfaces at all.
     pub fn has_guards(&self) -> bool {
         !self.guards.borrow().is_empty()
     }
@@ -163,7 +163,7 @@ impl<'a, S: System + ?Sized> Watched<'a, S> {
         self.guards_at(self.seen(t), y)
     }
 
-    /// Whether switching function `guard` with value `value` is beyond its surface.
+    /// Returns true if switching function `guard` with value `value` is beyond its surface.
     pub fn is_beyond(&self, guard: usize, value: f64) -> bool {
         self.side(guard) * value < 0.0
     }
@@ -205,7 +205,7 @@ impl<'a, S: System + ?Sized> Watched<'a, S> {
         self.system.caught_or_let_go(t, y)
     }
 
-    /// Whether the system observes steps.
+    /// Returns true if the system observes steps.
     pub fn is_observing(&self) -> bool {
         self.system.is_observing()
     }
@@ -236,7 +236,7 @@ impl<'a, S: System + ?Sized> Watched<'a, S> {
             .unwrap_or(0)
     }
 
-    /// Whether the switching function `guard` is positive in the present regime.
+    /// Returns true if the switching function `guard` is positive in the present regime.
     pub fn is_positive(&self, guard: usize) -> bool {
         self.side(guard) > 0.0
     }

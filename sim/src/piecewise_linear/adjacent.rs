@@ -20,13 +20,14 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Adjacent {
     pub regime: usize,
-    /// Whether the rate of the family's function may jump there.
+    /// True if the rate of the family's function may jump there.
     pub jumps: bool,
     /// Where the constant saltation matrix of the transition is kept, if it is constant.
     pub saltation: Option<usize>,
-    /// Whether the functions of other families may jump in the transition.
+    /// True if the functions of other families may jump in the transition.
     pub moves_others: bool,
-    /// Whether the motion stands on other surfaces there, so that what happens is decided for all together.
+    /// True if the motion stands on other surfaces there, so that what happens is decided for all
+    /// together.
     pub meets_others: bool,
 }
 
@@ -69,7 +70,7 @@ impl Propagator {
         Ok(adjacent)
     }
 
-    /// Whether any event function of another family differs between two regimes.
+    /// Returns true if any event function of another family differs between two regimes.
     fn moves_others(&self, a: usize, b: usize, family: usize) -> bool {
         let (a, b) = (&self.regimes[a].regime, &self.regimes[b].regime);
         let mut pairs = a.event_functions.iter().zip(&b.event_functions);
@@ -78,7 +79,7 @@ impl Propagator {
         })
     }
 
-    /// Whether the rate of a family's function differs between two regimes.
+    /// Returns true if the rate of a family's function differs between two regimes.
     fn rate_jumps(&self, a: usize, b: usize, family: usize) -> bool {
         let row = &self.regimes[a].functions[family].state;
         let (a, b) = (

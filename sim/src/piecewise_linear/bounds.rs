@@ -69,7 +69,7 @@ struct Room {
     fast_difference: f64,
     /// The same for second differences.
     fast_bend: f64,
-    /// Whether the function moves by more than rounding at first.
+    /// True if the function moves by more than rounding at first.
     leaves: bool,
 }
 
@@ -99,7 +99,7 @@ impl Bounds {
 }
 
 impl Room {
-    /// Whether a limit is kept by a function whose way towards it has these bounds.
+    /// Returns true if a limit is kept by a function whose way towards it has these bounds.
     #[inline(always)]
     fn is_kept(&self, limit: usize, towards: &[f64; 5]) -> bool {
         let most = towards.iter().fold(0.0, |most, c| greater(*c, most));
@@ -112,8 +112,8 @@ impl Room {
         self.margins_here[limit] >= most
     }
 
-    /// Whether a limit is crossed, and that once, by a function whose way from it has these
-    /// bounds.
+    /// Returns true if a limit is crossed, and that once, by a function whose way from it has
+    /// these bounds.
     #[inline(always)]
     fn is_crossed(&self, limit: usize, from: &[f64; 5]) -> bool {
         let difference = |place: usize| from[place + 1] - from[place];

@@ -34,7 +34,7 @@ pub(super) enum Asking<'a> {
 }
 
 impl Propagator {
-    /// Whether any surface depends on others.
+    /// Returns true if any surface depends on others.
     pub(super) fn has_dependents(&self) -> bool {
         self.dependent.contains(&true)
     }
@@ -78,8 +78,8 @@ impl Propagator {
         }
     }
 
-    /// Whether any function feels on which side of its threshold a family is that is held there:
-    /// others may then be in other cells on either side, and no combination of two regimes
+    /// Returns true if any function feels on which side of its threshold a family is that is held
+    /// there: others may then be in other cells on either side, and no combination of two regimes
     /// tells the motion.
     pub(super) fn is_felt(&mut self, cells: &[Cell], family: usize) -> bool {
         let Cell::On(rank) = cells[family] else {
@@ -167,7 +167,7 @@ impl Propagator {
     }
 }
 
-/// Whether a cell borders on a threshold.
+/// Returns true if a cell borders on a threshold.
 fn is_beside(cell: Cell, rank: usize) -> bool {
     match cell {
         Cell::Between(above) => above == rank || above == rank + 1,

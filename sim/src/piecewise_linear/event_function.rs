@@ -57,7 +57,7 @@ impl Linear {
         moving + sinusoids.sum::<f64>() + self.constant.abs()
     }
 
-    /// Whether neither the state nor time moves it.
+    /// Returns true if neither the state nor time moves it.
     pub fn is_still(&self) -> bool {
         let moving = self.state.iter().chain(&self.sines).chain(&self.cosines);
         moving.copied().all(|factor| factor == 0.0)

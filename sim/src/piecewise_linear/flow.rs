@@ -60,7 +60,7 @@ pub(super) struct Flow {
     powers_of: f64,
     power_counts: [usize; 2],
     evaluations: Vec<EventEvaluation>,
-    /// Whether a function is leaving a limit that held it.
+    /// True if a function is leaving a limit that held it.
     departs: bool,
     clusters: Vec<ClusterFlow>,
     /// The state to be.
@@ -222,7 +222,7 @@ impl Flow {
         }
     }
 
-    /// Whether no amplitude has overflowed.
+    /// Returns true if no amplitude has overflowed.
     pub fn is_finite(&self) -> bool {
         let evaluation = self.evaluations.iter();
         let values = evaluation.flat_map(|evaluation| [evaluation.value, evaluation.size]);
@@ -304,7 +304,7 @@ impl Flow {
         }
     }
 
-    /// Whether a function is still leaving a limit that held it.
+    /// Returns true if a function is still leaving a limit that held it.
     pub fn is_departing(&self, place: usize) -> bool {
         self.evaluations[place].slack.is_some()
     }
@@ -334,7 +334,7 @@ impl Flow {
             .any(|evaluation| evaluation.slack.is_some());
     }
 
-    /// Whether a function is known to keep its limits until a time after the start, s.
+    /// Returns true if a function is known to keep its limits until a time after the start, s.
     pub fn is_safe(&self, place: usize, until: f64) -> bool {
         self.evaluations[place].safe_until >= until
     }
@@ -344,12 +344,12 @@ impl Flow {
         self.evaluations[place].safe_until = until;
     }
 
-    /// Whether a function has been summed up here.
+    /// Returns true if a function has been summed up here.
     pub fn is_summed_up(&self, place: usize) -> bool {
         self.evaluations[place].summed_up_at == self.tau
     }
 
-    /// Whether a function that has been summed up here is certainly between two limits.
+    /// Returns true if a function that has been summed up here is certainly between two limits.
     pub fn is_between(&self, place: usize, low: f64, high: f64) -> bool {
         let value = self.evaluations[place].value;
         self.clusters.is_empty() && low < value && value < high

@@ -150,7 +150,7 @@ impl Integrals {
         simd_vectors(self.size)
     }
 
-    /// Whether a time after the start, s, is near: fewer powers of it count.
+    /// Returns true if a time after the start, s, is near: fewer powers of it count.
     pub fn is_near(&self, tau: f64) -> bool {
         tau <= self.near
     }

@@ -71,7 +71,7 @@ impl Outline {
         Cell::Between(thresholds.filter(|threshold| value > **threshold).count())
     }
 
-    /// Whether a family's function and thresholds are those of another outline.
+    /// Returns true if a family's function and thresholds are those of another outline.
     pub fn same_function(&self, other: &Self, family: usize) -> bool {
         self.functions[family] == other.functions[family]
             && self.thresholds[family] == other.thresholds[family]

@@ -66,7 +66,7 @@ pub struct Motion {
     pub(super) state: Vec<f64>,
     pub(super) regime: usize,
     at_once: u32,
-    /// Whether functions may have jumped beyond their limits, and which.
+    /// Functions that may have jumped beyond their limits, if any.
     jumped: Option<Jumped>,
     /// Switches so far and the time at which the present average began.
     switches: u64,
@@ -120,7 +120,7 @@ pub(super) struct Segment<'a> {
     pub state: &'a [f64],
     /// How long it took, s.
     pub tau: f64,
-    /// Whether a surface held the motion.
+    /// True if a surface held the motion.
     pub is_held: bool,
 }
 

@@ -43,7 +43,7 @@ pub(super) struct Subspaces {
 
 /// How a refinement ended.
 pub(super) struct Refinement {
-    /// Whether the subspaces can be relied on.
+    /// True if the subspaces can be relied on.
     pub converged: bool,
     /// SplitComplex of blocks that rounding does not tell apart, if not.
     pub inseparable: Vec<(usize, usize)>,

@@ -33,7 +33,7 @@ pub(super) enum Found {
     Limit {
         /// The index of the function.
         event_function: usize,
-        /// Whether it is the upper limit.
+        /// True if it is the upper limit.
         upper: bool,
     },
     /// No function reaches a limit before the end of the search.
@@ -148,7 +148,7 @@ fn search_grazing_by<S: Simd>(
     }
 }
 
-/// Whether no function moves by more than its rounding within `length` s.
+/// Returns true if no function moves by more than its rounding within `length` s.
 fn is_still(flow: &Flow, regime: &Regime, length: f64) -> bool {
     let steps = &regime.step_table.steps;
     (0..regime.event_functions.len()).all(|event_function| {
@@ -406,8 +406,8 @@ impl Distance {
         }
     }
 
-    /// Whether the limit is reached here and the motion leads beyond it, given what rounding
-    /// at the start may have made of the rate.
+    /// Returns true if the limit is reached here and the motion leads beyond it, given what
+    /// rounding at the start may have made of the rate.
     fn is_reached(&self, start_rate_noise: f64) -> bool {
         let leads_outward = self.rate < -(self.rate_noise + start_rate_noise);
         let is_beyond = self.value < -4.0 * self.noise && self.rate < 0.0;

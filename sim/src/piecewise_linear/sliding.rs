@@ -177,7 +177,7 @@ fn inverted(projected: &DMatrix<f64>) -> Option<(DMatrix<f64>, bool)> {
     Some((inverse.ok()?, true))
 }
 
-/// Whether a function keeps its value, up to rounding.
+/// Returns true if a function keeps its value, up to rounding.
 fn is_held(system: &AffineSystem, below: &AffineSystem, row: &DVector<f64>) -> bool {
     let pairs = blocks(&system.rates).into_iter().zip(blocks(&below.rates));
     let mut pairs = pairs.map(|(block, below)| (block, block.iter().chain(below)));

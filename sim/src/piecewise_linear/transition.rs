@@ -16,9 +16,9 @@ pub(super) struct Limit {
     /// The function that reached its limit, and its family.
     pub event_function: usize,
     pub family: usize,
-    /// Whether it is the upper limit.
+    /// True if it is the upper limit.
     pub upper: bool,
-    /// Whether a jump led over it.
+    /// True if a jump led over it.
     pub by_jump: bool,
     /// When, s.
     pub t: f64,
@@ -31,7 +31,7 @@ pub(super) struct Transition {
     pub after: usize,
     /// Where the constant saltation matrix is kept, if it is constant.
     pub saltation: Option<usize>,
-    /// Whether functions of other families may jump.
+    /// True if functions of other families may jump.
     pub moves_others: bool,
 }
 
@@ -140,7 +140,8 @@ impl Propagator {
         self.regime(&after, limit.t)
     }
 
-    /// Whether the rates beyond a surface lead back to it, where those before lead onto it.
+    /// Returns true if the rates beyond a surface lead back to it, where those before lead onto
+    /// it.
     fn leads_back(
         &mut self,
         limit: &Limit,

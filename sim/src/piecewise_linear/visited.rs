@@ -100,8 +100,8 @@ impl Propagator {
         Ok(index)
     }
 
-    /// Whether a function keeps its value throughout the regime with these cells, for which it
-    /// was decided: it is still, or in proportion to one that is held.
+    /// Returns true if a function keeps its value throughout the regime with these cells, for
+    /// which it was decided: it is still, or in proportion to one that is held.
     fn is_at_rest(&self, functions: &[Linear], cells: &[Cell], family: usize) -> bool {
         let held = |(other, cell): (&Linear, &Cell)| {
             matches!(cell, Cell::On(_)) && factor(&functions[family], other).is_some()

@@ -31,7 +31,7 @@ const EXACT_TOLERANCE: f64 = 1e-9;
 #[derive(Debug)]
 pub(crate) struct Auditor {
     tolerance: f64,
-    /// Whether steps have rounding errors only.
+    /// True if steps have rounding errors only.
     is_exact: bool,
     /// Reason why contacts are not audited; `None` if they are.
     driven_contacts: Option<String>,

@@ -127,7 +127,7 @@ impl Contacts {
         self.impact_work -= work_against(&drifts, &self.closed, &impulses);
     }
 
-    /// Whether no contact that touches needs an impulse.
+    /// Returns true if no contact that touches needs an impulse.
     fn nothing_hits(&self, touching: &[usize], ago: f64) -> bool {
         let mut all = touching.iter();
         all.all(|place| self.to_be_stopped(*place, ago, 1.0) >= 0.0)
@@ -237,7 +237,7 @@ impl Contacts {
         }
     }
 
-    /// Whether impacts follow each other faster than the shortest flights, s.
+    /// Returns true if impacts follow each other faster than the shortest flights, s.
     fn without_end(&mut self, t: f64, shortest: f64) -> bool {
         let first = match self.recent.len() < MOST_IN_A_ROW {
             true => None,
@@ -277,7 +277,7 @@ impl Contacts {
     }
 }
 
-/// Whether impulses leave no rate negative.
+/// Returns true if impulses leave no rate negative.
 fn solves(delassus: &[Vec<f64>], rates: &[f64], impulses: &[f64]) -> bool {
     let unsolved = UNSOLVED * largest(rates);
     let mut rows = delassus.iter().zip(rates);

@@ -86,7 +86,7 @@ impl Contacts {
         }
     }
 
-    /// Whether anything rests.
+    /// Returns true if anything rests.
     pub fn rest(&self) -> bool {
         !self.closed.is_empty()
     }

@@ -37,7 +37,7 @@ pub struct Equilibrium {
     /// Names of the coordinates, rates, inputs and first-order states that were unknowns of the
     /// search.
     pub free: Vec<String>,
-    /// Whether the rates depend on time. If true, the point is an equilibrium at that instant
+    /// True if the rates depend on time. If true, the point is an equilibrium at that instant
     /// only.
     pub depends_on_time: bool,
 }

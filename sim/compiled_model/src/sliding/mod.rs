@@ -52,7 +52,7 @@ enum Place {
 }
 
 impl Place {
-    /// Whether the motion stands on the surface.
+    /// Returns true if the motion stands on the surface.
     fn is_on(self) -> bool {
         matches!(self, Self::Holding { .. } | Self::Bearing { .. })
     }
@@ -104,12 +104,12 @@ impl Sliding {
         self.sided
     }
 
-    /// Whether the rates are not those that the functions' signs give.
+    /// Returns true if the rates are not those that the functions' signs give.
     pub fn is_active(&self) -> bool {
         self.kept.is_some() || !self.is_free()
     }
 
-    /// Whether the motion stands on no surface, and has left those on which it did.
+    /// Returns true if the motion stands on no surface, and has left those on which it did.
     pub fn is_free(&self) -> bool {
         self.places.iter().all(|place| *place == Place::Free)
     }
