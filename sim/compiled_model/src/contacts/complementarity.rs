@@ -1,5 +1,5 @@
-//! Linear complementarity: impulses or forces that push where something would go through, and do not
-//! pull. The matrix is symmetric and positive semidefinite, as Delassus' is.
+//! Linear complementarity problems: impulses or forces that prevent penetration and do not pull.
+//! The Delassus matrix is symmetric and positive semidefinite.
 
 use eomgen_codegen::independence::vectors::{dot, largest};
 
@@ -9,8 +9,8 @@ const INDEPENDENT: f64 = 1e-10;
 /// What is this small beside the largest of the right side is zero.
 const NOTHING: f64 = 1e-12;
 
-/// x with x >= 0, W x + c >= 0 and x (W x + c) = 0, by the active sets of Lawson and Hanson
-/// (*Solving Least Squares Problems*, chapter 23). W by rows.
+/// Solves x >= 0, W x + c >= 0, x (W x + c) = 0 by the active-set method of Lawson and Hanson
+/// (*Solving Least Squares Problems*, chapter 23). W is given by rows.
 pub(super) fn complementary(w: &[Vec<f64>], c: &[f64]) -> Vec<f64> {
     let mut x = vec![0.0; c.len()];
     let mut pushing: Vec<usize> = Vec::new();
@@ -54,7 +54,7 @@ pub(super) fn complementary(w: &[Vec<f64>], c: &[f64]) -> Vec<f64> {
     x
 }
 
-/// The x of these rows with W x = -c among them; 0 where a row follows from others.
+/// Solves W x = -c for these rows; x is 0 for dependent rows.
 pub(super) fn balance(w: &[Vec<f64>], c: &[f64], rows: &[usize]) -> Vec<f64> {
     let size = rows.len();
     let mut lower = vec![0.0; size * size];

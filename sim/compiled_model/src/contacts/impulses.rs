@@ -1,4 +1,4 @@
-//! Bodies that hit: which contacts touch together, how rates jump there, and what rests afterwards.
+//! Impacts: touching contacts, jumps of rates, and contacts that close afterwards.
 
 use eomgen_codegen::independence::vectors::{dot, largest};
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
@@ -34,8 +34,8 @@ struct Flight {
 }
 
 impl Contacts {
-    /// What happens where the motion goes over a surface, from a state `before` to one just beyond,
-    /// at the time `t`: bodies that hit jump.
+    /// Applies an impact in the step across a surface, from a state `before` to `state` just
+    /// beyond it at the time `t`.
     pub fn cross(
         &mut self,
         own: &mut Evaluator,

@@ -1,4 +1,4 @@
-//! States kept on closed contacts, and bodies that overlap.
+//! Correction of states onto closed contacts, and detection of overlaps.
 
 use eomgen_codegen::independence::vectors::largest;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
@@ -10,8 +10,9 @@ use super::{CORRECTIONS, Contacts, OF_A_DISTANCE, Overlap, rounding_of};
 const OVERLAP: f64 = 1e-6;
 
 impl Contacts {
-    /// Brings a state onto the closed contacts, opens those that would have to pull, and returns the number of
-    /// evaluations. A state in which bodies overlap is replaced by NaN, which ends the motion.
+    /// Corrects a state onto the closed contacts, opens contacts whose force would pull, and
+    /// returns the number of evaluations. A state in which bodies overlap is replaced by NaN,
+    /// which stops the motion.
     pub fn keep(
         &mut self,
         own: &mut Evaluator,

@@ -1,12 +1,12 @@
-//! The impacts of a model while it moves: which contacts are closed, how rates jump where bodies hit,
-//! and which forces hold what rests. `complementarity` has the law that contacts push and do not pull.
+//! Impacts and contacts along a motion: closed contacts, jumps of rates at impacts, and contact
+//! forces. `complementarity` solves for forces that push and do not pull.
 //!
-//! Where a distance falls to zero the impulses obey Newton's law for all contacts that touch
-//! together, as Moreau takes it (B. Brogliato, *Nonsmooth Mechanics*, chapter 5): no impulse is negative, no
-//! rate g' comes out below -e g', and there is an impulse only where it comes out just so. Bouncing has
-//! infinitely many impacts in a finite time; a contact closes when the next flight would be shorter
-//! than a part of the time that the motion has taken so far. What is closed opens when its force falls
-//! to zero.
+//! If a distance falls to zero, the impulses of all touching contacts satisfy Newton's law in
+//! Moreau's form (B. Brogliato, *Nonsmooth Mechanics*, chapter 5): no impulse is negative, no rate
+//! g' after the impact is below -e g' before it, and an impulse is nonzero only if these are
+//! equal. A bouncing body has infinitely many impacts in a finite time, so a contact closes if the
+//! next flight would be shorter than a fraction of the elapsed time. A closed contact opens if its
+//! force falls to zero.
 
 mod complementarity;
 mod impulses;
@@ -34,9 +34,9 @@ const MOST_IN_A_ROW: usize = 256;
 /// Corrections of a state with closed contacts; each squares what is left.
 const CORRECTIONS: usize = 2;
 
-/// The contacts of a model that moves.
+/// Contacts of a model along a motion.
 pub(crate) struct Contacts {
-    /// The names of the impacts.
+    /// Names of the impacts.
     pub names: Vec<String>,
     /// When the motion began, s.
     start: Option<f64>,
@@ -86,13 +86,13 @@ impl Contacts {
         }
     }
 
-    /// Returns true if anything rests.
+    /// Returns true if a contact is closed.
     pub fn rest(&self) -> bool {
         !self.closed.is_empty()
     }
 
-    /// What is positive as long as the contacts stay as they are: the distances of those that are
-    /// open, the forces of those that are closed. Where it is first asked for the motion begins.
+    /// Writes the guards, positive while the contacts keep their state: distances of open contacts
+    /// and forces of closed ones. The first call starts the motion.
     pub fn guards(&mut self, own: &mut Evaluator, point: Point<'_>, out: &mut [f64]) {
         if self.start.is_none() {
             self.begin(own, point);
@@ -115,7 +115,7 @@ impl Contacts {
         }
     }
 
-    /// Adds what the forces of closed contacts accelerate.
+    /// Adds the accelerations by the forces of closed contacts.
     pub fn add_to_rates(&mut self, own: &mut Evaluator, point: Point<'_>, rates: &mut [f64]) {
         if self.closed.is_empty() {
             return;
@@ -126,7 +126,7 @@ impl Contacts {
         self.push(&self.closed, &forces, &mut rates[degrees..]);
     }
 
-    /// The impact at which the motion ended, why, and what to do; none if it ended for no impact.
+    /// Returns cause and cure if the motion stopped because bodies overlap at an impact.
     pub fn overlap(&self) -> Option<String> {
         let (place, cause) = self.overlap?;
         let name = &self.names[place];

@@ -1,12 +1,13 @@
-//! The work of contacts that move: a force F of one whose distance g(q, t) changes with the time does work with
-//! the power F g_q q' = F (g' - g_t), an impulse P the work -P g_t, without the loss by restitution.
+//! Work of moving contacts. The force F of a contact whose distance g(q, t) depends on time has
+//! the power F g_q q' = F (g' - g_t). Its impulse P does the work -P g_t, without the loss by
+//! restitution.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 
 use super::Contacts;
 
 impl Contacts {
-    /// Power (W) of the forces of the closed contacts.
+    /// Returns the power (W) of the forces of the closed contacts.
     pub fn power(&mut self, own: &mut Evaluator, point: Point<'_>) -> f64 {
         if self.closed.is_empty() {
             return 0.0;
@@ -19,12 +20,12 @@ impl Contacts {
             .sum()
     }
 
-    /// Work (J) of the contacts that move in the last impact.
+    /// Returns the work (J) of moving contacts in the last impact.
     pub fn impact_work(&self) -> f64 {
         self.impact_work
     }
 
-    /// The rate g_t of each distance where no coordinate moves.
+    /// Returns the rate g_t of each distance at zero rates of the coordinates.
     pub(super) fn drifts(&mut self, own: &mut Evaluator, point: Point<'_>) -> Vec<f64> {
         let degrees = own.program().degrees_of_freedom();
         let mut state = point.state.to_vec();

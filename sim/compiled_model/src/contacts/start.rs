@@ -1,27 +1,27 @@
-//! A start on contacts: distances that only rounding has left below zero are brought to zero.
+//! Initial states on contacts: distances that are negative by rounding are set to zero.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 
 use super::{CORRECTIONS, Contacts, ROUNDING};
 
-/// A start in the course of a motion.
+/// Start of a motion.
 pub(crate) struct Start<'s> {
-    /// When the motion begins, s.
+    /// Start, s.
     pub t: f64,
-    /// When it ends, s; the same for a single state.
+    /// End, s; equal to the start for a single state.
     pub until: f64,
-    /// The inputs.
+    /// Inputs.
     pub inputs: &'s [f64],
     /// The largest known length of each impact, in the unit of its distance.
     pub lengths: &'s [f64],
 }
 
 impl Start<'_> {
-    /// Moves coordinates so that no distance of an impact is below zero by rounding: by a part of its
-    /// length, or of what it covers in the motion with its rate and acceleration at the start.
+    /// Moves coordinates so that no distance of an impact is negative by rounding, relative to its
+    /// length or to the distance covered with its rate and acceleration at the start.
     ///
     /// # Errors
-    /// The first distance that is below zero by more, or is no number: its place and value.
+    /// Index and value of the first distance that is more negative or NaN.
     pub(crate) fn onto_contacts(
         &self,
         own: &mut Evaluator,

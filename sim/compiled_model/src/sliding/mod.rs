@@ -1,12 +1,13 @@
-//! Switching surfaces that hold a motion, as dry friction does: sign(v) is any number between -1 and 1
-//! where v is zero, and is there what keeps v at zero, if one of these does (A. F. Filippov; for
+//! Sticking on switching surfaces, as under dry friction. On a surface v = 0, sign(v) is replaced
+//! by the number between -1 and 1 that keeps v at zero, if there is one (A. F. Filippov; for
 //! friction, J. J. Moreau).
 //!
-//! Which of several surfaces hold is decided in [`eomgen_sim::sliding_modes`]; `sided` (the model with the
-//! sides of its surfaces given), `observed` (what a motion's observables and rates are at rest). Here is what becomes of surfaces while
-//! a motion goes on: caught where it reaches them, it is let go where the force that holds has
-//! reached what the surface can bear. There the function and its rate are zero up to rounding, which must not
-//! decide: the surface is moved by as much as rounding is until the motion has left it.
+//! [`eomgen_sim::sliding_modes`] decides which of several surfaces hold. `sided` is the model with
+//! given sides of its surfaces, and `observed` computes observables and rates during sticking.
+//! This module follows the surfaces along a motion. A surface holds the motion from its arrival
+//! until the force reaches the limit of the surface. At the release, the switching function and
+//! its rate are zero up to rounding, which must not determine the side; so the surface is
+//! displaced by that rounding until the motion has left it.
 
 mod observed;
 mod sided;
@@ -19,45 +20,48 @@ use eomgen_sim::ode::difference_step;
 use eomgen_sim::sliding_modes::{Arrival, Verdict};
 use sided::CORRECTIONS;
 
-/// How far a function may move from a surface that holds it before the state is put back, beside the
-/// largest it has been.
+/// Largest distance of a state from a surface that holds it, relative to the largest value of the
+/// switching function. Beyond it the state is corrected.
 const DRIFT: f64 = 1e-12;
 
-/// The same beside what the surface's own force does to it in the time since it holds.
+/// Additional distance, relative to the effect of the surface's own force on its function since
+/// the surface holds.
 const DRIFT_OF_A_FORCE: f64 = 1e-13;
 
-/// A function that moves by a step over a surface touches others within so many times its move.
+/// Largest distance of other surfaces that count as reached, relative to the change of their
+/// functions in the step across a surface.
 const NEAR: f64 = 4.0;
 
-/// And within this part of the largest that it has been.
+/// Limit of that distance, relative to the largest value of the function.
 const NEAREST: f64 = 1e-9;
 
-/// How a motion stands on a surface that it did not just come to.
+/// Arrival on a surface on which the motion already is.
 const STILL: Arrival = Arrival {
     side: 1.0,
     is_overcome: false,
 };
 
-/// What a surface does to the motion.
+/// State of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Place {
-    /// Its function decides on which side the motion is.
+    /// The sign of the function determines the side.
     Free,
-    /// It holds the motion, which came from this side, -1 or 1, since this time, s.
+    /// The surface holds the motion, which came from this side, -1 or 1, at this time, s.
     Holding { from: f64, since: f64 },
-    /// It bears all it can to this side, and others hold the motion.
+    /// The surface exerts its largest force to this side, and other surfaces hold the motion.
     Bearing { from: f64, side: f64 },
-    /// It has let the motion go to this side, which does not show yet: so far the surface is moved.
+    /// The surface has released the motion to this side, but its function is still within
+    /// rounding; the surface is displaced by `moved`.
     Leaving { side: f64, moved: f64 },
 }
 
 impl Place {
-    /// Returns true if the motion stands on the surface.
+    /// Returns true if the motion is on the surface.
     fn is_on(self) -> bool {
         matches!(self, Self::Holding { .. } | Self::Bearing { .. })
     }
 
-    /// By how much the surface's function is moved until the motion has left it.
+    /// Returns the displacement of the surface until the motion has left it.
     fn moved(self) -> f64 {
         match self {
             Self::Leaving { side, moved } => side * moved,
@@ -66,21 +70,22 @@ impl Place {
     }
 }
 
-/// The surfaces of a motion under way.
+/// States of all surfaces along a motion.
 pub(crate) struct Sliding {
     sided: Sided,
     places: Vec<Place>,
-    /// True if nothing jumped on a surface where the motion last came to it: its function decides.
+    /// True if the rates had no jump on a surface at the last arrival; then the sign of its
+    /// function determines the side.
     is_jumpless: Vec<bool>,
-    /// The largest that each function has been.
+    /// Largest magnitude of each function up to now.
     sizes: Vec<f64>,
-    /// When the motion began, s.
+    /// Start of the motion, s.
     begin: Option<f64>,
-    /// The sides, -1 or 1, that are kept where a surface is free, whatever its function is.
+    /// Fixed sides, -1 or 1, of free surfaces, independent of their functions.
     kept: Option<Vec<f64>>,
-    /// Where the sides that hold were last found.
+    /// Point at which the sides that hold were last computed.
     found_at: Option<(f64, Vec<f64>)>,
-    /// What caught the motion or let it go, and was not told yet.
+    /// Surfaces that began or ceased to hold, not yet reported.
     changes: Vec<(usize, bool)>,
 }
 
@@ -99,23 +104,23 @@ impl Sliding {
         }
     }
 
-    /// What the surfaces were made of.
+    /// Returns the model with sides, for use with another motion.
     pub fn into_sided(self) -> Sided {
         self.sided
     }
 
-    /// Returns true if the rates are not those that the functions' signs give.
+    /// Returns true if the signs of the functions do not determine the rates.
     pub fn is_active(&self) -> bool {
         self.kept.is_some() || !self.is_free()
     }
 
-    /// Returns true if the motion stands on no surface, and has left those on which it did.
+    /// Returns true if the motion is on no surface and has left all surfaces.
     pub fn is_free(&self) -> bool {
         self.places.iter().all(|place| *place == Place::Free)
     }
 
-    /// Keeps these sides of the guards, -1, 1, or 0 where it is not known, or no longer. Without a jump
-    /// the rates of a side are not kept: beyond the surface they may lead away from it.
+    /// Fixes the sides of the guards, -1, 1, or 0 (unknown); `None` restores the signs. Surfaces
+    /// without a jump are not fixed, because their rates beyond the surface may lead away from it.
     pub fn keep_sides(&mut self, sides: Option<&[f64]>) {
         self.found_at = None;
         self.kept = sides.map(|sides| {
@@ -127,20 +132,20 @@ impl Sliding {
         });
     }
 
-    /// The rates, where this is active.
+    /// Writes the rates, if this is active.
     pub fn rates(&mut self, at: (f64, &[f64]), inputs: &[f64], out: &mut [f64]) {
         self.hold(at, inputs);
         self.sided.rates(at, inputs, out);
     }
 
-    /// The observables, where this is active.
+    /// Writes the observables, if this is active.
     pub fn observables(&mut self, at: (f64, &[f64]), inputs: &[f64], out: &mut [f64]) {
         self.hold(at, inputs);
         self.sided.observables(at, out);
     }
 
-    /// The derivatives of the rates by the state, where this is active, by differences: what holds goes on
-    /// holding, and sides stay what they are.
+    /// Computes the derivatives of the rates with respect to the state by finite differences, if
+    /// this is active. Sides and sticking remain unchanged.
     pub fn jacobian(
         &mut self,
         (t, state): (f64, &[f64]),
@@ -168,9 +173,9 @@ impl Sliding {
         }
     }
 
-    /// Where the motion begins, and what is positive or negative as long as it stays as it is in the place of
-    /// the guards `out`: a surface that holds keeps the side from which the motion came until what
-    /// it bears has reached a bound.
+    /// Replaces the guards `out` of surfaces that hold or release the motion; the first call
+    /// starts the motion. The guard of a surface that holds changes its sign if its force reaches
+    /// a limit.
     pub fn guards(&mut self, at: (f64, &[f64]), inputs: &[f64], out: &mut [f64]) {
         if self.begin.is_none() {
             self.begin(at, inputs);
@@ -191,8 +196,8 @@ impl Sliding {
         }
     }
 
-    /// The motion has gone over a surface, from the state `before` to one just beyond: decides what
-    /// those that it has come to do.
+    /// Decides the state of all surfaces that the motion reached. `before` is on the near side of
+    /// a surface, `t` and `state` just beyond it.
     pub fn cross(
         &mut self,
         inputs: &[f64],
@@ -234,8 +239,8 @@ impl Sliding {
         self.put_back((t, state), inputs, true);
     }
 
-    /// The sides, -1 or 1, on which the motion was where the functions had these values. One that came to a
-    /// surface exactly has the side that it came from.
+    /// Returns the sides, -1 or 1, from which the motion came, given the values of the functions.
+    /// If a function is exactly zero, its fixed side counts.
     fn came_from(&self, near: &[f64]) -> Vec<f64> {
         let kept = |surface: usize| self.kept.as_ref().map(|kept| kept[surface]);
         let side = |(surface, value): (usize, &f64)| {
@@ -248,14 +253,15 @@ impl Sliding {
         near.iter().enumerate().map(side).collect()
     }
 
-    /// Brings a state that has strayed back onto what holds it; how many evaluations that took.
+    /// Corrects a state that drifted from the surfaces that hold it; returns the number of
+    /// evaluations.
     pub fn keep(&mut self, t: f64, inputs: &[f64], state: &mut [f64]) -> u64 {
         self.put_back((t, state), inputs, false)
     }
 
-    /// The motion has come to a point, where inputs may jump from `earlier`: lets go what they take along
-    /// or what can bear no more, and tells which surfaces caught the motion or let it go since this was last
-    /// asked.
+    /// Updates the surfaces at a point, at which inputs may jump from `earlier`: releases the
+    /// motion if an input moves a surface away or a force exceeds its limit. Returns the surfaces
+    /// that began or ceased to hold since the last call.
     pub fn arrive(
         &mut self,
         at: (f64, &[f64]),
@@ -307,7 +313,7 @@ impl Sliding {
         std::mem::take(&mut self.changes)
     }
 
-    /// What stands on a surface at the start may be held there.
+    /// Starts a motion: surfaces on which it is may hold it.
     fn begin(&mut self, at: (f64, &[f64]), inputs: &[f64]) {
         self.begin = Some(at.0);
         let functions = self.sided.functions(at, inputs);
@@ -322,7 +328,7 @@ impl Sliding {
         self.changes.clear();
     }
 
-    /// The surfaces that would have to bear more than they can, with the side to which that is.
+    /// Returns the surfaces whose force exceeds its limit, with the side.
     fn overcome(&mut self, at: (f64, &[f64]), inputs: &[f64]) -> Vec<Option<Arrival>> {
         self.hold(at, inputs);
         let held = self.places.iter().zip(self.sided.sides());
@@ -336,8 +342,8 @@ impl Sliding {
         .collect()
     }
 
-    /// Decides what surfaces do to a motion that stands on them; it came from the sides on which
-    /// the functions had these values.
+    /// Decides the states of the surfaces `touching`, on which the motion is. It came from the
+    /// sides with these signs of the functions.
     fn settle(
         &mut self,
         at: (f64, &[f64]),
@@ -351,7 +357,7 @@ impl Sliding {
         let (touching, arrivals) = self.free_without_jump((touching, arrivals), &jumps);
         let asked = (&touching[..], &arrivals[..]);
         let Some(verdicts) = self.sided.decide(at, inputs, asked, &sides) else {
-            // Its function's sign decides, and the solver says that it comes to no end.
+            // The sign of the function decides, and the solver reports chattering.
             for surface in touching {
                 self.places[surface] = Place::Free;
             }
@@ -361,7 +367,7 @@ impl Sliding {
         let mut roundings = self.sided.roundings(at, inputs);
         let passed = self.begin.map_or(0.0, |begin| at.0 - begin);
         for (surface, rounding) in roundings.iter_mut().enumerate() {
-            // A rate of rounding, kept up for a while.
+            // A rate of rounding, accumulated over time.
             *rounding += DRIFT_OF_A_FORCE * self.sided.own_rate(surface) * passed;
         }
         for (surface, verdict) in touching.iter().zip(verdicts) {
@@ -402,7 +408,7 @@ impl Sliding {
         }
     }
 
-    /// Frees the surfaces on which nothing jumps: their functions' signs decide. Returns the others.
+    /// Frees the surfaces without a jump of the rates and returns the others.
     fn free_without_jump(
         &mut self,
         (touching, arrivals): (&[usize], &[Arrival]),
@@ -428,8 +434,8 @@ impl Sliding {
         left
     }
 
-    /// The sides of all surfaces at a point, those that hold in the middle. Functions are asked only where
-    /// they decide.
+    /// Returns the sides of all surfaces at a point, 0.5 for those that hold. Functions are
+    /// evaluated only if needed.
     fn sides(&mut self, at: (f64, &[f64]), inputs: &[f64]) -> Vec<f64> {
         let kept = self.kept.clone().unwrap_or_default();
         let mut functions = Vec::new();
@@ -464,7 +470,7 @@ impl Sliding {
         (0..self.places.len()).filter(holds).collect()
     }
 
-    /// Finds what holds the motion at a point.
+    /// Computes the sides that hold the motion at a point.
     fn hold(&mut self, (t, state): (f64, &[f64]), inputs: &[f64]) {
         if let Some((known, at)) = &self.found_at
             && *known == t
@@ -483,7 +489,7 @@ impl Sliding {
         }
     }
 
-    /// Puts a state onto the surfaces that hold it, if it has strayed from them, or in any case.
+    /// Corrects a state onto the surfaces that hold it, if it has drifted or `always`.
     fn put_back(&mut self, (t, state): (f64, &mut [f64]), inputs: &[f64], always: bool) -> u64 {
         let held = self.holding();
         if held.is_empty() {

@@ -1,5 +1,5 @@
-//! Observables and rates along a motion that surfaces may hold: a force of dry friction at rest is what
-//! holds there, not that of sign(0) = 0.
+//! Observables and rates of a motion with sticking. During sticking the friction is the force that
+//! holds, not that of sign(0) = 0.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_sim::inputs::HeldInputs;
@@ -8,20 +8,22 @@ use eomgen_sim::sliding_modes::Arrival;
 
 use super::Sided;
 
-/// A state this near to a surface, beside the largest that its function is in the motion, is on it.
+/// Largest distance of a state on a surface, relative to the largest value of the function in the
+/// motion.
 const ON: f64 = 1e-10;
 
-/// The same beside what the surface's own force does to it over the time of the motion.
+/// Additional distance, relative to the effect of the surface's own force over the time of the
+/// motion.
 const ON_BY_A_FORCE: f64 = 1e-11;
 
-/// What observes a motion.
+/// Observables along a motion.
 pub(crate) struct Observed {
     own: Evaluator,
     rest: Option<Rest>,
 }
 
 impl Observed {
-    /// Looks at a motion by an evaluator, and by the model with sides if surfaces may hold it.
+    /// Combines an evaluator with the model with sides, if surfaces can hold the motion.
     pub fn new(
         own: Evaluator,
         sided: Option<Sided>,
@@ -35,7 +37,7 @@ impl Observed {
         }
     }
 
-    /// The observables at a point of the motion.
+    /// Writes the observables at a point of the motion.
     pub fn observables(&mut self, point: Point<'_>, out: &mut [f64]) {
         let rest = self.rest.as_mut();
         if !rest.is_some_and(|rest| rest.observables(point, out)) {
@@ -44,16 +46,16 @@ impl Observed {
     }
 }
 
-/// What holds a motion where it rests on surfaces.
+/// Forces and rates during sticking, along a motion.
 pub struct Rest {
     sided: Sided,
-    /// The largest that each function is, and how long the motion takes, s.
+    /// Largest value of each function, and the duration of the motion, s.
     sizes: Vec<f64>,
     duration: f64,
 }
 
 impl Rest {
-    /// Of a motion through these states at these times, s.
+    /// Prepares a motion with these times (s) and states.
     pub fn along(
         mut sided: Sided,
         (times, states): (&[f64], &[Vec<f64>]),
@@ -77,7 +79,7 @@ impl Rest {
         }
     }
 
-    /// The rates at a point of the motion, if surfaces hold it there; whether they do.
+    /// Writes the rates at a point of the motion and returns true, if surfaces hold it there.
     pub fn rates(&mut self, point: Point<'_>, out: &mut [f64]) -> bool {
         let is_held = self.holds(point);
         if is_held {
@@ -87,7 +89,8 @@ impl Rest {
         is_held
     }
 
-    /// The observables at a point of the motion, if surfaces hold it there; whether they do.
+    /// Writes the observables at a point of the motion and returns true, if surfaces hold it
+    /// there.
     pub fn observables(&mut self, point: Point<'_>, out: &mut [f64]) -> bool {
         let is_held = self.holds(point);
         if is_held {
@@ -96,7 +99,7 @@ impl Rest {
         is_held
     }
 
-    /// What the surfaces were made of, for another motion.
+    /// Returns the model with sides, for use with another motion.
     pub fn into_sided(self) -> Sided {
         self.sided
     }
@@ -107,7 +110,7 @@ impl Rest {
     }
 }
 
-/// Finds what holds a motion at a state, if it stands on surfaces.
+/// Computes the sides that hold a motion at a state; returns false if it is on no surface.
 fn hold(
     sided: &mut Sided,
     at: (f64, &[f64]),

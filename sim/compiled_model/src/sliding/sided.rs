@@ -1,38 +1,37 @@
-//! A model with the sides of its surfaces given: what holds it there, and the rates, power and
-//! observables that follow.
+//! A model with given sides of its surfaces: rates, observables and the sides that hold.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point, SlidingAt};
 use eomgen_sim::sliding_modes::{Arrival, Rates, Verdict, decide, least};
 use nalgebra::{DMatrix, DVector};
 
-/// Newton's iterations where the rates are not of first degree in the sides.
+/// Maximum number of Newton iterations if the rates are not linear in the sides.
 const ITERATIONS: usize = 20;
 
-/// Corrections of a state that a surface catches; each squares what is left.
+/// Number of corrections of a state onto a surface; Newton's method squares the error.
 pub(super) const CORRECTIONS: usize = 2;
 
-/// A change of a side that is no more than rounding.
+/// Largest change of a side that counts as rounding.
 const SETTLED: f64 = 1e-14;
 
-/// Over this part of a state its effect on a surface's function is found.
+/// Relative change of a state for its effect on a function.
 const PART: f64 = 1e-6;
 
-/// Rounding of a function, beside the sum of its terms.
+/// Rounding of a function, relative to the sum of its terms.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// A jump on a surface exceeds this part of the jump near the surface.
+/// Smallest jump on a surface, relative to the jump near the surface, that counts as a jump.
 const JUMP: f64 = 0.5;
 
 /// A time and a state.
 pub(super) type At<'p> = (f64, &'p [f64]);
 
-/// A model with the sides of surfaces that may hold a motion as inputs, at one set of parameters; see
-/// [`Driven::with_sliding`](crate::Driven::with_sliding).
+/// A model whose inputs include the sides of the surfaces that can hold a motion, at one set of
+/// parameters; see [`Driven::with_sliding`](crate::Driven::with_sliding).
 pub struct Sided {
     evaluator: Evaluator,
-    /// How many inputs the model has.
+    /// Number of inputs of the model.
     own_inputs: usize,
-    /// The inputs of the model, then the sides.
+    /// Inputs of the model, then the sides.
     inputs: Vec<f64>,
     at: Vec<SlidingAt>,
     guards: Vec<f64>,
@@ -40,7 +39,7 @@ pub struct Sided {
 }
 
 impl Sided {
-    /// Of a program with sides, prepared at the parameters to be used.
+    /// Wraps an evaluator of a program with sides, prepared at its parameters.
     pub(crate) fn new(evaluator: Evaluator) -> Self {
         let program = evaluator.program();
         let sliding = &program.outputs.sliding;
@@ -54,17 +53,17 @@ impl Sided {
         }
     }
 
-    /// How many surfaces there are.
+    /// Returns the number of surfaces.
     pub(super) fn count(&self) -> usize {
         self.inputs.len() - self.own_inputs
     }
 
-    /// The place of a surface's function among the guards.
+    /// Returns the index of a surface's function among the guards.
     pub(super) fn guard(&self, surface: usize) -> usize {
         self.evaluator.program().outputs.sliding[surface].guard
     }
 
-    /// The functions of the surfaces.
+    /// Returns the functions of the surfaces.
     pub(super) fn functions(&mut self, (t, state): At<'_>, inputs: &[f64]) -> Vec<f64> {
         self.inputs[..self.own_inputs].copy_from_slice(inputs);
         let inputs = &self.inputs;
@@ -75,7 +74,7 @@ impl Sided {
         values.collect()
     }
 
-    /// By how much rounding changes these functions.
+    /// Returns the rounding of these functions.
     pub(super) fn roundings(&mut self, (t, state): At<'_>, inputs: &[f64]) -> Vec<f64> {
         let here = self.functions((t, state), inputs);
         let mut moved = state.to_vec();
@@ -96,7 +95,7 @@ impl Sided {
             .collect()
     }
 
-    /// The side of a surface whose function has this value, 0 to 1.
+    /// Returns the side, 0 to 1, of a surface whose function has this value.
     pub(super) fn side_of(&self, surface: usize, value: f64) -> f64 {
         let is_odd = self.evaluator.program().outputs.sliding[surface].is_odd;
         match value {
@@ -106,7 +105,7 @@ impl Sided {
         }
     }
 
-    /// Sets the sides, but for those of `held` surfaces, which are found so that they hold.
+    /// Sets the sides, and computes those of `held` surfaces so that these hold.
     pub(super) fn hold(&mut self, at: At<'_>, inputs: &[f64], sides: &[f64], held: &[usize]) {
         self.inputs[..self.own_inputs].copy_from_slice(inputs);
         self.inputs[self.own_inputs..].copy_from_slice(sides);
@@ -126,33 +125,33 @@ impl Sided {
         }
     }
 
-    /// Sets the sides and finds what the surfaces do at a point.
+    /// Sets the sides and evaluates the effects of the surfaces at a point.
     pub(super) fn look(&mut self, at: At<'_>, inputs: &[f64], sides: &[f64]) {
         self.inputs[..self.own_inputs].copy_from_slice(inputs);
         self.inputs[self.own_inputs..].copy_from_slice(sides);
         self.evaluate(at);
     }
 
-    /// The sides, as last set or found.
+    /// Returns the sides, as last set or computed.
     pub(super) fn sides(&self) -> &[f64] {
         &self.inputs[self.own_inputs..]
     }
 
-    /// The rates with the sides as last found.
+    /// Writes the rates with these sides.
     pub(super) fn rates(&mut self, (t, state): At<'_>, inputs: &[f64], out: &mut [f64]) {
         self.inputs[..self.own_inputs].copy_from_slice(inputs);
         let inputs = &self.inputs;
         self.evaluator.rates(Point { t, state, inputs }, out);
     }
 
-    /// The observables with the sides as last found.
+    /// Writes the observables with these sides.
     pub(super) fn observables(&mut self, (t, state): At<'_>, out: &mut [f64]) {
         let inputs = &self.inputs;
         self.evaluator.observables(Point { t, state, inputs }, out);
     }
 
-    /// What the surfaces `touching` do to a motion that came to stand on them, with these sides of all
-    /// others.
+    /// Decides the effect of the surfaces `touching` on a motion that is on them, with these sides
+    /// of all others.
     pub(super) fn decide(
         &mut self,
         at: At<'_>,
@@ -184,9 +183,9 @@ impl Sided {
         None
     }
 
-    /// Returns true if the rates jump on each of the surfaces `touching`, near which a state is, with these sides
-    /// of all others. A jump that vanishes on its surface, as that of `sign(p)*sqrt(abs(p))` does, holds
-    /// nothing there, though it may seem to beside the surface.
+    /// Returns true for each surface of `touching` on which the rates jump, with these sides of
+    /// all others. The state is near these surfaces. A jump that vanishes on its surface, such as
+    /// that of `sign(p)*sqrt(abs(p))`, cannot hold a motion.
     pub(super) fn jumps_on(
         &mut self,
         (t, state): At<'_>,
@@ -208,8 +207,8 @@ impl Sided {
             .collect()
     }
 
-    /// Brings a state, of functions with these values, onto surfaces. Its rates move as the forces
-    /// there move them.
+    /// Corrects a state, given these values of the functions, onto surfaces along the effects of
+    /// their forces.
     pub(super) fn put_on(&mut self, t: f64, state: &mut [f64], (held, values): (&[usize], &[f64])) {
         self.evaluate((t, state));
         let right = DVector::from_iterator(held.len(), held.iter().map(|i| -values[*i]));
@@ -221,7 +220,7 @@ impl Sided {
         }
     }
 
-    /// How fast a surface's own force changes its function, as last evaluated.
+    /// Returns the rate of a surface's function due to its own force, as last evaluated.
     pub(super) fn own_rate(&self, surface: usize) -> f64 {
         let at = self.at.get(surface);
         at.map_or(0.0, |at| at.by_sides[surface].abs())
