@@ -8,7 +8,6 @@ pub(super) enum Scale {
     Logarithmic,
 }
 
-/// Range of an axis; decimal logarithms for a logarithmic axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Range {
     pub low: f64,

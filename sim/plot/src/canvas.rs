@@ -97,7 +97,6 @@ impl Canvas {
         self.turned_text(text, 0.0);
     }
 
-    /// Draws a text that is rotated about its point, in degrees clockwise.
     pub fn turned_text(&mut self, text: Text<'_>, angle: f64) {
         let (x, y) = text.at;
         let anchor = match text.anchor {
@@ -139,7 +138,6 @@ impl Canvas {
     }
 }
 
-/// Formats a point to 1/100 px without trailing zeros.
 fn pair((x, y): Point) -> String {
     format!("{},{}", hundredths(x), hundredths(y))
 }

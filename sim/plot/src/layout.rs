@@ -6,7 +6,6 @@ use super::figure::{Drawn, Panel, Series};
 use super::lettering::{fitted, width};
 use super::quantity::Quantity;
 
-/// Width of a figure of stacked panels, in px.
 pub(super) const WIDTH: f64 = 900.0;
 pub(super) const TICK_SIZE: f64 = 14.0;
 pub(super) const LABEL_SIZE: f64 = 15.0;

@@ -10,7 +10,6 @@ const CHARACTER: f64 = 0.62;
 /// Font size of subscripts, relative to the text.
 pub(super) const SUBSCRIPT: f64 = 0.8;
 
-/// Returns the width of a text, in px.
 pub(super) fn width(text: &str, size: f64) -> f64 {
     runs(text)
         .map(|run| run.text.chars().count() as f64 * if run.lowered { SUBSCRIPT } else { 1.0 })

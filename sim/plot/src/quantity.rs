@@ -4,7 +4,6 @@
 pub(super) struct Quantity {
     /// Divisor of SI values.
     pub scale: f64,
-    /// Name and unit, for example `x_sp [µm]`.
     pub label: String,
 }
 

@@ -4,7 +4,6 @@
 pub struct Symbol {
     /// Letter or word, with the dots of a rate or an acceleration.
     pub head: String,
-    /// Subscript; empty for none.
     pub subscript: String,
 }
 

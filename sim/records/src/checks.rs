@@ -29,10 +29,7 @@ const MOVES: f64 = 20.0;
 /// Number of samples to compare first when one record is shifted along another.
 const PROBES: usize = 16;
 
-/// Checks all records and returns notes.
-///
-/// # Errors
-/// The first problem that makes a result impossible.
+/// Checks all records and returns notes, or the first problem.
 pub fn examine(dataset: &Dataset, description: &Description) -> Result<Vec<String>, Refusal> {
     let mut notes = Vec::new();
     for record in dataset.train.iter().chain(&dataset.test) {

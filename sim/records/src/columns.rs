@@ -9,7 +9,6 @@ use crate::header::Table;
 use crate::parquet_file;
 use crate::refusal::Refusal;
 
-/// Largest record, in bytes.
 const LARGEST_RECORD: u64 = 256 << 20;
 
 /// Reads columns of a file. A missing number, `NaN`, an infinity or an empty cell becomes NaN.

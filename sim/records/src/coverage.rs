@@ -11,7 +11,6 @@ use crate::refusal::Refusal;
 use crate::samples::{span, typical_step};
 use crate::windows::{Windows, judged};
 
-/// Minimum number of samples in a window.
 const FEWEST_IN_WINDOW: f64 = 4.0;
 
 /// Minimum number of samples of a channel in all windows of a set.
@@ -76,7 +75,6 @@ fn holes(length: Number, record: &Record) -> Result<(), Refusal> {
     ))
 }
 
-/// Returns the time from a record's first sample to its last, in s.
 fn duration(record: &Record) -> f64 {
     record.times[record.times.len() - 1] - record.times[0]
 }

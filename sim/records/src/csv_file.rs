@@ -44,7 +44,6 @@ pub fn read(
     Ok(table)
 }
 
-/// Text file after its lines of names and units.
 pub(crate) struct TextFile<'t> {
     path: &'t Path,
     reader: Reader<&'t [u8]>,

@@ -32,7 +32,6 @@ impl Decimation {
         self.every == 1
     }
 
-    /// Returns true if a filter requires evenly spaced samples.
     pub fn is_filtered(&self) -> bool {
         self.low_pass.is_some()
     }
@@ -46,7 +45,6 @@ impl Decimation {
         (2.0 * squares.sum::<f64>() - weights[0] * weights[0]).sqrt()
     }
 
-    /// Keeps samples without a filter, for example times.
     pub fn taken<T: Copy>(&self, column: &[T]) -> Vec<T> {
         column.iter().step_by(self.every).copied().collect()
     }

@@ -8,7 +8,6 @@ use eomgen_model_spec::unit::Unit;
 use crate::description::Description;
 use crate::description::experiment::NumberRange;
 
-/// Maximum number of samples of an experiment, the same as of a record.
 const MOST_SAMPLES: f64 = 1e6;
 
 /// Bounds of the next experiment, in SI; `None` if the dataset file does not give them.

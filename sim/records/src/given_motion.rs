@@ -150,9 +150,6 @@ pub(crate) fn notes_of_speeds(
 }
 
 /// Checks that a channel is admissible: with a given motion it measures an input or a quantity.
-///
-/// # Errors
-/// A channel of a given quantity, or of an input if the motion is not given.
 pub(crate) fn admitted(
     quantity: Quantity,
     gives_motion: bool,

@@ -10,7 +10,6 @@ use crate::refusal::Refusal;
 /// Maximum number of samples of a record, a hundred times more than a search handles in minutes.
 pub const MOST_SAMPLES: usize = 1_000_000;
 
-/// Columns of numbers; NaN for a missing one.
 #[derive(Clone, Debug, Default)]
 pub struct Table {
     pub columns: Vec<Vec<f64>>,
@@ -18,7 +17,6 @@ pub struct Table {
     pub lines: Vec<u64>,
 }
 
-/// Usual first character of comment lines.
 const COMMENT: char = '#';
 
 /// Returns the indices of the wanted columns. `line` is the line number of the names.

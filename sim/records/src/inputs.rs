@@ -17,9 +17,6 @@ use crate::refusal::Refusal;
 use crate::samples::FEWEST_OF_INPUTS;
 
 /// Reads the inputs, without channels, of a record such as `train[0]`; returns warnings too.
-///
-/// # Errors
-/// A problem of the dataset file or of the record.
 pub fn read_inputs(
     dataset: &Path,
     record: &str,

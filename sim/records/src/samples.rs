@@ -20,9 +20,6 @@ pub(crate) const LOST: f64 = 5.0;
 pub(crate) const JITTER: f64 = 0.1;
 
 /// Checks for at least `fewest` finite, increasing times; `lines` are their line numbers.
-///
-/// # Errors
-/// The first invalid line.
 pub fn check_times(
     path: &Path,
     times: &[f64],
@@ -53,9 +50,6 @@ pub fn check_times(
 }
 
 /// Checks that an input or a given motion, named `what` in the message, has few missing samples.
-///
-/// # Errors
-/// A column with too many missing samples.
 pub fn check_known(path: &Path, what: &str, column: &[f64]) -> Result<(), Refusal> {
     let missing = column.iter().filter(|value| !value.is_finite()).count();
     if missing as f64 > MOST_HELD * column.len() as f64 {

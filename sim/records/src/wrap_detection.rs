@@ -33,7 +33,6 @@ pub(crate) struct WrapPattern {
     /// Half width of the period's interval; `None` if it is below the resolution of the sensor.
     pub uncertainty: Option<f64>,
     pub is_usual: bool,
-    /// Time of the first jump.
     pub first: f64,
     pub count: usize,
     pub is_turn: bool,
@@ -192,7 +191,6 @@ mod tests {
 
     type Motion<'a> = &'a dyn Fn(usize) -> f64;
 
-    /// Returns reproducible numbers between -1 and 1.
     fn noise(k: usize) -> f64 {
         2.0 * ((k as f64 * 12.9898).sin() * 43_758.545).fract().abs() - 1.0
     }

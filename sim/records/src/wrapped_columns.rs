@@ -54,7 +54,6 @@ impl<'d> ReadColumn<'d> {
         }
     }
 
-    /// Returns a full turn in SI, if the column can contain angles.
     fn turn(&self) -> Option<f64> {
         full_turn(self.unit).map(|turn| self.unit.to_si(turn))
     }
@@ -68,7 +67,6 @@ impl<'d> ReadColumn<'d> {
     }
 }
 
-/// Returns a full turn in a unit of angles or in a dimensionless unit.
 fn full_turn(unit: &Unit) -> Option<f64> {
     (unit.dimension == Dimension::NONE).then(|| unit.from_si(TAU))
 }
@@ -86,9 +84,6 @@ pub(crate) fn can_wrap(unit: &Unit) -> bool {
 }
 
 /// Unwraps the declared columns and returns notes. `range` is the file and the time range in use.
-///
-/// # Errors
-/// A wrapped column without `wrap`, a wrong period, or a gap with an unknown number of periods.
 pub(crate) fn unwrap_columns(
     read: &[ReadColumn<'_>],
     (file, range): (&Path, Range<f64>),
@@ -202,7 +197,6 @@ fn unwrap_column(
     Ok(notes)
 }
 
-/// Rejects a wrapped column without `wrap`; returns a note if it is uncertain.
 fn refuse_wrapped(
     column: &ReadColumn<'_>,
     file: &Path,

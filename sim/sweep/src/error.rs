@@ -4,7 +4,6 @@ use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// Maximum number of gaps in a message.
 const GAPS_SHOWN: usize = 5;
 
 /// Error of a sweep.

@@ -14,7 +14,6 @@ impl From<Error> for Failure {
     }
 }
 
-/// Returns a finished motion, or the status of a motion that stopped early.
 pub fn of_motion(motion: Result<Motion, Error>) -> Result<Motion, Failure> {
     let motion = motion.map_err(|error| match error {
         // The motion stopped at its start.

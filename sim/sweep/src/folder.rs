@@ -18,7 +18,6 @@ const DESCRIPTION: &str = "sweep.json";
 
 const PARTS: &str = "parts";
 
-/// Suffix of files during writing.
 const UNFINISHED: &str = ".unfinished";
 
 const LARGEST_DESCRIPTION: u64 = 16 << 20;

@@ -41,10 +41,7 @@ impl Frequency {
         &self.name
     }
 
-    /// Returns the period of the forcing, in s.
-    ///
-    /// # Errors
-    /// [`Failure::Undefined`] if the frequency is not positive.
+    /// Returns the period of the forcing, in s; undefined if the frequency is not positive.
     pub fn period(&self, instance: &Instance<'_>) -> Result<f64, Failure> {
         let period = TAU / instance.value(&self.name).unwrap_or(f64::NAN);
         if period > 0.0 && period.is_finite() {

@@ -123,7 +123,6 @@ impl Worker for &Lyapunov<'_> {
     }
 }
 
-/// Returns the growth of an exactly propagated tangent vector.
 fn exact(instance: &Instance<'_>, stretches: &Stretches) -> Result<Growths, Failure> {
     let request = Request {
         transient: stretches.transient,

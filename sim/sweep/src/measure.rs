@@ -56,9 +56,6 @@ pub trait Measure: Sync {
 pub trait Worker {
     /// Measures at a point. `settings` are the varied parameters in their declared units. `out` has
     /// one number per column of [`Description::columns`], NaN before the call.
-    ///
-    /// # Errors
-    /// The reason why the point has no number.
     fn measure(&mut self, settings: &[(&str, f64)], out: &mut [f64]) -> Result<(), Failure>;
 }
 

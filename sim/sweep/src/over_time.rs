@@ -50,7 +50,6 @@ pub fn forms() -> impl Iterator<Item = String> {
         .map(|statistic| format!("{}:NAME", statistic.name()))
 }
 
-/// Index of a quantity among the states or the observables.
 enum Quantity {
     State(usize),
     Observable(usize),

@@ -7,9 +7,6 @@ use crate::measure::Column;
 use crate::points::Points;
 
 /// Returns the columns of the parameters that differ between points, in declared units.
-///
-/// # Errors
-/// A name that is not a parameter of the model.
 pub fn columns(model: &Model, points: &Points) -> Result<Vec<Column>, SweepError> {
     let column = |name: &str| {
         let mut known = model.parameters.iter();

@@ -21,7 +21,6 @@ const TITLE: &str = "eomgen sweep part 1";
 #[derive(Debug, PartialEq, Eq)]
 pub enum Found {
     Whole,
-    /// Incomplete, or not a part.
     Damaged,
     Other,
 }

@@ -162,7 +162,6 @@ impl Sampled {
     }
 }
 
-/// Returns a number that is uniform in [0, 1).
 fn unit(random: &mut SplitMix64) -> f64 {
     (random.next_u64() >> 11) as f64 * 0.5_f64.powi(53)
 }

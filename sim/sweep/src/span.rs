@@ -16,9 +16,6 @@ pub struct Span {
 
 impl Span {
     /// Checks that at least `least` and at most [`MOST_PERIODS`] periods are measured.
-    ///
-    /// # Errors
-    /// The problem, in terms of the command line.
     pub fn check(&self, measure: &str, least: usize) -> Result<(), SweepError> {
         if self.periods >= least && self.transient.saturating_add(self.periods) <= MOST_PERIODS {
             return Ok(());

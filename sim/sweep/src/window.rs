@@ -89,9 +89,6 @@ impl Times {
     }
 
     /// Returns the intervals of growth: once per period, or over the second half of the time.
-    ///
-    /// # Errors
-    /// Same as [`Times::range`].
     pub fn stretches(&self, instance: &Instance<'_>) -> Result<Stretches, Failure> {
         Ok(match self {
             Self::Until(end) => Stretches {
@@ -111,10 +108,7 @@ impl Times {
     }
 }
 
-/// Checks a time, in s.
-///
-/// # Errors
-/// A time that is not positive and finite.
+/// Checks that a time, in s, is positive and finite.
 pub fn time(until: f64) -> Result<f64, SweepError> {
     if until > 0.0 && until.is_finite() {
         return Ok(until);

@@ -131,7 +131,6 @@ fn text(error: OracleError) -> String {
     format!("the oracle cannot evaluate this model: {error}")
 }
 
-/// Compares this order with the next one, or with the previous one at the highest order.
 fn nested(
     subject: &Subject<'_>,
     oracle: &Oracle,

@@ -38,18 +38,12 @@ pub struct Output {
 
 impl Compiler {
     /// Finds the compiler, `RUSTC` of the environment or `rustc`, and tests it in `folder`.
-    ///
-    /// # Errors
-    /// A message if the compiler cannot be run.
     pub fn find(folder: &Path) -> Result<Self, String> {
         let program = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
         Self::named(program, folder)
     }
 
     /// Tests the compiler `program` in `folder`.
-    ///
-    /// # Errors
-    /// A message if the compiler cannot be run.
     pub fn named(program: std::ffi::OsString, folder: &Path) -> Result<Self, String> {
         let compiler = Self { program };
         let probe = folder.join("probe.rs");
@@ -73,9 +67,6 @@ impl Compiler {
     }
 
     /// Compiles `source` to `target` with the further arguments `more`.
-    ///
-    /// # Errors
-    /// A message if the compiler could not be started or exceeded the time limit.
     pub fn compile(
         &self,
         source: &Path,
@@ -101,17 +92,11 @@ impl Compiler {
 }
 
 /// Runs `program` with `input` on its standard input.
-///
-/// # Errors
-/// A message if the program could not be started or exceeded the time limit.
 pub fn execute(program: &Path, input: &str) -> Result<Output, String> {
     run(&mut Command::new(program), input)
 }
 
 /// Writes a file.
-///
-/// # Errors
-/// The path and the system's message.
 pub fn write(path: &Path, text: &str) -> Result<(), String> {
     std::fs::write(path, text).map_err(|error| format!("{}: {error}", path.display()))
 }

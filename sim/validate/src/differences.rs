@@ -10,7 +10,6 @@ use eomgen_model_spec::model::{Model, ParameterValue};
 /// formulas on arbitrarily spaced grids", Math. Comp. 51, 1988, table 1).
 const WEIGHTS: [f64; 4] = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
 
-/// Number with the scale of its rounding error.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Slope {
     pub value: f64,

@@ -9,7 +9,6 @@ const CONTRADICTION: f64 = 1e-12;
 const ROUNDS: usize = 10;
 /// Scaling rounds. Each round halves the remaining differences of the logarithms.
 const SCALING_ROUNDS: usize = 20;
-/// Maximum number of iterations of a singular value decomposition.
 const SVD_ITERATIONS: usize = 10_000;
 
 /// Returns true if no point z has a positive product with every row. By Gordan's theorem, a
@@ -47,7 +46,6 @@ fn equilibrated(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
     rows
 }
 
-/// Returns the geometric mean of the largest and the smallest nonzero magnitude; 1 if all are 0.
 fn middle_size(entries: impl Iterator<Item = f64>) -> f64 {
     let sizes = entries
         .map(f64::abs)

@@ -61,9 +61,6 @@ pub fn certificate(
 }
 
 /// Returns the certificate without running its checks. Its verdict is "failed".
-///
-/// # Errors
-/// Same as [`certificate`].
 pub fn unchecked(
     model: &Model,
     order: usize,

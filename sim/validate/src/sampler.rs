@@ -18,7 +18,6 @@ use super::sizes;
 const DRAWN_REGIMES: usize = 81;
 /// Draws after which a regime is treated as unreachable.
 const ATTEMPTS: usize = 60;
-/// Corrections of one drawn state.
 const SWEEPS: usize = 6;
 /// Consecutive states outside the domain after which states are drawn nearer to the initial state.
 const MISSES: usize = 8;
@@ -200,7 +199,6 @@ impl<'o> Sampler<'o> {
         Ok(None)
     }
 
-    /// Returns the state with its equations if it is in the domain; otherwise counts a miss.
     fn admit(&mut self, sample: Sample) -> Result<Option<Drawn>, OracleError> {
         if !self.is_within(&sample) {
             return Ok(None);

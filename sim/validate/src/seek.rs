@@ -10,7 +10,6 @@ use super::sample::Sample;
 /// the switching surfaces, so that narrow regimes are reached too.
 const CORRECTIONS: i32 = 24;
 
-/// Typical sizes of the entries of the state and of the inputs, in SI.
 pub(super) struct Sizes<'s> {
     pub state: &'s [f64],
     pub inputs: &'s [f64],

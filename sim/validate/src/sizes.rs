@@ -140,7 +140,6 @@ fn shares(stiffness: &[f64]) -> impl Iterator<Item = f64> {
     })
 }
 
-/// Returns the uncoupled frequency of a coordinate, at least 1 rad/s.
 fn frequency(square: f64) -> f64 {
     if square.is_finite() {
         square.abs().sqrt().max(1.0)

@@ -4,7 +4,6 @@ use super::outputs::Outputs;
 use super::sampler::Sample;
 use nalgebra::DMatrix;
 
-/// Outputs of the spring; the string is the name of the function with the fault.
 pub(super) struct SpringOutputs(pub &'static str);
 
 const M: f64 = 2.0;

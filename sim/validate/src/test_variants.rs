@@ -202,7 +202,6 @@ impl Variant for Spring {
     }
 }
 
-/// Model with one coordinate and no inputs, as functions of time, coordinate and rate.
 pub(super) struct Single {
     pub name: &'static str,
     pub mass: fn(f64, f64, f64) -> f64,

@@ -43,7 +43,6 @@ fn mixing() -> Markup {
     element(&identifier("ξ"), "i")
 }
 
-/// Returns the factor of an exponential in a mode.
 fn amplitude(sense: &str) -> Markup {
     html! { msubsup { (identifier("φ")) (identifier("i")) mo { (sense) } } }
 }

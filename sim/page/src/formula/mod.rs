@@ -195,7 +195,6 @@ fn element(of: &Markup, index: &str) -> Markup {
     html! { msub { (of) (identifier(index)) } }
 }
 
-/// Returns a name with dots above its head and the rest as subscripts.
 fn symbol(symbol: &Symbol) -> Markup {
     let (head, mut parts) = symbol.parts();
     let head = identifier(letter(head).unwrap_or(head));

@@ -7,7 +7,6 @@ use super::raster::{Colour, HEIGHT, Raster, WIDTH};
 use super::typeface::{Align, Direction, Line, TICK_SIZE, Typeface};
 use super::types::{Coordinate, largest};
 
-/// Font sizes, in px.
 pub const LABEL_SIZE: f64 = 17.0;
 const TITLE_SIZE: f64 = 18.0;
 pub const TICK_LENGTH: f64 = 5.0;

@@ -82,7 +82,6 @@ pub fn disc(x: f64, y: f64, radius: f64, mut cover: impl FnMut(usize, usize, f64
     }
 }
 
-/// Blends a fraction of one colour, from 0 to 1, into another.
 pub fn mixed(under: Colour, over: Colour, share: f64) -> Colour {
     let mut mixture = under;
     for (channel, over) in mixture.iter_mut().zip(over) {

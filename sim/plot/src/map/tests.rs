@@ -5,7 +5,6 @@ use super::*;
 
 const NAN: f64 = f64::NAN;
 
-/// Picture, decoded by the PNG library.
 struct Picture {
     width: usize,
     height: usize,

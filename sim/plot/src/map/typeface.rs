@@ -25,7 +25,6 @@ pub enum Direction {
     Up,
 }
 
-/// Regular and bold font.
 #[derive(Debug)]
 pub struct Typeface {
     regular: FontRef<'static>,
@@ -68,12 +67,10 @@ impl Typeface {
         })
     }
 
-    /// Returns the width of a line, in px.
     pub fn width(&self, line: Line<'_>) -> f64 {
         f64::from(self.glyphs(line).1)
     }
 
-    /// Returns the width of the widest label, in px.
     pub fn widest(&self, ticks: &[Tick]) -> f64 {
         let widths = ticks
             .iter()

@@ -69,9 +69,7 @@ pub enum Shades {
 }
 
 pub(super) const WHITE: Colour = [255; 3];
-/// Colour of cells without a value.
 pub(super) const GREY: Colour = [158; 3];
-/// Colour of the points of a diagram.
 pub(super) const INK: Colour = [0, 60, 110];
 pub(super) const OPACITY: f64 = 0.6;
 

@@ -7,7 +7,6 @@ use eomgen_model_spec::table::{Entry, Name, Number, Record, Written};
 use super::keys;
 use super::required::required;
 
-/// Allowed values of `every`.
 const EVERY: std::ops::RangeInclusive<i64> = 1..=1_000_000;
 
 /// Identification of a column.

@@ -23,7 +23,6 @@ use self::motion::{InitialState, Windows};
 use self::records::Records;
 use self::required::required;
 
-/// Largest dataset file, in bytes.
 const LARGEST: u64 = 1 << 20;
 
 /// Parsed dataset file.
@@ -65,9 +64,6 @@ impl Description {
     }
 
     /// Parses the text of a dataset file.
-    ///
-    /// # Errors
-    /// All errors of grammar, tables and keys.
     pub fn of(source: Source) -> Result<Self, Diagnostics> {
         toml_file::read(&source, |entries, found| described(&source, entries, found))
     }

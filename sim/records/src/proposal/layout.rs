@@ -7,7 +7,6 @@ use eomgen_model_spec::unit::Unit;
 /// Number of lines to examine from the start of the file.
 const LINES: usize = 400;
 
-/// First characters of comment lines.
 const COMMENTS: [char; 3] = ['#', '%', '!'];
 
 #[derive(Clone, Debug, PartialEq)]

@@ -4,7 +4,6 @@ use eomgen_model_spec::model::{Model, ObservedRate};
 use eomgen_model_spec::suggest::nearest;
 use eomgen_model_spec::unit::Unit;
 
-/// Common spellings of units.
 const UNITS: [(&str, &str); 6] = [
     ("degree", "deg"),
     ("degrees", "deg"),

@@ -33,7 +33,6 @@ const FEWEST_IN_WINDOW: f64 = 100.0;
 /// Number of samples above which the record is decimated, because a search would take long.
 const MANY: usize = 100_000;
 
-/// Usual names of a time column.
 const TIMES: [&str; 6] = ["t", "time", "zeit", "timestamp", "seconds", "sec"];
 
 struct Found<'m> {
@@ -89,7 +88,6 @@ impl Found<'_> {
         can_wrap(&unit).then(pattern).flatten()
     }
 
-    /// Returns the usual time between samples, in s.
     fn step(&self) -> f64 {
         self.time_unit.to_si(typical_step(self.times()))
     }

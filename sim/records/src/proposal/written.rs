@@ -43,7 +43,6 @@ pub(super) fn text(found: &Found<'_>, name: &str) -> String {
 /// Column at which comments of short lines start.
 const COMMENTS: usize = 30;
 
-/// Aligns the comments after marks.
 fn aligned(text: &str) -> String {
     let line = |line: &str| match line.split_once('\u{1}') {
         Some((code, comment)) => format!("{code:<COMMENTS$} # {comment}\n"),

@@ -90,7 +90,6 @@ impl std::fmt::Display for Crossing {
 }
 
 pub struct Seen {
-    /// Times of the crossings, in s.
     pub times: Vec<f64>,
     pub points: Vec<Vec<f64>>,
     /// States between the crossings, approximately from the first one on.
@@ -98,9 +97,6 @@ pub struct Seen {
 }
 
 /// Returns `kept` crossings after the first `transient`, in every turn of a periodic angle.
-///
-/// # Errors
-/// A motion that fails, or that has fewer crossings before the time `until`, in s.
 pub fn crossings(
     instance: &Instance<'_>,
     crossing: &Crossing,
@@ -153,7 +149,6 @@ fn followed(
     })
 }
 
-/// Switching surface of a section: the value, or the value in every turn.
 struct Surface<'c> {
     crossing: &'c Crossing,
     /// Current turn, if every turn has a section. It changes only at crossings, so none is skipped.

@@ -33,7 +33,6 @@ pub const MOST_POINTS_KEPT: usize = 1000;
 /// Relative accuracy of the exact solver's states. That of the general solver is ten tolerances.
 const EXACT_RESOLUTION: f64 = 1e-12;
 
-/// Name of the measure, optionally followed by `:NAME`.
 const NAME: &str = "poincare";
 
 /// Section of the motion.

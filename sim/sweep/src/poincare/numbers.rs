@@ -90,7 +90,6 @@ pub fn extents<'s>(seen: impl Iterator<Item = &'s [f64; 2]> + Clone) -> [(f64, f
     })
 }
 
-/// Returns an angle without full turns relative to `from`.
 pub fn within_a_turn(angle: f64, from: f64) -> f64 {
     let turned = (angle - from + PI).rem_euclid(TAU) - PI;
     from + turned

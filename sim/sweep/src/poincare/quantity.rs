@@ -17,7 +17,6 @@ pub fn place(model: &CompiledModel, name: &str) -> Result<usize, String> {
 /// Coordinate with its rate, or rate with its coordinate. Only the first one is reported.
 #[derive(Clone, Debug)]
 pub struct Quantity {
-    /// Name of the reported quantity.
     pub name: String,
     /// SI unit of the reported quantity.
     pub unit: String,

@@ -8,9 +8,6 @@ use super::super::variant::Variant;
 const NEARBY: f64 = 1e-6;
 
 /// Draws up to `per_regime` states in every regime and as many in any regime.
-///
-/// # Errors
-/// [`OracleError`] as from [`Oracle::equations`]; inside, the variant's message or no state.
 pub fn samples(
     oracle: &Oracle,
     variant: &mut dyn Variant,

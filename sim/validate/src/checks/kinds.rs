@@ -137,7 +137,6 @@ pub fn check(
 struct Call {
     row: &'static str,
     name: &'static str,
-    /// Statements that print one line per list of numbers.
     text: String,
 }
 
@@ -197,7 +196,6 @@ fn calls(outputs: &[String]) -> Vec<Call> {
     calls
 }
 
-/// Returns the names of the constants for a Jacobian's rows and columns.
 fn extents(name: &str) -> (&'static str, &'static str) {
     let rows = if name.starts_with("rates") {
         "STATES"
@@ -241,7 +239,6 @@ fn harness_source(emitted: &Emitted, calls: &[Call], outputs: &[String]) -> Stri
     source
 }
 
-/// Statements that compare a group of states.
 const GROUPS: &str = "        if group.len() == 8 {
             let found = compare_lanes(&group, &coefficients);
             lanes = [lanes[0] + found[0], lanes[1] + found[1]];

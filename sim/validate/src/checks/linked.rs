@@ -132,7 +132,6 @@ fn succeed(what: &str, output: compiler::Output) -> Result<String, String> {
     }
 }
 
-/// Returns one line of bits per state: time, state, inputs.
 fn table(samples: &[Sample]) -> String {
     let mut table = String::new();
     for sample in samples {

@@ -36,10 +36,7 @@ pub const MASS_TOLERANCE: f64 = 2e-13;
 /// Tolerance of the mass matrix's asymmetry, for products of a few factors in another order.
 pub const SYMMETRY_TOLERANCE: f64 = 1e-15;
 
-/// Returns the accelerations of a variant, then the rates of first-order states.
-///
-/// # Errors
-/// A message if the rates of the coordinates differ from those in the state by a bit.
+/// Returns accelerations and first-order rates; fails if coordinate rates differ from the state.
 fn unknowns(
     variant: &mut dyn Variant,
     time: f64,

@@ -20,7 +20,6 @@ pub(super) enum Variable {
 /// Affine form `constant + sum of coefficient * variable`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Affine {
-    /// Constant, in SI.
     pub constant: f64,
     /// Variables with nonzero coefficients, each variable once.
     pub terms: Vec<(Variable, f64)>,

@@ -83,7 +83,6 @@ impl Conditioned {
     }
 }
 
-/// Implements an operator in all forms that dual numbers require.
 macro_rules! operator {
     ($operator:ident, $method:ident, $assign:ident, $assign_method:ident, $own:ident) => {
         impl $operator for Conditioned {

@@ -34,7 +34,6 @@ impl DoubleDouble {
         }
     }
 
-    /// Returns the exact sum of two `f64` (Knuth).
     fn sum(left: f64, right: f64) -> Self {
         let high = left + right;
         let shadow = high - left;

@@ -12,7 +12,6 @@ use eomgen_model_spec::model::Function;
 /// Relative widening of bounds, so that a range as narrow as rounding is no contradiction.
 const SLACK: f64 = 1e-9;
 
-/// Kind of an inequality: > 0 or >= 0.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Relation {
     Positive,

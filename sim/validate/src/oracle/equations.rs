@@ -72,7 +72,6 @@ pub enum RowTermKind {
 pub struct ConstraintRow {
     /// Derivatives of the constraint by every coordinate, or by every rate.
     pub gradient: Vec<Conditioned>,
-    /// Right-hand side.
     pub right: Conditioned,
 }
 
@@ -193,7 +192,6 @@ impl Equations {
         Some((free, sizes))
     }
 
-    /// Returns the constraint forces in every row, on the side of the accelerations.
     fn reactions(&self) -> Vec<Vec<Conditioned>> {
         let unknown = || vec![Conditioned::from(f64::NAN); self.constraints.len()];
         let multipliers = self.multipliers().unwrap_or_else(unknown);

@@ -4,7 +4,6 @@ use super::functions;
 use super::tree::Tree;
 use eomgen_model_spec::ast::BinaryOperator;
 
-/// Creates `left operator right`, or a [`Tree::Power`] for a constant exponent.
 pub(super) fn binary(operator: BinaryOperator, left: Tree, right: Tree) -> Tree {
     match (operator, &right) {
         (BinaryOperator::Power, Tree::Constant(exponent)) => Tree::Power(left.into(), *exponent),

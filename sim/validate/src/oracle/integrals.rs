@@ -74,7 +74,6 @@ impl Entries {
     }
 }
 
-/// Second derivatives by pairs of rates.
 #[derive(Debug)]
 struct Hessian {
     value: DMatrix<f64>,
@@ -284,7 +283,6 @@ impl Scene<'_> {
         hessian
     }
 
-    /// Adds the second derivatives by two channels to those by pairs of rows.
     fn block(
         &self,
         integral: &Integral,

@@ -51,7 +51,6 @@ fn legendre(count: usize, x: f64) -> (f64, f64) {
     (value, previous)
 }
 
-/// Returns P_n and its derivative at x, in double-double arithmetic.
 fn precise_legendre(count: usize, x: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
     let one = DoubleDouble::new(1.0);
     let (mut previous, mut value) = (one, x);

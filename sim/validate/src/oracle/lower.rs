@@ -174,7 +174,6 @@ impl<'m> Lowering<'m> {
         })
     }
 
-    /// Converts an input, with its rates if they are given.
     fn input(&self, input: usize) -> Tree {
         let rate_of = |input: usize| self.input_rates.get(input).copied().flatten();
         match rate_of(input) {

@@ -54,7 +54,6 @@ impl Domain {
         }
     }
 
-    /// Returns the nodes and weights on [0, 1] that integrate the shapes.
     fn rule(&self) -> Vec<(DoubleDouble, f64)> {
         match &self.shapes {
             Shapes::Splines(_, rule) => rule.clone(),

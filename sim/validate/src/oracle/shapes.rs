@@ -18,7 +18,6 @@ use std::f64::consts::PI;
 /// Maximum number of iterations of a singular value decomposition; about ten are usual.
 const ITERATIONS: usize = 1000;
 
-/// Mode r of a beam of unit length.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shape {
     /// Multiple of pi near z, an integer number of quarters.
@@ -115,7 +114,6 @@ fn rigid_motions(from: End, to: End) -> u8 {
     u8::from(translation) + u8::from(rotation)
 }
 
-/// Returns the matrix of the boundary conditions. Each end sets two derivatives to zero.
 fn conditions(ends: [End; 2], half_waves: f64, delta: f64) -> Matrix4<f64> {
     let decay = (-(half_waves * PI + delta)).exp();
     let one = DoubleDouble::new(1.0);

@@ -194,7 +194,6 @@ impl Oracle {
     }
 }
 
-/// Returns the switches in all terms of the motion, each once.
 pub(super) fn find(oracle: &Oracle, model: &Model) -> Vec<Switch> {
     let mut search = Search {
         oracle,

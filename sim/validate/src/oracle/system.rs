@@ -15,7 +15,6 @@ pub(super) struct System {
     pub state_rates: Vec<Vec<Tree>>,
     pub residuals: Vec<Tree>,
     pub dependences: Vec<Dependence>,
-    /// Integrals with cached derivatives.
     pub integrals: Vec<Integral>,
 }
 

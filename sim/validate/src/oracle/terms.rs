@@ -63,7 +63,6 @@ impl Lowered {
 }
 
 impl LoweredForce {
-    /// Returns -value * d(on)/dq_j for every row.
     pub fn rows(&self, scene: &Scene<'_>) -> RowTerm {
         let value = Pass::new(scene, Direction::Still, Direction::Still)
             .value(&self.value)

@@ -16,7 +16,6 @@ pub(super) enum Tree {
     Time,
     /// Input that is constant, or without a further given rate.
     Input(usize),
-    /// Input with a given rate.
     PrescribedInput {
         input: usize,
         rate: usize,
@@ -67,7 +66,6 @@ pub(super) enum Tree {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Leaf {
     pub field: usize,
-    /// Order of the derivative; 0 for the field itself.
     pub derivative: u8,
 }
 
@@ -85,17 +83,14 @@ pub(super) struct Dependence {
     /// True for the position of the enclosing place.
     pub position: bool,
     pub time: bool,
-    /// True for an input without a given rate.
     pub input: bool,
     /// True for an input with a given rate, or such a rate.
     pub prescribed: bool,
     pub dot: bool,
-    /// True if the expression contains a sum over places or modes, directly or in a definition.
     pub nested: bool,
 }
 
 impl Dependence {
-    /// Returns true if the expression does not depend on state, time or inputs.
     pub fn is_constant(&self) -> bool {
         let sets = self.coordinates.is_empty() && self.fields.is_empty() && self.states.is_empty();
         sets && !self.time && !self.input && !self.prescribed

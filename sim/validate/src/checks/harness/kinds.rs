@@ -132,7 +132,6 @@ impl Scalar for Rounded {
     }
 }
 
-/// Returns the larger of two errors; NaN counts as infinity.
 fn worse(first: f64, second: f64) -> f64 {
     if first.is_nan() || second.is_nan() { f64::INFINITY } else { first.max(second) }
 }

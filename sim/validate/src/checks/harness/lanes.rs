@@ -1,4 +1,3 @@
-/// Eight numbers with elementwise operations.
 #[derive(Clone, Copy)]
 struct Eight([f64; 8]);
 
