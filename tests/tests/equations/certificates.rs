@@ -1,6 +1,5 @@
-//! The certificates of all shipped specifications: every check that a certificate can hold
-//! is made and passes, and fails where it should. What each check means and its tolerance
-//! stand in the certificate.
+//! Certificates of all shipped specifications: all checks run and pass, and a fault fails its
+//! check.
 
 use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_codegen::program::lowering::lower;
@@ -13,7 +12,7 @@ use eomgen_tests::models::{load, project, shipped, variant};
 use eomgen_validate::certificate::Certificate;
 use eomgen_validate::of_model::certificate;
 
-/// The certificate of a source, with the equations that were written by hand for the model.
+/// Certifies `source` and compares the model with its hand-written equations.
 fn with_references(model: &Model, order: usize, outputs: &[Output], source: String) -> Certificate {
     let values = model
         .parameter_values()
@@ -23,8 +22,8 @@ fn with_references(model: &Model, order: usize, outputs: &[Output], source: Stri
         .expect("the parameters have values")
 }
 
-/// The certificate of a shipped specification with every field at `order`.
-fn of(name: &str, order: usize) -> Certificate {
+/// Certifies a shipped specification with every field at `order`.
+fn certify_shipped(name: &str, order: usize) -> Certificate {
     let model = load(name);
     let derived = variant(&model, order);
     let values = model
@@ -35,8 +34,8 @@ fn of(name: &str, order: usize) -> Certificate {
     with_references(&model, order, &[], source)
 }
 
-/// Asserts that a certificate passes and that nothing was skipped but what `may_skip` names.
-fn passes(certificate: &Certificate, may_skip: &[&str]) {
+/// Asserts that the certificate passes and that only the checks in `may_skip` were skipped.
+fn assert_passes(certificate: &Certificate, may_skip: &[&str]) {
     let shown = format!("{} at order {}", certificate.model, certificate.order);
     let failures: Vec<_> = certificate.failures().collect();
     assert!(
@@ -57,7 +56,6 @@ fn passes(certificate: &Certificate, may_skip: &[&str]) {
     }
 }
 
-/// How many checks have a name that begins so.
 fn count(certificate: &Certificate, beginning: &str) -> usize {
     certificate
         .checks
@@ -66,11 +64,11 @@ fn count(certificate: &Certificate, beginning: &str) -> usize {
         .count()
 }
 
-/// The arm at one order, against the hand-written equations in all nine mesh regimes.
-fn arm(order: usize) {
-    let certificate = of("planetary_arm", order);
+/// Certifies the arm and compares it with the hand-written equations in all nine mesh regimes.
+fn certify_arm(order: usize) {
+    let certificate = certify_shipped("planetary_arm", order);
     let may_skip: &[&str] = if order == 0 { &["rigid_limit"] } else { &[] };
-    passes(&certificate, may_skip);
+    assert_passes(&certificate, may_skip);
     assert_eq!(
         count(&certificate, "accelerations"),
         9,
@@ -85,12 +83,12 @@ fn arm(order: usize) {
         assert_eq!(count(&certificate, name), 1, "{name}");
     }
     if order <= 8 {
-        is_checked_in(&certificate);
+        assert_checked_in(&certificate);
     }
 }
 
-/// Asserts that the certificate of this order in `generated` has these checks, all passed.
-fn is_checked_in(certificate: &Certificate) {
+/// Asserts that the certificate in `generated` has the same checks and that all of them passed.
+fn assert_checked_in(certificate: &Certificate) {
     let name = match certificate.order {
         0 => "planetary_arm_rigid".to_owned(),
         order => format!("planetary_arm_order_{order}"),
@@ -106,7 +104,7 @@ fn is_checked_in(certificate: &Certificate) {
             skipped,
         )
     };
-    // What has been judged since is in it from the next `generate --all` on.
+    // The certificate in `generated` may lack checks added since the last `generate --all`.
     for (found, skipped) in found["checks"].as_array().expect("checks").iter().map(made) {
         let mut checks = certificate.checks.iter();
         let known = checks.any(|check| check.name == found && check.skipped.is_some() == skipped);
@@ -115,27 +113,27 @@ fn is_checked_in(certificate: &Certificate) {
 }
 
 #[test]
-fn the_arm_passes_rigid_and_with_one_to_four_modes() {
-    (0..=4).for_each(arm);
+fn arm_with_zero_to_four_modes_passes() {
+    (0..=4).for_each(certify_arm);
 }
 
 #[test]
-fn the_arm_passes_with_five_to_eight_modes() {
-    (5..=8).for_each(arm);
+fn arm_with_five_to_eight_modes_passes() {
+    (5..=8).for_each(certify_arm);
 }
 
 #[test]
-fn the_arm_passes_with_sixteen_modes() {
-    arm(16);
+fn arm_with_sixteen_modes_passes() {
+    certify_arm(16);
 }
 
 #[test]
-fn the_arm_passes_with_sixty_four_modes() {
-    arm(64);
+fn arm_with_sixty_four_modes_passes() {
+    certify_arm(64);
 }
 
 #[test]
-fn every_shipped_specification_passes_at_its_own_order() {
+fn shipped_specifications_pass_at_declared_order() {
     for path in shipped() {
         let name = path
             .file_stem()
@@ -155,47 +153,47 @@ fn every_shipped_specification_passes_at_its_own_order() {
         if PiecewiseLinear::of(&model, &orders).is_err() {
             may_skip.push("exact_derivative");
         }
-        // The flexible links of the second are compared by hand where they are rigid.
+        // The references of `two_link_arm` cover the rigid links only.
         if ["planetary_arm_rig", "two_link_arm"].contains(&name.as_str()) {
             may_skip.push("reference");
         }
-        let certificate = of(&name, order);
-        passes(&certificate, &may_skip);
+        let certificate = certify_shipped(&name, order);
+        assert_passes(&certificate, &may_skip);
         let reference_equations = count(&certificate, "reference");
         assert!(
             reference_equations > 0,
-            "{name}: not a word about equations by hand"
+            "{name}: no `reference` check, not even a skipped one"
         );
     }
 }
 
 #[test]
-fn the_beam_with_a_tip_mass_passes_at_other_orders() {
+fn hub_beam_with_tip_mass_passes_at_other_orders() {
     for order in [1, 8, 16] {
         let may_skip = ["guards", "regime_kernels", "exact_derivative"];
-        passes(&of("hub_beam_tip_mass", order), &may_skip);
+        assert_passes(&certify_shipped("hub_beam_tip_mass", order), &may_skip);
     }
 }
 
 #[test]
-fn the_arm_of_two_links_passes_at_every_kind_of_order() {
-    let rigid = of("two_link_arm", 0);
+fn two_link_arm_passes_rigid_and_flexible() {
+    let rigid = certify_shipped("two_link_arm", 0);
     let may_skip = [
         "guards",
         "regime_kernels",
         "exact_derivative",
         "rigid_limit",
     ];
-    passes(&rigid, &may_skip);
+    assert_passes(&rigid, &may_skip);
     assert_eq!(count(&rigid, "reference"), 1);
     // Order 16 takes half a minute and has the loops of order 8.
     for order in [1, 4, 8] {
         let may_skip = ["guards", "regime_kernels", "exact_derivative", "reference"];
-        passes(&of("two_link_arm", order), &may_skip);
+        assert_passes(&certify_shipped("two_link_arm", order), &may_skip);
     }
 }
 
-/// A fault in emitted source, and the check that is there for it.
+/// Faults in emitted source: text, replacement, check that must fail.
 const FAULTS: [(&str, &str, &str); 4] = [
     (
         "F::value(f64::from(self)) as f32",
@@ -220,26 +218,26 @@ const FAULTS: [(&str, &str, &str); 4] = [
 ];
 
 #[test]
-fn every_fault_of_what_was_requested_fails_its_own_check() {
+fn each_fault_in_requested_output_fails_its_own_check() {
     let model = load("planetary_arm");
     let outputs = [Output::Products, Output::Linearisation, Output::Lanes];
     let Ok(variant) = Variant::derive_with(&model, &[1], &outputs) else {
         panic!("the arm can be derived");
     };
     let source = emit(&variant.program, Packaging::Crate).expect("the program can be emitted");
-    let of = |source: String| with_references(&model, 1, &outputs, source);
-    let right = of(source.clone());
-    passes(&right, &["rates_by_inputs", "observables_by_inputs"]);
+    let certify_source = |source: String| with_references(&model, 1, &outputs, source);
+    let right = certify_source(source.clone());
+    assert_passes(&right, &["rates_by_inputs", "observables_by_inputs"]);
     for (text, fault, check) in FAULTS {
         assert!(source.contains(text), "{text}");
-        let wrong = of(source.replacen(text, fault, 1));
+        let wrong = certify_source(source.replacen(text, fault, 1));
         let failed: Vec<&str> = wrong.failures().map(|check| check.name.as_str()).collect();
         assert_eq!(failed, [check], "{fault}");
     }
 }
 
 #[test]
-fn a_certificate_of_the_wrong_source_fails() {
+fn falsified_source_fails_emitted_rust_check() {
     let model = load("planetary_arm");
     let source = |order: usize| {
         let values = model

@@ -1,5 +1,4 @@
-//! What a certificate of a user's own specification says that it is about, and that it covers
-//! everything that can be requested of it.
+//! Contents of the certificate of a user's specification, with all requestable outputs.
 
 use std::path::Path;
 
@@ -48,7 +47,7 @@ motor = { on = "theta", value = "u" }
 gap = { value = "gap", unit = "m" }
 "#;
 
-/// Everything that can be requested but regimes, with the checks that belong to it.
+/// All requestable outputs except regimes, and their checks.
 const REQUESTED: &str =
     "bias_forces,inverse_dynamics,guard_rates,jacobians,products,linearisation,lanes";
 const CHECKS: [&str; 16] = [
@@ -70,8 +69,8 @@ const CHECKS: [&str; 16] = [
     "f32",
 ];
 
-/// The specification in a folder of its own.
-fn written(folder: &Path) -> String {
+/// Writes the specification into `folder` and returns its path.
+fn write_lever(folder: &Path) -> String {
     let path = folder.join("lever.toml");
     std::fs::write(&path, LEVER).expect("a file can be written");
     path.display().to_string()
@@ -86,9 +85,9 @@ fn document(text: &str) -> Value {
 }
 
 #[test]
-fn everything_that_is_requested_of_a_users_own_model_is_judged() {
+fn all_requested_outputs_are_checked() {
     let folder = tempfile::tempdir().expect("a folder");
-    let spec = written(folder.path());
+    let spec = write_lever(folder.path());
     let output = run(&["validate", &spec, "--with", REQUESTED, "--json"]);
     let certificate = document(&text(&output.stdout));
     assert_eq!(output.status.code(), Some(0), "{certificate:#}");
@@ -102,9 +101,9 @@ fn everything_that_is_requested_of_a_users_own_model_is_judged() {
 }
 
 #[test]
-fn a_certificate_beside_the_source_is_about_that_source() {
+fn certificate_holds_hashes_of_its_source() {
     let folder = tempfile::tempdir().expect("a folder");
-    let spec = written(folder.path());
+    let spec = write_lever(folder.path());
     let out = folder.path().join("out");
     let place = out.display().to_string();
     let asked = ["--with", "inverse_dynamics"];
@@ -130,16 +129,16 @@ fn a_certificate_beside_the_source_is_about_that_source() {
 }
 
 #[test]
-fn without_certify_there_is_no_certificate() {
+fn generate_without_certify_writes_no_certificate() {
     let folder = tempfile::tempdir().expect("a folder");
-    let spec = written(folder.path());
+    let spec = write_lever(folder.path());
     let out = folder.path().join("out");
     accepted(&["generate", &spec, "--out", &out.display().to_string()]);
     assert!(!out.join("certificate.json").exists());
 }
 
 #[test]
-fn a_partial_certificate_says_so_and_ends_with_1() {
+fn partial_certificate_exits_with_1() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("lever.toml");
     let unreached =

@@ -1,6 +1,5 @@
-//! The coefficients the arm's specification names, a_01 and so on, as derived: equal to the
-//! hand-written ones of Eq. (22), and complete, so that the equations can be put together
-//! from them again.
+//! The named coefficients a_01 and so on in the arm's specification: equal to the hand-written ones
+//! of Eq. (22), and sufficient to assemble the equations.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_paper::reference::PlanetaryArmParameters;
@@ -8,17 +7,15 @@ use eomgen_paper::reference::equation_22::{Coefficients, ModeRow};
 use eomgen_tests::models::{load, samples, variant};
 use eomgen_validate::sampler::Sample;
 
-/// Relative deviation allowed: both sides are some tens of roundings from the parameters,
-/// and a_16 loses a digit by cancellation.
+/// Maximum relative deviation. Both sides are tens of roundings away from the parameters, and a_16
+/// loses a digit by cancellation.
 const TOLERANCE: f64 = 1e-12;
 
-/// Orders compared.
 const ORDERS: [usize; 3] = [1, 4, 16];
 
-/// The derived variant with its named coefficients at hand.
+/// Derived variant whose observables are the named coefficients.
 struct Named {
     names: Vec<String>,
-    /// Computes the coefficients where it else computes observables.
     evaluator: Evaluator,
 }
 
@@ -38,7 +35,7 @@ impl Named {
         }
     }
 
-    /// All coefficients at a time, by name: one number, one per mode, or modes by modes.
+    /// Returns the coefficients at a sample by name: one number, one per mode, or modes by modes.
     fn at(&mut self, sample: &Sample) -> impl Fn(&str) -> Vec<f64> + use<> {
         let point = Point {
             t: sample.time,
@@ -62,8 +59,8 @@ impl Named {
     }
 }
 
-/// What was written by hand under the name the specification uses; q stands for the modes.
-fn by_hand(coefficients: &Coefficients, name: &str, t: f64) -> Option<Vec<f64>> {
+/// Returns the hand-written coefficient with that name in the specification; q denotes the modes.
+fn hand_written(coefficients: &Coefficients, name: &str, t: f64) -> Option<Vec<f64>> {
     let c = coefficients;
     let one = |value: f64| Some(vec![value]);
     let modes = |value: fn(&ModeRow) -> f64| Some(c.modes.iter().map(value).collect());
@@ -99,14 +96,14 @@ fn by_hand(coefficients: &Coefficients, name: &str, t: f64) -> Option<Vec<f64>> 
 }
 
 #[test]
-fn the_named_coefficients_are_those_of_equation_22() {
+fn named_coefficients_match_equation_22() {
     for order in ORDERS {
         let mut named = Named::at_order(order);
         let coefficients = Coefficients::new(&PlanetaryArmParameters::default(), order);
         let sample = &samples(&load("planetary_arm"), order, 1, 1)[0];
         let derived = named.at(sample);
         for name in &named.names {
-            let expected = by_hand(&coefficients, name, sample.time)
+            let expected = hand_written(&coefficients, name, sample.time)
                 .unwrap_or_else(|| panic!("{name} is not compared"));
             let found = derived(name);
             assert_eq!(found.len(), expected.len(), "{name} at order {order}");
@@ -119,7 +116,7 @@ fn the_named_coefficients_are_those_of_equation_22() {
     }
 }
 
-/// What the coefficients multiply: the paper's f_k and f_c, and the modes.
+/// Factors of the coefficients: the paper's f_k and f_c, and the modes.
 struct Quantities {
     rates: [f64; 3],
     springs: [f64; 2],
@@ -144,7 +141,7 @@ impl Quantities {
         }
     }
 
-    /// The four mesh terms of a row, their coefficients numbered on from `first`.
+    /// Returns the four mesh terms of a row; `names` are their coefficients.
     fn mesh(&self, a: &impl Fn(&str) -> Vec<f64>, names: [&str; 4], mode: usize) -> Vec<f64> {
         let quantities = [
             self.springs[0],
@@ -168,7 +165,7 @@ impl Quantities {
     }
 }
 
-/// The terms of every row of Eq. (22), divided by what stands on its left side.
+/// Returns the terms of every row of Eq. (22), divided by the factor of the row's acceleration.
 fn rows(a: &impl Fn(&str) -> Vec<f64>, by: &Quantities) -> Vec<Vec<f64>> {
     let one = |name: &str| a(name)[0];
     let [x_sp, x_pr, x_c] = by.rates;
@@ -211,7 +208,7 @@ fn rows(a: &impl Fn(&str) -> Vec<f64>, by: &Quantities) -> Vec<Vec<f64>> {
 }
 
 #[test]
-fn the_named_coefficients_are_all_there_is_in_the_equations() {
+fn named_coefficients_assemble_the_equations() {
     let model = load("planetary_arm");
     for order in ORDERS {
         let mut named = Named::at_order(order);

@@ -1,7 +1,7 @@
-//! Inverse dynamics of rigid bodies from frame to frame, against the oracle's mass matrix and forces,
-//! which know nothing of frames: trees at random, with hinges and slides, several turns of a frame,
-//! oblique axes, angles of several coordinates, of the time and of prescribed motion, bodies with and
-//! without mass, and energies beside theirs.
+//! Inverse dynamics of rigid bodies, computed from frame to frame, against the oracle's mass matrix
+//! and forces. The random trees contain hinges, slides, multiple turns of a frame, oblique axes,
+//! angles that depend on several coordinates, on time or on prescribed motion, bodies without mass,
+//! and additional energies.
 
 use std::fmt::Write;
 
@@ -14,9 +14,9 @@ use eomgen_tests::models::samples;
 use eomgen_validate::oracle::Oracle;
 use eomgen_validate::random::Random;
 
-/// Beside the terms of a row.
+/// Maximum deviation relative to the terms of a row.
 const TOLERANCE: f64 = 1e-12;
-/// States of each tree.
+/// Number of states per tree.
 const STATES: usize = 5;
 const COORDINATES: usize = 5;
 const TREES: usize = 30;
@@ -28,22 +28,21 @@ fn checked(text: &str) -> Model {
     }
 }
 
-/// One of several texts.
-fn one_of<'t>(random: &mut Random, texts: &[&'t str]) -> &'t str {
+fn pick_text<'t>(random: &mut Random, texts: &[&'t str]) -> &'t str {
     random.pick(texts).copied().unwrap_or_default()
 }
 
-/// A rotation that coordinate `i` moves, unless a slide does.
+/// Returns a rotation of frame `i`, driven by coordinate `i` unless that one slides.
 fn rotation(random: &mut Random, i: usize, slides: bool) -> String {
     let axes = ["x", "y", "z"];
     let before = i.saturating_sub(1).max(1);
     let mut turns = Vec::new();
     if random.unit() < 0.5 {
-        let angle = one_of(random, &["pi/2", "-pi/2", "pi", "beta", "0.7"]);
-        turns.push(format!("rotation_{}({angle})", one_of(random, &axes)));
+        let angle = pick_text(random, &["pi/2", "-pi/2", "pi", "beta", "0.7"]);
+        turns.push(format!("rotation_{}({angle})", pick_text(random, &axes)));
     }
     if !slides {
-        let angle = match one_of(
+        let angle = match pick_text(
             random,
             &["plain", "plain", "plain", "minus", "sum", "time", "given"],
         ) {
@@ -53,25 +52,28 @@ fn rotation(random: &mut Random, i: usize, slides: bool) -> String {
             "given" => format!("q_{i} + s"),
             _ => format!("q_{i}"),
         };
-        turns.push(format!("rotation_{}({angle})", one_of(random, &axes)));
+        turns.push(format!("rotation_{}({angle})", pick_text(random, &axes)));
         if random.unit() < 0.3 {
-            turns.push(format!("rotation_{}(q_{before}/2)", one_of(random, &axes)));
+            turns.push(format!(
+                "rotation_{}(q_{before}/2)",
+                pick_text(random, &axes)
+            ));
         }
     }
     if random.unit() < 0.3 {
-        turns.push(format!("rotation_{}(-pi/2)", one_of(random, &axes)));
+        turns.push(format!("rotation_{}(-pi/2)", pick_text(random, &axes)));
     }
     turns.join("*")
 }
 
-/// The specification of a tree.
+/// Returns the specification of a random tree.
 fn tree(random: &mut Random) -> String {
     let mut frames = String::from("[frames]\n");
     let mut bodies = String::from("[bodies]\n");
     for i in 1..=COORDINATES {
         let slides = random.unit() < 0.2;
         let mut origin =
-            [0, 1, 2].map(|_| one_of(random, &["0", "0", "a", "-b", "0.3*a"]).to_owned());
+            [0, 1, 2].map(|_| pick_text(random, &["0", "0", "a", "-b", "0.3*a"]).to_owned());
         if slides {
             let along = random.pick(&[0, 1, 2]).copied().unwrap_or_default();
             origin[along] = format!("a + b*q_{i}");
@@ -96,13 +98,13 @@ fn tree(random: &mut Random) -> String {
             frames,
             "f_{i} = {{ {parent}origin = [\"{x}\", \"{y}\", \"{z}\"]{turns} }}"
         );
-        let centre = [0, 1, 2].map(|_| one_of(random, &["0", "c", "-c/3"]));
+        let centre = [0, 1, 2].map(|_| pick_text(random, &["0", "c", "-c/3"]));
         let [x, y, z] = centre;
-        let weight = match one_of(random, &["m", "m", "2*m", "none"]) {
+        let weight = match pick_text(random, &["m", "m", "2*m", "none"]) {
             "none" => String::new(),
             mass => format!("mass = \"{mass}\", centre = [\"{x}\", \"{y}\", \"{z}\"], "),
         };
-        let inertia = one_of(
+        let inertia = pick_text(
             random,
             &[
                 "\"J\", \"1.2*J\", \"1.5*J\"",
@@ -115,7 +117,7 @@ fn tree(random: &mut Random) -> String {
             "f_{i} = {{ frame = \"f_{i}\", {weight}inertia = [{inertia}] }}"
         );
     }
-    let gravity = one_of(random, &["0, 0, \"-g\"", "\"g/2\", 0, \"-g\""]);
+    let gravity = pick_text(random, &["0, 0, \"-g\"", "\"g/2\", 0, \"-g\""]);
     let mut text = format!(
         "[model]\nname = \"tree\"\ngravity = [{gravity}]\n[parameters]\n\
          g = {{ value = 9.81, unit = \"m/s^2\" }}\nm = {{ value = 0.7, unit = \"kg\" }}\n\
@@ -133,7 +135,7 @@ fn tree(random: &mut Random) -> String {
     text += &bodies;
     text += "[kinetic]\n";
     for i in 1..=COORDINATES {
-        // Every coordinate has inertia, however the tree fell out.
+        // Gives every coordinate inertia, for any tree.
         _ = writeln!(
             text,
             "rotor_{i} = \"1/2*K*(1 + cos(q_{i})^2)*dot(q_{i})^2\""
@@ -143,8 +145,8 @@ fn tree(random: &mut Random) -> String {
             [forces]\nmotor = { on = \"q_4\", value = \"u + k*s\" }\n"
 }
 
-/// Operations of a call of the rates and of inverse dynamics.
-fn compared(model: &Model) -> (usize, usize) {
+/// Compares with the oracle; returns the operation counts of the rates and of inverse dynamics.
+fn compare_with_oracle(model: &Model) -> (usize, usize) {
     let variant = Variant::derive_with(model, &[], &[Output::InverseDynamics]);
     let program = match variant {
         Ok(variant) => variant.program,
@@ -160,7 +162,7 @@ fn compared(model: &Model) -> (usize, usize) {
         program.operations(&inverse.all()),
     );
     let parameters = model.parameter_values().expect("values");
-    let oracle = Oracle::new(model, 0, &parameters).expect("the oracle knows the model");
+    let oracle = Oracle::new(model, 0, &parameters).expect("the oracle supports the model");
     let mut evaluator = Evaluator::new(program);
     let mut random = Random::new(0x7ee5);
     for sample in samples(model, 0, 0x7ee5, STATES) {
@@ -193,20 +195,20 @@ fn compared(model: &Model) -> (usize, usize) {
 }
 
 #[test]
-fn inverse_dynamics_of_random_trees_is_that_of_the_oracle() {
+fn inverse_dynamics_of_random_trees_matches_oracle() {
     let mut random = Random::new(20);
     let (mut all_rates, mut all_inverse) = (0, 0);
     for _ in 0..TREES {
-        let (rates, inverse) = compared(&checked(&tree(&mut random)));
+        let (rates, inverse) = compare_with_oracle(&checked(&tree(&mut random)));
         all_rates += rates;
         all_inverse += inverse;
     }
-    // By mass matrices or sweeps it would be 0.71.
+    // The quotient would be 0.71 with mass matrices or sweeps.
     assert!(2 * all_inverse < all_rates, "{all_inverse} of {all_rates}");
 }
 
 #[test]
-fn inverse_dynamics_of_six_joints_is_that_of_the_oracle() {
-    let (rates, inverse) = compared(&eomgen_tests::models::load("puma_560"));
+fn inverse_dynamics_of_six_joints_matches_oracle() {
+    let (rates, inverse) = compare_with_oracle(&eomgen_tests::models::load("puma_560"));
     assert!(5 * inverse < 2 * rates, "{inverse} of {rates}");
 }

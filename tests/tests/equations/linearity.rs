@@ -1,4 +1,4 @@
-//! Which models are seen to be linear between their switching surfaces.
+//! Classification of models as linear, piecewise linear or nonlinear.
 
 use eomgen_codegen::mechanics::equations::derive;
 use eomgen_codegen::mechanics::linearity::{Linearity, linearity};
@@ -25,7 +25,7 @@ fn kind(model: &Model) -> String {
     }
 }
 
-/// A mass on a spring with one more force.
+/// Returns the specification of a mass on a spring with an additional force.
 fn with_force(force: &str) -> String {
     format!(
         "[model]\nname = \"mass\"\ntitle = \"A mass\"\n\
@@ -39,7 +39,7 @@ fn with_force(force: &str) -> String {
 }
 
 #[test]
-fn shipped_models_are_what_their_physics_says() {
+fn shipped_models_are_classified_correctly() {
     for path in shipped() {
         let name = path
             .file_stem()
@@ -47,7 +47,7 @@ fn shipped_models_are_what_their_physics_says() {
             .expect("a name");
         let expected = match name {
             "planetary_arm" | "planetary_arm_rig" => Some("piecewise linear"),
-            // The inertia that moves with the length of the rope.
+            // The inertia depends on the length of the rope.
             "crane" => Some("m*l^2"),
             "chaplygin_sleigh" | "quadrotor_slung_load" => Some("with constraints"),
             "emps" | "hub_beam_tip_mass" | "loudspeaker" | "shaft_and_disc" => Some("linear"),
@@ -65,7 +65,7 @@ fn shipped_models_are_what_their_physics_says() {
 }
 
 #[test]
-fn dry_friction_and_a_sinusoidal_force_keep_a_model_piecewise_linear() {
+fn dry_friction_and_sinusoidal_force_keep_model_piecewise_linear() {
     assert_eq!(kind_of(&with_force("-F*sign(dot(x))")), "piecewise linear");
     assert_eq!(kind_of(&with_force("F*sin(omega*t + 1)")), "linear");
     assert_eq!(
@@ -75,7 +75,7 @@ fn dry_friction_and_a_sinusoidal_force_keep_a_model_piecewise_linear() {
 }
 
 #[test]
-fn what_is_in_the_way_is_named() {
+fn nonlinear_term_is_named() {
     for (force, culprit) in [
         ("-F*dot(x)*abs(dot(x))/v^2", "abs(dot(x))"),
         ("F*x*omega/v*sin(omega*t)", "sin(omega*t)"),

@@ -1,7 +1,7 @@
-//! Random smooth models that are right: their certificates must say so, and must not say so
-//! of models that differ in a single term by a ten-millionth.
+//! Certificates of random smooth models: a correct model must pass, and a model with a relative
+//! error of 1e-7 in a single term must fail.
 //!
-//! A few models each time; more of another seed by
+//! By default a few models run. For more, or another seed:
 //!
 //! ```console
 //! $ EOMGEN_SMOOTH_MODELS=300 EOMGEN_SMOOTH_SEED=7 \
@@ -20,9 +20,8 @@ fn number(name: &str, absent: u64) -> u64 {
     given.map_or(absent, |text| text.parse().expect("a whole number"))
 }
 
-/// Whether the motion can begin: of a model that is no machine at its own initial state
-/// nothing is asked.
-fn begins(model: &Model) -> bool {
+/// Returns true if the initial state has a positive definite mass matrix and finite rates.
+fn has_valid_initial_state(model: &Model) -> bool {
     let mut evaluator = variant(model, 0).evaluator;
     let state = model.initial_state(&[]).expect("a state");
     let inputs = vec![0.0; model.inputs.len()];
@@ -36,19 +35,19 @@ fn begins(model: &Model) -> bool {
     evaluator.pivots_are_positive() && rates.iter().all(|rate| rate.is_finite())
 }
 
-/// The next model of which something can be asked.
-fn next(models: &mut SmoothModels) -> (SmoothModel, Model) {
+/// Returns the next model with a valid initial state.
+fn next_valid_model(models: &mut SmoothModels) -> (SmoothModel, Model) {
     loop {
         let written = models.model();
         let model = checked(&written.text);
-        if begins(&model) {
+        if has_valid_initial_state(&model) {
             return (written, model);
         }
     }
 }
 
 #[test]
-fn right_models_are_not_called_wrong() {
+fn certificates_of_correct_models_pass() {
     let (count, seed) = (
         number("EOMGEN_SMOOTH_MODELS", 12),
         number("EOMGEN_SMOOTH_SEED", 1),
@@ -56,7 +55,7 @@ fn right_models_are_not_called_wrong() {
     let mut models = SmoothModels::new(seed);
     let mut alarms = Vec::new();
     for place in 0..count {
-        let (written, model) = next(&mut models);
+        let (written, model) = next_valid_model(&mut models);
         let certificate = certificate(&model, &model);
         if !certificate.passed {
             let failures: Vec<_> = certificate.failures().collect();
@@ -75,7 +74,7 @@ fn right_models_are_not_called_wrong() {
     );
 }
 
-/// What is judged beside the equations themselves.
+/// Outputs to check in addition to the equations.
 const OUTPUTS: [Output; 5] = [
     Output::BiasForces,
     Output::InverseDynamics,
@@ -85,7 +84,7 @@ const OUTPUTS: [Output; 5] = [
 ];
 
 #[test]
-fn what_is_requested_of_right_models_is_not_called_wrong() {
+fn requested_outputs_of_correct_models_pass() {
     let (count, seed) = (
         number("EOMGEN_SMOOTH_MODELS", 12),
         number("EOMGEN_SMOOTH_SEED", 1),
@@ -93,7 +92,7 @@ fn what_is_requested_of_right_models_is_not_called_wrong() {
     let mut models = SmoothModels::new(seed);
     let mut alarms = Vec::new();
     for place in 0..count {
-        let (written, model) = next(&mut models);
+        let (written, model) = next_valid_model(&mut models);
         let certificate = certificate_with(&model, &model, &OUTPUTS);
         let made = certificate
             .checks
@@ -119,11 +118,11 @@ fn what_is_requested_of_right_models_is_not_called_wrong() {
     );
 }
 
-/// A term may be so small beside the others of its row, at every state, that a ten-millionth of
-/// it is within the row's rounding. Of such a term a thousandth has to be seen, and few terms may
-/// be such.
+/// A term can be so small compared with its row, at every state, that 1e-7 of it is within the
+/// row's rounding. A relative error of 1e-3 in such a term must be detected, and such terms must be
+/// rare.
 #[test]
-fn a_term_that_differs_by_a_ten_millionth_is_seen() {
+fn relative_error_of_1e_7_in_a_term_is_detected() {
     let (count, seed) = (
         number("EOMGEN_SMOOTH_MODELS", 12) / 3,
         number("EOMGEN_SMOOTH_SEED", 1),
@@ -131,7 +130,7 @@ fn a_term_that_differs_by_a_ten_millionth_is_seen() {
     let mut models = SmoothModels::new(seed);
     let (mut faults, mut within_rounding, mut unseen) = (0, 0, Vec::new());
     for _ in 0..count {
-        let (written, model) = next(&mut models);
+        let (written, model) = next_valid_model(&mut models);
         for (section, name, term) in &written.terms {
             let line = written
                 .text

@@ -1,6 +1,5 @@
-//! The program on specifications that are none: exit status 2, a message with its place,
-//! within a second, and nothing left behind. The messages themselves are tested where they
-//! are made, beside the corpus.
+//! Invalid specifications: the program exits with status 2 and a located message within a second,
+//! and leaves no files. `model-spec` tests the texts of the messages.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -8,11 +7,11 @@ use std::time::{Duration, Instant};
 use eomgen_tests::models::{path, project};
 use eomgen_tests::program::{self, eomgen, text};
 
-/// The longest a refusal may take.
-const PATIENCE: Duration = Duration::from_secs(1);
+/// Maximum duration of a rejection.
+const MAX_REJECTION_TIME: Duration = Duration::from_secs(1);
 
-/// Runs a command on `spec` that must refuse it; the message.
-fn refused(command: &[&str], spec: &Path) -> String {
+/// Runs a command that must reject `spec`; returns its message.
+fn reject(command: &[&str], spec: &Path) -> String {
     program::path();
     let begun = Instant::now();
     let output = eomgen()
@@ -24,7 +23,7 @@ fn refused(command: &[&str], spec: &Path) -> String {
     let message = text(&output.stderr);
     let shown = format!("{} {}", command.join(" "), spec.display());
     assert_eq!(output.status.code(), Some(2), "{shown}: {message}");
-    assert!(taken < PATIENCE, "{shown}: took {taken:?}");
+    assert!(taken < MAX_REJECTION_TIME, "{shown}: took {taken:?}");
     assert!(
         output.stdout.is_empty(),
         "{shown}: {}",
@@ -38,11 +37,12 @@ fn refused(command: &[&str], spec: &Path) -> String {
     message
 }
 
-/// `spec` is refused by `check` and by `generate`, which leaves no folder; the message.
-fn leaves_nothing(spec: &Path) -> String {
+/// Asserts that `check` and `generate` reject `spec` and that no folder is left; returns the
+/// message.
+fn reject_without_files(spec: &Path) -> String {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("out");
-    refused(
+    reject(
         &[
             "generate",
             "--order",
@@ -56,10 +56,10 @@ fn leaves_nothing(spec: &Path) -> String {
         .expect("the folder")
         .collect();
     assert!(left.is_empty(), "{}: left {left:?}", spec.display());
-    refused(&["check"], spec)
+    reject(&["check"], spec)
 }
 
-/// The `:line:column` that a message points at.
+/// Returns the `:line:column` of a message.
 fn place(message: &str) -> Option<&str> {
     let (_, rest) = message.split_once("--> ")?;
     let line = rest.lines().next()?;
@@ -68,7 +68,7 @@ fn place(message: &str) -> Option<&str> {
 }
 
 #[test]
-fn every_file_of_the_corpus_is_refused_at_its_place() {
+fn corpus_files_are_rejected_with_location() {
     let folder = project().join("model-spec/tests/corpus/broken");
     let entries = std::fs::read_dir(folder).expect("the corpus");
     let mut specs: Vec<PathBuf> = entries
@@ -77,7 +77,7 @@ fn every_file_of_the_corpus_is_refused_at_its_place() {
     specs.retain(|spec| spec.extension().is_some_and(|ending| ending == "toml"));
     assert!(specs.len() >= 20, "only {} files", specs.len());
     for spec in specs {
-        let message = leaves_nothing(&spec);
+        let message = reject_without_files(&spec);
         let golden = std::fs::read_to_string(spec.with_extension("txt")).expect("its message");
         assert_eq!(place(&message), place(&golden), "{message}");
         assert!(
@@ -87,15 +87,15 @@ fn every_file_of_the_corpus_is_refused_at_its_place() {
     }
 }
 
-/// Writes a specification and has it refused; the message.
-fn written(name: &str, contents: &[u8]) -> String {
+/// Writes a specification and asserts its rejection; returns the message.
+fn reject_text(name: &str, contents: &[u8]) -> String {
     let folder = tempfile::tempdir().expect("a folder");
     let spec = folder.path().join(format!("{name}.toml"));
     std::fs::write(&spec, contents).expect("the file can be written");
-    leaves_nothing(&spec)
+    reject_without_files(&spec)
 }
 
-/// The pendulum with one line changed.
+/// Returns the pendulum's specification with one replacement.
 fn pendulum(from: &str, to: &str) -> String {
     let whole = std::fs::read_to_string(path("pendulum")).expect("the pendulum");
     let changed = whole.replacen(from, to, 1);
@@ -107,14 +107,14 @@ fn pendulum(from: &str, to: &str) -> String {
 }
 
 #[test]
-fn files_that_are_too_large_are_not_read() {
+fn oversized_file_is_rejected() {
     let mut large = std::fs::read(path("pendulum")).expect("the pendulum");
     large.resize(10 << 20, b'#');
-    assert!(written("large", &large).contains("too large"));
+    assert!(reject_text("large", &large).contains("too large"));
 }
 
 #[test]
-fn deep_nesting_is_refused() {
+fn deep_nesting_is_rejected() {
     let term = |expression: &str| pendulum("1/2*(m*a^2 + I)*dot(theta)^2", expression).into_bytes();
     let (open, close) = ("(".repeat(10_000), ")".repeat(10_000));
     for expression in [
@@ -125,39 +125,39 @@ fn deep_nesting_is_refused() {
         format!("{}m{close}", "sin(".repeat(10_000)),
         format!("m{}", "/m".repeat(10_000)),
     ] {
-        let message = written("nested", &term(&expression));
+        let message = reject_text("nested", &term(&expression));
         assert!(place(&message).is_some(), "{message}");
     }
-    written(
+    reject_text(
         "arrays",
         format!("model = {}{}", "[".repeat(10_000), "]".repeat(10_000)).as_bytes(),
     );
-    written("tables", format!("[{}a]", "a.".repeat(10_000)).as_bytes());
+    reject_text("tables", format!("[{}a]", "a.".repeat(10_000)).as_bytes());
 }
 
 #[test]
-fn what_is_no_text_or_no_file_is_refused() {
-    assert!(written("empty", b"").contains(":1:1"));
-    assert!(written("latin", b"[model]\nname = \"\xe9\"\n").contains(":2:9"));
-    written("zeros", &[0; 100]);
-    written("mark", b"\xef\xbb\xbf");
+fn empty_binary_or_missing_file_is_rejected() {
+    assert!(reject_text("empty", b"").contains(":1:1"));
+    assert!(reject_text("latin", b"[model]\nname = \"\xe9\"\n").contains(":2:9"));
+    reject_text("zeros", &[0; 100]);
+    reject_text("mark", b"\xef\xbb\xbf");
     let folder = tempfile::tempdir().expect("a folder");
-    assert!(leaves_nothing(folder.path()).contains("not a file"));
-    assert!(leaves_nothing(&folder.path().join("missing.toml")).contains("cannot be read"));
+    assert!(reject_without_files(folder.path()).contains("not a file"));
+    assert!(reject_without_files(&folder.path().join("missing.toml")).contains("cannot be read"));
 }
 
 #[cfg(unix)]
 #[test]
-fn a_pipe_is_refused_and_not_waited_for() {
+fn pipe_is_rejected_without_waiting() {
     let folder = tempfile::tempdir().expect("a folder");
     let pipe = folder.path().join("pipe.toml");
     let made = std::process::Command::new("mkfifo").arg(&pipe).status();
     assert!(made.expect("mkfifo can be run").success());
-    assert!(refused(&["check"], &pipe).contains("not a file"));
+    assert!(reject(&["check"], &pipe).contains("not a file"));
 }
 
 #[test]
-fn numbers_that_are_none_are_refused_at_their_place() {
+fn invalid_numbers_are_rejected_with_location() {
     for value in [
         "nan",
         "inf",
@@ -168,13 +168,13 @@ fn numbers_that_are_none_are_refused_at_their_place() {
         "\"sqrt(-1)\"",
         "\"exp(1e9)\"",
     ] {
-        let message = written("number", pendulum("0.14758", value).as_bytes());
+        let message = reject_text("number", pendulum("0.14758", value).as_bytes());
         assert!(message.contains(":16:"), "{value}: {message}");
     }
 }
 
 #[test]
-fn a_name_that_would_be_code_is_refused() {
+fn name_that_contains_code_is_rejected() {
     for name in [
         "\"; std::process::exit(1) //\"",
         "fn",
@@ -187,7 +187,7 @@ fn a_name_that_would_be_code_is_refused() {
             "a = { value = 0.14775",
             &format!("{name} = {{ value = 0.14775"),
         );
-        let message = written("name", text.as_bytes());
+        let message = reject_text("name", text.as_bytes());
         assert!(message.contains(":17:"), "{name}: {message}");
     }
 }

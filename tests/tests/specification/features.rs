@@ -1,6 +1,5 @@
-//! Specifications that use what the shipped ones do not, each with one feature of the
-//! language: certified like the shipped ones, against an oracle that shares no code with
-//! the derivation. One file in `features/` is one test; its orders stand here.
+//! Specifications with one language feature each, certified against an oracle that shares no code
+//! with the derivation. Each file in `features/` is one test with its orders listed below.
 
 use std::path::{Path, PathBuf};
 
@@ -12,7 +11,7 @@ use eomgen_validate::certify::ReferenceEquations;
 use eomgen_validate::of_model::certificate;
 use eomgen_validate::sampler::Sample;
 
-/// Declares a test per file, and that no file is forgotten.
+/// Declares one test per file and a test that every file is listed.
 macro_rules! features {
     (
         by_every_check { $($name:ident: $orders:expr;)* }
@@ -29,16 +28,16 @@ macro_rules! features {
             #[test]
             fn $moving() {
                 certify(stringify!($moving), &$moving_orders);
-                power_is_the_rate_of_the_energy(stringify!($moving), &$moving_orders);
+                assert_power_matches_energy_rate(stringify!($moving), &$moving_orders);
             }
         )*
 
         #[test]
-        fn every_file_is_tested() {
+        fn every_feature_file_is_tested() {
             let tested = [$(stringify!($name),)* $(stringify!($moving)),*];
             for path in folders().iter().flat_map(|folder| std::fs::read_dir(folder).unwrap()) {
                 let name = path.unwrap().path().file_stem().unwrap().to_string_lossy().into_owned();
-                assert!(tested.contains(&name.as_str()), "{name}.toml is in no test");
+                assert!(tested.contains(&name.as_str()), "{name}.toml is not listed in `features!`");
             }
         }
     };
@@ -76,7 +75,7 @@ features! {
         states_of_first_order: [0, 1, 3];
         piecewise_linear_states: [0];
     }
-    // Forces alone do not account for the energy: the power is judged once more, by
+    // Forces do not account for the whole energy, so the power is also compared with central
     // differences of the energy.
     also_by_differences {
         prescribed_motion: [0, 2];
@@ -96,7 +95,7 @@ features! {
     }
 }
 
-/// The specifications of these tests, and the examples with constraints and impacts.
+/// Folders of specifications with one feature, and of examples with constraints and impacts.
 fn folders() -> [PathBuf; 3] {
     let tests = Path::new(env!("CARGO_MANIFEST_DIR"));
     [
@@ -114,7 +113,7 @@ fn load(name: &str) -> Model {
         .model
 }
 
-/// Certifies a file at every order and reports all checks that fail.
+/// Certifies a file at every order and reports all failed checks.
 fn certify(name: &str, orders: &[usize]) {
     let model = load(name);
     let mut failures = Vec::new();
@@ -137,16 +136,16 @@ fn certify(name: &str, orders: &[usize]) {
     assert!(failures.is_empty(), "{name}:\n{}", failures.join("\n"));
 }
 
-/// The energy's central difference along the motion. With steps of 1e-5 of the fastest
-/// period's order the truncation and the rounding of E leave about 1e-8 of the terms.
-fn power_is_the_rate_of_the_energy(name: &str, orders: &[usize]) {
+/// Compares the power with the central difference of the energy along the motion. With steps of
+/// about 1e-5 of the fastest period, truncation and rounding of E leave about 1e-8 of the terms.
+fn assert_power_matches_energy_rate(name: &str, orders: &[usize]) {
     let model = load(name);
     for &order in orders {
         let mut evaluator = variant(&model, order).evaluator;
         let count = evaluator.program().observables.len();
         for sample in samples(&model, order, 0x0b5e, 20) {
             let mut rates = vec![0.0; sample.state.len()];
-            evaluator.rates(at(&sample), &mut rates);
+            evaluator.rates(point_of(&sample), &mut rates);
             let mut values = |step: f64| {
                 let moved: Vec<f64> = sample
                     .state
@@ -155,7 +154,7 @@ fn power_is_the_rate_of_the_energy(name: &str, orders: &[usize]) {
                     .map(|(y, rate)| y + step * rate)
                     .collect();
                 let mut out = vec![0.0; count];
-                // Prescribed motion goes on at its rates.
+                // Prescribed motion advances at its rates.
                 let inputs = model
                     .inputs
                     .iter()
@@ -169,7 +168,7 @@ fn power_is_the_rate_of_the_energy(name: &str, orders: &[usize]) {
                     state: moved,
                     inputs: inputs.collect(),
                 };
-                evaluator.observables(at(&moved), &mut out);
+                evaluator.observables(point_of(&moved), &mut out);
                 (out[count - 2], out[count - 1])
             };
             let fastest = sample
@@ -189,7 +188,7 @@ fn power_is_the_rate_of_the_energy(name: &str, orders: &[usize]) {
     }
 }
 
-fn at(sample: &Sample) -> Point<'_> {
+fn point_of(sample: &Sample) -> Point<'_> {
     Point {
         t: sample.time,
         state: &sample.state,

@@ -1,5 +1,5 @@
-//! LaTeX of every specification, set by LaTeX itself where it is installed. What can be told
-//! without it is told in `codegen`.
+//! Compilation of the LaTeX output of every specification, if LaTeX is installed. `codegen` tests
+//! the text itself.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -7,7 +7,7 @@ use std::process::Command;
 use eomgen_tests::models::{project, shipped};
 use eomgen_tests::program::accepted;
 
-/// The shipped specifications and those with one feature of the language each.
+/// Returns the shipped specifications and those with one language feature.
 fn specifications() -> Vec<PathBuf> {
     let features = project().join("tests/features");
     let entries = std::fs::read_dir(features).expect("the folder of the features");
@@ -18,8 +18,8 @@ fn specifications() -> Vec<PathBuf> {
     shipped().into_iter().chain(paths).collect()
 }
 
-/// Runs LaTeX without writing any pages; its complaints if it stops.
-fn set(folder: &Path, name: &str) -> Result<(), String> {
+/// Compiles without writing pages; returns the log's errors on failure.
+fn compile_latex(folder: &Path, name: &str) -> Result<(), String> {
     let output = Command::new("pdflatex")
         .args([
             "-draftmode",
@@ -44,7 +44,7 @@ fn set(folder: &Path, name: &str) -> Result<(), String> {
 fn latex_compiles_for_every_specification() {
     if Command::new("pdflatex").arg("--version").output().is_err() {
         skips::skip(
-            "LaTeX was not set, for want of pdflatex (Debian: apt-get install texlive-latex-base)",
+            "LaTeX output was not compiled: pdflatex is missing (Debian: apt-get install texlive-latex-base)",
         );
         return;
     }
@@ -52,7 +52,7 @@ fn latex_compiles_for_every_specification() {
     for path in specifications() {
         let document = accepted(&["derive", &path.display().to_string(), "--format", "latex"]);
         std::fs::write(folder.path().join("equations.tex"), document).expect("a file");
-        set(folder.path(), "equations.tex")
+        compile_latex(folder.path(), "equations.tex")
             .unwrap_or_else(|wrong| panic!("{}: {wrong}", path.display()));
     }
 }

@@ -1,4 +1,4 @@
-//! Where a model says it lives: `simulate` warns of the first time at which a motion leaves.
+//! Ranges of a model: `simulate` warns at the first time at which a value leaves its range.
 
 use eomgen_tests::program::eomgen;
 
@@ -21,8 +21,8 @@ spring = "1/2*k*x^2"
 pull = { on = "y", value = "u" }
 "#;
 
-/// What `simulate` says on stderr, and whether it left its table.
-fn simulated(text: &str) -> String {
+/// Returns the stderr of `simulate` and asserts that it wrote its table.
+fn simulate_stderr(text: &str) -> String {
     let folder = tempfile::tempdir().expect("a folder");
     let spec = folder.path().join("spring.toml");
     std::fs::write(&spec, text).expect("writable");
@@ -39,9 +39,9 @@ fn simulated(text: &str) -> String {
 }
 
 #[test]
-fn leaving_a_range_is_a_warning_with_name_and_time() {
+fn leaving_range_warns_with_name_and_time() {
     let text = SPRING.to_owned();
-    let said = simulated(&text);
+    let said = simulate_stderr(&text);
     // x = sin(2 t)/2 exceeds 1/4 after pi/12 = 0.2618 s.
     let warning = said
         .lines()
@@ -60,20 +60,20 @@ fn leaving_a_range_is_a_warning_with_name_and_time() {
 }
 
 #[test]
-fn a_motion_inside_its_range_is_not_remarked_upon() {
+fn motion_inside_range_gives_no_warning() {
     let text = SPRING
         .replace("0.25]", "0.6]")
         .replace("range = [1, 2]", "range = [-1, 2]");
-    assert!(!simulated(&text).contains("leaves"));
+    assert!(!simulate_stderr(&text).contains("leaves"));
 }
 
 #[test]
-fn a_state_that_leaves_its_range_is_a_warning() {
+fn state_leaving_its_range_warns() {
     let state =
         "[states]\nz = { unit = \"m\", rate = \"dot(x)\", range = [-0.1, 0.25] }\n[kinetic]";
     let text = SPRING.replace("[kinetic]", state);
     let text = text.replace("range = [1, 2]", "range = [-1, 2]");
-    let said = simulated(&text);
+    let said = simulate_stderr(&text);
     assert!(
         said.contains("`z` leaves its range -0.1 to 0.25 m"),
         "{said}"

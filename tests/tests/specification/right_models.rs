@@ -1,12 +1,12 @@
-//! Right models that are hard to judge: everything cancels in a row, functions have a domain,
-//! the energy grows by honest work, the motion comes to rest, switches drop out. Their
-//! certificates pass, and say how much was looked at.
+//! Correct models that are difficult to check: terms of a row cancel, functions have a domain, the
+//! energy grows by work of a force, the motion comes to rest, switches drop out. Their certificates
+//! pass and report the coverage.
 
 use eomgen_tests::certified::{certificate, checked};
 use eomgen_validate::certificate::{Certificate, Check, Coverage, SkipKind, Verdict};
 
-/// Asserts that the model of a text passes; its certificate.
-fn passes(text: &str) -> Certificate {
+/// Asserts that the model passes; returns its certificate.
+fn assert_passes(text: &str) -> Certificate {
     let model = checked(text);
     let certificate = certificate(&model, &model);
     let failures: Vec<_> = certificate.failures().collect();
@@ -14,8 +14,8 @@ fn passes(text: &str) -> Certificate {
     certificate
 }
 
-/// Asserts that the equations of a changed text fail where those of the text pass.
-fn differs(text: &str, part: &str, changed: &str) {
+/// Asserts that the equations of `text` fail once `part` is replaced by `changed`.
+fn assert_change_fails(text: &str, part: &str, changed: &str) {
     assert!(text.contains(part), "{part} in\n{text}");
     let (model, subject) = (checked(text), checked(&text.replace(part, changed)));
     let certificate = certificate(&model, &subject);
@@ -44,19 +44,19 @@ point = "1/2*m*(dot(x)^2 + dot(y)^2)"
 "#;
 
 #[test]
-fn a_free_rotor_written_by_its_point_passes() {
-    passes(ROTOR);
-    differs(ROTOR, "sin(theta)", "sin(1.0000001*theta)");
+fn free_rotor_defined_by_a_point_passes() {
+    assert_passes(ROTOR);
+    assert_change_fails(ROTOR, "sin(theta)", "sin(1.0000001*theta)");
 }
 
 #[test]
-fn a_rotor_in_play_passes_in_and_out_of_it() {
+fn rotor_with_deadzone_passes_inside_and_outside() {
     let text = ROTOR.to_owned() + "[potential]\nstops = \"1/2*k*deadzone(theta, 0.5)^2\"\n";
-    let certificate = passes(&text);
+    let certificate = assert_passes(&text);
     for side in ["-", "0", "+"] {
         assert!(find(&certificate, &format!("accelerations theta{side}")).passed);
     }
-    differs(&text, "deadzone(theta, 0.5)", "deadzone(theta, 0.5000001)");
+    assert_change_fails(&text, "deadzone(theta, 0.5)", "deadzone(theta, 0.5000001)");
 }
 
 #[test]
@@ -64,11 +64,11 @@ fn one_sided_springs_pass() {
     let text = ROTOR.to_owned()
         + "[potential]\nupper = \"1/2*k*max(theta - 0.1, 0)^2\"\n\
            lower = \"1/2*k*min(x/l + 0.2, 0)^2\"\n";
-    passes(&text);
-    differs(&text, "theta - 0.1", "theta - 0.1000001");
+    assert_passes(&text);
+    assert_change_fails(&text, "theta - 0.1", "theta - 0.1000001");
 }
 
-/// Two masses with a potential of `x` to be given.
+/// Returns a specification of two masses with the given potential of `x`.
 fn masses(potential: &str) -> String {
     format!(
         r#"
@@ -91,25 +91,25 @@ of_y = "1/2*k*(y - x)^2"
 }
 
 #[test]
-fn functions_with_a_domain_are_judged_inside_it() {
+fn functions_are_checked_inside_their_domain() {
     for potential in [
         "k*L^2*ln(x/L)",
         "k*L^2*(x/L)^1.5",
         "k*L^2*sqrt(0.5 - x/L)",
-        // The domain is narrow: a twentieth of what states are drawn from.
+        // The domain is a twentieth of the interval of the sampled states.
         "k*L^2*asin(20*(x/L - 0.42))",
     ] {
         let text = masses(potential);
-        let certificate = passes(&text);
+        let certificate = assert_passes(&text);
         let detail = &find(&certificate, "accelerations").detail;
         assert!(detail.starts_with("200 states ("), "{detail}");
         assert!(detail.contains("drawn again"), "{detail}");
-        differs(&text, "k*L^2*", "1.0000001*k*L^2*");
+        assert_change_fails(&text, "k*L^2*", "1.0000001*k*L^2*");
     }
 }
 
 #[test]
-fn a_model_without_a_domain_fails_and_says_so() {
+fn model_with_empty_domain_fails() {
     let text = masses("k*L^2*ln(-1 - (x/L)^2)");
     let model = checked(&text);
     let certificate = certificate(&model, &model);
@@ -155,24 +155,24 @@ amplifier = { on = "q", value = "U*sin(omega*t)" }
 "#;
 
 #[test]
-fn a_loudspeaker_passes_with_and_without_saying_where_its_cone_lives() {
-    passes(SPEAKER);
-    differs(SPEAKER, "L_1*x)", "1.000001*L_1*x)");
+fn loudspeaker_passes_with_and_without_range() {
+    assert_passes(SPEAKER);
+    assert_change_fails(SPEAKER, "L_1*x)", "1.000001*L_1*x)");
     let ranged = SPEAKER.replace(
         "x = { unit = \"m\" }",
         "x = { unit = \"m\", range = [-0.005, 0.005] }",
     );
-    let certificate = passes(&ranged);
+    let certificate = assert_passes(&ranged);
     let detail = &find(&certificate, "accelerations").detail;
     assert!(
         detail.starts_with("200 states, "),
         "none drawn again: {detail}"
     );
-    differs(&ranged, "L_1*x)", "1.000001*L_1*x)");
+    assert_change_fails(&ranged, "L_1*x)", "1.000001*L_1*x)");
 }
 
 #[test]
-fn a_slider_crank_with_gas_force_passes() {
+fn slider_crank_with_gas_force_passes() {
     let text = r#"
 [model]
 name = "slider"
@@ -196,12 +196,12 @@ piston = "1/2*m*dot(x)^2"
 [forces]
 gas = { on = "x", value = "-p_0*(((V_0 + 2*A*r)/volume)^1.35 - 1)*A" }
 "#;
-    passes(text);
-    differs(text, "^1.35", "^1.3500001");
+    assert_passes(text);
+    assert_change_fails(text, "^1.35", "^1.3500001");
 }
 
 #[test]
-fn a_damped_model_that_has_come_to_rest_passes() {
+fn damped_model_at_rest_passes() {
     let text = r#"
 [model]
 name = "damped"
@@ -221,47 +221,48 @@ spring = "E*asin(0.7*tanh(asin(0.7*tanh(pi*x))))"
 y = "90*E/tau*(1.1 + sin(y))*(dot(y)*tau)^2"
 x = "0.2*E/tau*(dot(x)*tau)^2"
 "#;
-    let certificate = passes(text);
+    let certificate = assert_passes(text);
     let detail = &find(&certificate, "power_balance").detail;
     assert!(detail.starts_with("200 steps"), "{detail}");
-    differs(text, "0.2*E/tau", "0.2000001*E/tau");
+    assert_change_fails(text, "0.2*E/tau", "0.2000001*E/tau");
 }
 
 #[test]
 fn switches_that_drop_out_of_the_equations_need_no_guard() {
     let text = masses("k*L^2*contact(x, L/2)*sin(sqrt(k/m)*t)");
-    passes(&text);
-    // In the equations a switch must be told: the same text as a force.
+    assert_passes(&text);
+    // A force with the same switch does appear in the equations and needs a guard.
     let force =
         masses("k*x^2") + "[forces]\nstep = { on = \"x\", value = \"k*L*contact(x, L/2)\" }\n";
-    passes(&force);
-    differs(&force, "contact(x, L/2)", "1");
+    assert_passes(&force);
+    assert_change_fails(&force, "contact(x, L/2)", "1");
 }
 
 #[test]
-fn energies_of_time_and_terms_linear_in_the_rates_have_the_power_they_should() {
+fn power_balance_holds_for_time_dependent_and_gyroscopic_energies() {
     let gyroscopic = masses("k*x^2*(1 + m/(m + m))").replace(
         "[potential]",
         "gyro = \"m*L*sqrt(k/m)*dot(y)*max(0.5, x/L)\"\nfar = \"m*L*sqrt(k/m)*dot(x)*exp(tanh(y/L))\"\n[potential]",
     );
-    let certificate = passes(&gyroscopic);
+    let certificate = assert_passes(&gyroscopic);
     assert!(find(&certificate, "power_balance").passed);
-    // Where x is small the term is nothing beside the others, and its rate is not.
+    // At small x the term is negligible, but its rate is not.
     let steep = masses("k*x^2").replace(
         "[potential]",
         "gyro = \"m*L*sqrt(k/m)*dot(y)*(x/L)^21\"\n[potential]",
     );
-    passes(&steep);
+    assert_passes(&steep);
     let timed = masses("k*x^2*(2 + sin(sqrt(k/m)*t))").replace(
         "(dot(x)^2 + dot(y)^2)",
         "(dot(x)^2 + dot(y)^2)*(2 + sin(sqrt(k/m)*t))",
     );
-    let certificate = passes(&timed);
+    let certificate = assert_passes(&timed);
     assert!(find(&certificate, "power_balance").passed);
     assert!(find(&certificate, "power").passed);
 }
 
-/// A cylinder behind a valve that feeds from p_s, drains to p_t and does neither below u_0.
+/// Cylinder behind a valve that feeds from p_s above u_0, drains to p_t below -u_0, and is closed
+/// in between.
 const VALVE: &str = r#"
 [model]
 name = "valve"
@@ -296,14 +297,14 @@ fn coverage(regimes: u64, sampled: u64, unreachable: u64) -> Option<Coverage> {
 }
 
 #[test]
-fn every_regime_of_a_valve_in_pascal_has_states() {
-    // Two directions, three ranges of the input and three of the pressure are 18 of 32.
-    assert_eq!(passes(VALVE).coverage, coverage(18, 18, 14));
+fn all_reachable_regimes_of_valve_are_sampled() {
+    // Two directions, three ranges of the input and three ranges of the pressure: 18 of 32 regimes.
+    assert_eq!(assert_passes(VALVE).coverage, coverage(18, 18, 14));
     let in_kilopascal = VALVE.replace("2e7, unit = \"Pa\"", "2e4, unit = \"kPa\"");
-    assert_eq!(passes(&in_kilopascal).coverage, coverage(18, 18, 14));
+    assert_eq!(assert_passes(&in_kilopascal).coverage, coverage(18, 18, 14));
     let moved = VALVE.replace("2e7, unit = \"Pa\"", "3e12, unit = \"Pa\"");
-    assert_eq!(passes(&moved).coverage, coverage(18, 18, 14));
-    differs(
+    assert_eq!(assert_passes(&moved).coverage, coverage(18, 18, 14));
+    assert_change_fails(
         VALVE,
         "- p)*sqrt(abs(p_s - p))",
         "- p)*sqrt(abs(1.0000001*p_s - p))",
@@ -313,17 +314,17 @@ fn every_regime_of_a_valve_in_pascal_has_states() {
 #[test]
 fn ranges_of_states_and_inputs_exclude_regimes() {
     let below_supply = VALVE.replace("initial = 1e5", "initial = 1e5, range = [0, 1e7]");
-    assert_eq!(passes(&below_supply).coverage, coverage(12, 12, 20));
+    assert_eq!(assert_passes(&below_supply).coverage, coverage(12, 12, 20));
     let one_way = VALVE.replace(
         "u = { unit = \"V\" }",
         "u = { unit = \"V\", range = [0, 10] }",
     );
-    assert_eq!(passes(&one_way).coverage, coverage(12, 12, 20));
+    assert_eq!(assert_passes(&one_way).coverage, coverage(12, 12, 20));
 }
 
 #[test]
-fn sides_of_switches_that_share_no_variable_alone_are_excluded_together() {
-    // x > b and y > b leave nothing of x + y < b; no two of the three contradict.
+fn jointly_contradictory_switches_are_excluded() {
+    // x > b and y > b exclude x + y < b, although no two of the three contradict each other.
     let text = ROTOR.to_owned()
         + "[forces]\nf = { on = \"theta\", value = \"k*(above(theta - 0.5) + above(theta_2 - 0.5) + \\\nabove(0.5 - theta - theta_2))\" }\n";
     let text = text
@@ -336,18 +337,18 @@ fn sides_of_switches_that_share_no_variable_alone_are_excluded_together() {
             "[kinetic]",
             "[kinetic]\nother = \"1/2*m*l^2*dot(theta_2)^2\"",
         );
-    assert_eq!(passes(&text).coverage, coverage(7, 7, 1));
+    assert_eq!(assert_passes(&text).coverage, coverage(7, 7, 1));
 }
 
 #[test]
-fn a_regime_at_a_later_time_or_in_a_small_region_is_reached() {
+fn late_or_small_regime_is_reached() {
     let text = ROTOR.to_owned()
         + "[forces]\npush = { on = \"theta\", value = \"k*above(t - 300*t_0)\" }\n";
     let text = text.replace(
         "[coordinates]",
         "t_0 = { value = 1, unit = \"s\" }\n[coordinates]",
     );
-    assert_eq!(passes(&text).coverage, coverage(2, 2, 0));
+    assert_eq!(assert_passes(&text).coverage, coverage(2, 2, 0));
     let text = ROTOR.to_owned()
         + "[potential]\npost = \"k*min(sqrt((theta - 4)^2 + (theta_2 - 9)^2 + 1e-12) - 0.02, 0)^2\"\n";
     let text = text
@@ -359,12 +360,12 @@ fn a_regime_at_a_later_time_or_in_a_small_region_is_reached() {
             "[kinetic]",
             "[kinetic]\nother = \"1/2*m*l^2*dot(theta_2)^2\"",
         );
-    assert_eq!(passes(&text).coverage, coverage(2, 2, 0));
+    assert_eq!(assert_passes(&text).coverage, coverage(2, 2, 0));
 }
 
 #[test]
-fn a_regime_that_is_neither_reached_nor_excluded_makes_the_certificate_partial() {
-    // theta exp(-theta^2) stays below 0.43, which bounds of its factors do not show.
+fn regime_neither_reached_nor_excluded_makes_certificate_partial() {
+    // theta exp(-theta^2) < 0.43, but the bounds of the factors do not show it.
     let text = ROTOR.to_owned()
         + "[forces]\nf = { on = \"theta\", value = \"k*above(theta*exp(-theta^2) - 0.5)\" }\n";
     let model = checked(&text);

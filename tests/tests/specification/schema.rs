@@ -1,5 +1,5 @@
-//! `eomgen schema` against the reader of specifications: what the reader takes, the schema takes,
-//! and misspelt keys, values of the wrong kind and missing keys are refused by both.
+//! `eomgen schema` against the reader of specifications: both accept the same files and both reject
+//! misspelt keys, values of the wrong type and missing keys.
 
 use std::path::{Path, PathBuf};
 
@@ -19,7 +19,6 @@ fn validator() -> Validator {
     jsonschema::validator_for(&schema).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The specifications in a folder of the project.
 fn specifications(folder: &str) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(project().join(folder)).expect("a folder");
     let paths = entries.map(|entry| entry.expect("an entry").path());
@@ -31,21 +30,21 @@ fn specifications(folder: &str) -> Vec<PathBuf> {
     paths
 }
 
-/// Those that are shipped and those with one feature of the language each.
-fn sound() -> Vec<PathBuf> {
+/// Returns the shipped specifications and those with one language feature.
+fn valid_specifications() -> Vec<PathBuf> {
     let mut paths = shipped();
     paths.extend(specifications("tests/features"));
     paths
 }
 
-/// A specification as JSON; none if it is not TOML.
+/// Converts a specification to JSON; `None` if it is not TOML.
 fn json(path: &Path) -> Option<Value> {
     let text = std::fs::read_to_string(path).ok()?;
     toml_edit::de::from_str(&text).ok()
 }
 
-/// What the reader says of a specification; nothing if it is sound.
-fn reader(document: &Value) -> String {
+/// Returns the reader's diagnostics; empty if the specification is valid.
+fn diagnose(document: &Value) -> String {
     let text = toml_edit::ser::to_string(document).expect("TOML");
     match eomgen_model_spec::check(Source::new("a.toml", text)) {
         Ok(_) => String::new(),
@@ -53,8 +52,8 @@ fn reader(document: &Value) -> String {
     }
 }
 
-/// The document once for every key in it, changed there by `change`, with where that is.
-fn changed(document: &Value, change: impl Fn(&mut Value, &str)) -> Vec<(String, Value)> {
+/// Returns a copy of the document per key, changed there by `change`, with the path of the key.
+fn change_each_key(document: &Value, change: impl Fn(&mut Value, &str)) -> Vec<(String, Value)> {
     let mut all = Vec::new();
     let tables = document.as_object().expect("a table");
     let mut at = |place: &str, key: &str| {
@@ -79,9 +78,9 @@ fn changed(document: &Value, change: impl Fn(&mut Value, &str)) -> Vec<(String, 
 }
 
 #[test]
-fn every_sound_specification_fits() {
+fn schema_accepts_valid_specifications() {
     let validator = validator();
-    for path in sound() {
+    for path in valid_specifications() {
         let document = json(&path).expect("TOML");
         let errors: Vec<String> = validator
             .iter_errors(&document)
@@ -92,10 +91,10 @@ fn every_sound_specification_fits() {
 }
 
 #[test]
-fn a_misspelt_key_fits_nowhere() {
+fn schema_rejects_misspelt_keys() {
     let validator = validator();
-    for path in sound() {
-        let misspelt = changed(&json(&path).expect("TOML"), |table, key| {
+    for path in valid_specifications() {
+        let misspelt = change_each_key(&json(&path).expect("TOML"), |table, key| {
             let table = table.as_object_mut().expect("a table");
             let value = table.remove(key).expect("the key");
             table.insert(format!("{key}x"), value);
@@ -103,38 +102,38 @@ fn a_misspelt_key_fits_nowhere() {
         for (place, document) in misspelt {
             let shown = format!("{} {place}", path.display());
             assert!(!validator.is_valid(&document), "{shown}");
-            assert!(reader(&document).contains("unknown "), "{shown}");
+            assert!(diagnose(&document).contains("unknown "), "{shown}");
         }
     }
 }
 
 #[test]
-fn a_value_of_the_wrong_kind_fits_nowhere() {
+fn schema_rejects_values_of_wrong_type() {
     let validator = validator();
     for wrong in [Value::Bool(true), serde_json::json!([[1]])] {
-        for path in sound() {
-            let replaced = changed(&json(&path).expect("TOML"), |table, key| {
+        for path in valid_specifications() {
+            let replaced = change_each_key(&json(&path).expect("TOML"), |table, key| {
                 table[key] = wrong.clone();
             });
             for (place, document) in replaced {
                 let shown = format!("{} {place} = {wrong}", path.display());
                 assert!(!validator.is_valid(&document), "{shown}");
-                assert_ne!(reader(&document), "", "{shown}");
+                assert_ne!(diagnose(&document), "", "{shown}");
             }
         }
     }
 }
 
 #[test]
-fn a_key_is_needed_where_the_reader_needs_it() {
+fn schema_requires_the_keys_the_reader_requires() {
     let validator = validator();
     let (mut needed, mut free) = (0, 0);
-    for path in sound() {
-        let without = changed(&json(&path).expect("TOML"), |table, key| {
+    for path in valid_specifications() {
+        let without = change_each_key(&json(&path).expect("TOML"), |table, key| {
             table.as_object_mut().expect("a table").remove(key);
         });
         for (place, document) in without {
-            let said = reader(&document);
+            let said = diagnose(&document);
             let missing = [" has no `", "is missing", "a model needs "];
             let missing = missing.iter().any(|words| said.contains(words));
             let shown = format!("{} without {place}: {said}", path.display());
@@ -146,7 +145,7 @@ fn a_key_is_needed_where_the_reader_needs_it() {
 }
 
 #[test]
-fn what_breaks_the_grammar_of_sections_and_keys_does_not_fit() {
+fn schema_rejects_what_the_reader_rejects_by_structure() {
     let validator = validator();
     let mut refused = 0;
     for path in specifications("model-spec/tests/corpus/broken") {
