@@ -29,7 +29,7 @@ pub struct Shares {
     pub title: String,
     /// Names of the parts, from left to right; at most four.
     pub parts: Vec<String>,
-    /// Name and shares (sum 1) of each whole; the sum of the first two is written beside the bar.
+    /// Name and shares (sum 1) of each whole; next to the bar is the sum of the first two.
     pub rows: Vec<(String, Vec<f64>)>,
 }
 
