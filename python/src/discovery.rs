@@ -1,4 +1,4 @@
-//! What a model lacks of what records show.
+//! Discovery of effects that a model lacks.
 
 use std::path::Path;
 
@@ -13,15 +13,13 @@ use eomgen_validate::certificate::{Check, Verdict};
 use pyo3::prelude::*;
 
 use crate::error;
-use crate::interruption::{Line, interruptible};
+use crate::interruption::{Connection, interruptible};
 use crate::model::Model;
 
-/// The document `discovery.json`, the extended specification, the page, and the names and texts of
-/// experiments to be played.
+/// Document `discovery.json`, extended specification, report page, names and texts of proposed experiments.
 type Found = (String, String, String, Vec<(String, String)>);
 
-/// Searches for what the model lacks of what a dataset's records show. `progress` is called with
-/// each line on what is being done.
+/// Searches for effects that the model lacks. `progress` is called with each progress message.
 #[pyfunction]
 pub fn discover(
     py: Python<'_>,
@@ -33,7 +31,7 @@ pub fn discover(
     let text = model.specification()?;
     let hear = |py: Python<'_>, line: String| progress.call1(py, (line,)).map(drop);
     let found = interruptible(py, hear, |line| {
-        found(model, &text, Path::new(dataset), seed, line)
+        search(model, &text, Path::new(dataset), seed, line)
     })??;
     Ok((
         found.to_json().to_string(),
@@ -47,16 +45,16 @@ pub fn discover(
     ))
 }
 
-fn found(
+fn search(
     model: &Model,
     text: &str,
     dataset: &Path,
     seed: u64,
-    line: &Line<'_, String>,
+    line: &Connection<'_, String>,
 ) -> PyResult<Discovery> {
     let declared = model.compiled().model();
     let dataset = read_dataset(dataset, declared).map_err(error::records)?;
-    let say = |text: &str| line.say(visible(text).into_owned());
+    let say = |text: &str| line.report(visible(text).into_owned());
     for note in &dataset.notes {
         say(&format!("note: {note}"));
     }
@@ -70,13 +68,13 @@ fn found(
     let mut found = found.map_err(error::discovery)?;
     line.check();
     let extended = Source::new(declared.source.path.clone(), found.extended.as_str());
-    found.validation = validated(extended, model.order()).map_err(error::model)?;
+    found.validation = validate(extended, model.order()).map_err(error::model)?;
     Ok(found)
 }
 
-/// What the checks of `eomgen validate` say of the specification that was written. None where
-/// fields have different orders, for which there are no such checks.
-fn validated(extended: Source, order: Option<usize>) -> Result<Option<Validation>, Error> {
+/// Runs the checks of `eomgen validate` on the extended specification. Returns none if its fields have
+/// different orders, for which these checks do not exist.
+fn validate(extended: Source, order: Option<usize>) -> Result<Option<Validation>, Error> {
     let model = eomgen_model_spec::check(extended)?.model;
     let orders = order.map_or(Orders::Declared, Orders::All).of(&model)?;
     if orders.windows(2).any(|pair| pair[0] != pair[1]) {

@@ -1,4 +1,4 @@
-//! The equations of motion, for notebooks.
+//! Equations of motion in notebooks.
 
 use eomgen_codegen::report::Report;
 use pyo3::prelude::*;
@@ -6,8 +6,8 @@ use pyo3::prelude::*;
 use crate::error;
 use crate::model::Model;
 
-/// The derived equations as a part of a page in HTML, formulas as MathML; coefficients at the
-/// model's parameter values.
+/// Returns the equations as an HTML fragment, with formulas in MathML and coefficients at the model's parameter
+/// values.
 #[pyfunction]
 pub fn equations(py: Python<'_>, model: &Model) -> PyResult<String> {
     let compiled = model.compiled();

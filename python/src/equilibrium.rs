@@ -9,8 +9,8 @@ use crate::model::Model;
 /// Names and values in SI units.
 type Values = Vec<(String, f64)>;
 
-/// The time, state and inputs of an equilibrium, its residual, the names of the rates that are not 0, the names
-/// of the unknowns, its stability, and whether forces depend on the time there.
+/// Time, state, inputs and residual of an equilibrium, names of its steady rates and of the unknowns, stability,
+/// and whether forces depend on time.
 type Found = (
     f64,
     Vec<f64>,
@@ -30,11 +30,11 @@ pub fn trim(py: Python<'_>, model: &Model, start: Values, fixed: Values) -> PyRe
         start: &start,
         fixed: &fixed,
     };
-    py.detach(|| found(&model.instance()?, request))
+    py.detach(|| search(&model.instance()?, request))
         .map_err(error::model)
 }
 
-fn found(run: &Instance<'_>, request: EquilibriumRequest<'_>) -> Result<Found, Error> {
+fn search(run: &Instance<'_>, request: EquilibriumRequest<'_>) -> Result<Found, Error> {
     let found = run.equilibrium(request)?;
     let stability = run.stability(&found.at)?.to_string();
     Ok((

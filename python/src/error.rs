@@ -1,4 +1,4 @@
-//! The exceptions that the package raises, and which of them an error of the library becomes.
+//! Exceptions of the package, and their mapping from errors of the library.
 
 use eomgen_compiled_model::Error;
 use eomgen_discover::error::DiscoverError;
@@ -12,31 +12,31 @@ create_exception!(
     eomgen,
     SpecificationError,
     PyValueError,
-    "A specification, a dataset file or a parameter value that is wrong: where, what is wrong and \
-     what would be right, in the words of the command line."
+    "Invalid specification, dataset file or parameter value. The message has place, cause and cure, as on \
+     the command line."
 );
 
 create_exception!(
     eomgen,
     SimulationError,
     PyRuntimeError,
-    "A motion that could not be followed to the end. `trajectory` holds the samples until there; \
-     it is None where there are none."
+    "The solver stopped before the end. `trajectory` holds the samples up to then, or None if there are \
+     none."
 );
 
 create_exception!(
     eomgen,
     DiscoveryError,
     PyRuntimeError,
-    "Records that nothing can be compared with."
+    "Model and records cannot be compared."
 );
 
-/// What is wrong with a text that people write.
+/// Converts diagnostics of a specification or a dataset file.
 pub fn specification(found: &Diagnostics) -> PyErr {
     SpecificationError::new_err(found.render(false))
 }
 
-/// What keeps a model from being compiled or run.
+/// Converts an error of compilation or simulation.
 pub fn model(error: Error) -> PyErr {
     match error {
         Error::Specification(found) => specification(&found),
@@ -45,7 +45,7 @@ pub fn model(error: Error) -> PyErr {
     }
 }
 
-/// What stopped a search.
+/// Converts an error of a discovery.
 pub fn discovery(error: DiscoverError) -> PyErr {
     match error {
         DiscoverError::Records(refusal) => records(*refusal),
@@ -54,7 +54,7 @@ pub fn discovery(error: DiscoverError) -> PyErr {
     }
 }
 
-/// Records that are not taken.
+/// Converts an error about rejected records.
 pub fn records(refusal: Refusal) -> PyErr {
     match refusal {
         Refusal::Description(found) => specification(&found),

@@ -1,5 +1,5 @@
-//! Rates, observables and Jacobians, a row of an array for each state: read from the arrays' own
-//! memory and written to it, with the interpreter free for other threads.
+//! Rates, observables and Jacobians of arrays of states, a row for each state. The functions work in the memory of
+//! the arrays, with the interpreter released for other threads.
 
 use eomgen_codegen::program::evaluator::Point;
 use eomgen_compiled_model::Jacobian;
@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use crate::error;
 use crate::model::Model;
 
-/// Times, states and inputs of many calls. One time, or one row of inputs, may serve all.
+/// Times, states and inputs of many calls. A single time or a single row of inputs applies to all states.
 struct Rows<'a> {
     t: &'a [f64],
     x: &'a [f64],
@@ -20,7 +20,7 @@ struct Rows<'a> {
 }
 
 impl<'a> Rows<'a> {
-    /// The rows of contiguous arrays whose shapes fit the model.
+    /// Creates rows from contiguous arrays. Returns an error if a shape does not fit the model.
     fn of(
         model: &Model,
         t: &'a PyReadonlyArray1<'_, f64>,
@@ -52,7 +52,7 @@ impl<'a> Rows<'a> {
         })
     }
 
-    /// Calls `compute` with every point and its row of `out`, `width` numbers.
+    /// Calls `compute` with every point and its row of `width` numbers in `out`.
     #[inline]
     fn each(&self, out: &mut [f64], width: usize, mut compute: impl FnMut(Point<'_>, &mut [f64])) {
         let rows = self
@@ -60,7 +60,7 @@ impl<'a> Rows<'a> {
             .chunks_exact(self.states)
             .zip(out.chunks_exact_mut(width));
         if let ([t], true) = (self.t, self.u.len() == self.inputs) {
-            // The usual call, in which nothing but the state is to be looked up.
+            // Fast path of the usual call.
             let (t, inputs) = (*t, self.u);
             rows.for_each(|(state, out)| compute(Point { t, state, inputs }, out));
             return;
@@ -78,8 +78,8 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// The numbers of an array that results are written to, `width` for each of the rows.
-fn written<'a>(
+/// Returns the memory of an output array with `width` numbers per row.
+fn output<'a>(
     out: &'a mut PyReadwriteArray2<'_, f64>,
     rows: &Rows<'_>,
     width: usize,
@@ -94,7 +94,7 @@ fn written<'a>(
     Ok(out.as_slice_mut()?)
 }
 
-/// The rates of every state.
+/// Computes the rates of every state.
 #[pyfunction]
 pub fn rates(
     py: Python<'_>,
@@ -106,7 +106,7 @@ pub fn rates(
 ) -> PyResult<()> {
     let rows = Rows::of(model, &t, &x, &u)?;
     let width = rows.states;
-    let out = written(&mut out, &rows, width)?;
+    let out = output(&mut out, &rows, width)?;
     let compute = || {
         model.evaluate(|evaluator| {
             rows.each(out, width, |point, out| evaluator.rates(point, out));
@@ -115,7 +115,7 @@ pub fn rates(
     py.detach(compute).map_err(error::model)
 }
 
-/// The observables at every state, `energy` and `power` last.
+/// Computes the observables at every state; `energy` and `power` are last.
 #[pyfunction]
 pub fn observables(
     py: Python<'_>,
@@ -127,7 +127,7 @@ pub fn observables(
 ) -> PyResult<()> {
     let rows = Rows::of(model, &t, &x, &u)?;
     let width = model.compiled().program().observables.len();
-    let out = written(&mut out, &rows, width)?;
+    let out = output(&mut out, &rows, width)?;
     let compute = || {
         model.evaluate(|evaluator| {
             rows.each(out, width, |point, out| evaluator.observables(point, out));
@@ -136,7 +136,7 @@ pub fn observables(
     py.detach(compute).map_err(error::model)
 }
 
-/// A Jacobian at every state, each matrix row by row.
+/// Computes a Jacobian at every state, each matrix row by row.
 #[pyfunction]
 pub fn jacobian(
     py: Python<'_>,
@@ -152,7 +152,7 @@ pub fn jacobian(
     let rows = Rows::of(model, &t, &x, &u)?;
     let shape = py.detach(|| model.differentiate(|jacobians| jacobians.shape(of)));
     let (height, columns) = shape.map_err(error::model)?;
-    let out = written(&mut out, &rows, height * columns)?;
+    let out = output(&mut out, &rows, height * columns)?;
     if out.is_empty() {
         return Ok(());
     }

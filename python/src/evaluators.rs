@@ -1,35 +1,34 @@
-//! Evaluators that wait for the next call: making one copies the program, and each call needs one
-//! for itself, because threads may call at once.
+//! Pool of evaluators. Creating one copies the program, and concurrent calls need one each.
 
 use std::sync::{Mutex, PoisonError};
 
 use eomgen_compiled_model::Error;
 
-/// Evaluators of one kind that no call uses at present.
-pub struct Waiting<E>(Mutex<Vec<E>>);
+/// Idle evaluators of one kind.
+pub struct Pool<E>(Mutex<Vec<E>>);
 
-impl<E> Default for Waiting<E> {
+impl<E> Default for Pool<E> {
     fn default() -> Self {
         Self(Mutex::new(Vec::new()))
     }
 }
 
-impl<E> Waiting<E> {
-    /// Computes with a waiting evaluator, or with a new one, which then waits.
+impl<E> Pool<E> {
+    /// Computes with an idle evaluator or a new one, and returns it to the pool.
     pub fn with<T>(
         &self,
         new: impl FnOnce() -> Result<E, Error>,
         compute: impl FnOnce(&mut E) -> T,
     ) -> Result<T, Error> {
-        let waiting = self.list().pop();
-        let mut evaluator = waiting.map_or_else(new, Ok)?;
+        let idle = self.list().pop();
+        let mut evaluator = idle.map_or_else(new, Ok)?;
         let found = compute(&mut evaluator);
         self.list().push(evaluator);
         Ok(found)
     }
 
     fn list(&self) -> std::sync::MutexGuard<'_, Vec<E>> {
-        // Nothing that can panic is done while it is locked.
+        // No code that can panic runs while it is locked.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

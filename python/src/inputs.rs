@@ -1,4 +1,4 @@
-//! Inputs that are functions of Python, called at every time that a solver looks at.
+//! Inputs given as Python functions, called at the times that a solver needs.
 
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -11,23 +11,23 @@ use pyo3::prelude::*;
 
 use crate::error::SimulationError;
 
-/// The inputs that one function may give: itself, its rate and its second rate.
-const MOST: usize = 3;
+/// Largest number of values that a function returns: the input, its rate and its second rate.
+const MAX_VALUES: usize = 3;
 
-/// The name and the place of an input, and the function of Python that gives it.
+/// Name, index and Python function of an input.
 pub type Given = (String, usize, Py<PyAny>);
 
-/// Points of the spline through prescribed motion whose function gives no rates.
+/// Number of points of the spline through prescribed motion whose function returns no rates.
 const SPLINE_POINTS: usize = 16_385;
 
-/// Why a function gave no inputs.
+/// Failed call of an input function.
 struct Failure {
     input: String,
     t: f64,
     error: PyErr,
 }
 
-/// The first failure of all functions of a motion.
+/// First failure among the functions of a motion.
 #[derive(Clone, Default)]
 pub struct Failures(Arc<Mutex<Option<Failure>>>);
 
@@ -40,9 +40,9 @@ impl Failures {
         self.lock().get_or_insert(failure);
     }
 
-    /// The exception of the first failure, if there is one: it names the input and the time, and
-    /// has what the function raised as its cause. What is no `Exception`, such as
-    /// `KeyboardInterrupt`, is itself raised.
+    /// Returns the exception of the first failure, if any. It names the input and the time; its cause is the
+    /// exception of the function. A `BaseException` that is no `Exception`, such as `KeyboardInterrupt`, is
+    /// returned unchanged.
     pub fn take(&self, py: Python<'_>) -> Option<PyErr> {
         let Failure { input, t, error } = self.lock().take()?;
         if !error.is_instance_of::<PyException>(py) {
@@ -63,8 +63,7 @@ impl Failures {
     }
 }
 
-/// Whether the error is one of a value (true) or of a type (false) that a function returned, and not
-/// one that it raised.
+/// Returns true for a rejected value and false for a rejected type, or none if the function raised the error.
 fn is_refused(py: Python<'_>, error: &PyErr) -> Option<bool> {
     if error.is_instance_of::<RefusedValue>(py) {
         return Some(true);
@@ -75,12 +74,12 @@ fn is_refused(py: Python<'_>, error: &PyErr) -> Option<bool> {
 pyo3::create_exception!(eomgen, RefusedValue, PyException);
 pyo3::create_exception!(eomgen, RefusedType, PyException);
 
-/// A function of Python that gives inputs.
+/// Python function of time that returns an input.
 struct PythonFunction {
     input: String,
     function: Py<PyAny>,
-    /// The last time with its inputs: solvers look at one time more than once.
-    last: Mutex<Option<(f64, [f64; MOST])>>,
+    /// Last time and its inputs, because solvers evaluate a time repeatedly.
+    last: Mutex<Option<(f64, [f64; MAX_VALUES])>>,
     failures: Failures,
 }
 
@@ -104,7 +103,7 @@ impl InputFunction for PythonFunction {
         }
         match Python::attach(|py| self.called(py, t, out)) {
             Ok(()) => {
-                let mut values = [0.0; MOST];
+                let mut values = [0.0; MAX_VALUES];
                 values[..out.len()].copy_from_slice(out);
                 *last = Some((t, values));
             }
@@ -118,7 +117,7 @@ impl InputFunction for PythonFunction {
 }
 
 impl PythonFunction {
-    /// Whether it returns more than one number. What it raises it will raise again.
+    /// Returns whether the function returns several numbers. An exception is ignored: the next call raises it again.
     fn is_several(&self, py: Python<'_>, t: f64) -> bool {
         let found = self.function.bind(py).call1((t,));
         found.is_ok_and(|found| found.extract::<f64>().is_err())
@@ -162,13 +161,14 @@ fn not_rates(count: usize) -> PyErr {
     ))
 }
 
-/// Inputs of which some are functions that jump at `breaks`, s, and what these may fail with.
+/// Adds functions, which jump at the times `breaks` (s), to the inputs. Returns the inputs and the place of later
+/// failures.
 ///
-/// Prescribed motion needs its rates: a function returns them with it, as (s, s', s''). If it
-/// does not, the motion follows a cubic spline through many points of the span.
+/// A function for prescribed motion returns (s, s', s''). If it returns s only, the motion follows a cubic spline
+/// through [`SPLINE_POINTS`] points of the span.
 ///
 /// # Errors
-/// What such a function raises or returns at these points.
+/// An exception or a rejected result at these points.
 pub fn with_functions(
     py: Python<'_>,
     (mut inputs, known): (HeldInputs, &[Input]),
@@ -203,7 +203,7 @@ pub fn with_functions(
             }
             continue;
         }
-        let count = if has_rates { MOST } else { 1 };
+        let count = if has_rates { MAX_VALUES } else { 1 };
         inputs = inputs.with_function(place, count, Arc::new(given));
     }
     Ok((inputs.with_breaks(breaks), failures))

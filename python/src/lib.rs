@@ -1,10 +1,5 @@
-//! The native part of the Python package `eomgen`: compiled models on numpy arrays, whose
-//! arguments the package has brought into shape. Nothing is derived, integrated or searched here,
-//! and nothing is known of how Python shows it: that is the package's own.
-//!
-//! `error` (the package's exceptions), `evaluators` (evaluators that wait for calls), `model` (a
-//! model at its parameter values), `evaluation` (rows of an array), `linearisation`, `equilibrium`,
-//! `interruption` (work that Python can stop), `simulation`, `discovery`, `equations`.
+//! Native part of the Python package `eomgen`: compiled models on NumPy arrays. The Python code converts arguments
+//! and displays results; the libraries derive, integrate and search.
 
 use pyo3::prelude::*;
 
@@ -20,7 +15,7 @@ mod linearisation;
 mod model;
 mod simulation;
 
-/// The module as Python loads it.
+/// Python module.
 #[pymodule]
 mod _native {
     #[pymodule_export]
@@ -39,7 +34,7 @@ mod _native {
     use crate::model::{Model, nearest};
     #[pymodule_export]
     use crate::simulation::simulate;
-    /// The highest order of a field.
+    /// Highest order of a field.
     #[pymodule_export]
     const MAX_ORDER: usize = eomgen_model_spec::model::MAX_ORDER;
 }

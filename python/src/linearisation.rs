@@ -1,4 +1,4 @@
-//! A model linearised about a point.
+//! Linearisation of a model.
 
 use eomgen_codegen::program::evaluator::Point;
 use eomgen_compiled_model::Linearisation;
@@ -9,10 +9,10 @@ use pyo3::prelude::*;
 use crate::error;
 use crate::model::Model;
 
-/// A, B, C, D, each row by row, then the rates and the observables at the point.
+/// A, B, C, D, each row by row, then rates and observables at the operating point.
 type Found = (Vec<f64>, Vec<f64>, Vec<f64>, Vec<f64>, Vec<f64>, Vec<f64>);
 
-/// A, B, C and D at a time about a state and inputs, with the rates and observables there.
+/// Linearises a model at a time, state and inputs.
 #[pyfunction]
 pub fn linearise(
     py: Python<'_>,
@@ -28,7 +28,7 @@ pub fn linearise(
     };
     let program = model.compiled().program();
     if point.state.len() != program.states() || point.inputs.len() != program.inputs.len() {
-        return Err(PyValueError::new_err("a point of another model"));
+        return Err(PyValueError::new_err("state or inputs of another model"));
     }
     let found = py.detach(|| model.instance()?.linearise(point));
     let Linearisation {

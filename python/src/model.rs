@@ -1,4 +1,4 @@
-//! A compiled model at its parameter values, as Python holds it.
+//! Compiled model at its parameter values, as a Python class.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -14,32 +14,32 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::error;
-use crate::evaluators::Waiting;
+use crate::evaluators::Pool;
 
-/// A compiled model at one set of parameter values. Threads may share it.
+/// Compiled model at one set of parameter values. Threads may share it.
 #[pyclass(frozen, module = "eomgen._native")]
 pub struct Model {
     compiled: Arc<CompiledModel>,
-    /// The order that was asked for; none for the specification's own.
+    /// Requested order; none for the orders of the specification.
     order: Option<usize>,
-    /// What was set, in declared units.
+    /// Parameters that were set, in declared units.
     settings: Vec<(String, f64)>,
-    /// The warnings about the specification.
+    /// Warnings about the specification.
     warnings: Option<String>,
-    evaluators: Waiting<Evaluator>,
-    jacobians: Waiting<JacobianEvaluator>,
+    evaluators: Pool<Evaluator>,
+    jacobians: Pool<JacobianEvaluator>,
 }
 
 impl Model {
-    fn derived(checked: Checked, order: Option<usize>) -> Result<Self, Error> {
+    fn derive(checked: Checked, order: Option<usize>) -> Result<Self, Error> {
         let Checked { model, warnings } = checked;
         let orders = order.map_or(Orders::Declared, Orders::All);
         let compiled = CompiledModel::derive(model, orders)?;
         let warnings = (!warnings.is_empty()).then(|| warnings.render(false));
-        Ok(Self::at(Arc::new(compiled), order, Vec::new(), warnings))
+        Ok(Self::new(Arc::new(compiled), order, Vec::new(), warnings))
     }
 
-    fn at(
+    fn new(
         compiled: Arc<CompiledModel>,
         order: Option<usize>,
         settings: Vec<(String, f64)>,
@@ -50,17 +50,17 @@ impl Model {
             order,
             settings,
             warnings,
-            evaluators: Waiting::default(),
-            jacobians: Waiting::default(),
+            evaluators: Pool::default(),
+            jacobians: Pool::default(),
         }
     }
 
-    /// The compiled model.
+    /// Compiled model at its declared parameter values.
     pub fn compiled(&self) -> &CompiledModel {
         &self.compiled
     }
 
-    /// The compiled model at its parameter values.
+    /// Returns the compiled model at its parameter values.
     pub fn instance(&self) -> Result<Instance<'_>, Error> {
         let settings = self.settings.iter().map(|(name, v)| (name.as_str(), *v));
         self.compiled.with(&settings.collect::<Vec<_>>())
@@ -81,7 +81,7 @@ impl Model {
         self.jacobians.with(new, compute)
     }
 
-    /// The specification's text with the parameter values that were set.
+    /// Returns the specification's text, including parameters that were set.
     pub fn specification(&self) -> PyResult<String> {
         let set = |(name, value): &(String, f64)| {
             Edit::SetParameter(SetParameter {
@@ -103,28 +103,28 @@ impl Model {
 
 #[pymethods]
 impl Model {
-    /// The model of a specification's text; `name` stands for its file in messages.
+    /// Creates a model from the text of a specification. Messages use `name` as its file name.
     #[staticmethod]
     fn of_text(py: Python<'_>, name: &str, text: &str, order: Option<usize>) -> PyResult<Self> {
         let derived = || {
             let checked = eomgen_model_spec::check(Source::new(name, text))?;
-            Self::derived(checked, order)
+            Self::derive(checked, order)
         };
         py.detach(derived).map_err(error::model)
     }
 
-    /// The model of a specification's file.
+    /// Creates a model from a specification file.
     #[staticmethod]
     fn of_file(py: Python<'_>, path: &str, order: Option<usize>) -> PyResult<Self> {
         let derived = || {
             let checked = eomgen_model_spec::load(Path::new(path))?;
-            Self::derived(checked, order)
+            Self::derive(checked, order)
         };
         py.detach(derived).map_err(error::model)
     }
 
-    /// The model with these parameters set, each in its declared unit. What the specification gives
-    /// by an expression is part of the equations: these are then derived anew.
+    /// Returns the model with new parameter values, in declared units. Expressions are part of the equations: if a
+    /// value replaces one, the equations are derived again.
     fn with_parameters(&self, py: Python<'_>, settings: Vec<(String, f64)>) -> PyResult<Self> {
         let mut all = self.settings.clone();
         all.retain(|(name, _)| settings.iter().all(|(new, _)| new != name));
@@ -150,15 +150,15 @@ impl Model {
                     Arc::new(CompiledModel::derive(model, orders)?)
                 }
             };
-            // Judged here, where the values are given, and not at the first call.
+            // Reports invalid values now instead of at the first call.
             compiled.with(&settings)?.evaluator()?;
             Ok(compiled)
         };
         let compiled = py.detach(set).map_err(error::model)?;
-        Ok(Self::at(compiled, self.order, all, self.warnings.clone()))
+        Ok(Self::new(compiled, self.order, all, self.warnings.clone()))
     }
 
-    /// The model with expressions of the time and of parameters in place of inputs.
+    /// Returns the model with inputs replaced by expressions of time and parameters.
     fn with_inputs(&self, py: Python<'_>, given: Vec<(String, String)>) -> PyResult<Self> {
         let mut source = self.compiled.model().source.edited(self.specification()?);
         let derived = || {
@@ -168,7 +168,7 @@ impl Model {
                     value,
                 });
                 let edited = apply(&source, &[edit]).map_err(|error| {
-                    Error::Request(format!("the input {name}: {}", in_words(&error)))
+                    Error::Request(format!("the input {name}: {}", messages(&error)))
                 })?;
                 source = source.edited(edited);
             }
@@ -178,7 +178,7 @@ impl Model {
         };
         let compiled = py.detach(derived).map_err(error::model)?;
         let none = Vec::new();
-        Ok(Self::at(
+        Ok(Self::new(
             Arc::new(compiled),
             self.order,
             none,
@@ -186,50 +186,50 @@ impl Model {
         ))
     }
 
-    /// The model's name.
+    /// Name of the model.
     #[getter]
     fn name(&self) -> &str {
         &self.compiled.model().name
     }
 
-    /// One line for people; empty if there is none.
+    /// Title; may be empty.
     #[getter]
     fn title(&self) -> &str {
         &self.compiled.model().title
     }
 
-    /// The order that was asked for; none for the specification's own.
+    /// Requested order; none for the orders of the specification.
     #[getter]
     pub fn order(&self) -> Option<usize> {
         self.order
     }
 
-    /// The order of each field.
+    /// Order of each field.
     #[getter]
     fn orders(&self) -> Vec<usize> {
         self.compiled.orders().to_vec()
     }
 
-    /// What may not be as it was meant in the specification, if anything.
+    /// Warnings about the specification, if any.
     #[getter]
     fn warnings(&self) -> Option<&str> {
         self.warnings.as_deref()
     }
 
-    /// The specification's text with the parameter values that were set.
+    /// Text of the specification, including parameters that were set.
     #[getter]
     fn text(&self) -> PyResult<String> {
         self.specification()
     }
 
-    /// The states' names and units.
+    /// Names and units of the states.
     #[getter]
     fn states(&self) -> Vec<(String, String)> {
         let units = self.compiled.state_units();
         self.compiled.state_names().into_iter().zip(units).collect()
     }
 
-    /// The inputs' names and units.
+    /// Names and units of the inputs.
     #[getter]
     fn inputs(&self) -> Vec<(&str, &str)> {
         let inputs = self.compiled.model().inputs.iter();
@@ -238,7 +238,7 @@ impl Model {
             .collect()
     }
 
-    /// The observables' names and units, `energy` and `power` last.
+    /// Names and units of the observables; `energy` and `power` are last.
     #[getter]
     fn observables(&self) -> Vec<(&str, &str)> {
         let observables = self.compiled.program().observables.iter();
@@ -247,7 +247,7 @@ impl Model {
             .collect()
     }
 
-    /// The parameters' names, values and units, these as declared.
+    /// Names, values and declared units of the parameters.
     #[getter]
     fn parameters(&self) -> PyResult<Vec<(&str, f64, &str)>> {
         let instance = self.instance().map_err(error::model)?;
@@ -258,13 +258,13 @@ impl Model {
             .collect())
     }
 
-    /// The names of the independent parameters, by which there are Jacobians.
+    /// Names of the independent parameters: the columns of the Jacobian by parameters.
     #[getter]
     fn independent_parameters(&self) -> Vec<String> {
         self.compiled.parameter_names()
     }
 
-    /// The initial state that the specification gives, SI.
+    /// Initial state of the specification, in SI.
     #[getter]
     fn initial(&self) -> PyResult<Vec<f64>> {
         let instance = self.instance().map_err(error::model)?;
@@ -272,8 +272,8 @@ impl Model {
     }
 }
 
-/// What is wrong with an edit, without places in the edited text, which nobody has.
-fn in_words(error: &EditError) -> String {
+/// Returns the messages of an edit without places, which refer to the edited text.
+fn messages(error: &EditError) -> String {
     match error {
         EditError::Invalid(found) => {
             let messages = found.list().iter().map(|one| one.message.clone());
@@ -283,7 +283,7 @@ fn in_words(error: &EditError) -> String {
     }
 }
 
-/// The nearest of the known names to one that is not known, if one is near enough.
+/// Returns the known name nearest to an unknown one, if it is near enough.
 #[pyfunction]
 pub fn nearest(wrong: &str, known: Vec<String>) -> Option<String> {
     let known = known.iter().map(String::as_str);

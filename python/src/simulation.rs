@@ -1,4 +1,4 @@
-//! A simulated motion.
+//! Simulation.
 
 use std::time::{Duration, Instant};
 
@@ -11,15 +11,14 @@ use pyo3::prelude::*;
 
 use crate::error;
 use crate::inputs::{Given, with_functions};
-use crate::interruption::{Line, interruptible};
+use crate::interruption::{Connection, interruptible};
 use crate::model::Model;
 
-/// How often Python is told how far a motion is.
-const REPORT: Duration = Duration::from_millis(100);
+/// Time between progress reports.
+const REPORT_INTERVAL: Duration = Duration::from_millis(100);
 
-/// What Python gets of a motion: its solver and why it is that one; when and why it stopped, if it
-/// did not come to the end; times, states and observables, a row for each sample; how many
-/// switches it passed; warnings.
+/// Solver and the reason for its selection; time and reason of a stop before the end; times, states and
+/// observables, a row for each sample; number of switches; warnings.
 type Found<'py> = (
     &'static str,
     Option<String>,
@@ -31,18 +30,14 @@ type Found<'py> = (
     Vec<String>,
 );
 
-/// Simulates from an initial state over ascending times (s), driven by inputs that are held from
-/// each of their times to the next, but for those that `functions` give, which jump at `breaks`
-/// (s). `progress` is called with the time of the motion, s.
+/// Simulates from an initial state over ascending times (s). Inputs hold from each of their times to the next, or
+/// are `functions`, which jump at `breaks` (s). `progress` is called with the simulated time, s.
 #[pyfunction]
 #[pyo3(signature = (
     model, initial, times, input_times, input_values, functions, breaks, solver, tolerance,
     max_step, progress
 ))]
-#[expect(
-    clippy::too_many_arguments,
-    reason = "the arguments of a function of Python"
-)]
+#[expect(clippy::too_many_arguments, reason = "arguments of a Python function")]
 pub fn simulate<'py>(
     py: Python<'py>,
     model: &Model,
@@ -93,7 +88,7 @@ pub fn simulate<'py>(
         let told = progress.as_ref().map(|progress| progress.call1(py, (t,)));
         told.transpose().map(drop)
     };
-    let found = interruptible(py, hear, |line| followed(model, &request, line))?;
+    let found = interruptible(py, hear, |line| follow(model, &request, line))?;
     if let Some(raised) = failures.take(py) {
         return Err(raised);
     }
@@ -118,7 +113,7 @@ pub fn simulate<'py>(
     ))
 }
 
-/// A solver by its name.
+/// Returns the solver of a name.
 fn named(name: &str) -> PyResult<Solver> {
     let known = Solver::ALL.into_iter().find(|known| known.name() == name);
     known.ok_or_else(|| {
@@ -130,19 +125,19 @@ fn named(name: &str) -> PyResult<Solver> {
     })
 }
 
-/// The motion with its observables, row by row, and warnings.
-fn followed(
+/// Simulates a motion. Returns it with its observables, row by row, and warnings.
+fn follow(
     model: &Model,
     request: &Request<'_>,
-    line: &Line<'_, f64>,
+    line: &Connection<'_, f64>,
 ) -> Result<(Motion, Vec<f64>, Vec<String>), Error> {
     let instance = model.instance()?;
     let mut told = Instant::now();
     let motion = instance.follow(request, &mut |t| {
         line.check();
-        if told.elapsed() > REPORT {
+        if told.elapsed() > REPORT_INTERVAL {
             told = Instant::now();
-            line.say(t);
+            line.report(t);
         }
     })?;
     let mut observables = Vec::new();
@@ -155,20 +150,19 @@ fn followed(
     Ok((motion, observables, warnings))
 }
 
-/// Why a solver was taken.
+/// Returns the reason for the selection of a solver.
 fn in_words(choice: &Choice) -> String {
     match choice {
         Choice::PiecewiseLinear => "the model is piecewise linear".to_owned(),
         Choice::NotLinear(term) => format!("the model is not piecewise linear: {term}"),
         Choice::NotFollowed(reason) => {
-            format!("the exact solver does not follow this motion: {reason}")
+            format!("the exact solver does not support this motion: {reason}")
         }
         Choice::Stiff(reason) => reason.clone(),
     }
 }
 
-/// Prescribed motion that is given without its rates on a spline through its samples, so that these
-/// exist.
+/// Replaces prescribed motion without rates by a spline through its samples, which has rates.
 fn prescribed(model: &Model, mut inputs: HeldInputs, times: &[f64], values: &[f64]) -> HeldInputs {
     let known = &model.compiled().model().inputs;
     for (place, input) in known.iter().enumerate() {

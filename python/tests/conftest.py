@@ -104,7 +104,7 @@ def write_record(path, turn, samples=750, step=0.002, noise=2e-6):
     truth = eomgen.load(with_hidden_friction(STAGE.read_text(encoding="utf-8")))
     t = np.arange(samples) * step
     force = 300 * np.cos(5 * t + turn) - 150 * np.sin(13 * t * (1 + 0.3 * turn))
-    r = truth.simulate(until=t[-1], sample=step, solver="rk", inputs={"force": force})
+    r = truth.simulate(until=t[-1], interval=step, solver="rk", inputs={"force": force})
     random = np.random.default_rng(int(turn) + 7)
     q = r["q"] + noise * random.standard_normal(samples)
     table = np.column_stack([r.t, force, q])

@@ -129,7 +129,7 @@ def test_ctrl_c_stops_a_search_soon(arm, tmp_path, interrupt):
     truth = eomgen.load(text)
     for name, turn in [("train", 0.0), ("test", 1.0)]:
         u = 0.5 * np.cos(9 * t + turn) + 0.3 * np.sin(31 * t)
-        r = truth.simulate(until=t[-1], sample=5e-4, solver="rk", inputs={"u": u})
+        r = truth.simulate(until=t[-1], interval=5e-4, solver="rk", inputs={"u": u})
         noise = 1e-6 * np.random.default_rng(int(turn)).standard_normal((2, len(t)))
         table = np.column_stack([t, u, r["theta_c"] + noise[0], r["tip"] + noise[1]])
         np.savetxt(

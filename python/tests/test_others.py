@@ -40,7 +40,7 @@ def test_the_page_s_lines_on_casadi_run(cart):
 
 def test_solve_ivp_takes_rates_and_jacobian(pendulum):
     scipy = pytest.importorskip("scipy.integrate")
-    r = pendulum.simulate(until=2, sample=0.01)
+    r = pendulum.simulate(until=2, interval=0.01)
     for method in ("Radau", "LSODA"):
         found = scipy.solve_ivp(
             pendulum.rates, (0, 2), pendulum.initial, method, r.t,

@@ -44,7 +44,7 @@ def test_what_is_no_record_is_refused_and_nothing_written(tmp_path):
     (tmp_path / "new.mat").write_bytes(b"MATLAB 7.3 MAT-file, and so on")
     for name, wanted, part in [
         ("run.npz", ["v"], "has no array 'v'; it has t, short, words"),
-        ("run.npz", ["t", "short"], "short not as long as the others, which have 101"),
+        ("run.npz", ["t", "short"], "short must have 101 samples"),
         ("run.npz", ["words"], "expected real samples"),
         ("none.npz", None, "holds no arrays of samples"),
         ("new.mat", None, "-v7"),

@@ -22,14 +22,14 @@ def test_a_motion_is_that_of_the_command_line(tmp_path, program, name, solver):
     with open(out, encoding="utf-8") as file:
         header = file.readline().strip().split(",")
     table = np.loadtxt(out, delimiter=",", skiprows=1)
-    r = eomgen.load(path).simulate(until=0.7, sample=1e-3, solver=solver)
+    r = eomgen.load(path).simulate(until=0.7, interval=1e-3, solver=solver)
     assert header == ["t", *r.names]
     assert np.array_equal(np.column_stack([r.t, r.states, r.observables]), table)
 
 
 def test_the_paper_s_arm_with_other_play_runs_as_documented(arm):
     m = eomgen.load(SPECIFICATIONS / "planetary_arm.toml").with_parameters(b_sp=50e-6)
-    r = m.simulate(until=2, sample=1e-3)
+    r = m.simulate(until=2, interval=1e-3)
     assert (r.solver, len(r)) == ("exact", 2001)
     assert r["tip"].shape == r.t.shape and r.switches > 0
     assert "piecewise linear" in r.reason
@@ -37,13 +37,13 @@ def test_the_paper_s_arm_with_other_play_runs_as_documented(arm):
 
 def test_samples_are_as_many_as_asked_for(pendulum):
     assert len(pendulum.simulate(until=1)) == 1001
-    assert pendulum.simulate(until=1, sample=0.3).t.tolist() == pytest.approx([0, 0.3, 0.6, 0.9])
-    assert pendulum.simulate(until=0.3, sample=0.1).t[-1] == pytest.approx(0.3)
+    assert pendulum.simulate(until=1, interval=0.3).t.tolist() == pytest.approx([0, 0.3, 0.6, 0.9])
+    assert pendulum.simulate(until=0.3, interval=0.1).t[-1] == pytest.approx(0.3)
 
 
 def test_an_initial_state_is_given_by_names_or_whole(pendulum):
-    named = pendulum.simulate(until=1, initial={"theta_dot": 2.0})
-    whole = pendulum.simulate(until=1, initial=[pendulum.initial[0], 2.0])
+    named = pendulum.simulate(until=1, state={"theta_dot": 2.0})
+    whole = pendulum.simulate(until=1, state=[pendulum.initial[0], 2.0])
     assert np.array_equal(named.states, whole.states)
     assert named["theta_dot"][0] == 2.0
 
@@ -51,7 +51,7 @@ def test_an_initial_state_is_given_by_names_or_whole(pendulum):
 def test_inputs_are_numbers_samples_or_functions(cart):
     name = cart.inputs[0]
     t = np.arange(101) * 0.01
-    of = lambda force: cart.simulate(until=1, sample=0.01, inputs={name: force})
+    of = lambda force: cart.simulate(until=1, interval=0.01, inputs={name: force})
     held = of(np.sin(t))
     assert not np.array_equal(held.states, of(lambda t: np.sin(t)).states)
     assert np.allclose(of(lambda t: np.sin(t)).states, of("sin(t)").states, rtol=2e-8, atol=2e-8)
@@ -59,7 +59,7 @@ def test_inputs_are_numbers_samples_or_functions(cart):
     assert np.allclose(of(0.5).states, of(np.full(101, 0.5)).states, rtol=2e-8, atol=2e-8)
     # From sample to sample the force is what it was at the first of them.
     step = eomgen.load(cart.text).simulate(
-        until=0.01, sample=0.005, initial=held.states[50], inputs={name: np.sin(t[50])}
+        until=0.01, interval=0.005, state=held.states[50], inputs={name: np.sin(t[50])}
     )
     assert np.allclose(step.states[-1], held.states[51], rtol=1e-7, atol=1e-9)
 
@@ -74,7 +74,7 @@ def test_tables_and_plots_have_the_columns(pendulum):
     pandas = pytest.importorskip("pandas")
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
-    r = pendulum.simulate(until=1, sample=0.1)
+    r = pendulum.simulate(until=1, interval=0.1)
     table = r.to_pandas()
     assert isinstance(table, pandas.DataFrame)
     assert list(table.columns) == list(r.names) and table.index.name == "t"
@@ -82,6 +82,17 @@ def test_tables_and_plots_have_the_columns(pendulum):
     axes = r.plot("theta", "energy")
     assert [axis.get_ylabel() for axis in axes] == ["theta (rad)", "energy (J)"]
     assert len(r.plot()) == 1
+
+
+def test_earlier_names_of_arguments_work(pendulum):
+    current = pendulum.simulate(until=1, interval=0.1, state={"theta": 0.2})
+    earlier = pendulum.simulate(until=1, sample=0.1, initial={"theta": 0.2})
+    assert np.array_equal(current.states, earlier.states)
+    with pytest.raises(TypeError, match="give interval only"):
+        pendulum.simulate(until=1, interval=0.1, sample=0.1)
+    with pytest.raises(TypeError, match="give state only"):
+        pendulum.simulate(until=1, state={"theta": 0.2}, initial={"theta": 0.2})
+    assert pendulum.trim().running == pendulum.trim().steady_rates == ()
 
 
 @pytest.mark.parametrize(
@@ -92,15 +103,15 @@ def test_tables_and_plots_have_the_columns(pendulum):
         ({"until": float("nan")}, ValueError, "until = nan"),
         ({"until": float("inf")}, ValueError, "until = inf"),
         ({"until": "2"}, TypeError, "until"),
-        ({"until": 1, "sample": 0}, ValueError, "sample = 0.0"),
-        ({"until": 1, "sample": 2}, ValueError, "at most 1.0"),
-        ({"until": 1e9, "sample": 1e-9}, ValueError, "too many samples"),
+        ({"until": 1, "interval": 0}, ValueError, "interval = 0.0"),
+        ({"until": 1, "interval": 2}, ValueError, "at most 1.0"),
+        ({"until": 1e9, "interval": 1e-9}, ValueError, "too many samples"),
         ({"until": 1, "solver": "euler"}, ValueError, 'expected one of "auto", "exact", "rk"'),
         ({"until": 1, "solver": None}, TypeError, "solver"),
         ({"until": 1, "tolerance": 0}, ValueError, "tolerance"),
-        ({"until": 1, "initial": {"thetta": 1}}, ValueError, "did you mean `theta`"),
-        ({"until": 1, "initial": [1.0]}, ValueError, "expected (2,)"),
-        ({"until": 1, "initial": [float("nan"), 0]}, ValueError, "not finite: theta"),
+        ({"until": 1, "state": {"thetta": 1}}, ValueError, "did you mean `theta`"),
+        ({"until": 1, "state": [1.0]}, ValueError, "expected (2,)"),
+        ({"until": 1, "state": [float("nan"), 0]}, ValueError, "not finite: theta"),
         ({"until": 1, "inputs": {"u": 1.0}}, ValueError, "the model has no input `u`"),
         ({"until": 1, "inputs": 3}, TypeError, "inputs"),
         ({"until": 1, "solver": "exact"}, ValueError, "sin"),
@@ -121,7 +132,7 @@ def test_wrong_inputs_are_refused(cart):
         ("sin(t", f"the input {name}: .* is missing"),
     ]:
         with pytest.raises(ValueError, match=said):
-            cart.simulate(until=1, sample=0.01, inputs={name: force})
+            cart.simulate(until=1, interval=0.01, inputs={name: force})
     with pytest.raises(TypeError, match=f"the input {name} at t = 0: expected a number"):
         cart.simulate(until=1, inputs={name: lambda t: "1"})
 
@@ -169,7 +180,7 @@ motor = { on = "phi", value = "M" }
 @pytest.mark.parametrize("torque", [lambda t: 0.3 * np.sin(50 * t), "0.3*sin(50*t)"])
 def test_the_output_interval_does_not_change_the_motion(torque):
     axis = eomgen.load(AXIS)
-    ends = [axis.simulate(1, sample=h, inputs={"M": torque})["x"][-1] for h in (0.1, 0.05, 0.001)]
+    ends = [axis.simulate(1, interval=h, inputs={"M": torque})["x"][-1] for h in (0.1, 0.05, 0.001)]
     # SciPy's Radau at 1e-12 on the model's own rates.
     assert np.allclose(ends, 0.028995, rtol=0, atol=1e-6)
     assert np.ptp(ends) < 1e-9
@@ -178,7 +189,7 @@ def test_the_output_interval_does_not_change_the_motion(torque):
 def test_steps_end_where_a_function_jumps(cart):
     name = cart.inputs[0]
     jump = 0.123456789
-    of = lambda force, **more: cart.simulate(until=0.5, sample=0.1, inputs={name: force}, **more)
+    of = lambda force, **more: cart.simulate(until=0.5, interval=0.1, inputs={name: force}, **more)
     exact = of(f"3*above(t - {jump})")
     calls = []
 
@@ -193,9 +204,9 @@ def test_steps_end_where_a_function_jumps(cart):
 
 def test_a_motion_starts_at_a_given_time(cart):
     name = cart.inputs[0]
-    whole = cart.simulate(until=1, sample=0.1, inputs={name: lambda t: np.sin(9 * t)})
+    whole = cart.simulate(until=1, interval=0.1, inputs={name: lambda t: np.sin(9 * t)})
     rest = cart.simulate(
-        until=1, sample=0.1, start=0.5, initial=whole.states[5], inputs={name: lambda t: np.sin(9 * t)}
+        until=1, interval=0.1, start=0.5, state=whole.states[5], inputs={name: lambda t: np.sin(9 * t)}
     )
     assert rest.t[0] == 0.5 and rest.t[-1] == pytest.approx(1) and len(rest) == 6
     assert np.allclose(rest.states, whole.states[5:], rtol=1e-7, atol=1e-8)
@@ -207,7 +218,7 @@ def test_the_longest_step_finds_a_short_pulse(cart):
     name = cart.inputs[0]
     pulse = lambda t: 100.0 * np.exp(-(((t - 31.4) / 0.005) ** 2))
     of = lambda **more: cart.simulate(
-        until=40, sample=4, solver="rk", initial=[0.0] * len(cart.states), inputs={name: pulse}, **more
+        until=40, interval=4, solver="rk", state=[0.0] * len(cart.states), inputs={name: pulse}, **more
     )
     seen, exact = of(max_step=0.004), of(breaks=[31.38, 31.39, 31.4, 31.41, 31.42])
     assert np.abs(exact.states[-1]).max() > 1e-3
@@ -258,7 +269,7 @@ mass = "1/2*m*dot(x)^2"
 away = { on = "x", value = "k*x^2" }
 """
     with pytest.raises(eomgen.SimulationError) as raised:
-        eomgen.load(runaway).simulate(until=100, sample=0.01)
+        eomgen.load(runaway).simulate(until=100, interval=0.01)
     so_far = raised.value.trajectory
     assert 100 < len(so_far) < 2000 and so_far["x"][-1] > 1.0
     assert np.isfinite(so_far.states).all()
@@ -268,7 +279,7 @@ away = { on = "x", value = "k*x^2" }
 def endless():
     """A model that moves for ever, and takes hours for it."""
     m = eomgen.load(SPECIFICATIONS / "double_pendulum.toml")
-    return lambda **options: m.simulate(until=1e7, sample=1e4, solver="rk", **options)
+    return lambda **options: m.simulate(until=1e7, interval=1e4, solver="rk", **options)
 
 
 def test_progress_is_told_and_may_raise(endless):
@@ -313,7 +324,7 @@ def test_prescribed_motion_moves_with_the_rates_of_its_samples():
     crane = eomgen.load(SPECIFICATIONS / "crane.toml")
     assert crane.inputs == ("s", "s_dot", "s_ddot", "l", "l_dot", "l_ddot")
     drive, sample = (lambda t: 0.3 * t**2 - 0.05 * t**3), 0.01
-    r = crane.simulate(until=3, sample=sample, inputs={"s": drive, "l": 6.0})
+    r = crane.simulate(until=3, interval=sample, inputs={"s": drive, "l": 6.0})
     # m (l theta'' + s'' cos theta + g sin theta) + c (l theta' + s' cos theta) = 0, by SciPy.
     solve_ivp = pytest.importorskip("scipy.integrate").solve_ivp
 
@@ -327,7 +338,7 @@ def test_prescribed_motion_moves_with_the_rates_of_its_samples():
     assert np.abs(r["theta"] - known.y[0]).max() < 1e-8
     assert np.allclose(r["place"], drive(r.t) + 6 * np.sin(r["theta"]), rtol=0, atol=1e-12)
     with_rates = lambda t: (drive(t), 0.6 * t - 0.15 * t**2, 0.6 - 0.3 * t)
-    r = crane.simulate(until=3, sample=0.1, inputs={"s": with_rates, "l": 6.0})
+    r = crane.simulate(until=3, interval=0.1, inputs={"s": with_rates, "l": 6.0})
     assert np.abs(r["theta"] - known.y[0][::10]).max() < 1e-8
     with pytest.raises(TypeError, match="the input s at t = .*: expected 3 numbers"):
         crane.simulate(until=3, inputs={"s": lambda t: (drive(t), 0.0), "l": 6.0})

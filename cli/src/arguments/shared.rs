@@ -66,10 +66,10 @@ pub struct OutputInterval {
 /// Method of integration.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Solver {
-    /// `exact` if the model is linear between its events, else `rk`, or `radau` if the motion is stiff.
+    /// `exact` if the model is linear between its switches, else `rk`, or `radau` if the motion is stiff.
     Auto,
-    /// Matrix exponentials from event to event, with rounding errors only; for models that are linear
-    /// between their events.
+    /// Matrix exponentials from switch to switch, with rounding errors only; for models that are linear
+    /// between their switches.
     Exact,
     /// Explicit Runge-Kutta method of order 8 with event location.
     Rk,

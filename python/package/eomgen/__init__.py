@@ -1,12 +1,12 @@
-"""Equations of motion from a specification: derived, compiled, simulated, compared with records.
+"""Equations of motion from a specification: derivation, compilation, simulation, comparison with records.
 
     >>> import eomgen
     >>> m = eomgen.load("pendulum.toml")
     >>> m.rates(0.0, [0.1, 0.0])
-    >>> r = m.simulate(until=2, sample=1e-3)
+    >>> r = m.simulate(until=2, interval=1e-3)
     >>> r["theta"]
 
-All numbers are in SI units, but parameters, which are in the units that the specification declares.
+All numbers are in SI units, except parameters, which are in their declared units.
 """
 
 from ._native import DiscoveryError, SimulationError, SpecificationError

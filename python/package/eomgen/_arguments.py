@@ -1,4 +1,4 @@
-"""Arguments of calls brought into shape: float64, contiguous, of the model's sizes."""
+"""Conversion of arguments to contiguous float64 arrays of the model's sizes."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ FLOAT = np.dtype(np.float64)
 
 
 def numbers(what: str, given: ArrayLike) -> Array:
-    """A contiguous array of float64, or a TypeError for what is not made of real numbers."""
+    """Converts to a contiguous float64 array. Raises TypeError unless all entries are real numbers."""
     if type(given) is np.ndarray and given.dtype is FLOAT and given.flags.c_contiguous:
         return given
     if isinstance(given, np.ma.MaskedArray):
-        raise TypeError(f"{what}: a masked array; fill it, or leave the masked rows out")
+        raise TypeError(f"{what}: a masked array; fill it, or remove the masked rows")
     try:
         array = np.asarray(given)
     except ValueError as error:
@@ -32,7 +32,7 @@ def numbers(what: str, given: ArrayLike) -> Array:
 
 
 def real(what: str, given: Any) -> float:
-    """One finite number."""
+    """Converts to one finite number."""
     array = numbers(what, given)
     if array.size != 1:
         raise TypeError(f"{what}: expected one number, not an array of shape {array.shape}")
@@ -43,7 +43,7 @@ def real(what: str, given: Any) -> float:
 
 
 def whole(what: str, given: Any, most: int = 2**63 - 1) -> int:
-    """One whole number from 0 to `most`."""
+    """Converts to a whole number from 0 to `most`."""
     expected = f"expected a whole number from 0 to {most}"
     if isinstance(given, (bool, np.bool_)):
         raise TypeError(f"{what} = {given}: {expected}")
@@ -56,8 +56,17 @@ def whole(what: str, given: Any, most: int = 2**63 - 1) -> int:
     return value
 
 
+def renamed(name: str, given: Any, old: str, given_as_old: Any) -> Any:
+    """Returns the value of an argument that may also be given under an earlier name."""
+    if given_as_old is None:
+        return given
+    if given is not None:
+        raise TypeError(f"both {name} and {old}, its earlier name, are given; give {name} only")
+    return given_as_old
+
+
 def unknown(kind: str, name: object, known: Sequence[str]) -> str:
-    """What is said of a name that a model does not have."""
+    """Returns the message about a name that the model does not have."""
     meant = _native.nearest(name, list(known)) if isinstance(name, str) else None
     if meant is not None:
         hint = f"did you mean `{meant}`?"
@@ -71,8 +80,8 @@ def unknown(kind: str, name: object, known: Sequence[str]) -> str:
 class Call:
     """Times, states and inputs of one call, a row for each state.
 
-    t: a number, or (n,); x: (states,) or (n, states); u: (inputs,) or (n, inputs), or None for 0;
-    a mapping of names to numbers, or to (n,), does as well.
+    t: a number, or (n,). x: (states,) or (n, states). u: (inputs,) or (n, inputs), a mapping of names to
+    numbers or to (n,), or None for 0.
     """
 
     __slots__ = ("t", "x", "u", "single")
@@ -122,7 +131,7 @@ class Call:
 
 
 def check_names(kind: str, given: Iterable[str], known: Sequence[str]) -> None:
-    """A KeyError for the first name that is not known, with what may have been meant."""
+    """Raises ValueError for the first unknown name, with the nearest known name."""
     for name in given:
         if name not in known:
             raise ValueError(unknown(kind, name, known))

@@ -1,4 +1,4 @@
-"""The compiled part: arguments are taken as they are, contiguous float64 arrays in SI units."""
+"""Compiled part of the package. Arguments are contiguous float64 arrays in SI units and are not converted."""
 
 from typing import Callable, List, Optional, Tuple
 

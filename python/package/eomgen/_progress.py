@@ -1,4 +1,4 @@
-"""How far work is, shown where somebody looks: a line in a terminal, a display in a notebook."""
+"""Progress of long work: a line in a terminal, a display in a notebook."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ import sys
 import time
 from typing import Any, Callable, Optional
 
-# Work shorter than this shows nothing, s.
+# Shortest work with a progress line, s.
 PATIENCE = 2.0
 
 
 class _Line:
-    """One line that replaces itself."""
+    """A line that is overwritten by its next text."""
 
     def __init__(self) -> None:
         self._begin = time.monotonic()
@@ -47,14 +47,14 @@ class _Line:
 
 
 def _in_notebook() -> bool:
-    # Only who has loaded IPython can be in a notebook.
+    # A notebook has loaded IPython.
     ipython = sys.modules.get("IPython")
     shell = ipython.get_ipython() if ipython is not None else None
     return shell is not None and hasattr(shell, "kernel")
 
 
 class Fraction:
-    """How much of a whole is done: to `progress` as a part from 0 to 1, or on a line."""
+    """Reports the completed fraction, 0 to 1, to `progress`, or on a line."""
 
     def __init__(self, what: str, whole: float, progress: Optional[Callable[[float], object]]):
         self._what, self._whole, self._progress = what, whole, progress
@@ -75,7 +75,7 @@ class Fraction:
 
 
 class Lines:
-    """What is being done, line by line: to `progress`, or the last one on a line of its own."""
+    """Reports messages to `progress`, or shows the last one on a line."""
 
     def __init__(self, progress: Optional[Callable[[str], object]]):
         self._progress = progress

@@ -1,4 +1,4 @@
-"""A model as a function of CasADi, called back; needs the package `casadi`."""
+"""Models as CasADi functions; needs the package `casadi`."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ if TYPE_CHECKING:
 
 
 class Rates(casadi.Callback):
-    """rates(t, x, u): (states, 1), with its Jacobian; made by `Model.to_casadi`, and to be kept as
-    long as expressions that use it.
+    """Function rates(t, x, u): (states, 1) with its Jacobian, created by `Model.to_casadi`. Keep a reference to
+    it while expressions use it.
     """
 
     def __init__(self, model: "Model", name: str):
@@ -47,7 +47,7 @@ class Rates(casadi.Callback):
         return True
 
     def get_jacobian(self, name: str, names_in: Any, names_out: Any, options: Any) -> Any:
-        # CasADi does not keep it alive.
+        # CasADi holds no reference to it.
         self._jacobian = _Jacobian(self._model, name, self._sizes(), names_in, names_out)
         return self._jacobian
 
@@ -56,7 +56,7 @@ class Rates(casadi.Callback):
 
 
 class _Jacobian(casadi.Callback):
-    """The Jacobian blocks of the rates by t, x and u, at t, x, u and the rates there."""
+    """Jacobian blocks of the rates by t, x and u, as a function of t, x, u and the rates."""
 
     def __init__(
         self,
@@ -95,6 +95,6 @@ class _Jacobian(casadi.Callback):
 
 
 def point(arguments: Sequence[Any]) -> Tuple[float, Any, Any]:
-    """Time, state and inputs as the model takes them."""
+    """Converts CasADi arguments to time, state and inputs of the model."""
     t, x, u = (np.array(casadi.densify(given)).reshape(-1) for given in arguments[:3])
     return float(t[0]), x, u

@@ -1,4 +1,4 @@
-"""Sweeps over a Dask cluster: each task is one shard, run by the program `eomgen` on a worker.
+"""Sweeps on a Dask cluster: each task runs one shard with the program `eomgen` on a worker.
 
     >>> from dask.distributed import Client
     >>> import eomgen.dask
@@ -6,8 +6,8 @@
     >>> eomgen.dask.sweep(client, ["arm.toml", "--vary", "omega=10:60:100", "--measure", "poincare",
     ...                            "--out", "map"], shards=32)
 
-All workers have to see the same files. A worker that is lost takes nothing with it: Dask gives its
-shards to others, which find the parts that it left. `eomgen sweep --engine dask` comes here.
+All workers must share a file system. If a worker is lost, Dask reassigns its shards, and the new worker resumes
+them. `eomgen sweep --engine dask` calls this module.
 """
 
 from __future__ import annotations
@@ -22,29 +22,29 @@ __all__ = ["SweepError", "sweep"]
 
 
 class SweepError(RuntimeError):
-    """A shard that was refused, or was killed time and again; what it said."""
+    """A shard failed; the message is that of the program."""
 
 
 def _run(command: Sequence[str], folder: Optional[str] = None) -> str:
-    """Runs the program, in the folder that its relative paths are of; what it says."""
+    """Runs the program in a folder, which its relative paths refer to. Returns its output."""
     try:
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     except OSError as error:
         raise SweepError(f"{command[0]} cannot be run: {error.strerror}") from None
     if done.returncode != 0:
-        why = done.stderr.strip() or f"it ended with {done.returncode}"
+        why = done.stderr.strip() or f"exit status {done.returncode}"
         raise SweepError(f"{' '.join(command)}: {why}")
     return done.stdout
 
 
 def _folder(arguments: Sequence[str]) -> str:
-    """What follows --out."""
+    """Returns the value of --out."""
     for place, argument in enumerate(arguments):
         if argument == "--out" and place + 1 < len(arguments):
             return arguments[place + 1]
         if argument.startswith("--out="):
             return argument[len("--out=") :]
-    raise ValueError("the arguments of a sweep hold --out and a folder")
+    raise ValueError("--out is missing: expected --out FOLDER among the arguments of the sweep")
 
 
 def sweep(
@@ -55,14 +55,14 @@ def sweep(
     program: str = "eomgen",
     progress: Optional[Callable[[int, int], object]] = None,
 ) -> str:
-    """Runs all shards of a sweep on a cluster and merges them; what `eomgen merge` says.
+    """Runs all shards of a sweep on a cluster and merges them. Returns the output of `eomgen merge`.
 
-    client: a dask.distributed.Client. arguments: those of `eomgen sweep`, without `--shard`, as texts.
-    shards: into how many the sweep is parted. program: the program's path on the workers and here.
-    progress: called with how many shards are done, and how many there are.
+    client: a dask.distributed.Client. arguments: arguments of `eomgen sweep` without `--shard`, as texts.
+    shards: number of shards. program: path of the program, the same on all machines. progress: function of
+    the number of completed shards and the number of all shards.
 
-    Raises SweepError where a shard is refused, and passes on what Dask raises: KilledWorker where
-    the workers of a shard are lost time and again.
+    Raises SweepError if a shard fails. Exceptions of Dask are passed on, such as KilledWorker if the workers of
+    a shard are lost repeatedly.
     """
     from dask.distributed import as_completed
 
@@ -72,7 +72,7 @@ def sweep(
     folder, here = _folder(arguments), os.getcwd()
     numbered = [f"{number}/{shards}" for number in range(1, shards + 1)]
     commands = [[program, "sweep", *arguments, "--shard", shard] for shard in numbered]
-    # Not a function of its arguments alone: it has to be run, whatever ran before.
+    # pure=False: Dask must not reuse the result of an earlier call with the same arguments.
     futures = client.map(_run, commands, folder=here, pure=False)
     try:
         for done, future in enumerate(as_completed(futures), start=1):

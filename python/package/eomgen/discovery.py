@@ -1,4 +1,4 @@
-"""What a model lacks of what measured records show."""
+"""Discovery of effects that a model lacks."""
 
 from __future__ import annotations
 
@@ -14,20 +14,19 @@ from .model import Model, load
 
 __all__ = ["Discovery", "discover"]
 
-# The names under which a discovery is written to a folder.
+# Names of the files of a discovery.
 DOCUMENT, EXTENDED, PAGE = "discovery.json", "extended.toml", "report.html"
 
 
 class Discovery:
-    """What a search came to.
+    """Result of a discovery.
 
-    verdict: "effects_found", "no_significant_gap" or "unexplained". effects: what was accepted, by
-    decreasing gap closed, each a dictionary with `effect`, `on`, `status` ("named", "class",
-    "provisional" or "empirical"), `equivalent`, `parameters` (names to `value`, `sd`, `unit`),
-    `term`. document: all of `discovery.json`.
-    extended: the text of the specification with what was found; report: the page for people, HTML.
-    experiments: what to play next, texts of CSV files by their names, with the columns `t` and the
-    inputs in the dataset's units.
+    verdict: "effects_found", "no_significant_gap" or "unexplained". effects: accepted effects, by decreasing
+    reduction of the residual, each a dictionary with `effect`, `on`, `status` ("named", "class",
+    "provisional" or "empirical"), `equivalent`, `parameters` (names to `value`, `sd`, `unit`) and `term`.
+    document: content of `discovery.json`. extended: text of the extended specification. report: report page
+    (HTML). experiments: proposed experiments, texts of CSV files by name, with the columns `t` and the inputs
+    in the dataset's units.
     """
 
     def __init__(
@@ -44,42 +43,42 @@ class Discovery:
 
     @property
     def verdict(self) -> str:
-        """The verdict in a word."""
+        """Verdict, one word."""
         return str(self.document["verdict"])
 
     @property
     def effects(self) -> List[Dict[str, Any]]:
-        """What was accepted."""
+        """Accepted effects."""
         return list(self.document["effects"])
 
     @property
     def summary(self) -> str:
-        """The answer in words; where much is left, the first sentence says so."""
+        """Summary as text. Its first sentence reports a large remaining residual."""
         return str(self.document["summary"])
 
     @property
     def notes(self) -> List[str]:
-        """What is worth a remark: of the records, and of what was fitted as far off as it may be."""
+        """Remarks on the records, and on fitted values at their bounds."""
         return list(self.document["notes"])
 
     @property
     def gap(self) -> Mapping[str, Any]:
-        """The gap of each channel before and after, and the floor, in the channel's SI unit."""
+        """RMS residual of each channel before and after, and its noise floor, in the channel's SI unit."""
         return dict(self.document["gap"])
 
     @property
     def where(self) -> str:
-        """Where model and records disagree, in sentences."""
+        """Equations, times and conditions in which model and records disagree, as text."""
         return str(self.document["where"])
 
     @property
     def model(self) -> Model:
-        """The model with what was found."""
+        """Extended model."""
         return load(self.extended, self._order)
 
     def write(self, out: Union[str, "os.PathLike[str]"]) -> None:
-        """Writes `discovery.json`, `extended.toml`, `report.html` and the experiments into a folder,
-        each whole or not at all.
+        """Writes `discovery.json`, `extended.toml`, `report.html` and the experiments to a folder. Each file
+        replaces an earlier one only when it is complete.
         """
         folder = Path(out)
         folder.mkdir(parents=True, exist_ok=True)
@@ -98,7 +97,7 @@ class Discovery:
         return f"<eomgen.Discovery: {self.verdict}{': ' + found if found else ''}>"
 
     def _repr_html_(self) -> str:
-        # A page of its own, whose style is not the notebook's.
+        # A frame keeps the styles of report and notebook apart.
         page = self.report.replace("&", "&amp;").replace('"', "&quot;")
         return f'<iframe srcdoc="{page}" style="width: 100%; height: 40em; border: 0"></iframe>'
 
@@ -111,18 +110,18 @@ def discover(
     seed: int = 1,
     progress: Optional[Callable[[str], object]] = None,
 ) -> Discovery:
-    """Finds what a model lacks of what measured records show, and names it.
+    """Finds effects that a model lacks, by comparison with measured records.
 
-    dataset: the path of a dataset's file. out: a folder that is to hold `discovery.json`,
-    `extended.toml`, `report.html` and experiments to be played, or None. seed: draws the noise of the bootstrap; the same seed
-    gives the same result. progress: called with each line on what is being done; by default the
-    last one is shown in terminals and notebooks once it takes longer than two seconds.
+    dataset: path of the dataset file. out: folder for `discovery.json`, `extended.toml`, `report.html` and
+    proposed experiments; None writes no files. seed: seed of the noise in the bootstrap; equal seeds give equal
+    results. progress: function that is called with each progress message. Default: the last message is shown
+    in terminals and notebooks after two seconds.
 
-    Raises SpecificationError for a dataset file that is wrong, ValueError for records that are, and
-    DiscoveryError where the model does not run through them. Ctrl-C stops it.
+    Raises SpecificationError for an invalid dataset file, ValueError for invalid records, and DiscoveryError
+    if the model cannot be simulated over the records. Ctrl-C interrupts the search.
     """
     if not isinstance(model, Model):
-        raise TypeError(f"expected a model, as load() makes it, not {type(model).__name__}")
+        raise TypeError(f"expected a model from eomgen.load(), not {type(model).__name__}")
     seed = _arguments.whole("seed", seed)
     begin = time.monotonic()
     with Lines(progress) as lines:

@@ -1,4 +1,4 @@
-"""A state that stays as it is."""
+"""Equilibrium of a model."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ Array = NDArray[np.float64]
 
 
 class Equilibrium:
-    """An equilibrium of a model, at rest or running steadily.
+    """Equilibrium of a model, at rest or in steady motion. All numbers are in SI.
 
-    t: s. x: (states,). u: (inputs,), which hold the machine there. residual: (coordinates + states of
-    first order,), the accelerations and rates that rounding leaves. states, inputs: names of x and u.
-    running: names of the rates that are not 0. free: names of the unknowns that were solved for.
-    stability: "asymptotically stable", "marginal" or "unstable". depends_on_time: whether forces depend
-    on the time, so that it is an equilibrium at t alone. All SI.
+    t: time, s. x: state, (states,). u: inputs at the equilibrium, (inputs,). residual: accelerations and rates
+    of states of first order, zero up to rounding. states, inputs: names of x and u. steady_rates: names of
+    the rates that are constant and not 0. free: names of the unknowns of the search. stability:
+    "asymptotically stable", "marginal" or "unstable". depends_on_time: True if forces depend on time; the
+    state is then an equilibrium at t only.
     """
 
     def __init__(
@@ -28,7 +28,7 @@ class Equilibrium:
         x: Sequence[float],
         u: Sequence[float],
         residual: Sequence[float],
-        running: Sequence[str],
+        steady_rates: Sequence[str],
         free: Sequence[str],
         stability: str,
         depends_on_time: bool,
@@ -36,16 +36,21 @@ class Equilibrium:
         self.states, self.inputs = states, inputs
         self.t, self.x, self.u = t, np.array(x), np.array(u)
         self.residual = np.array(residual)
-        self.running, self.free = tuple(running), tuple(free)
+        self.steady_rates, self.free = tuple(steady_rates), tuple(free)
         self.stability, self.depends_on_time = stability, depends_on_time
 
+    @property
+    def running(self) -> Tuple[str, ...]:
+        """Earlier name of `steady_rates`."""
+        return self.steady_rates
+
     def __getitem__(self, name: str) -> float:
-        """The value of a state or of an input."""
+        """Returns the value of a state or of an input."""
         for names, values in ((self.states, self.x), (self.inputs, self.u)):
             if name in names:
                 return float(values[names.index(name)])
         raise KeyError(name)
 
     def __repr__(self) -> str:
-        motion = f"running: {', '.join(self.running)}" if self.running else "at rest"
+        motion = f"steady motion: {', '.join(self.steady_rates)}" if self.steady_rates else "at rest"
         return f"<eomgen.Equilibrium: {motion}, {self.stability}>"

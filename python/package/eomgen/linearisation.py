@@ -1,4 +1,4 @@
-"""A model linearised about a point."""
+"""Linearisation of a model."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ Array = NDArray[np.float64]
 
 
 class Linearisation:
-    """d(dx)/dt = rates + A dx + B du, dy = C dx + D du, with dx, du and dy the differences from the
-    point. It unpacks: `A, B, C, D = m.linearise()`.
+    """Linear model d(dx)/dt = rates + A dx + B du, dy = C dx + D du, where dx, du and dy are differences from
+    the operating point. It unpacks: `A, B, C, D = m.linearise()`.
 
-    A: (states, states). B: (states, inputs). C: (outputs, states). D: (outputs, inputs). Outputs
-    are the observables. states, inputs, outputs: their names. x: (states,) and u: (inputs,), the
-    point. rates: (states,), 0 in an equilibrium. y: (outputs,), the observables there. All SI.
+    A: (states, states). B: (states, inputs). C: (outputs, states). D: (outputs, inputs). The outputs are the
+    observables. states, inputs, outputs: names. x: (states,) and u: (inputs,), the operating point. rates:
+    (states,), 0 at an equilibrium. y: (outputs,), the observables at the operating point. All in SI.
     """
 
     def __init__(

@@ -1,4 +1,4 @@
-"""A compiled model: calls on one state or on arrays of them, simulation, linearisation, equilibria."""
+"""Compiled models: evaluation, simulation, linearisation, equilibria."""
 
 from __future__ import annotations
 
@@ -14,27 +14,27 @@ from . import _arguments, _native
 from ._arguments import Call
 from .equilibrium import Equilibrium
 from .linearisation import Linearisation
-from .trajectory import Trajectory, simulated
+from .trajectory import Trajectory, simulate
 
 __all__ = ["Model", "SpecificationWarning", "load"]
 
 Array = NDArray[np.float64]
 
-# What stands for the file of a text in messages.
+# File name in messages about a specification given as text.
 TEXT = "<text>"
 
 
 class SpecificationWarning(UserWarning):
-    """Something in a specification may not be as it was meant."""
+    """A specification is valid, but possibly not as intended."""
 
 
 def load(path_or_text: Union[str, "os.PathLike[str]"], order: Optional[int] = None) -> "Model":
-    """Reads, checks, derives and compiles a specification.
+    """Reads and checks a specification, derives its equations and compiles them.
 
-    path_or_text: a file's path, or the text itself, which is what contains a line break.
-    order: the number of modes of every field; None for what the specification says.
+    path_or_text: path of a file, or the specification itself; a text with a line break is a specification.
+    order: number of modes of every field. Default: the orders in the specification.
 
-    Raises SpecificationError with all that is wrong, each at its place.
+    Raises SpecificationError, which lists all errors with file, line and column.
     """
     if order is not None:
         order = _arguments.whole("order", order, _native.MAX_ORDER)
@@ -51,11 +51,10 @@ def load(path_or_text: Union[str, "os.PathLike[str]"], order: Optional[int] = No
 
 
 class Model:
-    """A compiled model at one set of parameter values; made by `load`. It does not change, and
-    threads may share it.
+    """Compiled model at one set of parameter values, created by `load`. It is immutable; threads may share it.
 
-    All numbers are in SI units, but `parameters`, which are in their declared units. The state is
-    the coordinates, the modes, then the rates of both, as `states` lists them.
+    All numbers are in SI units, except `parameters`, which are in their declared units. The state consists of
+    the coordinates, the modes, the rates of both, and states of first order, in the order of `states`.
     """
 
     def __init__(self, native: _native.Model):
@@ -66,70 +65,70 @@ class Model:
 
     @property
     def name(self) -> str:
-        """The model's name."""
+        """Name of the model."""
         return self._native.name
 
     @property
     def states(self) -> Tuple[str, ...]:
-        """The names of the states, in their order."""
+        """Names of the states, in order."""
         return self._states
 
     @property
     def inputs(self) -> Tuple[str, ...]:
-        """The names of the inputs, in their order."""
+        """Names of the inputs, in order."""
         return self._inputs
 
     @property
     def observable_names(self) -> Tuple[str, ...]:
-        """The names of the observables, `energy` (J) and `power` (W) last."""
+        """Names of the observables, in order; `energy` (J) and `power` (W) are last."""
         return self._observables
 
     @property
     def parameters(self) -> Mapping[str, float]:
-        """Names to values, in the units that the specification declares; `with_parameters` sets them."""
+        """Values of the parameters by name, in declared units. Set them with `with_parameters`."""
         return MappingProxyType({name: value for name, value, _ in self._native.parameters})
 
     @property
     def independent_parameters(self) -> Tuple[str, ...]:
-        """The parameters that are given by a number: the columns of `jacobian(..., by="parameters")`."""
+        """Parameters with a number as value: the columns of `jacobian(..., by="parameters")`."""
         return tuple(self._native.independent_parameters)
 
     @property
     def units(self) -> Mapping[str, str]:
-        """The units of parameters, states, inputs and observables, by name."""
+        """Units of parameters, states, inputs and observables, by name."""
         named = [(name, unit) for name, _, unit in self._native.parameters]
         native = self._native
         return MappingProxyType(dict(named + native.states + native.inputs + native.observables))
 
     @property
     def orders(self) -> Tuple[int, ...]:
-        """The number of modes of each field."""
+        """Number of modes of each field."""
         return tuple(self._native.orders)
 
     @property
     def initial(self) -> Array:
-        """The initial state that the specification gives, (states,)."""
+        """Initial state of the specification, (states,)."""
         return np.array(self._native.initial)
 
     @property
     def text(self) -> str:
-        """The specification's text, with the parameters that were set."""
+        """Text of the specification, including parameters that were set."""
         return self._native.text
 
     def with_parameters(self, /, **values: float) -> "Model":
-        """The model with some parameters set, each in its declared unit; what depends on them
-        follows. A parameter that is given by an expression has the number in its place.
+        """Returns the model with new parameter values, in declared units. Expressions that depend on them are
+        recomputed. A number replaces the expression of a parameter.
 
-        Raises SpecificationError for an unknown name or a value that is not admissible.
+        Raises SpecificationError for an unknown name or an inadmissible value.
         """
         settings = [(name, _number(name, value)) for name, value in values.items()]
         return Model(self._native.with_parameters(settings))
 
     def rates(self, t: ArrayLike, x: ArrayLike, u: Any = None) -> Array:
-        """The rates of the state.
+        """Computes the rates of the state.
 
-        t: s, one time or (n,). x: (states,) or (n, states). u: (inputs,) or (n, inputs), or names
-        to numbers; 0 where not given. Returns an array of the shape of x.
+        t: time in s, a number or (n,). x: state, (states,) or (n, states). u: inputs, (inputs,) or (n, inputs),
+        or a mapping of names to numbers; missing inputs are 0. Returns an array of the shape of x.
         """
         call = self._call(t, x, u)
         rates = np.empty_like(call.x)
@@ -137,8 +136,8 @@ class Model:
         return rates[0] if call.single else rates
 
     def observables(self, t: ArrayLike, x: ArrayLike, u: Any = None) -> Array:
-        """The observables, in the order of `observable_names`: (observables,) or (n, observables).
-        Arguments as for `rates`.
+        """Computes the observables, in the order of `observable_names`: (observables,) or (n, observables).
+        The arguments are those of `rates`.
         """
         call = self._call(t, x, u)
         observables = np.empty((len(call.x), len(self._observables)))
@@ -146,17 +145,17 @@ class Model:
         return observables[0] if call.single else observables
 
     def energy(self, t: ArrayLike, x: ArrayLike, u: Any = None) -> Any:
-        """Kinetic and potential energy, J: a number or (n,). Arguments as for `rates`."""
+        """Computes kinetic plus potential energy, in J: a number or (n,). The arguments are those of `rates`."""
         return self.observables(t, x, u)[..., self._observables.index("energy")]
 
     def jacobian(
         self, t: ArrayLike, x: ArrayLike, u: Any = None, *, by: str = "state"
     ) -> Array:
-        """The derivatives of the rates by the state, the inputs, the independent parameters (these
-        in SI) or the time: (states, columns) or (n, states, columns). On a switching surface they are
-        one-sided.
+        """Computes the Jacobian of the rates: (states, columns) or (n, states, columns). On a switching surface
+        its derivatives are one-sided.
 
-        by: "state", "inputs", "parameters" or "time"; the others as for `rates`.
+        by: "state", "inputs", "parameters" (the independent ones, in SI) or "time". The other arguments are
+        those of `rates`.
         """
         columns = {
             "state": len(self._states),
@@ -176,10 +175,11 @@ class Model:
     def linearise(
         self, t: float = 0.0, x: Any = None, u: Any = None
     ) -> Linearisation:
-        """A, B, C and D about a point.
+        """Linearises the model at a state and returns A, B, C and D.
 
-        t: s. x: (states,), or names to numbers, the others as the specification's initial state,
-        which is the default. u: (inputs,), or names to numbers; 0 where not given.
+        t: time in s. x: state, (states,), or a mapping of names to numbers; missing states have the
+        specification's initial values. u: inputs, (inputs,), or a mapping of names to numbers; missing inputs
+        are 0.
         """
         time = _arguments.real("t", t)
         call = self._call(time, self.state(x), u)
@@ -195,15 +195,15 @@ class Model:
         fixed: Optional[Mapping[str, float]] = None,
         t: float = 0.0,
     ) -> Equilibrium:
-        """The equilibrium nearest to a start, at rest or running steadily.
+        """Finds the equilibrium nearest to a start, at rest or in steady motion.
 
-        x: (states,), or names to numbers, the others as the specification's initial state, which is the
-        default. u: (inputs,), or names to numbers; 0 where not given, and prescribed motion in the middle of
-        its range. fixed: names of states and inputs to the numbers that they keep; if it holds a state, the
-        inputs that are not fixed are solved for: they hold the machine there. t: s.
+        x: start, (states,), or a mapping of names to numbers; missing states have the specification's initial
+        values. u: inputs, (inputs,), or a mapping of names to numbers; missing inputs are 0, and missing
+        prescribed motion is in the middle of its range. fixed: states and inputs that keep their values, by
+        name. If a state is fixed, the search also varies the inputs that are not fixed. t: time in s.
 
-        Raises ValueError for an unknown name, a number that is not finite or outside its range, and a rate
-        that cannot be constant; SimulationError if no equilibrium is found.
+        Raises ValueError for an unknown name, a value that is not finite or outside its range, and a fixed rate
+        that cannot be constant. Raises SimulationError if no equilibrium is found.
         """
         start = self._named("state", self._states, x) + self._named("input", self._inputs, u)
         start.append(("t", _arguments.real("t", t)))
@@ -213,7 +213,6 @@ class Model:
 
     @staticmethod
     def _named(kind: str, names: Tuple[str, ...], given: Any) -> List[Tuple[str, float]]:
-        # What is not given is left to the model.
         if given is None:
             return []
         if not isinstance(given, Mapping):
@@ -230,9 +229,9 @@ class Model:
     def simulate(
         self,
         until: float,
-        sample: Optional[float] = None,
+        interval: Optional[float] = None,
         solver: str = "auto",
-        initial: Any = None,
+        state: Any = None,
         inputs: Any = None,
         *,
         tolerance: float = 1e-9,
@@ -240,38 +239,43 @@ class Model:
         start: float = 0.0,
         max_step: Optional[float] = None,
         breaks: Any = None,
+        sample: Optional[float] = None,
+        initial: Any = None,
     ) -> Trajectory:
-        """The motion from t = `start`.
+        """Simulates the motion from t = `start` to t = `until`.
 
-        until: its end, s. sample: the time from sample to sample, s; a thousandth of the whole if
-        None. solver: "auto", "exact" (for models that are linear between their switches), "rk",
-        "adams" or "radau" (for stiff models); tolerance: the relative one of all but "exact";
-        max_step: the longest step of these, s, for inputs with pulses that longer steps may miss.
+        until: end time, s. interval: output interval, s. Default: a thousandth of the simulated time.
+        solver: "auto", "exact" (for models that are linear between switches), "rk", "adams" or "radau" (for
+        stiff models). tolerance: relative tolerance of all solvers except "exact". max_step: longest step of
+        these solvers, s. Set it if inputs have short pulses that longer steps may miss.
 
-        initial: (states,), or names to numbers; the others as the specification says.
+        state: initial state, (states,), or a mapping of names to numbers; missing states have the
+        specification's initial values.
 
-        inputs: names to a number, to an array with a number per sample, to an expression such as
-        "0.3*sin(50*t)" with t in s, or to a function of t (s). Arrays are held from their sample
-        to the next; arrays for prescribed motion follow a cubic spline, which gives its rates.
-        Functions are called at the times that the solver needs; times at which one jumps are
-        `breaks`. For prescribed motion a function returns (s, s', s''). Inputs that are not given
-        are 0.
+        inputs: mapping of names to a number, to an array with a number per sample, to an expression such as
+        "0.3*sin(50*t)" with t in s, or to a function of t (s). An array value is constant from its sample to
+        the next one. Arrays for prescribed motion follow a cubic spline, which gives its rates. Functions are
+        called at the times that the solver needs; `breaks` lists the times at which one jumps. For prescribed
+        motion a function returns (s, s', s''). Missing inputs are 0.
 
-        progress: called with the part that is done, 0 to 1, about ten times a second; by default a
-        line is shown in terminals and notebooks once it takes longer than two seconds.
+        progress: function of the completed fraction, 0 to 1, called about ten times a second. Default: a
+        progress line in terminals and notebooks for simulations longer than two seconds.
 
         Warns if the energy changes without work or if bodies overlap.
 
-        Raises SimulationError where the motion cannot be followed; its `trajectory` holds the
-        samples until there. An exception of an input function is its cause. Ctrl-C stops it.
+        Raises SimulationError if the solver stops; its `trajectory` holds the samples up to then. An exception
+        of an input function is its cause. Ctrl-C interrupts the simulation.
         """
-        span = (start, until, sample)
+        # `sample` and `initial` are earlier names.
+        interval = _arguments.renamed("interval", interval, "sample", sample)
+        state = _arguments.renamed("state", state, "initial", initial)
+        span = (start, until, interval)
         settings = (solver, tolerance, max_step)
-        return simulated(self, span, settings, self.state(initial), (inputs, breaks), progress)
+        return simulate(self, span, settings, self.state(state), (inputs, breaks), progress)
 
     def state(self, values: Any = None) -> Array:
-        """A whole state, (states,): the initial one of the specification with some names set to
-        other numbers, or the array that is given.
+        """Returns a state, (states,): the given array, or the initial state of the specification with some
+        values replaced, by name.
         """
         if values is None:
             return self.initial
@@ -290,8 +294,8 @@ class Model:
         return state
 
     def to_casadi(self, name: Optional[str] = None) -> Any:
-        """The rates as a CasADi function rates(t, x, u), with its exact Jacobian. Keep it as long
-        as expressions that use it: the model is called back from CasADi. Needs the package `casadi`.
+        """Returns the rates as a CasADi function rates(t, x, u) with its exact Jacobian. Keep a reference to it
+        while expressions use it, because CasADi calls the model back. Needs the package `casadi`.
         """
         from .casadi import Rates
 
@@ -301,7 +305,7 @@ class Model:
         return Call(self._states, self._inputs, t, x, u)
 
     def __reduce__(self) -> Any:
-        # To other processes goes what it is made from.
+        # Compiled code cannot be pickled; the other process compiles the text again.
         return load, (self.text, self._native.order)
 
     def __repr__(self) -> str:
@@ -315,7 +319,7 @@ class Model:
 
 
 def _number(name: str, given: Any) -> float:
-    # What is not finite is refused where the parameter is known, with its name and bounds.
+    # Values that are not finite are rejected later, with the bounds of the parameter.
     array = _arguments.numbers(name, given)
     if array.size != 1:
         raise TypeError(f"{name}: expected one number, not an array of shape {array.shape}")

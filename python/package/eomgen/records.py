@@ -1,4 +1,4 @@
-"""Records of NumPy and MATLAB as the tables that dataset files describe."""
+"""Conversion of NumPy and MATLAB files to CSV records."""
 
 from __future__ import annotations
 
@@ -13,20 +13,19 @@ from numpy.typing import NDArray
 
 Path = Union[str, "os.PathLike[str]"]
 
-# What a file of MATLAB 7.3 begins with: it is HDF5 inside, which SciPy does not read.
+# First bytes of a MATLAB 7.3 file. It is HDF5, which SciPy does not read.
 _MATLAB_7_3 = b"MATLAB 7.3"
 
 
 def record_to_csv(source: Path, out: Path, columns: Optional[Iterable[str]] = None) -> List[str]:
-    """Writes arrays of a `.npz` or `.mat` file as the columns of a CSV file; returns their names.
+    """Writes arrays of a `.npz` or `.mat` file as columns of a CSV file. Returns the names of the columns.
 
-    source: a file of `numpy.savez`, or of MATLAB up to version 7, which SciPy reads. out: the file
-    to write, or to replace. columns: the arrays to take, in this order; by default all real ones
-    that are as long as the longest. A matrix `x` of n columns becomes x_1 to x_n. Numbers keep all
-    their digits.
+    source: a file of `numpy.savez`, or of MATLAB up to version 7 (read with SciPy). out: the CSV file, which
+    is replaced if it exists. columns: arrays to write, in this order. Default: all real arrays that are as
+    long as the longest one. A matrix `x` of n columns becomes x_1 to x_n. Numbers keep all digits.
 
-    Raises ValueError for a file that is none of these, arrays of other lengths or kinds that were
-    asked for, and files that hold no arrays; ImportError where SciPy is needed and missing.
+    Raises ValueError for a file of another kind, a file without arrays, and columns of different lengths or
+    of unsuitable types. Raises ImportError if SciPy is needed and missing.
     """
     arrays = _arrays(pathlib.Path(source))
     wanted = list(arrays) if columns is None else list(columns)
@@ -49,11 +48,11 @@ def record_to_csv(source: Path, out: Path, columns: Optional[Iterable[str]] = No
     others = [name for name, column in rows.items() if len(column) != longest]
     if others and columns is not None:
         raise ValueError(
-            f"{source}: {', '.join(others)} not as long as the others, which have {longest} samples"
+            f"{source}: {', '.join(others)} must have {longest} samples, as the other columns"
         )
     if others:
         warnings.warn(
-            f"{source}: left out, because not as long as the others: {', '.join(others)}",
+            f"{source}: skipped, because shorter than the others: {', '.join(others)}",
             stacklevel=2,
         )
     table = {name: column for name, column in rows.items() if len(column) == longest}
@@ -67,7 +66,7 @@ def record_to_csv(source: Path, out: Path, columns: Optional[Iterable[str]] = No
 
 
 def _arrays(source: pathlib.Path) -> Dict[str, NDArray]:
-    """All arrays of a file by their names."""
+    """Reads all arrays of a file, by name."""
     kind = source.suffix.lower()
     if kind == ".npz":
         with np.load(source, allow_pickle=False) as file:
@@ -76,17 +75,17 @@ def _arrays(source: pathlib.Path) -> Dict[str, NDArray]:
         raise ValueError(f"{source}: expected a file that ends in .npz or .mat")
     with open(source, "rb") as file:
         if file.read(len(_MATLAB_7_3)) == _MATLAB_7_3:
-            raise ValueError(f"{source} is of MATLAB 7.3; save it with save(..., '-v7')")
+            raise ValueError(f"{source} is a MATLAB 7.3 file, which SciPy does not read; save it with save(..., '-v7')")
     try:
         from scipy.io import loadmat
     except ImportError as error:
-        raise ImportError("files of MATLAB are read by SciPy: pip install scipy") from error
+        raise ImportError("reading MATLAB files needs SciPy: pip install scipy") from error
     loaded = loadmat(source, squeeze_me=True)
     return {name: np.asarray(array) for name, array in loaded.items() if not name.startswith("__")}
 
 
 def _samples(array: NDArray) -> Optional[NDArray[np.float64]]:
-    """A row per sample; None for what is no real array of one or two dimensions."""
+    """Returns the array with a row per sample, or None unless it is real with one or two dimensions."""
     if array.dtype.kind not in "fiub" or array.ndim not in (1, 2):
         return None
     column = np.asarray(array, dtype=np.float64)
@@ -94,7 +93,7 @@ def _samples(array: NDArray) -> Optional[NDArray[np.float64]]:
 
 
 def _write(out: pathlib.Path, names: List[str], table: NDArray[np.float64]) -> None:
-    """The table, whole or not at all."""
+    """Writes the table to a temporary file, which then replaces `out`."""
     quoted = ['"' + name.replace('"', '""') + '"' for name in names]
     lines = [",".join(quoted)]
     lines += [",".join("" if x != x else repr(x) for x in row) for row in table.tolist()]

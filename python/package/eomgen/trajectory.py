@@ -1,4 +1,4 @@
-"""A simulated motion: its samples by name, as a table, as a plot."""
+"""Simulated motions: samples by name, tables, plots."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-# The most numbers of one motion, rows times columns: a few GB of memory.
-MOST_NUMBERS = 10**8
+# Largest number of values in one motion, rows times columns: a few GB of memory.
+MAX_VALUES = 10**8
 
-# Samples where nothing is said about them, but for the first.
-DEFAULT_SAMPLES = 1000
+# Number of intervals without `interval`.
+DEFAULT_INTERVALS = 1000
 
 
 class Trajectory:
-    """The samples of a motion.
+    """Samples of a motion, in SI.
 
-    t: (n,), s. states: (n, states). observables: (n, observables). `r["tip"]` is the column of a
-    state or of an observable; of a name that is both, the observable. solver: who computed it;
-    reason: why "auto" took that one, None where it was asked for; switches: how many times it
-    passed a switching surface.
+    t: times, (n,), s. states: (n, states). observables: (n, observables). `r["tip"]` is the column of an
+    observable or of a state; observables take precedence. solver: name of the solver. reason: why "auto"
+    selected it; None for a requested solver. switches: number of crossings of a
+    switching surface.
     """
 
     def __init__(
@@ -44,7 +44,7 @@ class Trajectory:
 
     @property
     def names(self) -> Tuple[str, ...]:
-        """The names of all columns: states, then observables."""
+        """Names of all columns: states, then observables."""
         return self.state_names + self.observable_names
 
     def __getitem__(self, name: str) -> Array:
@@ -60,7 +60,7 @@ class Trajectory:
         return len(self.t)
 
     def to_pandas(self) -> Any:
-        """A pandas DataFrame: a column for each name, the index t (s). Needs the package `pandas`."""
+        """Returns a pandas DataFrame with a column for each name and the index t (s). Needs the package `pandas`."""
         import pandas
 
         index = pandas.Index(self.t, name="t")
@@ -68,10 +68,10 @@ class Trajectory:
         return pandas.DataFrame(numbers, index=index, columns=list(self.names))
 
     def plot(self, *names: str, axes: Any = None) -> Any:
-        """Draws columns over time, one above the other; the coordinates and modes if none is named.
-        Returns the axes of matplotlib, one for each column. Needs the package `matplotlib`.
+        """Plots columns over time, one above the other. Returns the matplotlib axes, one for each column. Needs
+        the package `matplotlib`.
 
-        axes: as many axes as there are names, to draw into; new ones if None.
+        names: names of columns. Default: all coordinates and modes. axes: existing axes, one for each name.
         """
         from matplotlib import pyplot
 
@@ -98,7 +98,7 @@ class Trajectory:
         return f"<eomgen.Trajectory: {len(self.t)} samples, {end}, solver {self.solver}>"
 
 
-def simulated(
+def simulate(
     model: "Model",
     span: Tuple[Any, Any, Any],
     settings: Tuple[Any, Any, Any],
@@ -106,8 +106,8 @@ def simulated(
     driven: Tuple[Any, Any],
     progress: Optional[Callable[[float], object]],
 ) -> Trajectory:
-    """The motion of a model over a span (start, until, sample) with settings (solver, tolerance,
-    max_step), driven by (inputs, breaks); `Model.simulate` says what the arguments are."""
+    """Simulates a model over a span (start, until, interval) with settings (solver, tolerance, max_step),
+    driven by (inputs, breaks). `Model.simulate` describes the arguments."""
     solver, tolerance, max_step = settings
     if not isinstance(solver, str):
         raise TypeError(f"solver = {solver!r}: expected the name of a solver")
@@ -150,27 +150,27 @@ def simulated(
     return trajectory
 
 
-def sample_times(start: Any, until: Any, sample: Any, columns: int) -> Array:
-    """The times of the samples, s, from the start on; as the command line has them, to the bit."""
+def sample_times(start: Any, until: Any, interval: Any, columns: int) -> Array:
+    """Returns the times of the samples, s. They have the same bits as on the command line."""
     begin, end = _arguments.real("start", start), _arguments.real("until", until)
     if end <= begin:
         raise ValueError(f"until = {end}: expected a time in s after {begin:g}")
     whole = end - begin
-    step = whole / DEFAULT_SAMPLES if sample is None else _arguments.real("sample", sample)
+    step = whole / DEFAULT_INTERVALS if interval is None else _arguments.real("interval", interval)
     if not 0.0 < step <= whole:
-        raise ValueError(f"sample = {step}: expected a time in s above 0 and at most {whole}")
+        raise ValueError(f"interval = {step}: expected a time in s above 0 and at most {whole}")
     steps = np.floor(whole / step * (1.0 + 1e-12))
-    if (steps + 1.0) * columns > MOST_NUMBERS:
+    if (steps + 1.0) * columns > MAX_VALUES:
         raise ValueError(
-            f"sample = {step}: too many samples: the limit is {MOST_NUMBERS:.0e} numbers; "
-            "give a longer time"
+            f"interval = {step}: too many samples: the limit is {MAX_VALUES:.0e} values (rows times columns); "
+            "give a longer interval"
         )
     times: Array = np.minimum(begin + np.arange(int(steps) + 1) * step, end)
     return times
 
 
 def break_times(given: Any) -> List[float]:
-    """The times at which input functions jump, s."""
+    """Returns the times at which input functions jump, s."""
     if given is None:
         return []
     breaks = _arguments.numbers("breaks", given).reshape(-1)
@@ -180,8 +180,8 @@ def break_times(given: Any) -> List[float]:
 
 
 def prescribe(model: "Model", given: Any) -> Tuple[Any, Tuple[str, ...], Mapping[str, Any]]:
-    """The compiled model with expressions in place of the inputs that these give, the names of the
-    other inputs, and what gives these."""
+    """Replaces inputs that are given as expressions. Returns the compiled model, the names of its remaining
+    inputs, and their values."""
     names = model.inputs
     if given is None:
         given = {}
@@ -201,14 +201,14 @@ def prescribe(model: "Model", given: Any) -> Tuple[Any, Tuple[str, ...], Mapping
 
 
 def driving(names: Sequence[str], given: Mapping[str, Any], times: Array) -> Tuple[Array, Array, Any]:
-    """Times (s) and a row of inputs for each, held until the next, and functions of the time with
-    the name and the place of the input that each gives."""
+    """Returns times (s), a row of inputs for each, and functions of time with the name and index of their
+    input. A row holds until the next time."""
     functions = [(name, names.index(name), f) for name, f in given.items() if callable(f)]
     rates = {f"{name}_{order}" for name in given for order in ("dot", "ddot")}
     missing = [name for name in names if name not in given and name not in rates]
     if missing:
         warnings.warn(
-            f"not driven and taken as 0: {', '.join(missing)}; give inputs={{NAME: ...}}",
+            f"inputs not driven and taken as 0: {', '.join(missing)}; set them with inputs={{NAME: ...}}",
             stacklevel=4,
         )
     held = {name: value for name, value in given.items() if not callable(value)}
