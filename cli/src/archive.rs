@@ -1,4 +1,4 @@
-//! One file out of many, with the same bytes for the same contents: every file bears the same time.
+//! ZIP archives. Equal contents give equal bytes: all entries have the same time.
 
 use std::io::{Cursor, Write};
 
@@ -7,7 +7,6 @@ use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use crate::error::{Error, Result};
 
-/// The bytes of an archive with these files.
 pub fn pack(files: Vec<(String, Vec<u8>)>) -> Result<Vec<u8>> {
     let options = SimpleFileOptions::default()
         .compression_method(CompressionMethod::Deflated)

@@ -1,31 +1,29 @@
-//! The energy audit of a motion: what `simulate` prints of it.
+//! Warnings and JSON of the energy audit in `simulate`.
 
 use eomgen_compiled_model::{Audit, Instance, Motion, Overlap};
 use serde_json::{Value, json};
 
 use crate::error::{Result, warn};
 
-/// What the audit of a motion found.
+/// Result of the audit of a motion.
 pub struct AuditResult<'m> {
     audit: Option<&'m Audit>,
     overlap: Option<Overlap>,
 }
 
 impl<'m> AuditResult<'m> {
-    /// Looks at a motion that was solved with a relative tolerance.
-    pub fn of(run: &Instance<'_>, motion: &'m Motion, tolerance: f64) -> Result<Self> {
+    /// Audits a motion; `tolerance` is the relative tolerance of its solver.
+    pub fn new(run: &Instance<'_>, motion: &'m Motion, tolerance: f64) -> Result<Self> {
         Ok(Self {
             audit: motion.audit.as_ref(),
             overlap: run.first_overlap_of(motion, tolerance)?,
         })
     }
 
-    /// Whether anything is wrong.
     pub fn has_failed(&self) -> bool {
         self.overlap.is_some() || self.audit.is_some_and(|audit| audit.faults > 0)
     }
 
-    /// Prints a warning for each finding.
     pub fn warn(&self) {
         if let Some(warning) = self.audit.and_then(Audit::warning) {
             warn(&format!("warning: {warning}"));
@@ -35,7 +33,7 @@ impl<'m> AuditResult<'m> {
         }
     }
 
-    /// The energy balance in JSON; null if there is none.
+    /// Returns the energy balance, or null if there is none.
     pub fn json(&self) -> Value {
         let Some(audit) = self.audit else {
             return Value::Null;

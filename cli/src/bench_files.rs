@@ -1,5 +1,4 @@
-//! `eomgen generate --with bench`: a benchmark of the emitted functions by criterion, and the
-//! `Cargo.toml` that it needs if there is none.
+//! `eomgen generate --with bench`: a Criterion benchmark of the emitted functions, with a `Cargo.toml`.
 
 use std::path::{Path, PathBuf};
 
@@ -10,9 +9,8 @@ use eomgen_model_spec::model::Model;
 use crate::error::{Error, Result};
 use crate::output::write_file;
 
-/// Leaves the files in `out`, in which the source is `lib.rs`; a `Cargo.toml` that is there
-/// already stays as it is. Gives the files' paths.
-pub fn leave(
+/// Writes the benchmark to `out`, next to `lib.rs`, and a `Cargo.toml` unless there is one. Returns their paths.
+pub fn write(
     model: &Model,
     variant: &Variant,
     outputs: &[Output],
@@ -23,15 +21,15 @@ pub fn leave(
         .map_err(|error| Error::model(&model.source, error))?;
     let bench = out.join("benches").join("rates.rs");
     write_file(&bench, source(&state, outputs).as_bytes())?;
-    let manifest = out.join("Cargo.toml");
-    if manifest.exists() {
+    let manifest_path = out.join("Cargo.toml");
+    if manifest_path.exists() {
         return Ok(vec![bench]);
     }
-    write_file(&manifest, manifest_of(&model.name).as_bytes())?;
-    Ok(vec![bench, manifest])
+    write_file(&manifest_path, manifest(&model.name).as_bytes())?;
+    Ok(vec![bench, manifest_path])
 }
 
-fn manifest_of(name: &str) -> String {
+fn manifest(name: &str) -> String {
     format!(
         r#"[package]
 name = "{name}"
@@ -51,13 +49,13 @@ criterion = {{ version = "0.8", default-features = false }}
 name = "rates"
 harness = false
 
-# By itself, wherever this folder lies.
+# A workspace of its own, also inside another one.
 [workspace]
 "#
     )
 }
 
-/// The benchmark: rates and observables, and whatever was requested.
+/// Returns a benchmark of rates, observables and the requested functions.
 fn source(state: &[f64], outputs: &[Output]) -> String {
     let state: Vec<String> = state.iter().map(|number| format!("{number:?}")).collect();
     let has = |request| outputs.contains(&request);
@@ -90,14 +88,14 @@ fn source(state: &[f64], outputs: &[Output]) -> String {
     add(Output::Linearisation, &[("linearise", "")]);
     let calls: Vec<String> = functions.iter().map(call).collect();
     let head = format!(
-        r#"//! How long a call of the emitted functions takes, at the initial state of the
-//! specification: `cargo bench`. Left by `eomgen generate --with bench`.
+        r#"//! Time per call of the emitted functions at the initial state of the specification: `cargo bench`.
+//! Written by `eomgen generate --with bench`.
 
 use criterion::{{Criterion, criterion_group, criterion_main}};
 use model::*;
 use std::hint::black_box;
 
-/// The initial state, in SI.
+/// Initial state, in SI.
 const INITIAL: [f64; STATES] = [{}];
 
 fn calls(criterion: &mut Criterion) {{

@@ -1,17 +1,16 @@
-//! Certificates of variants as they are written and summarised.
+//! Certificates as JSON and as summaries.
 
 use eomgen_validate::certificate::{Certificate, Check, SkipKind, Verdict};
 
 use crate::error::{Error, Result};
 
-/// A certificate as it is written to a file.
 pub fn document(certificate: &Certificate) -> Result<String> {
     let text = serde_json::to_string_pretty(certificate)
         .map_err(|error| Error::input(error.to_string()))?;
     Ok(text + "\n")
 }
 
-/// One line per check.
+/// Returns one line per check, coverage and verdict.
 pub fn summary(certificate: &Certificate) -> String {
     let mut text = format!("{}, order {}\n", certificate.model, certificate.order);
     let width = certificate

@@ -1,4 +1,4 @@
-//! `eomgen generate --all`: the variants that are checked in, with their certificates.
+//! `eomgen generate --all`: the checked-in variants and their certificates.
 
 use std::path::{Path, PathBuf};
 
@@ -15,24 +15,20 @@ use crate::model::{derive, load};
 use crate::output::{SCHEMA, write_file};
 use crate::progress::Note;
 
-/// The specification whose variants are checked in.
 const SPECIFICATION: &str = "model-spec/models/planetary_arm.toml";
 
-/// Where they are checked in, and where their certificates are.
 const FOLDER: &str = "generated/src";
 const CERTIFICATES: &str = "generated/certificates";
 
-/// The highest order checked in.
 const HIGHEST_ORDER: usize = 8;
 
-/// A variant that is checked in.
 struct CheckedIn {
     name: String,
     order: usize,
     text: String,
 }
 
-/// Writes all, or with `check` compares.
+/// Writes all variants, or compares them if `check` is set.
 pub fn run(check: bool, json: bool) -> Result {
     let root = project_root()?;
     let model = load(&root.join(SPECIFICATION))?.model;
@@ -41,7 +37,7 @@ pub fn run(check: bool, json: bool) -> Result {
     for variant in &variants {
         let path = root.join(certificate_file(variant));
         if check {
-            if !is_of(&path, &model, variant)? {
+            if !is_certificate_of(&path, &model, variant)? {
                 different.push(certificate_file(variant));
             }
         } else {
@@ -54,10 +50,10 @@ pub fn run(check: bool, json: bool) -> Result {
             }
         }
     }
-    say_what_differs(2 * variants.len() + 1, &different, check, json)?;
+    print_differences(2 * variants.len() + 1, &different, check, json)?;
     if check && !different.is_empty() {
         warn(&format!(
-            "error: not what the generator emits: {}; run `eomgen generate --all`",
+            "error: files differ from the emitted ones: {}; run `eomgen generate --all`",
             different.join(", ")
         ));
         return Err(Error::Failed);
@@ -65,7 +61,7 @@ pub fn run(check: bool, json: bool) -> Result {
     Ok(())
 }
 
-/// The sources that are not what is emitted; written, unless they are only compared.
+/// Returns the names of sources that differ from the emitted ones, and writes these unless `check` is set.
 fn different_sources(root: &Path, variants: &[CheckedIn], check: bool) -> Result<Vec<String>> {
     let mut different = Vec::new();
     let root_module = [("lib.rs".to_owned(), root_module(variants))];
@@ -84,7 +80,7 @@ fn different_sources(root: &Path, variants: &[CheckedIn], check: bool) -> Result
     Ok(different)
 }
 
-fn say_what_differs(files: usize, different: &[String], check: bool, json: bool) -> Result {
+fn print_differences(files: usize, different: &[String], check: bool, json: bool) -> Result {
     if json {
         let document =
             json!({"schema": SCHEMA, "files": files, "different": different, "written": !check});
@@ -98,9 +94,9 @@ fn certificate_file(variant: &CheckedIn) -> String {
     format!("{CERTIFICATES}/{}.json", variant.name)
 }
 
-/// Whether a file is the passed certificate of a variant as it is emitted now. Nothing is
-/// checked again: its hashes tie it to specification and source.
-fn is_of(path: &Path, model: &Model, variant: &CheckedIn) -> Result<bool> {
+/// Returns whether a file is a passed certificate of a variant. Its hashes identify specification and source; no
+/// check runs.
+fn is_certificate_of(path: &Path, model: &Model, variant: &CheckedIn) -> Result<bool> {
     let text = std::fs::read_to_string(path).unwrap_or_default();
     let found: Value = serde_json::from_str(&text).unwrap_or_default();
     let expected = unchecked(model, variant.order, &[], variant.text.clone())
@@ -129,7 +125,7 @@ fn variants(model: &Model) -> Result<Vec<CheckedIn>> {
     (0..=HIGHEST_ORDER).map(variant).collect()
 }
 
-/// The root of the crate `generated`.
+/// Returns the root module of the crate `generated`.
 fn root_module(variants: &[CheckedIn]) -> String {
     let header = "//! Equations of motion of the planetary arm, rigid and with one to eight modes, as\n\
                   //! emitted by `eomgen generate --all`. Do not edit: regenerate.\n\n\
@@ -138,7 +134,7 @@ fn root_module(variants: &[CheckedIn]) -> String {
     header.to_owned() + &variants.iter().map(module).collect::<String>()
 }
 
-/// The folder of the project, at or above the current one.
+/// Finds the project's folder: the current one or one above it.
 fn project_root() -> Result<PathBuf> {
     let current = std::env::current_dir()
         .map_err(|error| Error::input(format!("no current folder: {error}")))?;
@@ -148,7 +144,7 @@ fn project_root() -> Result<PathBuf> {
         .map(Path::to_path_buf)
         .ok_or_else(|| {
             Error::input(format!(
-                "--all works inside the project: no folder here or above holds {SPECIFICATION} and {FOLDER}"
+                "--all needs the project's folder: neither the current folder nor one above contains {SPECIFICATION} and {FOLDER}"
             ))
         })
 }

@@ -1,5 +1,4 @@
-//! Emitted source in the languages that `generate` knows: what has to be derived for it, what
-//! cannot be asked of it, and its files.
+//! Emitted files of the targets of `generate`, the outputs to derive for them, and unsupported combinations.
 
 use eomgen_codegen::c;
 use eomgen_codegen::program::{Output, Program};
@@ -12,17 +11,16 @@ use crate::arguments::{Extra, Generate, Target};
 use crate::error::{Error, Result};
 use crate::fmu::{self, Version};
 
-/// The emitted Rust of a program.
 pub fn source(program: &Program, packaging: Packaging) -> Result<String> {
     rust::emit(program, packaging).map_err(refused)
 }
 
-/// The emitted module of a program.
+/// Emits a program as a WebAssembly module.
 pub fn module(program: &Program) -> Result<Vec<u8>> {
     wasm::emit(program).map_err(refused)
 }
 
-/// Names and contents of the emitted files, the one with the equations first.
+/// Returns names and contents of the emitted files. The file with the equations is first.
 pub fn files(
     model: &Model,
     variant: &Variant,
@@ -58,35 +56,35 @@ pub fn files(
     }
 }
 
-/// Refuses a model with impacts where nobody would make its rates jump.
+/// Rejects a model with impacts for targets without jumps of rates.
 pub fn without_impacts(model: &Model, what: &str) -> Result<()> {
     model.impacts.first().map_or(Ok(()), |impact| {
         Err(Error::input(format!(
-            "the model has impacts (`{}`), which {what} does not follow: bodies would fall through each \
-             other; `eomgen simulate` follows them",
+            "the model has impacts (`{}`), which {what} does not support: bodies would pass through each \
+             other; use `eomgen simulate`",
             impact.name
         )))
     })
 }
 
-/// What has to be derived for what is asked for.
+/// Returns the outputs to derive for the requested target.
 ///
 /// # Errors
-/// If that does not go with the language.
+/// An option that the target does not support.
 pub fn outputs(options: &Generate) -> Result<Vec<Output>> {
     let hessians = Extra::Output(Output::Hessians);
     let has = |extra: Extra| options.with.contains(&extra);
     let reason = match options.target {
-        Target::Rust | Target::C99 if has(hessians) => "--with hessians goes with --target casadi",
+        Target::Rust | Target::C99 if has(hessians) => "--with hessians needs --target casadi",
         Target::Rust => return Ok(Extra::outputs(&options.with)),
         _ if options.certify => {
-            "--certify goes with --target rust: a certificate is of the emitted Rust, whose bits the \
-             C gives as well"
+            "--certify needs --target rust: a certificate covers the emitted Rust; the emitted C computes the \
+             same bits"
         }
-        _ if has(Extra::Bench) => "--with bench goes with --target rust: the benchmark is a crate",
+        _ if has(Extra::Bench) => "--with bench needs --target rust: the benchmark is a crate",
         _ if has(Extra::Output(Output::Lanes)) => {
-            "--with lanes goes with --target rust: its functions are generic in the type of numbers, \
-             which C has no way to say"
+            "--with lanes needs --target rust: its functions are generic over the number type, \
+             which C does not support"
         }
         Target::C99 => return Ok(Extra::outputs(&options.with)),
         Target::Casadi if options.with.iter().all(|extra| *extra == hessians) => {
@@ -96,17 +94,17 @@ pub fn outputs(options: &Generate) -> Result<Vec<Output>> {
         }
         Target::Fmu2 | Target::Fmu3 if options.with.is_empty() => return Ok(fmu::OUTPUTS.to_vec()),
         Target::Fmu2 | Target::Fmu3 => {
-            "--with does not go with a functional mock-up unit: its functions are those of the standard"
+            "--with is not available for a functional mock-up unit: the standard defines its functions"
         }
         Target::Casadi => {
-            "--with does not go with --target casadi but for hessians: its functions are rates and \
+            "--target casadi accepts --with hessians only: its functions are rates and \
              jac_rates"
         }
     };
     Err(Error::input(reason))
 }
 
-/// How much the first file is, in words.
+/// Returns the size of the first file, in words.
 pub fn size(target: Target, contents: &[u8]) -> String {
     match target {
         Target::Fmu2 | Target::Fmu3 => format!("{} bytes", contents.len()),

@@ -1,5 +1,4 @@
-//! What can go wrong, the message on stderr and the exit status: 2 for a usage or input
-//! error, 1 when a command ran and the answer is no.
+//! Errors, messages and exit statuses: 2 for a usage or input error, 1 if a command ran and its result is negative.
 
 use std::io::{IsTerminal, Write};
 use std::path::Path;
@@ -12,16 +11,14 @@ use eomgen_model_spec::variant::ModelError;
 use eomgen_model_spec::visible::{visible, visible_in_strings};
 use eomgen_records::Refusal;
 
-/// What a command comes to.
 pub type Result<T = (), E = Error> = std::result::Result<T, E>;
 
-/// Why a command stopped.
 pub enum Error {
-    /// The input or its use is wrong; the message says what would be right.
+    /// Usage or input error; the message states the cure.
     Input(String),
-    /// A specification, or another file that people write, is wrong.
+    /// Diagnostics of a specification or dataset file.
     Specification(Diagnostics),
-    /// The command ran and the answer is no; what there is to say is said.
+    /// Negative result; all messages are printed.
     Failed,
 }
 
@@ -36,22 +33,20 @@ impl From<eomgen_compiled_model::Error> for Error {
 }
 
 impl Error {
-    /// An input error.
     pub fn input(message: impl Into<String>) -> Self {
         Self::Input(message.into())
     }
 
-    /// A file that could not be read or written.
     pub fn file(action: &str, path: &Path, error: &dyn std::fmt::Display) -> Self {
         Self::Input(format!("cannot {action} {}: {error}", path.display()))
     }
 
-    /// A model that cannot be had with the numbers asked for.
+    /// Error of a model with the given values.
     pub fn model(source: &Source, error: ModelError) -> Self {
         Self::Specification(Diagnostics::one(source.clone(), error.diagnostic()))
     }
 
-    /// Records that are not taken.
+    /// Rejected records.
     pub fn records(refusal: Refusal) -> Self {
         match refusal {
             Refusal::Description(found) => Self::Specification(found),
@@ -59,7 +54,7 @@ impl Error {
         }
     }
 
-    /// What stopped a comparison or a search.
+    /// Error of a comparison or a discovery.
     pub fn discovery(error: DiscoverError) -> Self {
         match error {
             DiscoverError::Records(refusal) => Self::records(*refusal),
@@ -68,11 +63,11 @@ impl Error {
         }
     }
 
-    /// Says what is wrong on stderr and gives the exit status.
+    /// Prints the error to stderr and returns the exit status.
     pub fn report(&self) -> ExitCode {
         match self {
             Self::Input(message) => {
-                // Libraries whose errors are texts hand on rendered findings, which have their prefix.
+                // Messages of some libraries are rendered diagnostics, which already have the prefix.
                 let message = message.strip_prefix("error: ").unwrap_or(message);
                 warn(&format!("error: {message}"));
             }
@@ -88,14 +83,14 @@ pub fn warn(text: &str) {
     let _ = writeln!(std::io::stderr(), "{}", visible(text));
 }
 
-/// Prints findings to stderr, with colours on a terminal.
+/// Prints diagnostics to stderr, with colours on a terminal.
 pub fn warn_of(findings: &Diagnostics) {
     let mut stderr = std::io::stderr();
     let text = findings.render(stderr.is_terminal());
     let _ = writeln!(stderr, "{text}");
 }
 
-/// Prints text for people to stdout, with control characters escaped; a closed pipe ends the program quietly.
+/// Prints text to stdout, with control characters escaped. A closed pipe is no error.
 pub fn say(text: &str) -> Result {
     say_bytes(visible(text).as_bytes())
 }
@@ -106,7 +101,7 @@ pub fn say_json(document: &serde_json::Value) -> Result {
     say_bytes(visible_in_strings(&text).as_bytes())
 }
 
-/// Prints a document to stdout as it is; a closed pipe ends the program quietly.
+/// Prints bytes to stdout. A closed pipe is no error.
 pub fn say_bytes(bytes: &[u8]) -> Result {
     let mut out = std::io::stdout().lock();
     match out.write_all(bytes).and_then(|()| out.flush()) {

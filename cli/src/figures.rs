@@ -1,12 +1,11 @@
-//! The pictures of a finished sweep: a map over two axes, a diagram over one.
+//! Figures of a finished sweep: a map over two axes, a diagram over one.
 
 use eomgen_model_spec::unit::Unit;
 use eomgen_plot::map::{Coordinate, Map, Scatter, Shades};
 use eomgen_plot::{PlotError, map_png, scatter_png};
 use eomgen_sweep::{Column, Description, Job, Table};
 
-/// A picture of each measure as PNG, with the measure's name; none where not one or two
-/// axes have several values.
+/// Draws each measure as PNG, with the measure's name. There are none unless one or two axes have several values.
 pub fn draw(job: &Job, table: &Table) -> Vec<(String, Result<Vec<u8>, PlotError>)> {
     let axes = job.points().axes();
     let wide: Vec<usize> = (0..axes.len())
@@ -23,7 +22,7 @@ pub fn draw(job: &Job, table: &Table) -> Vec<(String, Result<Vec<u8>, PlotError>
         .collect()
 }
 
-/// The first drawn column over the first axis, to the right, and the second, upwards.
+/// Draws the first column over the first axis (to the right) and the second (upwards).
 fn map(
     job: &Job,
     table: &Table,
@@ -37,7 +36,7 @@ fn map(
         .find(|column| column.name == *drawn)?;
     let (along, up) = (Line::of(job, along)?, Line::of(job, up)?);
     let shown = Shown::new(column);
-    // The grid's last axis goes fastest; a map goes to the right first.
+    // The last axis of the grid varies fastest; the first axis of a map.
     let numbers = table.column(drawn)?;
     let rows = up.order.len();
     let cells = up.order.iter().flat_map(|j| {
@@ -61,7 +60,7 @@ fn map(
     }))
 }
 
-/// All drawn columns over the axis.
+/// Draws all columns over the axis.
 fn diagram(
     job: &Job,
     table: &Table,
@@ -106,13 +105,12 @@ fn title(job: &Job, about: &str) -> String {
     format!("{}: {about}", job.plan().model)
 }
 
-/// An axis as figures want it: ascending, in SI.
+/// Axis with ascending values in SI.
 struct Line {
-    /// Of all parameters that go along it.
     name: String,
     shown: Shown,
     values: Vec<f64>,
-    /// The places of these values on the axis of the grid.
+    /// Indices of these values on the axis of the grid.
     order: Vec<usize>,
 }
 
@@ -123,7 +121,7 @@ impl Line {
         let of = |name: &String| parameters.iter().find(|column| column.name == *name);
         let first = of(axis.names.first()?)?;
         let shown = Shown::new(first);
-        // The same numbers are other values in another unit.
+        // Parameters with equal numbers but different units have different values.
         let columns = axis.names.iter().filter_map(of);
         let columns = columns.filter(|column| column.unit == first.unit);
         let names: Vec<&str> = columns.map(|column| column.name.as_str()).collect();
@@ -152,15 +150,14 @@ impl Line {
     }
 }
 
-/// A column's unit in SI, which is what figures put prefixes on.
+/// SI unit of a column; figures add prefixes.
 pub struct Shown {
     declared: Option<Unit>,
-    /// The unit; empty for a number.
+    /// Unit; empty for a dimensionless number.
     pub unit: String,
 }
 
 impl Shown {
-    /// That of a column.
     pub fn new(column: &Column) -> Self {
         let declared = Unit::parse(&column.unit).ok();
         let unit = match &declared {
@@ -171,7 +168,7 @@ impl Shown {
         Self { declared, unit }
     }
 
-    /// A number of the column in it.
+    /// Converts a number of the column to the unit.
     pub fn si(&self, value: f64) -> f64 {
         self.declared
             .as_ref()

@@ -1,4 +1,4 @@
-//! A motion drawn over time: coordinates, states of first order and observables as an SVG, what has one unit in one panel.
+//! Figure (SVG) of a motion over time: coordinates, states of first order and observables, a panel for each unit.
 
 use eomgen_compiled_model::CompiledModel;
 use eomgen_plot::{Panel, Series, TimeHistory, time_history};
@@ -6,13 +6,13 @@ use eomgen_plot::{Panel, Series, TimeHistory, time_history};
 use crate::error::{Error, Result};
 use crate::table::Table;
 
-/// The most curves of a panel; more of one unit cannot be told apart.
+/// Maximum number of curves in a panel; more are hard to distinguish.
 const MOST_CURVES: usize = 6;
 
-/// The most panels of a figure.
+/// Maximum number of panels in a figure.
 const MOST_PANELS: usize = 10;
 
-/// Draws a table of states and observables. Rates are left out, as the slopes of what is drawn.
+/// Draws a table of states and observables, without rates.
 pub fn figure(compiled: &CompiledModel, table: &Table) -> Result<String> {
     let times = table.column("t").unwrap_or_default();
     let mut panels: Vec<Panel<'_>> = Vec::new();
@@ -57,7 +57,6 @@ pub fn figure(compiled: &CompiledModel, table: &Table) -> Result<String> {
     time_history(&history).map_err(|error| Error::input(format!("--plot: {error}")))
 }
 
-/// Names and units of coordinates and modes.
 fn coordinates(compiled: &CompiledModel) -> Vec<(String, String)> {
     let names = compiled.state_names();
     let degrees = compiled.program().degrees_of_freedom();
@@ -68,14 +67,13 @@ fn coordinates(compiled: &CompiledModel) -> Vec<(String, String)> {
         .collect()
 }
 
-/// Names and units of states of first order.
 fn first_order(compiled: &CompiledModel) -> Vec<(String, String)> {
     let rest = 2 * compiled.program().degrees_of_freedom();
     let names = compiled.state_names().into_iter();
     names.zip(compiled.state_units()).skip(rest).collect()
 }
 
-/// Names and units of what is observed beside the state.
+/// Returns names and units of observables that are not states.
 fn observables(compiled: &CompiledModel) -> Vec<(String, String)> {
     let states = compiled.state_names();
     let all = compiled.program().observables.iter();

@@ -1,4 +1,4 @@
-//! A linearisation written down: as a JSON document, and as arrays of NumPy.
+//! Linearisations as JSON and as NumPy arrays.
 
 use eomgen_analysis::allowed_motions::{AllowedMotions, row_by_row};
 use eomgen_compiled_model::{CompiledModel, Linearisation, OperatingPoint};
@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::npz::{Array, archive};
 use crate::operating_point::{head, inputs, named};
 
-/// One document with the point, names, units and matrices.
+/// Returns the operating point, names, units and matrices.
 pub fn document(
     compiled: &CompiledModel,
     (at, is_equilibrium): (&OperatingPoint, bool),
@@ -17,7 +17,7 @@ pub fn document(
     let (inputs, input_units) = inputs(compiled);
     let states = compiled.state_names();
     let outputs = compiled.observable_names();
-    // A matrix without columns still has its rows.
+    // A matrix without columns keeps its rows.
     let of = |matrix: &[f64], height: usize, columns: usize| match columns {
         0 => json!(vec![Vec::<f64>::new(); height]),
         _ => matrix.chunks(columns).map(|row| json!(row)).collect(),
@@ -56,7 +56,7 @@ pub fn document(
     Ok(Value::Object(document))
 }
 
-/// The matrices of the motions that constraints allow: x = N y.
+/// Matrices of the motions x = N y that the constraints allow.
 struct Minimal {
     count: usize,
     n: Vec<f64>,
@@ -65,7 +65,7 @@ struct Minimal {
     c: Vec<f64>,
 }
 
-/// Those of a model with constraints; none without.
+/// Returns the matrices, or none for a model without constraints.
 fn minimal(compiled: &CompiledModel, found: &Linearisation) -> Result<Option<Minimal>> {
     let held = found.held(compiled);
     if held.is_empty() {
@@ -83,7 +83,7 @@ fn minimal(compiled: &CompiledModel, found: &Linearisation) -> Result<Option<Min
     }))
 }
 
-/// The bytes of an archive of NumPy's with the same: the matrices, the point, names and units.
+/// Returns a NumPy archive (`.npz`) of matrices, operating point, names and units.
 pub fn arrays(
     compiled: &CompiledModel,
     at: &OperatingPoint,

@@ -1,9 +1,7 @@
-//! The `eomgen` program: arguments, messages and files. Physics and numbers come from the
-//! libraries.
+//! The program `eomgen`: arguments, messages and files. The libraries contain the physics and the numerics.
 //!
-//! `arguments` says what can be typed, `commands` has one file per command, `variant` loads
-//! a specification and derives it, `motion` simulates it, `output` writes files whole or not at all, `error`
-//! is what can go wrong and with which exit status.
+//! `arguments` defines the command line, `commands` has one file per command, `model` loads and derives a
+//! specification, `motion` simulates it, `output` writes files, `error` defines errors and exit statuses.
 
 mod archive;
 mod arguments;

@@ -1,5 +1,5 @@
-//! Natural modes drawn: the shapes of fields over their lengths, coordinates and states of first
-//! order as bars, and in which regime of a piecewise model that is.
+//! Figure of natural modes: shapes of fields over their length, coordinates and states of first order as bars, and
+//! the regime of a piecewise model.
 
 use eomgen_analysis::natural_modes::NaturalMode;
 use eomgen_codegen::mechanics::fields::modes::table;
@@ -12,25 +12,24 @@ use eomgen_plot::modes::{Bar, Mode, Modes, Shape, modes};
 use crate::error::{Error, Result};
 use crate::regime::Side;
 
-/// The most modes of a figure, from the lowest on.
-const MOST_MODES: usize = 12;
+/// Maximum number of modes in a figure.
+const MAX_MODES: usize = 12;
 
-/// The most bars of a mode; a machine with more shows its largest.
-const MOST_BARS: usize = 24;
+/// Maximum number of bars of a mode; the largest are shown.
+const MAX_BARS: usize = 24;
 
-/// Sides of switching surfaces on a line, and the most lines.
-const SIDES: usize = 4;
-const MOST_LINES: usize = 8;
+/// Number of switching surfaces on a line, and maximum number of lines.
+const SIDES_PER_LINE: usize = 4;
+const MAX_LINES: usize = 8;
 
-/// A shape is drawn through so many places and one.
-const PLACES: usize = 120;
+/// Number of intervals along a shape.
+const INTERVALS: usize = 120;
 
-/// Draws the lowest modes of an instance.
 pub fn figure(run: &Instance<'_>, regime: &[Side], found: &[NaturalMode]) -> Result<String> {
     let compiled = run.model();
     let fields = fields(run)?;
     let bars = bars(compiled, found);
-    let shown = found.iter().take(MOST_MODES).enumerate();
+    let shown = found.iter().take(MAX_MODES).enumerate();
     let of_mode = |(place, mode): (usize, &NaturalMode)| Mode {
         title: format!("mode {}: {}", place + 1, in_words(mode)),
         fields: fields.iter().map(|field| field.shape(mode)).collect(),
@@ -43,15 +42,15 @@ pub fn figure(run: &Instance<'_>, regime: &[Side], found: &[NaturalMode]) -> Res
         &model.title
     };
     let count = match found.len() {
-        all if all > MOST_MODES => format!("; the lowest {MOST_MODES} of {all}"),
+        all if all > MAX_MODES => format!("; the lowest {MAX_MODES} of {all}"),
         _ => String::new(),
     };
     let figure = Modes {
         title: format!("Natural modes of {title}{count}"),
         notes: regime
-            .chunks(SIDES)
+            .chunks(SIDES_PER_LINE)
             .map(in_regime)
-            .take(MOST_LINES)
+            .take(MAX_LINES)
             .collect(),
         modes: shown.map(of_mode).collect(),
     };
@@ -63,7 +62,7 @@ fn in_regime(sides: &[Side]) -> String {
     format!("where {}", sides.join(", "))
 }
 
-/// Frequency and damping, or what else a mode does.
+/// Describes a mode by frequency and damping, or by its growth rate.
 fn in_words(mode: &NaturalMode) -> String {
     let rate = mode.eigenvalue.re;
     if mode.eigenvalue.norm() == 0.0 {
@@ -74,22 +73,21 @@ fn in_words(mode: &NaturalMode) -> String {
         return format!("{course} without swinging, as exp({rate:.4} t/s)").replace('-', "−");
     }
     let (frequency, damping) = (mode.frequency(), mode.damping());
-    // As it is printed, and then not as -0.
+    // Rounded as printed; adding 0.0 removes the sign of -0.
     let damping = (damping * 1e6).round() / 1e6 + 0.0;
     format!("{frequency:.6} Hz, damping ratio {damping:.6}").replace('-', "−")
 }
 
-/// A field with its shape functions at the places that are drawn.
+/// Field with its shape functions at the drawn positions.
 struct Drawn<'m> {
     field: &'m Field,
     positions: Vec<f64>,
-    /// A row per place, a number per mode of the field.
+    /// A row per position, a number per mode of the field.
     functions: Vec<Vec<f64>>,
-    /// The place of its first modal coordinate among the numbers of a shape.
+    /// Index of its first modal coordinate in a mode shape.
     first: usize,
 }
 
-/// The fields that have modes.
 fn fields<'m>(run: &Instance<'m>) -> Result<Vec<Drawn<'m>>> {
     let compiled = run.model();
     let model = compiled.model();
@@ -99,7 +97,9 @@ fn fields<'m>(run: &Instance<'m>) -> Result<Vec<Drawn<'m>>> {
     let mut drawn = Vec::new();
     for (field, order) in model.fields.iter().zip(compiled.orders()) {
         let [from, to] = [&field.from, &field.to].map(|end| evaluate(end, &values));
-        let shares: Vec<f64> = (0..=PLACES).map(|n| n as f64 / PLACES as f64).collect();
+        let shares: Vec<f64> = (0..=INTERVALS)
+            .map(|n| n as f64 / INTERVALS as f64)
+            .collect();
         let functions = |s: &f64| {
             let (bits, derivative) = (s.to_bits(), 0);
             table(
@@ -122,7 +122,7 @@ fn fields<'m>(run: &Instance<'m>) -> Result<Vec<Drawn<'m>>> {
 }
 
 impl Drawn<'_> {
-    /// The field in a mode: the sum of its shape functions times their coordinates.
+    /// Returns the field in a mode: the sum of shape functions times modal coordinates.
     fn shape(&self, mode: &NaturalMode) -> Shape {
         let coordinates = mode.shape.get(self.first..).unwrap_or_default();
         let amplitude = |functions: &Vec<f64>| {
@@ -141,7 +141,7 @@ impl Drawn<'_> {
     }
 }
 
-/// What has a bar: its place among the numbers of a shape, its name and unit.
+/// Quantity with a bar: index in a mode shape, name and unit.
 struct Named {
     place: usize,
     name: String,
@@ -162,7 +162,7 @@ impl Named {
     }
 }
 
-/// Coordinates and states of first order; of many those that move most in any mode drawn.
+/// Returns coordinates and states of first order; if there are too many, those with the largest amplitudes.
 fn bars(compiled: &CompiledModel, found: &[NaturalMode]) -> Vec<Named> {
     let degrees = compiled.program().degrees_of_freedom();
     let coordinates = compiled.model().coordinates.len();
@@ -180,14 +180,14 @@ fn bars(compiled: &CompiledModel, found: &[NaturalMode]) -> Vec<Named> {
         Some(Named { place, name, unit })
     });
     let mut all: Vec<Named> = all.collect();
-    if all.len() > MOST_BARS {
+    if all.len() > MAX_BARS {
         let most = |named: &Named| {
-            let modes = found.iter().take(MOST_MODES);
+            let modes = found.iter().take(MAX_MODES);
             let sizes = modes.filter_map(|mode| mode.shape.get(named.place));
             sizes.fold(0.0, |most: f64, value| most.max(value.norm()))
         };
         all.sort_by(|a, b| most(b).total_cmp(&most(a)));
-        all.truncate(MOST_BARS);
+        all.truncate(MAX_BARS);
         all.sort_by_key(|named| named.place);
     }
     all

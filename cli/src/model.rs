@@ -1,4 +1,4 @@
-//! From the path of a specification to a compiled model, with messages for people.
+//! Loading, checking and deriving a specification.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use eomgen_model_spec::model::Model;
 
 use crate::error::{Error, Result, warn_of};
 
-/// Reads and checks a specification; warnings go to stderr.
+/// Reads and checks a specification and prints its warnings.
 pub fn load(path: &Path) -> Result<Checked> {
     let checked = eomgen_model_spec::load(path).map_err(Error::Specification)?;
     if !checked.warnings.is_empty() {
@@ -17,7 +17,7 @@ pub fn load(path: &Path) -> Result<Checked> {
     Ok(checked)
 }
 
-/// The orders of a model's fields. A text that is no order is refused with what would be.
+/// Returns the orders of a model's fields, from the text of `--order`.
 pub fn orders(model: &Model, text: Option<&str>) -> Result<Vec<usize>> {
     let order = match text {
         None => None,
@@ -33,12 +33,11 @@ pub fn orders(model: &Model, text: Option<&str>) -> Result<Vec<usize>> {
         .map_err(|error| Error::model(&model.source, error))
 }
 
-/// Derives a model at the given orders.
 pub fn derive(model: Model, orders: &[usize]) -> Result<CompiledModel> {
     Ok(CompiledModel::derive(model, Orders::Each(orders))?)
 }
 
-/// Loads, checks and derives for readers: also what has no inertia somewhere.
+/// Loads and derives a model to print its equations; coordinates without inertia are accepted.
 pub fn load_to_read(path: &Path, order: Option<&str>) -> Result<CompiledModel> {
     let model = load(path)?.model;
     let orders = orders(&model, order)?;

@@ -1,4 +1,4 @@
-//! A motion on the command line: simulated with a progress bar, its samples as a table.
+//! Simulation with a progress bar, and its table.
 
 use eomgen_compiled_model::{Choice, Instance, Motion, Moved, Request, Solver};
 
@@ -6,45 +6,45 @@ use crate::error::{Result, warn};
 use crate::progress::Bar;
 use crate::table::Table;
 
-/// How many moved initial values are named.
-const MOST_MOVED: usize = 8;
+/// Maximum number of moved initial values in a note.
+const MAX_LISTED: usize = 8;
 
-/// The states at all times asked for, with a progress bar for a run that takes long.
+/// Simulates over all requested times. A stop of the solver is an error.
 pub fn simulate(instance: &Instance<'_>, request: &Request<'_>) -> Result<Motion> {
     Ok(follow(instance, request)?.complete()?)
 }
 
-/// The same, of the times that the solver comes to; an error if that is none.
+/// Simulates up to the end or a stop of the solver. A stop at the start is an error.
 pub fn follow(instance: &Instance<'_>, request: &Request<'_>) -> Result<Motion> {
     let (begin, end) = request.span();
     let bar = Bar::new("simulating", end - begin, "s");
     let motion = instance.follow(request, &mut |t| bar.set(t - begin))?;
     if let Some(Choice::NotFollowed(reason)) = &motion.choice {
         warn(&format!(
-            "warning: not solved exactly but by {}: {reason}",
+            "warning: not solved exactly, but with {}: {reason}",
             motion.solver
         ));
     }
     if let Some(Choice::Stiff(reason)) = &motion.choice {
-        warn(&format!("note: solved by radau, because {reason}"));
+        warn(&format!("note: solved with radau, because {reason}"));
     }
     note_moved("initial state", &motion.moved);
     Ok(motion)
 }
 
-/// Says what of a state was moved so that the constraints hold.
+/// Prints a note about states that were moved onto the constraints.
 pub fn note_moved(what: &str, all: &[Moved]) {
     if all.is_empty() {
         return;
     }
-    let moved = all.iter().take(MOST_MOVED);
+    let moved = all.iter().take(MAX_LISTED);
     let moved = moved.map(|moved| {
         let (from, to) = (Short(moved.from), Short(moved.to));
         format!("{} from {from} to {to} {}", moved.name, moved.unit)
     });
     let mut moved: Vec<String> = moved.collect();
-    if all.len() > MOST_MOVED {
-        moved.push(format!("{} more", all.len() - MOST_MOVED));
+    if all.len() > MAX_LISTED {
+        moved.push(format!("{} more", all.len() - MAX_LISTED));
     }
     warn(&format!(
         "note: the {what} was moved onto the constraints: {}",
@@ -52,7 +52,7 @@ pub fn note_moved(what: &str, all: &[Moved]) {
     ));
 }
 
-/// A number with as many digits as are worth reading.
+/// Number with six significant digits.
 struct Short(f64);
 
 impl std::fmt::Display for Short {
@@ -62,7 +62,7 @@ impl std::fmt::Display for Short {
     }
 }
 
-/// The work in words.
+/// Returns the work of the solver in words.
 pub fn in_words(motion: &Motion) -> String {
     let work = motion.trajectory.work;
     match motion.solver {
@@ -71,7 +71,6 @@ pub fn in_words(motion: &Motion) -> String {
     }
 }
 
-/// The names of the table's columns.
 pub fn columns(instance: &Instance<'_>) -> Vec<String> {
     let model = instance.model();
     let mut columns = vec!["t".to_owned()];
@@ -80,7 +79,7 @@ pub fn columns(instance: &Instance<'_>) -> Vec<String> {
     columns
 }
 
-/// Time, state and observables of every sample.
+/// Returns a table with time, state and observables of every sample.
 pub fn table(instance: &Instance<'_>, motion: &Motion) -> Result<Table> {
     let columns = columns(instance);
     let mut row = Vec::with_capacity(columns.len());

@@ -1,23 +1,18 @@
-//! Arrays as NumPy keeps several of them in one file: an archive `.npz` with an `.npy` file of
-//! version 1.0 for each (NumPy Enhancement Proposal 1).
+//! NumPy archives (`.npz`) of `.npy` files, version 1.0 (NumPy Enhancement Proposal 1).
 
 use crate::archive::pack;
 use crate::error::Result;
 
-/// The multiple at which the numbers of an `.npy` file begin, bytes.
+/// Alignment of the data in an `.npy` file, bytes.
 const ALIGNMENT: usize = 64;
 
-/// An array.
 pub enum Array<'a> {
-    /// Numbers row by row, and how many rows and columns.
+    /// Numbers row by row, with the numbers of rows and columns.
     Matrix(&'a [f64], [usize; 2]),
-    /// Numbers.
     Vector(&'a [f64]),
-    /// Texts.
     Names(&'a [String]),
 }
 
-/// The bytes of an archive with these arrays.
 pub fn archive(arrays: &[(&str, Array<'_>)]) -> Result<Vec<u8>> {
     let files = arrays.iter();
     pack(
@@ -28,7 +23,7 @@ pub fn archive(arrays: &[(&str, Array<'_>)]) -> Result<Vec<u8>> {
 }
 
 impl Array<'_> {
-    /// The array as an `.npy` file.
+    /// Returns the array as an `.npy` file.
     fn file(&self) -> Vec<u8> {
         let (kind, shape, contents) = match self {
             Self::Matrix(values, [rows, columns]) => (
@@ -42,7 +37,7 @@ impl Array<'_> {
             }
             Self::Names(names) => {
                 let longest = names.iter().map(|name| name.chars().count());
-                // A text of no characters is no type of NumPy's.
+                // NumPy has no text type of width 0.
                 let width = longest.max().unwrap_or(0).max(1);
                 let kind = format!("<U{width}");
                 (kind, format!("({},)", names.len()), padded(names, width))
@@ -50,7 +45,7 @@ impl Array<'_> {
         };
         let header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}");
         let mut file = b"\x93NUMPY\x01\x00".to_vec();
-        // The length, two bytes, and the end of the line belong to what is aligned.
+        // The aligned header includes its length (two bytes) and the newline.
         let length =
             (file.len() + 2 + header.len() + 1).next_multiple_of(ALIGNMENT) - file.len() - 2;
         file.extend((length as u16).to_le_bytes());
@@ -67,7 +62,7 @@ fn bytes(values: &[f64]) -> Vec<u8> {
         .collect()
 }
 
-/// Texts in UTF-32, each filled up to so many characters.
+/// Returns texts in UTF-32, padded to `width` characters.
 fn padded(names: &[String], width: usize) -> Vec<u8> {
     let characters = names.iter().flat_map(|name| {
         let letters = name.chars().map(u32::from);

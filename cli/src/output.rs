@@ -1,5 +1,5 @@
-//! Files are written beside their place and moved there when whole, so that an error or a
-//! kill leaves nothing half written.
+//! Output files. A temporary file replaces the target when it is complete, so that an interruption leaves no partial
+//! file.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -13,39 +13,39 @@ pub const SCHEMA: u32 = 2;
 
 /// Destination of a command's output file.
 pub enum Destination {
-    /// To stdout, for the name `-`.
+    /// Stdout, for the name `-`.
     Stdout,
-    /// To a device, which stays what it is.
+    /// Device such as `/dev/null`, which must not be replaced by a file.
     Device(PathBuf),
-    /// To a file, which is there whole or not at all.
+    /// File.
     File(PathBuf),
 }
 
 impl Destination {
-    /// Where a name leads. `json`: whether something else is to be read on stdout.
+    /// Returns the destination of `--out`. `json`: true if `--json` uses stdout.
     ///
     /// # Errors
-    /// A folder, a pipe or a place that cannot be, and stdout where `json` takes it.
+    /// A folder, a pipe or an impossible path; stdout if `json` is set.
     pub fn of(path: &Path, json: bool) -> Result<Self> {
         Self::named("--out", path, json)
     }
 
-    /// The same for a figure beside it, which has a place of its own.
+    /// Returns the destination of `--plot`. `beside` is the path of `--out`.
     ///
     /// # Errors
-    /// As [`Destination::of`], the place of the other file, and a name of another kind of figure.
+    /// Those of [`Destination::of`], the path of `--out`, and another format than SVG.
     pub fn of_figure(figure: &Path, beside: Option<&Path>, json: bool) -> Result<Self> {
         let place = |path: &Path| std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         if beside.is_some_and(|other| place(other) == place(figure)) && !is_device(figure) {
             let shown = figure.display();
             return Err(Error::input(format!(
-                "--out {shown} and --plot {shown} are one place: give --plot another"
+                "--out {shown} and --plot {shown} are the same file: give --plot another name"
             )));
         }
         let ending = figure.extension().filter(|_| !is_device(figure));
         if ending.is_some_and(|ending| !ending.eq_ignore_ascii_case("svg")) {
             return Err(Error::input(format!(
-                "--plot {}: a figure is an SVG: give it a name that ends in .svg",
+                "--plot {}: figures are SVG files: give a name that ends in .svg",
                 figure.display()
             )));
         }
@@ -69,7 +69,6 @@ impl Destination {
         Ok(Self::File(path.to_owned()))
     }
 
-    /// Writes the contents.
     pub fn write(&self, contents: &[u8]) -> Result {
         match self {
             Self::Stdout => say_bytes(contents),
@@ -82,7 +81,7 @@ impl Destination {
         }
     }
 
-    /// Says what was done: on stderr where the contents are on stdout.
+    /// Prints a summary, to stderr if the contents are on stdout.
     pub fn summarise(&self, summary: &str) -> Result {
         match self {
             Self::Stdout => {
@@ -94,7 +93,7 @@ impl Destination {
     }
 }
 
-/// Whether this is something like `/dev/null`. A pipe is none: it might never be read.
+/// Returns whether a path is a device such as `/dev/null`. Pipes are excluded, because they may never be read.
 #[cfg(unix)]
 fn is_device(path: &Path) -> bool {
     use std::os::unix::fs::FileTypeExt;
@@ -106,7 +105,7 @@ fn is_device(_path: &Path) -> bool {
     false
 }
 
-/// Writes a file, or leaves what was there. Folders on the way are made.
+/// Writes a file and its parent folders. On an error an existing file is unchanged.
 pub fn write_file(path: &Path, contents: &[u8]) -> Result {
     let place = file_place(path)?;
     let failed = |error: &dyn std::fmt::Display| Error::file("write", path, error);
@@ -119,8 +118,8 @@ pub fn write_file(path: &Path, contents: &[u8]) -> Result {
     Ok(())
 }
 
-/// Where a file's name leads: to a file, also by a link, or to nothing yet. Moving a file
-/// onto a device or a pipe would put the file in its place.
+/// Resolves the path of an existing file, through links, or of a new one. Devices and pipes are rejected, because
+/// the file would replace them.
 pub fn file_place(path: &Path) -> Result<PathBuf> {
     let failed = |error: &dyn std::fmt::Display| Error::file("write", path, error);
     match std::fs::metadata(path) {
@@ -145,7 +144,7 @@ fn folder_of(path: &Path) -> &Path {
     }
 }
 
-/// Temporary files are private; what a command leaves is to be read by others.
+/// Makes a temporary file, which is private, readable for others.
 #[cfg(unix)]
 fn make_readable(file: &std::fs::File) -> std::io::Result<()> {
     use std::os::unix::fs::PermissionsExt;

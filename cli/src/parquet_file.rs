@@ -1,5 +1,4 @@
-//! A table of numbers as a Parquet file: one required double column per name, one row
-//! group, no compression.
+//! Parquet files: one required double column per name, one row group, no compression.
 
 use std::sync::Arc;
 
@@ -10,10 +9,10 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 
-/// The bytes of the file.
+/// Encodes columns of equal length.
 ///
 /// # Errors
-/// If the writer refuses the columns.
+/// Those of the Parquet writer.
 pub fn encode(names: &[String], columns: &[Vec<f64>]) -> Result<Vec<u8>, ParquetError> {
     let fields = names
         .iter()
@@ -52,7 +51,7 @@ mod tests {
     use super::encode;
 
     #[test]
-    fn what_is_written_is_read_back() {
+    fn encoded_columns_are_read_back() {
         let names = vec!["t".to_owned(), "x_sp".to_owned()];
         let columns = vec![vec![0.0, 0.1, 0.2], vec![1e-300, -2.5, f64::MAX]];
         let bytes = encode(&names, &columns).expect("two columns of equal length");

@@ -1,17 +1,17 @@
-//! Progress on stderr, for work that takes more than two seconds, and only on a terminal.
+//! Progress on stderr, on a terminal only, for work longer than two seconds.
 
 use std::cell::Cell;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-/// Work shorter than this shows nothing.
-const PATIENCE: Duration = Duration::from_secs(2);
+/// Delay before a bar is shown.
+const DELAY: Duration = Duration::from_secs(2);
 
-/// Parts of the whole that the bar distinguishes.
+/// Resolution of a bar.
 const PARTS: f64 = 1000.0;
 
-/// A bar that appears once the work has lasted a while.
+/// Progress bar, shown after a delay.
 pub struct Bar {
     bar: ProgressBar,
     whole: f64,
@@ -20,7 +20,7 @@ pub struct Bar {
 }
 
 impl Bar {
-    /// A bar for `whole` units of work.
+    /// Creates a bar for `whole` units of work.
     pub fn new(what: &'static str, whole: f64, unit: &str) -> Self {
         let bar = ProgressBar::with_draw_target(Some(PARTS as u64), ProgressDrawTarget::hidden());
         let template =
@@ -37,10 +37,10 @@ impl Bar {
         }
     }
 
-    /// So much is done.
+    /// Sets the completed work.
     pub fn set(&self, done: f64) {
         if !self.shown.get() {
-            if self.started.elapsed() < PATIENCE {
+            if self.started.elapsed() < DELAY {
                 return;
             }
             self.bar.set_draw_target(ProgressDrawTarget::stderr());
@@ -56,7 +56,7 @@ impl Drop for Bar {
     }
 }
 
-/// A line that says what is being done, on a terminal.
+/// Line about the current work, on a terminal.
 pub struct Note {
     bar: ProgressBar,
 }

@@ -6,8 +6,7 @@ use eomgen_sim::ode::Trajectory;
 
 use crate::error::{Error, Result, warn};
 
-/// Warns of every coordinate, state and input that leaves its range, with the time of the first
-/// sample outside.
+/// Warns about every coordinate, state and input that leaves its range, with the time of the first sample outside.
 pub fn warn_of_ranges(model: &Model, trajectory: &Trajectory, inputs: &HeldInputs) -> Result {
     let error = |error| Error::model(&model.source, error);
     let coordinates = model.coordinate_ranges().map_err(error)?;
@@ -15,7 +14,7 @@ pub fn warn_of_ranges(model: &Model, trajectory: &Trajectory, inputs: &HeldInput
         let samples = trajectory.times.iter().zip(&trajectory.states);
         let values = samples.map(|(t, state)| (*t, state[place]));
         let unit = coordinate.unit.to_string();
-        say_first(&coordinate.name, &unit, coordinates[place], values);
+        warn_of_first(&coordinate.name, &unit, coordinates[place], values);
     }
     let states = model.state_ranges().map_err(error)?;
     for (place, first_order) in model.states.iter().enumerate() {
@@ -25,19 +24,19 @@ pub fn warn_of_ranges(model: &Model, trajectory: &Trajectory, inputs: &HeldInput
             (*t, state[first + place])
         });
         let unit = first_order.unit.to_string();
-        say_first(&first_order.name, &unit, states[place], values);
+        warn_of_first(&first_order.name, &unit, states[place], values);
     }
     let ranges = model.input_ranges().map_err(error)?;
     for (place, input) in model.inputs.iter().enumerate() {
         let times = trajectory.times.iter();
         let values = times.map(|t| (*t, inputs.at(*t)[place]));
-        say_first(&input.name, &input.unit.to_string(), ranges[place], values);
+        warn_of_first(&input.name, &input.unit.to_string(), ranges[place], values);
     }
     Ok(())
 }
 
-/// Warns of the first of the values that lies outside the range.
-fn say_first(
+/// Warns about the first value outside the range.
+fn warn_of_first(
     name: &str,
     unit: &str,
     range: Option<(f64, f64)>,
@@ -48,7 +47,7 @@ fn say_first(
     if let Some((t, value)) = values.find(outside) {
         warn(&format!(
             "warning: `{name}` leaves its range {low} to {high} {unit}: it is {value} at t = {t} s; \
-             the model says nothing of what comes after"
+             later results are outside the validity of the model"
         ));
     }
 }

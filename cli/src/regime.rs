@@ -1,4 +1,4 @@
-//! In which regime of a piecewise model a point lies: the sides of its switching surfaces.
+//! Regime of a piecewise model at a point: the side of each switching surface.
 
 use std::fmt;
 
@@ -7,9 +7,9 @@ use serde_json::{Value, json};
 
 use crate::error::Result;
 
-/// The side of a switching surface.
+/// Side of a switching surface.
 pub struct Side {
-    /// What is zero on it.
+    /// Switching function.
     formula: String,
     value: f64,
 }
@@ -29,13 +29,12 @@ impl Side {
         }
     }
 
-    /// For programs.
     pub fn json(&self) -> Value {
         json!({ "surface": self.formula, "value": self.value, "side": self.sign().to_string() })
     }
 }
 
-/// The sides of all switching surfaces at a point, surfaces over modes one by one.
+/// Returns the sides of all switching surfaces at a point; a surface over modes has one per mode.
 pub fn regime(run: &Instance<'_>, at: &OperatingPoint) -> Result<Vec<Side>> {
     let mut evaluator = run.interpreter()?;
     let mut values = vec![0.0; evaluator.guard_count()];

@@ -1,4 +1,4 @@
-//! What random samples of a sweep say: how each number is spread, and with which parameter it goes.
+//! Statistics of random samples of a sweep: distributions and rank correlations with parameters.
 
 use eomgen_analysis::statistics::{Summary, rank_correlation};
 use eomgen_plot::Reference;
@@ -10,28 +10,28 @@ use crate::error::warn;
 use crate::figures::Shown;
 use crate::output::SCHEMA;
 
-/// The parts below which quantiles are given.
-const PARTS: [f64; 7] = [0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99];
+/// Probabilities of the quantiles.
+const PROBABILITIES: [f64; 7] = [0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99];
 
-/// The statistics of a sweep over random samples.
+/// Statistics of a sweep over random samples.
 pub struct Statistics {
     model: String,
     samples: Samples,
     measured: Vec<Measured>,
 }
 
-/// A column of numbers.
+/// Statistics of a column.
 struct Measured {
     column: Column,
-    /// What a figure calls it; none where it has no figure.
+    /// Title of its figure, if it has one.
     drawn: Option<String>,
-    /// None where no sample has a number.
+    /// None if no sample has a number.
     summary: Option<Summary>,
-    /// How the ranks go with those of each parameter, in their order.
+    /// Rank correlation with each parameter.
     correlations: Vec<Option<f64>>,
 }
 
-/// The statistics of a sweep, if it is one over random samples.
+/// Returns the statistics of a sweep, or none unless it is over random samples.
 pub fn statistics(job: &Job, table: &Table) -> Option<Statistics> {
     let samples = job.points().samples()?;
     let mut measured = Vec::new();
@@ -58,7 +58,6 @@ pub fn statistics(job: &Job, table: &Table) -> Option<Statistics> {
 }
 
 impl Statistics {
-    /// One document.
     pub fn json(&self) -> Value {
         let of = |measured: &Measured| {
             let mut entry = json!({
@@ -67,7 +66,8 @@ impl Statistics {
                 "count": measured.summary.as_ref().map_or(0, |summary| summary.count),
             });
             if let Some(summary) = &measured.summary {
-                let quantiles = PARTS.map(|part| (part.to_string(), json!(summary.quantile(part))));
+                let quantiles =
+                    PROBABILITIES.map(|part| (part.to_string(), json!(summary.quantile(part))));
                 entry["mean"] = json!(summary.mean);
                 entry["sd"] = json!(summary.sd);
                 entry["standard_error"] = json!(summary.standard_error);
@@ -91,7 +91,7 @@ impl Statistics {
         })
     }
 
-    /// A line for every column that is drawn.
+    /// Returns a line for every column with a figure.
     pub fn text(&self) -> String {
         let drawn = self
             .measured
@@ -128,15 +128,14 @@ impl Statistics {
         )
     }
 
-    /// A histogram for every column that is drawn, with the file's name. The numbers are good without
-    /// one.
+    /// Returns file names and histograms. A histogram that cannot be drawn is skipped with a warning.
     pub fn figures(&self) -> Vec<(String, String)> {
         let mut figures = Vec::new();
         for measured in &self.measured {
             match self.figure(measured) {
                 Some(Ok(figure)) => figures.push(figure),
                 Some(Err(error)) => warn(&format!(
-                    "warning: no picture of {}: {error}",
+                    "warning: no figure of {}: {error}",
                     measured.column.name
                 )),
                 None => {}

@@ -1,4 +1,4 @@
-//! Parameter values given as `NAME=VALUE`, and inputs that nothing drives.
+//! Values given as `NAME=EXPR`, and inputs.
 
 use eomgen_model_spec::assignment::Assignment;
 use eomgen_model_spec::edit::{self, Edit, EditError, PrescribeInput};
@@ -7,7 +7,7 @@ use eomgen_model_spec::suggest::did_you_mean;
 
 use crate::error::{Error, Result, warn};
 
-/// The model with every `NAME=VALUE` of `--set`.
+/// Returns the model with every `NAME=EXPR` of `--set`.
 pub fn with_settings(model: Model, assignments: &[String]) -> Result<Model> {
     let settings = settings(&model, assignments)?;
     let settings: Vec<(&str, f64)> = borrowed(&settings);
@@ -16,13 +16,13 @@ pub fn with_settings(model: Model, assignments: &[String]) -> Result<Model> {
         .map_err(|error| Error::model(&model.source, error))
 }
 
-/// Names and values of every `NAME=VALUE` of `--set`, in the units that the specification declares.
+/// Reads every `NAME=EXPR` of `--set`. Returns names and values in declared units.
 pub fn settings(model: &Model, assignments: &[String]) -> Result<Vec<(String, f64)>> {
     let given = split("--set", assignments)?;
     model.read_settings(&given).map_err(Error::Specification)
 }
 
-/// Every `NAME=VALUE` of an option in its parts.
+/// Parses every `NAME=EXPR` of an option.
 pub fn split(option: &str, assignments: &[String]) -> Result<Vec<Assignment>> {
     let split = assignments
         .iter()
@@ -31,7 +31,6 @@ pub fn split(option: &str, assignments: &[String]) -> Result<Vec<Assignment>> {
     split.map_err(Error::Specification)
 }
 
-/// Named values with borrowed names.
 pub fn borrowed(values: &[(String, f64)]) -> Vec<(&str, f64)> {
     values
         .iter()
@@ -39,11 +38,10 @@ pub fn borrowed(values: &[(String, f64)]) -> Vec<(&str, f64)> {
         .collect()
 }
 
-/// How fast residuals of constraints decay where nothing else brings them back and the specification
-/// does not say, 1/s.
-const STABILISATION: f64 = 10.0;
+/// Default decay rate of constraint residuals in models whose rates are integrated directly, 1/s.
+const DEFAULT_STABILISATION_RATE: f64 = 10.0;
 
-/// The model for whoever integrates its rates as they are: residuals of constraints decay.
+/// Returns the model with decaying constraint residuals, for solvers that integrate its rates directly.
 pub fn stabilised(model: Model) -> Result<Model> {
     let declared = model
         .parameters
@@ -54,11 +52,11 @@ pub fn stabilised(model: Model) -> Result<Model> {
         return Ok(model);
     }
     model
-        .with_parameters(&[(STABILISATION_RATE, STABILISATION)])
+        .with_parameters(&[(STABILISATION_RATE, DEFAULT_STABILISATION_RATE)])
         .map_err(|error| Error::model(&model.source, error))
 }
 
-/// The model with every `NAME=EXPRESSION` in the place of an input.
+/// Returns the model with inputs replaced by the `NAME=EXPR` of `--input`.
 pub fn with_inputs(mut model: Model, prescribed: &[String]) -> Result<Model> {
     for text in prescribed {
         let wrong = |what: &str| Error::input(format!("--input {text}: {what}"));
@@ -69,8 +67,8 @@ pub fn with_inputs(mut model: Model, prescribed: &[String]) -> Result<Model> {
             name: name.trim().to_owned(),
             value: value.trim().to_owned(),
         });
-        let edited =
-            edit::apply(&model.source, &[edit]).map_err(|error| wrong(&said(&error, &model)))?;
+        let edited = edit::apply(&model.source, &[edit])
+            .map_err(|error| wrong(&messages(&error, &model)))?;
         let source = model.source.edited(edited);
         let checked = eomgen_model_spec::check(source).map_err(Error::Specification)?;
         model = checked.model;
@@ -78,23 +76,23 @@ pub fn with_inputs(mut model: Model, prescribed: &[String]) -> Result<Model> {
     Ok(model)
 }
 
-/// What is wrong with an edit, without the places of the edited text, which nobody has.
-fn said(error: &EditError, model: &Model) -> String {
+/// Returns the messages of an edit, without places: these refer to the edited text.
+fn messages(error: &EditError, model: &Model) -> String {
     match error {
         EditError::Invalid(found) => {
-            let said = found.list().iter().map(|one| match &one.help {
+            let messages = found.list().iter().map(|one| match &one.help {
                 Some(help) => format!("{} ({help})", one.message),
                 None => one.message.clone(),
             });
-            let said: Vec<String> = said.collect();
-            said.join("; ")
+            let messages: Vec<String> = messages.collect();
+            messages.join("; ")
         }
         EditError::MissingTerm { name, .. } => {
             let inputs = model.inputs.iter().filter(|input| input.rate_of.is_none());
             let inputs: Vec<&str> = inputs.map(|input| input.name.as_str()).collect();
             let meant = did_you_mean(name, inputs.iter().copied());
             let cure = meant.unwrap_or_else(|| match inputs.is_empty() {
-                true => "it has none; leave --input out".to_owned(),
+                true => "it has none; remove --input".to_owned(),
                 false => format!("it has {}", inputs.join(", ")),
             });
             format!("the model has no input `{name}`; {cure}")
@@ -103,7 +101,7 @@ fn said(error: &EditError, model: &Model) -> String {
     }
 }
 
-/// Warns of inputs that nothing drives, with the values that they are taken as.
+/// Warns about inputs that are not driven, with their values.
 pub fn warn_of_inputs(model: &Model) {
     let values = model.typical_inputs(0.0).unwrap_or_default();
     let own = model.inputs.iter().zip(values);

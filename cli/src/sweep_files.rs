@@ -1,5 +1,4 @@
-//! The final files of a sweep: one table and a figure for each measure; of random samples their
-//! statistics as well.
+//! Final files of a sweep: a table, a figure for each measure, and statistics of random samples.
 
 use std::path::PathBuf;
 
@@ -12,20 +11,18 @@ use crate::output::{SCHEMA, write_file};
 use crate::parquet_file::encode;
 use crate::sample_statistics::{Statistics, statistics};
 
-/// The final files of a sweep.
 pub struct Finished {
     files: Vec<PathBuf>,
     points: usize,
-    /// Points without a number, by measure.
+    /// Number of points without a result, by measure.
     failed: Vec<(String, usize)>,
-    /// Of random samples.
     statistics: Option<Statistics>,
 }
 
 /// Writes the final files.
 ///
 /// # Errors
-/// Missing parts, files that cannot be written.
+/// Missing parts, or files that cannot be written.
 pub fn finish(folder: &Folder) -> Result<Finished> {
     let job = folder.job();
     let table = merge(folder).map_err(|error| Error::input(error.to_string()))?;
@@ -54,8 +51,7 @@ pub fn finish(folder: &Folder) -> Result<Finished> {
                 write_file(&path, &bytes)?;
                 finished.files.push(path);
             }
-            // The numbers are good without a picture.
-            Err(error) => warn(&format!("warning: no picture of {measure}: {error}")),
+            Err(error) => warn(&format!("warning: no figure of {measure}: {error}")),
         }
     }
     let bytes = encode(&table.names, &table.columns)
@@ -66,7 +62,7 @@ pub fn finish(folder: &Folder) -> Result<Finished> {
     Ok(finished)
 }
 
-/// How many points each measure has no number for.
+/// Counts the points without a result, for each measure.
 fn failures(job: &Job, table: &Table) -> Vec<(String, usize)> {
     let measures = job.plan().measures.iter();
     let count = |name: &str| {
@@ -79,7 +75,6 @@ fn failures(job: &Job, table: &Table) -> Vec<(String, usize)> {
 }
 
 impl Finished {
-    /// For programs.
     pub fn json(&self) -> Value {
         let files = self.files.iter().map(|file| file.display().to_string());
         let failed = self.failed.iter().cloned();
@@ -95,13 +90,12 @@ impl Finished {
         document
     }
 
-    /// For people.
     pub fn text(&self) -> String {
         let mut text = format!("{} points\n", self.points);
         for (measure, failed) in &self.failed {
             if *failed > 0 {
                 text += &format!(
-                    "{measure}: {failed} points without a number; their status says why\n"
+                    "{measure}: {failed} points without a number; the column {measure}_status has the reason\n"
                 );
             }
         }

@@ -1,4 +1,4 @@
-//! What a sweep is asked for: its points, model, measures and job.
+//! Points, model, measures and job of a sweep, from the command line.
 
 use eomgen_compiled_model::{CompiledModel, Orders};
 use eomgen_model_spec::model::Model;
@@ -15,25 +15,23 @@ use crate::error::{Error, Result};
 use crate::model::orders;
 use crate::settings::warn_of_inputs;
 
-/// What can be measured beside numbers of a course over time.
+/// Measures other than statistics over time.
 const MEASURES: [&str; 3] = ["lyapunov", "poincare", "poincare:NAME"];
 
-/// What the library refuses.
 pub fn refused(error: SweepError) -> Error {
     Error::input(error.to_string())
 }
 
-/// What a measure that does not exist is told.
 fn unknown(name: &str) -> Error {
     let known = MEASURES.map(str::to_owned).into_iter().chain(forms());
     let known: Vec<String> = known.collect();
     Error::input(format!(
-        "--measure {name}: unknown measure; there is {}",
+        "--measure {name}: unknown measure; expected one of {}",
         known.join(", ")
     ))
 }
 
-/// The points that are asked for, of a model in which some parameters are set.
+/// Returns the points of a model with parameters set.
 pub fn points(options: &Sweep, declared: &Model, set: &[(&str, f64)]) -> Result<Points> {
     if let Some(count) = options.samples {
         let model = with_parameters(declared, set)?;
@@ -48,13 +46,13 @@ pub fn points(options: &Sweep, declared: &Model, set: &[(&str, f64)]) -> Result<
         .find(|(name, _)| grid.names().any(|varied| varied == *name))
     {
         return Err(Error::input(format!(
-            "`{name}` is both set and varied; give one of --set and --vary"
+            "`{name}` is both set and varied; give only one of --set and --vary"
         )));
     }
     Ok(Points::Grid(grid))
 }
 
-/// The model derived at the first point, where all parameters that differ are numbers.
+/// Derives the model at the first point. All varied parameters are numbers there.
 pub fn model(
     options: &Sweep,
     declared: &Model,
@@ -65,7 +63,7 @@ pub fn model(
         let settings = [set, &points.settings(point)].concat();
         with_parameters(declared, &settings)
     };
-    // Bounds are intervals: what both ends of the ranges admit, all between admit.
+    // Bounds are intervals: if both ends of an axis are admissible, all values between them are.
     at(points.count() - 1)?;
     let first = at(0)?;
     warn_of_inputs(&first);
@@ -82,7 +80,7 @@ fn with_parameters(model: &Model, settings: &[(&str, f64)]) -> Result<Model> {
         .map_err(|error| Error::model(&model.source, error))
 }
 
-/// What is asked for, in the order of the command line.
+/// Returns the measures in the order of the command line.
 pub fn measures<'a>(
     options: &Sweep,
     model: &'a CompiledModel,
@@ -102,7 +100,7 @@ pub fn measures<'a>(
         },
         (Some(event), None) => {
             return Err(Error::input(format!(
-                "--section {event}: give --until as well, the time in s in which crossings are looked for"
+                "--section {event}: --until is missing: the time in s in which crossings are located"
             )));
         }
     };
@@ -123,7 +121,6 @@ pub fn measures<'a>(
     options.measure.iter().map(measure).collect()
 }
 
-/// All of it as data.
 pub fn job(
     compiled: &CompiledModel,
     points: &Points,

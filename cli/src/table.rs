@@ -1,54 +1,49 @@
-//! A table of numbers on its way to a file.
+//! Tables of numbers, encoded as CSV or Parquet.
 
 use std::path::Path;
 
 use crate::error::{Error, Result};
 use crate::parquet_file;
 
-/// Whether a path asks for Parquet.
 fn is_parquet(path: &Path) -> bool {
     path.extension()
         .is_some_and(|ending| ending.eq_ignore_ascii_case("parquet"))
 }
 
-/// Named columns of numbers.
 pub struct Table {
     names: Vec<String>,
     columns: Vec<Vec<f64>>,
 }
 
 impl Table {
-    /// A table without rows.
     pub fn new(names: Vec<String>) -> Self {
         let columns = vec![Vec::new(); names.len()];
         Self { names, columns }
     }
 
-    /// A table of columns of one length.
+    /// Creates a table of columns of equal length.
     pub fn of(columns: &[(String, Vec<f64>)]) -> Self {
         let (names, columns) = columns.iter().cloned().unzip();
         Self { names, columns }
     }
 
-    /// Adds a row, one number per column.
+    /// Appends a row, one number per column.
     pub fn push(&mut self, row: &[f64]) {
         for (column, value) in self.columns.iter_mut().zip(row) {
             column.push(*value);
         }
     }
 
-    /// How many rows there are.
     pub fn rows(&self) -> usize {
         self.columns.first().map_or(0, Vec::len)
     }
 
-    /// A column by its name.
     pub fn column(&self, name: &str) -> Option<&[f64]> {
         let place = self.names.iter().position(|known| known == name)?;
         Some(&self.columns[place])
     }
 
-    /// Columns with numbers that are not finite: the name, the first such row and the count of such rows.
+    /// Returns columns with numbers that are not finite: the name, the first such row, and their number.
     pub fn not_finite(&self) -> impl Iterator<Item = (&str, usize, usize)> {
         let columns = self.names.iter().zip(&self.columns);
         columns.filter_map(|(name, column)| {
@@ -58,7 +53,7 @@ impl Table {
         })
     }
 
-    /// The bytes of the file: Parquet if its name ends so, else CSV.
+    /// Encodes as Parquet if the name of the file ends in `.parquet`, else as CSV.
     pub fn encode(&self, path: &Path) -> Result<Vec<u8>> {
         if is_parquet(path) {
             return parquet_file::encode(&self.names, &self.columns)
@@ -67,7 +62,7 @@ impl Table {
         self.csv()
     }
 
-    /// Numbers with the fewest digits that give them back exactly.
+    /// Encodes numbers with the fewest digits that identify them exactly.
     fn csv(&self) -> Result<Vec<u8>> {
         let failed =
             |error: &dyn std::fmt::Display| Error::input(format!("cannot write CSV: {error}"));

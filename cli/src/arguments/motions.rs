@@ -26,7 +26,7 @@ pub struct Simulate {
     pub parameters: ParameterValues,
     #[command(flatten)]
     pub initial: StateValues,
-    /// Expression of `t` and parameters that drives an input. Expressions of numbers and `t` alone are in the
+    /// Expression of `t` and parameters that drives an input. If an expression has no parameters, its value is in the
     /// input's unit, with t in s; `5*above(t - 1)` is a step. Repeatable.
     #[arg(long, value_name = "NAME=EXPR")]
     pub input: Vec<String>,

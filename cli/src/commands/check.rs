@@ -1,4 +1,4 @@
-//! `eomgen check`: reads a specification, checks it, and says what it holds.
+//! `eomgen check`: diagnostics and a summary of a specification.
 
 use eomgen_codegen::variant::examine;
 use eomgen_model_spec::diagnostic::Diagnostics;
@@ -10,16 +10,15 @@ use crate::error::{Error, Result, say, say_json, warn_of};
 use crate::model::orders;
 use crate::output::SCHEMA;
 
-/// A model that passed, the orders of its fields, and warnings.
+/// Model without errors, orders of its fields, and warnings.
 struct Examined {
     model: Model,
     orders: Vec<usize>,
     warnings: Diagnostics,
 }
 
-/// Runs the command. A failed derivation is an error of the specification too.
 pub fn run(options: &Check) -> Result {
-    let examined = match examined(options) {
+    let examined = match examine_specification(options) {
         Ok(found) => found,
         Err(error) => {
             if let (true, Error::Specification(found)) = (options.output.json, &error) {
@@ -39,7 +38,7 @@ pub fn run(options: &Check) -> Result {
     say(&summary(&examined))
 }
 
-fn examined(options: &Check) -> Result<Examined> {
+fn examine_specification(options: &Check) -> Result<Examined> {
     let checked = eomgen_model_spec::load(&options.model.spec).map_err(Error::Specification)?;
     let orders = orders(&checked.model, options.model.order.text())?;
     examine(&checked.model, &orders).map_err(Error::Specification)?;

@@ -1,5 +1,4 @@
-//! `eomgen study-search`: the paper's claims at the assumed values and over plausible ranges
-//! of what the paper does not disclose.
+//! `eomgen paper claims`: the paper's claims at the assumed values and over plausible ranges of undisclosed parameters.
 
 use eomgen_paper::studies::StudyError;
 use eomgen_paper::studies::arm::{Arm, Shapes, Undisclosed};
@@ -15,23 +14,22 @@ use crate::error::{Error, Result, say, say_json};
 use crate::output::{file_place, write_file};
 use crate::progress::Bar;
 
-/// How many of the best sets are judged again with longer runs, and how many sets around the
-/// best of these; no more than there are sets.
+/// Number of the best sets that are evaluated again with longer runs, and number of sets near the best of these. Both
+/// are limited to the number of sets.
 const CONFIRMED: usize = 60;
 const NEIGHBOURS: usize = 32;
 
-/// A search of more sets would take months.
-const MOST_SETS: usize = 1_000_000;
+/// Maximum number of sets, a search of months.
+const MAX_SETS: usize = 1_000_000;
 
-/// Runs the command.
 pub fn run(options: &Claims) -> Result {
     let (out, sets) = (options.out.as_path(), options.sets);
     let (document, table) = (out.join("search.json"), out.join("search.csv"));
     file_place(&document)?;
     file_place(&table)?;
-    if !(1..=MOST_SETS).contains(&sets) {
+    if !(1..=MAX_SETS).contains(&sets) {
         return Err(Error::input(format!(
-            "--sets {sets}: expected 1 to {MOST_SETS} parameter sets"
+            "--sets {sets}: expected 1 to {MAX_SETS} parameter sets"
         )));
     }
     let shapes = match options.mode_shapes {

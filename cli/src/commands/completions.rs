@@ -1,11 +1,10 @@
-//! `eomgen completions`: what a shell needs to complete commands and options.
+//! `eomgen completions`: shell completions of commands and options.
 
 use clap::CommandFactory;
 
 use crate::arguments::{Arguments, Completions};
 use crate::error::{Result, say_bytes};
 
-/// Runs the command.
 pub fn run(options: &Completions) -> Result {
     let mut script = Vec::new();
     let mut program = Arguments::command();

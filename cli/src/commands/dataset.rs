@@ -1,4 +1,4 @@
-//! `eomgen dataset`: a dataset file for a record that has none.
+//! `eomgen dataset`: a proposed dataset file for a record.
 
 use std::path::{Path, PathBuf};
 
@@ -9,20 +9,19 @@ use crate::error::{Error, Result, say, say_bytes, say_json, warn};
 use crate::model::load;
 use crate::output::{SCHEMA, write_file};
 
-/// Runs the command.
 pub fn run(options: &Dataset) -> Result {
     let model = load(&options.spec)?.model;
     let name = name(options)?;
     let text = eomgen_records::proposed(&options.record, &name, &model).map_err(Error::records)?;
     if let Some(out) = &options.out {
         write_file(out, text.as_bytes())?;
-        // A guess may be wrong: report what `compare` would.
+        // Guesses may be wrong: report the errors that `compare` would report.
         match eomgen_records::read_dataset(out, &model) {
             Ok(dataset) => dataset
                 .notes
                 .iter()
                 .for_each(|n| warn(&format!("note: {n}"))),
-            Err(refusal) => warn(&format!("note: it cannot be used as it is: {refusal}")),
+            Err(refusal) => warn(&format!("note: the proposed file needs changes: {refusal}")),
         }
     }
     match (&options.out, options.output.json) {
@@ -35,14 +34,14 @@ pub fn run(options: &Dataset) -> Result {
     }
 }
 
-/// The record's path from the folder of the dataset file: where that is to be written, or beside
-/// the record.
+/// Returns the record's path relative to the folder of the dataset file, which is the record's folder without `--out`.
 fn name(options: &Dataset) -> Result<String> {
     let record = &options.record;
     let beside = record
         .file_name()
         .map(|name| name.to_string_lossy().into_owned());
-    let beside = beside.ok_or_else(|| Error::input("the record has no name; give a file"))?;
+    let beside =
+        beside.ok_or_else(|| Error::input("the record is not a file: give the path of a file"))?;
     let Some(out) = &options.out else {
         return Ok(beside);
     };

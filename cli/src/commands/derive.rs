@@ -7,7 +7,6 @@ use crate::arguments::{Derive, Format};
 use crate::error::{Error, Result, say, say_bytes};
 use crate::model::load_to_read;
 
-/// Runs the command.
 pub fn run(options: &Derive) -> Result {
     let compiled = load_to_read(&options.model.spec, options.model.order.text())?;
     let format = if options.output.json {

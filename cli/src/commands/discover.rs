@@ -1,4 +1,4 @@
-//! `eomgen compare` and `eomgen discover`: a model and its measurements.
+//! `eomgen compare` and `eomgen discover`.
 
 use std::path::Path;
 
@@ -8,7 +8,6 @@ use crate::arguments;
 use crate::discovery::{self, Task};
 use crate::error::{Result, say, say_json};
 
-/// Runs `compare`.
 pub fn compare(options: &arguments::Compare) -> Result {
     let task = Task {
         spec: &options.model.spec,
@@ -24,7 +23,6 @@ pub fn compare(options: &arguments::Compare) -> Result {
     )
 }
 
-/// Runs `discover`.
 pub fn discover(options: &arguments::Discover) -> Result {
     let task = Task {
         spec: &options.model.spec,
@@ -37,7 +35,7 @@ pub fn discover(options: &arguments::Discover) -> Result {
     print(options.output.json, &found, &options.out)
 }
 
-/// The verdict, the effects and the gap by channel.
+/// Prints the verdict, the effects and the residual of each channel.
 fn print(as_json: bool, result: &Value, out: &Path) -> Result {
     if as_json {
         return say_json(result);
@@ -48,7 +46,7 @@ fn print(as_json: bool, result: &Value, out: &Path) -> Result {
         result["verdict"].as_str().unwrap_or("")
     );
     text += &format!("  {}\n", result["summary"].as_str().unwrap_or(""));
-    // Where nothing has a name yet the place is what is known.
+    // Without a named effect, the location of the residual is the main result.
     if ["gap_found", "unexplained"].contains(&result["verdict"].as_str().unwrap_or("")) {
         text += &format!("  {}\n", result["where"].as_str().unwrap_or(""));
     }

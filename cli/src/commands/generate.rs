@@ -1,5 +1,4 @@
-//! `eomgen generate`: emitted source of one variant, with its certificate or a benchmark
-//! beside it.
+//! `eomgen generate`: the emitted source of a variant, its certificate and a benchmark.
 
 use std::path::Path;
 
@@ -18,24 +17,22 @@ use crate::error::{Error, Result, say, say_json, warn};
 use crate::model::{load, orders};
 use crate::output::{SCHEMA, write_file};
 
-/// The answer to `--check` for a single model.
 const CHECK_WITHOUT_ALL: &str = "`--check` compares the checked-in variants only, as `generate --all \
      --check`; nothing was written\n\nTo compare the files of one model, generate them into another \
      folder and run `diff -r` on both";
 
-/// Runs the command.
 pub fn run(options: &Generate) -> Result {
-    // clap drops `requires` where the required option conflicts with one that is given.
+    // clap ignores `requires` if the required option conflicts with a given one.
     if options.check && !options.all {
         return Err(Error::input(CHECK_WITHOUT_ALL));
     }
     match (&options.spec, &options.out) {
-        (Some(spec), Some(out)) => one(options, spec, out),
+        (Some(spec), Some(out)) => generate(options, spec, out),
         _ => checked_in::run(options.check, options.output.json),
     }
 }
 
-fn one(options: &Generate, spec: &Path, out: &Path) -> Result {
+fn generate(options: &Generate, spec: &Path, out: &Path) -> Result {
     let outputs = emission::outputs(options)?;
     let model = load(spec)?.model;
     let orders = orders(&model, options.order.text())?;
@@ -53,7 +50,7 @@ fn one(options: &Generate, spec: &Path, out: &Path) -> Result {
     }
     let first = &emitted[0].1;
     if options.with.contains(&Extra::Bench) {
-        files.extend(bench_files::leave(&model, &variant, &outputs, out)?);
+        files.extend(bench_files::write(&model, &variant, &outputs, out)?);
     }
     if let Some(certificate) = &certificate {
         let path = out.join("certificate.json");
@@ -82,11 +79,11 @@ fn one(options: &Generate, spec: &Path, out: &Path) -> Result {
             say(&format!("{file}\n"))?;
         }
     }
-    certificate.as_ref().map_or(Ok(()), passed)
+    certificate.as_ref().map_or(Ok(()), judge)
 }
 
-/// Ends with exit status 1 if a check failed or was not run.
-fn passed(certificate: &Certificate) -> Result {
+/// Fails with exit status 1 if a check failed or was not run.
+fn judge(certificate: &Certificate) -> Result {
     if certificate.passed {
         return Ok(());
     }

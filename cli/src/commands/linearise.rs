@@ -1,4 +1,4 @@
-//! `eomgen linearise`: the matrices A, B, C, D of a model about a state.
+//! `eomgen linearise`: the matrices A, B, C, D of a model at a state.
 
 use eomgen_compiled_model::CompiledModel;
 
@@ -8,7 +8,6 @@ use crate::linearisation::{arrays, document};
 use crate::operating_point::{is_equilibrium, model, point};
 use crate::output::Destination;
 
-/// Runs the command.
 pub fn run(options: &Linearise) -> Result {
     let destination = options
         .out

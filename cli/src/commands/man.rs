@@ -1,4 +1,4 @@
-//! `eomgen man`: a man page of the program and one of every command.
+//! `eomgen man`: man pages of the program and of every command.
 
 use clap::CommandFactory;
 use clap_mangen::Man as Page;
@@ -7,10 +7,9 @@ use crate::arguments::{Arguments, Man};
 use crate::error::{Error, Result, say};
 use crate::output::write_file;
 
-/// Runs the command.
 pub fn run(options: &Man) -> Result {
     let mut program = Arguments::command().disable_help_subcommand(true);
-    // Gives every command its whole name, as `eomgen-check`.
+    // Sets the full name of every command, such as `eomgen-check`.
     program.build();
     let commands: Vec<_> = program.get_subcommands().cloned().collect();
     let mut written = 0;

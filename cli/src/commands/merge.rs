@@ -1,4 +1,4 @@
-//! `eomgen merge`: the parts of a sweep to the final table and figures.
+//! `eomgen merge`: the final table and figures of a sweep.
 
 use eomgen_sweep::Folder;
 
@@ -6,7 +6,6 @@ use crate::arguments::Merge;
 use crate::error::{Error, Result, say, say_json};
 use crate::sweep_files::finish;
 
-/// Runs the command.
 pub fn run(options: &Merge) -> Result {
     let folder = Folder::existing(&options.dir).map_err(|error| Error::input(error.to_string()))?;
     let finished = finish(&folder)?;

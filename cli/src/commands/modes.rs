@@ -1,4 +1,4 @@
-//! `eomgen modes`: natural frequencies, damping and shapes of a model about a state.
+//! `eomgen modes`: natural frequencies, damping ratios and mode shapes at a state.
 
 use eomgen_analysis::constrained_modes::constrained_modes;
 use eomgen_analysis::natural_modes::NaturalMode;
@@ -12,7 +12,6 @@ use crate::operating_point::{head, is_equilibrium, model, named, point, shape_na
 use crate::output::Destination;
 use crate::regime::{Side, regime};
 
-/// Runs the command.
 pub fn run(options: &Modes) -> Result {
     let drawing = options.plot.as_deref();
     let drawing = drawing.map(|plot| Destination::of_figure(plot, None, options.output.json));
@@ -59,7 +58,7 @@ fn record(mode: &NaturalMode) -> Value {
     })
 }
 
-/// Where a piecewise model is linearised.
+/// Describes the regime of a piecewise model.
 fn sides(regime: &[Side]) -> String {
     match regime {
         [] => String::new(),
@@ -70,11 +69,11 @@ fn sides(regime: &[Side]) -> String {
     }
 }
 
-/// The coordinates of a mode that a table names.
-const NAMED: usize = 3;
+/// Number of coordinates per mode in the table.
+const LISTED: usize = 3;
 
-/// A smaller amplitude reads as 0.
-const SHOWN: f64 = 5e-5;
+/// Smallest listed amplitude; smaller ones would be printed as 0.
+const MIN_AMPLITUDE: f64 = 5e-5;
 
 fn table(compiled: &CompiledModel, modes: &[NaturalMode]) -> String {
     let mut text = "frequency, Hz   damping ratio   shape (its largest coordinates)\n".to_owned();
@@ -84,12 +83,12 @@ fn table(compiled: &CompiledModel, modes: &[NaturalMode]) -> String {
         parts.sort_by(|a, b| b.1.norm().total_cmp(&a.1.norm()));
         let parts = parts
             .iter()
-            .take(NAMED)
-            .filter(|(_, value)| value.norm() >= SHOWN);
+            .take(LISTED)
+            .filter(|(_, value)| value.norm() >= MIN_AMPLITUDE);
         let parts: Vec<String> = parts
             .map(|(name, value)| part(name, value.re, value.im))
             .collect();
-        // As it is printed, and then not as -0.
+        // Rounded as printed; adding 0.0 removes the sign of -0.
         let damping = (mode.damping() * 1e6).round() / 1e6 + 0.0;
         let frequency = frequency_in_words(mode.frequency());
         text += &format!("{frequency:<13}   {damping:<13.6}   {}\n", parts.join(", "));
@@ -97,7 +96,7 @@ fn table(compiled: &CompiledModel, modes: &[NaturalMode]) -> String {
     text
 }
 
-/// A frequency with as many digits as a column holds.
+/// Formats a frequency for its column.
 fn frequency_in_words(frequency: f64) -> String {
     match frequency == 0.0 || (1e-3..1e6).contains(&frequency) {
         true => format!("{frequency:.6}"),
@@ -105,7 +104,7 @@ fn frequency_in_words(frequency: f64) -> String {
     }
 }
 
-/// A coordinate's amplitude, with its phase where it is not in step with the largest.
+/// Formats an amplitude, with its phase unless it is in phase or antiphase with the largest.
 fn part(name: &str, real: f64, imaginary: f64) -> String {
     let (size, phase) = (
         real.hypot(imaginary),

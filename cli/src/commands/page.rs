@@ -1,4 +1,4 @@
-//! `eomgen page`: a page on which a model can be played with.
+//! `eomgen page`: an interactive simulation of a model as an HTML page.
 
 use serde_json::json;
 
@@ -10,7 +10,6 @@ use crate::output::{Destination, SCHEMA};
 use crate::page::playable;
 use crate::settings::stabilised;
 
-/// Runs the command.
 pub fn run(options: &Page) -> Result {
     let destination = Destination::of(&options.out, options.output.json)?;
     let model = load(&options.model.spec)?.model;

@@ -1,10 +1,9 @@
-//! `eomgen schema`: the language's JSON schema, for editors.
+//! `eomgen schema`: the JSON schema of specifications.
 
 use eomgen_model_spec::schema::SCHEMA;
 
 use crate::error::{Result, say_bytes};
 
-/// Runs the command.
 pub fn run() -> Result {
     say_bytes(SCHEMA.as_bytes())
 }

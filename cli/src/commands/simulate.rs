@@ -1,4 +1,4 @@
-//! `eomgen simulate`: a trajectory as a table, CSV or Parquet.
+//! `eomgen simulate`: a trajectory as CSV or Parquet.
 
 use eomgen_compiled_model::{DEFAULT_TOLERANCE, Motion, Request};
 use serde_json::json;
@@ -16,7 +16,6 @@ use crate::samples::{check_size, inputs, times};
 use crate::settings::{with_inputs, with_settings};
 use crate::table::Table;
 
-/// Runs the command.
 pub fn run(options: &Simulate) -> Result {
     let destination = Destination::of(&options.out, options.output.json)?;
     let figure = options
@@ -34,7 +33,9 @@ pub fn run(options: &Simulate) -> Result {
         warn("warning: --tolerance has no effect on the exact solver: only rounding limits it");
     }
     if options.integration.solver == Solver::Exact && options.integration.max_step.is_some() {
-        warn("warning: --max-step has no effect on the exact solver, which misses no input");
+        warn(
+            "warning: --max-step has no effect on the exact solver, which locates every change of an input",
+        );
     }
     let tolerance = options.integration.tolerance.unwrap_or(DEFAULT_TOLERANCE);
     let run = compiled.at_declared()?;
@@ -51,7 +52,7 @@ pub fn run(options: &Simulate) -> Result {
     };
     let motion = follow(&run, &request)?;
     warn_of_ranges(compiled.model(), &motion.trajectory, &inputs)?;
-    let audited = AuditResult::of(&run, &motion, tolerance)?;
+    let audited = AuditResult::new(&run, &motion, tolerance)?;
     audited.warn();
     let table = table(&run, &motion)?;
     destination.write(&table.encode(&options.out)?)?;
@@ -70,8 +71,8 @@ pub fn run(options: &Simulate) -> Result {
     }
 }
 
-/// Reports columns with numbers that are not finite. Returns whether the states and the energy are finite:
-/// observables may have places where they are undefined.
+/// Reports columns with numbers that are not finite. Returns whether the states and the energy are finite; observables
+/// may be undefined in some states.
 fn report_not_finite(table: &Table, states: &[String]) -> bool {
     let times = table.column("t").unwrap_or_default();
     let mut is_motion_finite = true;
@@ -88,7 +89,6 @@ fn report_not_finite(table: &Table, states: &[String]) -> bool {
     is_motion_finite
 }
 
-/// What is said at the end.
 fn summary(
     options: &Simulate,
     table: &Table,

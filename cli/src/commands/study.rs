@@ -1,5 +1,4 @@
-//! `eomgen study`: the paper's numerical studies, each a folder of data and figures with
-//! `study.json`, which says what they are and what was measured.
+//! `eomgen paper study`: the paper's numerical studies, each a folder of data and figures, described in `study.json`.
 
 use std::path::Path;
 use std::sync::Mutex;
@@ -13,7 +12,6 @@ use crate::output::{file_place, write_file};
 use crate::progress::Bar;
 use crate::table::Table;
 
-/// Runs the command.
 pub fn run(options: &Study) -> Result {
     let document_path = options.out.join("study.json");
     file_place(&document_path)?;
@@ -25,7 +23,7 @@ pub fn run(options: &Study) -> Result {
     };
     let bar = Mutex::new(Bar::new("simulating and measuring", 100.0, "%"));
     let found = make(&|share| {
-        // Another thread cannot have panicked; if it had, only the bar would stand still.
+        // A poisoned lock only stops the bar.
         if let Ok(bar) = bar.lock() {
             bar.set(100.0 * share);
         }
@@ -34,7 +32,7 @@ pub fn run(options: &Study) -> Result {
     let (study, arm) = found.map_err(|error: StudyError| Error::input(error.to_string()))?;
     let document = study.document(name, arm.model());
     write(&study, &options.out)?;
-    // Last, so that a folder with this file is whole.
+    // Written last: a folder with this file is complete.
     let text = format!("{document:#}\n");
     write_file(&document_path, text.as_bytes())?;
     match options.output.json {
@@ -54,7 +52,7 @@ fn write(study: &report::Study, out: &Path) -> Result {
     Ok(())
 }
 
-/// What was found, a line for each case, and where the rest is.
+/// Returns a line for each case and the names of the files.
 fn summary(study: &report::Study, out: &Path) -> String {
     let text = |case: &Value, name: &str| case[name].as_str().unwrap_or_default().to_owned();
     let mut lines: Vec<String> = study

@@ -1,4 +1,4 @@
-//! `eomgen sweep`: something measured over a grid or random samples of parameters, in parallel and in parts.
+//! `eomgen sweep`: measures over a grid or random samples of parameters, in parallel and in shards.
 
 use eomgen_sweep::{Folder, Shard};
 use serde_json::{Value, json};
@@ -13,7 +13,6 @@ use crate::settings::{borrowed, settings};
 use crate::sweep_files::finish;
 use crate::sweep_job::{job, measures, model, points, refused};
 
-/// Runs the command.
 pub fn run(options: &Sweep) -> Result {
     engines::check(options)?;
     let shard = options
@@ -44,13 +43,13 @@ pub fn run(options: &Sweep) -> Result {
     drop(bar);
     let counts = json!({ "schema": SCHEMA, "computed": done.computed, "resumed": done.found });
     let summary = format!(
-        "{} points computed, {} were there\n",
+        "{} points computed, {} resumed\n",
         done.computed, done.found
     );
     if !shard.is_whole() {
         let document = json!({ "shard": shard.to_string() });
         let hint = format!(
-            "{summary}shard {shard} is complete; after the others: eomgen merge {}\n",
+            "{summary}shard {shard} is complete; when all shards are: eomgen merge {}\n",
             options.out.display()
         );
         return end(options, counts, document, &hint);
@@ -64,7 +63,7 @@ pub fn run(options: &Sweep) -> Result {
     )
 }
 
-/// Says what was done.
+/// Prints the result.
 fn end(options: &Sweep, mut counts: Value, document: Value, text: &str) -> Result {
     if !options.output.json {
         return say(text);

@@ -1,31 +1,29 @@
-//! `eomgen tour`: the newcomer's walk through everything.
+//! `eomgen tour`: all steps on the paper's arm, with an HTML page.
 
 use serde_json::json;
 
 use crate::arguments::Tour;
 use crate::error::{Error, Result, say, say_bytes};
 use crate::output::SCHEMA;
-use crate::tour::{TourResult, walk};
+use crate::tour::{self, TourResult};
 
-/// Runs the command.
 pub fn run(options: &Tour) -> Result {
-    let walked = walk(&options.out)?;
-    let summary = summary(options.output.json, &walked);
+    let result = tour::run(&options.out)?;
+    let summary = summary(options.output.json, &result);
     match options.output.json {
         true => say_bytes(summary.as_bytes())?,
         false => say(&summary)?,
     }
-    if walked.certificate.passed {
+    if result.certificate.passed {
         Ok(())
     } else {
         Err(Error::Failed)
     }
 }
 
-/// What is said at the end.
-fn summary(json: bool, walked: &TourResult) -> String {
-    let (checks, switches) = (walked.certificate.checks.len(), walked.switches);
-    let (page, passed) = (walked.page.display(), walked.certificate.passed);
+fn summary(json: bool, result: &TourResult) -> String {
+    let (checks, switches) = (result.certificate.checks.len(), result.switches);
+    let (page, passed) = (result.page.display(), result.certificate.passed);
     if json {
         let document = json!({
             "schema": SCHEMA,

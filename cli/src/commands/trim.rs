@@ -1,4 +1,4 @@
-//! `eomgen trim`: an equilibrium of a model, and whether it is stable.
+//! `eomgen trim`: an equilibrium of a model and its stability.
 
 use eomgen_compiled_model::{CompiledModel, Equilibrium, EquilibriumRequest, Stability};
 use serde_json::{Value, json};
@@ -8,7 +8,6 @@ use crate::error::{Result, say_json};
 use crate::operating_point::{equilibrium, head, inputs, model, named, values};
 use crate::settings::borrowed;
 
-/// Runs the command.
 pub fn run(options: &Trim) -> Result {
     let compiled = model(
         &options.model.spec,

@@ -9,7 +9,6 @@ use crate::model::{load, orders};
 use crate::output::Destination;
 use crate::progress::Note;
 
-/// Runs the command.
 pub fn run(options: &Validate) -> Result {
     let out = options.out.as_deref();
     let destination = out

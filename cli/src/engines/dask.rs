@@ -1,4 +1,4 @@
-//! Dask: the Python package's `eomgen.dask` spreads the shards over a scheduler's workers.
+//! Dask: the Python module `eomgen.dask` distributes the shards to the workers of a scheduler.
 
 use std::process::{Command, Stdio};
 
@@ -9,7 +9,7 @@ use super::shards::Commands;
 use crate::arguments::Sweep;
 use crate::error::{Error, Result};
 
-/// Runs the sweep, and waits for it.
+/// Runs the sweep and waits for its end.
 pub fn run(options: &Sweep) -> Result<Submitted> {
     let commands = Commands::of(options)?;
     let scheduler = options
@@ -18,13 +18,13 @@ pub fn run(options: &Sweep) -> Result<Submitted> {
         .or_else(|| std::env::var("DASK_SCHEDULER_ADDRESS").ok());
     let scheduler = scheduler.ok_or_else(|| {
         Error::input(
-            "--engine dask: give --scheduler the address of its scheduler, such as tcp://node1:8786, or set \
+            "--engine dask: --scheduler is missing: the address of the scheduler, such as tcp://node1:8786; or set \
              DASK_SCHEDULER_ADDRESS",
         )
     })?;
     let count = commands.count.to_string();
     let threads = commands.threads.unwrap_or(1).to_string();
-    // What the module says goes to people, on stderr; stdout is this program's.
+    // Stdout is for the output of this program; messages of the module appear on stderr.
     let status = Command::new("python3")
         .args([
             "-m",
@@ -39,11 +39,7 @@ pub fn run(options: &Sweep) -> Result<Submitted> {
         .args(["--threads", &threads])
         .stdout(Stdio::null())
         .status()
-        .map_err(|error| {
-            Error::input(format!(
-                "--engine dask: python3 cannot be run here ({error})"
-            ))
-        })?;
+        .map_err(|error| Error::input(format!("--engine dask: cannot run python3 ({error})")))?;
     if status.success() {
         return Ok(Submitted {
             document: json!({ "engine": "dask", "shards": commands.count, "folder": options.out.display().to_string() }),
@@ -51,7 +47,7 @@ pub fn run(options: &Sweep) -> Result<Submitted> {
         });
     }
     Err(Error::input(
-        "--engine dask: the sweep was not run, or not to its end; the parts so far are there. It needs the Python \
-         package (pip install './python[dask]') for the python3 that is found first",
+        "--engine dask: the sweep did not finish; the same command resumes it. It needs the Python \
+         package (pip install './python[dask]') in the python3 that is first on the path",
     ))
 }

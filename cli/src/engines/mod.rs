@@ -1,7 +1,5 @@
-//! Sweeps on many machines: each shard is a run of this program with `--shard`, in one folder that all
-//! machines see, and `merge` comes last.
-//!
-//! `shards` has the command of a shard; `slurm` and `dask` have it run.
+//! Sweeps on several machines with a shared folder: each shard is a run of this program with `--shard`, followed by
+//! `merge`.
 
 mod dask;
 mod shards;
@@ -12,15 +10,13 @@ use serde_json::Value;
 use crate::arguments::{Engine, Sweep};
 use crate::error::{Error, Result};
 
-/// What was done, for programs and for people.
+/// Report on a submitted sweep, as JSON and as text.
 pub struct Submitted {
-    /// For programs.
     pub document: Value,
-    /// For people.
     pub text: String,
 }
 
-/// Has a sweep, whose folder is there, run by an engine.
+/// Submits a sweep, whose folder exists, to an engine.
 pub fn submit(engine: Engine, options: &Sweep) -> Result<Submitted> {
     match engine {
         Engine::Slurm => slurm::submit(options),
@@ -28,20 +24,18 @@ pub fn submit(engine: Engine, options: &Sweep) -> Result<Submitted> {
     }
 }
 
-/// Refuses options that do not go together, before anything is written.
+/// Rejects options that exclude each other, before any file is written.
 pub fn check(options: &Sweep) -> Result {
     let wrong = |message: &str| Err(Error::input(message.to_owned()));
     match options.engine {
-        Some(_) if options.shard.is_some() => {
-            wrong("--shard and --engine: an engine runs all shards; --shards says how many")
-        }
-        None if options.shards.is_some() => wrong(
-            "--shards goes with --engine: without one, --shard I/N computes one of N shards here",
+        Some(_) if options.shard.is_some() => wrong(
+            "--shard and --engine exclude each other: an engine runs all shards; --shards sets their number",
         ),
-        Some(Engine::Dask) => Ok(()),
-        _ if options.scheduler.is_some() => {
-            wrong("--scheduler goes with --engine dask: the address of its scheduler")
+        None if options.shards.is_some() => {
+            wrong("--shards needs --engine; --shard I/N computes one of N shards on this machine")
         }
+        Some(Engine::Dask) => Ok(()),
+        _ if options.scheduler.is_some() => wrong("--scheduler needs --engine dask"),
         _ => Ok(()),
     }
 }

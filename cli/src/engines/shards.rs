@@ -1,35 +1,36 @@
-//! The command of a shard, with paths that are the same from everywhere.
+//! Command line of a shard, with absolute paths.
 
 use std::path::{Path, PathBuf};
 
 use crate::arguments::Sweep;
 use crate::error::{Error, Result};
 
-/// Shards where nothing is said: enough that several machines end at about the same time.
-const DEFAULT: u16 = 16;
+/// Default number of shards, large enough that several machines finish at about the same time.
+const DEFAULT_SHARDS: u16 = 16;
 
-/// A sweep as commands of this program.
+/// Commands of this program that run a sweep.
 pub struct Commands {
-    /// How many shards there are.
+    /// Number of shards.
     pub count: u16,
-    /// The folder, absolute.
+    /// Absolute output folder.
     pub folder: PathBuf,
-    /// The same in scripts.
+    /// Output folder as text.
     pub out: String,
-    /// This program.
+    /// Path of this program.
     pub program: String,
-    /// The arguments of every shard, but `--shard` and `--threads`.
+    /// Arguments of every shard, except `--shard` and `--threads`.
     pub sweep: Vec<String>,
-    /// How many threads a shard has, if that was said.
+    /// Requested number of threads per shard.
     pub threads: Option<u16>,
 }
 
 impl Commands {
-    /// The commands of a sweep whose folder is there.
+    /// Creates the commands of a sweep whose folder exists.
     pub fn of(options: &Sweep) -> Result<Self> {
         let folder = absolute(&options.out)?;
-        let program = std::env::current_exe()
-            .map_err(|error| Error::input(format!("this program has no path: {error}")))?;
+        let program = std::env::current_exe().map_err(|error| {
+            Error::input(format!("cannot find the path of this program: {error}"))
+        })?;
         let mut sweep = vec!["sweep".to_owned(), text(&absolute(&options.model.spec)?)?];
         let mut add =
             |option: &str, value: &str| sweep.extend([option.to_owned(), value.to_owned()]);
@@ -59,7 +60,7 @@ impl Commands {
         let out = text(&folder)?;
         add("--out", &out);
         Ok(Self {
-            count: options.shards.unwrap_or(DEFAULT),
+            count: options.shards.unwrap_or(DEFAULT_SHARDS),
             folder,
             out,
             program: text(&program)?,
@@ -74,14 +75,14 @@ fn absolute(path: &Path) -> Result<PathBuf> {
         .map_err(|error| Error::file("find", path, &error))
 }
 
-/// A path in a text that a shell or another machine reads.
+/// Returns a path as text for scripts.
 fn text(path: &Path) -> Result<String> {
     let text = path
         .to_str()
         .filter(|text| !text.chars().any(char::is_control));
     text.map(str::to_owned).ok_or_else(|| {
         Error::input(format!(
-            "--engine: the path {path:?} has characters that are not for the scripts of a cluster; rename it"
+            "--engine: the path {path:?} has characters that scripts do not support; rename it"
         ))
     })
 }

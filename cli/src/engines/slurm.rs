@@ -1,7 +1,7 @@
-//! Slurm: the shards as an array job, and a job behind it that merges.
+//! Slurm: an array job runs the shards, and a dependent job merges them.
 //!
-//! An element whose program is killed begins it again, and finds the parts that are there; one whose
-//! node is lost is put into the queue again by Slurm. The merge waits until all have succeeded.
+//! An array task restarts a killed program, which resumes its shard. Slurm requeues tasks of a lost node. The merge
+//! waits until all tasks have succeeded.
 
 use std::path::Path;
 use std::process::Command;
@@ -14,10 +14,10 @@ use crate::arguments::Sweep;
 use crate::error::{Error, Result};
 use crate::output::write_file;
 
-/// How often an element begins a program that is killed.
+/// Maximum number of attempts of an array task to run a program that is killed.
 const ATTEMPTS: u8 = 5;
 
-/// Writes the scripts beside the parts, and submits them.
+/// Writes the scripts to the output folder and submits them.
 pub fn submit(options: &Sweep) -> Result<Submitted> {
     let commands = Commands::of(options)?;
     let folder = commands.folder.join("slurm");
@@ -45,14 +45,14 @@ pub fn submit(options: &Sweep) -> Result<Submitted> {
     Ok(Submitted {
         document: json!({ "engine": "slurm", "shards": count, "array_job": array, "merge_job": merge }),
         text: format!(
-            "array job {array} of {count} shards, and job {merge} that merges after it\n\
-             squeue -j {array},{merge} shows them, {}/shard_*.log what they say\n",
+            "array job {array} with {count} shards, then job {merge}, which merges them\n\
+             status: squeue -j {array},{merge}; output: {}/shard_*.log\n",
             folder.display()
         ),
     })
 }
 
-/// Submits a script; the number of its job.
+/// Submits a script and returns the number of its job.
 fn sbatch(folder: &Path, options: &[&str], script: &Path) -> Result<String> {
     let output = Command::new("sbatch")
         .args(["--parsable", "--job-name=eomgen_sweep"])
@@ -63,11 +63,11 @@ fn sbatch(folder: &Path, options: &[&str], script: &Path) -> Result<String> {
         .output()
         .map_err(|error| {
             Error::input(format!(
-                "--engine slurm: sbatch cannot be run here ({error}); it is there on machines that submit jobs to Slurm"
+                "--engine slurm: cannot run sbatch ({error}); run this command on a machine that submits jobs to Slurm"
             ))
         })?;
     let said = String::from_utf8_lossy(&output.stdout);
-    // With several clusters the name of one comes behind the number.
+    // With several clusters, the cluster's name follows the number.
     let job = said.trim().split(';').next().unwrap_or_default();
     if output.status.success() && !job.is_empty() && job.bytes().all(|byte| byte.is_ascii_digit()) {
         return Ok(job.to_owned());
@@ -88,8 +88,7 @@ fn shards_script(commands: &Commands) -> String {
     };
     format!(
         "#!/bin/sh\n\
-         # A shard of a sweep: an element of an array job. A program that is killed is begun again, and\n\
-         # finds the parts that it had left.\n\
+         # Runs a shard of a sweep as an array task. A killed program is restarted and resumes its shard.\n\
          attempt=1\n\
          until {} --threads {threads} --shard \"$SLURM_ARRAY_TASK_ID/{}\"; do\n    \
              status=$?\n    \
@@ -103,13 +102,13 @@ fn shards_script(commands: &Commands) -> String {
 
 fn merge_script(commands: &Commands) -> String {
     format!(
-        "#!/bin/sh\n# The parts of a sweep to its table and pictures.\nexec {} merge {}\n",
+        "#!/bin/sh\n# Merges the shards of a sweep.\nexec {} merge {}\n",
         quoted(&commands.program),
         quoted(&commands.out)
     )
 }
 
-/// A word that a shell leaves as it is.
+/// Quotes a word for a shell.
 fn quoted(word: &str) -> String {
     format!("'{}'", word.replace('\'', r"'\''"))
 }
@@ -121,7 +120,7 @@ mod tests {
     use super::quoted;
 
     #[test]
-    fn a_shell_gives_quoted_words_back() {
+    fn quoted_words_pass_through_a_shell_unchanged() {
         for word in ["a b", "it's", "$HOME `ls` \"x\" \\", "", "''", "*;&|<>"] {
             let script = format!("printf %s {}", quoted(word));
             let output = Command::new("sh").args(["-c", &script]).output();

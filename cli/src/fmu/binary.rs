@@ -1,4 +1,4 @@
-//! The shared library of a unit, for the machine that this runs on.
+//! Shared library of a unit for this machine.
 
 use std::env::consts::{ARCH, DLL_SUFFIX, OS};
 use std::process::{Command, Stdio};
@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 use super::sources::MAIN;
 use super::version::Version;
 
-/// The folder that the standard has for binaries of this machine, if it has one.
+/// Returns the standard's folder for binaries of this machine, if defined.
 fn folder(version: Version) -> Option<String> {
     let system = match OS {
         "linux" => "linux",
@@ -23,18 +23,19 @@ fn folder(version: Version) -> Option<String> {
     }
 }
 
-/// The library's place in the unit and its contents; or why there is none.
+/// Compiles the library. Returns its path in the unit and its contents, or the reason for a failure.
 pub fn compile(
     name: &str,
     sources: &[(String, String)],
     version: Version,
 ) -> Result<(String, Vec<u8>), String> {
-    let folder = folder(version).ok_or("the standard has no name for this kind of machine")?;
+    let folder =
+        folder(version).ok_or("the standard defines no folder for this kind of machine")?;
     let place = tempfile::tempdir().map_err(|error| error.to_string())?;
     for (file, text) in sources {
         std::fs::write(place.path().join(file), text).map_err(|error| error.to_string())?;
     }
-    // From within the folder, whose name would else be in the library.
+    // Compiled from within the folder, whose name would otherwise be part of the library.
     let library = format!("{name}{DLL_SUFFIX}");
     let output = Command::new("cc")
         .args(["-std=c99", "-O2", "-shared", "-fPIC", "-fvisibility=hidden"])
@@ -42,7 +43,7 @@ pub fn compile(
         .current_dir(place.path())
         .stdin(Stdio::null())
         .output()
-        .map_err(|error| format!("the C compiler cc cannot be run: {error}"))?;
+        .map_err(|error| format!("cannot run the C compiler cc: {error}"))?;
     if !output.status.success() {
         let said = String::from_utf8_lossy(&output.stderr);
         return Err(format!("the C compiler cc failed:\n{}", said.trim_end()));

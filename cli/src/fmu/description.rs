@@ -1,4 +1,4 @@
-//! What descriptions of both versions have alike.
+//! Common parts of the descriptions of both versions.
 
 use std::io::{Cursor, Error as Failure};
 
@@ -8,23 +8,20 @@ use quick_xml::events::{BytesDecl, Event};
 use super::variables::{Kind, Unit, Variable};
 use crate::error::{Error, Result};
 
-/// Where XML is written to.
 pub type Xml = Writer<Cursor<Vec<u8>>>;
 
-/// What writing comes to.
 pub type Written = std::result::Result<(), Failure>;
 
-/// An attribute.
 pub type Attribute = (&'static str, String);
 
-/// The tool that units are made with.
+/// Name of the generation tool.
 pub const TOOL: &str = concat!("eomgen ", env!("CARGO_PKG_VERSION"));
 
-/// How the binary solves the equations.
+/// Description of the solver in the binary.
 const SOLVER: &str = "Co-simulation solves the equations by the embedded Runge-Kutta method of orders 5 and 4 by \
     Dormand and Prince, with error control and located switches.";
 
-/// A whole document.
+/// Writes a document.
 pub fn document(write: impl FnOnce(&mut Xml) -> Written) -> Result<Vec<u8>> {
     let mut xml = Writer::new_with_indent(Cursor::new(Vec::new()), b' ', 2);
     let declaration = BytesDecl::new("1.0", Some("UTF-8"), None);
@@ -36,7 +33,7 @@ pub fn document(write: impl FnOnce(&mut Xml) -> Written) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// An element with others in it.
+/// Writes an element with children.
 pub fn element(
     xml: &mut Xml,
     name: &str,
@@ -49,7 +46,7 @@ pub fn element(
     Ok(())
 }
 
-/// An element by itself.
+/// Writes an element without children.
 pub fn empty(xml: &mut Xml, name: &str, attributes: &[Attribute]) -> Written {
     xml.create_element(name)
         .with_attributes(pairs(attributes))
@@ -63,7 +60,7 @@ fn pairs(attributes: &[Attribute]) -> impl Iterator<Item = (&str, &str)> {
         .map(|(name, value)| (*name, value.as_str()))
 }
 
-/// Text for people, without the characters that XML has no way to write.
+/// Removes characters that XML does not support.
 pub fn clean(text: &str) -> String {
     let allowed = |c: char| {
         if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') {
@@ -75,24 +72,21 @@ pub fn clean(text: &str) -> String {
     text.chars().map(allowed).collect()
 }
 
-/// A number.
 pub fn number(value: f64) -> String {
     format!("{value:?}")
 }
 
-/// Whole numbers in an attribute.
 pub fn list(numbers: impl Iterator<Item = usize>) -> String {
     let numbers: Vec<String> = numbers.map(|number| number.to_string()).collect();
     numbers.join(" ")
 }
 
-/// What the whole is, and how it is solved.
+/// Returns the title and the description of the solver.
 pub fn summary(unit: &Unit) -> String {
     let title = clean(&unit.title);
     format!("{}. {SOLVER}", title.trim_end_matches('.'))
 }
 
-/// The units of measurement.
 pub fn unit_definitions(xml: &mut Xml, unit: &Unit) -> Written {
     element(xml, "UnitDefinitions", &[], |xml| {
         for (name, definition) in &unit.units.definitions {
@@ -115,7 +109,6 @@ pub fn unit_definitions(xml: &mut Xml, unit: &Unit) -> Written {
     })
 }
 
-/// The category of messages.
 pub fn log_categories(xml: &mut Xml) -> Written {
     element(xml, "LogCategories", &[], |xml| {
         let doc = "Why a call was refused".to_owned();
@@ -124,7 +117,7 @@ pub fn log_categories(xml: &mut Xml) -> Written {
     })
 }
 
-/// What a simulation is by default.
+/// Writes the default experiment.
 pub fn default_experiment(xml: &mut Xml) -> Written {
     let attributes = [
         ("startTime", number(0.0)),
@@ -134,7 +127,7 @@ pub fn default_experiment(xml: &mut Xml) -> Written {
     empty(xml, "DefaultExperiment", &attributes)
 }
 
-/// Causality, variability and initial of a variable, as both versions have them.
+/// Returns causality, variability and `initial` of a variable.
 pub fn role(kind: Kind) -> Vec<Attribute> {
     let (causality, variability, initial) = match kind {
         Kind::Time => ("independent", "continuous", None),
@@ -152,7 +145,6 @@ pub fn role(kind: Kind) -> Vec<Attribute> {
     attributes
 }
 
-/// Name, value reference and description of a variable.
 pub fn identity(reference: usize, variable: &Variable) -> Vec<Attribute> {
     let mut attributes = vec![
         ("name", variable.name.clone()),
@@ -164,7 +156,6 @@ pub fn identity(reference: usize, variable: &Variable) -> Vec<Attribute> {
     attributes
 }
 
-/// Unit, bounds and start of a variable.
 pub fn quantity(variable: &Variable) -> Vec<Attribute> {
     let mut attributes = Vec::new();
     if let Some(measure) = &variable.measure {

@@ -1,5 +1,4 @@
-//! The description of a unit in version 2.0. Variables refer to each other by their place in the
-//! list, counted from 1.
+//! Description of a unit in version 2.0. Variables refer to each other by their index in the list, from 1.
 
 use super::description::{
     Attribute, Written, Xml, clean, default_experiment, document, element, empty, identity, list,
@@ -9,7 +8,7 @@ use super::sources::MAIN;
 use super::variables::{Kind, Unit};
 use crate::error::Result;
 
-/// `modelDescription.xml`.
+/// Returns `modelDescription.xml`.
 pub fn description(unit: &Unit) -> Result<Vec<u8>> {
     let indicators = unit.of_kind(|kind| kind == Kind::Indicator).count();
     let root = [

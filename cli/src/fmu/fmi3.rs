@@ -1,5 +1,5 @@
-//! The description of a unit in version 3.0, and how its sources are compiled. Variables refer to
-//! each other by value references.
+//! Description of a unit in version 3.0, and of the compilation of its sources. Variables refer to each other by value
+//! references.
 
 use super::description::{
     Attribute, Written, Xml, clean, default_experiment, document, element, empty, identity, list,
@@ -9,7 +9,7 @@ use super::sources::MAIN;
 use super::variables::{Kind, Unit};
 use crate::error::Result;
 
-/// `modelDescription.xml`.
+/// Returns `modelDescription.xml`.
 pub fn description(unit: &Unit) -> Result<Vec<u8>> {
     let root = [
         ("fmiVersion", "3.0".to_owned()),
@@ -33,7 +33,7 @@ pub fn description(unit: &Unit) -> Result<Vec<u8>> {
     })
 }
 
-/// `sources/buildDescription.xml`.
+/// Returns `sources/buildDescription.xml`.
 pub fn build_description(unit: &Unit) -> Result<Vec<u8>> {
     document(|xml| {
         let root = [("fmiVersion", "3.0".to_owned())];
@@ -49,8 +49,8 @@ pub fn build_description(unit: &Unit) -> Result<Vec<u8>> {
     })
 }
 
-/// Adjoint derivatives are given to who asks, and not announced: CasADi 3.8 would take its Jacobians
-/// from them, and puts rows in the wrong places.
+/// Adjoint derivatives are implemented but not announced: CasADi 3.8 would compute its Jacobians from them, with rows
+/// in the wrong order.
 fn interface(xml: &mut Xml, unit: &Unit, name: &str, more: &[Attribute]) -> Written {
     let mut attributes = vec![("modelIdentifier", unit.name.clone())];
     attributes.extend_from_slice(more);
@@ -96,7 +96,7 @@ fn structure(xml: &mut Xml, unit: &Unit) -> Written {
 
 fn listed(xml: &mut Xml, unit: &Unit, name: &str, is: impl Fn(Kind) -> bool) -> Written {
     for (reference, _) in unit.of_kind(is) {
-        // On tunable parameters at any time: importers take what is not listed for no dependence.
+        // Includes tunable parameters, because importers assume independence of variables that are not listed.
         let dependencies = unit.dependencies(reference, true);
         let attributes = [
             ("valueReference", reference.to_string()),

@@ -1,10 +1,9 @@
-//! Functional mock-up units: the emitted C with the functions of the standard around it, the
-//! description of its variables, and a binary, packed into one file.
+//! Functional mock-up units: an archive of the emitted C with the functions of the standard, the description of its
+//! variables, and a binary.
 //!
-//! `variables` lists what a unit has, by name and value reference; `units` are those of measurement;
-//! `description` (with `fmi2` and `fmi3`, which differ in how they say it) writes both as XML;
-//! `sources` lays out the C; `binary` compiles it where there is a compiler; [`crate::archive`] packs all.
-//! The C that every unit has alike is in the folder `runtime`.
+//! `variables` lists the variables of a unit, `units` their units of measurement; `description`, `fmi2` and `fmi3` write
+//! both as XML; `sources` arranges the C; `binary` compiles it; [`crate::archive`] packs all files. The folder `runtime`
+//! contains the C that is common to all units.
 
 mod binary;
 mod description;
@@ -24,13 +23,13 @@ use crate::error::{Result, warn};
 
 pub use version::Version;
 
-/// What a model has to be derived with.
+/// Outputs that a unit needs.
 pub const OUTPUTS: [Output; 3] = [Output::GuardRates, Output::Jacobians, Output::Regimes];
 
-/// The name and the bytes of a unit.
+/// Returns name and bytes of a unit.
 ///
 /// # Errors
-/// If the model's names are no names in C, or its initial state is none.
+/// Names that C does not allow, or an invalid initial state.
 pub fn file(model: &Model, variant: &Variant, version: Version) -> Result<(String, Vec<u8>)> {
     let program = &variant.program;
     let unit = variables::Unit::of(model, variant)?;
@@ -49,7 +48,7 @@ pub fn file(model: &Model, variant: &Variant, version: Version) -> Result<(Strin
     match binary::compile(&program.name, &sources, version) {
         Ok((name, contents)) => files.push((name, contents)),
         Err(reason) => warn(&format!(
-            "warning: {}.fmu holds sources and no binary: {reason}",
+            "warning: {}.fmu contains sources but no binary: {reason}",
             program.name
         )),
     }

@@ -1,4 +1,4 @@
-//! The C of a unit: the emitted source, a table of numbers, and what every unit has alike.
+//! C sources of a unit: emitted source, tables of numbers, and the common runtime.
 
 use eomgen_codegen::c;
 use eomgen_codegen::program::Program;
@@ -7,14 +7,13 @@ use super::variables::{Kind, Unit};
 use super::version::Version;
 use crate::error::{Error, Result};
 
-/// The one file that is compiled; it includes the others, so that nothing but the functions of the
-/// standard is seen from outside.
+/// Compiled file. It includes the others, so that only the functions of the standard are exported.
 pub const MAIN: &str = "fmu.c";
 
-/// The tolerance of the solver where the caller has none.
+/// Default tolerance of the solver.
 pub const TOLERANCE: f64 = 1e-8;
 
-/// What every unit has alike, in the order of inclusion.
+/// Common runtime, in the order of inclusion.
 const RUNTIME: [(&str, &str); 8] = [
     ("instance.h", include_str!("runtime/instance.h")),
     ("evaluation.c", include_str!("runtime/evaluation.c")),
@@ -26,7 +25,6 @@ const RUNTIME: [(&str, &str); 8] = [
     ("derivatives.c", include_str!("runtime/derivatives.c")),
 ];
 
-/// The files by name.
 pub fn files(program: &Program, unit: &Unit, version: Version) -> Result<Vec<(String, String)>> {
     let c::Files { source, header } =
         c::emit(program).map_err(|error| Error::input(error.to_string()))?;
@@ -46,7 +44,7 @@ pub fn files(program: &Program, unit: &Unit, version: Version) -> Result<Vec<(St
     Ok(files)
 }
 
-/// The file that includes all others, with what the runtime has to know of this model.
+/// Returns the file that includes all others, with the model's constants for the runtime.
 fn main(unit: &Unit, runtime: &[(&str, &str)]) -> String {
     let name = &unit.name;
     let numbers = |kind: Kind, value: &dyn Fn(&super::variables::Variable) -> f64| {
@@ -55,7 +53,7 @@ fn main(unit: &Unit, runtime: &[(&str, &str)]) -> String {
             .map(|(_, variable)| format!("{:?}", value(variable)))
             .collect();
         if numbers.is_empty() {
-            // C has no array without elements.
+            // C has no empty arrays.
             numbers.push("0.0".to_owned());
         }
         let lines: Vec<String> = numbers.chunks(6).map(|line| line.join(", ")).collect();

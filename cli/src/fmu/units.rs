@@ -1,41 +1,39 @@
-//! Units of measurement: numbers are in SI, and shown in the unit that the specification declares.
+//! Units of measurement. Numbers are in SI; the declared unit is the display unit.
 
 use std::collections::BTreeMap;
 
 use eomgen_model_spec::dimension::Dimension;
 use eomgen_model_spec::unit::Unit;
 
-/// The base units by their names in a description, in the order of a dimension's exponents.
+/// Names of the base units in a description, in the order of a dimension's exponents.
 const BASE: [&str; 7] = ["kg", "m", "s", "A", "K", "mol", "cd"];
 
-/// How a variable's numbers are measured.
+/// Unit of a variable.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Measure {
-    /// The coherent SI unit.
+    /// Coherent SI unit.
     pub unit: String,
-    /// The unit that it is shown in, if another.
+    /// Display unit, if different.
     pub shown: Option<String>,
 }
 
-/// An SI unit: its base units, if their exponents are whole numbers, and the units it is shown in
-/// with the number of each in one of it.
+/// SI unit: base units, if their exponents are whole numbers, and display units with their factors.
 #[derive(Clone, Debug, Default)]
 pub struct Definition {
     /// Exponents by base unit.
     pub base: Option<Vec<(&'static str, i32)>>,
-    /// Factors by name.
+    /// Factors of display units, by name.
     pub shown: BTreeMap<String, f64>,
 }
 
-/// All units of a description, by name.
+/// Units of a description, by name.
 #[derive(Clone, Debug, Default)]
 pub struct Units {
-    /// Definitions.
     pub definitions: BTreeMap<String, Definition>,
 }
 
 impl Units {
-    /// How numbers declared in `unit` are measured.
+    /// Registers a declared unit.
     pub fn measure(&mut self, unit: &Unit) -> Measure {
         if unit.is_coherent() {
             let name = unit.to_string();
@@ -58,7 +56,7 @@ impl Units {
         }
     }
 
-    /// How the rate of what is measured in `unit` is measured, `times` times differentiated.
+    /// Registers the unit of the derivative of order `times` of a quantity in `unit`.
     pub fn rate(&mut self, unit: &Unit, times: u8) -> Option<Measure> {
         let mut dimension = unit.dimension;
         for _ in 0..times {
@@ -88,7 +86,7 @@ impl Units {
     }
 }
 
-/// Exponents by base unit. Radians, which have no dimension, are told by the unit's name.
+/// Returns exponents by base unit. Radians have no dimension and are recognised by the unit's name.
 fn base(name: &str, dimension: Dimension) -> Option<Vec<(&'static str, i32)>> {
     let exponents = dimension.exponents();
     if !exponents.iter().all(|exponent| exponent.is_integer()) {

@@ -1,5 +1,5 @@
-//! The variables of a unit, in the order of their value references: the time, the state, its rates,
-//! inputs, parameters, observables, event indicators.
+//! Variables of a unit, in the order of their value references: time, state, rates, inputs, parameters, observables,
+//! event indicators.
 
 use std::collections::HashSet;
 
@@ -11,63 +11,62 @@ use eomgen_model_spec::unit::Unit as Measurement;
 use super::units::{Measure, Units};
 use crate::error::{Error, Result};
 
-/// What a variable is.
+/// Kind of a variable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// The independent variable.
+    /// Independent variable.
     Time,
-    /// A number of the state.
+    /// State.
     State,
-    /// The derivative of the state with this value reference.
+    /// Derivative of the state with this value reference.
     Rate(usize),
-    /// An input.
+    /// Input.
     Input,
-    /// A tunable parameter.
+    /// Tunable parameter.
     Parameter,
-    /// An observable.
+    /// Observable.
     Observable,
-    /// A switching surface.
+    /// Switching function.
     Indicator,
 }
 
-/// A variable; its value reference is its place.
+/// Variable; its index is its value reference.
 #[derive(Clone, Debug)]
 pub struct Variable {
-    /// A name that no other has.
+    /// Unique name.
     pub name: String,
-    /// What it is.
     pub kind: Kind,
-    /// The same for people.
+    /// Description.
     pub doc: String,
-    /// How it is measured, if that is known.
+    /// Unit, if known.
     pub measure: Option<Measure>,
-    /// Where it starts, in SI.
+    /// Initial value, in SI.
     pub start: Option<f64>,
-    /// The smallest admissible value, in SI.
+    /// Minimum, in SI.
     pub min: Option<f64>,
-    /// The largest.
+    /// Maximum, in SI.
     pub max: Option<f64>,
 }
 
-/// What is said of a unit.
+/// Content of a unit's description.
 #[derive(Clone, Debug)]
 pub struct Unit {
-    /// The model's name.
+    /// Name of the model.
     pub name: String,
-    /// One line for people.
+    /// Title of the model.
     pub title: String,
-    /// By which a description and its binary know each other.
+    /// Token that links a description to its binary.
     pub token: String,
-    /// All variables, in the order of their value references.
+    /// Variables, in the order of their value references.
     pub variables: Vec<Variable>,
-    /// All units of measurement.
+    /// Units of measurement.
     pub units: Units,
-    /// Whether the equations know the time.
+    /// Whether the equations depend on time.
     depends_on_time: bool,
 }
 
 impl Unit {
-    /// The unit of a variant.
+    /// Creates the description of a variant.
     pub fn of(model: &Model, variant: &Variant) -> Result<Self> {
         let program = &variant.program;
         let orders: Vec<usize> = program.fields.iter().map(|field| field.order).collect();
@@ -116,8 +115,8 @@ impl Unit {
         })
     }
 
-    /// What a variable is computed from, by value references, with parameters or without them. Where a rate's derivative is zero it may still switch, so that all of the state
-    /// stands here and not the nonzeros of a Jacobian.
+    /// Returns the value references that a variable depends on, with or without parameters. It lists the whole state,
+    /// because a rate may switch with a state although its derivative by it is zero.
     pub fn dependencies(&self, reference: usize, with_parameters: bool) -> Vec<usize> {
         let from_one = match self.variables[reference].kind {
             Kind::State => Some(reference),
@@ -136,20 +135,20 @@ impl Unit {
         known.map(|(reference, _)| reference).collect()
     }
 
-    /// The state that is the rate of another, which is a coordinate.
+    /// Returns the state that is the rate of a coordinate.
     fn velocity(&self, state: usize) -> Option<usize> {
         let states = self.of_kind(|kind| kind == Kind::State).count();
         (state <= states / 2).then_some(state + states / 2)
     }
 
-    /// Variables of a kind, with their value references.
+    /// Returns the variables of a kind, with their value references.
     pub fn of_kind(&self, is: impl Fn(Kind) -> bool) -> impl Iterator<Item = (usize, &Variable)> {
         let all = self.variables.iter().enumerate();
         all.filter(move |(_, variable)| is(variable.kind))
     }
 }
 
-/// Variables as they are collected.
+/// List of variables under construction.
 #[derive(Default)]
 struct List {
     variables: Vec<Variable>,
@@ -191,8 +190,7 @@ impl List {
         &mut self.variables[last]
     }
 
-    /// The name, or, where a variable before has it, the name behind what it is. A specification
-    /// has no name with a point, so that this one is free.
+    /// Returns a unique name. A name in use gets its kind and a point as prefix; names in a specification have no point.
     fn free(&self, name: &str, kind: Kind) -> String {
         let group = match kind {
             Kind::Time | Kind::State | Kind::Rate(_) => "state",
@@ -208,9 +206,8 @@ impl List {
         }
     }
 
-    /// The state and its derivatives.
     fn state(&mut self, model: &Model, names: &[String], initial: &[f64], orders: &[usize]) {
-        // What each is, its unit, and whether it is a rate of that.
+        // Description, unit, and whether it is a rate in that unit per second.
         let mut rows: Vec<(String, &Measurement, bool)> = Vec::new();
         for coordinate in &model.coordinates {
             rows.push((coordinate.doc.clone(), &coordinate.unit, false));

@@ -1,6 +1,6 @@
-//! The versions of the standard.
+//! Versions of the standard.
 
-/// A version of the Functional Mock-up Interface.
+/// Version of the Functional Mock-up Interface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Version {
     /// 2.0

@@ -1,11 +1,8 @@
-//! The newcomer's page: one HTML document that walks from a specification to its equations,
-//! the emitted source, the certificate, a simulation and what is found in records. Only how these are shown; what they
-//! say is handed in.
+//! HTML pages. `play` is the interactive page of a model. [`Tour`] is the page of the tour: specification, equations,
+//! emitted source, certificate, simulation and discovery.
 //!
-//! `play` is another page, on which one model can be played with.
-//!
-//! The tour's page refers to nothing outside itself and has no script but that of the report of the search, in
-//! a frame of its own; nothing in a specification becomes markup.
+//! The page of the tour is self-contained. Its only script is that of the discovery's report, in a separate frame. Text of
+//! a specification is escaped.
 
 mod play;
 mod steps;
@@ -19,111 +16,91 @@ use eomgen_codegen::report::Report;
 use eomgen_page::{Figure, document, equations};
 use maud::{Markup, html};
 
-/// Everything on the page.
+/// Content of the tour's page.
 #[derive(Clone, Debug)]
 pub struct Tour<'a> {
-    /// The model's title.
+    /// Title of the model.
     pub title: &'a str,
     /// Name and version of the program.
     pub generated_by: &'a str,
-    /// What was checked.
     pub specification: Specification<'a>,
-    /// What was derived from it.
     pub equations: &'a Report,
-    /// What was emitted.
     pub source: Source<'a>,
-    /// How it was validated.
     pub checks: Vec<CheckRow<'a>>,
-    /// What was simulated.
     pub simulation: Simulation<'a>,
-    /// What was hidden, and found.
     pub hidden: Hidden<'a>,
-    /// What took how long, in order.
+    /// Durations of the steps, in order.
     pub durations: Vec<StepDuration<'a>>,
-    /// What to try next.
+    /// Suggested commands.
     pub next: Vec<NextCommand<'a>>,
 }
 
-/// A checked specification.
 #[derive(Clone, Debug)]
 pub struct Specification<'a> {
-    /// Where it is, as the user would write it.
+    /// Path of the file.
     pub path: &'a str,
-    /// The whole file.
     pub text: &'a str,
-    /// The diagnostics as the terminal shows them, without colours; empty if there are none.
+    /// Rendered diagnostics, without colours.
     pub warnings: Vec<&'a str>,
 }
 
-/// An emitted model.
 #[derive(Clone, Debug)]
 pub struct Source<'a> {
-    /// Where it was written.
+    /// Path of the file.
     pub path: &'a str,
-    /// The whole file, as formatted by the emitter.
     pub text: &'a str,
 }
 
-/// One line of the certificate.
+/// Check of the certificate.
 #[derive(Clone, Debug)]
 pub struct CheckRow<'a> {
-    /// What was checked.
     pub name: &'a str,
-    /// The worst deviation, if there is one.
+    /// Largest deviation, if any.
     pub value: Option<f64>,
-    /// The largest deviation that passes.
     pub tolerance: f64,
-    /// Whether the check was made and passed.
     pub passed: bool,
-    /// Whether it could not be made.
     pub skipped: bool,
-    /// Where the worst was found, or why it was skipped.
+    /// Place of the largest deviation, or the reason for skipping.
     pub detail: &'a str,
 }
 
-/// What was simulated and how it looks.
 #[derive(Clone, Debug)]
 pub struct Simulation<'a> {
-    /// A sentence on what was simulated: span, solver, samples, switches.
+    /// Sentence about time span, solver, samples and switches.
     pub summary: &'a str,
-    /// Where the samples are.
+    /// Path of the samples.
     pub path: &'a str,
-    /// The figures in order.
     pub figures: Vec<Figure<'a>>,
 }
 
-/// Something hidden in a machine and found from its records.
+/// Discovery of a hidden effect.
 #[derive(Clone, Debug)]
 pub struct Hidden<'a> {
-    /// What was hidden and what was found, in sentences.
+    /// Sentences about the hidden effect and the result.
     pub summary: &'a str,
-    /// The folder of the records and results.
+    /// Folder of the records and results.
     pub path: &'a str,
-    /// The specification with what was found.
+    /// Extended specification.
     pub extended: &'a str,
-    /// The pages of the comparison and of the search, complete HTML documents.
+    /// Reports of comparison and discovery, complete HTML documents.
     pub reports: [&'a str; 2],
 }
 
-/// How long a step took.
 #[derive(Clone, Debug)]
 pub struct StepDuration<'a> {
-    /// What was done.
     pub step: &'a str,
     /// Wall-clock time, s.
     pub seconds: f64,
 }
 
-/// A command with what it does.
+/// Suggested command.
 #[derive(Clone, Debug)]
 pub struct NextCommand<'a> {
-    /// The command line.
     pub command: &'a str,
-    /// What it does.
-    pub does: &'a str,
+    pub purpose: &'a str,
 }
 
-/// A step of the walk: where it can be linked to, its heading, its content.
+/// Section of the page.
 struct Step {
     anchor: &'static str,
     heading: &'static str,
@@ -131,15 +108,15 @@ struct Step {
 }
 
 impl Tour<'_> {
-    /// The page, a complete HTML document.
+    /// Renders a complete HTML document.
     pub fn render(&self) -> String {
         let steps = self.steps();
         let body = html! {
             header {
                 h1 { (self.title) }
                 p.lead {
-                    "From a Lagrangian written down once to equations of motion that run: this page "
-                    "shows what happened on the way, step by step."
+                    "From the Lagrangian in one file to a running simulation: this page shows the result "
+                    "of each step."
                 }
                 nav { ol {
                     @for step in &steps { li { a href={ "#" (step.anchor) } { (step.heading) } } }
@@ -167,36 +144,28 @@ impl Tour<'_> {
         [
             step(
                 "specification",
-                "The specification is checked",
+                "Checked specification",
                 steps::specification(&self.specification),
             ),
-            step(
-                "equations",
-                "The equations are derived",
-                equations(self.equations),
-            ),
-            step("source", "Rust is emitted", steps::source(&self.source)),
+            step("equations", "Derived equations", equations(self.equations)),
+            step("source", "Emitted Rust", steps::source(&self.source)),
             step(
                 "certificate",
-                "The model is validated",
+                "Validation",
                 steps::certificate(&self.checks),
             ),
             step(
                 "simulation",
-                "The motion is simulated",
+                "Simulation",
                 steps::simulation(&self.simulation),
             ),
             step(
                 "hidden",
-                "What a model lacks is found",
+                "Discovery of a missing effect",
                 steps::hidden(&self.hidden),
             ),
-            step(
-                "durations",
-                "What took how long",
-                steps::durations(&self.durations),
-            ),
-            step("next", "What next", steps::next(&self.next)),
+            step("durations", "Durations", steps::durations(&self.durations)),
+            step("next", "Next commands", steps::next(&self.next)),
         ]
     }
 }

@@ -1,12 +1,10 @@
-//! The steps around the equations: specification, source, certificate, simulation, what is
-//! found in records, durations and what next.
+//! Sections of the tour's page, except the equations.
 
 use eomgen_page::{figure, folded, number, table};
 use maud::{Markup, html};
 
 use super::{CheckRow, Hidden, NextCommand, Simulation, Source, Specification, StepDuration};
 
-/// What was checked and what was found.
 pub(super) fn specification(specification: &Specification<'_>) -> Markup {
     let warnings = &specification.warnings;
     let found = match warnings.len() {
@@ -17,29 +15,28 @@ pub(super) fn specification(specification: &Specification<'_>) -> Markup {
     html! {
         p {
             "The model is one text file, " code { (specification.path) } ". Its grammar, its names "
-            "and the units of every term were checked: " strong { (found) } "."
+            "and the units of every term are checked: " strong { (found) } "."
         }
         @for warning in warnings { pre.warning { (warning) } }
-        (folded("Read the specification", specification.text, false))
+        (folded("Specification", specification.text, false))
     }
 }
 
-/// The emitted file, the right-hand side first.
 pub(super) fn source(source: &Source<'_>) -> Markup {
     html! {
         p {
-            code { (source.path) } " holds the model as " (source.text.lines().count())
-            " lines of Rust that need no standard library, no allocation and no other crate, and "
-            "compile as they are."
+            code { (source.path) } " contains the model in " (source.text.lines().count())
+            " lines of Rust. It compiles on its own, without the standard library, allocation or other "
+            "crates."
         }
         @if let Some(rates) = rates_function(source.text) {
             (folded("The right-hand side: rates", rates, true))
         }
-        (folded("Read the whole file", source.text, false))
+        (folded("Whole file", source.text, false))
     }
 }
 
-/// The function `rates` with its documentation, from formatted source.
+/// Extracts the function `rates` with its documentation from formatted source.
 fn rates_function(text: &str) -> Option<&str> {
     let start = text.find("\npub fn rates")? + 1;
     let (before, function) = text.split_at(start);
@@ -53,7 +50,6 @@ fn rates_function(text: &str) -> Option<&str> {
     text.get(start.checked_sub(attached)?..start + end)
 }
 
-/// The certificate as a table with its verdict.
 pub(super) fn certificate(checks: &[CheckRow<'_>]) -> Markup {
     let passed = checks.iter().filter(|check| check.passed).count();
     let skipped = checks.iter().filter(|check| check.skipped).count();
@@ -65,13 +61,13 @@ pub(super) fn certificate(checks: &[CheckRow<'_>]) -> Markup {
     html! {
         p {
             @match (failed, passed) {
-                (0, 0) => strong.failed { "Nothing was checked." },
+                (0, 0) => strong.failed { "No check was run." },
                 (0, _) => strong.passed { "The model passes." },
                 _ => strong.failed { "The model fails " (failed) " of its checks." },
             }
-            " Checks passed: " (passed) "; failed: " (failed) "; not made: " (skipped)
-            ". A value is the worst deviation found, relative unless the check says otherwise; the "
-            "tolerance is what it may be."
+            " Checks passed: " (passed) "; failed: " (failed) "; not run: " (skipped)
+            ". A value is the largest deviation, relative unless stated otherwise; it must not exceed the "
+            "tolerance."
         }
         (table(&["check", "value", "tolerance", "result"], &rows))
     }
@@ -80,7 +76,7 @@ pub(super) fn certificate(checks: &[CheckRow<'_>]) -> Markup {
 fn check_row(check: &CheckRow<'_>) -> Markup {
     let (class, result) = match (check.passed, check.skipped) {
         (true, _) => ("passed", "✓ passed"),
-        (false, true) => ("skipped", "– not made"),
+        (false, true) => ("skipped", "– not run"),
         (false, false) => ("failed", "✗ failed"),
     };
     html! {
@@ -98,7 +94,6 @@ fn check_row(check: &CheckRow<'_>) -> Markup {
     }
 }
 
-/// The figures with their captions.
 pub(super) fn simulation(simulation: &Simulation<'_>) -> Markup {
     html! {
         p { (simulation.summary) " Every sample is in " code { (simulation.path) } "." }
@@ -106,10 +101,9 @@ pub(super) fn simulation(simulation: &Simulation<'_>) -> Markup {
     }
 }
 
-/// What was found, with the whole pages of the comparison and the search.
 pub(super) fn hidden(hidden: &Hidden<'_>) -> Markup {
     let [before, after] = hidden.reports;
-    // The report of the search computes; it is given nothing else of this page.
+    // The report of the discovery runs a script; the sandbox isolates it from this page.
     let page = |summary: &str, report: &str, is_open: bool| {
         html! {
             details open[is_open] {
@@ -120,13 +114,12 @@ pub(super) fn hidden(hidden: &Hidden<'_>) -> Markup {
     };
     html! {
         p { (hidden.summary) " Records and results are in " code { (hidden.path) } "." }
-        (page("Read the report of the comparison, before", before, false))
-        (page("Read the report of the search, after", after, true))
-        (folded("Read the specification with what was found", hidden.extended, false))
+        (page("Report of the comparison", before, false))
+        (page("Report of the discovery", after, true))
+        (folded("Extended specification", hidden.extended, false))
     }
 }
 
-/// Durations with their sum.
 pub(super) fn durations(durations: &[StepDuration<'_>]) -> Markup {
     let row = |step: &str, seconds: f64| {
         html! { tr { th scope="row" { (step) } td.number { (duration(seconds)) } } }
@@ -134,7 +127,7 @@ pub(super) fn durations(durations: &[StepDuration<'_>]) -> Markup {
     let sum = durations.iter().map(|duration| duration.seconds).sum();
     let rows = html! {
         @for duration in durations { (row(duration.step, duration.seconds)) }
-        (row("all together", sum))
+        (row("total", sum))
     };
     table(&["step", "time"], &rows)
 }
@@ -147,12 +140,11 @@ fn duration(seconds: f64) -> String {
     }
 }
 
-/// Commands with what they do.
 pub(super) fn next(commands: &[NextCommand<'_>]) -> Markup {
     html! {
         dl {
             @for next in commands {
-                dt { (next.does) }
+                dt { (next.purpose) }
                 dd { pre { code { (next.command) } } }
             }
         }
@@ -164,7 +156,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_rates_function_is_cut_out_with_its_documentation() {
+    fn rates_function_includes_its_documentation() {
         let text = "const A: f64 = 1.0;\n\n/// The rates.\n#[inline]\npub fn rates() {\n    if true {\n    }\n}\n\nfn b() {}\n";
         assert_eq!(
             rates_function(text),
@@ -174,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn durations_are_written_in_fitting_units() {
+    fn durations_are_printed_in_ms_or_s() {
         assert_eq!(duration(0.0123), "12.3 ms");
         assert_eq!(duration(75.04), "75.0 s");
     }

@@ -1,5 +1,4 @@
-//! The whole page: every step is there, nothing refers to the outside, and text from a
-//! specification stays text.
+//! Tests of the tour's page: sections, self-containedness, escaping.
 
 use eomgen_codegen::report::{CoefficientLine, Line, MassMatrixEntry, Report, Sentence, Solution};
 use eomgen_codegen::symbolic::formula::Formula;
@@ -13,7 +12,7 @@ fn line(name: &str, formula: &str) -> Line {
     }
 }
 
-/// A report with `text` wherever a specification could put it.
+/// Returns a report with `text` in every field that a specification can set.
 fn report(text: &str) -> Report {
     Report {
         schema: 2,
@@ -101,12 +100,12 @@ fn tour<'a>(text: &'a str, equations: &'a Report) -> Tour<'a> {
         }],
         next: vec![NextCommand {
             command: text,
-            does: text,
+            purpose: text,
         }],
     }
 }
 
-/// The names of the elements that are opened, in order.
+/// Returns the names of opened elements, in order.
 fn elements(page: &str) -> Vec<&str> {
     page.split('<')
         .skip(1)
@@ -121,7 +120,7 @@ fn elements(page: &str) -> Vec<&str> {
 }
 
 #[test]
-fn text_from_outside_stays_text() {
+fn text_of_a_specification_is_escaped() {
     let hostile =
         "</pre></code></title><script>alert(\"1\")</script><img src=x onerror='a'>\" onload=\"b";
     let (harmless, injected) = (report("plain"), report(hostile));
@@ -142,7 +141,7 @@ fn text_from_outside_stays_text() {
 }
 
 #[test]
-fn nothing_refers_to_the_outside() {
+fn page_is_self_contained() {
     let report = report("x_sp");
     let page = tour("x_sp", &report).render();
     for forbidden in [
@@ -163,7 +162,7 @@ fn nothing_refers_to_the_outside() {
 }
 
 #[test]
-fn every_step_is_there() {
+fn page_has_every_section() {
     let report = report("x_sp");
     let page = tour("the text", &report).render();
     for anchor in [
@@ -196,7 +195,7 @@ fn every_step_is_there() {
         "101 operations",
         "against 202",
         "one warning",
-        "Checks passed: 1; failed: 0; not made: 1",
+        "Checks passed: 1; failed: 0; not run: 1",
         "<msup><mn>10</mn><mn>−12</mn></msup>",
         "<mn>3</mn><mo>·</mo><msup><mn>10</mn><mn>−15</mn></msup>",
         "<svg>",
@@ -212,14 +211,14 @@ fn every_step_is_there() {
 }
 
 #[test]
-fn a_failed_check_is_the_verdict() {
+fn failed_check_fails_the_page() {
     let report = report("x");
     let mut tour = tour("x", &report);
     assert!(tour.render().contains("The model passes."));
     tour.checks.push(check("bad", false, false));
     assert!(tour.render().contains("The model fails 1 of its checks."));
     tour.checks = vec![check("none", false, true)];
-    assert!(tour.render().contains("Nothing was checked."));
+    assert!(tour.render().contains("No check was run."));
 }
 
 #[test]

@@ -1,5 +1,5 @@
-//! The tour's last chapter: a friction is hidden in a simulated stage, its records are given
-//! to `compare` and `discover` with a specification that lacks it, and what they say is shown.
+//! Last chapter of the tour: `compare` and `discover` examine records of a simulated stage with a specification that
+//! lacks its dry friction.
 
 use std::path::{Path, PathBuf};
 
@@ -18,23 +18,23 @@ use crate::output::write_file;
 use crate::page;
 use crate::table::Table;
 
-/// The stage as it is known.
+/// Specification without the friction.
 const SPECIFICATION: &str = models::EMPS.text;
 
-/// What is hidden: a dry friction, N, and the speed within which it turns, m/s. Smooth, unlike
-/// the jump that is looked for.
+/// Hidden dry friction, N, and the speed, m/s, over which it changes sign. It is smooth, unlike the effect in the
+/// catalogue.
 const FRICTION: f64 = 12.0;
-const TURNS: f64 = 2e-4;
+const TRANSITION_SPEED: f64 = 2e-4;
 
-/// Samples of a record, the time between them (s) and the sensor's noise (m).
+/// Number of samples of a record, sample time (s) and standard deviation of the sensor noise (m).
 const SAMPLES: usize = 750;
-const SAMPLE: f64 = 0.002;
+const SAMPLE_TIME: f64 = 0.002;
 const NOISE: f64 = 2e-6;
 
 /// Relative tolerance of the simulation.
 const TOLERANCE: f64 = 1e-9;
 
-/// The results of the comparison and the search.
+/// Results of the comparison and the discovery.
 pub struct Rediscovery {
     comparison: Value,
     discovery: Value,
@@ -42,7 +42,7 @@ pub struct Rediscovery {
     extended: String,
 }
 
-/// Makes the records below `out`, compares and discovers.
+/// Writes records to `out`, compares and discovers.
 pub fn rediscover(out: &Path) -> Result<Rediscovery> {
     let folder = out.join("hidden");
     let specification = folder.join("stage.toml");
@@ -79,7 +79,7 @@ fn text(path: PathBuf) -> Result<String> {
     std::fs::read_to_string(&path).map_err(|error| Error::file("read", &path, &error))
 }
 
-/// The stage with its friction, as a specification.
+/// Returns the specification with the friction.
 fn truth() -> Result<String> {
     let parameter = |name: &str, value: f64, unit: &str| {
         Edit::AddParameter(NewParameter {
@@ -99,20 +99,19 @@ fn truth() -> Result<String> {
     });
     let edits = [
         parameter("hidden_level", FRICTION, "N"),
-        parameter("hidden_speed", TURNS, "m/s"),
+        parameter("hidden_speed", TRANSITION_SPEED, "m/s"),
         friction,
     ];
     edit::apply(&Source::new("stage.toml", SPECIFICATION), &edits)
         .map_err(|error| Error::input(error.to_string()))
 }
 
-/// A record of the true stage: reversals of a slow force with a faster one on top; `turn`
-/// makes another one.
+/// Simulates a record, driven by two sinusoidal forces. `turn` shifts their phase and frequency.
 fn record(truth: &str, turn: f64) -> Result<Table> {
     let checked =
         eomgen_model_spec::check(Source::new("stage.toml", truth)).map_err(Error::Specification)?;
     let compiled = derive(checked.model, &[])?;
-    let times: Vec<f64> = (0..SAMPLES).map(|i| i as f64 * SAMPLE).collect();
+    let times: Vec<f64> = (0..SAMPLES).map(|i| i as f64 * SAMPLE_TIME).collect();
     let force = |t: &f64| {
         let slow = 300.0 * (5.0 * t + turn).cos();
         slow - 150.0 * (13.0 * t * (1.0 + 0.3 * turn)).sin()
@@ -134,7 +133,7 @@ fn record(truth: &str, turn: f64) -> Result<Table> {
     let positions = motion
         .column("q")
         .ok_or_else(|| Error::input("the stage has no position"))?;
-    // Fractions of n^2 times the golden section are spread evenly, without a pattern to see.
+    // Fractions of n^2 times the golden ratio are evenly distributed without a visible pattern.
     let noise = |sample: usize| {
         let turns = (sample * sample) as f64 * 0.618_033_988_749_895;
         NOISE * 12f64.sqrt() * (turns.fract() - 0.5)
@@ -161,7 +160,7 @@ fn description() -> String {
 }
 
 impl Rediscovery {
-    /// What was hidden and what was found, in sentences.
+    /// Describes the hidden friction and the discovery.
     pub fn summary(&self) -> String {
         let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
         let gap = &self.discovery["gap"]["q"];
@@ -172,14 +171,14 @@ impl Rediscovery {
             .map(effect)
             .collect();
         let found = match found.len() {
-            0 => "nothing that it accepted".to_owned(),
+            0 => "no effect".to_owned(),
             _ => found.join(", "),
         };
         format!(
-            "A positioning stage was simulated with a dry friction of {FRICTION} N that its specification does not \
-             have, and its position recorded with a noise of {:.0} um. The comparison said: {}. The search found {found}. \
-             On a record that it had not seen, the model's windows were {:.1} um off before and {:.1} um after; noise \
-             alone is {:.1} um.",
+            "The records are simulated positions of a stage with a dry friction of {FRICTION} N that the specification \
+             lacks, and with a sensor noise of {:.0} um (standard deviation). Result of the comparison: {}. Discovered \
+             effect: {found}. On held-out data, the RMS residual fell from {:.1} um to {:.1} um; the noise floor is \
+             {:.1} um.",
             1e6 * NOISE,
             self.comparison["where"]
                 .as_str()
@@ -191,7 +190,6 @@ impl Rediscovery {
         )
     }
 
-    /// The chapter of the page.
     pub fn chapter<'a>(&'a self, summary: &'a str) -> page::Hidden<'a> {
         page::Hidden {
             summary,
@@ -202,7 +200,7 @@ impl Rediscovery {
     }
 }
 
-/// An effect with its first parameter.
+/// Names an effect with its first parameter.
 fn effect(entry: &Value) -> String {
     let word = |key: &str| entry[key].as_str().unwrap_or_default().replace('_', " ");
     let parameter = entry["parameters"]

@@ -1,5 +1,5 @@
-//! The tour: every step once, on the paper's arm and at last a stage that lacks
-//! something, for somebody who sees the program for the first time. Leaves one HTML page and the files it shows.
+//! The tour: every step on the paper's arm, and a discovery on a positioning stage. It writes one HTML page and the
+//! files that the page shows.
 
 mod hidden;
 
@@ -27,23 +27,22 @@ use crate::progress::Note;
 use crate::table::Table;
 use hidden::{Rediscovery, rediscover};
 
-/// The paper's arm.
 const SPECIFICATION: &str = models::PLANETARY_ARM.text;
 
-/// Where it stands in the project.
+/// Path in the project.
 const SPECIFICATION_PATH: &str = "model-spec/models/planetary_arm.toml";
 
-/// The paper's truncation order.
+/// Truncation order of the paper.
 const ORDER: usize = 4;
 
-/// Simulated time in s, and the time between samples.
+/// Simulated time and output interval, s.
 const UNTIL: f64 = 2.0;
-const SAMPLE: f64 = 0.0005;
+const INTERVAL: f64 = 0.0005;
 
-/// Relative tolerance, should the arm ever be no longer linear between its switches.
+/// Relative tolerance; without effect while the arm is linear between its switches.
 const TOLERANCE: f64 = 1e-10;
 
-/// Says how long each step took.
+/// Durations of the steps, s.
 struct Stopwatch {
     started: Instant,
     steps: Vec<(&'static str, f64)>,
@@ -57,25 +56,23 @@ impl Stopwatch {
     }
 }
 
-/// What a tour came to.
+/// Result of a tour.
 pub struct TourResult {
-    /// Its page.
     pub page: PathBuf,
-    /// The certificate of the arm.
     pub certificate: Certificate,
-    /// How often the arm's meshes made or lost contact.
+    /// Number of switches between contact and separation in the meshes.
     pub switches: usize,
 }
 
-/// Takes every step and writes the page, and the files that it shows, into a folder.
-pub fn walk(out: &Path) -> Result<TourResult> {
+/// Runs every step and writes the page and its files to a folder.
+pub fn run(out: &Path) -> Result<TourResult> {
     let path = out.join("index.html");
     file_place(&path)?;
     let mut watch = Stopwatch {
         started: Instant::now(),
         steps: Vec::new(),
     };
-    let note = Note::new("reading, deriving and emitting the paper's arm");
+    let note = Note::new("deriving and emitting the equations of the paper's arm");
     let checked = eomgen_model_spec::check(Source::new(SPECIFICATION_PATH, SPECIFICATION))
         .map_err(Error::Specification)?;
     watch.lap("read and check the specification");
@@ -89,8 +86,8 @@ pub fn walk(out: &Path) -> Result<TourResult> {
     watch.lap("validate, including a compilation of the emitted Rust");
     drop(note);
     let run = compiled.at_declared()?;
-    let times: Vec<f64> = (0..=(UNTIL / SAMPLE) as usize)
-        .map(|i| i as f64 * SAMPLE)
+    let times: Vec<f64> = (0..=(UNTIL / INTERVAL) as usize)
+        .map(|i| i as f64 * INTERVAL)
         .collect();
     let request = Request {
         initial: run.initial(),
@@ -106,9 +103,9 @@ pub fn walk(out: &Path) -> Result<TourResult> {
     watch.lap("simulate two seconds");
     let figure = figure(&run, &table)?;
     write_files(out, &compiled, &rust, &certificate, &table, &figure)?;
-    let note = Note::new("finding a friction that is hidden in a stage");
+    let note = Note::new("discovering a hidden friction in a positioning stage");
     let rediscovery = rediscover(out)?;
-    watch.lap("hide a friction in a stage, compare, discover");
+    watch.lap("hide a friction in a positioning stage, compare, discover");
     drop(note);
     let parts = (&rust[..], &figure[..], &rediscovery);
     let page = page_text(&compiled, parts, &certificate, &motion, &watch)?;
@@ -120,7 +117,6 @@ pub fn walk(out: &Path) -> Result<TourResult> {
     })
 }
 
-/// The files that the page shows.
 fn write_files(
     out: &Path,
     compiled: &CompiledModel,
@@ -145,7 +141,7 @@ fn write_files(
     write_file(&out.join("trajectory.svg"), figure.as_bytes())
 }
 
-/// The mesh deflection and the positioning error over time.
+/// Draws mesh deflection and positioning error over time.
 fn figure(run: &Instance<'_>, table: &Table) -> Result<String> {
     let column = |name: &str| {
         table
@@ -193,7 +189,7 @@ fn figure(run: &Instance<'_>, table: &Table) -> Result<String> {
     time_history(&history).map_err(|error| Error::input(error.to_string()))
 }
 
-/// The page. `parts`: the emitted Rust, the figure and what was found.
+/// Renders the page. `parts`: the emitted Rust, the figure and the discovery.
 fn page_text(
     compiled: &CompiledModel,
     (rust, figure, rediscovery): (&str, &str, &Rediscovery),
@@ -204,8 +200,8 @@ fn page_text(
     let evaluator = Evaluator::new(compiled.program().clone());
     let report = Report::new(compiled.model(), compiled.equations(), &evaluator);
     let summary = format!(
-        "From rest over {UNTIL} s at order {ORDER} with the paper's values and those assumed where it gives none: \
-         the meshes made or lost contact {} times, {}.",
+        "From rest over {UNTIL} s at order {ORDER}, with the paper's values and assumed values for undisclosed ones: \
+         {} switches between contact and separation of the teeth, {}.",
         motion.trajectory.switches.len(),
         in_words(motion)
     );
@@ -241,9 +237,9 @@ fn page_text(
             path: "trajectory.csv",
             figures: vec![Figure {
                 svg: figure,
-                caption: "Above: the tooth flanks touch outside the dashed lines and are free \
-                          between them; each touch rings at the mesh's own frequency. Below: \
-                          what the arm's end is off its place, backlash and bending together.",
+                caption: "Top: the tooth flanks are in contact outside the dashed lines and separated \
+                          between them; each contact vibrates at the natural frequency of the mesh. Bottom: \
+                          positioning error of the arm's end, from backlash and bending.",
             }],
         },
         hidden: rediscovery.chapter(&found),
@@ -264,26 +260,26 @@ fn next_commands() -> Vec<page::NextCommand<'static>> {
     [
         (
             "cargo run --release -- derive model-spec/models/double_pendulum.toml",
-            "prints the equations of another machine",
+            "print the equations of another machine",
         ),
         (
             "cargo run --release -- generate model-spec/models/planetary_arm.toml --order 16 --out arm16",
-            "emits the arm with sixteen modes",
+            "emit the arm with sixteen modes",
         ),
         (
             "cargo run --release -- simulate model-spec/models/planetary_arm.toml --until 2 --set b_sp=100e-6 --set b_pr=100e-6 --out wide.csv",
-            "simulates with four times the backlash",
+            "simulate with four times the backlash",
         ),
         (
             "cargo run --release -- validate model-spec/models/hub_beam_tip_mass.toml --order 8",
-            "validates a beam with a tip mass",
+            "validate a beam with a tip mass",
         ),
         (
             "cargo run --release -- discover tour/hidden/stage.toml tour/hidden/dataset.toml --out found",
-            "finds once more what the stage lacks; with a specification and records of your own, what your machine lacks",
+            "repeat the discovery; use a specification and records of your machine to find its missing effects",
         ),
     ]
     .into_iter()
-    .map(|(command, does)| page::NextCommand { command, does })
+    .map(|(command, purpose)| page::NextCommand { command, purpose })
     .collect()
 }

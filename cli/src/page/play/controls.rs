@@ -1,11 +1,10 @@
-//! The controls as markup: a slider and a number for everything that can be moved.
+//! Controls: a slider and a number field for each quantity.
 
 use eomgen_page::play::Slider;
 use maud::{Markup, html};
 
 use super::quantities::Quantities;
 
-/// All controls.
 pub(super) fn panel(quantities: &Quantities<'_>) -> Markup {
     html! {
         section.panel.controls aria-label="Controls" {
@@ -17,7 +16,6 @@ pub(super) fn panel(quantities: &Quantities<'_>) -> Markup {
     }
 }
 
-/// The controls of one kind.
 fn group(heading: &str, kind: &str, all: &[Slider<'_>], is_open: bool) -> Markup {
     if all.is_empty() {
         return html! {};

@@ -1,4 +1,4 @@
-//! What the script is told of a model, as JSON.
+//! Input of the script, as JSON.
 
 use eomgen_compiled_model::CompiledModel;
 use eomgen_model_spec::model::{Drawing, Ordinate};
@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::quantities::Quantities;
 use crate::error::{Error, Result};
 
-/// The data of a model that starts there, with its module.
+/// Returns the data of a model with an initial state and its WebAssembly module.
 pub(super) fn json(
     compiled: &CompiledModel,
     quantities: &Quantities<'_>,
@@ -39,7 +39,7 @@ pub(super) fn json(
     serde_json::to_string(&document).map_err(|error| Error::input(error.to_string()))
 }
 
-/// Points with what places them, lines by the places of their points.
+/// Returns points with their coordinates, and lines with the indices of their points.
 fn drawing(drawing: &Drawing) -> Value {
     let points = drawing.points.iter();
     let points: Vec<Value> = points

@@ -1,10 +1,8 @@
-//! The page to play with: sliders for what a model is given, a drawing that moves, curves, and the
-//! equations. It computes with the emitted module, which it carries, and refers to nothing outside
-//! itself.
+//! Interactive page of a model: sliders, an animated drawing, curves, and the equations. The page is self-contained and
+//! computes with the emitted WebAssembly module.
 //!
-//! `quantities` says what can be moved and how far, `controls` is their markup, `data` what the
-//! script is told. The script is what all pages that compute have, of `eomgen_page::play`, and here
-//! `drawing.js`, `curves.js` and `controls.js`, which the page holds one after the other.
+//! `quantities` selects the sliders and their ranges, `controls` renders them, `data` is the input of the script. The
+//! script is the common one of `eomgen_page::play`, followed by `drawing.js`, `curves.js` and `controls.js`.
 
 mod controls;
 mod data;
@@ -19,20 +17,20 @@ use crate::emission::module;
 use crate::error::Result;
 use quantities::Quantities;
 
-/// What this page needs besides the style of all that compute.
+/// Style, in addition to the common one.
 const STYLE: &str = include_str!("play.css");
 
-/// Its own part of the script.
+/// Script, in addition to the common one.
 const SCRIPT: [&str; 3] = [
     include_str!("drawing.js"),
     include_str!("curves.js"),
     include_str!("controls.js"),
 ];
 
-/// The page of a model.
+/// Renders the page of a model.
 ///
 /// # Errors
-/// If the declared parameters give no motion, or the module cannot be emitted.
+/// Declared parameters without a motion, or a module that cannot be emitted.
 pub fn playable(compiled: &CompiledModel) -> Result<String> {
     let instance = compiled.at_declared()?;
     let module = module(compiled.program())?;
@@ -55,12 +53,12 @@ fn body(compiled: &CompiledModel, quantities: &Quantities<'_>, report: &Report) 
         header {
             h1 { (model.title) }
             p.lead {
-                "Move a slider and watch the motion change. It is computed here, by the same "
+                "Move a slider to change the motion. The page computes it with the same "
                 "operations as the emitted Rust and C."
             }
         }
         main {
-            noscript { p { "Without its script this page shows the equations alone." } }
+            noscript { p { "Without JavaScript this page shows the equations only." } }
             div.instrument {
                 div.seen {
                     (drawing(&model.title))
@@ -82,7 +80,6 @@ fn body(compiled: &CompiledModel, quantities: &Quantities<'_>, report: &Report) 
     }
 }
 
-/// The picture with what plays it.
 fn drawing(title: &str) -> Markup {
     html! {
         section.panel aria-label="Drawing" {
@@ -97,14 +94,13 @@ fn drawing(title: &str) -> Markup {
                 }
                 output #clock aria-label="Time" { "0.00 s" }
             }
-            // Of the two only the first is read aloud: the other changes in every frame.
+            // Screen readers read the first only; the second changes in every frame.
             p #status role="status" {}
             p #note {}
         }
     }
 }
 
-/// The strips, and which of them are shown.
 fn curves(quantities: &Quantities<'_>) -> Markup {
     html! {
         section.panel aria-label="Curves" {

@@ -1,5 +1,4 @@
-//! What can be moved on a page, and how far: as declared where the specification says, else as far
-//! as a person would try.
+//! Quantities with sliders, and their ranges: declared ones, or typical ranges for the unit.
 
 use eomgen_compiled_model::CompiledModel;
 use eomgen_model_spec::ids::StateId;
@@ -8,13 +7,13 @@ use eomgen_page::play::{Slider, printed};
 
 use crate::error::{Error, Result};
 
-/// The most modes of a field that have controls: higher ones hardly move.
-const MODES: usize = 4;
+/// Number of modes of a field with controls; higher modes hardly move.
+const MAX_MODES: usize = 4;
 
-/// The most curves that are shown at first.
-const SHOWN_AT_FIRST: usize = 4;
+/// Maximum number of curves shown initially.
+const MAX_INITIAL_CURVES: usize = 4;
 
-/// A quantity that can be shown as a curve, by its place among states and observables.
+/// Quantity that can be shown as a curve; `place` is its index among states and observables.
 #[derive(Debug)]
 pub(super) struct Shown {
     pub(super) name: String,
@@ -23,7 +22,7 @@ pub(super) struct Shown {
     pub(super) at_first: bool,
 }
 
-/// All that a page has controls for.
+/// Quantities of a page.
 #[derive(Debug)]
 pub(super) struct Quantities<'m> {
     pub(super) parameters: Vec<Slider<'m>>,
@@ -35,7 +34,7 @@ pub(super) struct Quantities<'m> {
 }
 
 impl<'m> Quantities<'m> {
-    /// Those of a model that starts there.
+    /// Selects the quantities of a model with an initial state.
     pub(super) fn of(compiled: &'m CompiledModel, initial: &[f64]) -> Result<Self> {
         let model = compiled.model();
         let units = state_units(compiled);
@@ -78,7 +77,7 @@ impl<'m> Quantities<'m> {
     }
 }
 
-/// Units of coordinates and modes, then of their rates, then of states of first order.
+/// Returns the units of the state.
 fn state_units(compiled: &CompiledModel) -> Vec<String> {
     let program = compiled.program();
     let mut units: Vec<String> = program.coordinates.iter().map(|c| c.unit.clone()).collect();
@@ -99,18 +98,18 @@ fn per_second(unit: &str) -> String {
     }
 }
 
-/// The places of coordinates and the first modes of every field.
+/// Returns the indices of coordinates and of the first modes of every field.
 fn movable_places(model: &Model, orders: &[usize]) -> Vec<usize> {
     let mut places: Vec<usize> = (0..model.coordinates.len()).collect();
     let mut first = places.len();
     for order in orders {
-        places.extend(first..first + order.min(&MODES));
+        places.extend(first..first + order.min(&MAX_MODES));
         first += order;
     }
     places
 }
 
-/// Coordinates and modes, then their rates, then states of first order.
+/// Returns sliders of coordinates and modes, their rates, and states of first order.
 fn initial_state<'m>(
     compiled: &'m CompiledModel,
     units: &[String],
@@ -155,8 +154,7 @@ fn initial_state<'m>(
     .collect()
 }
 
-/// How far something of a unit goes in a machine of this size: angles all around, lengths by half
-/// the size.
+/// Returns the default half-range of a slider for a unit. `size` is the length of the machine, m.
 fn reach(unit: &str, size: f64) -> f64 {
     match unit {
         "rad" => std::f64::consts::PI,
@@ -167,7 +165,7 @@ fn reach(unit: &str, size: f64) -> f64 {
     }
 }
 
-/// States and observables; shown at first are the coordinates and the energy.
+/// Returns states and observables as curves; coordinates and energy are shown initially.
 fn shown(compiled: &CompiledModel, units: &[String]) -> Vec<Shown> {
     let states = compiled.state_names().into_iter().zip(units.to_vec());
     let observables = &compiled.program().observables;
@@ -175,7 +173,7 @@ fn shown(compiled: &CompiledModel, units: &[String]) -> Vec<Shown> {
     let degrees = compiled.program().degrees_of_freedom();
     let all = states.chain(observables).enumerate();
     all.map(|(place, (name, unit))| Shown {
-        at_first: place < degrees.min(SHOWN_AT_FIRST - 1) || name == "energy",
+        at_first: place < degrees.min(MAX_INITIAL_CURVES - 1) || name == "energy",
         name,
         unit: printed(&unit),
         place,

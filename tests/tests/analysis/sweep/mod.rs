@@ -93,7 +93,7 @@ fn threads_and_shards_leave_no_trace() {
     assert!(results(&one) == results(&shards), "three shards");
     // Once more, with nothing left to do.
     let text = accept(&place.sweep("one", &MAP));
-    assert!(text.contains("0 points computed, 20 were there"), "{text}");
+    assert!(text.contains("0 points computed, 20 resumed"), "{text}");
     assert!(results(&one) == results(&two), "again");
 }
 

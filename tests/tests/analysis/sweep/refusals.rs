@@ -39,7 +39,7 @@ fn engines_are_asked_for_what_they_can_do() {
             &["--engine", "slurm", "--shard", "1/2"],
             "--shards says how many",
         ),
-        (&["--shards", "4"], "--shards goes with --engine"),
+        (&["--shards", "4"], "--shards needs --engine"),
         (&["--engine", "slurm", "--shards", "0"], "1..=1000"),
         (&["--engine", "slurm", "--shards", "1001"], "1..=1000"),
         (

@@ -170,7 +170,7 @@ fn seeds_make_the_numbers_and_threads_shards_and_kills_leave_no_trace() {
     fs::remove_file(parts.join("0007.part")).expect("removed");
     fs::write(parts.join("0009.part"), "eomgen sweep part 1").expect("cut");
     let text = accept(&arguments(&place, "two", &few));
-    assert!(text.contains("2 points computed, 38 were there"), "{text}");
+    assert!(text.contains("2 points computed, 38 resumed"), "{text}");
     assert!(left(&place.at("two")) == whole, "after a kill");
     let message = refuse(&arguments(
         &place,

@@ -112,8 +112,8 @@ fn requests_do_not_go_with_casadi() {
     for (with, reason) in [
         ("jacobians", "its functions are rates and jac_rates"),
         ("hessians,jacobians", "but for hessians"),
-        ("lanes", "goes with --target rust"),
-        ("bench", "goes with --target rust"),
+        ("lanes", "needs --target rust"),
+        ("bench", "needs --target rust"),
     ] {
         let arguments = [
             "generate", &spec, "--target", "casadi", "--with", with, "--out", "x",

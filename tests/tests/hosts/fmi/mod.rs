@@ -185,7 +185,7 @@ fn without_a_compiler_a_unit_holds_its_sources() {
         .expect("the program can be run");
     assert!(output.status.success(), "{output:?}");
     let said = String::from_utf8_lossy(&output.stderr);
-    assert!(said.contains("holds sources and no binary"), "{said}");
+    assert!(said.contains("contains sources but no binary"), "{said}");
     assert!(folder.path().join("pendulum.fmu").is_file());
 }
 
@@ -194,8 +194,11 @@ fn requests_do_not_go_with_a_unit() {
     let spec = path("pendulum");
     let spec = spec.to_string_lossy();
     for (options, reason) in [
-        (["--with", "jacobians"], "those of the standard"),
-        (["--with", "lanes"], "goes with --target rust"),
+        (
+            ["--with", "jacobians"],
+            "the standard defines its functions",
+        ),
+        (["--with", "lanes"], "needs --target rust"),
     ] {
         let mut arguments = vec!["generate", &spec, "--target", "fmu2", "--out", "x"];
         arguments.extend(options);
