@@ -1,5 +1,5 @@
-//! Machines with constraints: motions against published figures and against the same machine in
-//! independent coordinates, drift, initial states, and what a mode costs beside a constraint.
+//! Machines with constraints: motions against published figures and against independent
+//! coordinates, drift, initial states, and the number of operations per mode.
 
 use std::cell::RefCell;
 use std::path::Path;
@@ -45,13 +45,13 @@ fn feature(name: &str, orders: Orders<'_>) -> CompiledModel {
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// `model` with another line in place of one of `ROD`.
-fn changed(line: &str, by: &str) -> CompiledModel {
+/// Returns the rod's model with `line` replaced by `by`.
+fn compile_changed(line: &str, by: &str) -> CompiledModel {
     assert!(ROD.contains(line));
     compiled(&ROD.replace(line, by))
 }
 
-fn refusal(model: &CompiledModel) -> String {
+fn simulation_error(model: &CompiledModel) -> String {
     let run = model.at_declared().unwrap();
     let found = run.simulate(run.initial(), &[0.0, 0.1], &run.no_inputs(), Solver::Auto);
     match found {
@@ -60,9 +60,9 @@ fn refusal(model: &CompiledModel) -> String {
     }
 }
 
-/// Seven bodies in three loops. The end is that of the Test Set for IVP Solvers.
+/// Seven bodies in three loops. The end state is published in the Test Set for IVP Solvers.
 #[test]
-fn the_squeezing_mechanism_ends_where_it_is_published() {
+fn squeezing_mechanism_reaches_published_end_state() {
     let model = feature("squeezing_mechanism", Orders::Declared);
     let run = model.at_declared().unwrap();
     let published = [
@@ -86,7 +86,7 @@ fn the_squeezing_mechanism_ends_where_it_is_published() {
 }
 
 #[test]
-fn a_rod_in_two_coordinates_swings_as_in_one_and_does_not_drift() {
+fn constrained_rod_matches_angle_and_does_not_drift() {
     let rod = compiled(ROD);
     let angle = compiled(
         &ROD.replace(
@@ -132,7 +132,6 @@ fn a_rod_in_two_coordinates_swings_as_in_one_and_does_not_drift() {
             assert!(along.abs() < 1e-10, "{solver}: {along}");
             let error = (state[0] - 0.7 * angle[0].cos()).abs();
             assert!(error < tolerance, "{solver}: {error}");
-            // The rod's pull is 2 l lambda: m v^2/l and the weight along it.
             let speed = state[2].powi(2) + state[3].powi(2);
             let pull = 2.0 * speed / 0.7 - 2.0 * 9.81 * state[1] / 0.7;
             assert!((pull + 2.0 * 0.7 * seen[lambda]).abs() < 1e-7, "{solver}");
@@ -141,8 +140,8 @@ fn a_rod_in_two_coordinates_swings_as_in_one_and_does_not_drift() {
 }
 
 #[test]
-fn initial_states_are_moved_onto_the_constraints_and_it_is_said() {
-    let model = changed(
+fn initial_state_is_projected_onto_constraints_with_a_note() {
+    let model = compile_changed(
         "y = { unit = \"m\" }",
         "y = { unit = \"m\", initial = 0.1, initial_rate = 2 }",
     );
@@ -163,12 +162,12 @@ fn initial_states_are_moved_onto_the_constraints_and_it_is_said() {
         (motion.moved[1].from, motion.moved[1].unit.as_str()),
         (0.1, "m")
     );
-    // With equal masses it is the nearest point of the circle.
+    // With equal masses the projection gives the nearest point of the circle.
     assert!((start[1] / start[0] - 0.1 / 0.7).abs() < 1e-3);
 }
 
-/// How the rod with other constraints is refused as it is derived.
-fn not_derived(constraints: &str) -> String {
+/// Returns the error of deriving the rod with other constraints.
+fn derivation_error(constraints: &str) -> String {
     let text = ROD.replace("x^2 + y^2 - l^2", constraints);
     match CompiledModel::of_text("constrained.toml", &text, Orders::Declared) {
         Err(error) => error.to_string(),
@@ -177,28 +176,28 @@ fn not_derived(constraints: &str) -> String {
 }
 
 #[test]
-fn constraints_that_cannot_hold_are_named() {
-    let never = not_derived("x^2 + y^2 + l^2");
+fn unsatisfiable_constraints_are_named() {
+    let never = derivation_error("x^2 + y^2 + l^2");
     assert!(never.contains("`rod` is never zero"), "{never}");
     assert!(never.contains("is at least 4.900e-1 m^2"), "{never}");
-    // Bounds of the terms do not show it.
-    let never = changed("x^2 + y^2 - l^2", "x^2 + y^2 + l*x + l^2");
+    // The bounds of the terms do not exclude a zero here.
+    let never = compile_changed("x^2 + y^2 - l^2", "x^2 + y^2 + l*x + l^2");
     assert!(
-        refusal(&never).contains("`rod` stays at"),
+        simulation_error(&never).contains("`rod` stays at"),
         "{}",
-        refusal(&never)
+        simulation_error(&never)
     );
-    let steep = refusal(&changed("x^2 + y^2 - l^2", "sqrt((x - l)*l) + y"));
+    let steep = simulation_error(&compile_changed("x^2 + y^2 - l^2", "sqrt((x - l)*l) + y"));
     assert!(
         steep.contains("derivative of the constraint `rod` is not finite"),
         "{steep}"
     );
-    let flat = refusal(&changed("initial = \"l\"", "initial = 0"));
+    let flat = simulation_error(&compile_changed("initial = \"l\"", "initial = 0"));
     assert!(flat.contains("`rod` has no effect"), "{flat}");
 }
 
 #[test]
-fn constraints_that_depend_on_each_other_are_refused_where_they_stand() {
+fn dependent_constraints_are_rejected_with_location() {
     for (first, again, said) in [
         (
             "x^2 + y^2 - l^2",
@@ -216,18 +215,19 @@ fn constraints_that_depend_on_each_other_are_refused_where_they_stand() {
             "2*x^2 + 2*y^2 - l^2",
             "`again` contradicts `rod`",
         ),
-        // Constraints along straight lines follow from others wherever the machine is.
+        // Linear constraints are dependent in every configuration, so they are detected
+        // symbolically.
         ("x - l", "2*x - 2*l", "`again` is redundant"),
         ("x - l", "2*x - 3*l", "`again` contradicts `rod`"),
     ] {
-        let found = not_derived(&format!("{first}\" }}\nagain = {{ zero = \"{again}"));
+        let found = derivation_error(&format!("{first}\" }}\nagain = {{ zero = \"{again}"));
         assert!(found.contains(said) && found.contains("`rod`"), "{found}");
         assert!(found.contains("constrained.toml"), "{found}");
     }
 }
 
-/// What runs emitted equations without projecting has to rely on the stabilisation.
-/// Two equal cranks and a coupler as long as the ground between them, which is turned by this angle.
+/// Returns a parallelogram linkage of two equal cranks. The coupler is as long as the ground
+/// between the cranks, and the ground is rotated by `angle`.
 fn parallelogram(angle: f64) -> String {
     format!(
         r#"
@@ -257,7 +257,7 @@ up = {{ zero = "a*sin(phi) + b*sin(beta) - b*sin({angle}) - a*sin(psi)" }}
 }
 
 #[test]
-fn a_linkage_that_folds_flat_stops_there_and_names_the_constraints() {
+fn folding_linkage_stops_and_names_constraints() {
     for (angle, named) in [
         (0.0, "the constraint `across` has no effect"),
         (0.6, "the constraints `across`, `up` depend on each other"),
@@ -283,8 +283,8 @@ fn a_linkage_that_folds_flat_stops_there_and_names_the_constraints() {
                 "{}",
                 stopped.reason
             );
-            // The cranks fall as one pendulum of two bobs: from 1.2 rad to flat by its energy, with the time
-            // as an integral of 1/rate, substituted so that it is smooth.
+            // By conservation of energy, the cranks fall like a single pendulum. The time to fold
+            // is the integral of 1/rate, substituted so that the integrand is smooth.
             let (g, a) = (9.81_f64, 0.3_f64);
             let count = 2000;
             let flat: f64 = (0..count)
@@ -303,15 +303,16 @@ fn a_linkage_that_folds_flat_stops_there_and_names_the_constraints() {
     }
 }
 
-/// Fast enough to leap over the flat position, with two such linkages side by side folding at the same time.
+/// The speed is high enough to step over the flat position; two such linkages fold at the same
+/// time.
 #[test]
-fn a_fold_stops_the_motion_whatever_samples_and_solver_are() {
+fn fold_stops_motion_for_any_sampling_and_solver() {
     let one = parallelogram(0.0).replace("initial = 1.2", "initial_rate = -8, initial = 1.2");
     let mut times = Vec::new();
     for count in [1, 2] {
         let text = match count {
             1 => one.clone(),
-            _ => twice(&one),
+            _ => duplicate_linkage(&one),
         };
         let model = compiled(&text);
         let run = model.at_declared().expect("an instance");
@@ -354,7 +355,8 @@ fn a_fold_stops_the_motion_whatever_samples_and_solver_are() {
     }
 }
 
-/// A slider on a crank and a rod of one length: with the slider at the crank's bearing it may turn about that.
+/// Slider-crank with crank and rod of equal length: with the slider at the crank's bearing, the
+/// mechanism can rotate about it.
 const SLIDER: &str = r#"
 [model]
 name = "slider"
@@ -379,7 +381,7 @@ along = { zero = "r*cos(phi) + r*cos(psi) - x" }
 across = { zero = "r*sin(phi) + r*sin(psi)" }
 "#;
 
-/// Four bars: two adjacent ones of one length, two of another.
+/// Four-bar linkage with two adjacent bars of one length and two of another.
 const KITE: &str = r#"
 [model]
 name = "kite"
@@ -403,7 +405,7 @@ up = { zero = "a*sin(phi) + b*sin(beta) - a*sin(psi)" }
 "#;
 
 #[test]
-fn the_time_of_a_fold_depends_neither_on_samples_nor_on_solver() {
+fn time_of_fold_is_independent_of_sampling_and_solver() {
     let tilted = parallelogram(0.6);
     for text in [&tilted, SLIDER, KITE] {
         let model = compiled(text);
@@ -439,8 +441,8 @@ fn the_time_of_a_fold_depends_neither_on_samples_nor_on_solver() {
     }
 }
 
-/// The linkage and its copy.
-fn twice(text: &str) -> String {
+/// Returns a model with the linkage and a copy of it.
+fn duplicate_linkage(text: &str) -> String {
     let mut copied = String::new();
     for line in text.lines() {
         copied.push_str(line);
@@ -463,10 +465,10 @@ fn twice(text: &str) -> String {
     copied
 }
 
-/// A platform on two rods, and a rod that turns round: no direction of their constraints is lost.
+/// A platform on two rods, and a rotating rod: their constraints never lose rank.
 #[test]
-fn a_rod_that_turns_round_is_not_stopped() {
-    let model = changed(
+fn rotating_rod_is_not_stopped() {
+    let model = compile_changed(
         "y = { unit = \"m\" }",
         "y = { unit = \"m\", initial_rate = 12 }",
     );
@@ -493,7 +495,7 @@ fn a_rod_that_turns_round_is_not_stopped() {
 }
 
 #[test]
-fn residuals_decay_at_the_rate_that_is_set() {
+fn constraint_residual_decays_at_given_rate() {
     let model = compiled(ROD);
     let run = model.with(&[("stabilisation_rate", 20.0)]).unwrap();
     let evaluator = RefCell::new(run.evaluator().unwrap());
@@ -506,7 +508,7 @@ fn residuals_decay_at_the_rate_that_is_set() {
     let settings = Settings::with_tolerance(1e-11);
     let found = simulate(&system, &start, (0.0, 0.3), &times, &settings, &mut |_| {}).unwrap();
     for (t, state) in times.iter().zip(&found.states) {
-        // g'' + 2 w g' + w^2 g = 0
+        // Solution of g'' + 2 w g' + w^2 g = 0.
         let (g, g_dot) = (residual(&start), rate(&start));
         let expected = (g + (g_dot + 20.0 * g) * t) * (-20.0 * t).exp();
         assert!(
@@ -518,8 +520,8 @@ fn residuals_decay_at_the_rate_that_is_set() {
 }
 
 #[test]
-fn a_machine_at_rest_is_found_on_its_constraints() {
-    let model = changed("initial = \"l\"", "initial = 0.3");
+fn equilibrium_satisfies_constraints() {
+    let model = compile_changed("initial = \"l\"", "initial = 0.3");
     let run = model.at_declared().unwrap();
     let found = run.equilibrium(EquilibriumRequest::default()).unwrap();
     let [x, y, ..] = found.at.state[..] else {
@@ -529,7 +531,7 @@ fn a_machine_at_rest_is_found_on_its_constraints() {
 }
 
 #[test]
-fn a_rolling_disc_keeps_its_energy_and_a_sleigh_turns_straight() {
+fn rolling_disc_conserves_energy_and_sleigh_straightens() {
     let model = feature("rolling_disc", Orders::Declared);
     let run = model.at_declared().unwrap();
     let times: Vec<f64> = (0..=50).map(f64::from).collect();
@@ -551,16 +553,16 @@ fn a_rolling_disc_keeps_its_energy_and_a_sleigh_turns_straight() {
         .simulate(run.initial(), &[0.0, 60.0], &run.no_inputs(), Solver::Auto)
         .unwrap();
     let (first, last) = (&motion.trajectory.states[0], &motion.trajectory.states[1]);
-    // All energy ends in the motion along the edge: m v^2 = m (x'^2 + y'^2) + J theta'^2.
+    // Finally all energy is kinetic, along the edge: m v^2 = m (x'^2 + y'^2) + J theta'^2.
     let energy = 2.0 * (first[3].powi(2) + first[4].powi(2)) + 0.12 * first[5].powi(2);
     assert!(last[5].abs() < 1e-9, "{}", last[5]);
     assert!((last[3].hypot(last[4]) - (energy / 2.0).sqrt()).abs() < 1e-7);
 }
 
-/// Constraints on a field's end cost a mode a few operations: those of the shape through which the
-/// loop closes, as an end mass would.
+/// With constraints at a field's end, a mode must need only a few more operations, as with a tip
+/// mass: those of its shape at the closure of the loop.
 #[test]
-fn a_mode_costs_what_it_costs_without_constraints() {
+fn constraints_add_few_operations_per_mode() {
     let per_mode = |constrained: bool| {
         let operations = |order: usize| {
             let mut text = feature_text("flexible_coupler");
@@ -587,9 +589,10 @@ fn feature_text(name: &str) -> String {
     std::fs::read_to_string(folder.join(format!("{name}.toml"))).unwrap()
 }
 
-/// The multipliers of the emitted equations are the forces: rows without them are what they add.
+/// The multipliers of the emitted equations are the joint forces: they account for the rocker's
+/// inertia.
 #[test]
-fn multipliers_are_the_forces_in_the_joint() {
+fn multipliers_equal_joint_forces() {
     let model = feature("flexible_coupler", Orders::Declared);
     let run = model.at_declared().unwrap();
     let inputs = run.no_inputs();
@@ -607,7 +610,8 @@ fn multipliers_are_the_forces_in_the_joint() {
     let seen = |name: &str| observables[names.iter().position(|known| known == name).unwrap()];
     let mut rates = vec![0.0; state.len()];
     evaluator.rates(point, &mut rates);
-    // The rocker alone: J_3 gamma'' = l_3 (lambda_across sin(gamma) - lambda_along cos(gamma)).
+    // Equation of the rocker: J_3 gamma'' = l_3 (lambda_across sin(gamma) - lambda_along
+    // cos(gamma)).
     let gamma = state[2];
     let torque = 0.24 * (seen("lambda_across") * gamma.sin() - seen("lambda_along") * gamma.cos());
     let degrees = state.len() / 2;
@@ -616,7 +620,7 @@ fn multipliers_are_the_forces_in_the_joint() {
 }
 
 #[test]
-fn a_constraint_that_is_not_linear_in_the_rates_is_refused_with_its_place() {
+fn constraint_nonlinear_in_rates_is_rejected_with_location() {
     let text = ROD.replace("x^2 + y^2 - l^2", "dot(x)^2 - dot(y)^2");
     let found = CompiledModel::of_text("rod.toml", &text, Orders::Declared);
     let message = found
@@ -626,9 +630,9 @@ fn a_constraint_that_is_not_linear_in_the_rates_is_refused_with_its_place() {
     assert!(message.contains("not linear in the rates"), "{message}");
 }
 
-/// Meijaard, Papadopoulos, Ruina and Schwab 2007, Table 2: weave, capsize and castering over speed.
+/// Meijaard, Papadopoulos, Ruina and Schwab 2007, Table 2: weave, capsize and castering by speed.
 #[test]
-fn the_bicycle_has_the_published_eigenvalues() {
+fn bicycle_has_published_eigenvalues() {
     let model = feature("bicycle", Orders::Declared);
     let published: [(f64, [(f64, f64); 3]); 2] = [
         (
@@ -673,7 +677,8 @@ fn the_bicycle_has_the_published_eigenvalues() {
     }
 }
 
-/// A chain of masses on rods, in the plane: in places with rods as constraints, and in angles.
+/// Returns a planar chain of point masses on rods, in Cartesian coordinates with constraints and in
+/// angles.
 fn chain(lengths: &[f64], masses: &[f64]) -> [String; 2] {
     let count = lengths.len();
     let parameters = (0..count).map(|i| {
@@ -716,9 +721,9 @@ fn chain(lengths: &[f64], masses: &[f64]) -> [String; 2] {
     [places, angles]
 }
 
-/// Chains of random masses and rods in random motion: accelerations in places are those in angles.
+/// Random chains in random motion: accelerations in Cartesian coordinates against those in angles.
 #[test]
-fn random_chains_move_in_places_as_in_angles() {
+fn random_chains_match_in_cartesian_coordinates_and_angles() {
     let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
     let mut random = || {
         seed ^= seed << 13;

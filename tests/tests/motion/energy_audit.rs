@@ -1,11 +1,11 @@
-//! The energy audit of `simulate`: energy from nothing is a warning, and nothing else is.
+//! Energy audit of `simulate`: only unexplained energy gives a warning.
 
 use eomgen_compiled_model::{Audit, CompiledModel, Orders, Request, Solver};
 use eomgen_tests::models::{load, shipped};
 use eomgen_tests::program::{run, text};
 use serde_json::Value;
 
-/// A bead on a wire with a corner: its inertia jumps where x changes its sign.
+/// Bead on a wire with a corner: its inertia jumps at x = 0.
 const CORNER: &str = r#"
 [model]
 name = "corner"
@@ -20,7 +20,7 @@ y = "a*max(x, 0)"
 t = "1/2*m*(dot(x)^2 + dot(y)^2)"
 "#;
 
-/// A step of the potential that is higher than the kinetic energy.
+/// Step of the potential, higher than the kinetic energy.
 const STEP: &str = r#"
 [model]
 name = "step"
@@ -35,7 +35,7 @@ t = "1/2*m*dot(x)^2"
 v = "U*above(x)"
 "#;
 
-/// A mass on a spring whose base starts to move at a finite speed.
+/// Mass on a spring whose base suddenly moves at a finite speed.
 const BASE: &str = r#"
 [model]
 name = "base"
@@ -54,7 +54,7 @@ mass = "1/2*m*dot(place)^2"
 spring = "1/2*k*x^2"
 "#;
 
-/// A ball on a table that rests, and one on a table that shakes.
+/// Ball on a table at rest or on a shaking table.
 const BALL: &str = r#"
 [model]
 name = "ball"
@@ -73,8 +73,8 @@ weight = "m*g*y"
 table = { when = "y", restitution = 0.7 }
 "#;
 
-/// The audit of a model of this text.
-fn audited(text: &str, until: f64, solver: Solver, tolerance: f64) -> Audit {
+/// Simulates the model and returns its audit.
+fn audit_of_text(text: &str, until: f64, solver: Solver, tolerance: f64) -> Audit {
     let model = CompiledModel::of_text("model.toml", text, Orders::Declared).expect("a model");
     audit(&model, until, solver, tolerance)
 }
@@ -115,10 +115,10 @@ fn shipped_models_gain_no_energy_at_any_tolerance() {
 }
 
 #[test]
-fn energy_is_kept_or_a_warning_says_that_it_is_not() {
+fn energy_is_conserved_or_a_warning_is_given() {
     for (name, text) in [("corner", CORNER), ("step", STEP), ("base", BASE)] {
         for solver in [Solver::Auto, Solver::Rk, Solver::Radau] {
-            let audit = audited(text, 3.0, solver, 1e-9);
+            let audit = audit_of_text(text, 3.0, solver, 1e-9);
             let is_kept = audit.unexplained().abs() < 1e-6;
             assert_eq!(audit.faults == 0, is_kept, "{name}, {solver}: {audit:?}");
             let warning = audit.warning();
@@ -128,18 +128,18 @@ fn energy_is_kept_or_a_warning_says_that_it_is_not() {
 }
 
 #[test]
-fn losses_at_impacts_are_booked_and_are_no_fault() {
+fn losses_at_impacts_are_accounted_for() {
     for solver in [Solver::Rk, Solver::Radau] {
-        let audit = audited(BALL, 5.0, solver, 1e-9);
+        let audit = audit_of_text(BALL, 5.0, solver, 1e-9);
         assert_eq!(audit.faults, 0, "{audit:?}");
-        // The ball comes to rest: m g y = 0.981 J is lost.
+        // The ball ends at rest, so m g y = 0.981 J is lost.
         assert!((audit.impacts + 0.981).abs() < 1e-6, "{audit:?}");
         assert!(audit.unexplained().abs() < 1e-6, "{audit:?}");
     }
 }
 
 #[test]
-fn the_work_of_a_table_that_shakes_is_booked() {
+fn work_of_shaking_table_is_accounted_for() {
     let text = BALL
         .replace("when = \"y\"", "when = \"y - A*sin(w*t)\"")
         .replace("A = { value = 0,", "A = { value = 0.01,");
@@ -150,7 +150,7 @@ fn the_work_of_a_table_that_shakes_is_booked() {
     .into_iter()
     .flat_map(|text| [(text, Solver::Rk), (text, Solver::Radau)])
     {
-        let audit = audited(text, 2.0, solver, 1e-9);
+        let audit = audit_of_text(text, 2.0, solver, 1e-9);
         assert_eq!(audit.faults, 0, "{audit:?}");
         assert_eq!(audit.not_applicable, None);
         assert!(audit.impacts <= 0.0 && audit.work != 0.0, "{audit:?}");
@@ -159,14 +159,14 @@ fn the_work_of_a_table_that_shakes_is_booked() {
 }
 
 #[test]
-fn a_wall_that_moves_does_the_work_of_its_impulse() {
-    // The ball rests until the wall hits it with V: it leaves with (1 + e) V.
+fn work_of_moving_wall_is_that_of_its_impulse() {
+    // The moving wall hits the ball at rest with speed V; the ball leaves with (1 + e) V.
     let text = BALL
         .replace("weight = \"m*g*y\"", "weight = \"0*m*g*y\"")
         .replace("when = \"y\"", "when = \"y - A*w*t\"")
         .replace("A = { value = 0,", "A = { value = 0.05,");
     for solver in [Solver::Rk, Solver::Radau] {
-        let audit = audited(&text, 2.0, solver, 1e-9);
+        let audit = audit_of_text(&text, 2.0, solver, 1e-9);
         let (energy, work) = (0.5 * 0.2 * 1.7_f64.powi(2), 0.2 * 1.7);
         assert_eq!(audit.faults, 0, "{audit:?}");
         assert!((audit.energy_change - energy).abs() < 1e-9, "{audit:?}");
@@ -176,13 +176,13 @@ fn a_wall_that_moves_does_the_work_of_its_impulse() {
 }
 
 #[test]
-fn a_lift_does_the_work_of_what_it_carries() {
+fn lift_does_work_on_its_load() {
     let text = BALL
         .replace("initial = 0.5", "initial = 0, initial_rate = 1")
         .replace("when = \"y\"", "when = \"y - A*w*t\"")
         .replace("A = { value = 0,", "A = { value = 0.05,");
     for solver in [Solver::Rk, Solver::Radau] {
-        let audit = audited(&text, 2.0, solver, 1e-9);
+        let audit = audit_of_text(&text, 2.0, solver, 1e-9);
         assert_eq!(audit.faults, 0, "{audit:?}");
         assert!((audit.work - 0.2 * 9.81 * 2.0).abs() < 1e-9, "{audit:?}");
         assert!(audit.impacts.abs() < 1e-9, "{audit:?}");
@@ -190,18 +190,18 @@ fn a_lift_does_the_work_of_what_it_carries() {
 }
 
 #[test]
-fn inputs_that_move_a_contact_leave_it_out() {
+fn audit_omits_contacts_moved_by_inputs() {
     let text = BALL.replace("when = \"y\"", "when = \"y - s\"").replace(
         "[kinetic]",
         "[inputs]\ns = { unit = \"m\", rates = 2 }\n[kinetic]",
     );
-    let audit = audited(&text, 2.0, Solver::Rk, 1e-9);
+    let audit = audit_of_text(&text, 2.0, Solver::Rk, 1e-9);
     assert_eq!(audit.faults, 0, "{audit:?}");
     let reason = audit.not_applicable.expect("a reason");
     assert!(reason.contains("`table`"), "{reason}");
 }
 
-/// A mass that nothing moves until a force sets in.
+/// Mass at rest until a force starts.
 const PUSHED: &str = r#"
 [model]
 name = "pushed"
@@ -220,7 +220,7 @@ damper = { on = "x", value = "-c*dot(x)*abs(dot(x))" }
 "#;
 
 #[test]
-fn a_force_that_sets_in_is_no_fault() {
+fn switched_force_gives_no_warning() {
     for (force, begin) in [
         ("30", "3"),
         ("1000", "3"),
@@ -234,7 +234,7 @@ fn a_force_that_sets_in_is_no_fault() {
         let until = 2.0 * begin.parse::<f64>().expect("a number");
         for tolerance in [1e-9, 1e-5] {
             for solver in [Solver::Rk, Solver::Radau] {
-                let audit = audited(&text, until, solver, tolerance);
+                let audit = audit_of_text(&text, until, solver, tolerance);
                 assert_eq!(
                     audit.faults, 0,
                     "{force} {begin} {solver} {tolerance}: {audit:?}"
@@ -245,7 +245,7 @@ fn a_force_that_sets_in_is_no_fault() {
 }
 
 #[test]
-fn an_audit_changes_no_bit_of_a_motion() {
+fn audit_does_not_change_the_motion() {
     for text in [CORNER, BASE, BALL] {
         let model = CompiledModel::of_text("model.toml", text, Orders::Declared).expect("a model");
         let run = model.at_declared().expect("values");
@@ -272,7 +272,7 @@ fn an_audit_changes_no_bit_of_a_motion() {
 }
 
 #[test]
-fn strict_simulation_ends_with_1_if_energy_comes_from_nothing() {
+fn strict_simulation_exits_with_1_on_unexplained_energy() {
     let folder = tempfile::tempdir().expect("a folder");
     let spec = folder.path().join("base.toml");
     std::fs::write(&spec, BASE).expect("writable");
@@ -292,7 +292,7 @@ fn strict_simulation_ends_with_1_if_energy_comes_from_nothing() {
     assert_eq!(unexplained.abs() > 1e-6, has_faults, "{audit}");
 }
 
-/// A mass that an input may push for 10 ms in 100 s.
+/// Mass that an input can push for 10 ms within 100 s.
 const PULSE: &str = r#"
 [model]
 name = "pulse"
@@ -312,7 +312,7 @@ push = { on = "x", value = "u" }
 "#;
 
 #[test]
-fn the_longest_step_decides_whether_a_short_pulse_is_seen() {
+fn max_step_detects_short_pulse() {
     let folder = tempfile::tempdir().expect("a folder");
     let spec = folder.path().join("pulse.toml");
     std::fs::write(&spec, PULSE).expect("writable");
@@ -340,7 +340,7 @@ fn the_longest_step_decides_whether_a_short_pulse_is_seen() {
         .split(',')
         .nth(3)
         .expect("energy");
-    // The pulse of 100 N and 5 ms sqrt(pi) leaves a momentum of 0.886 N s.
+    // The pulse of 100 N with 5 ms sqrt(pi) gives a momentum of 0.886 N s.
     let energy: f64 = energy.parse().expect("a number");
     let momentum = 100.0 * 0.005 * std::f64::consts::PI.sqrt();
     assert!(

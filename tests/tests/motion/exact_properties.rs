@@ -1,10 +1,9 @@
-//! Random parameters over decades: the exact solver against the general one over short
-//! times, for the arm and for small machines of springs, stops and dry friction.
+//! Random parameters over decades: the exact solver against the general solver over short times,
+//! for the arm and for small machines of springs, stops and dry friction.
 //!
-//! What the general solver knows of a motion is how much it changes when its tolerance or its
-//! method does; the exact one may differ by as much, and by what rounding does. The other method
-//! takes other steps: what happens in much less than a step and stays hidden from one of them may
-//! be seen by the other.
+//! The uncertainty of the general solver is its change with tolerance and method. The exact solver
+//! may differ by twice that plus rounding. The second method takes other steps, because an event
+//! much shorter than a step can be missed by one of them.
 
 use std::time::{Duration, Instant};
 
@@ -15,12 +14,12 @@ use eomgen_tests::models::load;
 use eomgen_tests::motions::{Spec, Subject, difference, grid};
 use proptest::prelude::*;
 
-/// The longest that the exact solver may take for one motion.
-const LIMIT: Duration = Duration::from_secs(2);
+/// Maximum duration of an exact simulation.
+const MAX_SOLVE_TIME: Duration = Duration::from_secs(2);
 
-/// What rounding makes of motions with so many switches, each of which may magnify what it
-/// finds, relative to the largest magnitude of each state.
-const ROUNDING: f64 = 1e-10;
+/// Deviation due to rounding, amplified by switches, relative to the largest magnitude of each
+/// state.
+const MAX_ROUNDING: f64 = 1e-10;
 
 fn config() -> ProptestConfig {
     ProptestConfig {
@@ -29,20 +28,20 @@ fn config() -> ProptestConfig {
     }
 }
 
-/// The exact motion, in time.
+/// Simulates exactly, within [`MAX_SOLVE_TIME`].
 fn exact(subject: &Subject, until: f64, times: &[f64]) -> Result<Trajectory, ExactError> {
     let begun = Instant::now();
     let motion = subject.try_exact((0.0, until), times);
-    assert!(begun.elapsed() < LIMIT, "{:?}", begun.elapsed());
+    assert!(begun.elapsed() < MAX_SOLVE_TIME, "{:?}", begun.elapsed());
     motion
 }
 
-/// Whether both solvers tell the same.
-fn agree(subject: &Subject, until: f64, smallest: f64) -> Result<(), TestCaseError> {
+/// Compares the exact solver with the general one.
+fn compare_solvers(subject: &Subject, until: f64, smallest: f64) -> Result<(), TestCaseError> {
     let times = grid(until, 16);
     let exact = match exact(subject, until, &times) {
         Ok(motion) => motion,
-        // Too fast for any solver, and said so.
+        // Too many switches for any solver.
         Err(ExactError::Stopped(SolveError::TooManySwitches { .. })) => return Ok(()),
         Err(error) => return Err(TestCaseError::fail(error.to_string())),
     };
@@ -50,14 +49,14 @@ fn agree(subject: &Subject, until: f64, smallest: f64) -> Result<(), TestCaseErr
     let general = |tolerance: f64| subject.general((0.0, until), &times, tolerance);
     let adams = subject.general_by(Method::Adams, (0.0, until), &times, 1e-12);
     let (Ok(coarse), Ok(fine), Ok(adams)) = (general(1e-10), general(1e-12), adams) else {
-        // Held on a surface, or too stiff for it.
+        // The motion stays on a surface, or the model is too stiff for the general solver.
         return Ok(());
     };
     let differs = |other: &Trajectory| difference(&other.states, &fine.states, smallest);
     let doubt = differs(&coarse).max(differs(&adams));
     let found = difference(&exact.states, &fine.states, smallest);
     prop_assert!(
-        found <= 2.0 * doubt + ROUNDING,
+        found <= 2.0 * doubt + MAX_ROUNDING,
         "{:e} where {:e}, {} switches",
         found,
         doubt,
@@ -66,12 +65,11 @@ fn agree(subject: &Subject, until: f64, smallest: f64) -> Result<(), TestCaseErr
     Ok(())
 }
 
-/// A number over decades.
 fn decades(low: f64, high: f64) -> impl Strategy<Value = f64> + Clone {
     (low.log10()..high.log10()).prop_map(|power| 10.0_f64.powf(power))
 }
 
-/// Zero now and then.
+/// Returns zero in one of five cases.
 fn or_zero(of: impl Strategy<Value = f64>) -> impl Strategy<Value = f64> {
     (of, 0..5_u32).prop_map(|(value, die)| if die == 0 { 0.0 } else { value })
 }
@@ -80,7 +78,7 @@ proptest! {
     #![proptest_config(config())]
 
     #[test]
-    fn the_arm(
+    fn exact_matches_general_solver_for_random_arms(
         stiffness in [decades(1e5, 1e9), decades(1e5, 1e9)],
         damping in [or_zero(decades(1.0, 3e3)), or_zero(decades(1.0, 3e3))],
         play in [or_zero(decades(1e-9, 1e-3)), or_zero(decades(1e-9, 1e-3))],
@@ -104,14 +102,14 @@ proptest! {
             initial[mesh] = deflections[mesh] * play[mesh].max(1e-6);
             initial[half + mesh] = rates[mesh];
         }
-        agree(&subject.from(&initial), 5e-4, 1e-6)?;
+        compare_solvers(&subject.from(&initial), 5e-4, 1e-6)?;
     }
 }
 
-/// A play that is passed within a ten-thousandth of what a damper beside it takes to settle: a search that
-/// looks far ahead comes back over much of that decay.
+/// The play is crossed within 1e-4 of the damper's settling time: a search that looks far ahead
+/// covers much of that decay.
 #[test]
-fn a_play_that_is_passed_beside_a_strong_damper() {
+fn exact_matches_general_solver_for_play_with_strong_damper() {
     let values = [
         ("k_sp", 1e5),
         ("k_pr", 464350152.82289267),
@@ -132,10 +130,10 @@ fn a_play_that_is_passed_beside_a_strong_damper() {
     let half = initial.len() / 2;
     initial[half + 1] = -0.29280426769815593;
     let subject = subject.from(&initial);
-    agree(&subject, 5e-4, 1e-6).expect("the same motion");
+    compare_solvers(&subject, 5e-4, 1e-6).expect("the same motion");
 }
 
-/// One more term of a machine.
+/// Additional force of a machine.
 #[derive(Clone, Debug)]
 enum Term {
     Spring(f64),
@@ -144,7 +142,7 @@ enum Term {
     OneSided(f64, f64),
     Dry(f64),
     Push(f64, f64, f64),
-    /// A spring that feels a stretch late, through a filter; beyond a play, if there is one.
+    /// Spring whose deflection is delayed by a filter, with a backlash if given.
     Late(f64, f64, f64),
 }
 
@@ -175,7 +173,7 @@ fn term() -> impl Strategy<Value = Term> {
     ]
 }
 
-/// Up to three masses; each term acts on one of them or between two.
+/// Returns a machine of up to three masses; each term acts on one mass or between two.
 fn machine(masses: &[f64], starts: &[[f64; 2]; 3], terms: &[(Term, usize, usize)]) -> Spec {
     let mut spec = Spec::default();
     for (place, mass) in masses.iter().enumerate() {
@@ -240,20 +238,20 @@ proptest! {
     #![proptest_config(config())]
 
     #[test]
-    fn small_machines(
+    fn exact_matches_general_solver_for_random_machines(
         masses in proptest::collection::vec(decades(0.1, 10.0), 1..=3),
         starts in [[-0.1..0.1_f64, -1.0..1.0_f64], [-0.1..0.1_f64, -1.0..1.0_f64], [-0.1..0.1_f64, -1.0..1.0_f64]],
         terms in proptest::collection::vec((term(), 0..3_usize, 0..3_usize), 1..=6),
     ) {
         let subject = Subject::new(machine(&masses, &starts, &terms).model(), 0);
-        agree(&subject, 0.3, 1e-4)?;
+        compare_solvers(&subject, 0.3, 1e-4)?;
     }
 }
 
-/// Two masses that rub move as one, and what acts on both comes through a filter: what rounding leaves of
-/// the friction between them is no rate of theirs.
+/// Two masses in friction contact move together, loaded through a filter: the rounding residue of
+/// the friction force between them must not cause a relative rate.
 #[test]
-fn masses_that_move_as_one_beside_a_filter() {
+fn exact_matches_general_solver_for_sticking_masses_with_filter() {
     let terms = [
         (Term::Dry(6.116930067280249), 1, 0),
         (Term::Damper(1.0), 0, 1),
@@ -262,12 +260,12 @@ fn masses_that_move_as_one_beside_a_filter() {
     ];
     let starts = [[0.0, 0.0], [-0.05756814641021024, 0.0], [0.0, 0.0]];
     let spec = machine(&[1.0, 0.12259264311719222, 1.0], &starts, &terms);
-    agree(&Subject::new(spec.model(), 0), 0.3, 1e-4).expect("the same motion");
+    compare_solvers(&Subject::new(spec.model(), 0), 0.3, 1e-4).expect("the same motion");
 }
 
-/// A spring that a fast filter hides between two slow masses, one of them in air.
+/// A spring behind a fast filter between two slow masses, one of them with drag.
 #[test]
-fn a_filter_much_faster_than_the_masses() {
+fn exact_matches_general_solver_for_fast_filter() {
     let terms = [
         (Term::Late(1.0, 0.0011986461370879227, 0.0), 0, 1),
         (Term::Damper(0.016923112823417547), 1, 1),
@@ -278,13 +276,13 @@ fn a_filter_much_faster_than_the_masses() {
         &[[0.0; 2]; 3],
         &terms,
     );
-    agree(&Subject::new(spec.model(), 0), 0.3, 1e-4).expect("the same motion");
+    compare_solvers(&Subject::new(spec.model(), 0), 0.3, 1e-4).expect("the same motion");
 }
 
-/// A mass on a one-sided spring that rubs on a free one, beside an oscillator: eigenvalues that lie
-/// symmetrically.
+/// A mass on a one-sided spring, with friction against a free mass, and a separate oscillator:
+/// eigenvalues are symmetric.
 #[test]
-fn eigenvalues_that_lie_symmetrically() {
+fn exact_matches_general_solver_for_symmetric_eigenvalues() {
     let terms = [
         (Term::Dry(9.559507392151577), 0, 1),
         (Term::Spring(15.020480209025736), 2, 2),
@@ -292,12 +290,12 @@ fn eigenvalues_that_lie_symmetrically() {
     ];
     let starts = [[0.0, 0.0], [0.0, 0.633536162812156], [0.0, 0.0]];
     let spec = machine(&[1.0, 1.0, 0.7818489250388482], &starts, &terms);
-    agree(&Subject::new(spec.model(), 0), 0.3, 1e-4).expect("the same motion");
+    compare_solvers(&Subject::new(spec.model(), 0), 0.3, 1e-4).expect("the same motion");
 }
 
-/// The implicit solver, with the models' own Jacobians, against the one that fits each model best.
+/// The implicit solver with the models' Jacobians against the best solver for each model.
 #[test]
-fn radau_follows_the_shipped_models() {
+fn radau_matches_best_solver_on_shipped_models() {
     for (name, until, reference) in [
         ("planetary_arm", 0.1, Solver::Exact),
         ("double_pendulum", 1.0, Solver::Rk),

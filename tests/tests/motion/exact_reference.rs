@@ -1,10 +1,10 @@
-//! The arm without modes, with four and with sixteen, without play and with it, against its
-//! own Taylor series in double-doubles.
+//! The arm with zero, four and sixteen modes, with and without backlash, against its Taylor series
+//! in double-double arithmetic.
 //!
-//! The same series in doubles says what rounding alone does to these motions. With play
-//! they are partly chaotic and the growth of a rounding error is a matter of luck, so the
-//! largest of several runs counts, which differ in their steps and so in their roundings.
-//! The exact solver is asked to stay within ten times that.
+//! The same series in doubles measures the effect of rounding on these motions. With backlash they
+//! are partly chaotic, so the growth of a rounding error is random. The bound uses the largest of
+//! several runs with different steps, hence different roundings. The exact solver must stay within
+//! ten times that.
 
 use std::cell::RefCell;
 
@@ -21,10 +21,10 @@ use eomgen_tests::taylor::double_double::DoubleDouble;
 use eomgen_tests::taylor::run::{LONGEST, Run};
 use eomgen_tests::taylor::scalar::Scalar;
 
-/// The paper's faster ripple, 10 pi rad/s.
+/// The paper's higher excitation frequency, 10 pi rad/s.
 const OMEGA: f64 = 31.41592653589793;
 
-/// Parts of the span at whose ends deviations are told.
+/// Fractions of the time span at which deviations are compared.
 const PARTS: [f64; 3] = [0.25, 0.5, 1.0];
 
 /// Largest deviations from the reference, in m.
@@ -53,10 +53,10 @@ impl std::fmt::Display for Deviation {
     }
 }
 
-/// The largest deviations up to the ends of [`PARTS`].
+/// Largest deviations up to the times of [`PARTS`].
 type Growth = [Deviation; 3];
 
-/// A run in double-doubles with a sample per millisecond.
+/// Double-double run with one sample per millisecond.
 struct Reference {
     case: Case,
     times: Vec<f64>,
@@ -76,7 +76,6 @@ impl Reference {
         Self { case, times, run }
     }
 
-    /// The deviation at one sample.
     fn deviation(&self, sample: usize, x_sp: f64, tip: f64) -> Deviation {
         let [x_sp, tip] = [x_sp, tip].map(DoubleDouble::exactly);
         let state = &self.run.states[sample];
@@ -86,7 +85,7 @@ impl Reference {
         }
     }
 
-    /// How states that list all displacements first deviate.
+    /// Returns the deviations of states whose first entries are the displacements.
     fn growth<'a>(&self, states: impl ExactSizeIterator<Item = &'a [f64]>) -> Growth {
         assert_eq!(states.len(), self.times.len());
         let mut growth = Growth::default();
@@ -104,7 +103,7 @@ impl Reference {
         growth
     }
 
-    /// What rounding to doubles does to the same series: the largest of three runs.
+    /// Returns the deviations of the series in doubles: the largest of three runs.
     fn rounding(&self) -> Growth {
         let mut rounding = Growth::default();
         for power in [10, 17, 18] {
@@ -119,24 +118,27 @@ impl Reference {
     }
 }
 
-/// One case in double and in extended precision, and by exact propagation.
+/// Deviations of one case in doubles and with the exact solver.
 struct Comparison {
-    /// Doubles against the reference.
+    /// Deviations of the series in doubles.
     rounding: Growth,
-    /// The exact solver against it.
+    /// Deviations of the exact solver.
     exact: Growth,
-    /// Of the meshes sun-planet and planet-ring.
+    /// Numbers of switches of the sun-planet and planet-ring meshes.
     switches: [usize; 2],
-    /// Of both meshes by the exact solver, after the start.
+    /// Number of switches found by the exact solver, after [`AFTER_START_S`].
     exact_switches: usize,
 }
 
-/// Follows the arm with `order` modes and half a backlash of `b` m for `until` s.
+/// Compares the arm with `order` modes and half a backlash of `b` m over `until` s.
 fn compare(order: usize, b: f64, until: f64) -> Comparison {
     let reference = Reference::new(order, b, until);
-    let trajectory = exact(&reference, until);
+    let trajectory = simulate_exactly(&reference, until);
     let displacements = trajectory.states.iter().map(|state| &state[..3 + order]);
-    let after_start = trajectory.switches.iter().filter(|switch| switch.t > LEFT);
+    let after_start = trajectory
+        .switches
+        .iter()
+        .filter(|switch| switch.t > AFTER_START_S);
     Comparison {
         rounding: reference.rounding(),
         exact: reference.growth(displacements),
@@ -145,8 +147,8 @@ fn compare(order: usize, b: f64, until: f64) -> Comparison {
     }
 }
 
-/// The same motion from switch to switch, by the derived model.
-fn exact(reference: &Reference, until: f64) -> Trajectory {
+/// Simulates the derived model with the exact solver.
+fn simulate_exactly(reference: &Reference, until: f64) -> Trajectory {
     let model = model(reference.case);
     let orders = vec![reference.case.order; model.fields.len()];
     let derived = PiecewiseLinear::of(&model, &orders).expect("linear between its switches");
@@ -157,27 +159,28 @@ fn exact(reference: &Reference, until: f64) -> Trajectory {
     trajectory.expect("a trajectory")
 }
 
-/// The exact solver may deviate by so many times what rounding does to the series in doubles.
-const FACTOR: f64 = 10.0;
+/// Maximum ratio of the exact solver's deviation to that of the series in doubles.
+const MAX_ROUNDING_RATIO: f64 = 10.0;
 
-/// The largest deviation of either, m; doubles must stay a tenth of it below.
-const LARGEST: f64 = 1e-10;
+/// Maximum deviation in m; the series in doubles must stay below a tenth of it.
+const MAX_DEVIATION_M: f64 = 1e-10;
 
-/// Without play a mesh begins on its surface. The reference takes leaving it for no switch;
-/// the exact solver has it some nanoseconds later.
-const LEFT: f64 = 1e-6;
+/// Time in s after which switches are counted. Without backlash a mesh starts on its surface: the
+/// exact solver counts its departure as a switch after some nanoseconds, the reference does not.
+const AFTER_START_S: f64 = 1e-6;
 
-/// What is asked of the exact solver in a case.
+/// Bounds for the exact solver.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Asked {
-    /// [`LARGEST`] and [`FACTOR`].
+    /// [`MAX_DEVIATION_M`] and [`MAX_ROUNDING_RATIO`].
     Both,
-    /// [`LARGEST`] alone.
+    /// Only [`MAX_DEVIATION_M`].
     Largest,
 }
 
-/// Over two seconds doubles and the exact solver follow the reference, with these switches.
-fn both_follow(order: usize, b: f64, switches: [usize; 2], asked: Asked) {
+/// Asserts that doubles and the exact solver match the reference over two seconds, with these
+/// switch counts.
+fn assert_both_match_reference(order: usize, b: f64, switches: [usize; 2], asked: Asked) {
     let until = 2.0;
     let compared = compare(order, b, until);
     let both = compared.rounding.into_iter().zip(compared.exact);
@@ -189,12 +192,13 @@ fn both_follow(order: usize, b: f64, switches: [usize; 2], asked: Asked) {
             ratios[0],
             ratios[1]
         );
-        assert!(rounding.within(0.1 * LARGEST), "double: {rounding}");
-        assert!(exact.within(LARGEST), "exact: {exact}");
-        // Over the whole run: in parts of it single samples deviate by some 1e-14 m more.
+        assert!(rounding.within(0.1 * MAX_DEVIATION_M), "double: {rounding}");
+        assert!(exact.within(MAX_DEVIATION_M), "exact: {exact}");
+        // The ratio is checked over the whole run only: over parts, single samples deviate by 1e-14
+        // m more.
         if asked == Asked::Both && part == 1.0 {
-            // Without modes both tips are zero.
-            let within = exact.x_sp <= FACTOR * rounding.x_sp && exact.tip <= FACTOR * rounding.tip;
+            let within = exact.x_sp <= MAX_ROUNDING_RATIO * rounding.x_sp
+                && exact.tip <= MAX_ROUNDING_RATIO * rounding.tip;
             assert!(within, "{ratios:?}");
         }
     }
@@ -205,46 +209,46 @@ fn both_follow(order: usize, b: f64, switches: [usize; 2], asked: Asked) {
 }
 
 #[test]
-fn the_rigid_arm() {
-    both_follow(0, 0.0, [20, 20], Asked::Both);
-    both_follow(0, 1e-6, [163, 331], Asked::Both);
-    both_follow(0, 25e-6, [409, 560], Asked::Both);
-    both_follow(0, 100e-6, [518, 678], Asked::Both);
+fn exact_matches_reference_for_rigid_arm() {
+    assert_both_match_reference(0, 0.0, [20, 20], Asked::Both);
+    assert_both_match_reference(0, 1e-6, [163, 331], Asked::Both);
+    assert_both_match_reference(0, 25e-6, [409, 560], Asked::Both);
+    assert_both_match_reference(0, 100e-6, [518, 678], Asked::Both);
 }
 
 #[test]
-fn the_papers_arm_with_little_play() {
-    both_follow(4, 0.0, [20, 20], Asked::Both);
-    both_follow(4, 1e-6, [207, 317], Asked::Both);
+fn exact_matches_reference_without_backlash() {
+    assert_both_match_reference(4, 0.0, [20, 20], Asked::Both);
+    assert_both_match_reference(4, 1e-6, [207, 317], Asked::Both);
 }
 
 #[test]
-fn the_papers_arm_with_much_play() {
-    both_follow(4, 25e-6, [381, 584], Asked::Largest);
-    both_follow(4, 100e-6, [498, 700], Asked::Both);
+fn exact_matches_reference_with_backlash() {
+    assert_both_match_reference(4, 25e-6, [381, 584], Asked::Largest);
+    assert_both_match_reference(4, 100e-6, [498, 700], Asked::Both);
 }
 
 #[test]
-fn sixteen_modes_with_little_play() {
-    both_follow(16, 0.0, [20, 20], Asked::Both);
-    both_follow(16, 1e-6, [207, 315], Asked::Both);
+fn exact_matches_reference_for_sixteen_modes_without_backlash() {
+    assert_both_match_reference(16, 0.0, [20, 20], Asked::Both);
+    assert_both_match_reference(16, 1e-6, [207, 315], Asked::Both);
 }
 
 #[test]
-fn sixteen_modes_with_much_play() {
-    both_follow(16, 25e-6, [377, 590], Asked::Largest);
-    both_follow(16, 100e-6, [518, 720], Asked::Both);
+fn exact_matches_reference_for_sixteen_modes_with_backlash() {
+    assert_both_match_reference(16, 25e-6, [377, 590], Asked::Largest);
+    assert_both_match_reference(16, 100e-6, [518, 720], Asked::Both);
 }
 
-/// The shipped arm in one case.
+/// Returns the shipped arm with the parameters of the case.
 fn model(case: Case) -> Model {
     let values = [("b_sp", case.b), ("b_pr", case.b), ("omega", case.omega)];
     let model = load("planetary_arm").with_parameters(&values);
     model.expect("the values are within their bounds")
 }
 
-/// The derived model by the general solver, for orders without and with modes.
-fn general_solver_agrees(order: usize, b: f64) {
+/// Compares the general solver on the derived model with the reference.
+fn assert_general_solver_matches(order: usize, b: f64) {
     let reference = Reference::new(order, b, 0.02);
     let model = model(reference.case);
     let orders = vec![order; model.fields.len()];
@@ -267,15 +271,15 @@ fn general_solver_agrees(order: usize, b: f64) {
     let displacements = trajectory.states.iter().map(|state| &state[..3 + order]);
     let [.., worst] = reference.growth(displacements);
     println!("S = {order}, b = {b:e} m: {worst}");
-    // A relative error of 1e-12 a step, of motions of 1e-4 m.
+    // The tolerance of 1e-12 per step applies to motions of 1e-4 m.
     assert!(worst.x_sp < 1e-14 && worst.tip < 1e-14, "{worst}");
 }
 
 #[test]
-fn the_reference_is_the_derived_model() {
+fn reference_matches_derived_model() {
     for order in [0, 1, 16] {
         for b in [0.0, 1e-6, 100e-6] {
-            general_solver_agrees(order, b);
+            assert_general_solver_matches(order, b);
         }
     }
 }

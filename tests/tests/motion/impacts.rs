@@ -1,5 +1,5 @@
-//! Machines that hit and rest: jumps against dense algebra and textbook formulas, bouncing against its
-//! closed form, what lifts off again, and what is refused.
+//! Machines with impacts: jumps against dense algebra and textbook formulas, bouncing against its
+//! closed form, resting contacts and lift-off, and rejected models.
 
 use std::path::Path;
 
@@ -8,7 +8,6 @@ use eomgen_compiled_model::{CompiledModel, Error, Motion, Orders, Solver};
 use eomgen_tests::program::refused;
 use nalgebra::{DMatrix, DVector};
 
-/// A generator of numbers between -1 and 1.
 struct Numbers(u64);
 
 impl Numbers {
@@ -26,7 +25,7 @@ fn example(name: &str, orders: Orders<'_>) -> CompiledModel {
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// A shipped model with more behind it.
+/// Compiles a shipped model with additional `impacts`.
 fn with_impacts(name: &str, impacts: &str, order: usize) -> CompiledModel {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../model-spec/models");
     let text = std::fs::read_to_string(folder.join(format!("{name}.toml"))).expect("a model");
@@ -38,14 +37,15 @@ fn with_impacts(name: &str, impacts: &str, order: usize) -> CompiledModel {
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn simulated(model: &CompiledModel, settings: &[(&str, f64)], times: &[f64]) -> Motion {
+fn simulate_with(model: &CompiledModel, settings: &[(&str, f64)], times: &[f64]) -> Motion {
     let run = model.with(settings).unwrap();
     let motion = run.simulate(run.initial(), times, &run.no_inputs(), Solver::Auto);
     motion.unwrap_or_else(|error| panic!("{settings:?}: {error}"))
 }
 
-/// How high a ball is at a time after it left the floor: flights from speeds v, e v, e^2 v.
-fn launched(g: f64, e: f64, mut since: f64, mut v: f64) -> f64 {
+/// Returns the height of a ball at the time `since` after it left the floor: flights from speeds v,
+/// e v, e^2 v.
+fn height_after_launch(g: f64, e: f64, mut since: f64, mut v: f64) -> f64 {
     while v > 1e-9 && 2.0 * v / g < since {
         since -= 2.0 * v / g;
         v *= e;
@@ -56,21 +56,21 @@ fn launched(g: f64, e: f64, mut since: f64, mut v: f64) -> f64 {
     }
 }
 
-/// How high a ball is that fell from 1 m.
-fn bounced(g: f64, e: f64, t: f64) -> f64 {
+/// Returns the height at time t of a ball released from 1 m.
+fn height_after_drop(g: f64, e: f64, t: f64) -> f64 {
     let v = (2.0 * g).sqrt();
-    launched(g, e, t + v / g, v)
+    height_after_launch(g, e, t + v / g, v)
 }
 
 #[test]
-fn a_ball_bounces_as_often_and_as_high_as_its_closed_form_and_rests() {
+fn bouncing_ball_matches_closed_form_and_comes_to_rest() {
     let model = example("bouncing_ball", Orders::Declared);
     let g = 9.81;
     for e in [0.0, 0.2, 0.5, 0.8, 0.9, 0.97, 1.0] {
         let times: Vec<f64> = (0..=40).map(|step| f64::from(step) * 0.1).collect();
-        let motion = simulated(&model, &[("e", e)], &times);
+        let motion = simulate_with(&model, &[("e", e)], &times);
         for (t, state) in times.iter().zip(&motion.trajectory.states) {
-            let height = bounced(g, e, *t);
+            let height = height_after_drop(g, e, *t);
             assert!(
                 (state[0] - height).abs() < 1e-10,
                 "{e} {t}: {} {height}",
@@ -80,7 +80,7 @@ fn a_ball_bounces_as_often_and_as_high_as_its_closed_form_and_rests() {
     }
 }
 
-/// A motion from a state at the first of the times, by each solver that takes impacts.
+/// Returns the motions from `initial` by each solver that supports impacts.
 fn motions(model: &CompiledModel, initial: &[f64], times: &[f64]) -> Vec<Motion> {
     let run = model.at_declared().unwrap();
     let solvers = [Solver::Rk, Solver::Radau].into_iter();
@@ -95,7 +95,7 @@ fn motions(model: &CompiledModel, initial: &[f64], times: &[f64]) -> Vec<Motion>
 }
 
 #[test]
-fn a_ball_that_starts_on_the_floor_rests_or_bounces() {
+fn ball_starting_on_floor_rests_or_bounces() {
     let model = example("bouncing_ball", Orders::Declared);
     let (g, e) = (9.81, 0.8);
     for begin in [0.0, 5.0] {
@@ -104,7 +104,7 @@ fn a_ball_that_starts_on_the_floor_rests_or_bounces() {
             let first = if speed < 0.0 { -e * speed } else { speed };
             for motion in motions(&model, &[0.0, speed], &times) {
                 for (t, state) in times.iter().zip(&motion.trajectory.states) {
-                    let height = launched(g, e, t - begin, first);
+                    let height = height_after_launch(g, e, t - begin, first);
                     assert!(
                         (state[0] - height).abs() < 1e-9,
                         "{begin} {speed} {t}: {state:?} {height}"
@@ -116,7 +116,7 @@ fn a_ball_that_starts_on_the_floor_rests_or_bounces() {
 }
 
 #[test]
-fn what_starts_in_several_contacts_at_the_origin_rests() {
+fn mass_starting_in_several_contacts_rests() {
     let text = |potential: &str, impacts: &str| {
         format!(
             r#"
@@ -173,8 +173,8 @@ p = "{potential}"
 }
 
 #[test]
-fn what_rests_on_a_table_leaves_where_that_falls_faster() {
-    // Without restitution the ball stays on the table until a omega^2 sin(omega t) = g.
+fn ball_leaves_table_that_falls_faster() {
+    // With e = 0, the ball stays on the table until a omega^2 sin(omega t) = g.
     let model = example("bouncing_ball", Orders::Declared);
     let (a, omega, g) = (0.03, 20.0_f64, 9.81);
     let run = model.with(&[("a", a), ("e", 0.0)]).unwrap();
@@ -198,7 +198,7 @@ fn what_rests_on_a_table_leaves_where_that_falls_faster() {
             false => table,
         };
         flew += usize::from(expected > table);
-        // Landed once, it rests on the table again.
+        // After landing, the ball rests on the table again.
         assert!(
             (state[0] - expected).abs() < 1e-9,
             "{t}: {} {expected}",
@@ -209,7 +209,7 @@ fn what_rests_on_a_table_leaves_where_that_falls_faster() {
 }
 
 #[test]
-fn two_carts_keep_their_momentum_and_lose_what_restitution_says() {
+fn colliding_carts_conserve_momentum_and_lose_energy_by_restitution() {
     let text = |e: f64| {
         format!(
             r#"
@@ -231,19 +231,19 @@ bumper = {{ when = "z - x", restitution = "e" }}
     };
     for e in [0.0, 0.25, 1.0] {
         let model = CompiledModel::of_text("carts.toml", &text(e), Orders::Declared).unwrap();
-        let state = simulated(&model, &[], &[0.0, 1.0]).trajectory.states[1].clone();
+        let state = simulate_with(&model, &[], &[0.0, 1.0]).trajectory.states[1].clone();
         let centre = (2.0 * 3.0 - 5.0) / 7.0;
         let (x, z) = (centre - 5.0 / 7.0 * 4.0 * e, centre + 2.0 / 7.0 * 4.0 * e);
         assert!(
             (state[2] - x).abs() < 1e-12 && (state[3] - z).abs() < 1e-12,
             "{e}: {state:?}"
         );
-        // They met at t = 1/4 at x = 3/4.
+        // The carts meet at t = 1/4 at x = 3/4.
         assert!((state[0] - 0.75 - 0.75 * x).abs() < 1e-12, "{e}: {state:?}");
     }
 }
 
-/// Two balls above each other and the floor below them.
+/// Compiles two balls above each other and the floor below them.
 fn stacked(between: f64) -> CompiledModel {
     let text = format!(
         r#"
@@ -270,9 +270,9 @@ balls = {{ when = "z - y", restitution = 0.8 }}
 }
 
 #[test]
-fn balls_that_fall_on_each_other_bounce_together() {
-    // Moreau's law: what falls together has no speed to be sent back with, so both move on as one,
-    // by the closed form of a single ball.
+fn touching_balls_bounce_like_one_ball() {
+    // Moreau's law: balls that touch as they fall have no relative speed to restore, so they move
+    // together like a single ball.
     let model = stacked(1.0);
     for (light, e) in [
         (100.0, 0.9),
@@ -282,9 +282,9 @@ fn balls_that_fall_on_each_other_bounce_together() {
         (1e6, 0.7),
     ] {
         let times: Vec<f64> = (0..=60).map(|step| f64::from(step) * 0.05).collect();
-        let motion = simulated(&model, &[("M", light), ("e", e)], &times);
+        let motion = simulate_with(&model, &[("M", light), ("e", e)], &times);
         for (t, state) in times.iter().zip(&motion.trajectory.states) {
-            let height = bounced(9.81, e, *t);
+            let height = height_after_drop(9.81, e, *t);
             let off = (state[0] - height).abs().max((state[1] - height).abs());
             assert!(off < 1e-10, "{light} {e} {t}: {state:?} {height}");
         }
@@ -292,7 +292,7 @@ fn balls_that_fall_on_each_other_bounce_together() {
 }
 
 #[test]
-fn stacks_of_any_balls_fall_without_gaining_energy_or_going_through_each_other() {
+fn random_stacks_of_balls_gain_no_energy_and_do_not_penetrate() {
     let mut numbers = Numbers(0x5eed);
     for case in 0..40 {
         let mut text = String::from("[model]\nname = \"stack\"\n[parameters]\n");
@@ -313,7 +313,7 @@ fn stacks_of_any_balls_fall_without_gaining_energy_or_going_through_each_other()
                     "c{ball} = {{ when = \"y{ball} - y{below}\", restitution = {restitution:?} }}\n"
                 );
             }
-            // Some touch from the start.
+            // Some balls touch at the start.
             height += 0.02 * numbers.next().max(0.0);
         }
         text += "g = { value = 9.81, unit = \"m/s^2\" }\n[coordinates]\n";
@@ -354,10 +354,11 @@ fn stacks_of_any_balls_fall_without_gaining_energy_or_going_through_each_other()
 }
 
 #[test]
-fn a_light_ball_on_a_heavy_one_is_shot_up() {
-    // A little above: the heavy one has turned when they meet. Textbook collision of two bodies.
+fn light_ball_on_heavy_ball_rebounds_by_textbook_formula() {
+    // With a small gap, the heavy ball has rebounded before they meet; then the textbook collision
+    // of two bodies applies.
     let (e, apart, g) = (0.9, 1e-6, 9.81);
-    let motion = simulated(&stacked(1.0 + apart), &[], &[0.0, 0.46]);
+    let motion = simulate_with(&stacked(1.0 + apart), &[], &[0.0, 0.46]);
     let v = (2.0_f64 * g).sqrt();
     let meets = (1.0 + 0.8) * 100.0 / 101.0;
     let after = -v + meets * (v + e * v) - g * (0.46 - v / g);
@@ -366,7 +367,7 @@ fn a_light_ball_on_a_heavy_one_is_shot_up() {
 }
 
 #[test]
-fn a_box_that_falls_flat_hits_with_both_edges_at_once_and_one_that_leans_with_one() {
+fn dropped_box_hits_with_both_edges_or_one() {
     let model = example("dropped_box", Orders::Declared);
     let (m, inertia, b, h, g, e) = (2.0, 0.0867, 0.3, 0.2, 9.81, 0.3);
     let run = model.at_declared().unwrap();
@@ -387,14 +388,14 @@ fn a_box_that_falls_flat_hits_with_both_edges_at_once_and_one_that_leans_with_on
         state[2].abs() < 1e-12 && state[5].abs() < 1e-10,
         "{state:?}"
     );
-    // One edge, by the rigid body's own impulse: P = (1 + e) v / (1/m + r^2/I).
+    // For one edge, the impulse on the rigid body is P = (1 + e) v / (1/m + r^2/I).
     let phi = 0.2_f64;
     let height = h * phi.cos() + b * phi.sin();
     let fallen = (2.0 * (0.7 - height) / g).sqrt();
     let arm = h * phi.sin() - b * phi.cos();
     let impulse = (1.0 + e) * g * fallen / (1.0 / m + arm * arm / inertia);
     let t = fallen + 0.005;
-    let leaning = simulated(&model, &[], &[0.0, t]).trajectory.states[1].clone();
+    let leaning = simulate_with(&model, &[], &[0.0, t]).trajectory.states[1].clone();
     let expected = (-g * t + impulse / m, arm * impulse / inertia);
     assert!(
         (leaning[4] - expected.0).abs() < 1e-9,
@@ -407,14 +408,14 @@ fn a_box_that_falls_flat_hits_with_both_edges_at_once_and_one_that_leans_with_on
 }
 
 #[test]
-fn a_box_comes_to_rest_for_every_restitution_and_width() {
+fn box_comes_to_rest_for_all_restitutions_and_widths() {
     let model = example("dropped_box", Orders::Declared);
     let mut numbers = Numbers(0x1234_5678_9abc_def1);
     for _ in 0..60 {
         let (b, e) = (0.25 + 0.2 * numbers.next(), 0.35 + 0.3 * numbers.next());
-        let motion = simulated(&model, &[("b", b), ("e", e)], &[0.0, 20.0]);
+        let motion = simulate_with(&model, &[("b", b), ("e", e)], &[0.0, 20.0]);
         let state = &motion.trajectory.states[1];
-        // Flat on one of its sides.
+        // The box must lie flat on one of its sides.
         let height = 0.2 * state[2].cos().abs() + b * state[2].sin().abs();
         assert!((state[1] - height).abs() < 1e-9, "{b} {e}: {state:?}");
         assert!((2.0 * state[2]).sin().abs() < 1e-9, "{b} {e}: {state:?}");
@@ -425,7 +426,7 @@ fn a_box_comes_to_rest_for_every_restitution_and_width() {
     }
 }
 
-/// The derivatives of a distance by the coordinates, by central differences.
+/// Returns the gradient of a distance with respect to the coordinates, by central differences.
 fn gradient(own: &mut Evaluator, state: &[f64], degrees: usize, place: usize) -> DVector<f64> {
     let mut at = |index: usize, step: f64| {
         let mut moved = state.to_vec();
@@ -447,8 +448,8 @@ fn gradient(own: &mut Evaluator, state: &[f64], degrees: usize, place: usize) ->
     })
 }
 
-/// Impulses and rates against the mass matrix and differences.
-fn agrees_with_dense_algebra(model: &CompiledModel, settings: &[(&str, f64)], seed: u64) {
+/// Compares impulses and rates with dense algebra on the mass matrix and difference quotients.
+fn assert_matches_dense_algebra(model: &CompiledModel, settings: &[(&str, f64)], seed: u64) {
     let run = model.with(settings).unwrap();
     let mut own = run.evaluator().unwrap();
     let degrees = own.program().degrees_of_freedom();
@@ -483,7 +484,6 @@ fn agrees_with_dense_algebra(model: &CompiledModel, settings: &[(&str, f64)], se
                 let size = row.norm() * DVector::from_column_slice(&at[other].column).norm();
                 assert!((entry - expected).abs() < 1e-8 * size, "{entry} {expected}");
             }
-            // Along the motion.
             let along = |step: f64, own: &mut Evaluator| {
                 let moved: Vec<f64> = state
                     .iter()
@@ -528,23 +528,24 @@ fn agrees_with_dense_algebra(model: &CompiledModel, settings: &[(&str, f64)], se
 }
 
 #[test]
-fn jumps_are_those_of_dense_algebra_for_rigid_and_flexible_machines() {
+fn jumps_match_dense_algebra_for_rigid_and_flexible_machines() {
     let walls = "\n[impacts]\nwall = { when = \"l_1 - l_1*sin(theta_1) - l_2*sin(theta_2)\", restitution = 0.5 }\n\
                  knee = { when = \"2 + theta_2 - theta_1\", restitution = 0 }\n";
-    agrees_with_dense_algebra(&with_impacts("double_pendulum", walls, 0), &[], 3);
+    assert_matches_dense_algebra(&with_impacts("double_pendulum", walls, 0), &[], 3);
     let stops = "\n[impacts]\ntip = { when = \"l + at(w, l) + l*theta\", restitution = 0.5 }\n\
                  middle = { when = \"l - at(w, l/2) - cos(theta)*at(w, l)\", restitution = 1 }\n";
     for order in [1, 3, 12] {
-        agrees_with_dense_algebra(&with_impacts("hub_beam_tip_mass", stops, order), &[], 5);
+        assert_matches_dense_algebra(&with_impacts("hub_beam_tip_mass", stops, order), &[], 5);
     }
-    agrees_with_dense_algebra(&example("dropped_box", Orders::Declared), &[], 7);
+    assert_matches_dense_algebra(&example("dropped_box", Orders::Declared), &[], 7);
     let shaken = [("a", 0.05)];
-    agrees_with_dense_algebra(&example("bouncing_ball", Orders::Declared), &shaken, 9);
+    assert_matches_dense_algebra(&example("bouncing_ball", Orders::Declared), &shaken, 9);
 }
 
 #[test]
-fn an_impact_moves_along_the_constraints() {
-    // A rod pendulum that swings against a wall: e of its speed comes back, and the rod is kept.
+fn impact_satisfies_constraints() {
+    // A rod pendulum swings against a wall: its speed is multiplied by -e, and the constraint is
+    // satisfied.
     let text = r#"
 [model]
 name = "rod"
@@ -566,7 +567,7 @@ wall = { when = "x", restitution = 0.5 }
 "#;
     let model = CompiledModel::of_text("rod.toml", text, Orders::Declared).unwrap();
     let times: Vec<f64> = (0..=100).map(|step| f64::from(step) * 0.02).collect();
-    let motion = simulated(&model, &[], &times);
+    let motion = simulate_with(&model, &[], &times);
     let run = model.at_declared().unwrap();
     let energy =
         |state: &[f64]| state[2].powi(2) + state[3].powi(2) + 2.0 * 9.81 * (state[1] + 0.7);
@@ -583,8 +584,8 @@ wall = { when = "x", restitution = 0.5 }
 }
 
 #[test]
-fn a_stiff_spring_in_the_place_of_a_stop_comes_to_the_same() {
-    // Restitution 1: a stiff contact spring gives all back, the sooner the stiffer it is.
+fn stiff_contact_spring_converges_to_impact() {
+    // With e = 1 the motion of a stiff contact spring converges to that of the impact.
     let hitting = example("beam_stop", Orders::All(2));
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/impacts");
     let text = std::fs::read_to_string(folder.join("beam_stop.toml")).expect("an example");
@@ -599,9 +600,9 @@ fn a_stiff_spring_in_the_place_of_a_stop_comes_to_the_same() {
     let soft = CompiledModel::of_text("soft.toml", &soft, Orders::All(2))
         .unwrap_or_else(|error| panic!("{error}"));
     let times = [0.0, 0.04, 0.05];
-    let hard = simulated(&hitting, &[("e", 1.0)], &times);
+    let hard = simulate_with(&hitting, &[("e", 1.0)], &times);
     let distances = [1e8, 1e10].map(|stiffness| {
-        let soft = simulated(&soft, &[("k_c", stiffness)], &times);
+        let soft = simulate_with(&soft, &[("k_c", stiffness)], &times);
         let pairs = hard.trajectory.states.iter().zip(&soft.trajectory.states);
         let distances = pairs.flat_map(|(a, b)| a.iter().zip(b).map(|(a, b)| (a - b).abs()));
         distances.fold(0.0, f64::max)
@@ -611,7 +612,7 @@ fn a_stiff_spring_in_the_place_of_a_stop_comes_to_the_same() {
 }
 
 #[test]
-fn a_start_that_rounding_puts_into_a_contact_begins_on_it() {
+fn initial_penetration_by_rounding_starts_on_contact() {
     let model = example("bouncing_ball", Orders::Declared);
     let run = model.at_declared().unwrap();
     let times = [0.0, 0.3, 1.0];
@@ -630,7 +631,7 @@ fn a_start_that_rounding_puts_into_a_contact_begins_on_it() {
 }
 
 #[test]
-fn what_cannot_hold_is_said() {
+fn invalid_impacts_are_rejected_with_reason() {
     let model = example("bouncing_ball", Orders::Declared);
     let run = model.at_declared().unwrap();
     let at = |initial: &[f64], solver| run.simulate(initial, &[0.0, 1.0], &run.no_inputs(), solver);
@@ -651,7 +652,7 @@ fn what_cannot_hold_is_said() {
         .expect("refused")
         .to_string();
     assert!(refusal.contains('1'), "{refusal}");
-    // A distance that no motion changes.
+    // A distance that depends on no coordinate.
     let text = r#"
 [model]
 name = "apart"
@@ -671,7 +672,7 @@ nothing = { when = "0*y", restitution = 0.5 }
     for said in ["no coordinate changes", "`nothing`", "apart.toml:11:21"] {
         assert!(refusal.contains(said), "{refusal}");
     }
-    // Walls that close in on a ball: ever more impacts, and no end.
+    // Closing walls around a ball: the impacts accumulate.
     let text = r#"
 [model]
 name = "closing"
@@ -703,7 +704,7 @@ ceiling = { when = "d - v*t - y", restitution = 1 }
 }
 
 #[test]
-fn hosts_that_do_not_follow_impacts_refuse_them() {
+fn hosts_without_impacts_reject_them() {
     let spec = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/impacts/bouncing_ball.toml");
     let spec = spec.display().to_string();
     let folder = tempfile::tempdir().expect("a folder");

@@ -1,5 +1,5 @@
-//! Piecewise functions of piecewise functions, which may rest on whole regions: the exact
-//! solver, the general one, the rates themselves and the emitted kernels of regimes agree.
+//! Nested piecewise functions, which may have equilibria on whole regions: exact solver, general
+//! solver, rates and emitted kernels agree.
 
 use std::fmt::Write as _;
 
@@ -16,8 +16,8 @@ use eomgen_tests::piecewise::machine;
 use eomgen_validate::compiler::{self, Compiler, Optimization};
 use eomgen_validate::random::Random;
 
-/// What solvers and kernels may differ by.
-const AGREED: f64 = 1e-8;
+/// Maximum difference between solvers and kernels.
+const MAX_DIFFERENCE: f64 = 1e-8;
 
 fn subject(text: &str) -> Subject {
     match eomgen_model_spec::check(Source::new("made.toml", text)) {
@@ -26,18 +26,18 @@ fn subject(text: &str) -> Subject {
     }
 }
 
-/// The exact motion, after it has been compared with that of the general solver.
-fn compared(subject: &Subject, until: f64) -> Trajectory {
+/// Returns the exact motion after comparing it with the general solver.
+fn compare_and_simulate(subject: &Subject, until: f64) -> Trajectory {
     let times = grid(until, 40);
     let exact = subject.exact((0.0, until), &times);
     let general = subject.general((0.0, until), &times, 1e-12);
     let general = general.expect("a motion that is not held on a surface");
     let found = difference(&exact.states, &general.states, 1e-3);
-    assert!(found < AGREED, "{found:e}");
+    assert!(found < MAX_DIFFERENCE, "{found:e}");
     exact
 }
 
-/// A mass of 0.1 kg under gravity, with this force of the floor beside its spring.
+/// Returns a mass of 0.1 kg under gravity on a floor with a spring and the force `pad`.
 fn ball(pad: &str) -> Subject {
     subject(&format!(
         r#"
@@ -61,7 +61,7 @@ pad = {{ on = "y", value = "{pad}" }}
     ))
 }
 
-/// A driven mass with this force, at m, N and kg of order one.
+/// Returns a driven mass with this force; m, N and kg are of order one.
 fn driven(force: &str) -> Subject {
     subject(&format!(
         r#"
@@ -88,7 +88,7 @@ drive = {{ on = "y", value = "F1*cos(w*t)" }}
 }
 
 #[test]
-fn a_ball_meets_a_floor_written_by_a_minimum() {
+fn ball_on_floor_defined_by_minimum_matches_general_solver() {
     let pads = [
         "-c*contact(min(y, 0), 0)*dot(y)",
         "c*sign(min(y, 0))*dot(y)",
@@ -96,7 +96,7 @@ fn a_ball_meets_a_floor_written_by_a_minimum() {
         "-c*above(abs(y) - y)*dot(y)",
     ];
     for pad in pads {
-        let motion = compared(&ball(pad), 2.0);
+        let motion = compare_and_simulate(&ball(pad), 2.0);
         assert_eq!(motion.switches.len(), 6, "{pad}");
         assert!(
             (motion.last[0] - 0.2426).abs() < 5e-5,
@@ -107,7 +107,7 @@ fn a_ball_meets_a_floor_written_by_a_minimum() {
 }
 
 #[test]
-fn springs_with_preload_and_stops_of_one_side_hold_where_nothing_acts() {
+fn preloaded_springs_and_one_sided_stops_hold_at_rest() {
     for force in [
         "-F0*sign(deadzone(y, b)) - k*deadzone(y, b)",
         "-k*max(y - b, 0) - c*contact(max(y - b, 0), 0)*dot(y)",
@@ -119,15 +119,15 @@ fn springs_with_preload_and_stops_of_one_side_hold_where_nothing_acts() {
         "-k*y - F0*contact(contact(y, b) + above(y), 1)",
         "-k*y - F0*above(y) - c*above(-y)*dot(y)",
     ] {
-        let motion = compared(&driven(force), 3.0);
+        let motion = compare_and_simulate(&driven(force), 3.0);
         assert!(motion.switches.len() > 1, "{force}");
     }
 }
 
-/// Friction beyond a speed holds the mass at that speed. Where the friction is smooth instead,
-/// and steep, the motion is nearly the same.
+/// Friction that starts at a given speed holds the mass at that speed. Steep smooth friction gives
+/// nearly the same motion.
 #[test]
-fn friction_that_sets_in_at_a_speed_holds_the_mass_there() {
+fn friction_that_starts_at_a_speed_holds_the_mass_at_it() {
     let times = grid(4.0, 40);
     let force = |friction: &str| format!("-{friction} - 0.3*k*y");
     let sudden = driven(&force("F0*sign(deadzone(dot(y), v))"));
@@ -144,9 +144,9 @@ fn friction_that_sets_in_at_a_speed_holds_the_mass_there() {
     assert!(exact.switches.len() < 100, "{}", exact.switches.len());
 }
 
-/// An input that is held at zero is on no side of zero.
+/// An input held at zero has sign zero.
 #[test]
-fn the_sign_of_an_input_that_is_held_at_zero_is_zero() {
+fn sign_of_input_held_at_zero_is_zero() {
     let mut subject = subject(
         r#"
 [model]
@@ -174,19 +174,19 @@ push = { on = "y", value = "F*sign(u)" }
     }
 }
 
-/// How many of the random machines could not be compared, and why.
+/// Counts of random machines, and of those not compared, by reason.
 #[derive(Debug, Default)]
 struct Tally {
     machines: usize,
-    /// Rounding alone decides somewhere on which side a function is.
+    /// Sides of a switching surface that are decided by rounding.
     ambiguous: usize,
-    /// Held on a surface, or there too often: only the exact solver follows.
+    /// Motions that stick often or for long: only the exact solver handles them.
     held: usize,
-    /// The exact solver refuses and says why.
+    /// Machines that the exact solver rejects with a reason.
     refused: usize,
     motions: usize,
     switches: usize,
-    /// The general solver does not know the motion so well itself.
+    /// Motions of which the general solver is uncertain.
     uncertain: usize,
     rates: usize,
     resting: usize,
@@ -195,7 +195,7 @@ struct Tally {
     worst_rates: f64,
 }
 
-/// A machine's states with the number of the regime of each.
+/// State of a machine with the number of its regime.
 struct Sample {
     t: f64,
     state: Vec<f64>,
@@ -209,9 +209,9 @@ fn number(name: &str, otherwise: u64) -> u64 {
     value.map_or(otherwise, |text| text.parse().expect("a whole number"))
 }
 
-/// As many machines as `EOMGEN_PIECEWISE_COUNT` says, from the seed `EOMGEN_PIECEWISE_SEED`.
+/// Draws `EOMGEN_PIECEWISE_COUNT` machines with the seed `EOMGEN_PIECEWISE_SEED`.
 #[test]
-fn random_machines_move_alike_by_every_way() {
+fn random_machines_agree_between_solvers_rates_and_kernels() {
     let seed = number("EOMGEN_PIECEWISE_SEED", 16);
     let count = number("EOMGEN_PIECEWISE_COUNT", 20);
     let mut random = Random::new(seed);
@@ -240,7 +240,7 @@ fn random_machines_move_alike_by_every_way() {
     assert!(tally.resting > 0 && tally.switches > 0, "{tally:?}");
 }
 
-/// Random states with their rates, none on a surface; none if rounding decides about sides.
+/// Returns random states with their rates, none on a surface; `None` if rounding decides a side.
 fn samples(subject: &Subject, random: &mut Random, tally: &mut Tally) -> Option<Vec<Sample>> {
     let mut evaluator = variant(&subject.model, 0).evaluator;
     let guards = evaluator.guard_count();
@@ -289,7 +289,11 @@ fn compare_rates(subject: &Subject, samples: &[Sample], place: &str, tally: &mut
         let size = sample.rates.iter().fold(1.0, |m: f64, r| m.max(r.abs()));
         for (found, expected) in found.iter().zip(&sample.rates) {
             let off = (found - expected).abs() / size;
-            assert!(off < AGREED, "{off:e} at {:?}\n{place}", sample.state);
+            assert!(
+                off < MAX_DIFFERENCE,
+                "{off:e} at {:?}\n{place}",
+                sample.state
+            );
             tally.worst_rates = tally.worst_rates.max(off);
         }
         tally.rates += 1;
@@ -317,27 +321,27 @@ fn compare_motions(subject: &Subject, place: &str, tally: &mut Tally) {
     };
     let doubt = difference(&coarse.states, &fine.states, 0.1);
     let found = difference(&exact.states, &fine.states, 0.1);
-    if doubt > 0.1 * AGREED {
+    if doubt > 0.1 * MAX_DIFFERENCE {
         tally.uncertain += 1;
         assert!(found < 10.0 * doubt, "{found:e} where {doubt:e}\n{place}");
         return;
     }
-    assert!(found < AGREED, "{found:e}\n{place}");
+    assert!(found < MAX_DIFFERENCE, "{found:e}\n{place}");
     tally.worst_motion = tally.worst_motion.max(found);
     tally.motions += 1;
     tally.switches += exact.switches.len();
 }
 
-/// What is emitted of a machine, with kernels of regimes.
+/// Returns the emitted source of a machine with kernels of regimes.
 fn kernel(subject: &Subject) -> String {
     let derived = Variant::derive_with(&subject.model, &[], &[Output::Regimes]);
     let program = derived.expect("a model that can be derived").program;
-    emit(&program, Packaging::Module).expect("names that Rust knows")
+    emit(&program, Packaging::Module).expect("names valid in Rust")
 }
 
 type Emitted = (String, Vec<Sample>, String);
 
-/// Compiles kernels of many machines at once and compares each with the rates.
+/// Compiles the kernels of a batch of machines and compares each with the rates.
 fn compare_kernels(batch: &[Emitted], tally: &mut Tally) {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let compiler = match Compiler::find(folder.path()) {

@@ -1,5 +1,5 @@
-//! The arm with four modes, simulated by the program, against trajectories known to more
-//! digits than it is asked for.
+//! The arm with four modes, simulated by the program, against trajectories known to more digits
+//! than required.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -7,24 +7,24 @@ use std::path::Path;
 use eomgen_tests::models::path;
 use eomgen_tests::program::accepted;
 
-/// A trajectory from two codes in quadruple precision that agree to its last digit, a row
-/// per hundredth of a second.
+/// Trajectory from two codes in quadruple precision that agree in all digits, with a row per 0.01
+/// s.
 const REFERENCE: &str = include_str!("../../reference/trajectory_order4.csv");
 
-/// Simulated time, in s, and the switches in it.
+/// Simulated time in s, and the number of switches in it.
 const UNTIL: f64 = 2.0;
 const SWITCHES: u64 = 965;
 
-/// Deviations allowed over two seconds, in m: roundings of the exact solver, grown through
-/// nine hundred and sixty-five switches.
+/// Maximum deviations over two seconds, in m: roundings of the exact solver, amplified by 965
+/// switches.
 const TOLERANCES: [(&str, f64); 2] = [("x_sp", 1e-12), ("tip", 1e-11)];
 
-/// The same for the general solver over one second at a relative tolerance of 1e-10, which
-/// leaves 6e-13 m; 1e-8 m is what users are promised.
+/// Maximum deviation of the general solver over one second at a relative tolerance of 1e-10, in m.
+/// It reaches 6e-13 m; the documentation promises 1e-8 m.
 const GENERAL_TOLERANCE: f64 = 1e-11;
 
-/// The project's own regression: t, x_sp, x_pr, x_c and tip, in s and m, as the general
-/// solver computes them at `--tolerance 1e-13`, rounded to 1e-12 m.
+/// Regression data: t, x_sp, x_pr, x_c and tip, in s and m, from the general solver at `--tolerance
+/// 1e-13`, rounded to 1e-12 m.
 const REGRESSION: [[f64; 5]; 4] = [
     [
         0.1,
@@ -56,7 +56,7 @@ const REGRESSION: [[f64; 5]; 4] = [
     ],
 ];
 
-/// Columns by their names.
+/// Columns by name.
 type Columns = HashMap<String, Vec<f64>>;
 
 fn columns(text: &str) -> Columns {
@@ -79,9 +79,9 @@ fn columns(text: &str) -> Columns {
     columns
 }
 
-/// The paper's case with a row for every `sample` seconds, and what the program says of its
-/// work.
-fn simulated(
+/// Simulates the paper's case with one row per `sample` seconds; returns the columns and the
+/// report.
+fn simulate(
     folder: &Path,
     until: f64,
     sample: &str,
@@ -102,7 +102,6 @@ fn simulated(
     (columns(&table), work)
 }
 
-/// The largest difference between two columns.
 fn deviation(found: &[f64], expected: &[f64]) -> f64 {
     assert!(!expected.is_empty() && found.len() >= expected.len());
     let differences = found
@@ -113,11 +112,11 @@ fn deviation(found: &[f64], expected: &[f64]) -> f64 {
 }
 
 #[test]
-fn the_arm_follows_the_trajectory_computed_in_quadruple_precision() {
+fn arm_matches_quadruple_precision_trajectory() {
     let expected = columns(REFERENCE);
     assert_eq!(expected["t"].len(), 201);
     let folder = tempfile::tempdir().expect("a folder");
-    let (found, work) = simulated(folder.path(), UNTIL, "0.01", &[]);
+    let (found, work) = simulate(folder.path(), UNTIL, "0.01", &[]);
     assert_eq!(work["solver"], "exact");
     assert_eq!(work["switches"], SWITCHES);
     assert_eq!(found["t"], expected["t"]);
@@ -129,20 +128,20 @@ fn the_arm_follows_the_trajectory_computed_in_quadruple_precision() {
 }
 
 #[test]
-fn both_solvers_follow_the_arms_earlier_trajectory() {
+fn both_solvers_match_regression_trajectory() {
     let folder = tempfile::tempdir().expect("a folder");
     for solver in [
         &["--solver", "exact"][..],
         &["--solver", "rk", "--tolerance", "1e-10"],
     ] {
-        let (found, work) = simulated(folder.path(), 1.0, "0.001", solver);
+        let (found, work) = simulate(folder.path(), 1.0, "0.001", solver);
         assert_eq!(work["solver"], solver[1]);
         assert_eq!(found["t"].len(), 1001);
-        follows_the_regression(&found);
+        assert_matches_regression(&found);
     }
 }
 
-fn follows_the_regression(found: &Columns) {
+fn assert_matches_regression(found: &Columns) {
     for [t, expected @ ..] in REGRESSION {
         let row = (t * 1000.0).round() as usize;
         assert!((found["t"][row] - t).abs() < 1e-15);

@@ -1,5 +1,5 @@
-//! A solver that has to stop leaves the rows so far, says when, at which quantity and what to
-//! do, and exits with 1. What is true of friction is said of friction alone.
+//! Stopped solvers: the program keeps the rows so far, prints the time, the quantity and a remedy,
+//! and exits with 1. Messages about friction appear only for friction.
 
 use std::path::Path;
 use std::process::Output;
@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use eomgen_tests::program::{accepted, run, text};
 
-/// A mass on a belt that takes it along.
+/// Mass dragged by a belt.
 const BELT: &str = r#"
 [model]
 name = "belt"
@@ -26,7 +26,7 @@ V = "1/2*k*x^2"
 belt = { on = "x", value = "-F*sign(dot(x) - v)" }
 "#;
 
-/// A mass between two forces that both lead to the middle, by what is left of the model.
+/// Returns a mass between two forces that both point to the middle, with the given force law.
 fn between_forces(law: &str) -> String {
     format!(
         r#"
@@ -47,7 +47,7 @@ relay = {{ on = "x", value = "{law}" }}
     )
 }
 
-/// A spring that pushes the harder the farther.
+/// Cubic spring with negative stiffness: the motion diverges in finite time.
 const BLOW_UP: &str = r#"
 [model]
 name = "blow_up"
@@ -62,7 +62,7 @@ T = "1/2*m*dot(x)^2"
 V = "-1/4*k*x^4"
 "#;
 
-/// A pendulum with dry friction, smoothed so much too steeply that it has no end.
+/// Pendulum with dry friction, smoothed so steeply that the equations are very stiff.
 const STIFF: &str = r#"
 [model]
 name = "stiff"
@@ -81,7 +81,7 @@ gravity = "-T_g*cos(theta)"
 friction = { on = "theta", value = "-T_c*tanh(dot(theta)/v_0)" }
 "#;
 
-/// A turntable whose inertia vanishes where a slider gets to.
+/// Turntable whose inertia vanishes at some position of a slider.
 const INDEFINITE: &str = r#"
 [model]
 name = "turntable"
@@ -111,7 +111,7 @@ impl Stopped {
         text(&self.output.stderr)
     }
 
-    fn says(&self, parts: &[&str]) {
+    fn assert_says(&self, parts: &[&str]) {
         let message = self.message();
         for part in parts {
             assert!(message.contains(part), "{part} is not in: {message}");
@@ -119,7 +119,7 @@ impl Stopped {
         assert!(!message.contains("panicked"), "{message}");
     }
 
-    fn is_silent_on(&self, parts: &[&str]) {
+    fn assert_omits(&self, parts: &[&str]) {
         let message = self.message();
         for part in parts {
             assert!(!message.contains(part), "{part} is in: {message}");
@@ -131,17 +131,17 @@ impl Stopped {
     }
 }
 
-fn written(folder: &Path, specification: &str) -> String {
+fn write_spec(folder: &Path, specification: &str) -> String {
     let path = folder.join("model.toml");
     std::fs::write(&path, specification).expect("a file");
     path.display().to_string()
 }
 
-/// A simulation that has to stop.
+/// Runs a simulation that must stop.
 fn stopped(specification: &str, until: &str, more: &[&str]) -> Stopped {
     let folder = tempfile::tempdir().expect("a folder");
     let (spec, out) = (
-        written(folder.path(), specification),
+        write_spec(folder.path(), specification),
         folder.path().join("a.csv"),
     );
     let shown = out.display().to_string();
@@ -165,23 +165,23 @@ fn stopped(specification: &str, until: &str, more: &[&str]) -> Stopped {
 }
 
 #[test]
-fn friction_at_rest_leaves_the_rows_so_far() {
+fn sticking_with_adams_keeps_the_rows_so_far() {
     let found = stopped(BELT, "2", &["--solver", "adams", "--interval", "0.001"]);
-    // The belt's friction brings the mass to its speed within 0.02 s.
+    // The belt's friction accelerates the mass to the belt's speed within 0.02 s.
     assert!(
         (0.015..0.025).contains(&found.last_time()),
         "{}",
         found.last_time()
     );
     assert!(found.rows.len() > 15);
-    found.says(&[
+    found.assert_says(&[
         "error: at t = 0.02",
         "`dot(x) - v`",
         "sticks",
         "tanh(v/v_0)",
     ]);
     let folder = tempfile::tempdir().expect("a folder");
-    let (spec, out) = (written(folder.path(), BELT), folder.path().join("a.csv"));
+    let (spec, out) = (write_spec(folder.path(), BELT), folder.path().join("a.csv"));
     let shown = out.display().to_string();
     for solver in ["auto", "exact", "rk", "radau"] {
         accepted(&[
@@ -191,10 +191,10 @@ fn friction_at_rest_leaves_the_rows_so_far() {
 }
 
 #[test]
-fn rows_so_far_in_parquet_and_the_reason_in_json() {
+fn stopped_run_keeps_parquet_rows_and_gives_reason_in_json() {
     let folder = tempfile::tempdir().expect("a folder");
     let (spec, out) = (
-        written(folder.path(), BELT),
+        write_spec(folder.path(), BELT),
         folder.path().join("a.parquet"),
     );
     let shown = out.display().to_string();
@@ -233,21 +233,21 @@ fn rows_so_far_in_parquet_and_the_reason_in_json() {
 }
 
 #[test]
-fn a_place_where_forces_chatter_is_no_friction() {
-    // Turns that get shorter and shorter.
+fn chattering_forces_are_not_reported_as_friction() {
+    // The times between switches become shorter and shorter.
     let law = between_forces("-F*sign(x) - D*sign(dot(x))");
     let found = stopped(&law, "60", &["--solver", "rk"]);
-    found.says(&["at t = ", "`x` is zero", "chatters"]);
-    found.is_silent_on(&["sticks", "friction", "tanh"]);
+    found.assert_says(&["at t = ", "`x` is zero", "chatters"]);
+    found.assert_omits(&["sticks", "friction", "tanh"]);
     assert!(found.rows.len() > 10 && found.last_time() > 5.0);
 }
 
-/// A relay that looks ahead leads onto the place where it switches and along it, as dry friction does.
+/// A relay with a lead term slides along its switching surface like dry friction.
 #[test]
-fn a_relay_that_looks_ahead_slides() {
+fn relay_with_lead_slides() {
     let folder = tempfile::tempdir().expect("a folder");
     let law = between_forces("-F*sign(x + tau*dot(x))");
-    let spec = written(folder.path(), &law);
+    let spec = write_spec(folder.path(), &law);
     let of = |solver| {
         let out = folder.path().join(format!("{solver}.csv"));
         let shown = out.display().to_string();
@@ -272,14 +272,14 @@ fn a_relay_that_looks_ahead_slides() {
     assert!((last[1] + 0.1 * last[2]).abs() < 1e-9, "{last:?}");
 }
 
-/// Turns that get shorter and shorter add up to 6.3094 s: the rows until there are those of the general
+/// The times between switches accumulate at 6.3094 s. The rows before are those of the general
 /// solver.
 #[test]
-fn the_exact_solver_leaves_the_rows_so_far() {
+fn stopped_exact_solver_keeps_the_rows_so_far() {
     let law = between_forces("-F*sign(x) - D*sign(dot(x))");
     let of = |solver| stopped(&law, "60", &["--solver", solver, "--interval", "0.01"]);
     let (exact, general) = (of("exact"), of("rk"));
-    exact.says(&["error: at t = 6.3"]);
+    exact.assert_says(&["error: at t = 6.3"]);
     assert_eq!((exact.rows.len(), general.rows.len()), (631, 631));
     for (one, other) in exact.rows.iter().zip(&general.rows) {
         assert!((one[1] - other[1]).abs() < 1e-8, "{one:?} {other:?}");
@@ -287,12 +287,12 @@ fn the_exact_solver_leaves_the_rows_so_far() {
 }
 
 #[test]
-fn a_motion_that_grows_beyond_all_bounds_is_no_friction() {
+fn diverging_motion_is_not_reported_as_friction() {
     for solver in ["auto", "rk", "adams", "radau"] {
         let found = stopped(BLOW_UP, "20", &["--solver", solver, "--interval", "0.01"]);
-        found.says(&["at t = ", "`x"]);
-        found.is_silent_on(&["sticks", "friction", "tanh"]);
-        // x'' = 2 x^3 from rest at 1: infinite after 1.31 s.
+        found.assert_says(&["at t = ", "`x"]);
+        found.assert_omits(&["sticks", "friction", "tanh"]);
+        // x'' = 2 x^3 from rest at 1 diverges at 1.31 s.
         assert!(
             (1.28..1.32).contains(&found.last_time()),
             "{}",
@@ -302,22 +302,25 @@ fn a_motion_that_grows_beyond_all_bounds_is_no_friction() {
 }
 
 #[test]
-fn stiffness_is_said_after_seconds() {
+fn explicit_solvers_report_stiffness_within_seconds() {
     for solver in ["rk", "adams"] {
         let found = stopped(STIFF, "100", &["--solver", solver]);
-        found.says(&["stiff", "`theta_dot`", "stopped at t = "]);
-        found.is_silent_on(&["sticks"]);
+        found.assert_says(&["stiff", "`theta_dot`", "stopped at t = "]);
+        found.assert_omits(&["sticks"]);
         assert!(!found.rows.is_empty());
         assert!(found.took < Duration::from_secs(20), "{:?}", found.took);
     }
 }
 
-/// The motion that `auto` takes over is that of smooth steps with a friction a thousand times less
-/// steep, but for what that changes: the pendulum comes to rest at the same time.
+/// The solution by `auto` matches the one with friction a thousand times less steep: the pendulum
+/// comes to rest at the same time.
 #[test]
-fn stiffness_is_solved_by_the_implicit_solver() {
+fn auto_solves_stiff_friction_with_radau() {
     let folder = tempfile::tempdir().expect("a folder");
-    let (spec, out) = (written(folder.path(), STIFF), folder.path().join("a.csv"));
+    let (spec, out) = (
+        write_spec(folder.path(), STIFF),
+        folder.path().join("a.csv"),
+    );
     let shown = out.display().to_string();
     let begun = Instant::now();
     let output = run(&[
@@ -348,10 +351,10 @@ fn stiffness_is_solved_by_the_implicit_solver() {
 }
 
 #[test]
-fn a_mass_matrix_that_loses_its_definiteness_is_named() {
+fn loss_of_positive_definiteness_is_reported() {
     for solver in ["auto", "rk", "adams", "radau"] {
         let found = stopped(INDEFINITE, "2", &["--solver", solver, "--interval", "0.01"]);
-        found.says(&["at t = 0.", "not positive definite", "`phi`"]);
+        found.assert_says(&["at t = 0.", "not positive definite", "`phi`"]);
         assert!(
             (0.4..=0.5).contains(&found.last_time()),
             "{}",
@@ -361,9 +364,9 @@ fn a_mass_matrix_that_loses_its_definiteness_is_named() {
     }
 }
 
-/// A force so large that the energy of the motion overflows.
+/// A force so large that the energy overflows.
 #[test]
-fn energy_that_overflows_is_no_success() {
+fn overflowing_energy_is_an_error() {
     let spec = r#"
 [model]
 name = "mass"
@@ -379,7 +382,7 @@ T = "1/2*m*dot(x)^2"
 push = { on = "x", value = "u" }
 "#;
     let folder = tempfile::tempdir().expect("a folder");
-    let spec = written(folder.path(), spec);
+    let spec = write_spec(folder.path(), spec);
     let out = folder.path().join("a.csv").display().to_string();
     let arguments = ["simulate", &spec, "--until", "1", "--out", &out];
     let output = run(&[&arguments[..], &["--input", "u=1e200"]].concat());

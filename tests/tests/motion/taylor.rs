@@ -1,5 +1,5 @@
-//! The Taylor series by themselves: arithmetic, mode shapes, first crossings, independence
-//! of the step, and the paper's case against a trajectory known to seventeen digits.
+//! Taylor series: arithmetic, mode shapes, first crossings, independence of the step size, and the
+//! paper's case against a trajectory of seventeen digits.
 
 use eomgen_tests::taylor::arm::Case;
 use eomgen_tests::taylor::crossing::first_rise;
@@ -12,19 +12,18 @@ use serde_json::Value;
 /// Mode shapes to 25 digits.
 const MODES: &str = include_str!("../../reference/clamped_free_modes.json");
 
-/// Two codes in quadruple precision agree to its last digit.
+/// Trajectory from two codes in quadruple precision that agree in all digits.
 const TRAJECTORY: &str = include_str!("../../reference/trajectory_order4.csv");
 
 fn pair(high: f64, low: f64) -> DoubleDouble {
     DoubleDouble { high, low }
 }
 
-/// |a - b| relative to b.
 fn relative(a: DoubleDouble, b: DoubleDouble) -> f64 {
     ((a - b) / b).nearest().abs()
 }
 
-/// A decimal number with up to thirty digits, correctly but for the last bits.
+/// Parses a decimal number of up to thirty digits; only the last bits may be wrong.
 fn decimal(text: &str) -> DoubleDouble {
     let digits = text.chars().filter(char::is_ascii_digit);
     let whole = digits.fold(DoubleDouble::exactly(0.0), |number, digit| {
@@ -38,11 +37,11 @@ fn decimal(text: &str) -> DoubleDouble {
 }
 
 #[test]
-fn double_doubles_carry_thirty_one_digits() {
+fn double_doubles_have_thirty_one_digits() {
     let number = DoubleDouble::exactly;
     let (sin_1, cos_1) = number(1.0).sin_cos();
     let (sin_40, cos_40) = number(40.0).sin_cos();
-    // The right column from rational arithmetic with sixty decimals.
+    // The second value is from rational arithmetic with sixty decimals.
     let found = [
         (
             number(1.0) / number(3.0),
@@ -66,13 +65,13 @@ fn double_doubles_carry_thirty_one_digits() {
     ];
     for (found, high, low) in found {
         let error = relative(found, pair(high, low));
-        // The reduction of 40 by multiples of pi/2 multiplies pi's rounding by 25.
+        // The reduction of 40 by multiples of pi/2 multiplies the rounding of pi by 25.
         assert!(error < 1e-30, "{found:?} is off by {error:e}");
     }
 }
 
 #[test]
-fn modes_1_to_128_agree_with_high_precision() {
+fn mode_shapes_1_to_128_match_high_precision_table() {
     let modes: Vec<Value> = serde_json::from_str(MODES).expect("a list of modes");
     assert_eq!(modes.len(), 128);
     for (r, mode) in (1..).zip(&modes) {
@@ -88,13 +87,13 @@ fn modes_1_to_128_agree_with_high_precision() {
         for (name, found) in found {
             let expected = decimal(mode[name].as_str().expect("a decimal number"));
             let error = relative(found, expected);
-            // The table has 25 digits, the last rounded.
+            // The table has 25 digits; the last is rounded.
             assert!(error < 1e-24, "mode {r}, {name}: off by {error:e}");
         }
     }
 }
 
-/// The coefficients of the product of (u - root) over the roots.
+/// Returns the coefficients of the polynomial with these roots.
 fn product(roots: &[f64]) -> Vec<DoubleDouble> {
     let zero = DoubleDouble::exactly(0.0);
     let mut coefficients = vec![DoubleDouble::exactly(1.0)];
@@ -110,27 +109,27 @@ fn product(roots: &[f64]) -> Vec<DoubleDouble> {
 }
 
 #[test]
-fn the_first_rise_is_found_however_short_it_is() {
-    // Above zero only between the first two roots, for a billionth of the step.
+fn first_rise_is_found_however_short() {
+    // Positive only between the first two roots, for 1e-9 of the step.
     let found = first_rise(&product(&[0.3, 0.3 + 1e-9, 0.9, 1.5, 2.0]));
     assert!(found.is_some_and(|at| (at.nearest() - 0.3).abs() < 1e-15));
-    // A dip from above, then a rise.
+    // Negative between the roots, then a rise.
     let found = first_rise(&product(&[0.25, 0.75]));
     assert!(found.is_some_and(|at| (at.nearest() - 0.75).abs() < 1e-15));
-    // Falls at its only root within the step; rises beyond it.
+    // Falls at the only root within the step; rises beyond the step.
     assert!(first_rise(&product(&[0.25, 1.25])).is_none());
-    // Complex roots closer to the axis than the step is long: comes to -1e-20 of zero.
+    // A complex pair of roots near the axis: the minimum is 1e-20 above zero.
     let mut touching = product(&[0.4, 0.4]);
     touching[0] = touching[0] + DoubleDouble::exactly(1e-20);
     let touching: Vec<DoubleDouble> = touching.into_iter().map(|c| -c).collect();
     assert!(first_rise(&touching).is_none());
-    // Starts on the edge, by rounding beyond it, and moves out or in.
+    // Starts at the edge, beyond it by rounding, and moves out or in.
     let start = |slope: f64| [1e-40, slope, 0.0].map(DoubleDouble::exactly);
     assert!(first_rise(&start(1.0)).is_some_and(|at| at.nearest() == 0.0));
     assert!(first_rise(&start(-1.0)).is_none());
 }
 
-/// The paper's ripple, 10 pi.
+/// The paper's excitation frequency, 10 pi rad/s.
 fn case(order: usize, b: f64) -> Case {
     Case {
         order,
@@ -139,13 +138,12 @@ fn case(order: usize, b: f64) -> Case {
     }
 }
 
-/// A time per millisecond, in s.
 fn milliseconds(until: usize) -> Vec<f64> {
     (0..=until).map(|k| k as f64 / 1000.0).collect()
 }
 
 #[test]
-fn the_motion_does_not_depend_on_the_step() {
+fn motion_is_independent_of_step_size() {
     let times = milliseconds(2000);
     let chosen = Run::<DoubleDouble>::of(case(4, 100e-6), &times, LONGEST);
     let finer = Run::<DoubleDouble>::of(case(4, 100e-6), &times, 1.0 / 32768.0);
@@ -158,12 +156,12 @@ fn the_motion_does_not_depend_on_the_step() {
         "tip, b = 100 um: {worst:.1e} m in {} and {} steps",
         chosen.steps, finer.steps
     );
-    // Rounding of 1e-33 m grows by 1e5, as it does in doubles; luck may add two digits.
+    // A rounding of 1e-33 m grows by 1e5, as in doubles; the bound allows two more digits.
     assert!(worst < 1e-26, "{worst:e}");
 }
 
 #[test]
-fn the_papers_case_is_met_to_the_references_last_digits() {
+fn papers_case_matches_reference_to_last_digits() {
     let times: Vec<f64> = (0..=200).map(|k| f64::from(k) / 100.0).collect();
     let run = Run::<DoubleDouble>::of(case(4, 25e-6), &times, LONGEST);
     assert_eq!(run.counts().iter().sum::<usize>(), 965);
@@ -186,8 +184,8 @@ fn the_papers_case_is_met_to_the_references_last_digits() {
             *worst = worst.max(deviation);
         }
     }
-    // Seventeen digits of 1e-4 m, 1 m and 3e-3 m, and as much again for constants of which
-    // the reference rounded others: 10 pi, 24.6 degrees.
+    // Seventeen digits of 1e-4 m, 1 m and 3e-3 m, and as much again for constants that the
+    // reference rounds differently: 10 pi, 24.6 degrees.
     for (worst, allowed) in worst.into_iter().zip([2e-17, 2e-17, 1e-15, 1e-16]) {
         assert!(
             worst < allowed,

@@ -1,5 +1,4 @@
-//! The shipped arm with parameters at the edge of what makes sense, against the general
-//! solver.
+//! The shipped arm with extreme parameters, against the general solver.
 
 use eomgen_sim::ode::Trajectory;
 use eomgen_tests::models::load;
@@ -9,16 +8,15 @@ use eomgen_validate::variant::Variant;
 use eomgen_tests::models::variant;
 use eomgen_validate::derived::Derived;
 
-/// What a component is at least compared with: m or m/s. Deflections are 1e-4 m.
+/// Scale below which components are compared absolutely, in m or m/s. Deflections are 1e-4 m.
 const SMALLEST: f64 = 1e-6;
 
-/// The arm with some parameters set.
 fn arm(order: usize, values: &[(&str, f64)]) -> Subject {
     let model = load("planetary_arm").with_parameters(values);
     Subject::new(model.expect("the values are within their bounds"), order)
 }
 
-/// The arm on the move: deflections of `x` m in the meshes, closing at `v` m/s.
+/// Returns the arm in motion: mesh deflections `x` in m, approach speeds `v` in m/s.
 fn moving(order: usize, values: &[(&str, f64)], [x_sp, x_pr]: [f64; 2], v: [f64; 2]) -> Subject {
     let subject = arm(order, values);
     let mut initial = subject.initial.clone();
@@ -28,10 +26,10 @@ fn moving(order: usize, values: &[(&str, f64)], [x_sp, x_pr]: [f64; 2], v: [f64;
     subject.from(&initial)
 }
 
-/// The same by the general solver with two tolerances. Where it cannot leave a surface that
-/// it begins on, the exact motions from a part in 1e12 on either side stand in for it: they
-/// begin in a regime that is beyond doubt.
-fn by_the_general_solver(subject: &Subject, until: f64, times: &[f64]) -> (Trajectory, Trajectory) {
+/// Simulates with the general solver at two tolerances. If it cannot leave the surface on which it
+/// starts, exact motions from 1e-12 (relative) on either side replace its results: their initial
+/// regime is certain.
+fn simulate_generally(subject: &Subject, until: f64, times: &[f64]) -> (Trajectory, Trajectory) {
     let run = |subject: &Subject, tolerance: f64| subject.general((0.0, until), times, tolerance);
     if let (Ok(fine), Ok(coarse)) = (run(subject, 1e-12), run(subject, 1e-11)) {
         return (fine, coarse);
@@ -45,19 +43,19 @@ fn by_the_general_solver(subject: &Subject, until: f64, times: &[f64]) -> (Traje
     (from(1.0 - 1e-12), from(1.0 + 1e-12))
 }
 
-/// Compares with the general solver over `until` s; the number of switches.
-fn agrees(name: &str, subject: &Subject, until: f64) -> usize {
+/// Compares with the general solver over `until` s; returns the number of switches.
+fn assert_matches_general_solver(name: &str, subject: &Subject, until: f64) -> usize {
     let times = grid(until, 64);
     let exact = subject.exact((0.0, until), &times);
-    let (general, coarse) = by_the_general_solver(subject, until, &times);
+    let (general, coarse) = simulate_generally(subject, until, &times);
     let doubt = difference(&coarse.states, &general.states, SMALLEST);
     let found = difference(&exact.states, &general.states, SMALLEST);
     println!(
         "{name}: {found:.1e}, general {doubt:.1e}, {} switches",
         exact.switches.len()
     );
-    // Ten times what a tenth of the tolerance changes, and what rounding does over so many
-    // switches of a motion whose forces are differences of nearly equal numbers.
+    // The bound is ten times the change with the tolerance, plus rounding over these switches: the
+    // forces are differences of nearly equal numbers.
     assert!(
         found < 10.0 * doubt + 1e-9,
         "{name}: {found:e} where {doubt:e}"
@@ -66,22 +64,22 @@ fn agrees(name: &str, subject: &Subject, until: f64) -> usize {
 }
 
 #[test]
-fn no_play_and_hardly_any() {
+fn arm_with_zero_or_tiny_play_matches_general_solver() {
     for order in [0, 4] {
         for b in [0.0, 1e-15, 1e-12, 1e-9] {
             let values = [("b_sp", b), ("b_pr", b)];
-            agrees(
+            assert_matches_general_solver(
                 &format!("S = {order}, b = {b:e}"),
                 &arm(order, &values),
                 0.02,
             );
         }
-        agrees("b = 0 in one", &arm(order, &[("b_sp", 0.0)]), 0.02);
+        assert_matches_general_solver("b = 0 in one", &arm(order, &[("b_sp", 0.0)]), 0.02);
     }
 }
 
 #[test]
-fn little_play_shaken_hard() {
+fn arm_with_little_play_and_strong_excitation_matches_general_solver() {
     for b in [1e-9, 1e-7] {
         let values = [
             ("b_sp", b),
@@ -92,22 +90,23 @@ fn little_play_shaken_hard() {
             ("c_pr", 0.0),
         ];
         let subject = moving(0, &values, [0.0, 0.0], [1e-3, -2e-3]);
-        let switches = agrees(&format!("b = {b:e}, no damping"), &subject, 0.005);
+        let switches =
+            assert_matches_general_solver(&format!("b = {b:e}, no damping"), &subject, 0.005);
         assert!(switches > 20);
     }
 }
 
 #[test]
-fn no_damping_in_the_motor() {
+fn arm_without_motor_damping_matches_general_solver() {
     for order in [0, 4] {
         for b_m in [0.0, 1e-12, 1e-6] {
-            agrees(
+            assert_matches_general_solver(
                 &format!("S = {order}, b_m = {b_m:e}"),
                 &arm(order, &[("b_m", b_m)]),
                 0.02,
             );
             let values = [("b_m", b_m), ("F_w", 0.0), ("b_sp", 1e-9), ("b_pr", 1e-9)];
-            agrees(
+            assert_matches_general_solver(
                 &format!("S = {order}, b_m = {b_m:e}, no ripple"),
                 &arm(order, &values),
                 0.02,
@@ -117,7 +116,7 @@ fn no_damping_in_the_motor() {
 }
 
 #[test]
-fn any_number_of_modes() {
+fn arm_with_any_number_of_modes_matches_general_solver() {
     for (order, until) in [
         (0, 0.02),
         (1, 0.02),
@@ -128,41 +127,43 @@ fn any_number_of_modes() {
         (32, 0.004),
         (64, 0.001),
     ] {
-        agrees(&format!("S = {order}"), &arm(order, &[]), until);
+        assert_matches_general_solver(&format!("S = {order}"), &arm(order, &[]), until);
         let hit = moving(order, &[], [26e-6, -24e-6], [-1.0, 0.5]);
-        agrees(&format!("S = {order}, hit"), &hit, until.min(0.004));
+        assert_matches_general_solver(&format!("S = {order}, hit"), &hit, until.min(0.004));
     }
 }
 
 #[test]
-fn both_meshes_at_once() {
-    // A nanometre outside and leaving at 1 m/s: both unload within the delay of each other.
+fn simultaneous_switches_of_both_meshes_match_general_solver() {
+    // The meshes are 1 nm outside and open at 1 m/s: both unload within the delay.
     for delay in [0.0, 1e-16, 1e-14, 1e-12, 1e-11, 1e-9] {
         for speed in [-1.0, -1e-3] {
             let x = [25e-6 + 1e-9, 25e-6 + 1e-9 - delay * speed];
             let subject = moving(4, &[], x, [speed, speed]);
             let name = format!("delay {delay:e}, {speed} m/s");
-            assert!(agrees(&name, &subject, 0.002) >= 2);
+            assert!(assert_matches_general_solver(&name, &subject, 0.002) >= 2);
             let opposite = moving(4, &[], [x[0], -x[1]], [speed, -speed]);
-            assert!(agrees(&format!("{name}, opposite"), &opposite, 0.002) >= 2);
+            assert!(
+                assert_matches_general_solver(&format!("{name}, opposite"), &opposite, 0.002) >= 2
+            );
         }
     }
 }
 
 #[test]
-fn starts_on_a_surface() {
+fn start_on_a_surface_matches_general_solver() {
     let b = 25e-6;
     for order in [0, 4] {
         for x in [b, -b] {
             for speed in [1e-2, -1e-2, 1e-9, -1e-9, 0.0] {
                 let both = moving(order, &[], [x, x], [speed, -speed]);
-                agrees(
+                assert_matches_general_solver(
                     &format!("S = {order}, x = {x:e}, {speed:e} m/s"),
                     &both,
                     0.004,
                 );
                 let one = moving(order, &[], [x, 0.0], [speed, 0.0]);
-                agrees(
+                assert_matches_general_solver(
                     &format!("S = {order}, one x = {x:e}, {speed:e} m/s"),
                     &one,
                     0.004,
@@ -173,8 +174,8 @@ fn starts_on_a_surface() {
 }
 
 #[test]
-fn grazing() {
-    // Bisects the rate at which x_sp just reaches b, without forces, from the middle.
+fn grazing_initial_rates_match_general_solver() {
+    // Bisects for the initial rate at which x_sp just reaches b from the middle, without forces.
     let values = [
         ("a_m", 0.0),
         ("F_w", 0.0),
@@ -209,7 +210,7 @@ fn grazing() {
         high * (1.0 + 1e-12),
         high * (1.0 + 1e-6),
     ] {
-        agrees(&format!("grazing at {rate:e}"), &from(rate), until);
+        assert_matches_general_solver(&format!("grazing at {rate:e}"), &from(rate), until);
     }
     let (below, above) = (
         from(low).exact((0.0, until), &times),
@@ -220,8 +221,8 @@ fn grazing() {
     assert!(jump < 1e-11);
 }
 
-/// The frequency, rad/s, of the mode nearest above `from` of the undamped arm with both
-/// meshes closed, from det(K - w^2 M) = 0.
+/// Returns the lowest eigenfrequency above `from`, in rad/s, of the undamped arm with both meshes
+/// closed, from det(K - w^2 M) = 0.
 fn eigenfrequency(subject: &Subject, from: f64) -> f64 {
     let half = subject.initial.len() / 2;
     let mut derived = Derived::new(variant(&subject.model, subject.order).evaluator);
@@ -292,7 +293,7 @@ fn determinant(mut matrix: Vec<f64>, size: usize) -> f64 {
 }
 
 #[test]
-fn ripple_on_an_eigenvalue() {
+fn ripple_at_an_eigenfrequency_matches_general_solver() {
     let undamped = [
         ("b_sp", 0.0),
         ("b_pr", 0.0),
@@ -311,7 +312,7 @@ fn ripple_on_an_eigenvalue() {
             }
             for distance in [0.0, 1e-12, 1e-9, 1e-6, 1e-4, -1e-3] {
                 let values = [&undamped[..], &[("omega", omega * (1.0 + distance))]].concat();
-                agrees(
+                assert_matches_general_solver(
                     &format!("S = {order}, omega = {omega}(1 + {distance:e})"),
                     &arm(order, &values),
                     0.01,
@@ -322,7 +323,7 @@ fn ripple_on_an_eigenvalue() {
 }
 
 #[test]
-fn energy_without_loss() {
+fn lossless_arm_conserves_energy() {
     let lossless = [
         ("F_w", 0.0),
         ("a_m", 0.0),

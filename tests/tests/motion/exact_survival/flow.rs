@@ -1,6 +1,5 @@
-//! What any solver of differential equations must have: going on from where one stopped is
-//! going through, the same request gives the same bits, and tangent vectors are the
-//! difference of neighbouring motions.
+//! Properties of a flow: a continued motion equals the whole one, repeated requests give the same
+//! bits, and tangent vectors match difference quotients of motions.
 
 use eomgen_sim::piecewise_linear::Lyapunov;
 use eomgen_tests::models::load;
@@ -28,9 +27,9 @@ fn rough() -> Subject {
 }
 
 #[test]
-fn going_on_is_going_through() {
+fn continued_motion_equals_whole_motion() {
     for (name, subject, until, tolerance) in [
-        // Collisions magnify a rounding error by ten or so each millisecond that they last.
+        // Collisions amplify a rounding error about tenfold per millisecond.
         ("S = 0", arm(0, 25e-6), 0.02, 1e-9),
         ("S = 4", arm(4, 25e-6), 0.02, 1e-9),
         ("S = 4, b = 0", arm(4, 0.0), 0.02, 1e-9),
@@ -59,7 +58,7 @@ fn going_on_is_going_through() {
         let found = difference(&parts, &whole.states, 1e-6);
         println!("{name}: {found:.1e}, {} switches", whole.switches.len());
         assert!(found < tolerance, "{name}: {found:e}");
-        // What sticks may be left and stuck to again in one instant.
+        // A sticking mass may leave and stick again in the same instant.
         assert!(
             name == "rough" || switches == whole.switches.len(),
             "{name}"
@@ -69,7 +68,7 @@ fn going_on_is_going_through() {
 }
 
 #[test]
-fn samples_do_not_move_the_motion() {
+fn sampling_does_not_change_the_motion() {
     for subject in [arm(4, 25e-6), rough()] {
         let none = subject.exact((0.0, 0.1), &[]);
         let many = subject.exact((0.0, 0.1), &grid(0.1, 1000));
@@ -79,12 +78,12 @@ fn samples_do_not_move_the_motion() {
 }
 
 #[test]
-fn the_same_bits_twice() {
+fn repeated_requests_give_the_same_bits() {
     for subject in [arm(4, 25e-6), arm(0, 1e-9), rough()] {
         let times = grid(0.1, 50);
         let first = subject.exact((0.0, 0.1), &times);
         assert_eq!(first, subject.exact((0.0, 0.1), &times));
-        // The same propagator, also after other motions.
+        // A propagator gives the same bits after other motions.
         let mut propagator = subject.propagator().expect("a propagator");
         let other: Vec<f64> = subject.initial.iter().map(|y| y + 1e-5).collect();
         for from in [
@@ -102,8 +101,8 @@ fn the_same_bits_twice() {
     }
 }
 
-/// Growth of the difference of two motions that begin `step` apart along the direction that
-/// the first tangent vector has, up to `until`, and that of the vector.
+/// Returns the growth up to `until` of the difference of two motions that start `step` apart along
+/// the first tangent vector, and the growth of that vector.
 fn growths(subject: &Subject, until: f64, step: f64, felt: &[usize]) -> (f64, f64) {
     let mut propagator = subject.propagator().expect("a propagator");
     let request = Lyapunov {
@@ -114,7 +113,7 @@ fn growths(subject: &Subject, until: f64, step: f64, felt: &[usize]) -> (f64, f6
     };
     let growth = propagator.lyapunov(&subject.initial, 0.0, &subject.inputs, &request);
     let growth = growth.expect("a growth").growths[0][0];
-    // 1 in the first place that matters, 0.1/(1 + k) in the others: where a vector begins.
+    // Initial tangent vector: 1 for the first relevant state, 0.1/(1 + k) for the others.
     let mut direction = vec![0.0; subject.initial.len()];
     for (k, state) in felt.iter().enumerate() {
         direction[*state] = if k == 0 { 1.0 } else { 0.1 / (1 + k) as f64 };
@@ -145,8 +144,8 @@ fn propagator_of(subject: &Subject) -> eomgen_sim::piecewise_linear::Propagator 
 }
 
 #[test]
-fn tangent_vectors_are_differences_of_motions() {
-    // x_c itself is felt by nothing.
+fn tangent_vectors_match_difference_quotients() {
+    // The motion does not depend on x_c itself.
     let arm_felt =
         |order: usize| -> Vec<usize> { (0..2 * (3 + order)).filter(|state| *state != 2).collect() };
     for (order, b, until, step) in [
@@ -165,14 +164,14 @@ fn tangent_vectors_are_differences_of_motions() {
         let count = subject.exact((0.0, until), &[]).switches.len();
         let (vector, apart) = growths(&subject, until, step, &arm_felt(order));
         println!("S = {order}, b = {b:e}, {until} s: {vector} and {apart}, {count} switches");
-        // Central differences of motions that differ in the times of their switches.
+        // Central differences of motions with different switching times.
         assert!(
             (vector - apart).abs() < 1e-4,
             "S = {order}, b = {b:e}: {vector} and {apart}"
         );
         assert!(count > 0 || b == 0.0);
     }
-    // Through stick a direction is lost, and found again by none.
+    // Sticking removes a direction, permanently.
     let subject = rough();
     for until in [0.05, 0.2, 0.5, 1.0, 2.0] {
         let count = subject.exact((0.0, until), &[]).switches.len();

@@ -1,12 +1,11 @@
-//! Coulomb friction with true stick, against closed forms and against friction that is
-//! steep instead of set-valued.
+//! Coulomb friction with true sticking, against closed forms and against steep smooth friction.
 
 use eomgen_model_spec::check;
 use eomgen_model_spec::source::Source;
 use eomgen_tests::models::project;
 use eomgen_tests::motions::{Spec, Subject, difference, grid};
 
-/// A block with dry friction T, pushed by F sin(omega t).
+/// Returns a block with dry friction T, pushed by F sin(omega t).
 fn pushed(force: f64, start: [f64; 2]) -> Subject {
     let spec = Spec::default()
         .parameter("m", 2.0, "kg")
@@ -20,16 +19,15 @@ fn pushed(force: f64, start: [f64; 2]) -> Subject {
 }
 
 #[test]
-fn stays_where_it_sticks() {
+fn sticking_block_stays_at_rest() {
     for force in [0.0, 1.0, 2.999, 3.0 * (1.0 - 1e-15), 3.0, -3.0, -1.0] {
         let motion = pushed(force, [0.25, 0.0]).exact((0.0, 1e3), &grid(1e3, 10));
         for state in &motion.states {
             assert_eq!(state, &[0.25, 0.0], "F = {force}");
         }
     }
-    // Comes to rest in finite time and stays: v0 m/T_c.
+    // The block comes to rest at the finite time v0 m/T_c.
     let motion = pushed(0.0, [0.0, 1.5]).exact((0.0, 1e3), &[0.5, 1.0, 2.0, 1e3]);
-    // A few roundings.
     assert!((motion.states[0][1] - 0.75).abs() < 1e-14);
     for state in &motion.states[1..] {
         assert!(
@@ -40,7 +38,7 @@ fn stays_where_it_sticks() {
     assert!((motion.switches[0].t - 1.0).abs() < 1e-14);
 }
 
-/// Where a continuous function changes its sign.
+/// Returns the root of a continuous function by bisection.
 fn root(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     assert!(f(low) * f(high) < 0.0);
     for _ in 0..200 {
@@ -55,7 +53,7 @@ fn root(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
 }
 
 #[test]
-fn slides_and_sticks_when_pushed() {
+fn pushed_block_slides_and_sticks_as_closed_form() {
     let (m, dry, omega) = (2.0_f64, 3.0_f64, 5.0_f64);
     for force in [3.0001_f64, 3.3, 4.0, 5.0] {
         let leaves = (dry / force).asin() / omega;
@@ -78,13 +76,13 @@ fn slides_and_sticks_when_pushed() {
         );
         let times = grid(8.0 * turn, 333);
         let motion = pushed(force, [0.0, 0.0]).exact((0.0, 8.0 * turn), &times);
-        // Leaving and sticking again within rounding is no motion.
+        // Leaving and sticking again within rounding is not a motion.
         let mut switches = motion.switches.clone();
         switches.dedup_by(|a, b| (a.t - b.t).abs() < 1e-9);
         for (k, switch) in switches.iter().enumerate() {
             let base = if k % 2 == 0 { leaves } else { rests };
             let wanted = base + (k / 2) as f64 * turn;
-            // Leaving and coming to rest with a rate that begins quadratically.
+            // The rate grows quadratically when the block breaks away or comes to rest.
             assert!(
                 (switch.t - wanted).abs() < 1e-11,
                 "F = {force}, {k}: {} for {wanted}",
@@ -123,7 +121,7 @@ fn slides_and_sticks_when_pushed() {
 }
 
 #[test]
-fn a_block_on_a_belt() {
+fn block_on_belt_matches_closed_form() {
     let (m, k, dry, belt) = (1.0_f64, 100.0_f64, 2.0_f64, 0.1_f64);
     let subject = |start: [f64; 2]| {
         let spec = Spec::default()
@@ -137,9 +135,9 @@ fn a_block_on_a_belt() {
             .force("x", "T_c*sign(V - dot(x))");
         Subject::new(spec.model(), 0)
     };
-    // From rest it is dragged, catches up with the belt, rides on it until the spring pulls
-    // with T_c at x = T_c/k, and then swings about that place for ever, touching the belt's
-    // speed once a turn.
+    // From rest the block is dragged and catches up with the belt. It moves with the belt until the
+    // spring force reaches T_c at x = T_c/k. Then it oscillates about that position and reaches the
+    // belt's speed once per period.
     let (w, still) = (10.0, dry / k);
     let caught = (belt / (still * w)).asin() / w;
     let x_caught = still * (1.0 - (w * caught).cos());
@@ -162,13 +160,12 @@ fn a_block_on_a_belt() {
     assert!(error < 1e-12, "{error:e}");
     assert!((motion.switches[0].t - caught).abs() < 1e-14);
     assert!((motion.switches[1].t - free).abs() < 1e-13);
-    // From the belt's speed it rides along at once.
     let riding = subject([0.0, belt]).exact((0.0, 0.15), &[0.15]);
     assert!(riding.switches.is_empty() && (riding.last[0] - 0.015).abs() < 1e-16);
     assert_eq!(riding.last[1], belt);
 }
 
-/// Two blocks one on the other: T_1 against the ground, T_2 between them, the upper one pushed.
+/// Returns two stacked blocks: T_1 against the ground, T_2 between them, the upper one pushed.
 fn stacked(dry: [f64; 2], force: f64, sign: impl Fn(&str) -> String) -> Subject {
     let spec = Spec::default()
         .parameter("m_1", 2.0, "kg")
@@ -195,7 +192,7 @@ fn stacked(dry: [f64; 2], force: f64, sign: impl Fn(&str) -> String) -> Subject 
 }
 
 #[test]
-fn two_joints_stick_at_once() {
+fn two_joints_can_stick_at_once() {
     let dry = |v: &str| format!("sign({v})");
     let at_rest = stacked([3.0, 3.0], 2.9, dry).exact((0.0, 100.0), &grid(100.0, 7));
     assert!(
@@ -206,7 +203,7 @@ fn two_joints_stick_at_once() {
         "{:?}",
         at_rest.last
     );
-    // As friction becomes steeper its motion comes to that of true stick.
+    // The motion with steep friction converges to that with true sticking.
     let steep = |v: &str| format!("(({v}) - deadzone({v}, eps))/eps");
     for (levels, force) in [
         ([1.0, 4.0], 6.0),
@@ -223,15 +220,15 @@ fn two_joints_stick_at_once() {
             "{levels:?} {force}: {found:.1e}, {} switches",
             exact.switches.len()
         );
-        // Sticking creeps by eps = 1e-5 m/s for up to 2 s; speeds reach 0.5 m/s.
+        // Steep friction creeps by eps = 1e-5 m/s for up to 2 s; speeds reach 0.5 m/s.
         assert!(found < 2e-4, "{levels:?} {force}: {found:e}");
     }
 }
 
 #[test]
-fn many_joints_in_a_row() {
-    // A chain of blocks on rough ground, joined by springs, the first one pushed: it comes to
-    // rest block by block; against steep friction.
+fn chain_of_blocks_comes_to_rest_block_by_block() {
+    // A chain of blocks on rough ground, joined by springs, the first one pushed: it comes to rest
+    // block by block. Compared with steep friction.
     let subject = |sign: &dyn Fn(&str) -> String| {
         let mut spec = Spec::default()
             .parameter("m", 1.0, "kg")
@@ -266,7 +263,7 @@ fn many_joints_in_a_row() {
     assert!(found < 1e-3, "{found:e}");
 }
 
-/// The shipped hub with a beam, with another force on its angle and other numbers.
+/// Returns the shipped hub with a beam, with another force on its angle and other parameters.
 fn hub(force: &str, values: &[(&str, f64)], order: usize) -> Subject {
     let path = project().join("model-spec/models/hub_beam_tip_mass.toml");
     let text = std::fs::read_to_string(path).expect("the shipped specification");
@@ -283,10 +280,10 @@ fn hub(force: &str, values: &[(&str, f64)], order: usize) -> Subject {
 }
 
 #[test]
-fn friction_in_the_hub_of_a_beam() {
+fn friction_in_hub_of_beam_matches_steep_friction() {
     let times = grid(0.5, 50);
     for order in [1, 3, 6] {
-        // A hub that sticks is as good as one that weighs as much as a house.
+        // A sticking hub moves like one with a very large inertia.
         let held = hub("(-T_c*sign(dot(theta)))", &[("T_c", 1e3)], order).exact((0.0, 0.5), &times);
         let heavy = hub("0*T_c", &[("J_h", 1e14)], order).exact((0.0, 0.5), &times);
         let found = difference(&held.states, &heavy.states, 1e-3);
@@ -297,7 +294,7 @@ fn friction_in_the_hub_of_a_beam() {
             held.last[0]
         );
         assert!(held.switches.is_empty());
-        // One that slides and sticks, against friction that is steep instead.
+        // A hub that slides and sticks, compared with steep friction.
         for level in [0.05, 0.5, 2.0] {
             let dry = hub("(-T_c*sign(dot(theta)))", &[("T_c", level)], order)
                 .exact((0.0, 0.2), &times[..20]);
@@ -309,15 +306,15 @@ fn friction_in_the_hub_of_a_beam() {
                 "order {order}, {level} N m: {found:.1e}, {} switches",
                 dry.switches.len()
             );
-            // Steep friction creeps: its slope over the level, relative to the motion.
+            // Steep friction creeps: the bound is its slope over the level, relative to the motion.
             assert!(found < 2e-3, "order {order}, {level}: {found:e}");
         }
     }
 }
 
 #[test]
-fn friction_at_the_tip_of_a_beam() {
-    // What sticks is a sum of all modes' rates.
+fn friction_at_tip_of_beam_matches_steep_friction() {
+    // The sticking rate is a sum of all modes' rates.
     let times = grid(0.2, 20);
     let tip = "(l*dot(theta) + at(dot(w), l))";
     for (order, level) in [(1, 1.0), (3, 1.0), (3, 5.0)] {
@@ -353,7 +350,7 @@ fn friction_at_the_tip_of_a_beam() {
             "order {order}, {level} N: {found:.1e}, {} switches",
             dry.switches.len()
         );
-        // Steep friction creeps: its slope over the level, relative to the motion.
+        // Steep friction creeps: the bound is its slope over the level, relative to the motion.
         assert!(found < 2e-3, "order {order}, {level}: {found:e}");
     }
 }

@@ -1,5 +1,4 @@
-//! Sampled-and-held inputs: their jumps move the motion, switching surfaces and what keeps
-//! a stuck mass in its place.
+//! Sampled-and-held inputs: jumps that change forces, switching surfaces and sticking.
 
 use eomgen_model_spec::model::Model;
 use eomgen_records::read_inputs;
@@ -7,7 +6,7 @@ use eomgen_sim::inputs::HeldInputs;
 use eomgen_tests::models::load;
 use eomgen_tests::motions::{Spec, Subject, difference, grid};
 
-/// Inputs that hold from the times given on.
+/// Returns an input held from each of the given times on.
 fn held(model: &Model, name: &str, unit: &str, steps: &[(f64, f64)]) -> HeldInputs {
     let folder = tempfile::tempdir().expect("a folder");
     let rows: String = steps
@@ -25,9 +24,9 @@ fn held(model: &Model, name: &str, unit: &str, steps: &[(f64, f64)]) -> HeldInpu
 }
 
 #[test]
-fn the_rig_driven_by_a_record() {
+fn rig_driven_by_record_matches_general_solver() {
     let model = load("planetary_arm_rig");
-    // A torque that jumps every tenth of a millisecond, and now and then holds for longer.
+    // A torque that jumps every 0.1 ms and sometimes holds for longer.
     let steps: Vec<(f64, f64)> = (0..110)
         .filter(|k| k % 7 != 3)
         .map(|k| {
@@ -61,7 +60,7 @@ fn the_rig_driven_by_a_record() {
 }
 
 #[test]
-fn a_jump_pulls_a_stuck_block_loose() {
+fn input_jump_releases_sticking_block() {
     let spec = Spec::default()
         .parameter("m", 2.0, "kg")
         .parameter("T_c", 3.0, "N")
@@ -70,8 +69,8 @@ fn a_jump_pulls_a_stuck_block_loose() {
         .kinetic("1/2*m*dot(x)^2")
         .force("x", "u - T_c*sign(dot(x))");
     let model = spec.model();
-    // Stuck, loose for 0.5 s at 2 m/s^2, slowed down at -2.5 m/s^2 for 0.4 s, stuck again,
-    // torn to the other side, and stuck by a force exactly as large as the friction.
+    // Sticking, sliding for 0.5 s at 2 m/s^2, decelerating at -2.5 m/s^2 for 0.4 s, sticking,
+    // sliding to the other side, and sticking under a force equal to the friction level.
     let steps = [
         (0.0, 1.5),
         (1.0, 7.0),
@@ -108,7 +107,7 @@ fn a_jump_pulls_a_stuck_block_loose() {
             "{t}: {state:?}"
         );
     }
-    // After 3.5 s it slows down at (-2 + 3)/2 = 0.5 m/s^2 for 1 s.
+    // After 3.5 s the block decelerates at (-2 + 3)/2 = 0.5 m/s^2 for 1 s.
     for state in &motion.states[10..] {
         assert!(
             (state[0] - 0.075).abs() < 1e-14 && state[1].abs() < 1e-14,
@@ -118,8 +117,8 @@ fn a_jump_pulls_a_stuck_block_loose() {
 }
 
 #[test]
-fn a_jump_moves_a_stop() {
-    // The stops are where the input says.
+fn input_jump_moves_a_stop() {
+    // The input moves the stops.
     for damped in [0.0, 5.0] {
         let spec = Spec::default()
             .parameter("m", 1.0, "kg")
@@ -157,8 +156,9 @@ fn a_jump_moves_a_stop() {
 }
 
 #[test]
-fn a_jump_exactly_at_a_switch() {
-    // Reaches the stop at 1 s when the force begins, and one floating-point number beside it.
+fn input_jump_at_a_switch_matches_closed_form() {
+    // The mass reaches the stop at 1 s; the force starts then, or one floating-point number before
+    // or after.
     for at in [1.0_f64.next_down(), 1.0, 1.0_f64.next_up()] {
         let spec = Spec::default()
             .parameter("m", 1.0, "kg")

@@ -1,11 +1,10 @@
-//! Masses on springs with closed forms: resonance, equal and defective eigenvalues, extreme
-//! units, long times.
+//! Masses on springs with closed forms: resonance, equal and defective eigenvalues, extreme units,
+//! long times.
 
 use std::time::Instant;
 
 use eomgen_tests::motions::{Spec, Subject, difference, grid};
 
-/// One mass m on a spring k with a damper c and the force given.
 fn mass(m: f64, k: f64, c: f64, force: &str, start: [f64; 2]) -> Spec {
     let spec = Spec::default()
         .parameter("m", m, "kg")
@@ -22,8 +21,14 @@ fn mass(m: f64, k: f64, c: f64, force: &str, start: [f64; 2]) -> Spec {
     }
 }
 
-/// Compares place and speed with closed forms; relative to the largest of each.
-fn agrees(name: &str, spec: &Spec, until: f64, tolerance: f64, closed: impl Fn(f64) -> Vec<f64>) {
+/// Compares position and speed with a closed form, relative to the largest value of each.
+fn assert_matches_closed_form(
+    name: &str,
+    spec: &Spec,
+    until: f64,
+    tolerance: f64,
+    closed: impl Fn(f64) -> Vec<f64>,
+) {
     let times = grid(until, 97);
     let motion = Subject::new(spec.model(), 0).exact((0.0, until), &times);
     let wanted: Vec<Vec<f64>> = times.iter().map(|t| closed(*t)).collect();
@@ -32,8 +37,8 @@ fn agrees(name: &str, spec: &Spec, until: f64, tolerance: f64, closed: impl Fn(f
     assert!(error < tolerance, "{name}: {error:e}");
 }
 
-/// From rest under F sin((w - gap) t), without damping: the closed form in differences that
-/// lose no digits however small the gap.
+/// Returns the undamped response from rest to F sin((w - gap) t), in a closed form that loses no
+/// digits for small gaps.
 fn resonant(w: f64, gap: f64, force: f64, t: f64) -> Vec<f64> {
     let omega = w - gap;
     let middle = w - 0.5 * gap;
@@ -52,7 +57,7 @@ fn resonant(w: f64, gap: f64, force: f64, t: f64) -> Vec<f64> {
 }
 
 #[test]
-fn force_on_and_near_an_undamped_eigenvalue() {
+fn forcing_at_and_near_undamped_resonance_matches_closed_form() {
     for w in [10.0_f64, 7.3, 1234.5] {
         for distance in [0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-4, 0.9e-3, 1.1e-3, 1e-2] {
             let omega = w * (1.0 - distance);
@@ -60,10 +65,10 @@ fn force_on_and_near_an_undamped_eigenvalue() {
                 .parameter("F", 3.0, "N")
                 .parameter("omega", omega, "rad/s");
             let name = format!("w = {w}, relative distance {distance:e}");
-            // Rounding of w^2 and of its root alone turns the phase by 2 eps w t; what is
-            // not resonant cancels by three digits at most.
+            // The rounding of w^2 and of its root turns the phase by 2 eps w t. The non-resonant
+            // part loses at most three digits by cancellation.
             let phase = 200.0 * 4.0 * f64::EPSILON;
-            agrees(&name, &spec, 200.0 / w, phase + 1e3 * f64::EPSILON, |t| {
+            assert_matches_closed_form(&name, &spec, 200.0 / w, phase + 1e3 * f64::EPSILON, |t| {
                 resonant(w, w - omega, 3.0, t)
             });
         }
@@ -71,7 +76,7 @@ fn force_on_and_near_an_undamped_eigenvalue() {
 }
 
 #[test]
-fn force_of_no_and_of_negative_frequency() {
+fn forcing_at_zero_and_negative_frequency_matches_closed_form() {
     let (m, k) = (2.0, 50.0);
     let spec = |omega: f64, force: &str| {
         mass(m, k, 0.0, force, [0.0, 0.0])
@@ -80,7 +85,7 @@ fn force_of_no_and_of_negative_frequency() {
             .parameter("phi", 0.7, "rad")
     };
     for omega in [0.0, -0.0, 1e-300, 1e-12] {
-        agrees(
+        assert_matches_closed_form(
             "constant",
             &spec(omega, "F*sin(omega*t + phi)"),
             4.0,
@@ -95,7 +100,7 @@ fn force_of_no_and_of_negative_frequency() {
         );
     }
     for omega in [-5.0, -5.0 * (1.0 - 1e-6)] {
-        agrees(
+        assert_matches_closed_form(
             "backwards",
             &spec(omega, "-F*sin(omega*t) + 0*phi*F"),
             20.0,
@@ -106,12 +111,12 @@ fn force_of_no_and_of_negative_frequency() {
 }
 
 #[test]
-fn a_slow_force_on_a_free_mass() {
+fn slow_forcing_of_free_mass_matches_closed_form() {
     for omega in [0.0, 1e-9, 1e-3, 1.0, 1e3] {
         let spec = mass(2.0, 0.0, 0.0, "F*cos(omega*t)", [1.0, -2.0])
             .parameter("F", 3.0, "N")
             .parameter("omega", omega, "rad/s");
-        agrees(&format!("omega = {omega}"), &spec, 50.0, 1e-13, |t| {
+        assert_matches_closed_form(&format!("omega = {omega}"), &spec, 50.0, 1e-13, |t| {
             let z: f64 = omega * t;
             let once = if z == 0.0 { 1.0 } else { z.sin() / z };
             let half = if z == 0.0 {
@@ -127,10 +132,10 @@ fn a_slow_force_on_a_free_mass() {
     }
 }
 
-/// Free motion of a damped mass from x0 at rest, zeta on either side of 1 and close to it.
+/// Returns the free motion of a damped mass from x0 at rest; zeta may be close to 1.
 fn damped(w: f64, zeta: f64, x0: f64, t: f64) -> Vec<f64> {
     let s = (zeta * zeta - 1.0) * (w * t) * (w * t);
-    // sinh(sqrt(s))/sqrt(s) and cosh(sqrt(s)), entire in s.
+    // sinh(sqrt(s))/sqrt(s) and cosh(sqrt(s)) are entire functions of s.
     let (sine, cosine) = if s.abs() < 1e-4 {
         (
             1.0 + s / 6.0 + s * s / 120.0,
@@ -149,12 +154,12 @@ fn damped(w: f64, zeta: f64, x0: f64, t: f64) -> Vec<f64> {
 }
 
 #[test]
-fn damping_at_and_near_the_critical_one() {
+fn damping_at_and_near_critical_matches_closed_form() {
     let w = 10.0;
     for distance in [0.0, 1e-15, -1e-12, 1e-9, -1e-6, 1e-4, -1e-3, 1e-2] {
         let zeta = 1.0 + distance;
         let spec = mass(1.0, w * w, 2.0 * zeta * w, "", [0.3, 0.0]);
-        agrees(
+        assert_matches_closed_form(
             &format!("zeta = 1 + {distance:e}"),
             &spec,
             3.0,
@@ -165,8 +170,8 @@ fn damping_at_and_near_the_critical_one() {
 }
 
 #[test]
-fn equal_oscillators() {
-    // Two alike, apart and joined by a spring; three in a chain of equal ones.
+fn equal_oscillators_match_closed_form() {
+    // Two equal oscillators, separate and joined by a spring, and a chain of three.
     for k_c in [0.0, 1e-9, 1e-6, 1e-3, 1.0] {
         let spec = Spec::default()
             .parameter("m", 2.0, "kg")
@@ -177,7 +182,7 @@ fn equal_oscillators() {
             .kinetic("1/2*m*dot(x)^2 + 1/2*m*dot(y)^2")
             .potential("1/2*k*(x^2 + y^2) + 1/2*k_c*(x - y)^2");
         let (w1, w2) = (5.0_f64, ((50.0 + 2.0 * k_c) / 2.0_f64).sqrt());
-        agrees(&format!("joined by {k_c:e} N/m"), &spec, 30.0, 2e-12, |t| {
+        assert_matches_closed_form(&format!("joined by {k_c:e} N/m"), &spec, 30.0, 2e-12, |t| {
             let part = |w: f64, x: f64, v: f64| {
                 [
                     x * (w * t).cos() + v / w * (w * t).sin(),
@@ -191,8 +196,9 @@ fn equal_oscillators() {
 }
 
 #[test]
-fn equal_damped_oscillators_in_resonance() {
-    // Critically damped, both driven, one through the other: eigenvalues of multiplicity four.
+fn defective_eigenvalues_in_resonance_match_closed_form() {
+    // Critically damped and driven, the second through the first: an eigenvalue of multiplicity
+    // four.
     let spec = |coupling: f64| {
         Spec::default()
             .parameter("m", 1.0, "kg")
@@ -222,12 +228,12 @@ fn equal_damped_oscillators_in_resonance() {
 }
 
 #[test]
-fn tiny_and_huge_units() {
+fn tiny_and_huge_units_match_closed_form() {
     for m in [1e-12, 1e-6, 1.0, 1e6, 1e12] {
         for w in [1e-4_f64, 1.0, 1e4] {
             for x0 in [1e-12, 1.0, 1e12] {
                 let spec = mass(m, m * w * w, 0.0, "", [x0, 0.0]);
-                agrees(
+                assert_matches_closed_form(
                     &format!("m = {m:e}, w = {w:e}, x = {x0:e}"),
                     &spec,
                     20.0 / w,
@@ -240,8 +246,8 @@ fn tiny_and_huge_units() {
 }
 
 #[test]
-fn fast_beside_slow() {
-    // Frequencies twelve decades apart move without each other.
+fn frequencies_decades_apart_match_closed_form() {
+    // Frequencies twelve decades apart are decoupled.
     for ratio in [1e3, 1e4, 0.99e5, 1.01e5, 1e6, 1e8, 1e12_f64] {
         let spec = Spec::default()
             .parameter("m", 1.0, "kg")
@@ -252,7 +258,7 @@ fn fast_beside_slow() {
             .kinetic("1/2*m*(dot(x)^2 + dot(y)^2)")
             .potential("1/2*k*x^2 + 1/2*stiff*y^2");
         let until = (1e6 / ratio).min(20.0);
-        agrees(
+        assert_matches_closed_form(
             &format!("ratio {ratio:e}"),
             &spec,
             until,
@@ -266,9 +272,9 @@ fn fast_beside_slow() {
 }
 
 #[test]
-fn long_times_without_a_switch() {
+fn long_motion_without_switch_matches_closed_form() {
     let begun = Instant::now();
-    // Settled long ago: only the response to the force is left, and its phase is exact.
+    // The transient has decayed; the phase of the response must be exact.
     let (w, zeta, omega): (f64, f64, f64) = (100.0, 0.05, 31.0);
     let spec = mass(1.0, w * w, 2.0 * zeta * w, "F*sin(omega*t)", [1.0, 0.0])
         .parameter("F", 3.0, "N")
@@ -280,14 +286,13 @@ fn long_times_without_a_switch() {
         let (a, b) = (w * w - omega * omega, 2.0 * zeta * w * omega);
         let (sine, cosine) = (omega * t).sin_cos();
         let x = 3.0 * (a * sine - b * cosine) / (a * a + b * b);
-        // The closed form's own phase is rounded: 3.1e7 rad.
+        // The bound is the rounding of the closed form's phase of 3.1e7 rad.
         assert!(
             (state[0] - x).abs() < 3e-4 * 3.1e7 * f64::EPSILON,
             "{} {x}",
             state[0]
         );
     }
-    // A force-free mass for a million years.
     let free = Subject::new(mass(1.0, 0.0, 0.0, "", [1.0, 2.0]).model(), 0);
     let motion = free.exact((0.0, 1e4), &[1e4]);
     assert!((motion.states[0][0] / 20001.0 - 1.0).abs() < 1e-11);

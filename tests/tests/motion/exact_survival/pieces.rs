@@ -1,10 +1,10 @@
-//! min, max, abs, nested dead zones and several thresholds of one coordinate, against the
-//! general solver.
+//! min, max, abs, nested dead zones and several thresholds of one coordinate, against the general
+//! solver.
 
 use eomgen_sim::piecewise_linear::ExactError;
 use eomgen_tests::motions::{Spec, Subject, difference, grid};
 
-/// Two masses with a force on the first, shaken.
+/// Returns two masses with a force on the first and harmonic excitation.
 fn with_force(force: &str) -> Subject {
     let spec = Spec::default()
         .parameter("m", 1.0, "kg")
@@ -25,8 +25,8 @@ fn with_force(force: &str) -> Subject {
     Subject::new(spec.model(), 0)
 }
 
-/// Whether a force comes out as the general solver has it, from several starts.
-fn agrees(force: &str) {
+/// Compares the motion under a force with the general solver, from several starts.
+fn assert_matches_general_solver(force: &str) {
     let mut worst = 0.0_f64;
     let mut switches = 0;
     for start in [
@@ -51,7 +51,7 @@ fn agrees(force: &str) {
 }
 
 #[test]
-fn one_after_another() {
+fn sums_of_piecewise_forces_match_general_solver() {
     for force in [
         "-K*min(x, b)",
         "-K*max(x, y)",
@@ -78,12 +78,12 @@ fn one_after_another() {
         "-F*sign(x - b*sin(omega*t))",
         "-F*contact(x, b)",
     ] {
-        agrees(force);
+        assert_matches_general_solver(force);
     }
 }
 
 #[test]
-fn one_in_another() {
+fn nested_piecewise_forces_match_general_solver() {
     for force in [
         "-K*deadzone(deadzone(x, b) - y, b)",
         "-K*abs(abs(x) - b)",
@@ -101,8 +101,8 @@ fn one_in_another() {
         "-c*contact(deadzone(x, b), b)*dot(x)",
     ] {
         match with_force(force).propagator() {
-            Ok(_) => agrees(force),
-            // What cannot be seen to be linear is refused by name, not done wrong.
+            Ok(_) => assert_matches_general_solver(force),
+            // A force not recognised as piecewise linear must be rejected by name.
             Err(error) => {
                 println!("{force}: {error}");
                 assert!(

@@ -1,4 +1,4 @@
-//! Requests that make no sense and models that cannot move are refused in words.
+//! Invalid requests and models that cannot be simulated are rejected with a message.
 
 use eomgen_sim::ode::SolveError;
 use eomgen_sim::piecewise_linear::ExactError;
@@ -16,7 +16,7 @@ fn mass(m: f64) -> Subject {
     Subject::new(spec.model(), 0)
 }
 
-fn refused(subject: &Subject, span: (f64, f64), times: &[f64]) -> String {
+fn rejection(subject: &Subject, span: (f64, f64), times: &[f64]) -> String {
     match subject.try_exact(span, times) {
         Ok(motion) => panic!("went to {:?}", motion.last),
         Err(error) => {
@@ -27,21 +27,21 @@ fn refused(subject: &Subject, span: (f64, f64), times: &[f64]) -> String {
 }
 
 #[test]
-fn states_that_are_none() {
+fn non_finite_states_are_rejected() {
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         for state in [[bad, 0.0], [0.0, bad]] {
-            let message = refused(&mass(1.0).from(&state), (0.0, 1.0), &[]);
+            let message = rejection(&mass(1.0).from(&state), (0.0, 1.0), &[]);
             assert!(message.contains("finite"), "{message}");
         }
     }
     for state in [vec![], vec![0.0], vec![0.0; 3]] {
-        let message = refused(&mass(1.0).from(&state), (0.0, 1.0), &[]);
+        let message = rejection(&mass(1.0).from(&state), (0.0, 1.0), &[]);
         assert!(message.contains('2'), "{message}");
     }
 }
 
 #[test]
-fn times_that_are_none() {
+fn invalid_times_are_rejected() {
     let subject = mass(1.0);
     for span in [
         (0.0, f64::NAN),
@@ -49,16 +49,15 @@ fn times_that_are_none() {
         (0.0, f64::INFINITY),
         (1.0, 0.0),
     ] {
-        refused(&subject, span, &[]);
+        rejection(&subject, span, &[]);
     }
     for times in [&[2.0][..], &[-0.1], &[0.5, 0.4], &[f64::NAN]] {
-        refused(&subject, (0.0, 1.0), times);
+        rejection(&subject, (0.0, 1.0), times);
     }
-    // A span of no length has its first state.
     let still = subject.exact((0.5, 0.5), &[0.5, 0.5]);
     assert_eq!(still.states, vec![subject.initial.clone(); 2]);
     assert_eq!(still.last, subject.initial);
-    // The shortest one moves by nothing that can be seen.
+    // The change over the shortest span is below one rounding.
     let short = subject.exact((0.0, 5e-324), &[0.0, 5e-324]);
     assert!((short.last[0] - 0.01).abs() < 1e-17);
     let late = subject.exact((1e9, 1e9 + 1.0), &[1e9 + 1.0]);
@@ -67,14 +66,14 @@ fn times_that_are_none() {
 }
 
 #[test]
-fn motions_that_leave_all_bounds() {
+fn diverging_motions_are_rejected() {
     for state in [[1e308, 1e308], [1e200, 0.0], [0.0, -1e308]] {
         match mass(1.0).from(&state).try_exact((0.0, 10.0), &[10.0]) {
             Ok(motion) => assert!(motion.last.iter().all(|y| y.is_finite())),
             Err(error) => println!("{error}"),
         }
     }
-    // A negative spring: e^(1000 t).
+    // Negative spring: the motion grows as e^(1000 t).
     let spec = Spec::default()
         .parameter("m", 1.0, "kg")
         .parameter("k", -1e6, "N/m")
@@ -84,26 +83,26 @@ fn motions_that_leave_all_bounds() {
     let subject = Subject::new(spec.model(), 0);
     let near = subject.exact((0.0, 0.1), &[0.1]);
     assert!((near.last[0] / 100.0_f64.cosh() - 1.0).abs() < 1e-12);
-    let message = refused(&subject, (0.0, 100.0), &[100.0]);
+    let message = rejection(&subject, (0.0, 100.0), &[100.0]);
     assert!(message.contains("diverged"), "{message}");
 }
 
 #[test]
-fn masses_that_are_none() {
+fn masses_not_positive_are_rejected() {
     for m in [0.0, -0.0] {
-        let message = refused(&mass(m), (0.0, 1.0), &[1.0]);
+        let message = rejection(&mass(m), (0.0, 1.0), &[1.0]);
         assert!(message.contains("mass"), "{message}");
     }
-    // The general solver refuses these, too.
-    let message = refused(&mass(-1.0), (0.0, 1.0), &[1.0]);
+    // The general solver rejects these, too.
+    let message = rejection(&mass(-1.0), (0.0, 1.0), &[1.0]);
     assert!(message.contains("mass"), "{message}");
     let model = load("planetary_arm");
     for (name, value) in [("M_s", 0.0), ("M_s", -0.39), ("rho", 0.0), ("M_p", -0.3)] {
         let model = model.with_parameter(name, value).expect("a value");
-        let message = refused(&Subject::new(model, 4), (0.0, 0.01), &[0.01]);
+        let message = rejection(&Subject::new(model, 4), (0.0, 0.01), &[0.01]);
         assert!(message.contains("mass"), "{name}: {message}");
     }
-    // Two coordinates that are one.
+    // Two identical coordinates: the mass matrix is singular.
     let spec = Spec::default()
         .parameter("m", 1.0, "kg")
         .parameter("k", 100.0, "N/m")
@@ -111,11 +110,11 @@ fn masses_that_are_none() {
         .coordinate("y", [0.0, 0.0])
         .kinetic("1/2*m*(dot(x) + dot(y))^2")
         .potential("1/2*k*(x - y)^2");
-    refused(&Subject::new(spec.model(), 0), (0.0, 1.0), &[1.0]);
+    rejection(&Subject::new(spec.model(), 0), (0.0, 1.0), &[1.0]);
 }
 
 #[test]
-fn numbers_out_of_range() {
+fn extreme_parameters_of_arm_are_rejected_or_solved() {
     let model = load("planetary_arm");
     for (name, value) in [
         ("k_sp", 1e300),
@@ -141,8 +140,8 @@ fn numbers_out_of_range() {
 }
 
 #[test]
-fn friction_that_is_not_constant_is_refused_where_it_holds() {
-    // The level follows a spring: sticking is not linear for this solver.
+fn sticking_with_variable_friction_is_rejected() {
+    // The friction level depends on a spring force, so sticking is not linear.
     let spec = Spec::default()
         .parameter("m", 1.0, "kg")
         .parameter("mu", 0.5, "1")

@@ -1,4 +1,4 @@
-//! Stops that are hit, grazed, started on and hit a million times, against closed forms.
+//! Stops: impacts, grazing, starts on the stop and a million switches, against closed forms.
 
 use std::time::{Duration, Instant};
 
@@ -6,7 +6,7 @@ use eomgen_sim::ode::SolveError;
 use eomgen_sim::piecewise_linear::ExactError;
 use eomgen_tests::motions::{Spec, Subject, difference, grid};
 
-/// A ball that falls onto a spring at x = 0.
+/// Returns a ball that falls onto a spring at x = 0.
 fn ball(height: f64, speed: f64) -> Spec {
     Spec::default()
         .parameter("m", 1.0, "kg")
@@ -19,7 +19,7 @@ fn ball(height: f64, speed: f64) -> Spec {
 }
 
 #[test]
-fn a_ball_bounces() {
+fn bouncing_ball_matches_closed_form() {
     let (w, g) = (1e3_f64, 9.81_f64);
     for height in [1e-6, 1e-3, 0.05, 1.0, 30.0] {
         let fall = (2.0 * height / g).sqrt();
@@ -31,7 +31,6 @@ fn a_ball_bounces() {
         let times: Vec<f64> = (0..=20).map(|k| 0.5 * f64::from(k) * period).collect();
         let subject = Subject::new(ball(height, 0.0).model(), 0);
         let motion = subject.exact((0.0, bounces * period), &times);
-        // At the top, and deepest.
         let deepest = -g / (w * w) - ((speed / w).powi(2) + (g / (w * w)).powi(2)).sqrt();
         for (k, state) in motion.states.iter().enumerate() {
             let wanted = if k % 2 == 0 { height } else { deepest };
@@ -47,8 +46,8 @@ fn a_ball_bounces() {
 }
 
 #[test]
-fn a_ball_touches_the_ceiling() {
-    // Thrown so that it would rise `above` m beyond the ceiling, and falls back at once.
+fn ball_touching_ceiling_matches_closed_form() {
+    // The throw would rise `above` m beyond the ceiling; the ball falls back at once.
     for (speed, above) in [
         (1.0, 1e-3),
         (1.0, 1e-6),
@@ -66,7 +65,7 @@ fn a_ball_touches_the_ceiling() {
             .coordinate("x", [0.0, speed])
             .kinetic("1/2*m*dot(x)^2")
             .potential("m*g*x + 1/2*k*max(x - b, 0*b)^2");
-        // From the ceiling on y'' = -g - k y until y = 0 again, then as it came.
+        // Above the ceiling y'' = -g - k y until y = 0 again; then the fall mirrors the rise.
         let (at, hit) = ((2.0 * above / g).sqrt(), (2.0 * above * g).sqrt());
         let arrival = speed / g - at;
         let w = 10.0;
@@ -80,7 +79,7 @@ fn a_ball_touches_the_ceiling() {
             "{speed} m/s, {above:e} m above: x = {x:e}, v + speed = {:e}",
             v + speed
         );
-        // The time of a shallow hit is the root of a small number.
+        // The time of a shallow contact is the root of a small number.
         let rounding = 1e-14 * speed * speed / hit;
         assert!(x.abs() < 1e-12 + speed * rounding && (v + speed).abs() < 1e-12 + g * rounding);
         assert_eq!(motion.switches.len(), 2);
@@ -88,8 +87,8 @@ fn a_ball_touches_the_ceiling() {
 }
 
 #[test]
-fn starts_on_a_stop() {
-    // On the stop and at rest, pressed onto it: y'' = F/m - 2 zeta w y' - w^2 y.
+fn start_on_a_stop_matches_closed_form() {
+    // On the stop at rest, pressed onto it: y'' = F/m - 2 zeta w y' - w^2 y.
     for zeta in [0.01, 0.1, 0.5] {
         for (w, b) in [(100.0, 1e-3), (1e4, 25e-6), (1e4, 0.0)] {
             let spec = Spec::default()
@@ -128,7 +127,7 @@ fn starts_on_a_stop() {
     }
 }
 
-/// A mass on a spring between stops at b that it reaches with the amplitude b (1 + more).
+/// Returns a mass on a spring between stops at b, which it reaches with the amplitude b (1 + more).
 fn nearly_touching(more: f64, c: f64) -> Spec {
     let (w, b) = (50.0, 1e-3);
     Spec::default()
@@ -144,7 +143,7 @@ fn nearly_touching(more: f64, c: f64) -> Spec {
 }
 
 #[test]
-fn grazes_a_stop() {
+fn grazing_a_stop_conserves_energy() {
     let times = grid(1.0, 200);
     for more in [-1e-3, -1e-9, -1e-14, -1e-15] {
         let motion =
@@ -163,7 +162,7 @@ fn grazes_a_stop() {
         assert!(more > -1e-14 || motion.switches.is_empty());
     }
     for more in [0.0, 3e-16, 1e-14, 1e-12, 1e-9, 1e-6, 1e-3] {
-        // Without damping the energy stays what it was.
+        // Without damping the energy is conserved.
         let motion = Subject::new(nearly_touching(more, 0.0).model(), 0).exact((0.0, 1.0), &times);
         let energy = |y: &Vec<f64>| {
             let over = (y[0].abs() - 1e-3).max(0.0);
@@ -180,12 +179,12 @@ fn grazes_a_stop() {
             motion.switches.len()
         );
         assert!(worst < 1e-12, "{more:e}: {worst:e}");
-        // 15 half turns of a second, each in and out; 16 where the stop is stiff.
+        // 15 half periods per second with two switches each; 16 if the stop is stiff.
         assert!(
             more < 1e-14 || (30..=34).contains(&motion.switches.len()),
             "{more:e}"
         );
-        // With it the motion is close to that without by what a contact so short can take.
+        // The contacts are so short that damping has this small an effect.
         let damped =
             Subject::new(nearly_touching(more, 100.0).model(), 0).exact((0.0, 1.0), &times);
         let lost = difference(&damped.states, &motion.states, 0.0);
@@ -198,8 +197,8 @@ fn grazes_a_stop() {
 }
 
 #[test]
-fn a_million_switches() {
-    // Free flight between elastic stops: 2 b / v, half a period in each contact.
+fn million_switches_match_closed_form() {
+    // Free flight of 2 b/v between elastic stops, and half a period in each contact.
     let (w, b, v) = (1e3, 1e-3, 1.0);
     let spec = Spec::default()
         .parameter("m", 1.0, "kg")
@@ -209,7 +208,7 @@ fn a_million_switches() {
         .kinetic("1/2*m*dot(x)^2")
         .potential("1/2*k*deadzone(x, b)^2");
     let half = 2.0 * b / v + std::f64::consts::PI / w;
-    // Two switches each half period; the end is a quarter of a free flight after the middle.
+    // Two switches per half period; the end is a quarter of a free flight after the middle.
     let until = 500_000.0 * half + 0.5 * b / v;
     let subject = Subject::new(spec.model(), 0);
     let begun = Instant::now();
@@ -225,13 +224,13 @@ fn a_million_switches() {
         speed - v
     );
     assert_eq!(motion.switches.len(), 1_000_000);
-    // Each half period is off by a rounding of its own, always the same: they add up.
+    // Each half period has the same rounding error, so the errors add up.
     assert!((x - 0.5 * b).abs() < 1e-6 * b && (speed - v).abs() < 1e-10);
     assert!(taken < Duration::from_secs(20), "{taken:?}");
 }
 
 #[test]
-fn too_many_switches_are_refused() {
+fn too_many_switches_are_rejected() {
     let spec = Spec::default()
         .parameter("m", 1.0, "kg")
         .parameter("k", 1e6, "N/m")
@@ -258,9 +257,9 @@ fn too_many_switches_are_refused() {
 }
 
 #[test]
-fn ever_faster_switches_end() {
-    // The time between switches shrinks by a factor each time: they pile up at
-    // t = 1 + sqrt(2) or so, where the mass is at rest for ever.
+fn accumulating_switches_end() {
+    // The time between switches shrinks by a constant factor: the switches accumulate at about t =
+    // 1 + sqrt(2), and the mass stays at rest.
     for dry in [0.5, 0.1] {
         let spec = Spec::default()
             .parameter("m", 1.0, "kg")
@@ -288,7 +287,7 @@ fn ever_faster_switches_end() {
         }
         assert!(begun.elapsed() < Duration::from_secs(5));
     }
-    // The same with a damper: each turn takes a little less time, for ever.
+    // With a damper, each period is slightly shorter, without end.
     let spec = Spec::default()
         .parameter("m", 1.0, "kg")
         .parameter("F", 1.0, "N")
@@ -317,8 +316,8 @@ fn ever_faster_switches_end() {
 }
 
 #[test]
-fn samples_at_the_very_switch() {
-    // Reaches the stop at 1 s exactly; the span may end there, too.
+fn samples_at_a_switch_match_closed_form() {
+    // The mass reaches the stop at 1 s exactly; the span may also end then.
     let spec = Spec::default()
         .parameter("m", 1.0, "kg")
         .parameter("k", 100.0, "N/m")
@@ -342,7 +341,7 @@ fn samples_at_the_very_switch() {
             }
         }
     }
-    // Every switch of a longer motion, found first and then asked for.
+    // Samples at every switch of a longer motion.
     let all = subject.exact((0.0, 30.0), &[]);
     let times: Vec<f64> = all.switches.iter().map(|s| s.t).collect();
     assert!(times.len() > 20);
