@@ -9,7 +9,6 @@
 pub struct CubicSpline {
     times: Vec<f64>,
     values: Vec<f64>,
-    /// Second derivative at each sample.
     curvatures: Vec<f64>,
 }
 

@@ -13,7 +13,6 @@ pub trait InputFunction: Debug + Send + Sync {
     fn write(&self, t: f64, out: &mut [f64]);
 }
 
-/// A function for consecutive inputs.
 #[derive(Clone, Debug)]
 struct GivenInputs {
     place: usize,

@@ -19,7 +19,6 @@ pub const DEPENDENT: f64 = 1e-10;
 /// selected, which is guaranteed to terminate (K. G. Murty, *Linear Complementarity*, chapter 11).
 const LARGEST_FIRST: usize = 4;
 
-/// Maximum number of surfaces for which all cases are tried.
 const MOST_TO_TRY: usize = 7;
 
 /// Effect of a surface on a motion that is on it.
@@ -134,7 +133,6 @@ impl Rates {
         })
     }
 
-    /// Returns true if the rates of all surfaces without a side are zero.
     fn are_held(&self, sides: &[Option<f64>], s: &DVector<f64>) -> bool {
         held(sides).into_iter().all(|i| {
             let (rate, size) = self.rate(s, i);

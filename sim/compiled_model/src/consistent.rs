@@ -17,7 +17,6 @@ use crate::instance::Instance;
 use crate::projection::{LARGE_RATE, Moved, Projection};
 use crate::singular::SingularityWatch;
 
-/// Maximum number of corrections of an initial state.
 const MOST_AT_THE_START: usize = 100;
 
 /// Derivatives are dependent if less than this fraction of one remains after the others are
@@ -250,7 +249,6 @@ impl Instance<'_> {
         Ok(Some(depends.reason()))
     }
 
-    /// Returns the error that names the constraints with a residual.
     fn not_kept(&self, t: f64, state: &[f64], inputs: &[f64]) -> Error {
         let constraints = &self.model().model().constraints;
         let rows = self.constraint_rows();

@@ -25,7 +25,6 @@ impl Differentiated {
         })
     }
 
-    /// Returns the machine code of the program, compiled at the first call.
     pub(crate) fn code(&self) -> Option<&Arc<dyn MachineCode>> {
         let code = self.code.get_or_init(|| eomgen_jit::code(&self.program));
         code.as_ref()

@@ -87,7 +87,6 @@ impl Instance<'_> {
         Ok(None)
     }
 
-    /// Returns the name of the first impact whose distance depends on inputs.
     pub(crate) fn driven_contact(&self) -> Option<&str> {
         let program = self.model().program();
         let is_driven = |op: &Op| matches!(op, Op::Input(_));

@@ -55,7 +55,6 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
         self
     }
 
-    /// Returns the energy balance up to now, if the motion is audited.
     pub(crate) fn audit(&self) -> Option<Audit> {
         let auditor = self.auditor.as_ref()?;
         Some(auditor.borrow().audit().clone())
@@ -83,7 +82,6 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
         found
     }
 
-    /// Sets the projection onto the constraints, at the same parameters.
     pub(crate) fn with_projection(mut self, projection: Option<Projection>) -> Self {
         self.projection = projection;
         self

@@ -60,7 +60,6 @@ impl Jacobian {
 
 /// Positions of the structural nonzeros of one Jacobian.
 struct Layout {
-    /// Index of the Jacobian in the program.
     place: usize,
     rows: usize,
     columns: usize,
@@ -83,7 +82,6 @@ impl JacobianEvaluator {
         (layout.rows, layout.columns)
     }
 
-    /// Returns the dense row-major matrix at a point.
     pub(crate) fn dense(&mut self, of: Jacobian, point: Point<'_>) -> Vec<f64> {
         let (rows, columns) = self.shape(of);
         let mut matrix = vec![0.0; rows * columns];
@@ -272,12 +270,10 @@ impl Instance<'_> {
     }
 }
 
-/// Returns the number of modes of a field.
 fn order(program: &Program, field: FieldId) -> usize {
     program.fields[field.index()].order
 }
 
-/// Returns the layout of a Jacobian; `None` if the program has no such Jacobian.
 fn layout(program: &Program, of: Jacobian) -> Option<Layout> {
     let jacobians = &program.outputs.jacobians;
     let place = jacobians.iter().position(|known| known.name == of.name())?;

@@ -238,7 +238,6 @@ impl CompiledModel {
         made.as_ref()
     }
 
-    /// Returns the program with Jacobians.
     pub(crate) fn differentiated(&self) -> Result<&Differentiated, Error> {
         let made = self
             .differentiated

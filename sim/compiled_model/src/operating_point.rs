@@ -68,7 +68,6 @@ impl CompiledModel {
         )))
     }
 
-    /// Returns the names of the first states and all inputs, for a message.
     fn settable(&self) -> Vec<String> {
         let inputs = self.model().inputs.iter().map(|input| input.name.clone());
         self.state_names()

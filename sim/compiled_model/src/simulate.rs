@@ -268,7 +268,6 @@ impl Instance<'_> {
         }
     }
 
-    /// Returns an auditor of a motion with a relative tolerance; `None` for an exact motion.
     fn auditor(&self, tolerance: Option<f64>) -> Auditor {
         let driven = self.driven_contact().map(|name| {
             format!(
@@ -278,7 +277,6 @@ impl Instance<'_> {
         Auditor::new(tolerance, self.model().typical_sizes(), driven)
     }
 
-    /// Returns the category of an error.
     fn cause(&self, error: &SolveError) -> Cause {
         match error {
             SolveError::NotFinite { .. } | SolveError::NotPositiveDefinite { .. } => {
@@ -297,7 +295,6 @@ impl Instance<'_> {
         }
     }
 
-    /// Returns the category of an error of the exact solver.
     fn cause_of_exact(&self, error: &ExactError) -> Cause {
         match error {
             ExactError::Stopped(error) => self.cause(error),

@@ -21,7 +21,6 @@ use nalgebra::{DMatrix, DVector};
 /// degrees.
 const TURNED_LITTLE: f64 = 0.5;
 
-/// Maximum number of halvings of a step in the search for a singular position.
 const MOST_HALVINGS: u32 = 40;
 
 /// Least singular value of the scaled rows below which constraints count as dependent.
@@ -41,7 +40,6 @@ const TAKES_PART: f64 = 0.1;
 /// Number of states kept before the present one: the starts of this step and the preceding one.
 const REMEMBERED: usize = 2;
 
-/// A state of a motion.
 struct Passed {
     t: f64,
     state: Vec<f64>,
@@ -59,11 +57,9 @@ type Path<'p> = dyn Fn(f64) -> Vec<f64> + 'p;
 /// Detector of singular positions along a motion.
 pub(crate) struct SingularityWatch {
     rows: ConstraintRows,
-    /// The names of the constraints.
     names: Vec<String>,
     /// Largest length of each row up to now; a single row may vanish.
     lengths: Vec<f64>,
-    /// Last states, in the order of time.
     passed: Vec<Passed>,
     found: Option<(f64, String)>,
 }
@@ -152,7 +148,6 @@ impl SingularityWatch {
         })
     }
 
-    /// Returns the singular position within a step, if there is one.
     fn fold_between(
         &mut self,
         a: &Passed,
@@ -193,7 +188,6 @@ impl SingularityWatch {
         self.rows.degrees_of_freedom()
     }
 
-    /// Returns the singular position between two states on a path, if there is one.
     fn search(
         &mut self,
         (a, b): (&Passed, &Passed),
@@ -241,7 +235,6 @@ impl SingularityWatch {
     }
 }
 
-/// Returns the cubic through the coordinates and rates of two states.
 fn cubic(a: &Passed, b: &Passed, degrees: usize) -> impl Fn(f64) -> Vec<f64> + use<> {
     let (begin, step) = (a.t, b.t - a.t);
     let (from, to) = (a.state.clone(), b.state.clone());

@@ -36,14 +36,12 @@ impl TypicalSizes {
     }
 }
 
-/// Computes the typical size of each state, SI.
 pub(crate) fn typical_sizes(model: &Model, orders: &[usize]) -> Vec<f64> {
     let sizes = TypicalSizes::new(model, orders);
     let states = model.state_units(orders).into_iter();
     states.map(|unit| sizes.size(unit.dimension)).collect()
 }
 
-/// Returns all nonzero finite values with their dimensions, SI.
 fn values(model: &Model, orders: &[usize]) -> Vec<(f64, Dimension)> {
     let parameters = model
         .parameters
@@ -70,7 +68,6 @@ fn values(model: &Model, orders: &[usize]) -> Vec<(f64, Dimension)> {
         .collect()
 }
 
-/// Fits the logarithms of the base units to those of the values.
 fn base_units(values: &[(f64, Dimension)]) -> [f64; BASE_UNITS] {
     let exponents = values
         .iter()

@@ -22,7 +22,6 @@ const NO_JUMP: f64 = 1e-9;
 /// Springer 2004, section 7.3). The derivatives of g are finite differences.
 pub struct Beside<'s, S: System + ?Sized> {
     system: &'s S,
-    /// Size of each state, for finite differences.
     sizes: Vec<f64>,
     jacobian: RefCell<Vec<f64>>,
     /// Time at which the motion crossed several surfaces at once, s.

@@ -3,14 +3,12 @@
 use super::beside::Beside;
 use crate::ode::{Settings, SolveError, System, Trajectory, simulate};
 
-/// Number of samples for the sizes of states.
 const LOOKS: usize = 64;
 
 /// Largest shrinkage exponent of a vector over one piece of an interval. The solver's error is
 /// relative to the largest length, so it remains a small fraction of the last one.
 const MOST_SHRINKAGE: f64 = 4.0;
 
-/// Maximum number of pieces of an interval.
 const MOST_PIECES: u32 = 4096;
 
 /// Times of the measurements of growth.
@@ -105,7 +103,6 @@ struct Carried<'a, S: System + ?Sized> {
     t: f64,
     y: Vec<f64>,
     v: Vec<f64>,
-    /// Largest magnitude of each state up to now.
     sizes: Vec<f64>,
     pieces: u32,
     switches: u64,
@@ -139,7 +136,6 @@ impl<'a, S: System + ?Sized> Carried<'a, S> {
         carried
     }
 
-    /// Simulates without the vector until `end`, s.
     fn settle(&mut self, end: f64) -> Result<(), GrowthError> {
         if end <= self.t {
             return Ok(());

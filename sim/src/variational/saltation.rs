@@ -9,7 +9,6 @@ const STEP: f64 = 1e-3;
 /// Largest relative difference of times that belong to the same surface, written twice.
 const SAME: f64 = 1e-6;
 
-/// Switching functions of a system, and the sizes of its states.
 pub(super) struct Surfaces<'a, S: System + ?Sized> {
     pub system: &'a S,
     /// Sizes of the states for finite differences; 0 if unknown.

@@ -24,7 +24,6 @@ const MOST_RESOLVED_PANELS: usize = 16;
 /// Rounding of an energy, relative to its magnitude.
 const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 
-/// Tolerance used for a solver without one.
 const EXACT_TOLERANCE: f64 = 1e-9;
 
 /// Energy auditor of a motion in progress.

@@ -154,7 +154,6 @@ impl Instance<'_> {
         Ok(found)
     }
 
-    /// Returns the names of the nonzero rates.
     fn running(&self, at: &OperatingPoint) -> Vec<String> {
         let rates = self.degrees()..2 * self.degrees();
         let names = self.model().state_names();
@@ -284,7 +283,6 @@ impl Instance<'_> {
         Ok(())
     }
 
-    /// Rejects coordinates and inputs outside their declared ranges.
     fn check_ranges(&self, at: &OperatingPoint) -> Result<(), Error> {
         let model = self.model().model();
         let refused = |error| Error::model(model, error);

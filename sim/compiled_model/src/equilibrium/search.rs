@@ -18,7 +18,6 @@ use super::linear::Linear;
 /// Maximum number of steps; near an equilibrium ten are enough.
 const MAX_STEPS: usize = 300;
 
-/// Maximum number of halvings of a step.
 const MAX_HALVINGS: i32 = 40;
 
 /// Number of halvings after which a step is accepted although the equations are not linear along
@@ -35,14 +34,12 @@ const LONGEST_STEP: f64 = 0.25;
 /// Displacement from a point at which no step helps, relative to a coordinate's natural scale.
 const NUDGE: f64 = 1.0 / 1024.0;
 
-/// Maximum number of such displacements.
 const MAX_NUDGES: usize = 3;
 
 /// Largest acceleration that counts as zero, relative to the largest value or term of its equation
 /// in this search.
 const ZERO: f64 = 1e-10;
 
-/// An unknown of the search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Unknown {
     /// Coordinate, first-order state or input.
@@ -242,7 +239,6 @@ impl<'i, 'm> Search<'i, 'm> {
         })
     }
 
-    /// Returns the point with its unknowns changed within their ranges, and the changes.
     fn moved(&self, at: &OperatingPoint, change: &DVector<f64>) -> (OperatingPoint, DVector<f64>) {
         let degrees = self.instance.model().program().degrees_of_freedom();
         let (mut moved, mut way) = (at.clone(), DVector::zeros(change.len()));

@@ -56,7 +56,6 @@ enum Place {
 }
 
 impl Place {
-    /// Returns true if the motion is on the surface.
     fn is_on(self) -> bool {
         matches!(self, Self::Holding { .. } | Self::Bearing { .. })
     }
@@ -77,9 +76,7 @@ pub(crate) struct Sliding {
     /// True if the rates had no jump on a surface at the last arrival; then the sign of its
     /// function determines the side.
     is_jumpless: Vec<bool>,
-    /// Largest magnitude of each function up to now.
     sizes: Vec<f64>,
-    /// Start of the motion, s.
     begin: Option<f64>,
     /// Fixed sides, -1 or 1, of free surfaces, independent of their functions.
     kept: Option<Vec<f64>>,

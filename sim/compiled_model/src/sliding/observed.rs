@@ -16,7 +16,6 @@ const ON: f64 = 1e-10;
 /// motion.
 const ON_BY_A_FORCE: f64 = 1e-11;
 
-/// Observables along a motion.
 pub(crate) struct Observed {
     own: Evaluator,
     rest: Option<Rest>,

@@ -22,14 +22,12 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// Smallest jump on a surface, relative to the jump near the surface, that counts as a jump.
 const JUMP: f64 = 0.5;
 
-/// A time and a state.
 pub(super) type At<'p> = (f64, &'p [f64]);
 
 /// A model whose inputs include the sides of the surfaces that can hold a motion, at one set of
 /// parameters; see [`Driven::with_sliding`](crate::Driven::with_sliding).
 pub struct Sided {
     evaluator: Evaluator,
-    /// Number of inputs of the model.
     own_inputs: usize,
     /// Inputs of the model, then the sides.
     inputs: Vec<f64>,
@@ -53,17 +51,14 @@ impl Sided {
         }
     }
 
-    /// Returns the number of surfaces.
     pub(super) fn count(&self) -> usize {
         self.inputs.len() - self.own_inputs
     }
 
-    /// Returns the index of a surface's function among the guards.
     pub(super) fn guard(&self, surface: usize) -> usize {
         self.evaluator.program().outputs.sliding[surface].guard
     }
 
-    /// Returns the functions of the surfaces.
     pub(super) fn functions(&mut self, (t, state): At<'_>, inputs: &[f64]) -> Vec<f64> {
         self.inputs[..self.own_inputs].copy_from_slice(inputs);
         let inputs = &self.inputs;
@@ -132,7 +127,6 @@ impl Sided {
         self.evaluate(at);
     }
 
-    /// Returns the sides, as last set or computed.
     pub(super) fn sides(&self) -> &[f64] {
         &self.inputs[self.own_inputs..]
     }

@@ -210,7 +210,6 @@ impl Row {
         specification(&sections)
     }
 
-    /// Returns positions and speeds at the end from the time stepping.
     fn stepped(&self, until: f64, steps: u32) -> Vec<f64> {
         let count = self.count;
         let inside = |i: usize| i < count;
