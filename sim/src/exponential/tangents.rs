@@ -82,8 +82,8 @@ pub struct Tangents<'d> {
 }
 
 impl<'d> Tangents<'d> {
-    /// Creates the vectors of a model with so many states and degrees of freedom. Those of parameters and
-    /// the driven ones begin as 0.
+    /// Creates the vectors of a model with this number of states and degrees of freedom. Vectors
+    /// of parameters and driven vectors start at 0.
     pub fn new(
         (states, degrees): (usize, usize),
         directions: Directions,
@@ -116,7 +116,7 @@ impl<'d> Tangents<'d> {
         }
     }
 
-    /// Begins at a state in a regime.
+    /// Starts at a state in a regime.
     pub fn begin(&mut self, regime: &Regime, at: (f64, &[f64], &[f64])) {
         let stride = self.stride;
         self.vectors = vec![0.0; stride * self.count()];
@@ -129,7 +129,7 @@ impl<'d> Tangents<'d> {
         self.find_drives(regime, at);
     }
 
-    /// Finds the drives anew where the motion stands, in a regime.
+    /// Computes the driving accelerations at the present state, in a regime.
     pub fn find_drives(&mut self, regime: &Regime, at: (f64, &[f64], &[f64])) {
         if self.driven > 0 {
             let forced = self.states - self.degrees;
@@ -138,37 +138,37 @@ impl<'d> Tangents<'d> {
         self.on_surface = false;
     }
 
-    /// How many vectors there are.
+    /// Returns the number of vectors.
     pub fn count(&self) -> usize {
         self.free + self.by_parameter + self.driven
     }
 
-    /// The motion went on by a whole step; whether the vectors have to follow.
+    /// Records a whole step of the motion; returns true if the vectors must follow now.
     pub fn step(&mut self) -> bool {
         self.pending += 1;
         (self.driven > 0 || self.slopes.is_some()) && self.pending >= DRIVEN_STEPS
     }
 
-    /// Returns true if there are steps that the vectors have not made.
+    /// Returns true if the motion has made steps that the vectors have not.
     pub fn is_behind(&self) -> bool {
         self.pending > 0
     }
 
-    /// The motion stands on a surface and goes on to one of its sides.
+    /// Records that the motion leaves a surface to one of its sides.
     pub fn leave_surface(&mut self) {
         self.on_surface = true;
         self.forget_slopes();
     }
 
-    /// What is felt of forces that change with the state is not known where the motion stands.
+    /// Discards the derivatives of the nonlinear terms at the present state.
     pub fn forget_slopes(&mut self) {
         if let Some(slopes) = &mut self.slopes {
             slopes.forget();
         }
     }
 
-    /// Makes the steps that are still to be made, in a regime, up to a state. `given`: a unit constant and
-    /// the inputs.
+    /// Advances the vectors by the pending steps, in a regime, up to a state. `given` is a unit
+    /// constant and the inputs.
     pub fn catch_up(&mut self, regime: &Regime, t: f64, state: &[f64], given: &[f64]) {
         if self.pending == 0 {
             return;
@@ -239,7 +239,7 @@ impl<'d> Tangents<'d> {
         std::mem::swap(&mut self.vectors, &mut self.next);
     }
 
-    /// Goes on by a part of a step, s, that ends at a state.
+    /// Advances the vectors by a part of a step, `tau` s, that ends at a state.
     pub fn part(&mut self, regime: &Regime, tau: f64, end: (f64, &[f64], &[f64])) {
         let (n, degrees) = (self.states, self.degrees);
         let forced = n - degrees;
@@ -379,8 +379,8 @@ fn move_across(state: &mut [f64], held: &HeldSurface, distance: f64) {
     sums.for_each(|(x, across)| *x += distance * across);
 }
 
-/// Adds to a vector how far it moves in `tau` s from its rates, by the exponential series,
-/// until a term adds less than a part to each number: these have different units.
+/// Adds to a vector its change over `tau` s by the exponential series, until a term adds less than
+/// the fraction `error` to each entry.
 pub fn series(matrix: &Columns, vector: &mut [f64], rates: &mut [f64], tau: f64, error: f64) {
     let n = vector.len();
     let mut next = [0.0; 64];
