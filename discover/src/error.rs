@@ -11,7 +11,7 @@ use eomgen_sim::ode::SolveError;
 use eomgen_sim::piecewise_linear::ExactError;
 
 /// What is said where somebody asked to stop.
-const STOPPED: &str = "stopped as asked";
+const STOPPED: &str = "stopped on request";
 
 /// Error between reading a specification and returning a result.
 #[derive(Clone, Debug)]
@@ -97,11 +97,12 @@ impl fmt::Display for SimulationError {
             Self::Propagator(error) => error.fmt(f),
             Self::Integrator(reason) => f.write_str(reason),
             Self::Solver(error) => error.fmt(f),
-            Self::NotGiven => f.write_str("the records do not give the motion of all its states"),
-            Self::TooFast => {
-                f.write_str("a part of it moves far too fast to be seen in the samples")
-            }
-            Self::Unbounded => f.write_str("the motion grows beyond all bounds"),
+            Self::NotGiven => f.write_str("the records do not give the motion of all states"),
+            Self::TooFast => f.write_str("a part of the motion is too fast for the sampling"),
+            Self::Unbounded => f.write_str(
+                "the state diverged, or a function left its domain (for example sqrt \
+             of a negative number)",
+            ),
             Self::Stopped => f.write_str(STOPPED),
         }
     }
@@ -119,23 +120,23 @@ impl fmt::Display for DiscoverError {
             Self::Edit(error) => error.fmt(f),
             Self::Effect { effect, on, error } => write!(
                 f,
-                "the effect `{effect}` on `{on}` does not leave a specification: {error}"
+                "the effect `{effect}` on `{on}` makes the specification invalid: {error}"
             ),
             Self::Records(refusal) => refusal.fmt(f),
             Self::StateNotMeasured(state) => write!(
                 f,
-                "windows.start = \"smoothed\" needs a channel for every coordinate and state of first order, and none shows \
-                 `{state}`; expected start = \"fitted\""
+                "windows.start = \"smoothed\" needs a channel for every coordinate and first-order state, and \
+                 none measures `{state}`; expected start = \"fitted\""
             ),
             Self::Unfollowed(windows) => write!(
                 f,
-                "the model's motion cannot be followed in {} of {} windows, first at t = {:.6} s of \
-                 {}: nothing can be compared there; expected a model that runs through its records",
+                "the simulation of the model fails in {} of {} windows, first at t = {:.6} s of {}; expected a \
+                 model that can be simulated on its records",
                 windows.count, windows.of, windows.first, windows.record
             ),
-            Self::CandidateUnfollowed => f.write_str("the motion with it cannot be followed"),
+            Self::CandidateUnfollowed => f.write_str("the simulation with this effect fails"),
             Self::NotExcited => {
-                f.write_str("nothing in the record would show it: it does not change the outputs")
+                f.write_str("the records cannot show it: it does not change the outputs")
             }
             Self::Stopped => f.write_str(STOPPED),
         }

@@ -420,8 +420,8 @@ pub fn offset_of(parameter: &Parameter) -> Option<Candidate> {
         ..dropped_prior(
             PARAMETER_OFFSET,
             &parameter.name,
-            "a parameter is not what the specification says",
-            "measure it by itself",
+            "a parameter that differs from the specification",
+            "a separate measurement of the parameter",
             &What::Parameter(parameter.name.clone()),
         )
     })

@@ -97,7 +97,7 @@ pub(super) fn change(
             if let Some(kind) = within.site()
                 && kind != site
             {
-                let wrong = Diagnostic::error("this effect sits at another kind of site");
+                let wrong = Diagnostic::error("this effect has another kind of site");
                 let kind = SiteKind::WORDS.iter().find(|(_, known)| *known == kind);
                 let expected = kind.map_or("", |(word, _)| word);
                 found.push(wrong.at(substitute.span(), format!("expected site = \"{expected}\"")));
@@ -107,8 +107,8 @@ pub(super) fn change(
         _ => {
             entry.record(&KEYS, "{ add = \"force\", ... }", found);
             found.push(
-                Diagnostic::error("an edit adds or substitutes something")
-                    .at(entry.span(), "expected either `add` or `substitute`"),
+                Diagnostic::error("an edit needs `add` or `substitute`")
+                    .at(entry.span(), "expected one of both keys"),
             );
             None
         }
@@ -171,7 +171,7 @@ fn unit(
 
 /// What is added, in words.
 fn doc(record: &Record<'_>, found: &mut Diagnostics) -> Option<String> {
-    Some(text(record, "doc", "\"what it is\"", found)?.text)
+    Some(text(record, "doc", "\"description of the quantity\"", found)?.text)
 }
 
 fn substitution(

@@ -45,7 +45,7 @@ pub(super) fn new_name(record: &Record<'_>, found: &mut Diagnostics) -> Option<S
     let rest = |c: char| c.is_ascii_alphanumeric() || c == '_';
     if !(written.text.starts_with(letter) && written.text.chars().all(rest)) {
         found.push(
-            Diagnostic::error(format!("{} is no name", quoted(&written.text))).at(
+            Diagnostic::error(format!("{} is not a name", quoted(&written.text))).at(
                 written.span,
                 "expected a letter, then letters, digits and underscores",
             ),

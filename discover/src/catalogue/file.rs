@@ -66,7 +66,7 @@ fn effect(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Effect> {
         of_site.iter().any(|blank| blank == name) || (site == SiteKind::Spring && name == DAMPER)
     };
     for name in own.iter().filter(|own| is_taken(&own.text)) {
-        let wrong = format!("{} has a meaning at such a site", quoted(&name.text));
+        let wrong = format!("{} is a placeholder of this site", quoted(&name.text));
         found.push(Diagnostic::error(wrong).at(name.span, "expected another name"));
     }
     let repeating: &[&str] = match (orders, site) {
@@ -82,8 +82,8 @@ fn effect(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Effect> {
         && !matches!(site, SiteKind::Axis | SiteKind::Angle)
         && let Some(loads) = record.get("loads")
     {
-        let wrong = Diagnostic::error("a load presses on an axis or an angle");
-        let expected = "expected site = \"axis\" or site = \"angle\" beside it";
+        let wrong = Diagnostic::error("`loads` needs a site that is an axis or an angle");
+        let expected = "expected site = \"axis\" or site = \"angle\"";
         found.push(wrong.at(loads.span(), expected));
     }
     let mut placeholders = Placeholders {
@@ -105,8 +105,8 @@ fn effect(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Effect> {
     for parameter in parameters.iter().filter_map(named) {
         if !placeholders.used.contains(&parameter.text) {
             found.push(
-                Diagnostic::error(format!("{} is used nowhere", quoted(&parameter.text)))
-                    .at(parameter.span, "no edit holds it")
+                Diagnostic::error(format!("{} is not used", quoted(&parameter.text)))
+                    .at(parameter.span, "no edit contains it")
                     .help(format!("write {{{}}} in an edit", parameter.text)),
             );
         }
@@ -185,8 +185,8 @@ fn shape(record: &Record<'_>, found: &mut Diagnostics) -> Option<Shape> {
         (None, None) => return None,
         (Some(alone), None) | (None, Some(alone)) => {
             found.push(
-                Diagnostic::error("`scale` and `share` go together")
-                    .at(alone.name.span, "the other is missing")
+                Diagnostic::error("`scale` and `share` must be given together")
+                    .at(alone.name.span, "the other key is missing")
                     .help("write scale = \"rate\", share = 0.1"),
             );
             return None;
@@ -195,9 +195,9 @@ fn shape(record: &Record<'_>, found: &mut Diagnostics) -> Option<Shape> {
     let part = found.keep(share.number())?;
     if part.value <= 0.0 {
         found.push(
-            Diagnostic::error(format!("{} is no part", part.value))
-                .at(part.span, "expected more than 0")
-                .also(scale.span(), "of this"),
+            Diagnostic::error(format!("{} is not a valid share", part.value))
+                .at(part.span, "expected a number above 0")
+                .also(scale.span(), "share of this quantity"),
         );
     }
     word.map(|scale| Shape {

@@ -13,12 +13,12 @@ use crate::model::unknowns::What;
 pub(crate) fn words(fault: InputFault) -> (&'static str, &'static str) {
     match fault {
         InputFault::Gain => (
-            "an input acts more or less than it is recorded",
-            "measure what it does by itself, as a torque at standstill",
+            "an input with a wrong gain",
+            "a separate measurement of the input, such as the torque at standstill",
         ),
         InputFault::Bias => (
-            "a constant acts beside an input",
-            "record the motion where the input is 0",
+            "an input with an offset",
+            "a record of the motion at zero input",
         ),
     }
 }

@@ -24,7 +24,7 @@ impl Placeholders {
             let close = written.text[open..].find('}').map(|length| open + length);
             let Some(close) = close.filter(|close| *close > open) else {
                 let place = written.place(open, open + 1);
-                let wrong = Diagnostic::error("a blank is not closed, or not opened");
+                let wrong = Diagnostic::error("the braces of a placeholder are not balanced");
                 found.push(wrong.at(place, "expected a name in braces, as {on}"));
                 return;
             };
@@ -34,10 +34,10 @@ impl Placeholders {
             } else {
                 let known = || self.known.iter().map(String::as_str);
                 let listed: Vec<&str> = known().collect();
-                let listed = format!("known here: {}", listed.join(", "));
+                let listed = format!("known placeholders: {}", listed.join(", "));
                 found.push(
-                    Diagnostic::error(format!("nothing fills the blank {}", quoted(name)))
-                        .at(written.place(open + 1, close), "not known here")
+                    Diagnostic::error(format!("unknown placeholder {}", quoted(name)))
+                        .at(written.place(open + 1, close), "not defined here")
                         .help(did_you_mean(name, known()).unwrap_or(listed)),
                 );
             }

@@ -47,7 +47,7 @@ pub fn check(effects: &[Effect], path: &str, text: &str) -> Result<Vec<String>, 
         }
         if found.is_empty() {
             homeless.push(format!(
-                "the effect `{}` has no place in this model and is not tried",
+                "the effect `{}` has no site in this model and is not tested",
                 effect.name
             ));
         }

@@ -68,9 +68,9 @@ fn add_empirical(
     if !(is_wide(before.train.rms) && is_wide(before.test.rms)) {
         return;
     }
-    progress("nothing in the catalogue explains what is left; looking for an expression");
+    progress("no effect of the catalogue explains the residual; searching for an expression");
     let Some(expression) = sought(problem, before) else {
-        progress("  no force of few terms in one equation stands out");
+        progress("  no force of few terms in one equation is significant");
         return;
     };
     let (candidate, fit) = match simplest(problem, before, expression) {
@@ -91,7 +91,8 @@ fn add_empirical(
         .map_or_else(|| "accepted".to_owned(), Rejection::to_string);
     let (train, test) = (fit.train.rms, fit.test.rms);
     progress(&format!(
-        "  {label}, {}: residuals of {train:.2} standard deviations of the noise in training, {test:.2} in test; {outcome}",
+        "  {label}, {}: residuals of {train:.2} (training) and {test:.2} (test) standard deviations of the \
+         noise; {outcome}",
         candidate.term
     ));
     match verdict {
@@ -147,7 +148,7 @@ fn written(model: &Model, expression: &Expression) -> Candidate {
                 value: NewValue::Number(value),
                 unit: unit.to_owned(),
                 doc: format!("scale of the {what} in an empirical force"),
-                source: "the largest in the training records".to_owned(),
+                source: "largest value in the training records".to_owned(),
             }));
         }
         name
@@ -170,7 +171,7 @@ fn written(model: &Model, expression: &Expression) -> Candidate {
                     scales.position,
                     if equation.unit == "rad" { "1" } else { "m" },
                 ),
-                "place",
+                "position",
             ),
         ],
         inputs: (model.inputs.iter().zip(&scales.inputs).enumerate())
@@ -189,13 +190,13 @@ fn written(model: &Model, expression: &Expression) -> Candidate {
         inverse: false,
         shape: None,
         offset: None,
-        doc: "size of a term of an empirical force".to_owned(),
+        doc: "coefficient of a term of an empirical force".to_owned(),
     };
     let place = |name: String, at: f64| CandidateParameter {
         unit: "1".to_owned(),
         positive: true,
         shape: Some(at),
-        doc: "place where a term of an empirical force begins, over its scale".to_owned(),
+        doc: "position of a kink of an empirical force, relative to its scale".to_owned(),
         ..size(name)
     };
     // Sizes first, one for each term, then the places of kinks.
@@ -214,7 +215,7 @@ fn written(model: &Model, expression: &Expression) -> Candidate {
         name: name(EMPIRICAL),
         on: equation.on.clone(),
         value: value.clone(),
-        doc: "fitted; it says nothing of the cause".to_owned(),
+        doc: "a fitted expression that does not identify the cause".to_owned(),
         source: String::new(),
     }));
     Candidate {
@@ -225,8 +226,8 @@ fn written(model: &Model, expression: &Expression) -> Candidate {
         on_mesh: equation.is_mesh,
         scaled: None,
         parameters,
-        says: "an expression that fits what is left".to_owned(),
-        experiment: "the same rates, places and inputs in other combinations".to_owned(),
+        says: "a fitted expression for the residual".to_owned(),
+        experiment: "records with other combinations of rates, positions and inputs".to_owned(),
         changes,
         term: value,
         dropped_prior: None,

@@ -108,9 +108,9 @@ impl Bounds {
         });
         let channels = channels.collect();
         let words = match &from_records[..] {
-            [] => "All bounds are those of the dataset file.".to_owned(),
+            [] => "All bounds are from the dataset file.".to_owned(),
             all => format!(
-                "As recorded, because the dataset file says nothing: {}.",
+                "Bounds from the records, because the dataset file does not give them: {}.",
                 all.join(", ")
             ),
         };
@@ -130,7 +130,7 @@ impl Bounds {
         let least = (0.5 * window.unwrap_or(0.0)).max(FEWEST_SAMPLES as f64 * self.sample);
         (self.duration < least).then(|| {
             format!(
-                "an experiment of {} s is too short for a record, which takes {least:.3} s here; expected a longer \
+                "an experiment of {} s is too short for a record, which needs {least:.3} s; expected a longer \
                  [experiment] duration",
                 self.duration
             )

@@ -49,9 +49,7 @@ pub fn experiments(context: Context<'_>, found: &Found) -> Experiments {
     let bounds = Bounds::of(problem, &inputs);
     let times = bounds.times();
     let impossible = match problem.dataset.gives_motion() {
-        true => Some(
-            "the motion is given: which other motion would tell more is not computed".to_owned(),
-        ),
+        true => Some("no experiment is computed for a given motion".to_owned()),
         false => bounds.too_short(problem.dataset.window),
     };
     let family = match impossible {
@@ -116,7 +114,7 @@ impl Plan<'_> {
             return none;
         }
         (self.context.progress)(&format!(
-            "seeking an experiment that tells {} from {} more",
+            "searching for an experiment that separates {} from {} others",
             accepted.candidate.label(),
             accepted.equivalent.len()
         ));
@@ -131,7 +129,7 @@ impl Plan<'_> {
         }
         if members.len() < 2 {
             return NextExperiment::none(
-                "none of the others could be fitted beside what was found later",
+                "no other member could be fitted together with the later effects",
                 &self.bounds,
             );
         }
@@ -256,7 +254,7 @@ impl Plan<'_> {
             return;
         }
         (self.context.progress)(&format!(
-            "seeking experiments that show what these records could not, {} effects",
+            "searching for experiments that show {} effects the records cannot show",
             wanted.len()
         ));
         let without = Rival::declared(found.best());
@@ -313,7 +311,7 @@ impl Plan<'_> {
         files: &mut Vec<ExperimentFile>,
     ) -> NextExperiment {
         let Some(best) = best else {
-            let reason = "nothing that was tried within the bounds shows it";
+            let reason = "no tested input within the bounds shows it";
             return NextExperiment::none(reason, &self.bounds);
         };
         let proposal = &self.family[best.proposal];

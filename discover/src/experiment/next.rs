@@ -153,17 +153,17 @@ impl NextExperiment {
 impl fmt::Display for NoExperiment {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NoInput => f.write_str(
-                "nothing can be played: the model has no input that a column of the records drives and that may move",
-            ),
+            Self::NoInput => {
+                f.write_str("no input can be played: the records drive no input that may vary")
+            }
             Self::Leaves(count, name) => write!(
                 f,
-                "none of {count} inputs that were tried can be played: with most of them {name} leaves its limits; \
+                "none of the {count} tested inputs can be played: most of them violate the limits of {name}; \
                  expected wider [experiment] limits, or a smaller range"
             ),
             Self::Unfollowed(count) => write!(
                 f,
-                "none of {count} inputs that were tried can be played: no motion can be followed"
+                "none of the {count} tested inputs can be played: the simulation fails"
             ),
         }
     }

@@ -116,24 +116,24 @@ impl Waveform {
             Self::Multisine(band) => format!("a multisine between {}", between(band)),
             Self::Chirp(band) => format!("a chirp between {}", between(band)),
             Self::Square(count) => {
-                format!("steps from one end to the other and back, {}", times(count))
+                format!("steps between both ends, {}", times(count))
             }
             Self::Shuttle(count) => {
                 format!(
-                    "steps forth, twice as long back, and forth, {}",
+                    "steps of relative durations 1, 2 and 1 with alternating sign, {}",
                     times(count)
                 )
             }
             Self::Triangle(count) => {
-                format!("a triangle to one end and to the other, {}", times(count))
+                format!("a triangle between both ends, {}", times(count))
             }
             Self::Constant { is_upper } => format!("a constant at the {} end", end(is_upper)),
             Self::Release { is_upper, part } => format!(
-                "the {} end for {:.0} % of the time, then rest",
+                "a constant at the {} end for {:.0} % of the time, then rest",
                 end(is_upper),
                 100.0 * part
             ),
-            Self::Staircase => "a staircase of five levels to each side".to_owned(),
+            Self::Staircase => "a staircase of five levels on each side".to_owned(),
         }
     }
 }

@@ -38,7 +38,7 @@ pub fn contradictions(
             return Vec::new();
         }
         progress(&format!(
-            "fitting records alone, {} of {}",
+            "fitting records separately, {} of {}",
             tried + some.len(),
             places.len()
         ));
@@ -130,11 +130,12 @@ fn odd(problem: &EstimationProblem<'_>, fit: &Fit, alone: &[Alone], floor: f64) 
         let by = explaining(problem, fit, record, floor);
         let by = match by.is_empty() {
             true => String::new(),
-            false => format!(" Alone it is explained by {}.", by.join(", or by ")),
+            false => format!(" Its separate fit is explained by {}.", by.join(", or by ")),
         };
         format!(
-            "{} does not go with {}: fitted alone, these leave at most {most:.1} standard deviations, and it leaves {:.1}.{by} Was it \
-             measured on the same machine, with the same payload?",
+            "{} does not agree with {}: fitted separately, these have residuals of at most {most:.1} standard \
+             deviations, and it has {:.1}.{by} Check if it was measured on the same machine with the same \
+             payload.",
             record.name,
             names.join(", "),
             record.rms
@@ -211,8 +212,9 @@ fn said(fit: &Fit, name: &str, place: usize, a: &Alone, b: &Alone) -> String {
     let parameter = parameters.find(|parameter| parameter.name == name);
     let value = |record: &Alone| stated(parameter, record.estimates[place]);
     format!(
-        "{} and {} contradict each other: alone, they give `{name}` as {} and {}, and leave {:.1} and {:.1} standard \
-         deviations, where the fit of all leaves {:.1} and {:.1}. Were they measured on one machine, with one payload?",
+        "{} and {} contradict each other: separate fits give `{name}` as {} and {} with residuals of {:.1} and \
+         {:.1} standard deviations, and the joint fit has {:.1} and {:.1}. Check if they were measured on one \
+         machine with one payload.",
         a.name,
         b.name,
         value(a),

@@ -12,8 +12,16 @@ const FACTORS: [(f64, &str, &str); 6] = [
     (1e-3, "a thousandth of", ""),
     (1e6, "a million times", ""),
     (1e-6, "a millionth of", ""),
-    (57.295_779_513, "57.3 times", ", as degrees are of radians"),
-    (0.017_453_292_52, "1/57.3 of", ", as radians are of degrees"),
+    (
+        57.295_779_513,
+        "57.3 times",
+        ", the factor from radians to degrees",
+    ),
+    (
+        0.017_453_292_52,
+        "1/57.3 of",
+        ", the factor from degrees to radians",
+    ),
 ];
 
 /// Returns a description of a factor between two units, relative to `expected`; `None` for other
@@ -63,14 +71,14 @@ pub fn check(problem: &EstimationProblem<'_>, text: &str) -> Result<Vec<String>,
         if own.correlation < -thresholds::FOLLOWS && (own.factor + 1.0).abs() < thresholds::NEAR_ONE
         {
             return refuse(
-                "its column follows the model with the other sign; turn the column's sign, or \
-                 the observable's"
+                "its column has the opposite sign of the model; change the sign of the column or of the \
+                 observable"
                     .to_owned(),
             );
         }
         if own.correlation > thresholds::FOLLOWS {
-            if let Some(words) = factor_of_units(own.factor, "what the model expects") {
-                return refuse(format!("its column is {words}; is its unit right?"));
+            if let Some(words) = factor_of_units(own.factor, "the expected value") {
+                return refuse(format!("its column is {words}; check its unit"));
             }
             if (own.factor - 1.0).abs() < thresholds::NEAR_ONE {
                 continue;
@@ -83,14 +91,15 @@ pub fn check(problem: &EstimationProblem<'_>, text: &str) -> Result<Vec<String>,
                 && (swapped.factor - 1.0).abs() < thresholds::AGREES
             {
                 return refuse(format!(
-                    "its column is what the model expects of `{}`; are columns exchanged?",
+                    "its column matches the expected values of `{}`; check if columns are exchanged",
                     instead.name
                 ));
             }
         }
         if own.correlation.abs() < thresholds::ASTRAY && own.shows {
             notes.push(format!(
-                "{}: `{}` does not follow the model (correlation {:.2}): are its column, and those of the inputs, the right ones?",
+                "{}: `{}` does not follow the model (correlation {:.2}); check its column and those of the \
+                 inputs",
                 record.name, channel.name, own.correlation
             ));
         }
@@ -159,7 +168,7 @@ mod tests {
         assert_eq!(words(998.5).as_deref(), Some("a thousand times that"));
         assert_eq!(
             words(0.01742).as_deref(),
-            Some("1/57.3 of that, as radians are of degrees")
+            Some("1/57.3 of that, the factor from degrees to radians")
         );
         for other in [1.0, -1e3, 900.0, 60.0, 0.0, f64::NAN] {
             assert_eq!(words(other), None, "{other}");

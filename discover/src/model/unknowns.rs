@@ -199,7 +199,8 @@ pub fn note_of_input_delay(inputs: &[InputPriors], model: &Model) -> Option<Stri
     let mean = expected.mean.filter(|mean| *mean != 0.0)?;
     (!model.sensors.is_empty()).then(|| {
         format!(
-            "the delay of `{input}`, {mean} s in the dataset, is taken to be in those of [sensors] in the specification"
+            "the delay of `{input}`, {mean} s in the dataset, is assumed to be included in the delays of \
+             [sensors] in the specification"
         )
     })
 }

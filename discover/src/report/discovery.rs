@@ -251,8 +251,8 @@ pub(crate) fn bound_notes(nuisances: &[Nuisance]) -> Vec<String> {
         let (mean, sd) = of.declared;
         let unit = &of.fitted.unit;
         format!(
-            "{} came out as {}, {:.1} standard deviations from what was declared ({}) and as far off as the fit \
-             admits: often the best sign that something else is wrong",
+            "{} is {}, {:.1} standard deviations from the declared value ({}), at the bound of the fit: another \
+             effect may be missing",
             of.name(),
             quantity(of.fitted.value, 4, unit),
             of.deviations().abs(),

@@ -14,7 +14,7 @@ use crate::thresholds;
 pub(crate) fn sentences(next: &NextExperiment, files: &[ExperimentFile]) -> String {
     let (Some(input), Some(form), Some(separation)) = (&next.input, &next.form, next.separation)
     else {
-        let reason = next.reason.as_deref().unwrap_or("nothing was tried");
+        let reason = next.reason.as_deref().unwrap_or("no input was tested");
         return format!("No experiment is proposed: {reason}.");
     };
     let size = match separation < 0.01 {
@@ -27,19 +27,19 @@ pub(crate) fn sentences(next: &NextExperiment, files: &[ExperimentFile]) -> Stri
     };
     let Some(file) = next.file.and_then(|file| files.get(file)) else {
         return format!(
-            "No input within the bounds tells: the best of those that were tried, {form} on {input}, comes to {size} \
-             standard deviations of the noise.{bounds}"
+            "No input within the bounds is sufficient: the best one, {form} on {input}, has a separation of \
+             {size} standard deviations of the noise.{bounds}"
         );
     };
     let played = format!("Play {}: {form} on {input}.", file.name);
     let told = match &next.shows {
         Some(shown) => format!(
-            "It is predicted to show {} from {} on.",
+            "Predicted smallest detectable value of {}: {}.",
             shown.what,
             quantity(shown.from, 4, &shown.unit)
         ),
         None => format!(
-            "What is not the right one is predicted to stay {size} standard deviations of the noise off, or more."
+            "Predicted residual of a wrong effect: at least {size} standard deviations of the noise."
         ),
     };
     format!("{played} {told}{}{bounds}", not_told(next))
@@ -54,7 +54,7 @@ fn not_told(next: &NextExperiment) -> String {
     let left = left.map(|pair| format!("{} from {}", pair[0].truth.words(), pair[0].rival.words()));
     match left.collect::<Vec<String>>() {
         left if left.is_empty() => String::new(),
-        left => format!(" It does not tell {}.", left.join(", nor ")),
+        left => format!(" It does not separate {}.", left.join(", nor ")),
     }
 }
 
@@ -71,8 +71,8 @@ pub(crate) fn drawn(problem: &EstimationProblem<'_>, files: &[ExperimentFile]) -
                 (figure_of(file, &problem.dataset.channels, &problem.noise))
             }
             p.note {
-                "Curves without noise: what the sensors would show of one, and of the other once it is fitted to that and "
-                "to these records. Dashed lines are one standard deviation of the noise to either side."
+                "Predicted sensor outputs without noise, of one model and of the other after a fit to them and "
+                "to the existing records. Dashed lines: plus and minus one standard deviation of the noise."
             }
         },
     )
@@ -86,7 +86,7 @@ fn figure_of(file: &ExperimentFile, channels: &[Channel], noise: &[f64]) -> Mark
         .collect();
     let series = |label: &str, values: &'_ [f64]| (label.to_owned(), values.to_vec());
     let mut panels = vec![(
-        format!("{}: what is played", file.input),
+        format!("{}: input signal", file.input),
         (file.input.clone(), file.unit.clone()),
         vec![series(&file.input, &file.values)],
         Vec::new(),
@@ -107,14 +107,14 @@ fn figure_of(file: &ExperimentFile, channels: &[Channel], noise: &[f64]) -> Mark
             value: sign * noise[place],
         });
         panels.push((
-            format!("{}: the difference", channel.name),
+            format!("{}: difference", channel.name),
             named(),
             vec![series("difference", &differences[place])],
             band.to_vec(),
         ));
     }
     let history = TimeHistory {
-        title: "The next experiment, predicted".to_owned(),
+        title: "Prediction of the next experiment".to_owned(),
         panels: panels
             .iter()
             .map(|(title, (quantity, unit), columns, references)| Panel {

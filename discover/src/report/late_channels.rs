@@ -29,8 +29,8 @@ pub(crate) fn note_of_late_channels(problem: &EstimationProblem<'_>, fit: &Fit) 
     let is_alike = delays.len() == problem.noise.len() && least > thresholds::LATE_ALIKE * most;
     is_alike.then(|| {
         format!(
-            "every channel is late by {:.3} ms or nearly: an input that acts late, behind a current loop or a bus, does \
-             the same; `delay` in [inputs.{input}] says how late it may be",
+            "all channels have a delay of about {:.3} ms: a delayed input, for example behind a current loop or \
+             a bus, has the same effect; declare its prior as `delay` in [inputs.{input}]",
             1e3 * most
         )
     })

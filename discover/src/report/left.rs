@@ -61,8 +61,8 @@ impl Left {
             && self.floors.is_finite();
         is_hidden.then(|| {
             format!(
-                "the records to learn from leave {} noise floors, those held out {}: what is missing hardly acts in the \
-                 first; list a record that shows it under `train`",
+                "the training residual is {} noise floors, the held-out residual {}: the missing effect hardly \
+                 acts in the training records; add a record that shows it to `train`",
                 counted(self.training),
                 self.words()
             )
@@ -72,8 +72,10 @@ impl Left {
     /// Returns text such as `1.2 noise floors in tip`.
     pub(crate) fn words(&self) -> String {
         let number = match self.floors {
-            floors if floors.is_nan() => return "an unknown part".to_owned(),
-            floors if floors.is_infinite() => return "a motion that cannot be followed".to_owned(),
+            floors if floors.is_nan() => return "an unknown number of noise floors".to_owned(),
+            floors if floors.is_infinite() => {
+                return "infinitely many noise floors (the simulation fails)".to_owned();
+            }
             floors => counted(floors),
         };
         let of_training = match self.floors <= thresholds::MAY_STAND_IN && self.is_much() {
@@ -89,8 +91,8 @@ impl Left {
     /// Returns an explanation that follows the text of `describe`.
     pub(crate) fn meaning(&self) -> &'static str {
         match self.floors < thresholds::ONE_FLOOR {
-            true => ", about what a right model leaves",
-            false => "; a right model leaves one",
+            true => ", the level of a correct model",
+            false => " (1 = a correct model)",
         }
     }
 }

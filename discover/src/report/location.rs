@@ -39,13 +39,13 @@ fn by_channel(problem: &EstimationProblem<'_>, fit: &Fit) -> String {
     };
     let channel = &problem.dataset.channels[worst];
     let mut text = format!(
-        "The difference is largest in {}: {:.3e} {} or {:.1} times its noise.",
+        "The residual is largest in {}: {:.3e} {} or {:.1} times its noise.",
         channel.name, fit.train.channels[worst], channel.unit, normalised_rms[worst]
     );
     if let Some(worst) = worst_window(problem, fit) {
         let window = &problem.train.list[worst];
         text += &format!(
-            " It is worst from {:.3} s to {:.3} s of {}.",
+            " It is largest from {:.3} s to {:.3} s of {}.",
             window.times[0],
             window.times[window.times.len() - 1],
             problem.train.records[window.record].name
@@ -56,10 +56,10 @@ fn by_channel(problem: &EstimationProblem<'_>, fit: &Fit) -> String {
     }
     match training_peak(problem, fit, worst) {
         Some(SpectralPeak::At(frequency)) => {
-            text += &format!(" Its spectrum is largest at {frequency:.3} Hz.");
+            text += &format!(" Its spectrum has a peak at {frequency:.3} Hz.");
         }
         Some(SpectralPeak::Slow) => {
-            text += " Most of it varies too slowly for windows of this length to show a frequency.";
+            text += " Most of it is below the frequency resolution of windows of this length.";
         }
         None => {}
     }
@@ -108,12 +108,14 @@ fn by_speed(problem: &EstimationProblem<'_>, fit: &Fit, channel: ChannelId) -> O
     let (slow, fast) = (mean(&pairs[..third]), mean(&pairs[pairs.len() - third..]));
     if fast > thresholds::WORTH_SAYING * slow {
         Some(format!(
-            " It grows with the speed: {:.1} times as large in the fastest third of the windows as in the slowest.",
+            " It increases with the speed: {:.1} times as large in the fastest third of the windows as in the \
+             slowest.",
             fast / slow
         ))
     } else if slow > thresholds::WORTH_SAYING * fast {
         Some(format!(
-            " It is larger in slow motion: {:.1} times as large in the slowest third of the windows as in the fastest.",
+            " It decreases with the speed: {:.1} times as large in the slowest third of the windows as in the \
+             fastest.",
             slow / fast
         ))
     } else {

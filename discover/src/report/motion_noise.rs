@@ -17,8 +17,8 @@ pub(crate) fn notes_of_motion_noise(problem: &EstimationProblem<'_>, fit: &Fit) 
         let found = noise::estimated(&computed(problem, fit, id))?;
         (found > channel.noise).then(|| {
             format!(
-                "noise of the motion makes {found:.1e} {unit} of what is computed for `{}`, where {:.1e} {unit} is declared of its own noise: \
-                 keep fewer samples, [time] every, or measure the motion better",
+                "noise of the motion causes noise of {found:.1e} {unit} in the computed `{}`, and its declared \
+                 noise is {:.1e} {unit}: keep fewer samples, [time] every, or measure the motion more accurately",
                 channel.name,
                 channel.noise,
                 unit = channel.unit

@@ -37,7 +37,7 @@ pub(crate) fn overlay(
     let trained = Seen::of(problem, (&problem.train, record), &train);
     let stretch = trained.stretch(&problem.train.list[worst]);
     let title = format!(
-        "Where the model as it was is furthest off, {}",
+        "Largest residual of the original model, {}",
         problem.train.records[record].name
     );
     html! {

@@ -27,14 +27,14 @@ pub(crate) fn force_section(force: &ResidualForce, after: Option<&ResidualForce>
     };
     let headings = [
         "a force on",
-        "explains of the squares over rate or place",
-        "if free in every window",
+        "explained fraction of the squares, over rate or position",
+        "explained fraction, free in each window",
     ];
     html! {
         (table(&headings, &rows))
         p.note {
-            "A force that was put into this equation, its bars one standard deviation to either side. "
-            "What records do not show is left out."
+            "Force in this equation, with error bars of one standard deviation. "
+            "Parts that the records do not show are omitted."
         }
         (drawn(&figures_of_force(force, after)))
     }
@@ -84,7 +84,7 @@ pub(crate) fn figures(
         .map(|c| (c.name.clone(), c.unit.clone()))
         .collect();
     let history = TimeHistory {
-        title: "Differences on the test record".to_owned(),
+        title: "Residuals of the test record".to_owned(),
         panels: named
             .iter()
             .zip(&columns)
@@ -112,13 +112,13 @@ pub(crate) fn figures(
         })
         .collect();
     let plot = Spectrum {
-        title: "Spectra of the differences".to_owned(),
+        title: "Spectra of the residuals".to_owned(),
         frequency: FrequencyAxis::Logarithmic,
         panels: named
             .iter()
             .zip(&spectra)
             .map(|((name, unit), series)| Panel {
-                title: format!("{name}: spectrum of the difference"),
+                title: format!("{name}: spectrum of the residual"),
                 quantity: name.clone(),
                 unit: format!("({unit})^2/Hz"),
                 series: series

@@ -214,7 +214,7 @@ pub fn discover_until(
     }
     if let Some(unfinished) = &found.unfinished {
         let most = stop.most().map_or(0.0, |most| most.as_secs_f64());
-        let note = format!("the search was ended by its limit of {most} s: {unfinished}");
+        let note = format!("the search reached its time limit of {most} s: {unfinished}");
         progress(&format!("note: {note}"));
         notes.push(note);
     }
@@ -275,8 +275,9 @@ fn note_of_unconfirmed(of: &Unconfirmed, null: &Fit, floor: f64) -> String {
     let Unconfirmed { label, own, fit } = of;
     let sizes: Vec<String> = own.iter().map(|id| size(fit, *id, floor)).collect();
     format!(
-        "with {label} ({}) {:.1} standard deviations are left of the training records in place of {:.1}; the test records do not \
-         confirm it: {:.1} in place of {:.1}. They may lack something else, or come from another machine",
+        "with {label} ({}) the training residual is {:.1} standard deviations instead of {:.1}; the test \
+         records do not confirm it: {:.1} instead of {:.1}. They may lack another effect, or be from another \
+         machine",
         sizes.join(", "),
         fit.train.rms,
         null.train.rms,
@@ -326,7 +327,7 @@ fn null(
     for note in channel_checks::check(problem, text)? {
         progress(&format!("note: {note}"));
     }
-    progress("fitting the model as it is");
+    progress("fitting the original model");
     let fit = null_fit(problem, text)?;
     let floor = noise_floor(problem, &fit, seed);
     let force = residual_force(problem, &fit, None);

@@ -28,12 +28,13 @@ impl Summary {
             true => Self {
                 first: "The model does not explain the records.".to_owned(),
                 rest: format!(
-                    "It leaves {left}; a right model leaves one. What is missing is for `eomgen discover` to find."
+                    "Its residual is {left} (1 = a correct model). Run `eomgen discover` to find the missing \
+                     effect."
                 ),
             },
             false => Self {
                 first: explained(&comparison.compared.nuisances, "."),
-                rest: format!("It leaves {left}, no more than a right model would."),
+                rest: format!("Its residual is {left}, the level of a correct model."),
             },
         }
     }
@@ -46,17 +47,17 @@ impl Summary {
             Verdict::NoSignificantGap => Self {
                 first: explained(
                     &discovery.compared.nuisances,
-                    "; nothing is missing that they could show.",
+                    "; they show no missing effect.",
                 ),
                 rest: format!(
-                    "It leaves {}, no more than a right model would.",
+                    "The residual is {}, the level of a correct model.",
                     after.words()
                 ),
             },
             Verdict::Unexplained => Self {
-                first: "Something is missing, and nothing that was tried explains it.".to_owned(),
+                first: "An effect is missing, and no tested effect explains it.".to_owned(),
                 rest: format!(
-                    "The model leaves {} on the held-out records; a right model leaves one.",
+                    "The residual on the held-out records is {} (1 = a correct model).",
                     after.words()
                 ),
             },
@@ -65,13 +66,13 @@ impl Summary {
         match (&discovery.unfinished, discovery.verdict) {
             (None, _) => answer,
             (Some(unfinished), Verdict::EffectsFound) => Self {
-                rest: format!("{} The search was ended by its limit: {unfinished}.", answer.rest),
+                rest: format!("{} The search reached its time limit: {unfinished}.", answer.rest),
                 ..answer
             },
             (Some(unfinished), _) => Self {
-                first: "Something is missing, and the search was ended by its limit before it was found."
+                first: "An effect is missing, and the search reached its time limit before it was found."
                     .to_owned(),
-                rest: format!("{} What is known: {unfinished}.", answer.rest),
+                rest: format!("{} State of the search: {unfinished}.", answer.rest),
             },
         }
     }
@@ -86,14 +87,14 @@ fn at_bounds(nuisances: &[Nuisance]) -> Option<String> {
         [only] => only.clone(),
         [first, rest @ ..] => format!("{first} and {} more", rest.len()),
     };
-    Some(format!("with {which} as far off as the fit admits"))
+    Some(format!("with {which} at the bound of the fit"))
 }
 
 /// The first sentence of a model that explains the records: how it ends where nothing is at its bounds.
 fn explained(nuisances: &[Nuisance], end: &str) -> String {
     let end = match at_bounds(nuisances) {
         None => end.to_owned(),
-        Some(at_bounds) => format!(" only {at_bounds}: what is missing may look like that."),
+        Some(at_bounds) => format!(" only {at_bounds}; a missing effect may be the cause."),
     };
     format!("The model explains the records{end}")
 }
@@ -109,10 +110,11 @@ fn found(discovery: &Discovery, before: &Left, after: &Left) -> Summary {
     if after.is_much() || at_bounds.is_some() {
         return Summary {
             first: format!(
-                "What was found {closed}; {left} are left{held}: what is named may stand in for something else."
+                "The named effects may be substitutes for others: the extended model {closed} and leaves \
+                 {left}{held}."
             ),
             rest: format!(
-                "Found: {found}. {} were left before; a right model leaves one.",
+                "Found: {found}. The residual before the search was {} (1 = a correct model).",
                 before.words()
             ),
         };
@@ -120,7 +122,7 @@ fn found(discovery: &Discovery, before: &Left, after: &Left) -> Summary {
     Summary {
         first: format!("Found: {found}."),
         rest: format!(
-            "It {closed}. {} were left before, {left} after{}.",
+            "The extended model {closed}. The residual fell from {} to {left}{}.",
             before.words(),
             after.meaning()
         ),
@@ -131,11 +133,11 @@ fn found(discovery: &Discovery, before: &Left, after: &Left) -> Summary {
 fn closed(closure: OnRecords<Option<f64>>) -> String {
     match closure.test {
         Some(part) if part > 0.0 => format!(
-            "closes {} of the gap between model and measurement on records that were held out",
+            "closes {} of the gap between model and measurement on held-out records",
             percent(part)
         ),
-        Some(_) => "closes nothing of the gap on records that were held out".to_owned(),
-        None => "had hardly a gap to close".to_owned(),
+        Some(_) => "closes none of the gap on held-out records".to_owned(),
+        None => "had almost no gap to close".to_owned(),
     }
 }
 
@@ -160,7 +162,7 @@ fn named(effect: &FoundEffect) -> String {
     if effect.status == Status::Class && !effect.equivalent.is_empty() {
         let others: Vec<String> = effect.equivalent.iter().map(words).collect();
         text += &format!(
-            " (or {}, which these records do not tell from it)",
+            " (or {}; the records do not separate them)",
             others.join(", or ")
         );
     }

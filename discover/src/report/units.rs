@@ -13,15 +13,15 @@ pub(crate) fn notes_of_units(problem: &EstimationProblem<'_>, found: &Found) -> 
     let unknowns = found.accepted.iter().flat_map(|effect| &effect.unknowns);
     let note = |what: &What, value: f64| match what {
         What::Gain(channel) => {
-            let factor = factor_of_units(value, "what the model expects")?;
+            let factor = factor_of_units(value, "the expected value")?;
             let channel = &problem.dataset.channels[*channel].name;
-            Some(format!("`{channel}` is {factor}: is its unit right?"))
+            Some(format!("`{channel}` is {factor}; check its unit"))
         }
         What::Parameter(name) => {
             let factor = value / declared(&found.null, name)?;
-            let factor = factor_of_units(factor, "what the specification says")?;
+            let factor = factor_of_units(factor, "the value in the specification")?;
             Some(format!(
-                "`{name}` comes out at {factor}: are all units right?"
+                "the estimate of `{name}` is {factor}; check all units"
             ))
         }
         What::Inverse(_) | What::Bias(_) | What::Delay(_) | What::InputDelay => None,

@@ -8,11 +8,11 @@ use crate::thresholds;
 /// Describes the residual force of the original model in one or two sentences.
 pub fn described(force: &ResidualForce) -> String {
     let Some(kind) = &force.kind else {
-        return "No force on a single equation stands out.".to_owned();
+        return "No force in a single equation is significant.".to_owned();
     };
     let equation = &force.equations[force.best];
     let mut text = format!(
-        "The residual is best explained by a force on {}: {}, {:.0} % of the squares.",
+        "The residual is best explained by a force on {}: {}; it explains {:.0} % of the squares.",
         equation.name,
         shape(force, kind),
         100.0 * force.part
@@ -27,7 +27,10 @@ pub fn described(force: &ResidualForce) -> String {
         .map(|r| force.equations[r.equation].name.as_str())
         .collect();
     if !names.is_empty() {
-        text += &format!(" One on {} explains nearly as much.", names.join(" or "));
+        text += &format!(
+            " A force on {} explains nearly as much.",
+            names.join(" or ")
+        );
     }
     text
 }
@@ -35,10 +38,10 @@ pub fn described(force: &ResidualForce) -> String {
 /// Describes the residual force of the extended model.
 pub fn described_after(force: &ResidualForce) -> String {
     match &force.kind {
-        None => "Once what was found is in the model, no force stands out.".to_owned(),
+        None => "With the found effects in the model, no force is significant.".to_owned(),
         Some(_) => described(force).replacen(
             "The residual is best explained",
-            "What is left once what was found is in the model is best explained",
+            "The remaining residual is best explained",
             1,
         ),
     }
@@ -55,10 +58,10 @@ fn shape(force: &ResidualForce, kind: &Kind) -> String {
             let frequencies = &force.frequency;
             let is_looked_at = force.best == force.equation;
             let (rate, place) = words(equation);
-            let text = format!("it is a function of neither the {rate} nor the {place} alone");
+            let text = format!("it is a function of neither the {rate} nor the {place}");
             match frequencies.peak {
                 Some(peak) if is_looked_at && frequencies.part > 0.5 * force.part => format!(
-                    "{text}, most of it near {:.3} Hz with {}",
+                    "{text}, most of it near {:.3} Hz with an amplitude of {}",
                     frequencies.over[peak],
                     in_unit(frequencies.values[peak], equation.force_unit())
                 ),
@@ -105,18 +108,22 @@ fn simple(parts: &[SimplePart], equation: &Equation, is_rate: bool) -> String {
         let number = |unit: &str| format!("{} +- {}", plain(value.abs()), in_unit(*sd, unit));
         match function {
             Simple::Constant => format!("a constant {} +- {}", plain(*value), in_unit(*sd, force)),
-            Simple::Sign => format!("{} {} the {of}'s sign", number(force), along(*value)),
+            Simple::Sign => format!("{} {} the sign of the {of}", number(force), along(*value)),
             Simple::Linear => format!("{} {} the {of}", number(&unit), along(*value)),
             Simple::Size => format!(
-                "{} times the {of}'s size, {}",
+                "{} times the magnitude of the {of}, {}",
                 number(&unit),
                 if *value < 0.0 {
-                    "backwards"
+                    "in the negative direction"
                 } else {
-                    "forwards"
+                    "in the positive direction"
                 }
             ),
-            Simple::Square => format!("{} {} the {of}'s square", number(&squared), along(*value)),
+            Simple::Square => format!(
+                "{} {} the signed square of the {of}",
+                number(&squared),
+                along(*value)
+            ),
         }
     });
     texts.collect::<Vec<String>>().join(" and ")

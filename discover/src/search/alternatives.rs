@@ -58,7 +58,7 @@ fn alternatives(
         return None;
     }
     (pool.context.progress)(&format!(
-        "screening {} in the place of {}",
+        "screening {} alternatives to {}",
         in_model.len(),
         pool.candidate(response).label()
     ));

@@ -29,10 +29,10 @@ pub fn eliminate_backwards(
             return;
         };
         let label = found.accepted[effect_id].candidate.label();
-        progress(&format!("  {label} is needed no more"));
+        progress(&format!("  {label} is no longer needed"));
         let reason = format!(
-            "beside what was found later it is not needed: {:.2} standard deviations of the noise are left without it in \
-             test, {:.2} with it",
+            "unnecessary after a later effect: the test residual is {:.2} standard deviations of the noise \
+             without it and {:.2} with it",
             fit.test.rms,
             found.best().test.rms
         );

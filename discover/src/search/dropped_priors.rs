@@ -31,32 +31,32 @@ pub fn dropped_prior(problem: &EstimationProblem<'_>, fit: &Fit) -> Vec<Candidat
             What::Parameter(name) | What::Inverse(name) => (
                 candidate::PARAMETER_OFFSET,
                 name.clone(),
-                "a parameter is off by more than was declared",
-                "measure it by itself",
+                "a parameter that differs from its declared value",
+                "a separate measurement of the parameter",
             ),
             What::Gain(channel) => (
                 "sensor_gain",
                 problem.dataset.channels[*channel].name.clone(),
-                "a sensor shows too much or too little",
-                "calibrate it over its range",
+                "a sensor with a wrong gain",
+                "a calibration of the sensor over its range",
             ),
             What::Bias(channel) => (
                 "sensor_bias",
                 problem.dataset.channels[*channel].name.clone(),
-                "a sensor is off by a constant",
-                "read it where its quantity is known",
+                "a sensor with an offset",
+                "a reading of the sensor at a known value",
             ),
             What::InputDelay => (
                 INPUT_DELAY,
                 delayed_input(inputs).map_or_else(String::new, |(input, _)| input.to_owned()),
-                "an input acts late",
-                "record what it does beside it, as a current beside its command",
+                "a delayed input",
+                "a record of the acting input, such as a current in addition to its command",
             ),
             What::Delay(channel) => (
                 "sensor_delay",
                 problem.dataset.channels[*channel].name.clone(),
-                "a sensor is late",
-                "excite it with a step that is recorded itself",
+                "a delayed sensor",
+                "an excitation by a step that is recorded separately",
             ),
         };
         candidate::dropped_prior(effect, &on, says, experiment, &unknown.what)

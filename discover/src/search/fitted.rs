@@ -38,14 +38,14 @@ pub fn preliminary_fits(
 ) -> Vec<(Hypothesis, PreliminaryFit)> {
     let alone = pool.screening.predicted(&[]).cost;
     let of = match pool.is_whole {
-        true => "squares",
-        false => "beginnings of windows",
+        true => "squared residual",
+        false => "initial-segment residual",
     };
     // Said as each ends: some take long.
     let fitted = |hypothesis: Hypothesis| {
         let preliminary = hypothesis::preliminary(pool, &hypothesis);
         let left = match &preliminary {
-            Ok(fit) => format!("{:.1} % left of the {of}", 100.0 * fit.cost / alone),
+            Ok(fit) => format!("{:.1} % of the {of} remains", 100.0 * fit.cost / alone),
             Err(error) => error.to_string(),
         };
         let label = hypothesis::label(pool, &hypothesis);
@@ -111,7 +111,7 @@ impl fmt::Display for FittedHypothesis {
         let (train, test) = (self.fit.train.rms, self.fit.test.rms);
         write!(
             f,
-            "residuals of {train:.2} standard deviations of the noise in training, {test:.2} in test; "
+            "residuals of {train:.2} (training) and {test:.2} (test) standard deviations of the noise; "
         )?;
         match &self.verdict {
             Ok(_) => write!(f, "accepted"),

@@ -84,7 +84,8 @@ pub fn search(
         }
         let (number, most) = (found.accepted.len() + 1, thresholds::MOST_EFFECTS);
         progress(&format!(
-            "effect {number} of at most {most}: {:.1} standard deviations are left, {floor:.1} would be by noise",
+            "effect {number} of at most {most}: the residual is {:.1} standard deviations, the noise floor \
+             {floor:.1}",
             fit.rms()
         ));
         let round = Round {

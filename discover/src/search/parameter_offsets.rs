@@ -78,7 +78,7 @@ pub fn similar_offsets(context: Context<'_>, selected: &Candidate) -> Option<Sim
         return None;
     }
     (context.progress)(&format!(
-        "screening {} {called} beside {}",
+        "screening {} {called} similar to {}",
         offsets.len(),
         selected.label()
     ));

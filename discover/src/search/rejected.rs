@@ -71,8 +71,8 @@ fn of_fit(fitted: &FittedHypothesis) -> Reason {
     let text = match &fitted.verdict {
         Err(reason) => reason.to_string(),
         Ok(_) => format!(
-            "alone it would be accepted, and leaves {:.2} standard deviations of the noise in training and {:.2} in test: \
-             what is named was preferred",
+            "it would be accepted on its own, with residuals of {:.2} (training) and {:.2} (test) standard \
+             deviations of the noise, but the named effect is preferred",
             fitted.fit.train.rms, fitted.fit.test.rms
         ),
     };
@@ -90,7 +90,7 @@ fn of_screening(tested: &TestedPool, id: ResponseId) -> Reason {
     let not_testable = response.unexplained_fraction <= thresholds::UNEXPLAINED_FRACTION;
     let text = if not_testable {
         format!(
-            "{:.1} % of what it does can be done by initial states, refitted parameters and sensors as well",
+            "{:.1} % of its response can also be produced by initial states, refitted parameters and sensors",
             100.0 * (1.0 - response.unexplained_fraction)
         )
     } else {
@@ -98,7 +98,7 @@ fn of_screening(tested: &TestedPool, id: ResponseId) -> Reason {
         let most = screening.responses.iter();
         let most = most.map(|other| other.decrease).fold(0.0, f64::max);
         format!(
-            "it promises to take {:.1} % of the squares that are left, the best {:.1} %",
+            "its predicted reduction of the squared residual is {:.1} %, the best is {:.1} %",
             100.0 * response.decrease / alone,
             100.0 * most / alone
         )

@@ -49,45 +49,48 @@ pub enum Rejection {
 impl fmt::Display for Rejection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::AtLimit(name) => write!(f, "{name} runs to the end of what is admitted"),
+            Self::AtLimit(name) => write!(f, "{name} is at the end of its admissible range"),
             Self::WrongSign(name) => write!(
                 f,
-                "{name} has the wrong sign: held to it, the effect vanishes"
+                "{name} has the wrong sign: at its bound the effect vanishes"
             ),
             Self::WithinPrior { name, off, sd } => write!(
                 f,
-                "{name} is {off:.1} ± {sd:.1} standard deviations of its prior off, {} are asked for",
+                "{name} is {off:.1} ± {sd:.1} standard deviations of its prior from the mean, {} are required",
                 thresholds::SHIFTED
             ),
             Self::HeldOut(part) => write!(
                 f,
-                "the test records are no better for it: the gap falls by {:.1} %, {:.0} % are asked for",
+                "the test records do not improve: the gap decreases by {:.1} %, {:.0} % are required",
                 100.0 * part,
                 100.0 * thresholds::HELD_OUT
             ),
             Self::StandardErrors(errors) => write!(
                 f,
-                "the test records may be better by chance: {errors:.1} standard errors, {} are asked for",
+                "the improvement of the test records may be chance: {errors:.1} standard errors, {} are required",
                 thresholds::STANDARD_ERRORS
             ),
             Self::Information { found, asked } => write!(
                 f,
-                "too small a gain in the training records: {found:.1}, {asked} are asked for"
+                "the information gain in the training records is too small: {found:.1}, {asked} are required"
             ),
             Self::Significance(t) => write!(
                 f,
-                "its size is {t:.1} standard deviations, {} are asked for",
+                "its size is {t:.1} standard deviations, {} are required",
                 thresholds::SIGNIFICANCE
             ),
             Self::Size(size) => write!(
                 f,
-                "what it does is {size:.2} of the noise, {} are asked for",
+                "its influence is {size:.2} standard deviations of the noise, {} are required",
                 thresholds::SIZE
             ),
-            Self::LeavesMuch => f.write_str("beside another it leaves much, which may be luck"),
+            Self::LeavesMuch => f.write_str(
+                "together with another effect a large residual remains, which may \
+             be chance",
+            ),
             Self::Closes { train, test } => write!(
                 f,
-                "it closes {:.0} % of the gap in training and {:.0} % in test, {:.0} % are asked for",
+                "it closes {:.0} % of the gap in training and {:.0} % in test, {:.0} % are required",
                 100.0 * train,
                 100.0 * test,
                 100.0 * thresholds::UNNAMED_CLOSES

@@ -144,7 +144,7 @@ impl Round<'_> {
             ExcitationWindow::Whole | ExcitationWindow::Beginnings => None,
         };
         if closed.is_some() {
-            (self.context.progress)("looking at the model without play");
+            (self.context.progress)("fitting the model without play");
         }
         let fit = closed.as_ref().unwrap_or(self.context.fit);
         let (mut candidates, repeating) = self.candidates(fit, window);
@@ -164,7 +164,7 @@ impl Round<'_> {
             from = CandidateId::new(candidates.len());
         }
         (self.context.progress)(&format!(
-            "screening {} candidates that repeat with an angle",
+            "screening {} periodic candidates",
             repeating.len()
         ));
         // Behind the others, so that what was fitted keeps its place.

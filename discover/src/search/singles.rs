@@ -14,7 +14,7 @@ pub fn singles(pool: &Pool<'_>, from: CandidateId) -> Vec<FittedHypothesis> {
     ranking.retain(|response| pool.screening.responses[*response].candidate >= from);
     if let Some(best) = ranking.first() {
         let (count, best) = (ranking.len(), pool.candidate(*best).label());
-        (pool.context.progress)(&format!("{count} promise enough to be fitted, {best} most"));
+        (pool.context.progress)(&format!("{count} candidates worth fitting; best: {best}"));
     }
     let mut preliminaries = preliminary_fits(pool, chosen(pool, &ranking));
     if !pool

@@ -21,8 +21,8 @@ pub fn unfinished(tested: &[TestedPool]) -> String {
     });
     let Some((pool, best)) = best else {
         return match promising(tested) {
-            Some(name) => format!("no effect was fitted by then; {name} promised most"),
-            None => "no effect was fitted by then".to_owned(),
+            Some(name) => format!("no effect was fitted before the limit; best prediction: {name}"),
+            None => "no effect was fitted before the limit".to_owned(),
         };
     };
     let names = best.responses.iter().map(|response| {
@@ -31,7 +31,8 @@ pub fn unfinished(tested: &[TestedPool]) -> String {
     });
     let names: Vec<String> = names.collect();
     format!(
-        "so far {} leaves least, {:.1} standard deviations of the test records, and was not compared with all others",
+        "{} has the lowest residual so far, {:.1} standard deviations on the test records, and was not compared \
+         with all others",
         names.join(" and "),
         best.fit.test.rms
     )

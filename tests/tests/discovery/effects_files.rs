@@ -141,13 +141,13 @@ fn words_and_keys_that_are_not_known_are_refused_with_the_nearest() {
                 sign,
                 "sign = \"+\", scale = \"rate\"",
                 "scale",
-                "`scale` and `share` go together",
+                "`scale` and `share` must be given together",
             ),
             (
                 sign,
                 "sign = \"+\", scale = \"rate\", share = 0.0",
                 "0.0",
-                "expected more than 0",
+                "expected a number above 0",
             ),
             (
                 sign,
@@ -166,16 +166,21 @@ fn blanks_names_and_expressions_that_are_none_are_refused_with_their_place() {
         &[
             ("abs({on})", "abs({onn})", "onn", "did you mean `on`?"),
             ("-{B_r}", "-{B_s}", "B_s", "did you mean `B_r`?"),
-            ("-{B_r}", "-2", "\"B_r\"", "`B_r` is used nowhere"),
-            ("abs({on})", "abs({on)", "on)*", "nothing fills the blank"),
-            ("abs({on})", "abs(on})", "})*", "a blank is not closed"),
+            ("-{B_r}", "-2", "\"B_r\"", "`B_r` is not used"),
+            ("abs({on})", "abs({on)", "on)*", "unknown placeholder"),
+            (
+                "abs({on})",
+                "abs(on})",
+                "})*",
+                "the braces of a placeholder are not balanced",
+            ),
             ("abs({on})*", "abs({on})*/", "/sign", "error"),
-            ("\"B_r\"", "\"B r\"", "\"B r\"", "is no name"),
+            ("\"B_r\"", "\"B r\"", "\"B r\"", "is not a name"),
             (
                 "\"B_r\"",
                 "\"unit\"",
                 "\"unit\"",
-                "has a meaning at such a site",
+                "is a placeholder of this site",
             ),
             ("edits = [{", "edits = [] #", "[] #", "`edits` is empty"),
             (
@@ -200,11 +205,11 @@ fn a_damper_is_replaced_beside_springs_alone_and_named_nowhere_else() {
         (on_axes, "expected site = \"spring\""),
         (
             on_springs.replace("-{B_r}*", "-{B_r}*{damper}*"),
-            "nothing fills the blank `damper`",
+            "unknown placeholder `damper`",
         ),
         (
             on_springs.replace("B_r", "damper"),
-            "`damper` has a meaning at such a site",
+            "`damper` is a placeholder of this site",
         ),
     ] {
         let message = refused(&measured, &effects);
@@ -230,7 +235,7 @@ fn inputs_are_replaced_at_inputs_and_loads_press_on_axes() {
         ),
         (
             EFFECTS.replace("-{B_r}*", "-{B_r}*{load}*"),
-            "nothing fills the blank `load`",
+            "unknown placeholder `load`",
         ),
         (
             EFFECTS.replace(
@@ -283,7 +288,7 @@ fn an_effect_that_leaves_no_specification_is_refused() {
     ] {
         let message = refused(&measured, &EFFECTS.replacen(from, to, 1));
         let parts = [
-            "the effect `bent_rail` on `q` does not leave a specification",
+            "the effect `bent_rail` on `q` makes the specification invalid",
             part,
         ];
         for part in parts {
@@ -296,7 +301,7 @@ fn an_effect_that_leaves_no_specification_is_refused() {
 fn an_effect_without_a_place_is_said_not_to_be_tried() {
     let measured = Measured::stage(0.0);
     let (result, message) = found(&measured, &EFFECTS.replacen("axis", "angle", 1));
-    let note = "the effect `bent_rail` has no place in this model and is not tried";
+    let note = "the effect `bent_rail` has no site in this model and is not tested";
     assert!(message.contains(note), "{message}");
     assert!(result["notes"].to_string().contains(note), "{result:#}");
 }

@@ -321,7 +321,7 @@ fn what_sits_at_an_input_acts_wherever_the_input_stands() {
             &[
                 "T = { unit = \"N m\", rate = \"(acting - T)/tau\" }",
                 "both = \"acting + v\"",
-                "acting = { unit = \"N m\", rate = \"w_b*(u - acting)\", doc = \"what acts in the place of the input\" }",
+                "acting = { unit = \"N m\", rate = \"w_b*(u - acting)\", doc = \"acting input\" }",
             ],
         ),
     ] {

@@ -8,7 +8,7 @@ use eomgen_tests::program;
 use serde_json::Value;
 
 /// What is said where an expression is looked for.
-const LOOKED_FOR: &str = "looking for an expression";
+const LOOKED_FOR: &str = "searching for an expression";
 
 fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or(f64::NAN)

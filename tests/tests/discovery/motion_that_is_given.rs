@@ -216,7 +216,7 @@ fn encoders_may_be_noisy_where_samples_are_averaged() {
     let averaged = DATASET.replace("unit = \"s\"", "unit = \"s\"\nevery = 5");
     is_friction(&found(0.6, 2e-6, &averaged), 0.02);
     // Not averaged, they make more of the torques than these have of their own.
-    let said = "noise of the motion makes";
+    let said = "noise of the motion causes noise of";
     let notes = |dataset: &str| {
         let compared = answered("compare", &folder(0.6, 2e-6, dataset));
         compared["notes"].to_string()

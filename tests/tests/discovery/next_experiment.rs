@@ -233,7 +233,10 @@ fn friction_that_differs_by_direction_is_told_from_what_does_not() {
         assert!(separation < 1e-3, "{next:#}");
     }
     let says = next["text"].as_str().expect("a sentence");
-    assert!(says.contains("does not tell viscous friction"), "{says}");
+    assert!(
+        says.contains("does not separate viscous friction"),
+        "{says}"
+    );
 
     let rival = |pair: &&Value| {
         pair["simulated"]["effect"] == "asymmetric_friction" && pair["alternative"]["on"] == "c"

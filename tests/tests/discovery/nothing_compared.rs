@@ -126,7 +126,7 @@ fn a_model_that_does_not_run_through_its_windows_is_refused() {
         arguments[1] = measured.file("unstable.toml").display().to_string();
         let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
         let message = program::refused(&arguments);
-        let part = "cannot be followed in 8 of 8 windows, first at t = 0.000000 s of train[0]";
+        let part = "the simulation of the model fails in 8 of 8 windows, first at t = 0.000000 s of train[0]";
         assert!(message.contains(part), "{message}");
         assert!(!measured.file("refused").exists(), "{message}");
     }

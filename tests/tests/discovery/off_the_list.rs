@@ -278,7 +278,7 @@ fn an_input_that_acts_late_is_thought_of_where_all_sensors_are_late() {
     };
     let found = late.answer();
     let notes = found["notes"].to_string();
-    assert!(notes.contains("an input that acts late"), "{notes}");
+    assert!(notes.contains("a delayed input"), "{notes}");
     assert!(notes.contains("[inputs.u]"), "{notes}");
 }
 
@@ -294,5 +294,8 @@ fn what_only_the_records_held_out_show_is_said_to() {
     let found = machine.answer();
     assert_eq!(found["verdict"], "unexplained", "{found:#}");
     let notes = found["notes"].to_string();
-    assert!(notes.contains("hardly acts in the first"), "{notes}");
+    assert!(
+        notes.contains("hardly acts in the training records"),
+        "{notes}"
+    );
 }

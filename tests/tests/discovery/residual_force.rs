@@ -239,6 +239,6 @@ fn nothing_stands_out_where_nothing_is_hidden() {
     assert_eq!(force.kind, None, "{}", described(&force));
     assert_eq!(
         described(&force),
-        "No force on a single equation stands out."
+        "No force in a single equation is significant."
     );
 }

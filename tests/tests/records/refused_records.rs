@@ -7,7 +7,7 @@ use eomgen_tests::measured::{DESCRIPTION, Measured, SAMPLES, record};
 fn sound_records_are_compared() {
     let (result, warned) = Measured::stage(0.0).answered("compare", "out");
     assert_eq!(result["verdict"], "no_significant_gap", "{result:#}");
-    assert_eq!(warned, "fitting the model as it is\n");
+    assert_eq!(warned, "fitting the original model\n");
 }
 
 /// The record with a change to the cells of its lines.
@@ -275,7 +275,7 @@ fn columns_with_a_wrong_label_are_refused() {
         })
     };
     for (by, part) in [
-        (-1.0, "with the other sign"),
+        (-1.0, "has the opposite sign of the model"),
         (1e3, "a thousand times"),
         (1e-3, "a thousandth of"),
     ] {

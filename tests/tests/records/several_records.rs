@@ -46,7 +46,7 @@ fn another_payload_in_one_record_is_said_where_nobody_spoke_of_the_mass() {
     measured.write("dataset.toml", both.as_bytes());
     let (result, _) = measured.answered("discover", "both");
     let found = notes(&result);
-    let said = "train[1] does not go with train[0], test[0]";
+    let said = "train[1] does not agree with train[0], test[0]";
     assert!(found.contains(said), "{result:#}");
     assert!(found.contains("`M` = 1.1"), "{found}");
 }
@@ -67,7 +67,7 @@ fn what_held_out_records_of_something_else_do_not_confirm_is_said_all_the_same()
     for said in [
         "with coulomb_friction on q",
         "do not confirm it",
-        "test[0] does not go with train[0], train[1]",
+        "test[0] does not agree with train[0], train[1]",
     ] {
         assert!(found.contains(said), "{said}: {found}");
     }
@@ -82,11 +82,11 @@ fn a_search_that_is_cut_off_leaves_what_is_known() {
     program::accepted(&arguments);
     let found: Value = serde_json::from_str(&measured.read("cut/discovery.json")).expect("JSON");
     assert_eq!(found["verdict"], "unexplained");
-    assert_eq!(found["unfinished"], "no effect was fitted by then");
+    assert_eq!(found["unfinished"], "no effect was fitted before the limit");
     let summary = found["summary"].as_str().expect("a sentence");
-    assert!(summary.contains("ended by its limit"), "{summary}");
+    assert!(summary.contains("reached its time limit"), "{summary}");
     assert!(
-        notes(&found).contains("ended by its limit of 0.000001 s"),
+        notes(&found).contains("reached its time limit of 0.000001 s"),
         "{found:#}"
     );
     assert!(measured.read("cut/extended.toml").contains("[model]"));

@@ -93,10 +93,10 @@ pub(super) fn rejected(list: &[RejectedEffect]) -> Markup {
     groups.sort_by_key(|group| group.effects.len());
     let row = |group: &Group<'_>| html! { tr { td { (group.names()) } td { (group.why()) } } };
     section(
-        "Alternatives that were rejected",
+        "Rejected effects",
         &html! {
-            p { (list.len()) " other effects and places were tried." }
-            (folded(&groups, &["effect", "why not"], row))
+            p { (list.len()) " other effects and sites were tested." }
+            (folded(&groups, &["effect", "reason"], row))
         },
     )
 }
@@ -111,10 +111,10 @@ pub(super) fn not_testable(list: &[RejectedEffect], files: &[ExperimentFile]) ->
         html! { tr { td { (group.names()) } td { (group.why()) } td { (group.experiment) (group.next(files)) } } }
     };
     section(
-        "What these records cannot tell",
+        "Effects that these records cannot show",
         &html! {
-            p { "These may be there or not: the records would look the same." }
-            (folded(&groups, &["effect", "why", "what would tell"], row))
+            p { "These effects may be present or not; the records do not show the difference." }
+            (folded(&groups, &["effect", "why", "experiment"], row))
         },
     )
 }

@@ -15,7 +15,7 @@ pub(super) fn effects(effects: &[FoundEffect], files: &[ExperimentFile]) -> Mark
         return html! {};
     }
     section(
-        "What was found",
+        "Found effects",
         &html! { @for found in effects { (effect(found, files)) } },
     )
 }
@@ -30,25 +30,26 @@ fn effect(effect: &FoundEffect, files: &[ExperimentFile]) -> Markup {
         p {
             @if !effect.says.is_empty() { (capitalised(&effect.says)) ". " }
             @match effect.status {
-                Status::Named => { "Nothing else that was tried does the same." },
+                Status::Named => { "No other tested effect has the same response." },
                 Status::Provisional => {
-                    "It may stand in for something else: much is left, or what was fitted beside it is as far off as "
-                    "the fit admits."
+                    "It may be a substitute for another effect: a large residual remains, or a nuisance is at \
+                     the "
+                    "bound of the fit."
                 },
                 Status::Class => {
-                    "The records do not tell it from "
+                    "The records do not separate it from "
                     (effect.equivalent.iter().map(words).collect::<Vec<String>>().join(", or from ")) "."
                 },
-                Status::Empirical => { "It fits what is left and says nothing of the cause." },
+                Status::Empirical => { "It does not identify the cause." },
             }
             @if let Some(order) = &effect.order {
                 " It repeats " (order.order) " times per turn of " code { (order.angle) } "."
             }
             @if let Some(load) = &effect.load {
-                " It grows with the load of " code { (load) } "."
+                " It increases with the load of " code { (load) } "."
             }
             @if let Some(experiment) = &effect.experiment {
-                " To tell: " (experiment) "."
+                " Experiment to separate them: " (experiment) "."
             }
             @if let Some(next) = &effect.next_experiment {
                 " " (readable(&sentences(next, files)))
@@ -65,11 +66,9 @@ fn effect(effect: &FoundEffect, files: &[ExperimentFile]) -> Markup {
             }
             dt { "evidence" }
             dd {
-                "with it " (percent(effect.statistics.held_out))
-                " less is left of the held-out records"
-                ", " (plain(effect.statistics.held_out_errors, 2)) " standard errors"
+                "reduction of the held-out residual: " (percent(effect.statistics.held_out)) ", " (plain(effect.statistics.held_out_errors, 2)) " standard errors"
                 @if let Some(p) = effect.adjusted_p_value {
-                    "; noise alone comes to as much, for any of all that was fitted, with a probability of " (probability(p))
+                    "; probability that noise alone gives as much for any fitted effect: " (probability(p))
                 }
             }
         }
@@ -98,8 +97,8 @@ pub(super) fn steps(discovery: &Discovery) -> Markup {
         return html! {};
     }
     let heading = match has_steps {
-        true => "Step by step",
-        false => "The specification",
+        true => "Steps of the search",
+        false => "Extended specification",
     };
     section(
         heading,
@@ -115,7 +114,7 @@ fn step_table(steps: &[Step]) -> Markup {
         @for step in steps {
             tr {
                 td {
-                    @if step.added.is_empty() { "the model as it is" }
+                    @if step.added.is_empty() { "original model" }
                     @else { "with " (step.added.join(", ").replace('_', " ")) }
                 }
                 td.number { (plain(step.test_rms, 3)) }
@@ -124,7 +123,7 @@ fn step_table(steps: &[Step]) -> Markup {
     };
     let headings = [
         "model",
-        "left of the held-out records, in standard deviations of the noise",
+        "residual of the held-out records, in standard deviations of the noise",
     ];
     table(&headings, &rows)
 }
@@ -135,14 +134,14 @@ fn validation_line(discovery: &Discovery) -> Markup {
         return html! {};
     };
     let left = |rms: f64| plain(rms, 3);
-    let written = "The specification that was written was derived anew; its equations ";
+    let written = "The equations of the extended specification were derived again; they ";
     html! {
         @if validation.passed {
             p {
                 (written) "pass all " (validation.checks.len()) " checks of " code { "eomgen validate" }
-                ". Simulated on the records, it leaves " (left(discovery.resimulation.train))
-                " standard deviations of the noise where it was fitted and "
-                (left(discovery.resimulation.test)) " where it was not."
+                ". Its simulated residual is " (left(discovery.resimulation.train))
+                " standard deviations of the noise on the training records and "
+                (left(discovery.resimulation.test)) " on the test records."
             }
         } @else {
             p.warning { (written) "FAIL " (validation.failed.join(", ")) "." }
@@ -158,7 +157,7 @@ pub(super) fn change(before: &str, after: &str) -> Markup {
     let old: Vec<&str> = before.lines().collect();
     let new: Vec<&str> = after.lines().collect();
     section(
-        "The specification, changed",
+        "Changes of the specification",
         &html! {
             pre {
                 @for line in old.iter().filter(|line| !new.contains(line)) {

@@ -24,17 +24,17 @@ pub(super) fn table_of(compared: &Compared) -> Markup {
             "noise floor",
             "held out, before",
             "held out, after",
-            "fitted to, before",
-            "fitted to, after",
+            "training, before",
+            "training, after",
         ],
         false => &["channel", "noise floor", "held out", "fitted to"],
     };
     html! {
         (table(headings, &rows))
         p.note {
-            "Root mean squares of simulated minus measured. The noise floor is what a right model would "
-            "leave; how many floors something is stands behind it. Records that are held out "
-            "had no part in the fit."
+            "RMS of simulated minus measured. In parentheses: the residual as a multiple of the noise "
+            "floor (1 = a correct model). Held-out records "
+            "were not used in the fit."
         }
     }
 }

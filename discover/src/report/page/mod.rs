@@ -69,7 +69,7 @@ fn whole(compared: &Compared, body: &Markup) -> String {
     let body = html! {
         header {
             h1 { (title) }
-            p.note { "Model against measurement, " (origin.date) }
+            p.note { "Comparison of model and measurement, " (origin.date) }
         }
         main { (body) }
         footer { (origin::files(origin)) }
@@ -89,9 +89,9 @@ fn whole(compared: &Compared, body: &Markup) -> String {
 /// What was found, to be moved.
 fn playback(compared: &Compared) -> Markup {
     match &compared.pictures.playback {
-        Playback::Computed { body, .. } => section("Move what was found", body),
+        Playback::Computed { body, .. } => section("Interactive simulation", body),
         Playback::Still(why) => html! {
-            p.note { "There is nothing to move on this page: " (why) "." }
+            p.note { "There is no interactive simulation: " (why) "." }
         },
         Playback::None => html! {},
     }
@@ -104,7 +104,7 @@ fn opening(compared: &Compared) -> Markup {
             (compared.pictures.overlay)
             (compared.pictures.residuals)
         }))
-        (section("What is left", &gap::table_of(compared)))
+        (section("Residuals", &gap::table_of(compared)))
     }
 }
 
@@ -114,10 +114,10 @@ fn closing(compared: &Compared) -> Markup {
     let has_location = !compared.location.is_empty();
     html! {
         @if has_location || force.is_some() {
-            (section("Where the model and the records disagree", &html! {
+            (section("Location of the difference", &html! {
                 @if has_location { p { (readable(&compared.location)) } }
                 @if let Some((equation, force)) = force {
-                    h3 { "The force that is missing on " code { (equation) } }
+                    h3 { "Missing force on " code { (equation) } }
                     (force)
                 }
             }))

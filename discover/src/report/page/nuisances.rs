@@ -14,19 +14,20 @@ pub(super) fn fitted(compared: &Compared) -> Markup {
     let far = all.iter().filter(|of| of.is_at_bound()).count();
     let rows = html! { @for of in all { (row(of)) } };
     section(
-        "What was fitted beside it",
+        "Fitted nuisances",
         &html! {
             @if far > 0 {
                 p.warning {
                     (far) " of these " @if far == 1 { "is" } @else { "are" }
-                    " as far from what was declared as the fit allows: a sign that something else "
-                    "is wrong, or that what was declared is too narrow."
+                    " at the bound of the fit: another effect "
+                    "may be missing, or the declared uncertainty is too small."
                 }
             }
-            (table(&["", "declared", "fitted", "off by"], &rows))
+            (table(&["", "declared", "fitted", "deviation"], &rows))
             p.note {
-                "Declared is what the specification and the dataset say, with one standard deviation; how far "
-                "the fit is from it is counted in these."
+                "Declared: mean and standard deviation from the specification and the dataset. Deviation: \
+                 distance "
+                "of the fit from the mean, in these standard deviations."
             }
         },
     )

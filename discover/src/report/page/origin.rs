@@ -18,7 +18,7 @@ pub(super) fn files(origin: &Origin) -> Markup {
                     dd {
                         @match &file.sha256 {
                             Some(hash) => code { (hash) },
-                            None => "not a file that can be read",
+                            None => "not readable",
                         }
                     }
                 }

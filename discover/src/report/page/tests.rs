@@ -208,8 +208,8 @@ fn what_leaves_much_is_said_to_be_uncertain_first() {
         .get_mut("x")
         .and_then(|gap| gap.after.as_mut());
     gap.expect("a gap").test = 41e-6;
-    let first = "What was found closes 60 % of the gap between model and measurement on records that were held out; \
-                 41 noise floors are left: what is named may stand in for something else.";
+    let first = "The named effects may be substitutes for others: the extended model closes 60 % of the gap between model \
+                 and measurement on held-out records and leaves 41 noise floors.";
     assert!(summary(&found).starts_with(first), "{}", summary(&found));
     assert!(found.page().contains(first), "{}", found.page());
 }
@@ -222,15 +222,13 @@ fn a_nuisance_at_its_bound_makes_an_answer_uncertain() {
     let json = found.to_json();
     let summary = json["summary"].as_str().unwrap_or("");
     assert!(
-        summary.contains(
-            "with the gain of x as far off as the fit admits: what is named may stand in"
-        ),
+        summary.contains("with the gain of x at the bound of the fit"),
         "{summary}"
     );
     let notes = crate::report::discovery::bound_notes(&found.compared.nuisances);
     assert_eq!(notes.len(), 1, "{notes:?}");
     assert!(
-        notes[0].starts_with("the gain of x came out as 1.030, 3.0 standard deviations"),
+        notes[0].starts_with("the gain of x is 1.030, 3.0 standard deviations"),
         "{notes:?}"
     );
 }
@@ -243,13 +241,12 @@ fn a_nuisance_at_its_bound_is_said_where_nothing_else_is_missing() {
     let summary = |found: &Discovery| found.to_json()["summary"].as_str().unwrap_or("").to_owned();
     found.compared.nuisances[0].fitted.value = 1.0;
     let text = summary(&found);
-    assert!(text.contains("nothing is missing"), "{text}");
+    assert!(text.contains("no missing effect"), "{text}");
     found.compared.nuisances[0].fitted.value = 1.03;
     let text = summary(&found);
-    let first =
-        "The model explains the records only with the gain of x as far off as the fit admits";
+    let first = "The model explains the records only with the gain of x at the bound of the fit";
     assert!(text.starts_with(first), "{text}");
-    assert!(!text.contains("nothing is missing"), "{text}");
+    assert!(!text.contains("no missing effect"), "{text}");
 }
 
 #[test]

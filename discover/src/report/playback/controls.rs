@@ -28,7 +28,7 @@ pub(super) fn controls(
     html! {
         div.controls {
             @for id in unknowns { (control(problem, best, model, *id)) }
-            p { button #defaults type="button" { "As found" } }
+            p { button #defaults type="button" { "Reset values" } }
         }
     }
 }

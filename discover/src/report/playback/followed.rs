@@ -43,10 +43,10 @@ pub(super) fn as_fitted(
     let mut steps = 0;
     for piece in &stretch.windows {
         let seen = seen(problem, best, model, stretch, piece);
-        let (seen, own) = seen.ok_or("the motion cannot be followed in short explicit steps")?;
+        let (seen, own) = seen.ok_or("the simulation with explicit steps fails")?;
         steps += own;
         if steps > MOST_STEPS {
-            return Err("the motion is too fast for the steps of a page".to_owned());
+            return Err("the motion needs too many explicit steps".to_owned());
         }
         let measured = stretch.measured[piece.first * channels..].iter();
         for (number, (seen, measured)) in seen.iter().zip(measured).enumerate() {
@@ -67,7 +67,8 @@ pub(super) fn as_fitted(
         if !agree {
             let [left, fitted] = [left, *fitted].map(|left| quantity(left, 3, &channel.unit));
             return Err(format!(
-                "its motion unfolds so fast that another method leaves {left} in {} where the fit leaves {fitted}",
+                "the motion is so sensitive that another method has a residual of {left} in {} instead of \
+                 {fitted}",
                 channel.name
             ));
         }

@@ -58,14 +58,14 @@ impl Playback {
             return Self::Still("accelerations are measured".to_owned());
         }
         if problem.dataset.gives_motion() {
-            return Self::Still("the motion is the records'".to_owned());
+            return Self::Still("the motion is given by the records".to_owned());
         }
         let Ok(module) = wasm::emit(model.program()) else {
             return Self::Still("its equations cannot be emitted as WebAssembly".to_owned());
         };
         let Some(stretch) = Stretch::of(problem, null, best) else {
             return Self::Still(
-                "the motion cannot be followed at the beginning of the test record".to_owned(),
+                "the simulation fails at the beginning of the test record".to_owned(),
             );
         };
         if let Err(why) = followed::as_fitted(problem, best, &model, &stretch) {
@@ -96,18 +96,18 @@ fn body(problem: &EstimationProblem<'_>, stretch: &Stretch, controls: &Markup) -
     let names = problem.dataset.channels.iter().map(|channel| &channel.name);
     html! {
         p {
-            "Move a slider: the model with what was found follows "
+            "Move a slider: the extended model is simulated again for "
             @if stretch.is_whole { "the test record" }
             @else { "the beginning of the test record, " (format!("{seconds:.3}")) " s," }
-            " anew, driven by the recorded inputs and begun in every window where the fit begins it. "
-            "It is computed here, by the equations of the specification that was written."
+            " with the recorded inputs and the fitted initial state of each window. "
+            "This page computes it with the equations of the extended specification."
         }
-        noscript { p { "Without its script this page shows the figures below alone." } }
+        noscript { p { "Without JavaScript this page shows only the figures below." } }
         div.moved {
             (controls)
             table {
                 thead { tr {
-                    th scope="col" { "rms left of" }
+                    th scope="col" { "RMS residual of" }
                     th scope="col" { span.key.before {} "before" }
                     th scope="col" { span.key.now {} "now" }
                 } }
@@ -124,6 +124,6 @@ fn body(problem: &EstimationProblem<'_>, stretch: &Stretch, controls: &Markup) -
         }
         p #status role="status" {}
         canvas #strips role="img" aria-label="Measured and simulated over time, and their differences" {}
-        p.note { span.key.measured {} "measured, with the simulations over it; below, what they are off" }
+        p.note { span.key.measured {} "measured, with the simulations; below, the differences" }
     }
 }

@@ -61,7 +61,7 @@ class Page {
       }
     }
     if (performance.now() - this.started > LONGEST_WAIT) {
-      say("status", "This motion changes too fast to be followed here.");
+      say("status", "This motion is too fast for the simulation on this page.");
       return;
     }
     say("status", "Computing …");
@@ -77,8 +77,8 @@ class Page {
 
   obstacle() {
     const { machine, motion } = this.playback;
-    if (!machine.usable) return "With this value the mass matrix is not positive definite: there is no motion.";
-    return motion.failed ? "With this value the motion cannot be followed to the end." : "";
+    if (!machine.usable) return "With this value the mass matrix is not positive definite.";
+    return motion.failed ? "With this value the simulation fails before its end." : "";
   }
 
   write(which, place, value, unit) {
@@ -96,6 +96,6 @@ class Page {
 WebAssembly.instantiate(bytes(model.module), {}).then(
   ({ instance }) => new Page(instance.exports),
   (error) => {
-    say("status", `This browser does not run the model: ${error.message}`);
+    say("status", `This browser cannot run the model: ${error.message}`);
   },
 );
