@@ -1,20 +1,20 @@
-//! The gain of the example controller (`examples/bare_metal/controller.rs`), computed anew
-//! as its documentation says.
+//! The gain of the example controller (`examples/bare_metal/controller.rs`), recomputed as
+//! documented there.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_tests::models::{load, project, variant};
 use nalgebra::{DMatrix, DVector};
 
-/// Length of the controller's step, s.
+/// Step size of the controller, s.
 const STEP: f64 = 20e-6;
 
-/// What counts as large: 1 mm for deflections, the carrier's path and modes, 1 m/s for their
-/// rates. The torque counts from 1 N m.
-const LARGE: [f64; 14] = [
+/// Scale of each state: 1 mm for deflections, the carrier's path and modes, 1 m/s for their rates.
+/// The scale of the torque is 1 N m.
+const STATE_SCALES: [f64; 14] = [
     1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0,
 ];
 
-/// The rates at a state and a torque.
+/// Returns the rates at a state and a torque.
 fn rates(evaluator: &mut Evaluator, state: &[f64], torque: f64) -> DVector<f64> {
     let mut out = vec![0.0; state.len()];
     let point = Point {
@@ -26,11 +26,11 @@ fn rates(evaluator: &mut Evaluator, state: &[f64], torque: f64) -> DVector<f64> 
     DVector::from_vec(out)
 }
 
-/// A and B of the arm with both meshes in contact, where it is linear: differences of any
-/// size are exact but for rounding.
-fn linearised() -> (DMatrix<f64>, DVector<f64>) {
+/// Returns A and B of the arm with both meshes in contact. The model is linear there, so finite
+/// differences are exact up to rounding.
+fn linearise() -> (DMatrix<f64>, DVector<f64>) {
     let mut evaluator = variant(&load("planetary_arm_rig"), 4).evaluator;
-    let mut state = vec![0.0; LARGE.len()];
+    let mut state = vec![0.0; STATE_SCALES.len()];
     (state[0], state[1]) = (1e-2, 1e-2);
     let at = rates(&mut evaluator, &state, 0.0);
     let b = rates(&mut evaluator, &state, 1.0) - &at;
@@ -44,18 +44,19 @@ fn linearised() -> (DMatrix<f64>, DVector<f64>) {
     (DMatrix::from_columns(&columns), b)
 }
 
-/// The gain by the doubling algorithm (Chu, Fan, Lin and Wang, "Structure-preserving
-/// algorithms for periodic discrete-time algebraic Riccati equations", 2004), in states
-/// scaled so that their cost is the unit matrix.
-fn regulator() -> Vec<f64> {
-    let (a, b) = linearised();
-    let n = LARGE.len();
+/// Computes the gain by the doubling algorithm (Chu, Fan, Lin and Wang, "Structure-preserving
+/// algorithms for periodic discrete-time algebraic Riccati equations", 2004), in states scaled so
+/// that their cost is the unit matrix.
+fn compute_gain() -> Vec<f64> {
+    let (a, b) = linearise();
+    let n = STATE_SCALES.len();
     let mut both = DMatrix::zeros(n + 1, n + 1);
     for row in 0..n {
         for column in 0..n {
-            both[(row, column)] = STEP * a[(row, column)] * LARGE[column] / LARGE[row];
+            both[(row, column)] =
+                STEP * a[(row, column)] * STATE_SCALES[column] / STATE_SCALES[row];
         }
-        both[(row, n)] = STEP * b[row] / LARGE[row];
+        both[(row, n)] = STEP * b[row] / STATE_SCALES[row];
     }
     let flow = both.exp();
     let (a, b) = (
@@ -73,11 +74,11 @@ fn regulator() -> Vec<f64> {
     }
     let weight = 1.0 + (b.transpose() * &cost * &b)[(0, 0)];
     let gain = b.transpose() * &cost * &a / weight;
-    (0..n).map(|i| gain[i] / LARGE[i]).collect()
+    (0..n).map(|i| gain[i] / STATE_SCALES[i]).collect()
 }
 
-/// The numbers of `GAIN` in the controller's source.
-fn written() -> Vec<f64> {
+/// Returns the numbers of `GAIN` in the controller's source.
+fn gain_in_source() -> Vec<f64> {
     let path = project().join("examples/bare_metal/controller.rs");
     let source = std::fs::read_to_string(path).expect("the controller");
     let (_, rest) = source.split_once("GAIN: State = [").expect("the gain");
@@ -90,10 +91,10 @@ fn written() -> Vec<f64> {
         .collect()
 }
 
-/// Six digits are written. The Riccati equation loses some of sixteen.
+/// The source has six digits; the Riccati equation loses some of sixteen.
 #[test]
-fn the_gain_is_that_of_the_regulator() {
-    let (expected, written) = (regulator(), written());
+fn gain_in_source_matches_computed_gain() {
+    let (expected, written) = (compute_gain(), gain_in_source());
     assert_eq!(written.len(), expected.len());
     for (written, expected) in written.iter().zip(&expected) {
         assert!(
@@ -103,12 +104,12 @@ fn the_gain_is_that_of_the_regulator() {
     }
 }
 
-/// The loop closed with it has no eigenvalue on or outside the unit circle.
+/// All eigenvalues of the closed loop must be inside the unit circle.
 #[test]
-fn the_gain_stabilises_the_arm() {
-    let (a, b) = linearised();
-    let gain = DMatrix::from_row_slice(1, LARGE.len(), &written());
-    let scale = DMatrix::from_diagonal(&DVector::from_column_slice(&LARGE));
+fn gain_stabilises_the_arm() {
+    let (a, b) = linearise();
+    let gain = DMatrix::from_row_slice(1, STATE_SCALES.len(), &gain_in_source());
+    let scale = DMatrix::from_diagonal(&DVector::from_column_slice(&STATE_SCALES));
     let back = scale.map(|x| if x == 0.0 { 0.0 } else { 1.0 / x });
     let closed = back * (a - b * gain) * scale;
     let rightmost = closed

@@ -1,5 +1,5 @@
-//! The benchmark that `generate --with bench` leaves compiles, runs, and compares with a
-//! baseline that was kept.
+//! The benchmark written by `generate --with bench` compiles, runs, and compares with a saved
+//! baseline.
 
 use std::path::Path;
 use std::process::Command;
@@ -7,8 +7,8 @@ use std::process::Command;
 use eomgen_tests::models::{path, project};
 use eomgen_tests::program::{accepted, text};
 
-/// Runs the benchmark in `folder` shortly; what it prints.
-fn bench(folder: &Path, options: &[&str]) -> String {
+/// Runs the benchmark in `folder` briefly; returns its stdout.
+fn run_bench(folder: &Path, options: &[&str]) -> String {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let short = [
         "--warm-up-time",
@@ -28,7 +28,7 @@ fn bench(folder: &Path, options: &[&str]) -> String {
             concat!(env!("CARGO_TARGET_TMPDIR"), "/bench_of_a_model"),
         )
         .env("CRITERION_HOME", folder.join("criterion"))
-        // That it runs is what is asked here, not how fast.
+        // Only the result matters here, not the speed.
         .env("CARGO_PROFILE_BENCH_OPT_LEVEL", "0")
         .output()
         .expect("cargo can be run");
@@ -37,20 +37,20 @@ fn bench(folder: &Path, options: &[&str]) -> String {
 }
 
 #[test]
-fn a_benchmark_beside_the_source_runs_and_compares_with_a_baseline() {
+fn generated_benchmark_runs_and_compares_with_baseline() {
     let folder = tempfile::tempdir().expect("a folder");
     let spec = path("cart_two_arms").display().to_string();
     let out = folder.path().display().to_string();
     let with = "bias_forces,inverse_dynamics,guard_rates,jacobians,products,linearisation,bench";
     let generate = ["generate", &spec, "--with", with, "--out", &out];
     accepted(&generate);
-    // The versions that are known here: nothing is fetched.
+    // With the versions of this workspace, nothing is downloaded.
     std::fs::copy(
         project().join("Cargo.lock"),
         folder.path().join("Cargo.lock"),
     )
     .expect("a file can be copied");
-    let first = bench(folder.path(), &["--save-baseline", "before"]);
+    let first = run_bench(folder.path(), &["--save-baseline", "before"]);
     for name in [
         "rates",
         "observables",
@@ -65,13 +65,13 @@ fn a_benchmark_beside_the_source_runs_and_compares_with_a_baseline() {
     std::fs::write(&manifest, &own).expect("a file can be written");
     accepted(&generate);
     let kept = std::fs::read_to_string(&manifest).expect("a manifest");
-    assert_eq!(kept, own, "a manifest that is there stays");
-    let second = bench(folder.path(), &["--baseline", "before"]);
+    assert_eq!(kept, own, "an existing manifest is not replaced");
+    let second = run_bench(folder.path(), &["--baseline", "before"]);
     assert!(second.contains("change:"), "{second}");
 }
 
 #[test]
-fn an_unknown_name_is_refused_with_bench_among_those_that_are_known() {
+fn unknown_output_is_rejected_and_bench_is_listed() {
     let spec = path("pendulum").display().to_string();
     let refused =
         eomgen_tests::program::refused(&["generate", &spec, "--with", "benchmark", "--out", "x"]);

@@ -1,5 +1,5 @@
-//! The checked-in variants are what the generator emits, and compute bit for bit what the
-//! evaluator computes, interpreted and as machine code.
+//! The checked-in variants equal the generator's output and match the evaluator bit for bit,
+//! interpreted and as machine code.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_codegen::program::lowering::lower;
@@ -7,17 +7,15 @@ use eomgen_codegen::rust::{Packaging, emit};
 use eomgen_tests::models::{load, project, samples, variant};
 use eomgen_tests::program::eomgen;
 
-/// States compared in each of the nine mesh regimes.
+/// Number of states in each of the nine mesh regimes.
 const STATES_PER_REGIME: usize = 25;
 
-/// The seed of the states.
 const SEED: u64 = 0x5eed_0001;
 
-/// What a variant and the evaluator give at one state, one after the other: rates,
-/// observables, energy, power, guards, mass matrix.
+/// Results at one state, concatenated: rates, observables, energy, power, guards, mass matrix.
 type Numbers = Vec<f64>;
 
-fn evaluated(evaluator: &mut Evaluator, point: Point<'_>) -> Numbers {
+fn evaluate(evaluator: &mut Evaluator, point: Point<'_>) -> Numbers {
     let program = evaluator.program();
     let (states, degrees) = (program.states(), program.degrees_of_freedom());
     let scalars = program.observables.len();
@@ -34,7 +32,7 @@ fn evaluated(evaluator: &mut Evaluator, point: Point<'_>) -> Numbers {
     [rates, observables, energy_and_power, guards, mass].concat()
 }
 
-/// A test that compares a module with the evaluator of its order.
+/// Declares a test that compares a module with the evaluator of its order.
 macro_rules! variants {
     ($($module:ident: $order:literal;)*) => {
         $(
@@ -61,7 +59,6 @@ macro_rules! variants {
             }
         )*
 
-        /// The modules and their orders.
         const VARIANTS: &[(&str, usize)] = &[$((stringify!($module), $order)),*];
     };
 }
@@ -100,8 +97,8 @@ fn same_bits(
             state: &sample.state,
             inputs: &sample.inputs,
         };
-        let expected = evaluated(&mut evaluator, point);
-        let compiled = evaluated(&mut compiled, point);
+        let expected = evaluate(&mut evaluator, point);
+        let compiled = evaluate(&mut compiled, point);
         let found = emitted(sample.time, &sample.state);
         assert!(
             expected.iter().all(|number| number.is_finite()),
@@ -122,7 +119,7 @@ fn same_bits(
 }
 
 #[test]
-fn the_files_are_what_the_generator_emits() {
+fn checked_in_files_equal_emitted_files() {
     let model = load("planetary_arm");
     let values = model
         .parameter_values()
@@ -142,7 +139,7 @@ fn the_files_are_what_the_generator_emits() {
 }
 
 #[test]
-fn the_program_finds_no_difference() {
+fn generate_check_finds_no_difference() {
     let mut command = eomgen();
     let output = command
         .current_dir(project())
@@ -152,7 +149,7 @@ fn the_program_finds_no_difference() {
     let document: serde_json::Value =
         serde_json::from_slice(&output.stdout).expect("one JSON document");
     assert_eq!(document["different"], serde_json::json!([]), "{document}");
-    // The nine variants with their certificates, and the list of modules.
+    // Nine variants with their certificates, and the list of modules.
     assert_eq!(document["files"], 2 * VARIANTS.len() + 1);
     assert_eq!(output.status.code(), Some(0));
 }

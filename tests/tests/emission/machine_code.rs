@@ -1,6 +1,6 @@
-//! Machine code against the interpreter: the same bits for every shipped specification and
-//! every feature, at ordinary points and where arithmetic is at its limits. NaN is NaN: its
-//! sign and payload are left open.
+//! Machine code against the interpreter: equal bits for every shipped specification and every
+//! feature, at ordinary points and at limits of the arithmetic. The sign and payload of NaN are not
+//! compared.
 
 use std::cell::RefCell;
 
@@ -18,10 +18,10 @@ use eomgen_sim::ode::{Settings, simulate};
 use eomgen_tests::models::{load, project, shipped};
 use eomgen_validate::random::Random;
 
-/// Points compared for each program and set of parameters.
+/// Number of points per program and set of parameters.
 const POINTS: usize = 40;
 
-/// Numbers where arithmetic and comparisons are at their limits.
+/// Limit values of arithmetic and comparisons.
 const SPECIAL: [f64; 14] = [
     0.0,
     -0.0,
@@ -39,13 +39,12 @@ const SPECIAL: [f64; 14] = [
     1e200,
 ];
 
-/// The functions of the language.
 const FUNCTIONS: [&str; 20] = [
     "Sin", "Cos", "Tan", "Asin", "Acos", "Atan", "Atan2", "Sinh", "Cosh", "Tanh", "Exp", "Ln",
     "Sqrt", "Abs", "Sign", "Min", "Max", "Deadzone", "Contact", "Above",
 ];
 
-/// What [`kind`] may say.
+/// Values that [`kind`] can return.
 const OPERATIONS: [&str; 26] = [
     "Add",
     "Apply",
@@ -75,7 +74,8 @@ const OPERATIONS: [&str; 26] = [
     "Total",
 ];
 
-/// The operation's name; a new one does not compile here until it stands above too.
+/// Returns the operation's name. A new operation does not compile until it is added here; add it to
+/// [`OPERATIONS`] as well.
 fn kind(op: &Op) -> &'static str {
     match op {
         Op::Add(..) => "Add",
@@ -108,14 +108,14 @@ fn kind(op: &Op) -> &'static str {
     }
 }
 
-/// A program run both ways.
+/// A program as an interpreter and as machine code.
 struct Pair {
     name: String,
     interpreted: Evaluator,
     compiled: Evaluator,
 }
 
-/// A time, a state and inputs.
+/// Time, state and inputs of a random point.
 struct Drawn {
     t: f64,
     state: Vec<f64>,
@@ -136,7 +136,7 @@ impl Pair {
         [&mut self.interpreted, &mut self.compiled]
     }
 
-    /// Prepares both, compares what they prepared, then what they compute.
+    /// Prepares both evaluators and compares the prepared numbers and the results.
     fn compare(&mut self, parameters: &[f64], random: &mut Random) {
         let [prepared, found]: [Vec<f64>; 2] = self.both().map(|evaluator| {
             evaluator.prepare(parameters);
@@ -144,7 +144,7 @@ impl Pair {
             let ids = program.ids().filter(|id| program.value(*id).parameter_only);
             ids.flat_map(|id| evaluator.slice(id).to_vec()).collect()
         });
-        self.same("prepare", &prepared, &found, parameters);
+        self.assert_same("prepare", &prepared, &found, parameters);
         for place in 0..POINTS {
             let drawn = self.draw(random, place % 4 == 3);
             let point = Point {
@@ -152,14 +152,14 @@ impl Pair {
                 state: &drawn.state,
                 inputs: &drawn.inputs,
             };
-            let [expected, found] = self.both().map(|evaluator| computed(evaluator, point));
+            let [expected, found] = self.both().map(|evaluator| compute_all(evaluator, point));
             for ((what, expected), (_, found)) in expected.iter().zip(&found) {
-                self.same(what, expected, found, &drawn.state);
+                self.assert_same(what, expected, found, &drawn.state);
             }
         }
     }
 
-    fn same(&self, what: &str, expected: &[f64], found: &[f64], at: &[f64]) {
+    fn assert_same(&self, what: &str, expected: &[f64], found: &[f64], at: &[f64]) {
         let words = |numbers: &[f64]| -> Vec<u64> { numbers.iter().map(|x| bits(*x)).collect() };
         let first = words(expected)
             .iter()
@@ -187,7 +187,7 @@ impl Pair {
     }
 }
 
-/// One pattern for all NaN.
+/// Returns the bits, equal for all NaN.
 fn bits(number: f64) -> u64 {
     if number.is_nan() {
         f64::NAN.to_bits()
@@ -196,8 +196,8 @@ fn bits(number: f64) -> u64 {
     }
 }
 
-/// Everything an evaluator computes at a point.
-fn computed(evaluator: &mut Evaluator, point: Point<'_>) -> [(&'static str, Vec<f64>); 6] {
+/// Returns all results of an evaluator at a point.
+fn compute_all(evaluator: &mut Evaluator, point: Point<'_>) -> [(&'static str, Vec<f64>); 6] {
     let program = evaluator.program();
     let (states, degrees) = (program.states(), program.degrees_of_freedom());
     let of_length = |length| vec![f64::NAN; length];
@@ -221,7 +221,7 @@ fn computed(evaluator: &mut Evaluator, point: Point<'_>) -> [(&'static str, Vec<
     ]
 }
 
-/// The program of a model with every field at one order, if there is one.
+/// Returns the program of a model with every field at one order; `None` if it cannot be derived.
 fn program(model: &Model, order: usize) -> Option<Program> {
     let values = model
         .parameter_values()
@@ -233,7 +233,7 @@ fn program(model: &Model, order: usize) -> Option<Program> {
 
 fn compare(name: &str, model: &Model, order: usize) {
     let Some(program) = program(model, order) else {
-        // Some need a mode; that derive refuses and says so is tested elsewhere.
+        // Some models need a mode; other tests check the error.
         assert_eq!(order, 0, "{name} cannot be derived");
         return;
     };
@@ -271,17 +271,17 @@ fn compare_all(paths: &[PathBuf], orders: &[usize]) {
 }
 
 #[test]
-fn shipped_specifications_give_the_same_bits() {
+fn shipped_specifications_give_same_bits() {
     compare_all(&shipped(), &[0, 1, 2, 4, 16]);
 }
 
 #[test]
-fn shipped_specifications_of_high_order_give_the_same_bits() {
+fn shipped_specifications_of_high_order_give_same_bits() {
     compare_all(&shipped(), &[64]);
 }
 
 #[test]
-fn features_give_the_same_bits() {
+fn features_give_same_bits() {
     let folder = project().join("tests/features");
     let mut paths = specifications(&folder);
     assert!(!paths.is_empty(), "no feature");
@@ -290,7 +290,7 @@ fn features_give_the_same_bits() {
 }
 
 #[test]
-fn the_general_solver_takes_the_same_steps_either_way() {
+fn general_solver_takes_same_steps_with_machine_code() {
     for name in ["double_pendulum", "furuta_pendulum", "planetary_arm"] {
         let model = load(name);
         let program = program(&model, 4).expect("equations of motion");
@@ -313,7 +313,8 @@ fn the_general_solver_takes_the_same_steps_either_way() {
     }
 }
 
-/// A sum over modes of an integral that needs quadrature, which no other specification has.
+/// Returns a model with a sum over modes of an integral that needs quadrature. No other
+/// specification has one.
 fn tapered_by_sum() -> Model {
     let path = project().join("tests/features/exponential_taper.toml");
     let text = std::fs::read_to_string(path).expect("the feature");
@@ -330,15 +331,14 @@ fn tapered_by_sum() -> Model {
 }
 
 #[test]
-fn a_sum_of_integrals_gives_the_same_bits() {
+fn sum_of_integrals_gives_same_bits() {
     for order in [1, 4, 9] {
         compare("tapered by sum", &tapered_by_sum(), order);
     }
 }
 
-/// What the programs of these tests are made of.
 #[test]
-fn every_operation_and_function_is_compared() {
+fn test_programs_contain_every_operation_and_function() {
     let folder = project().join("tests/features");
     let mut models: Vec<Model> = [shipped(), specifications(&folder)]
         .concat()
@@ -363,12 +363,12 @@ fn every_operation_and_function_is_compared() {
         .iter()
         .filter(|operation| !operations.contains(*operation))
         .collect();
-    assert!(missing.is_empty(), "{missing:?} occur nowhere");
+    assert!(missing.is_empty(), "no test program contains {missing:?}");
     let missing: Vec<_> = FUNCTIONS
         .iter()
         .filter(|function| !functions.contains(**function))
         .collect();
-    assert!(missing.is_empty(), "{missing:?} occur nowhere");
+    assert!(missing.is_empty(), "no test program contains {missing:?}");
 }
 
 fn specifications(folder: &Path) -> Vec<PathBuf> {

@@ -1,5 +1,5 @@
-//! The kernels of regimes give the very bits of the general rates wherever a state is in their
-//! regime, and beyond it they go on as they are within.
+//! Kernels of regimes give the bits of the general rates at every state in their regime, and extend
+//! smoothly beyond it.
 
 use proptest::prelude::*;
 
@@ -13,7 +13,7 @@ mod arm_of_nine_modes {
     eomgen::model! { spec = "../model-spec/models/planetary_arm.toml", order = 9, with = [regimes] }
 }
 
-/// Everything else that switches, and choices that slopes of the larger of two bring.
+/// Other switching functions, and selections caused by the derivative of a maximum.
 mod switches {
     eomgen::model! {
         with = [regimes],
@@ -38,7 +38,7 @@ mod switches {
     }
 }
 
-/// One number in its place among the half-widths: inside, just beyond or far beyond.
+/// A random coordinate relative to the half-width: inside, just outside or far outside.
 fn deflection() -> impl Strategy<Value = f64> {
     let size = prop_oneof![0.0..0.9_f64, 1.1..1.2_f64, 2.0..50.0_f64];
     (size, any::<bool>()).prop_map(|(size, turned)| if turned { -size } else { size })
@@ -48,7 +48,7 @@ fn bits<const N: usize>(numbers: &[f64; N]) -> [u64; N] {
     numbers.map(f64::to_bits)
 }
 
-/// The rates in a regime that is found when the test runs, if it is one of these.
+/// Returns the rates by the kernel of a regime known at run time, if it is in the list.
 macro_rules! in_regime {
     ($module:ident, $regime:expr, $t:expr, $state:expr, $coefficients:expr, [$($known:literal)*]) => {{
         let mut rates = [f64::NAN; $module::STATES];
@@ -79,7 +79,6 @@ macro_rules! arms {
                 state[0] = deflections[0] * parameters.b_sp;
                 state[1] = deflections[1] * parameters.b_pr;
                 let inputs = $module::Inputs::default();
-                // Guards are x - b and x + b of each mesh: below, within and above its play.
                 let sides = deflections.map(|p| if p > 1.0 { 3 } else if p < -1.0 { 0 } else { 2 });
                 let regime = $module::regime(t, &state, &inputs, &coefficients);
                 prop_assert_eq!(regime, sides[0] + 4 * sides[1]);
@@ -88,7 +87,7 @@ macro_rules! arms {
                 prop_assert_eq!(found.map(|rates| bits(&rates)), Some(bits(&expected)));
             }
 
-            /// Inside the play of both meshes there is no play that would matter.
+            /// The regime with both meshes inside the backlash must not depend on the backlash.
             #[test]
             fn $beyond(
                 numbers in prop::collection::vec(-1.0..1.0_f64, $module::STATES),
@@ -114,7 +113,7 @@ arms!(
 
 proptest! {
     #[test]
-    fn every_function_that_switches(
+    fn kernels_match_rates_for_every_switching_function(
         state in [-1.0..1.0_f64, -1.0..1.0, -3.0..3.0, -3.0..3.0],
         t in 0.0..10.0_f64,
     ) {

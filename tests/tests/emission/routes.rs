@@ -1,5 +1,4 @@
-//! The routes by which emitted code gets into a program (macro, build script, command line)
-//! give the same bits, and bring nothing along.
+//! Macro, build script and command line give the same bits of emitted code and add no dependencies.
 
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -9,16 +8,15 @@ use std::process::{Command, Stdio};
 use eomgen_tests::models::{load, path, project, samples};
 use eomgen_tests::program::{eomgen, run};
 
-/// The order of the examples' arm.
+/// Order of the arm in the examples.
 const ORDER: usize = 4;
 
-/// The seed of the states.
 const SEED: u64 = 0x5eed_0400;
 
-/// States in each of the nine mesh regimes.
+/// Number of states in each of the nine mesh regimes.
 const STATES_PER_REGIME: usize = 20;
 
-/// Bits of a time and a state, then those of what a route gives there.
+/// Bits of a time and a state, then of the results there.
 type Bits = Vec<u64>;
 
 fn points() -> Vec<(f64, [f64; 14])> {
@@ -30,7 +28,7 @@ fn points() -> Vec<(f64, [f64; 14])> {
     drawn.iter().map(point).collect()
 }
 
-/// Rates, observables and guards of a module at every point.
+/// Returns rates, observables and guards of a module at every point.
 macro_rules! bits {
     ($module:path) => {{
         use $module as module;
@@ -48,8 +46,8 @@ macro_rules! bits {
     }};
 }
 
-/// A program around the file that `eomgen generate` leaves: bits of a time and a state on
-/// every line of its input, bits of the numbers there on every line of its output.
+/// Program around the file written by `eomgen generate`. Each input line holds the bits of a time
+/// and a state, each output line the bits of the results.
 const PROBE: &str = r#"
 use arm4::*;
 
@@ -85,8 +83,8 @@ fn rustc(arguments: &[&str], folder: &Path) {
     assert!(status.success(), "{arguments:?}");
 }
 
-/// The crate `arm4` of what `eomgen generate` leaves, compiled into `folder`.
-fn arm4(folder: &Path) {
+/// Generates the crate `arm4` and compiles it into `folder`.
+fn compile_arm4(folder: &Path) {
     let status = eomgen()
         .args(["generate", "--order", "4", "--out", "arm4"])
         .arg(path("planetary_arm"))
@@ -97,9 +95,9 @@ fn arm4(folder: &Path) {
     rustc(&[&library[..], &["arm4/lib.rs"]].concat(), folder);
 }
 
-/// What a program around that file says of the points.
-fn by_command_line(folder: &Path) -> Vec<Bits> {
-    arm4(folder);
+/// Returns the results of [`PROBE`] at the points.
+fn run_probe(folder: &Path) -> Vec<Bits> {
+    compile_arm4(folder);
     std::fs::write(folder.join("probe.rs"), PROBE).expect("writable");
     rustc(&["probe.rs", "--extern", "arm4=libarm4.rlib"], folder);
     let mut input = String::new();
@@ -123,7 +121,7 @@ fn by_command_line(folder: &Path) -> Vec<Bits> {
 }
 
 #[test]
-fn all_routes_give_the_same_bits() {
+fn macro_build_script_and_command_line_give_same_bits() {
     let checked_in = bits!(eomgen_generated::planetary_arm_order_4);
     assert_eq!(checked_in.len(), 9 * STATES_PER_REGIME);
     assert!(checked_in == bits!(with_macro::arm), "the macro differs");
@@ -133,15 +131,15 @@ fn all_routes_give_the_same_bits() {
     );
     let folder = tempfile::tempdir().expect("a folder");
     assert!(
-        checked_in == by_command_line(folder.path()),
+        checked_in == run_probe(folder.path()),
         "the command line differs"
     );
 }
 
 #[test]
-fn the_example_of_the_command_line_runs() {
+fn command_line_example_prints_documented_line() {
     let folder = tempfile::tempdir().expect("a folder");
-    arm4(folder.path());
+    compile_arm4(folder.path());
     let example = project().join("examples/with_command_line/controller.rs");
     std::fs::copy(example, folder.path().join("controller.rs")).expect("copied");
     rustc(
@@ -156,7 +154,7 @@ fn the_example_of_the_command_line_runs() {
     );
 }
 
-/// The Rust of a page, by blocks.
+/// Returns the Rust blocks of a page.
 fn rust_blocks(page: &str) -> Vec<String> {
     let text = std::fs::read_to_string(project().join(page)).expect("the page");
     let blocks = text.split("```rust\n").skip(1);
@@ -165,7 +163,7 @@ fn rust_blocks(page: &str) -> Vec<String> {
 }
 
 #[test]
-fn the_pages_show_the_examples() {
+fn pages_show_the_code_of_the_examples() {
     let pages = ["README.md", "docs/embedding.md"];
     let blocks: Vec<String> = pages.into_iter().flat_map(rust_blocks).collect();
     let examples: Vec<String> = [
@@ -183,16 +181,16 @@ fn the_pages_show_the_examples() {
     .collect();
     for block in &blocks {
         let shown = examples.iter().any(|example| example.contains(block));
-        assert!(shown, "in no example:\n{block}");
+        assert!(shown, "no example contains:\n{block}");
     }
     for example in &examples {
         let shown = blocks.iter().any(|block| example.contains(block));
-        assert!(shown, "on no page:\n{example}");
+        assert!(shown, "no page contains:\n{example}");
     }
 }
 
 #[test]
-fn a_specification_in_place_can_be_certified() {
+fn specification_inside_a_macro_can_be_certified() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("pendulum.toml");
     std::fs::write(&file, with_macro::pendulum::SPECIFICATION).expect("writable");
@@ -200,8 +198,8 @@ fn a_specification_in_place_can_be_certified() {
     assert_eq!(output.status.code(), Some(0), "{output:?}");
 }
 
-/// The packages of `cargo tree`, each on a line.
-fn tree(package: &str, edges: &str) -> Vec<String> {
+/// Returns the lines of `cargo tree`.
+fn cargo_tree(package: &str, edges: &str) -> Vec<String> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let output = Command::new(cargo)
         .args(["tree", "--offline", "--locked", "--prefix", "none"])
@@ -215,16 +213,16 @@ fn tree(package: &str, edges: &str) -> Vec<String> {
 }
 
 #[test]
-fn a_controller_links_nothing_but_itself() {
-    assert_eq!(tree("eomgen", "normal,no-proc-macro"), ["eomgen"]);
-    let example = tree("eomgen-example-with-build-script", "normal");
+fn eomgen_has_no_runtime_dependencies() {
+    assert_eq!(cargo_tree("eomgen", "normal,no-proc-macro"), ["eomgen"]);
+    let example = cargo_tree("eomgen-example-with-build-script", "normal");
     assert_eq!(example, ["with_build_script"]);
 }
 
 #[test]
-fn the_macro_needs_no_program_and_no_simulation() {
+fn macro_and_build_script_depend_on_no_solver() {
     for package in ["eomgen", "eomgen-build"] {
-        let packages = tree(package, "normal");
+        let packages = cargo_tree(package, "normal");
         let has = |name: &str| packages.iter().any(|package| package.starts_with(name));
         assert!(
             has("eomgen_codegen") && has("eomgen_model_spec"),

@@ -1,5 +1,4 @@
-//! Emitted code in `f32` against the same in double precision that bounds what `f32` rounds
-//! away at every operation.
+//! Emitted code in `f32` against double precision with a bound of the accumulated `f32` rounding.
 
 #[path = "../../requested/tests/requested/rounded.rs"]
 mod rounded;
@@ -8,15 +7,14 @@ use proptest::prelude::*;
 
 use rounded::Rounded;
 
-/// What is right to the first order in the unit is right to this: products of two roundings,
-/// and what double precision itself rounds away, are some 1e-7 of the first order.
+/// Tolerance of the first-order bound: products of two roundings and the rounding of double
+/// precision are about 1e-7 of the first order.
 const FIRST_ORDER: f64 = 1.001;
 
-/// What the motor's terms accelerate the sun by, each of them, in m/s^2: at rest they may cancel.
+/// Acceleration of the sun by each of the motor's terms, in m/s^2; at rest they can cancel.
 const MOTOR: f64 = 100.0;
 
-/// A number in double precision, and a bound of the error that it would have in single
-/// precision.
+/// Number in double precision with a bound of its error in single precision.
 type Single = Rounded<24>;
 
 macro_rules! agrees {
@@ -47,12 +45,12 @@ macro_rules! agrees {
         }
 
         proptest! {
-            /// Modes fall off with their number, as they do in motion; deflections are well within
-            /// or well beyond the play, where both precisions find the same side.
+            /// Modes decrease with their number, as in motion. Deflections are far from the edge of
+            /// the backlash, so both precisions see the same side.
             #[test]
             fn $test(
                 numbers in prop::collection::vec(-1.0..1.0_f32, $module::STATES),
-                deflections in [within_or_beyond(), within_or_beyond()],
+                deflections in [deflection(), deflection()],
                 t in 0.0..1.0_f32,
             ) {
                 let degrees = $module::DEGREES_OF_FREEDOM;
@@ -68,27 +66,27 @@ macro_rules! agrees {
                 let exact = state.map(Single::exact);
                 let rates = $module::rates(t, &state, &inputs, &single);
                 let expected = $module::rates(Single::exact(t), &exact, &inputs, &bounded);
-                agree(&rates, &expected)?;
-                are_sharp(&expected)?;
+                assert_within_bounds(&rates, &expected)?;
+                assert_bounds_are_sharp(&expected)?;
                 let exact_numbers = exact.map(|number| number.number);
                 let (t_double, inputs_double) = (f64::from(t), $module::Inputs::default());
                 let double = $module::rates(t_double, &exact_numbers, &inputs_double, &coefficients);
                 prop_assert_eq!(double, expected.map(|rate| rate.number));
                 let observables = $module::observables(t, &state, &inputs, &single);
                 let expected = $module::observables(Single::exact(t), &exact, &inputs, &bounded);
-                agree(&observables, &expected)?;
+                assert_within_bounds(&observables, &expected)?;
             }
         }
     )*};
 }
 
-/// A mesh's deflection in m; its play is 25e-6 m.
-fn within_or_beyond() -> impl Strategy<Value = f32> {
+/// Random deflection of a mesh in m; the backlash is 25e-6 m.
+fn deflection() -> impl Strategy<Value = f32> {
     (prop_oneof![0.0..2e-5_f32, 3e-5..1e-3_f32], any::<bool>())
         .prop_map(|(size, turned)| if turned { -size } else { size })
 }
 
-fn agree(found: &[f32], expected: &[Single]) -> Result<(), TestCaseError> {
+fn assert_within_bounds(found: &[f32], expected: &[Single]) -> Result<(), TestCaseError> {
     for (i, (found, expected)) in found.iter().zip(expected).enumerate() {
         let error = (f64::from(*found) - expected.number).abs();
         prop_assert!(
@@ -99,8 +97,8 @@ fn agree(found: &[f32], expected: &[Single]) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-/// The bounds say something: no acceleration that counts would be wrong below them.
-fn are_sharp(rates: &[Single]) -> Result<(), TestCaseError> {
+/// Asserts that the bounds are sharp: at most 1e-4 of the largest acceleration.
+fn assert_bounds_are_sharp(rates: &[Single]) -> Result<(), TestCaseError> {
     let sizes = rates.iter().map(|rate| rate.number.abs());
     let largest = sizes.fold(MOTOR, f64::max);
     for rate in rates {

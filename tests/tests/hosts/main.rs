@@ -1,5 +1,5 @@
-//! The hosts of emitted code and of the engine, one beside the other: each spends much of its time
-//! waiting for compilers, installers, browsers and schedulers.
+//! Hosts of emitted code and of the engine. In one binary they run in parallel: each waits for
+//! compilers, installers, browsers or schedulers.
 
 mod c99;
 mod casadi;

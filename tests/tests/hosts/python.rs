@@ -1,8 +1,7 @@
-//! The Python package as its README has it: installed by the two commands into a virtual environment of
-//! its own, then its tests, the notebook among them. Skipped, loudly, where Python or the packages
-//! cannot be had; a machine that has them may not fail.
+//! The Python package: installed by the two commands of its README into a virtual environment, then
+//! its tests and notebook are run. Skipped with a message if Python or the packages are missing.
 //!
-//! The commands are for the shells of Unix.
+//! The commands need a Unix shell.
 #![cfg(unix)]
 
 use std::path::Path;
@@ -11,11 +10,10 @@ use std::process::{Command, Output};
 use eomgen_tests::models::project;
 use eomgen_tests::program::{self, target, text};
 
-/// The folder of the virtual environment in the README's commands.
 const ENVIRONMENT: &str = ".venv";
 
-/// Commands of a shell in the project's folder, which share what the tests have built.
-fn shell(commands: &str) -> Output {
+/// Runs shell commands in the project's folder with the build folder of the tests.
+fn run_shell(commands: &str) -> Output {
     Command::new("bash")
         .args(["-e", "-c", commands])
         .current_dir(project())
@@ -27,9 +25,9 @@ fn shell(commands: &str) -> Output {
         .expect("bash")
 }
 
-/// What keeps the package from being installed here, if anything does.
-fn missing(folder: &Path) -> Option<&'static str> {
-    let works = |commands: &str| shell(commands).status.success();
+/// Returns the missing tool, if any.
+fn missing_tool(folder: &Path) -> Option<&'static str> {
+    let works = |commands: &str| run_shell(commands).status.success();
     if !works("python3 -c 'import ensurepip, venv'") {
         return Some("python3 with venv (Debian: apt-get install python3-venv)");
     }
@@ -41,7 +39,7 @@ fn missing(folder: &Path) -> Option<&'static str> {
     (!works(&registry)).then_some("a registry of Python packages")
 }
 
-/// The commands of the README's first console block, on an environment in `folder`.
+/// Returns the commands of the README's first console block for an environment in `folder`.
 fn installation(folder: &Path) -> Vec<String> {
     let page = std::fs::read_to_string(project().join("python/README.md")).expect("a page");
     let (_, rest) = page.split_once("```console\n").expect("a block");
@@ -54,30 +52,31 @@ fn installation(folder: &Path) -> Vec<String> {
 }
 
 #[test]
-fn the_package_is_installed_by_two_commands_and_passes_its_tests() {
+fn package_installs_by_documented_commands_and_passes_its_tests() {
     let folder = tempfile::tempdir().expect("a folder");
-    if let Some(missing) = missing(folder.path()) {
+    if let Some(missing) = missing_tool(folder.path()) {
         skips::skip(&format!(
-            "the Python package was not installed, for want of {missing}"
+            "the Python package was not installed: {missing} is missing"
         ));
         return;
     }
     let commands = installation(folder.path());
     assert_eq!(commands.len(), 2, "{commands:?}");
     let installed = commands.join("\n");
-    // From another folder, so that it is the package that was installed.
+    // Runs in another folder, so that Python imports the installed package.
     let imported = "cd / && python -c 'import eomgen; print(eomgen.load.__doc__)'";
-    let output = shell(&format!("{installed}\n{imported}"));
+    let output = run_shell(&format!("{installed}\n{imported}"));
     let shown = |output: &Output| text(&output.stdout) + &text(&output.stderr);
     assert!(output.status.success(), "{}", shown(&output));
     let activate = commands[0].rsplit("&& ").next().expect("a last part");
     let tests = "pip install --quiet './python[test]'\npytest python -p no:cacheprovider -q -rs";
-    let output = shell(&format!("{activate}\n{tests}"));
+    let output = run_shell(&format!("{activate}\n{tests}"));
     let report = text(&output.stdout);
     assert!(output.status.success(), "{}", shown(&output));
     assert!(report.contains(" passed"), "{report}");
     for line in report.lines() {
-        // The word of pytest, in two parts: the project's own tests say it by `skips` alone.
+        // Split so that the search for this word in the sources does not match; tests report skips
+        // by `skips`.
         if let Some(skipped) = line.strip_prefix(concat!("SKIP", "PED ")) {
             skips::skip(&format!("a test of the Python package: {skipped}"));
         }

@@ -1,6 +1,6 @@
-//! `eomgen sweep --engine slurm` on a cluster of two nodes, both on this machine: one is killed, with
-//! all that runs there, in the middle; the merged table is that of one machine, byte for byte. Skipped,
-//! loudly, where Slurm is not installed.
+//! `eomgen sweep --engine slurm` on a cluster of two nodes on this machine. One node is killed with
+//! its jobs during the sweep; the merged table must equal that of one machine byte for byte.
+//! Skipped with a message if Slurm is not installed.
 #![cfg(target_os = "linux")]
 
 use std::fs;
@@ -33,7 +33,7 @@ damper = "1/2*c*dot(x)^2"
 drive = { on = "x", value = "F*sin(omega*t)" }
 "#;
 
-/// Some seconds of work, so that a kill falls between the first and the last.
+/// Takes some seconds, so that a kill falls between the first and the last point.
 const SWEEP: [&str; 10] = [
     "--vary",
     "c=0.4:1:10",
@@ -47,10 +47,10 @@ const SWEEP: [&str; 10] = [
     "8",
 ];
 
-/// The longest that anything here takes.
+/// Timeout of every wait.
 const LIMIT: Duration = Duration::from_secs(180);
 
-/// Two nodes, their controller, and what says who is who; ended when it is dropped.
+/// Two nodes, their controller and the authentication daemon; ended on drop.
 struct Cluster {
     folder: tempfile::TempDir,
     daemons: Vec<Child>,
@@ -123,7 +123,7 @@ impl Cluster {
         )
     }
 
-    /// A command that knows this cluster.
+    /// Returns a command with this cluster's configuration.
     fn command(&self, program: &str) -> Command {
         let mut command = Command::new(program);
         command.env("SLURM_CONF", self.at("slurm.conf"));
@@ -137,7 +137,7 @@ impl Cluster {
         self.daemons.push(daemon.expect("a daemon of Slurm"));
     }
 
-    /// What a command of Slurm prints.
+    /// Returns the stdout of a Slurm command.
     fn ask(&self, program: &str, arguments: &[&str]) -> String {
         let output = self.command(program).args(arguments).output();
         text(&output.expect("a command of Slurm").stdout)
@@ -162,7 +162,7 @@ impl Cluster {
             .join("\n--\n")
     }
 
-    /// Processes of this cluster that have a variable.
+    /// Returns the processes of this cluster that have `variable` in their environment.
     fn processes(&self, variable: &str) -> Vec<String> {
         let configuration = format!("SLURM_CONF={}", self.at("slurm.conf").display());
         let mut found = Vec::new();
@@ -179,14 +179,14 @@ impl Cluster {
         found
     }
 
-    /// Ends a node as a loss of power does: first who could tell of it, then its jobs. How many
-    /// processes of jobs there were.
+    /// Kills a node as a power loss does: first its supervisors, then its jobs. Returns the number
+    /// of job processes.
     fn kill(&self, node: &str) -> usize {
         let jobs = self.processes(&format!("SLURMD_NODENAME={node}"));
-        let watching = jobs.iter().filter_map(|job| watcher(job)).collect();
+        let watching = jobs.iter().filter_map(|job| job_supervisor(job)).collect();
         let daemon = self.processes(&format!("{NODE}={node}"));
         let all = [daemon, watching, jobs.clone()].concat();
-        // What has ended meanwhile needs no kill.
+        // Processes may have ended already.
         let mut command = Command::new("kill");
         command
             .arg("-9")
@@ -198,8 +198,8 @@ impl Cluster {
     }
 }
 
-/// The process of Slurm that watches over a job: the parent of its script.
-fn watcher(job: &str) -> Option<String> {
+/// Returns the Slurm process that supervises a job: the parent of its script.
+fn job_supervisor(job: &str) -> Option<String> {
     let status = fs::read_to_string(format!("/proc/{job}/status")).ok()?;
     let parent = status.lines().find_map(|line| line.strip_prefix("PPid:"))?;
     let parent = parent.trim().to_owned();
@@ -207,7 +207,7 @@ fn watcher(job: &str) -> Option<String> {
     name.starts_with("slurmstepd").then_some(parent)
 }
 
-/// By which a node's daemons are known; its jobs have a variable of Slurm.
+/// Environment variable that identifies a node's daemons; its jobs have a variable of Slurm.
 const NODE: &str = "EOMGEN_TEST_NODE";
 
 impl Drop for Cluster {
@@ -232,15 +232,14 @@ fn free_ports() -> [u16; 3] {
     listening.map(|socket| socket.local_addr().expect("an address").port())
 }
 
-/// Whether Slurm is here.
-fn is_there() -> bool {
+fn has_slurm() -> bool {
     let version = |program: &str| Command::new(program).arg("-V").output().is_ok();
     ["slurmctld", "slurmd", "sbatch", "munged"]
         .into_iter()
         .all(version)
 }
 
-/// The finished parts of a sweep.
+/// Returns the number of finished parts of a sweep.
 fn parts(folder: &Path) -> usize {
     let Ok(entries) = fs::read_dir(folder.join("parts")) else {
         return 0;
@@ -255,13 +254,13 @@ fn parts(folder: &Path) -> usize {
 }
 
 #[test]
-fn a_lost_node_takes_nothing_with_it() {
-    if !is_there() {
+fn sweep_survives_a_lost_node() {
+    if !has_slurm() {
         skips::skip("no sweep was run on Slurm (Debian: apt-get install slurm-wlm munge)");
         return;
     }
     let cluster = Cluster::start();
-    // A place that a shell would take apart.
+    // A path that needs quoting in a shell.
     let place = cluster.at("it's a $place");
     fs::create_dir(&place).expect("a folder");
     fs::write(place.join("oscillator.toml"), OSCILLATOR).expect("a specification");
@@ -286,7 +285,7 @@ fn a_lost_node_takes_nothing_with_it() {
     assert!(cluster.kill("n2") > 0, "nothing ran on the node");
     assert!(parts(&spread) < parts(&alone), "killed too late");
     cluster.wait("the merge", |cluster| {
-        // Slurm holds an element of a lost node back for two minutes; not here.
+        // Slurm would hold the tasks of a lost node for two minutes.
         for line in cluster
             .ask("squeue", &["-h", "-r", "-t", "PD", "-o", "%i %r"])
             .lines()

@@ -1,5 +1,5 @@
-//! docs/claims.md says what docs/claims.json holds, the document that the command on the page
-//! leaves. That the program still says so of the assumed values, `study_search` tests.
+//! docs/claims.md against docs/claims.json, the document written by the command on the page.
+//! `study_search` checks that the program still gives these verdicts for the assumed values.
 
 use eomgen_tests::models::project;
 use serde_json::Value;
@@ -8,7 +8,7 @@ fn page() -> String {
     std::fs::read_to_string(project().join("docs/claims.md")).expect("the page")
 }
 
-fn found() -> Value {
+fn claims_document() -> Value {
     let text = std::fs::read_to_string(project().join("docs/claims.json")).expect("the document");
     serde_json::from_str(&text).expect("JSON")
 }
@@ -17,7 +17,7 @@ fn list<'a>(document: &'a Value, name: &str) -> &'a [Value] {
     document[name].as_array().expect(name)
 }
 
-fn word(letter: &Value) -> &'static str {
+fn verdict_word(letter: &Value) -> &'static str {
     match letter.as_str() {
         Some("H") => "holds",
         Some("F") => "fails",
@@ -26,47 +26,47 @@ fn word(letter: &Value) -> &'static str {
     }
 }
 
-fn says(text: &str) {
+fn assert_page_contains(text: &str) {
     let page = page();
-    // Lines of the page may break anywhere.
+    // The page may break lines anywhere.
     let flat = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(
         flat(&page).contains(&flat(text)),
-        "docs/claims.md does not say: {text}"
+        "docs/claims.md does not contain: {text}"
     );
 }
 
 #[test]
-fn the_page_has_a_row_for_every_claim() {
-    let document = found();
+fn page_has_a_row_for_every_claim() {
+    let document = claims_document();
     let claims = list(&document, "claims");
     assert_eq!(claims.len(), 30);
     for claim in claims {
         let text = |name: &str| claim[name].as_str().expect(name);
         let assumed = &claim["assumed"];
         let evidence = assumed["evidence"].as_str().expect("evidence");
-        says(&format!(
+        assert_page_contains(&format!(
             "| `{}` | {} | {} | {} | {} | {} |",
             text("id"),
             text("place"),
             text("statement"),
-            word(&assumed["verdict"]),
-            word(&assumed["strict"]),
+            verdict_word(&assumed["verdict"]),
+            verdict_word(&assumed["strict"]),
             evidence.replace('|', "\\|"),
         ));
     }
 }
 
 #[test]
-fn the_page_counts_the_verdicts() {
-    let document = found();
+fn page_counts_the_verdicts() {
+    let document = claims_document();
     let count = |name: &str, letter: &str| {
         let claims = list(&document, "claims").iter();
         claims
             .filter(|claim| claim["assumed"][name] == letter)
             .count()
     };
-    says(&format!(
+    assert_page_contains(&format!(
         "{} of 30 claims hold, {} fail, {} are undecided; strictly {} hold.",
         count("verdict", "H"),
         count("verdict", "F"),
@@ -76,9 +76,9 @@ fn the_page_counts_the_verdicts() {
 }
 
 #[test]
-fn the_page_names_the_command_that_leaves_the_document() {
-    let document = found();
-    says(&format!(
+fn page_names_the_command_of_the_document() {
+    let document = claims_document();
+    assert_page_contains(&format!(
         "paper claims --sets {} --seed {} --out assumed",
         document["sets"], document["seed"]
     ));

@@ -1,6 +1,6 @@
-//! The derivation against the paper, row by row: it agrees with what is consistent with the
-//! energies and differs from what is misprinted. `cargo test --release -p eomgen-tests
-//! --test paper errata -- --nocapture` prints the table.
+//! The derivation against the paper, row by row: it agrees with the rows consistent with the
+//! energies and differs from the misprints. To print the table, run `cargo test --release -p
+//! eomgen-tests --test paper errata -- --nocapture`.
 
 use eomgen_codegen::program::evaluator::Point;
 use eomgen_model_spec::model::Model;
@@ -8,7 +8,7 @@ use eomgen_paper::reference::PlanetaryArmParameters;
 use eomgen_paper::reference::errata::errata_table;
 use eomgen_tests::models::{load, variant};
 
-/// The specification's model with the parameters of the hand-written equations.
+/// Returns the model with the parameters of the hand-written equations.
 fn with_parameters(model: &Model, parameters: &PlanetaryArmParameters) -> Model {
     let mut changed = model.clone();
     for (name, value) in by_name(parameters) {
@@ -24,7 +24,7 @@ fn with_parameters(model: &Model, parameters: &PlanetaryArmParameters) -> Model 
     changed
 }
 
-/// Every field with its name; a field forgotten here does not compile.
+/// Returns every field with its name; a missing field does not compile.
 #[allow(non_snake_case, reason = "names as in the paper's nomenclature")]
 fn by_name(parameters: &PlanetaryArmParameters) -> Vec<(&'static str, f64)> {
     macro_rules! fields {
@@ -38,7 +38,7 @@ fn by_name(parameters: &PlanetaryArmParameters) -> Vec<(&'static str, f64)> {
 }
 
 #[test]
-fn every_row_of_the_errata_agrees_with_the_correction_and_differs_from_the_misprint() {
+fn derivation_matches_corrected_rows_and_differs_from_misprints() {
     let model = load("planetary_arm");
     let derived = |parameters: &PlanetaryArmParameters, order: usize, t: f64, state: &[f64]| {
         let mut evaluator = variant(&with_parameters(&model, parameters), order).evaluator;
@@ -54,7 +54,10 @@ fn every_row_of_the_errata_agrees_with_the_correction_and_differs_from_the_mispr
     let table = errata_table(&derived);
     println!("{table}");
     for row in &table.rows {
-        assert!(row.agrees_with_corrected(), "not as corrected: {row:?}");
+        assert!(
+            row.agrees_with_corrected(),
+            "differs from the correction: {row:?}"
+        );
         assert!(row.differs_from_printed(), "as misprinted: {row:?}");
     }
     let misprints = table

@@ -1,5 +1,5 @@
-//! `eomgen paper study`: whole folders, figures that can be opened, and numbers that hold by other
-//! means than those that made them.
+//! `eomgen paper study`: complete folders, readable figures, and numbers checked by independent
+//! formulas.
 
 use std::path::Path;
 use std::time::Duration;
@@ -8,8 +8,8 @@ use eomgen_tests::models::project;
 use eomgen_tests::program::{accepted, eomgen, refused, text};
 use serde_json::Value;
 
-/// Runs a study into a folder; its document.
-fn study(name: &str, out: &Path) -> Value {
+/// Runs a study into a folder; returns its document.
+fn run_study(name: &str, out: &Path) -> Value {
     let mut command = eomgen();
     command.timeout(Duration::from_secs(600));
     command
@@ -18,11 +18,10 @@ fn study(name: &str, out: &Path) -> Value {
     let output = command.output().expect("the program can be run");
     assert!(output.status.success(), "{}", text(&output.stderr));
     let written = std::fs::read(out.join("study.json")).expect("study.json");
-    assert_eq!(written, output.stdout, "--json prints what is written");
+    assert_eq!(written, output.stdout, "--json prints the written document");
     serde_json::from_slice(&written).expect("JSON")
 }
 
-/// The entries of a list.
 fn list<'a>(document: &'a Value, name: &str) -> &'a [Value] {
     document[name].as_array().expect(name)
 }
@@ -37,10 +36,10 @@ fn file(out: &Path, name: &Value) -> Vec<u8> {
 }
 
 #[test]
-fn a_study_leaves_what_its_document_names() {
+fn study_writes_all_files_of_its_document() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("made/on the way");
-    let document = study("frequency", &out);
+    let document = run_study("frequency", &out);
     assert_eq!(
         (&document["schema"], &document["study"]),
         (&Value::from(2), &Value::from("frequency"))
@@ -77,11 +76,14 @@ fn a_study_leaves_what_its_document_names() {
     assert!(drawn("bifurcation.svg") && drawn("machine.svg"));
     let shown = std::fs::read(project().join("docs/machine.svg")).expect("a figure");
     let left = std::fs::read(out.join("machine.svg")).expect("a figure");
-    assert!(left == shown, "docs/machine.svg is not what a study leaves");
+    assert!(
+        left == shown,
+        "docs/machine.svg differs from the study's figure"
+    );
 }
 
-/// With closed meshes the arm turns with the whole drive: its first mode alone swings faster than clamped
-/// by the part of its inertia that turns the drive, h^2/m.
+/// With closed meshes the arm turns with the whole drive. Its first frequency exceeds that of the
+/// clamped arm by the part of its inertia that turns the drive, h^2/m.
 fn check_frequencies(case: &Value) {
     let first = number(&case["natural_frequencies"][0]);
     let (beta, arm) = (1.875_104_069_f64, 7900.0 * 1e-4 * 0.5_f64.powi(3));
@@ -93,7 +95,7 @@ fn check_frequencies(case: &Value) {
     let ratio = 1.0 + 99.0 / 27.0;
     let whole = (6.29 + 3.0 * 0.66) * r_c * r_c + sun * ratio * ratio + arm / 3.0;
     let expected = clamped / (1.0 - 4.0 * arm / beta.powi(4) / whole).sqrt();
-    // The meshes give way a little, and further modes are bent along: together less than 1 part in 1000.
+    // Mesh compliance and higher modes change the frequency by less than 1 part in 1000.
     assert!(
         (first / expected - 1.0).abs() < 1e-3,
         "{first} Hz for {expected} Hz"
@@ -104,28 +106,28 @@ fn check_frequencies(case: &Value) {
     );
 }
 
-/// What holds of any motion.
+/// Checks properties of every motion.
 fn check_numbers(case: &Value) {
     for name in ["x_sp", "f_la", "l_dtheta", "dr"] {
         let [rms, peak] = ["rms", "peak"].map(|of| number(&case[name][of]));
         assert!(0.0 < rms && rms <= peak, "{name}: {case}");
     }
-    // f_la is the sum of the other two at every time; 1e-12 is more than sums of two round.
+    // f_la is the sum of the other two at every time; the bound exceeds the rounding of a sum.
     let peak = |name: &str| number(&case[name]["peak"]);
     let sum = peak("l_dtheta") + peak("dr");
     assert!(peak("f_la") <= sum * (1.0 + 1e-12), "{case}");
-    // A torque that changes its sign presses the flanks together on both sides.
+    // A torque of changing sign closes the meshes on both sides.
     assert!(peak("x_sp") > number(&case["b"]), "{case}");
     let verdict = case["verdict"].as_str().expect("a sentence");
     let motion = case["motion"].as_str().expect("a kind of motion");
     assert!(verdict.starts_with(motion), "{case}");
 }
 
-/// Without backlash the forced motion far below every natural frequency is that of a rigid
-/// machine: the meshes carry the ripple's torque less what accelerates the sun.
+/// Without backlash, a forced motion far below every natural frequency is that of a rigid machine:
+/// the meshes transmit the ripple's torque minus the torque that accelerates the sun.
 fn check_closed_form(case: &Value) {
     assert_eq!(number(&case["b"]), 0.0);
-    // Two meshes pass from flank to flank, twice in each of the five periods of a second.
+    // Two meshes change flanks twice in each of the five periods per second.
     let switches = number(&case["switches_per_second"]);
     assert!((switches - 20.0).abs() < 1e-12, "{switches}");
     let tooth = 3e-3_f64 * 24.6_f64.to_radians().cos() / 2.0;
@@ -140,21 +142,21 @@ fn check_closed_form(case: &Value) {
     let omega = number(&case["omega"]);
     let (f_w, b_m, k_sp) = (5.0, 0.05, 1e8);
     let rate = f_w / (inertia * omega).hypot(b_m);
-    // T - I_s alpha = 3 r_s k x_sp with T = F_w sin - b_m theta_s', as complex amplitudes:
-    // what passes the sun is the rest of the inertia times its acceleration.
+    // T - I_s alpha = 3 r_s k x_sp with T = F_w sin - b_m theta_s', in complex amplitudes: the
+    // torque beyond the sun accelerates the remaining inertia.
     let expected = (inertia - sun) * omega * rate / (3.0 * r_s * k_sp);
     let found = number(&case["x_sp"]["peak"]);
-    // The arm bends: at 5 Hz below a first frequency of 37 Hz it adds up to (5/37)^2 = 1.8 %
-    // to its own share of the inertia.
+    // The bending arm increases its share of the inertia by (5/37)^2 = 1.8 %, at 5 Hz with a first
+    // frequency of 37 Hz.
     assert!((found / expected - 1.0).abs() < 0.02, "{found} {expected}");
 }
 
 #[test]
-fn every_other_study_runs_and_leaves_what_the_pages_show() {
+fn remaining_studies_run_and_reproduce_documented_figures() {
     let folder = tempfile::tempdir().expect("a folder");
     for (name, figures) in [("order", 1), ("backlash", 6), ("flexibility", 4)] {
         let out = folder.path().join(name);
-        let document = study(name, &out);
+        let document = run_study(name, &out);
         assert_eq!(document["study"], name);
         let drawn = list(&document, "figures");
         assert!(drawn.len() >= figures, "{name}: {}", drawn.len());
@@ -165,19 +167,19 @@ fn every_other_study_runs_and_leaves_what_the_pages_show() {
             );
         }
     }
-    // Products of matrices are those of the processor: other bits, another chaos.
+    // Matrix products depend on the processor; other roundings give another chaotic motion.
     if cfg!(target_arch = "x86_64") {
         let shown = std::fs::read(project().join("docs/fig_09.svg")).expect("a figure");
         let left = std::fs::read(folder.path().join("backlash/fig_09.svg")).expect("a figure");
         assert!(
             left == shown,
-            "docs/fig_09.svg is not what `study backlash` leaves"
+            "docs/fig_09.svg differs from the figure of `study backlash`"
         );
     }
 }
 
 #[test]
-fn wrong_use_is_refused() {
+fn invalid_studies_are_rejected() {
     assert!(refused(&["paper", "study", "fly", "--out", "never-made"]).contains("backlash"));
     assert!(refused(&["paper", "study", "order"]).contains("--out"));
     assert!(accepted(&["paper", "study", "--help"]).contains("eomgen paper study backlash"));

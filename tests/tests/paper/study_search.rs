@@ -1,5 +1,5 @@
-//! `eomgen paper claims`: a search that is killed goes on to the same bytes, its counts are
-//! those of its own table, and wrong use is refused.
+//! `eomgen paper claims`: a killed search resumes to the same bytes, its counts match its table,
+//! and invalid options are rejected.
 
 use std::fs;
 use std::path::Path;
@@ -10,13 +10,13 @@ use eomgen_tests::models::project;
 use eomgen_tests::program::{self, accepted, eomgen, refused, text};
 use serde_json::Value;
 
-/// One set, of a machine that is well damped, so that a search takes seconds.
+/// One set of a well-damped machine, so that a search takes seconds.
 const FEW: [&str; 4] = ["--sets", "1", "--seed", "166"];
 
-/// The longest a search of so few sets may take.
+/// Maximum duration of a search.
 const LIMIT: Duration = Duration::from_secs(300);
 
-/// Searches to the end; what is printed.
+/// Runs a search to the end; returns the printed document.
 fn search(out: &Path) -> Value {
     let mut command = eomgen();
     command.timeout(LIMIT);
@@ -27,8 +27,8 @@ fn search(out: &Path) -> Value {
     serde_json::from_slice(&output.stdout).expect("JSON")
 }
 
-/// Begins a search and kills it once its screening is written.
-fn begin(out: &Path) {
+/// Starts a search and kills it after its screening is written.
+fn start_and_kill(out: &Path) {
     let mut child = Command::new(program::path())
         .args(["paper", "claims"])
         .args(FEW)
@@ -44,11 +44,11 @@ fn begin(out: &Path) {
     }
     child.kill().expect("the program runs");
     child.wait().expect("it ends");
-    assert!(part.exists(), "nothing is screened");
+    assert!(part.exists(), "the screening was not written");
     assert!(!out.join("search.json").exists(), "killed too late");
 }
 
-/// The files of a folder, by name.
+/// Returns the files of a folder with their contents, by name.
 fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
     let entries = fs::read_dir(folder).expect("the folder");
     let paths = entries.map(|entry| entry.expect("an entry").path());
@@ -63,7 +63,7 @@ fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
     files
 }
 
-/// The rows of `search.csv`, each a list of fields; the names first.
+/// Returns the rows of `search.csv` as lists of fields, the header first.
 fn rows(out: &Path) -> Vec<Vec<String>> {
     let table = fs::read_to_string(out.join("search.csv")).expect("search.csv");
     let fields = |line: &str| line.split(',').map(str::to_owned).collect();
@@ -71,24 +71,27 @@ fn rows(out: &Path) -> Vec<Vec<String>> {
 }
 
 #[test]
-fn a_killed_search_goes_on_to_the_same_bytes() {
+fn killed_search_resumes_to_same_bytes() {
     let folder = tempfile::tempdir().expect("a folder");
     let (killed, whole) = (folder.path().join("killed"), folder.path().join("whole"));
-    begin(&killed);
+    start_and_kill(&killed);
     let screened = fs::metadata(killed.join("parts/screened_00000.csv"));
     let written = screened.and_then(|part| part.modified()).expect("a time");
-    // What a kill in the middle of a write leaves.
+    // A kill during a write leaves such a file.
     fs::write(killed.join("parts/confirmed_00000.unfinished"), "0,1").expect("written");
     let found = search(&killed);
     let screened = fs::metadata(killed.join("parts/screened_00000.csv"));
     let again = screened.and_then(|part| part.modified()).expect("a time");
-    assert_eq!(written, again, "what was screened is not screened again");
+    assert_eq!(
+        written, again,
+        "a resumed search does not repeat the screening"
+    );
     assert_eq!(search(&whole), found);
     assert_eq!(files(&killed), files(&whole));
     assert_eq!(files(&killed.join("parts")), files(&whole.join("parts")));
 
-    counts_are_those_of_the_table(&found, &rows(&whole));
-    the_assumed_values_are_judged_as_the_page_says(&found);
+    assert_counts_match_table(&found, &rows(&whole));
+    assert_assumed_values_match_page(&found);
     for name in ["together.svg", "claims.svg"] {
         let svg = fs::read_to_string(whole.join(name)).expect(name);
         assert!(
@@ -97,7 +100,7 @@ fn a_killed_search_goes_on_to_the_same_bytes() {
         );
     }
     let table = fs::read_to_string(whole.join("claims.md")).expect("claims.md");
-    // A line per claim below the heading; no bar within a cell but those escaped.
+    // One line per claim below the header; all bars inside cells are escaped.
     assert_eq!(table.lines().count(), 32);
     let bars = |line: &str| line.matches('|').count() - line.matches("\\|").count();
     assert!(table.lines().all(|line| bars(line) == 9), "{table}");
@@ -108,9 +111,9 @@ fn a_killed_search_goes_on_to_the_same_bytes() {
     assert!(error.contains("different search"), "{error}");
 }
 
-/// What is said of the assumed values does not depend on the search, and is what
-/// docs/claims.json holds: verdicts, and numbers to the last digit printed.
-fn the_assumed_values_are_judged_as_the_page_says(found: &Value) {
+/// Checks that the result for the assumed values is independent of the search and equals
+/// docs/claims.json: verdicts, and numbers in all printed digits.
+fn assert_assumed_values_match_page(found: &Value) {
     let kept = fs::read_to_string(project().join("docs/claims.json")).expect("claims.json");
     let kept: Value = serde_json::from_str(&kept).expect("JSON");
     let pairs = |document: &Value| -> Vec<(Value, Value)> {
@@ -123,7 +126,7 @@ fn the_assumed_values_are_judged_as_the_page_says(found: &Value) {
     assert_eq!(kept.len(), found.len());
     for ((id, kept), (same, found)) in kept.iter().zip(&found) {
         assert_eq!(id, same);
-        // Products of matrices are those of the processor: other bits, another chaos.
+        // Matrix products depend on the processor; other roundings give another chaotic motion.
         let named = if cfg!(target_arch = "x86_64") {
             &["verdict", "strict", "evidence"][..]
         } else {
@@ -138,8 +141,8 @@ fn the_assumed_values_are_judged_as_the_page_says(found: &Value) {
     }
 }
 
-/// `search.json` says what can be counted in `search.csv`.
-fn counts_are_those_of_the_table(found: &Value, rows: &[Vec<String>]) {
+/// Checks the counts of `search.json` against `search.csv`.
+fn assert_counts_match_table(found: &Value, rows: &[Vec<String>]) {
     let (names, rows) = rows.split_first().expect("a table");
     let screened: Vec<_> = rows.iter().filter(|row| row[0] == "screened").collect();
     assert_eq!(screened.len(), 1);
@@ -165,16 +168,19 @@ fn counts_are_those_of_the_table(found: &Value, rows: &[Vec<String>]) {
     let histogram = found["histogram"].as_array().expect("counts");
     let mut expected = vec![0; 31];
     for row in &screened {
-        // After stage, set, five values and two counts.
+        // The claims follow the stage, the set, five values and two counts.
         let holding = row[9..39].iter().filter(|letter| *letter == "H").count();
         assert_eq!(row[7], holding.to_string());
         expected[holding] += 1;
     }
-    assert_eq!(histogram, &expected, "how many hold at once");
+    assert_eq!(
+        histogram, &expected,
+        "histogram of claims that hold together"
+    );
 }
 
 #[test]
-fn wrong_use_is_refused() {
+fn invalid_options_are_rejected() {
     let nowhere = ["paper", "claims", "--out", "never-made"];
     for (option, value) in [
         ("--sets", "0"),
@@ -191,11 +197,11 @@ fn wrong_use_is_refused() {
 }
 
 #[test]
-fn a_place_that_cannot_be_written_to_is_refused_at_once() {
+fn unwritable_output_is_rejected_before_the_search() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("file");
     fs::write(&file, "").expect("written");
-    // Not counting the time to build the program.
+    // Builds the program first, outside the timing.
     program::path();
     let began = Instant::now();
     let error = refused(&["paper", "claims", "--out", &file.display().to_string()]);

@@ -1,4 +1,4 @@
-//! `eomgen generate --target c99`: what it leaves, what it refuses, and the example of the pages.
+//! `eomgen generate --target c99`: written files, rejected options, and the documented example.
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -6,9 +6,8 @@ use std::process::{Command, Output};
 use eomgen_tests::models::{path, project};
 use eomgen_tests::program::eomgen;
 
-use super::{WARNINGS, compilers, run};
+use super::{WARNINGS, has_compilers, run};
 
-/// `eomgen generate` of the arm in C, with further options.
 fn generate(out: &Path, options: &[&str]) -> Output {
     eomgen()
         .arg("generate")
@@ -21,7 +20,7 @@ fn generate(out: &Path, options: &[&str]) -> Output {
 }
 
 #[test]
-fn the_example_prints_what_the_pages_say() {
+fn c_example_prints_documented_line() {
     let folder = tempfile::tempdir().expect("a folder");
     let arm = folder.path().join("arm4");
     let output = generate(&arm, &["--order", "4"]);
@@ -30,7 +29,7 @@ fn the_example_prints_what_the_pages_say() {
     for file in ["planetary_arm.c", "planetary_arm.h"] {
         assert!(said.contains(file) && arm.join(file).is_file(), "{said}");
     }
-    if !compilers() {
+    if !has_compilers() {
         return;
     }
     let executable = folder.path().join("controller");
@@ -54,7 +53,7 @@ fn the_example_prints_what_the_pages_say() {
 }
 
 #[test]
-fn what_goes_with_rust_alone_is_refused() {
+fn rust_only_options_are_rejected() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("out");
     for (options, reason) in [
@@ -75,12 +74,12 @@ fn what_goes_with_rust_alone_is_refused() {
             said.contains(reason) && said.contains("--target rust"),
             "{said}"
         );
-        assert!(!out.exists(), "{options:?} left something");
+        assert!(!out.exists(), "{options:?} wrote files");
     }
 }
 
 #[test]
-fn json_names_the_files() {
+fn json_lists_the_files() {
     let folder = tempfile::tempdir().expect("a folder");
     let output = generate(folder.path(), &["--json"]);
     let document: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");

@@ -1,10 +1,10 @@
-//! Names that are words of C, and texts that would end a comment.
+//! Names that are C keywords, and texts that would end a comment.
 
 use eomgen_codegen::c::{self, EmitError};
 
-use super::{compare, compilers, program, requested};
+use super::{compare, has_compilers, program, supported_outputs};
 
-/// A pendulum with this for its names and texts.
+/// Returns a pendulum with these names and texts.
 pub fn pendulum(
     model: &str,
     title: &str,
@@ -28,8 +28,8 @@ pub fn pendulum(
 }
 
 #[test]
-fn texts_do_not_leave_their_comments() {
-    if !compilers() {
+fn texts_cannot_end_comments() {
+    if !has_compilers() {
         return;
     }
     for doc in [
@@ -41,15 +41,15 @@ fn texts_do_not_leave_their_comments() {
         compare(&program(
             &pendulum("texts", doc, doc, "l", "u", "theta"),
             0,
-            &requested(),
+            &supported_outputs(),
         ));
     }
 }
 
-/// Names that are fields of structures are kept as they are, those of variables give way.
+/// Names that are fields of structures stay unchanged; clashing variables are renamed.
 #[test]
 fn names_of_the_emitted_code_do_not_collide() {
-    if !compilers() {
+    if !has_compilers() {
         return;
     }
     for (length, input, angle) in [
@@ -64,7 +64,7 @@ fn names_of_the_emitted_code_do_not_collide() {
         compare(&program(
             &pendulum("names", "t", "d", length, input, angle),
             0,
-            &requested(),
+            &supported_outputs(),
         ));
     }
     for model in ["new", "main_", "class", "std"] {
@@ -77,7 +77,7 @@ fn names_of_the_emitted_code_do_not_collide() {
 }
 
 #[test]
-fn words_of_c_are_no_names() {
+fn c_keywords_are_rejected_as_names() {
     for word in [
         "new", "class", "bool", "NULL", "template", "errno", "stdout",
     ] {
@@ -94,9 +94,9 @@ fn words_of_c_are_no_names() {
     }
 }
 
-/// Words of C that are words of Rust as well, or nearly, are refused before anything is emitted.
+/// Keywords common to C and Rust are rejected before emission.
 #[test]
-fn words_of_c_are_refused_with_their_line() {
+fn keywords_of_c_and_rust_are_rejected_with_line() {
     for word in ["double", "int", "register", "restrict"] {
         let text = pendulum("words", "t", "d", word, "u", "theta");
         let source = eomgen_model_spec::source::Source::new("model.toml", text.as_str());

@@ -1,5 +1,5 @@
-//! Emitted C beside itself: two models in one program, a shared library loaded twice, several
-//! threads, and no data that a call could change.
+//! Coexistence of emitted C: two models in one program, a shared library loaded twice, several
+//! threads, and no writable static data.
 
 use std::path::Path;
 use std::process::Command;
@@ -8,17 +8,16 @@ use eomgen_codegen::c;
 use eomgen_tests::models::{load, shipped, variant};
 
 use super::hostile::pendulum;
-use super::{WARNINGS, compilers, program, requested, run};
+use super::{WARNINGS, has_compilers, program, run, supported_outputs};
 
-/// Writes the emitted C of a model to a folder.
-fn written(folder: &Path, name: &str) {
+fn write_c(folder: &Path, name: &str) {
     let text = pendulum(name, "t", "d", "l", "u", "theta");
-    let files = c::emit(&program(&text, 0, &requested())).expect("emitted");
+    let files = c::emit(&program(&text, 0, &supported_outputs())).expect("emitted");
     std::fs::write(folder.join(format!("{name}.h")), files.header).expect("written");
     std::fs::write(folder.join(format!("{name}.c")), files.source).expect("written");
 }
 
-/// A compiler of C99 in a folder.
+/// Returns a C99 compiler command that runs in `folder`.
 fn compiler(folder: &Path) -> Command {
     let mut command = Command::new("cc");
     command.current_dir(folder).args(["-std=c99", "-O2"]);
@@ -27,16 +26,16 @@ fn compiler(folder: &Path) -> Command {
 }
 
 #[test]
-fn models_libraries_and_threads_do_not_meet() {
-    if !compilers() {
+fn models_libraries_and_threads_are_independent() {
+    if !has_compilers() {
         return;
     }
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
-    written(folder, "first");
-    written(folder, "second");
+    write_c(folder, "first");
+    write_c(folder, "second");
     run(compiler(folder).args(["-shared", "-fPIC", "second.c", "-o", "one.so"]));
-    // The loader takes a file loaded twice for one.
+    // The loader would load the same file only once.
     std::fs::copy(folder.join("one.so"), folder.join("other.so")).expect("copied");
     std::fs::write(folder.join("linked.c"), include_str!("linked.c")).expect("written");
     run(compiler(folder).args([
@@ -48,10 +47,10 @@ fn models_libraries_and_threads_do_not_meet() {
     assert_eq!(said, "the same\n");
 }
 
-/// Whatever `nm` calls data or uninitialised data could be changed by a call.
+/// `nm` must list no initialised or uninitialised data.
 #[test]
-fn nothing_static_can_be_written_to() {
-    if !compilers() {
+fn emitted_c_has_no_writable_static_data() {
+    if !has_compilers() {
         return;
     }
     let folder = tempfile::tempdir().expect("a folder");

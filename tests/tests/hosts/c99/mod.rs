@@ -1,6 +1,6 @@
-//! The emitted C against the emitted Rust, both compiled: the same bits of every output at the
-//! same states, some of them infinite or NaN, of every shipped model, of models for every feature of
-//! the language, and of names and texts that mean something to C. Skipped, and said so, without a C compiler.
+//! The emitted C against the emitted Rust, both compiled: equal bits of every output at equal
+//! states, some of them infinite or NaN. Covers every shipped model, every language feature, and
+//! names and texts with a meaning in C. Skipped with a message if there is no C compiler.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -19,27 +19,27 @@ mod hostile;
 mod linked;
 mod reordered;
 
-/// What every compiler of the emitted C is asked for.
+/// Compiler warnings for all emitted C.
 const WARNINGS: [&str; 4] = ["-pedantic", "-Wall", "-Wextra", "-Werror"];
 
-/// What is requested besides what is always there: all but what C has no way to say.
-fn requested() -> Vec<Output> {
+/// Returns all outputs that C supports.
+fn supported_outputs() -> Vec<Output> {
     let mut all = Output::ALL.to_vec();
     all.retain(|output| *output != Output::Lanes);
     all
 }
 
-/// Whether there are compilers for C and C++; says so if not.
-fn compilers() -> bool {
+/// Returns true if C and C++ compilers exist; otherwise reports the skip.
+fn has_compilers() -> bool {
     let works = |program: &str| Command::new(program).arg("--version").output().is_ok();
     let there = works("cc") && works("c++");
     if !there {
-        skips::skip("the emitted C was not compiled, for want of cc and c++ (Debian: g++)");
+        skips::skip("the emitted C was not compiled: cc or c++ is missing (Debian: g++)");
     }
     there
 }
 
-/// Runs a command; what it prints.
+/// Runs a command; returns its stdout.
 fn run(command: &mut Command) -> String {
     let output = command.output().expect("the command starts");
     let said = String::from_utf8_lossy(&output.stderr);
@@ -47,7 +47,6 @@ fn run(command: &mut Command) -> String {
     String::from_utf8(output.stdout).expect("text")
 }
 
-/// The model of a text.
 fn model(text: &str) -> Model {
     match eomgen_model_spec::check(Source::new("model.toml", text)) {
         Ok(checked) => checked.model,
@@ -55,7 +54,6 @@ fn model(text: &str) -> Model {
     }
 }
 
-/// The program of a text at one order.
 fn program(text: &str, order: usize, outputs: &[Output]) -> Program {
     let model = model(text);
     let orders = vec![order; model.fields.len()];
@@ -63,8 +61,8 @@ fn program(text: &str, order: usize, outputs: &[Output]) -> Program {
     variant.expect("the model can be derived").program
 }
 
-/// Writes the emitted C to a folder and has it read as C++, in these precisions.
-fn read_as_cpp(program: &Program, precisions: &[&str], folder: &Path) {
+/// Writes the emitted C to a folder and compiles it as C++ in these precisions.
+fn compile_as_cpp(program: &Program, precisions: &[&str], folder: &Path) {
     let files = c::emit(program).expect("emitted");
     let name = &program.name;
     std::fs::write(folder.join(format!("{name}.h")), files.header).expect("written");
@@ -78,13 +76,12 @@ fn read_as_cpp(program: &Program, precisions: &[&str], folder: &Path) {
     }
 }
 
-/// How the C is compiled.
 #[derive(Clone, Copy)]
 enum Compiled {
-    /// As others would: optimised.
+    /// Optimised, as in applications.
     Optimised,
-    /// What C leaves undefined, such as NaN as an integer, ends the driver. Without optimisation,
-    /// with which that takes five times as long to compile.
+    /// Undefined behaviour of C, such as converting NaN to an integer, ends the driver. Not
+    /// optimised: optimisation would make compilation five times as long.
     Trapping,
 }
 
@@ -101,8 +98,8 @@ impl Compiled {
     }
 }
 
-/// What the driver in C prints.
-fn printed_by_c(program: &Program, real: &str, compiled: Compiled, folder: &Path) -> String {
+/// Compiles and runs the driver in C; returns its stdout.
+fn run_c_driver(program: &Program, real: &str, compiled: Compiled, folder: &Path) -> String {
     let name = &program.name;
     let mut defaults: Vec<String> = program
         .default_parameters()
@@ -129,7 +126,7 @@ fn printed_by_c(program: &Program, real: &str, compiled: Compiled, folder: &Path
         .args(WARNINGS);
     for (name, requested) in ["-DREQUESTED", "-DDERIVATIVES"]
         .iter()
-        .zip(requests(program))
+        .zip(has_requested(program))
     {
         if requested {
             command.arg(name);
@@ -144,8 +141,9 @@ fn printed_by_c(program: &Program, real: &str, compiled: Compiled, folder: &Path
     run(&mut Command::new(executable))
 }
 
-/// Compiles the driver in Rust, for these precisions, knowing the regimes that the one in C was in.
-fn driver_in_rust(
+/// Writes and compiles the driver in Rust for these precisions and the regimes that the C driver
+/// visited.
+fn compile_rust_driver(
     program: &Program,
     precisions: &[&str],
     by_c: &[String],
@@ -172,7 +170,7 @@ fn driver_in_rust(
         .iter()
         .map(|input| format!("input_product.{}", input.name))
         .collect();
-    let [requested, derivatives] = requests(program);
+    let [requested, derivatives] = has_requested(program);
     let requested = requested.then(|| include_str!("requested.rs.txt").replace("//REGIMES", &arms));
     let derivatives = derivatives.then(|| {
         let inputs = format!("[{}]", inputs.join(", "));
@@ -213,32 +211,32 @@ fn driver_in_rust(
     executable
 }
 
-/// Whether forces and regimes, and whether derivatives were requested.
-fn requests(program: &Program) -> [bool; 2] {
+/// Returns whether forces and regimes were requested, and whether derivatives were.
+fn has_requested(program: &Program) -> [bool; 2] {
     let kinds = &program.outputs.kinds;
     [Output::Regimes, Output::Products].map(|output| kinds.contains(&output))
 }
 
-/// Compares both in both precisions.
+/// Compares C and Rust in both precisions.
 fn compare(program: &Program) {
     compare_in(program, &["double", "float"], Compiled::Trapping);
 }
 
-/// Compares both in these precisions.
+/// Compares C and Rust in these precisions.
 fn compare_in(program: &Program, precisions: &[&str], compiled: Compiled) {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
-    read_as_cpp(program, precisions, folder);
+    compile_as_cpp(program, precisions, folder);
     let by_c = precisions
         .iter()
-        .map(|real| printed_by_c(program, real, compiled, folder));
+        .map(|real| run_c_driver(program, real, compiled, folder));
     let by_c: Vec<String> = by_c.collect();
-    let in_rust = driver_in_rust(program, precisions, &by_c, folder);
+    let in_rust = compile_rust_driver(program, precisions, &by_c, folder);
     for (real, by_c) in precisions.iter().zip(&by_c) {
         let by_rust = run(Command::new(&in_rust).arg(real));
         assert!(by_c.lines().count() > 24 * 2 * program.states());
         let numbers = by_c.lines().filter(|line| !line.ends_with("nan")).count();
-        assert!(2 * numbers > by_c.lines().count(), "most numbers are none");
+        assert!(2 * numbers > by_c.lines().count(), "most numbers are NaN");
         let mut last = "";
         for (c, rust) in by_c.lines().zip(by_rust.lines()) {
             if c.starts_with("point") {
@@ -250,8 +248,8 @@ fn compare_in(program: &Program, precisions: &[&str], compiled: Compiled) {
     }
 }
 
-/// A specification by its path: at one order with all that can be requested of it, in these
-/// precisions; without at others.
+/// Compares a specification: at `order` with all requestable outputs in these precisions, at other
+/// orders without.
 fn compare_file(
     path: PathBuf,
     with: usize,
@@ -267,14 +265,14 @@ fn compare_file(
         let orders = vec![with; model.fields.len()];
         Variant::derive_with(&model, &orders, outputs)
     };
-    // A sum that weighs squares of mode shapes by the state has no derivatives.
+    // A sum that weights squares of mode shapes by the state has no derivatives.
     let forces = [
         Output::BiasForces,
         Output::InverseDynamics,
         Output::GuardRates,
         Output::Regimes,
     ];
-    let variant = derived(&requested()).or_else(|_| derived(&forces));
+    let variant = derived(&supported_outputs()).or_else(|_| derived(&forces));
     let variant = variant.expect("the model can be derived");
     compare_in(&variant.program, precisions, compiled);
     for order in without {
@@ -289,8 +287,8 @@ fn compare_file(
 }
 
 #[test]
-fn shipped_models_have_the_bits_of_rust() {
-    if compilers() {
+fn shipped_models_match_rust_bitwise() {
+    if has_compilers() {
         for path in shipped() {
             compare_file(
                 path,
@@ -304,8 +302,8 @@ fn shipped_models_have_the_bits_of_rust() {
 }
 
 #[test]
-fn every_feature_of_the_language_has_the_bits_of_rust() {
-    if !compilers() {
+fn language_features_match_rust_bitwise() {
+    if !has_compilers() {
         return;
     }
     let folder = project().join("tests/features");

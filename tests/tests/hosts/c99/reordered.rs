@@ -1,13 +1,13 @@
-//! The emitted C where the compiler may reorder sums: other bits, the same values.
+//! The emitted C with reordered sums: other bits, the same values within rounding.
 
 use std::fmt::Write;
 use std::path::Path;
 use std::process::Command;
 
-use super::{compilers, program, run};
+use super::{has_compilers, program, run};
 use eomgen_codegen::c;
 
-/// Functions of x and y within 0.9.
+/// Functions of x and y, with arguments up to 0.9.
 const FUNCTIONS: [&str; 17] = [
     "sin(x/d)",
     "cos(x/d)",
@@ -28,10 +28,11 @@ const FUNCTIONS: [&str; 17] = [
     "sin(300*x/d)",
 ];
 
-/// How far a value may be off, relative to itself or to 1: 300 rad are reduced to a turn.
+/// Maximum deviation relative to the larger of the value and 1; arguments of 300 rad are reduced to
+/// a turn.
 const BOUND: f64 = 1e-12;
 
-/// Prints every observable at places all over the square.
+/// Program that prints every observable on a grid over the square.
 const MAIN: &str = "\
 #include \"each.h\"
 #include <stdio.h>
@@ -54,8 +55,8 @@ int main(void) {
 }
 ";
 
-/// What the program prints, compiled with these flags.
-fn printed(flags: &[&str], folder: &Path) -> Vec<f64> {
+/// Compiles with these flags and returns the printed numbers.
+fn print_values(flags: &[&str], folder: &Path) -> Vec<f64> {
     let executable = folder.join("each");
     run(Command::new("cc")
         .arg("-std=c99")
@@ -70,8 +71,8 @@ fn printed(flags: &[&str], folder: &Path) -> Vec<f64> {
 }
 
 #[test]
-fn reordered_sums_leave_the_values() {
-    if !compilers() {
+fn reordered_sums_preserve_values() {
+    if !has_compilers() {
         return;
     }
     let mut text = "[model]\nname = \"each\"\ntitle = \"Every elementary function\"\n\
@@ -91,8 +92,8 @@ fn reordered_sums_leave_the_values() {
     ] {
         std::fs::write(folder.path().join(name), content).expect("written");
     }
-    let strict = printed(&["-O1"], folder.path());
-    let reordered = printed(&["-O3", "-ffast-math"], folder.path());
+    let strict = print_values(&["-O1"], folder.path());
+    let reordered = print_values(&["-O3", "-ffast-math"], folder.path());
     assert_eq!(strict.len(), reordered.len());
     assert!(strict.len() >= 199 * FUNCTIONS.len());
     for (place, (strict, reordered)) in strict.iter().zip(&reordered).enumerate() {

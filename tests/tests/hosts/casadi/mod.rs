@@ -1,7 +1,7 @@
-//! The functions emitted for CasADi, called by CasADi: the rates to the bit, the Jacobians against
-//! differences. Skipped, and said so, where there is no CasADi.
+//! The functions emitted for CasADi, called by CasADi: rates bit for bit, Jacobians against finite
+//! differences. Skipped with a message if CasADi is missing.
 //!
-//! Links are those of Unix.
+//! The tests create Unix symbolic links.
 #![cfg(unix)]
 
 use std::path::Path;
@@ -14,7 +14,7 @@ use eomgen_codegen::variant::Variant;
 use eomgen_tests::models::load;
 use eomgen_tests::program::refused;
 
-/// The program that runs Python, if it knows CasADi.
+/// Returns the command of a Python with CasADi; otherwise reports the skip.
 fn python() -> Option<&'static str> {
     let found = Command::new("python3")
         .args(["-c", "import casadi, numpy"])
@@ -22,7 +22,7 @@ fn python() -> Option<&'static str> {
     let there = found.is_ok_and(|output| output.status.success());
     if !there {
         skips::skip(
-            "CasADi did not call the emitted functions, for want of python3 with casadi and numpy (pip install casadi)",
+            "CasADi did not call the emitted functions: python3 with casadi and numpy is missing (pip install casadi)",
         );
     }
     there.then_some("python3")
@@ -90,7 +90,7 @@ fn check(name: &str, order: usize, with: &[Output], folder: &Path) {
 }
 
 #[test]
-fn casadi_calls_the_emitted_functions() {
+fn casadi_matches_emitted_functions() {
     let folder = tempfile::tempdir().expect("a folder");
     for (name, order) in [
         ("pendulum", 0),
@@ -106,7 +106,7 @@ fn casadi_calls_the_emitted_functions() {
 }
 
 #[test]
-fn requests_do_not_go_with_casadi() {
+fn with_is_rejected_for_casadi() {
     let spec = eomgen_tests::models::path("pendulum");
     let spec = spec.to_string_lossy();
     for (with, reason) in [
@@ -123,8 +123,9 @@ fn requests_do_not_go_with_casadi() {
     }
 }
 
-/// Runs the commands that an example begins with, in a folder of its own; what the last prints.
-fn example(name: &str) -> String {
+/// Runs the commands at the head of an example in a temporary folder; returns the output of the
+/// last.
+fn run_example(name: &str) -> String {
     let project = eomgen_tests::models::project();
     let page = std::fs::read_to_string(project.join("examples/with_casadi").join(name));
     let page = page.expect("an example");
@@ -158,9 +159,9 @@ fn example(name: &str) -> String {
 }
 
 #[test]
-fn the_pendulum_swings_up_from_a_plain_guess() {
+fn pendulum_swings_up_from_linear_guess() {
     if python().is_some() {
-        let printed = example("swing_up.py");
+        let printed = run_example("swing_up.py");
         assert!(
             printed.contains("time against CasADi's own symbols"),
             "{printed}"
@@ -169,9 +170,9 @@ fn the_pendulum_swings_up_from_a_plain_guess() {
 }
 
 #[test]
-fn a_predictive_controller_moves_the_tip_faster_than_the_arm_bends() {
+fn predictive_controller_example_runs() {
     if python().is_some() {
-        let printed = example("track_tip.py");
+        let printed = run_example("track_tip.py");
         assert!(printed.contains("per sample"), "{printed}");
     }
 }

@@ -1,6 +1,6 @@
 //! Functional mock-up units: their sources compile without a warning, the same specification gives
-//! the same bytes, FMPy validates them and simulates both kinds as `simulate` does, CasADi's
-//! `DaeBuilder` differentiates them, and wrong calls get a status.
+//! the same bytes, FMPy validates them and simulates both kinds like `simulate`, CasADi's
+//! `DaeBuilder` differentiates them, and invalid calls return an error status.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -10,8 +10,8 @@ use eomgen_tests::program::{accepted, eomgen, refused};
 
 const VERSIONS: [&str; 2] = ["fmu2", "fmu3"];
 
-/// Writes a unit and says where it is.
-fn unit(name: &str, order: Option<&str>, target: &str, folder: &Path) -> PathBuf {
+/// Writes a unit and returns its path.
+fn write_unit(name: &str, order: Option<&str>, target: &str, folder: &Path) -> PathBuf {
     let out = folder.join(target);
     let mut command = eomgen();
     command
@@ -28,24 +28,25 @@ fn unit(name: &str, order: Option<&str>, target: &str, folder: &Path) -> PathBuf
     out.join(format!("{name}.fmu"))
 }
 
-fn ends(command: &mut Command) -> bool {
+fn succeeds(command: &mut Command) -> bool {
     command.output().is_ok_and(|output| output.status.success())
 }
 
-/// Whether there are a C compiler and a Python with these packages; says what is not tested.
-fn is_there(packages: &str, what: &str) -> bool {
-    let python = ends(Command::new("python3").args(["-c", &format!("import {packages}")]));
-    let compiler = ends(Command::new("cc").arg("--version"));
+/// Returns true if there are a C compiler and a Python with these packages; otherwise reports the
+/// skip.
+fn is_available(packages: &str, what: &str) -> bool {
+    let python = succeeds(Command::new("python3").args(["-c", &format!("import {packages}")]));
+    let compiler = succeeds(Command::new("cc").arg("--version"));
     if !(python && compiler) {
         skips::skip(&format!(
-            "{what}, for want of cc or of python3 with {packages} (pip install fmpy casadi numpy)"
+            "{what}: cc or python3 with {packages} is missing (pip install fmpy casadi numpy)"
         ));
     }
     python && compiler
 }
 
-/// Runs a script of this folder.
-fn python(script: &str, arguments: &[&str]) {
+/// Runs a Python script of this folder.
+fn run_python(script: &str, arguments: &[&str]) {
     let place = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/hosts/fmi")).join(script);
     let output = Command::new("python3")
         .arg(place)
@@ -63,7 +64,7 @@ fn python(script: &str, arguments: &[&str]) {
 
 #[test]
 fn sources_compile_without_a_warning() {
-    if !is_there(
+    if !is_available(
         "zipfile",
         "the sources of functional mock-up units were not compiled",
     ) {
@@ -76,10 +77,10 @@ fn sources_compile_without_a_warning() {
         ("planetary_arm", Some("1")),
     ] {
         for target in VERSIONS {
-            let unit = unit(name, order, target, folder.path());
+            let unit = write_unit(name, order, target, folder.path());
             let out = folder.path().join(format!("{target}_{name}"));
             let arguments = ["-m", "zipfile", "-e"];
-            assert!(ends(
+            assert!(succeeds(
                 Command::new("python3").args(arguments).arg(&unit).arg(&out)
             ));
             let output = Command::new("cc")
@@ -95,20 +96,21 @@ fn sources_compile_without_a_warning() {
 }
 
 #[test]
-fn the_same_specification_gives_the_same_bytes() {
+fn units_are_reproducible() {
     let folders = [(); 2].map(|()| tempfile::tempdir().expect("a folder"));
     for target in VERSIONS {
         let [one, other] = folders.each_ref().map(|folder| {
-            std::fs::read(unit("furuta_pendulum", None, target, folder.path())).expect("a unit")
+            std::fs::read(write_unit("furuta_pendulum", None, target, folder.path()))
+                .expect("a unit")
         });
         assert!(one == other, "{target}");
     }
 }
 
 #[test]
-fn both_kinds_move_as_simulate_says() {
+fn both_kinds_of_units_match_simulate() {
     let what = "functional mock-up units were not simulated";
-    if !is_there("fmpy, numpy", what) {
+    if !is_available("fmpy, numpy", what) {
         return;
     }
     let folder = tempfile::tempdir().expect("a folder");
@@ -116,7 +118,7 @@ fn both_kinds_move_as_simulate_says() {
         ("pendulum", None, "2", "1e-9", "1e-6"),
         ("furuta_pendulum", None, "1", "1e-9", "1e-5"),
         ("hub_beam_tip_mass", Some("2"), "0.05", "1e-10", "1e-4"),
-        // Lengths are of some micrometres, and the tolerance is of a metre too.
+        // Deflections are some micrometres, so an absolute tolerance relative to 1 m must be small.
         ("planetary_arm", Some("2"), "0.05", "1e-11", "1e-4"),
     ] {
         let table = folder.path().join(format!("{name}.csv"));
@@ -131,17 +133,17 @@ fn both_kinds_move_as_simulate_says() {
         }
         accepted(&arguments);
         for target in VERSIONS {
-            let unit = unit(name, order, target, folder.path());
+            let unit = write_unit(name, order, target, folder.path());
             let unit = unit.to_string_lossy();
-            python("motion.py", &[&unit, &out, tolerance, limit]);
+            run_python("motion.py", &[&unit, &out, tolerance, limit]);
         }
     }
 }
 
 #[test]
-fn casadi_differentiates_a_unit() {
+fn casadi_differentiates_unit() {
     let what = "CasADi did not import functional mock-up units";
-    if !is_there("casadi, numpy", what) {
+    if !is_available("casadi, numpy", what) {
         return;
     }
     let folder = tempfile::tempdir().expect("a folder");
@@ -151,29 +153,29 @@ fn casadi_differentiates_a_unit() {
         ("planetary_arm", Some("1")),
     ] {
         for target in VERSIONS {
-            let unit = unit(name, order, target, folder.path());
-            python("derivatives.py", &[&unit.to_string_lossy()]);
+            let unit = write_unit(name, order, target, folder.path());
+            run_python("derivatives.py", &[&unit.to_string_lossy()]);
         }
     }
 }
 
 #[test]
-fn wrong_calls_get_a_status() {
+fn invalid_calls_return_error_status() {
     let what = "functional mock-up units were not called wrongly";
-    if !is_there("ctypes, zipfile", what) {
+    if !is_available("ctypes, zipfile", what) {
         return;
     }
     let folder = tempfile::tempdir().expect("a folder");
     for target in VERSIONS {
         for (name, order) in [("furuta_pendulum", None), ("planetary_arm", Some("1"))] {
-            let unit = unit(name, order, target, folder.path());
-            python("hostile.py", &[&unit.to_string_lossy(), target]);
+            let unit = write_unit(name, order, target, folder.path());
+            run_python("hostile.py", &[&unit.to_string_lossy(), target]);
         }
     }
 }
 
 #[test]
-fn without_a_compiler_a_unit_holds_its_sources() {
+fn unit_without_compiler_contains_sources_only() {
     let folder = tempfile::tempdir().expect("a folder");
     let output = eomgen()
         .arg("generate")
@@ -190,7 +192,7 @@ fn without_a_compiler_a_unit_holds_its_sources() {
 }
 
 #[test]
-fn requests_do_not_go_with_a_unit() {
+fn with_is_rejected_for_units() {
     let spec = path("pendulum");
     let spec = spec.to_string_lossy();
     for (options, reason) in [

@@ -1,6 +1,6 @@
-//! The emitted module against the interpreter, which has the bits of the emitted Rust: the same bits
-//! of rates, observables and guards at random states, in every regime, at numbers that are none,
-//! of shipped models and of models for every feature of the language.
+//! The WebAssembly module of a page against the interpreter: equal bits of rates, observables and
+//! guards at random states, in every regime, at non-finite numbers, for shipped models and every
+//! language feature.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -11,17 +11,16 @@ use eomgen_codegen::wasm;
 use eomgen_model_spec::model::Model;
 use eomgen_tests::models::{project, samples, shipped, variant};
 
-/// Whether modules can be run; says so if not.
+/// Returns true if node can run modules; otherwise reports the skip.
 pub fn node() -> bool {
     let found = Command::new("node").arg("--version").output();
     let there = found.is_ok_and(|output| output.status.success());
     if !there {
-        skips::skip("no emitted WebAssembly was run, for want of node (Debian: nodejs)");
+        skips::skip("no emitted WebAssembly was run: node is missing (Debian: nodejs)");
     }
     there
 }
 
-/// Where a module is run.
 struct Case {
     parameters: Vec<f64>,
     time: f64,
@@ -29,8 +28,8 @@ struct Case {
     inputs: Vec<f64>,
 }
 
-/// States in every regime, with the specification's parameters and with others, and numbers that
-/// are none, or too large.
+/// Returns states in every regime with default and other parameters, and cases with non-finite or
+/// too large numbers.
 fn cases(model: &Model, program: &Program, order: usize) -> Vec<Case> {
     let defaults = program.default_parameters();
     let mut cases = Vec::new();
@@ -61,8 +60,8 @@ fn cases(model: &Model, program: &Program, order: usize) -> Vec<Case> {
     cases
 }
 
-/// What the interpreter has for a case, in the order of the script.
-fn expected(evaluator: &mut Evaluator, case: &Case) -> Vec<f64> {
+/// Returns the interpreter's results in the order of the script.
+fn interpret(evaluator: &mut Evaluator, case: &Case) -> Vec<f64> {
     evaluator.prepare(&case.parameters);
     let usable = f64::from(u8::from(evaluator.pivots_are_positive()));
     let point = || Point {
@@ -79,8 +78,8 @@ fn expected(evaluator: &mut Evaluator, case: &Case) -> Vec<f64> {
     [vec![usable], rates, observables, guards].concat()
 }
 
-/// What the module has for all cases, after its parameters as they stand before anything is written.
-fn computed(module: &[u8], cases: &[Case], counts: [usize; 5]) -> Vec<f64> {
+/// Returns the module's parameters before any write, then its results for all cases.
+fn run_module(module: &[u8], cases: &[Case], counts: [usize; 5]) -> Vec<f64> {
     let folder = tempfile::tempdir().expect("a folder");
     let numbers = cases.iter().flat_map(|case| {
         let parts = [
@@ -108,7 +107,7 @@ fn computed(module: &[u8], cases: &[Case], counts: [usize; 5]) -> Vec<f64> {
     numbers.map(number).collect()
 }
 
-/// Compares a specification at one order; how many numbers were compared that are some.
+/// Compares a specification at one order; returns the number of finite numbers compared.
 fn compare(path: &Path, order: Option<usize>) -> usize {
     let model = eomgen_model_spec::load(path).expect("it loads").model;
     let order = order.or_else(|| model.fields.first().map(|field| field.order));
@@ -119,7 +118,7 @@ fn compare(path: &Path, order: Option<usize>) -> usize {
     assert_eq!(
         module,
         wasm::emit(&program).expect("emitted"),
-        "not the same twice"
+        "two runs give different modules"
     );
     let cases = cases(&model, &program, order);
     let counts = [
@@ -129,14 +128,14 @@ fn compare(path: &Path, order: Option<usize>) -> usize {
         program.observables.len(),
         evaluator.guard_count(),
     ];
-    let results = computed(&module, &cases, counts);
+    let results = run_module(&module, &cases, counts);
     let (defaults, results) = results.split_at(program.parameters.len());
     assert_eq!(defaults, program.default_parameters());
     let width = 1 + program.states() + program.observables.len() + evaluator.guard_count();
     assert_eq!(results.len(), cases.len() * width);
     let mut compared = 0;
     for (case, found) in cases.iter().zip(results.chunks(width)) {
-        let wanted = expected(&mut evaluator, case);
+        let wanted = interpret(&mut evaluator, case);
         for (place, (found, wanted)) in found.iter().zip(&wanted).enumerate() {
             let same = found.to_bits() == wanted.to_bits() || found.is_nan() && wanted.is_nan();
             let name = &program.name;
@@ -149,13 +148,13 @@ fn compare(path: &Path, order: Option<usize>) -> usize {
     }
     assert!(
         2 * compared > cases.len() * width / 2,
-        "most numbers are none"
+        "most numbers are NaN"
     );
     compared
 }
 
 #[test]
-fn shipped_models_have_the_bits_of_the_interpreter() {
+fn shipped_models_match_interpreter_bitwise() {
     if !node() {
         return;
     }
@@ -171,7 +170,7 @@ fn shipped_models_have_the_bits_of_the_interpreter() {
 }
 
 #[test]
-fn every_feature_of_the_language_has_the_bits_of_the_interpreter() {
+fn language_features_match_interpreter_bitwise() {
     if !node() {
         return;
     }

@@ -1,5 +1,5 @@
-//! The pages in a browser, with its network off: they open without an error, move, react to a slider
-//! and fit their window, light and dark. A small script speaks with the browser.
+//! Pages in an offline browser: they open without an error, move, react to a slider and fit their
+//! window, in light and dark colours. A small script controls the browser.
 
 use std::path::Path;
 use std::process::Command;
@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use super::{drawn, page};
 
-/// The browser, if there is one and node, which speaks with it; says so if not.
+/// Returns the browser, if it and node exist; otherwise reports the skip.
 pub fn browser() -> Option<&'static str> {
     let runs = |name: &str| {
         let found = Command::new(name).arg("--version").output();
@@ -18,14 +18,12 @@ pub fn browser() -> Option<&'static str> {
     let names = ["chromium", "chromium-browser", "google-chrome"];
     let found = names.into_iter().find(|name| runs("node") && runs(name));
     if found.is_none() {
-        skips::skip(
-            "no page was opened, for want of node and a browser (Debian: nodejs, chromium)",
-        );
+        skips::skip("no page was opened: node or a browser is missing (Debian: nodejs, chromium)");
     }
     found
 }
 
-/// How a page is looked at.
+/// Window size and preferences of the browser.
 #[derive(Clone, Copy)]
 pub struct Look {
     pub width: u32,
@@ -33,19 +31,18 @@ pub struct Look {
     pub still: bool,
 }
 
-/// An ordinary look.
 pub const WIDE: Look = Look {
     width: 1280,
     dark: false,
     still: false,
 };
 
-/// What the probe saw in a page to play with.
+/// Returns the observations of the probe on a page.
 pub fn probed(browser: &str, page: &Path, look: Look) -> Value {
     probed_by("probe.js", browser, page, look)
 }
 
-/// What a probe saw in a page.
+/// Returns the observations of the given probe script.
 pub fn probed_by(probe: &str, browser: &str, page: &Path, look: Look) -> Value {
     let script = |name: &str| project().join("tests/tests/hosts/page").join(name);
     let Look { width, dark, still } = look;
@@ -65,8 +62,8 @@ pub fn probed_by(probe: &str, browser: &str, page: &Path, look: Look) -> Value {
     serde_json::from_slice(&output.stdout).expect("JSON")
 }
 
-/// Asserts what holds of every page that moves by itself.
-fn moves(seen: &Value) {
+/// Asserts the common properties of animated pages.
+fn assert_moves(seen: &Value) {
     assert_eq!(seen["errors"], serde_json::json!([]), "{seen}");
     assert_eq!(seen["excess"], 0, "wider than its window: {seen}");
     assert_eq!(
@@ -89,7 +86,7 @@ fn moves(seen: &Value) {
 }
 
 #[test]
-fn a_drawn_model_moves_and_reacts_at_every_size_and_colour() {
+fn drawn_model_moves_and_reacts_in_every_size_and_colour() {
     let Some(browser) = browser() else { return };
     let folder = tempfile::tempdir().expect("a folder");
     for name in ["double_pendulum", "crane", "flexible_arm"] {
@@ -104,14 +101,14 @@ fn a_drawn_model_moves_and_reacts_at_every_size_and_colour() {
                     ..WIDE
                 },
             );
-            moves(&seen);
+            assert_moves(&seen);
             assert_eq!(seen["dark"], dark, "{seen}");
         }
     }
 }
 
 #[test]
-fn nothing_moves_by_itself_for_who_wants_less_motion() {
+fn page_does_not_move_with_reduced_motion() {
     let Some(browser) = browser() else { return };
     let folder = tempfile::tempdir().expect("a folder");
     let page = page(&path("double_pendulum"), &[], folder.path());
@@ -134,7 +131,7 @@ fn nothing_moves_by_itself_for_who_wants_less_motion() {
 }
 
 #[test]
-fn shipped_models_open_without_an_error() {
+fn pages_of_shipped_models_open_without_error() {
     let Some(browser) = browser() else { return };
     let folder = tempfile::tempdir().expect("a folder");
     for spec in shipped() {

@@ -1,4 +1,4 @@
-//! What the command leaves, and what it refuses.
+//! Output and rejected options of `eomgen page`.
 
 use eomgen_tests::models::path;
 use eomgen_tests::program::{accepted, refused};
@@ -6,7 +6,7 @@ use eomgen_tests::program::{accepted, refused};
 use super::{drawn, page};
 
 #[test]
-fn a_page_needs_nothing_else() {
+fn page_is_self_contained() {
     let folder = tempfile::tempdir().expect("a folder");
     for spec in [path("pendulum"), drawn("double_pendulum")] {
         let text = std::fs::read_to_string(page(&spec, &[], folder.path())).expect("a page");
@@ -22,7 +22,7 @@ fn a_page_needs_nothing_else() {
 }
 
 #[test]
-fn units_and_ends_are_those_of_the_specification() {
+fn page_has_units_and_ranges_of_specification() {
     let text = accepted(&[
         "page",
         &drawn("double_pendulum").display().to_string(),
@@ -45,14 +45,14 @@ fn units_and_ends_are_those_of_the_specification() {
 }
 
 #[test]
-fn the_same_page_comes_twice() {
+fn pages_are_reproducible() {
     let spec = path("planetary_arm").display().to_string();
     let page = || accepted(&["page", &spec, "--order", "1", "--out", "-"]);
     assert_eq!(page(), page());
 }
 
 #[test]
-fn wrong_use_is_refused() {
+fn invalid_options_are_rejected() {
     let spec = path("planetary_arm").display().to_string();
     let page = |options: &[&str]| refused(&[&["page", &spec], options].concat());
     assert!(page(&[]).contains("--out"));

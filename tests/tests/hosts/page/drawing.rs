@@ -1,5 +1,5 @@
-//! Specifications with a drawing: they fit the schema, and nothing that is derived or emitted knows
-//! what they draw.
+//! Specifications with a drawing: they match the schema, and the drawing does not affect derivation
+//! or emitted code.
 
 use eomgen_codegen::rust::{Packaging, emit};
 use eomgen_codegen::variant::Variant;
@@ -10,7 +10,7 @@ use serde_json::Value;
 
 use super::drawn;
 
-/// The examples, and what they say.
+/// Returns the texts of the examples with a drawing.
 fn examples() -> Vec<String> {
     let names = ["double_pendulum", "crane", "flexible_arm"];
     let text = |name: &str| std::fs::read_to_string(drawn(name)).expect("a specification");
@@ -25,7 +25,7 @@ fn model(text: &str) -> Model {
 }
 
 #[test]
-fn drawings_fit_the_schema() {
+fn drawings_match_the_schema() {
     let schema: Value = serde_json::from_str(eomgen_model_spec::schema::SCHEMA).expect("JSON");
     let validator = jsonschema::validator_for(&schema).expect("a schema");
     for text in examples() {
@@ -44,7 +44,7 @@ fn drawings_fit_the_schema() {
     }
 }
 
-/// Everything that is emitted, without the hash of the specification.
+/// Returns all emitted code without the hash of the specification.
 fn emitted(model: &Model) -> (String, c::Files, Vec<u8>) {
     let orders = model.orders(None).expect("orders");
     let mut program = Variant::derive(model, &orders).expect("derived").program;
@@ -55,7 +55,7 @@ fn emitted(model: &Model) -> (String, c::Files, Vec<u8>) {
 }
 
 #[test]
-fn a_drawing_changes_nothing_that_is_emitted() {
+fn drawing_does_not_change_emitted_code() {
     for text in examples() {
         let (without, _) = text.split_once("[drawing.points]").expect("a drawing");
         let (with, without) = (model(&text), model(without));

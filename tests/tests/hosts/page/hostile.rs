@@ -1,5 +1,5 @@
-//! Texts that would end a script or begin one, numbers that are too large, orders at their ends, and a
-//! model without a coordinate.
+//! Texts that would end or begin a script, very large and small numbers, extreme orders, and a
+//! model without coordinates.
 
 use std::path::{Path, PathBuf};
 
@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::browser::{WIDE, browser, probed};
 use super::page;
 
-/// A specification with these texts and this mass, in a file.
+/// Writes a specification with these texts and this mass.
 fn pendulum(title: &str, doc: &str, mass: &str, folder: &Path) -> PathBuf {
     let text = format!(
         "[model]\nname = \"p\"\ntitle = '''{title}'''\n\
@@ -25,8 +25,8 @@ fn pendulum(title: &str, doc: &str, mass: &str, folder: &Path) -> PathBuf {
     spec
 }
 
-/// Asserts that a page opens without an error; what the probe saw.
-fn opens(page: &Path) -> Option<Value> {
+/// Asserts that a page opens without an error; returns the observations.
+fn assert_opens(page: &Path) -> Option<Value> {
     let seen = probed(browser()?, page, WIDE);
     assert_eq!(seen["errors"], serde_json::json!([]), "{seen}");
     assert_eq!(seen["excess"], 0, "{seen}");
@@ -34,7 +34,7 @@ fn opens(page: &Path) -> Option<Value> {
 }
 
 #[test]
-fn texts_stay_texts() {
+fn texts_cannot_inject_scripts() {
     let folder = tempfile::tempdir().expect("a folder");
     let hostile =
         "</script></title><!--<script>\"'><img src=x onerror=\"alert(1)\">&quot; \u{2028}";
@@ -46,19 +46,19 @@ fn texts_stay_texts() {
     for forbidden in ["<img", "<!--", "onerror=\"", "\"alert"] {
         assert!(!text.contains(forbidden), "{forbidden}");
     }
-    if let Some(seen) = opens(&page) {
+    if let Some(seen) = assert_opens(&page) {
         assert_eq!(
             seen["zero"], true,
-            "no word on a pendulum without mass: {seen}"
+            "no message about the pendulum without mass: {seen}"
         );
     }
 }
 
 #[test]
-fn numbers_may_be_large_or_small() {
+fn page_with_extreme_numbers_opens() {
     let folder = tempfile::tempdir().expect("a folder");
     for mass in ["1e300", "1e-300", "1e305"] {
-        opens(&page(
+        assert_opens(&page(
             &pendulum("a", "b", mass, folder.path()),
             &[],
             folder.path(),
@@ -67,10 +67,10 @@ fn numbers_may_be_large_or_small() {
 }
 
 #[test]
-fn orders_at_their_ends_open() {
+fn page_with_extreme_orders_opens() {
     let folder = tempfile::tempdir().expect("a folder");
     for order in ["0", "1", "64"] {
-        opens(&page(
+        assert_opens(&page(
             &path("hub_beam_tip_mass"),
             &["--order", order],
             folder.path(),
@@ -79,7 +79,7 @@ fn orders_at_their_ends_open() {
 }
 
 #[test]
-fn a_model_may_be_a_field_alone() {
+fn page_of_field_without_coordinates_opens() {
     let folder = tempfile::tempdir().expect("a folder");
     let spec = folder.path().join("beam.toml");
     let text = "[model]\nname = \"beam\"\n\
@@ -90,6 +90,6 @@ fn a_model_may_be_a_field_alone() {
         [potential]\nbending = \"1/2*integral(EI*diff(w, s, 2)^2, w)\"\n";
     std::fs::write(&spec, text).expect("written");
     for order in ["0", "2"] {
-        opens(&page(&spec, &["--order", order], folder.path()));
+        assert_opens(&page(&spec, &["--order", order], folder.path()));
     }
 }

@@ -1,5 +1,5 @@
-//! `eomgen page`: the module of WebAssembly that its pages compute with, bit by bit; the pages, in a
-//! browser; what the command refuses; and the report of a discovery, which computes as they do.
+//! `eomgen page`: bits of its WebAssembly module, the pages in a browser, rejected options, and the
+//! interactive report of `discover`.
 
 mod bits;
 mod browser;
@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use eomgen_tests::models::project;
 use eomgen_tests::program::accepted;
 
-/// The page of a specification, with further options, in this folder; where it is.
+/// Writes the page of a specification to `folder` with further options; returns its path.
 fn page(spec: &Path, options: &[&str], folder: &Path) -> PathBuf {
     let out = folder.join("page.html");
     let (spec, place) = (spec.display().to_string(), out.display().to_string());
@@ -23,7 +23,7 @@ fn page(spec: &Path, options: &[&str], folder: &Path) -> PathBuf {
     out
 }
 
-/// The examples with a drawing of their own.
+/// Returns the path of an example with a drawing.
 fn drawn(name: &str) -> PathBuf {
     project()
         .join("examples/drawn")

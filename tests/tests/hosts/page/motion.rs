@@ -1,5 +1,5 @@
-//! The motion that a page shows against the one that `simulate` computes, and where a block comes to
-//! rest under dry friction.
+//! The motion shown by a page against `simulate`, and a block that comes to rest under dry
+//! friction.
 
 use std::path::Path;
 use std::process::Command;
@@ -11,8 +11,8 @@ use serde_json::Value;
 use super::bits::node;
 use super::{drawn, page};
 
-/// The motion of a specification's page at a time.
-fn shown(spec: &Path, end: f64) -> Value {
+/// Returns the state shown by the page at time `end`.
+fn simulate_page(spec: &Path, end: f64) -> Value {
     let folder = tempfile::tempdir().expect("a folder");
     let output = Command::new("node")
         .arg(project().join("tests/tests/hosts/page/motion.mjs"))
@@ -34,7 +34,7 @@ fn numbers(list: &Value) -> Vec<f64> {
 }
 
 #[test]
-fn a_page_shows_the_motion_that_is_simulated() {
+fn page_motion_matches_simulate() {
     if !node() {
         return;
     }
@@ -43,7 +43,7 @@ fn a_page_shows_the_motion_that_is_simulated() {
         (drawn("flexible_arm"), 2.0, 1e-4),
         (path("planetary_arm"), 0.25, 1e-4),
     ] {
-        let shown = shown(&spec, end);
+        let shown = simulate_page(&spec, end);
         assert_eq!(shown["t"], end);
         let compiled = CompiledModel::load(&spec, Orders::Declared).expect("it loads");
         let run = compiled.at_declared().expect("it runs");
@@ -72,7 +72,7 @@ fn a_page_shows_the_motion_that_is_simulated() {
 }
 
 #[test]
-fn a_block_comes_to_rest_under_dry_friction() {
+fn block_comes_to_rest_under_dry_friction() {
     if !node() {
         return;
     }
@@ -84,8 +84,8 @@ fn a_block_comes_to_rest_under_dry_friction() {
         [kinetic]\nblock = \"1/2*m*dot(x)^2\"\n\
         [forces]\nfriction = { on = \"x\", value = \"-F*sign(dot(x))\" }\n";
     std::fs::write(&spec, text).expect("written");
-    let shown = shown(&spec, 10.0);
-    // v^2/(2 F/m), reached after 1.5 s.
+    let shown = simulate_page(&spec, 10.0);
+    // Expected: v^2/(2 F/m), reached after 1.5 s.
     let state = numbers(&shown["state"]);
     assert!(
         (state[0] - 2.25).abs() < 1e-3 && state[1].abs() < 1e-3,

@@ -1,6 +1,6 @@
-//! The report of a discovery: what it computes leaves what the search says; in a browser it opens
-//! without an error and reacts to its slider; what is written into a dataset stays text; and where
-//! nothing is to be found, it says so.
+//! The report of `discover`: its residuals match the search, it opens without an error in a browser
+//! and reacts to its slider, texts of a dataset are escaped, and a report without effects states
+//! that.
 
 use std::process::Command;
 
@@ -11,14 +11,14 @@ use serde_json::Value;
 use super::bits::node;
 use super::browser::{Look, WIDE, browser, probed_by};
 
-/// Text that would end a script or begin one.
+/// Text that would end or begin a script.
 const HOSTILE: &str = "</script></title><img src=x onerror=alert(1)><!--";
 
-/// The dry friction of the stage, N.
+/// Dry friction of the stage, N.
 const FRICTION: f64 = 3.0;
 
-/// A stage with something hidden, its title hostile; the document of `command`.
-fn reported(friction: f64, command: &str) -> (Measured, Value) {
+/// Runs `command` on a stage with hidden friction and a hostile title; returns the document.
+fn run_report(friction: f64, command: &str) -> (Measured, Value) {
     let measured = Measured::stage(friction);
     let description = format!("title = '{HOSTILE}'\n{DESCRIPTION}");
     measured.write("dataset.toml", description.as_bytes());
@@ -26,8 +26,8 @@ fn reported(friction: f64, command: &str) -> (Measured, Value) {
     (measured, document)
 }
 
-/// What the page computes at these values of its parameters, in channel order.
-fn left(measured: &Measured, parameter: &str) -> f64 {
+/// Returns the residual computed by the page at these parameter values.
+fn residual_on_page(measured: &Measured, parameter: &str) -> f64 {
     let file = |name: &str| project().join(name);
     let output = Command::new("node")
         .arg(file("tests/tests/hosts/page/playback.mjs"))
@@ -44,8 +44,8 @@ fn left(measured: &Measured, parameter: &str) -> f64 {
 }
 
 #[test]
-fn a_found_friction_is_moved_in_the_report() {
-    let (measured, document) = reported(FRICTION, "discover");
+fn report_slider_moves_found_friction() {
+    let (measured, document) = run_report(FRICTION, "discover");
     let page = measured.read("out/report.html");
     assert_eq!(page.matches("<script").count(), 2);
     assert_eq!(page.matches("</script").count(), 2);
@@ -62,7 +62,7 @@ fn a_found_friction_is_moved_in_the_report() {
     assert!(page.contains("default-src 'none'"));
     assert!(
         page.contains("Found: coulomb friction on q, T_c = "),
-        "no verdict in words"
+        "the page does not print the verdict"
     );
     assert!(page.len() < 600_000, "{} bytes", page.len());
     let gap = |when: &str| {
@@ -70,17 +70,17 @@ fn a_found_friction_is_moved_in_the_report() {
         gap.as_f64().expect("a number")
     };
     if node() {
-        // The fit goes by steps whose error is a small part of the noise, the page by others; what is left is
-        // noise, and of that the root mean square hardly feels either.
-        let found = left(&measured, "found");
+        // The fit and the page integrate with different steps; their errors are a small part of the
+        // noise and hardly change the RMS.
+        let found = residual_on_page(&measured, "found");
         assert!(
             (found / gap("after") - 1.0).abs() < 0.02,
             "{found} {}",
             gap("after")
         );
-        // Without the friction more is left, though not what was: the other numbers are those
-        // fitted with it.
-        let without = left(&measured, "0");
+        // Without friction the residual is larger, but smaller than before the search: the other
+        // parameters were fitted together with the friction.
+        let without = residual_on_page(&measured, "0");
         assert!(without > 5.0 * found, "{without} {found}");
     }
     let Some(browser) = browser() else { return };
@@ -109,12 +109,15 @@ fn a_found_friction_is_moved_in_the_report() {
 }
 
 #[test]
-fn a_report_of_nothing_says_so() {
-    let (measured, document) = reported(0.0, "discover");
+fn report_without_effects_states_it() {
+    let (measured, document) = run_report(0.0, "discover");
     assert_eq!(document["verdict"], "no_significant_gap");
     let page = measured.read("out/report.html");
     assert!(page.contains("they show no missing effect"));
-    assert!(!page.contains("<script"), "nothing can be moved");
+    assert!(
+        !page.contains("<script"),
+        "a report without effects has no slider"
+    );
     for empty in [
         "<tbody></tbody>",
         "<dl class=\"values\"></dl>",
