@@ -1,9 +1,10 @@
 //! Limits of derivatives at zeros of roots.
 //!
 //! The derivative of `norm(v)*v_x` contains v_x (v . dv)/norm(v), which is 0/0 at v = 0 although its limit is
-//! 0. With the argument s of a root and |f| <= C s^o near s = 0, o is the order of f. A product of positive
-//! order vanishes with s, so its reciprocals of the root are guarded: they are 0 if the root is 0. Other
-//! products keep their reciprocals and are infinite or NaN at s = 0, where they have no limit.
+//! 0. Let s be the argument of a root, without roots of its own. If |f| <= C |s|^o near s = 0, o is the order of f.
+//! A product of positive order vanishes with s, so its reciprocals of the root are guarded: they are 0 if the root
+//! is 0. If the order is 0, they are 0 if both the root and the [cofactor](super::cofactors) of the product are 0.
+//! Otherwise the product is infinite or NaN at s = 0, where it has no limit.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -13,6 +14,9 @@ use eomgen_model_spec::model::Function;
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 use crate::symbolic::orders::{Bounds, Monomial};
 use crate::symbolic::substitute::substitute;
+
+/// Magnitude below which an exponent is rounding error.
+pub(super) const EXPONENT_ROUNDING: f64 = 1e-9;
 
 impl Graph {
     /// Returns `partial` times `inner`, a term of a derivative: 0 on the flat side of a switch, and equal to
@@ -34,10 +38,18 @@ impl Graph {
         let arguments = self.reciprocal_arguments(term);
         for &argument in arguments.iter() {
             if self.order(argument, term) > 0.0 {
-                term = guard(self, term, argument);
+                term = guard(self, term, argument, None);
             }
         }
-        term
+        let arguments = self.reciprocal_arguments(term);
+        match self.cofactor(&arguments, term) {
+            Some(cofactor) if self.as_constant(cofactor).is_none() => {
+                let square = self.integer_power(cofactor, 2);
+                let guarded = |term, argument: &NodeId| guard(self, term, *argument, Some(square));
+                arguments.iter().fold(term, guarded)
+            }
+            _ => term,
+        }
     }
 
     /// Returns base and exponent of the power that a guarded reciprocal represents away from 0.
@@ -55,8 +67,11 @@ impl Graph {
         else {
             return None;
         };
-        if !self.is_zero(b) || !self.is_zero(otherwise) {
+        if !self.is_zero(b) {
             return None;
+        }
+        if !self.is_zero(otherwise) {
+            return self.is_guard_of(otherwise, then);
         }
         let is_root = self.root_argument(a).is_some();
         match self.operation(then) {
@@ -69,7 +84,17 @@ impl Graph {
         }
     }
 
-    /// Returns true if an operation contains an unguarded reciprocal of a root.
+    /// Returns base and exponent of `power` if `guarded` is its guarded form.
+    fn is_guard_of(&self, guarded: NodeId, power: NodeId) -> Option<(NodeId, i32)> {
+        match *self.operation(guarded) {
+            Operation::Select {
+                then, otherwise, ..
+            } if then == power && self.is_zero(otherwise) => self.guarded_power(guarded),
+            _ => None,
+        }
+    }
+
+    /// Returns true if an operation contains a reciprocal of a root that can be infinite.
     pub(crate) fn holds_reciprocal_root(&self, operation: &Operation) -> bool {
         let held = |ids: &[NodeId]| ids.iter().any(|id| self.has_reciprocal_root(*id));
         let is_reciprocal = match operation {
@@ -83,11 +108,40 @@ impl Graph {
             _ => false,
         };
         match operation {
-            Operation::Select { a, .. } if self.guarded_power_of(operation).is_some() => {
+            Operation::Select { a, otherwise, .. }
+                if self.is_zero(*otherwise) && self.guarded_power_of(operation).is_some() =>
+            {
                 held(&[*a])
             }
             _ => is_reciprocal || held(&self.operands(operation)),
         }
+    }
+
+    /// Returns base s and exponent p of a node c |s|^p with a constant c; opens nested roots and powers.
+    pub(super) fn base_power(&self, id: NodeId) -> (NodeId, f64) {
+        let (inner, exponent) = match self.operation(id) {
+            Operation::Call(Function::Sqrt, a) => (a[0], 0.5),
+            Operation::Call(Function::Abs, a) => (a[0], 1.0),
+            Operation::Power(base, exponent) => match self.as_constant(*exponent) {
+                Some(exponent) if exponent > 0.0 => (*base, exponent),
+                _ => return (id, 1.0),
+            },
+            Operation::Sum(terms) if terms.len() == 1 => (terms[0].1, 1.0),
+            Operation::Product(factors) => {
+                let mut moving = factors
+                    .iter()
+                    .filter(|(factor, _)| !self.dependence(*factor).is_parameter_only());
+                match (moving.next(), moving.next()) {
+                    (Some(&(factor, exponent)), None) if exponent > 0 => {
+                        (factor, f64::from(exponent))
+                    }
+                    _ => return (id, 1.0),
+                }
+            }
+            _ => return (id, 1.0),
+        };
+        let (base, power) = self.base_power(inner);
+        (base, power * exponent)
     }
 
     fn root_argument(&self, id: NodeId) -> Option<NodeId> {
@@ -98,7 +152,7 @@ impl Graph {
     }
 
     /// Returns base and exponent of a power with a negative constant exponent.
-    fn negative_power(&self, id: NodeId) -> Option<(NodeId, f64)> {
+    pub(super) fn negative_power(&self, id: NodeId) -> Option<(NodeId, f64)> {
         let Operation::Power(base, exponent) = *self.operation(id) else {
             return None;
         };
@@ -106,12 +160,24 @@ impl Graph {
         (exponent < 0.0).then_some((base, exponent))
     }
 
-    /// Returns the argument s of a factor s^(-n/2) or s^-c.
-    fn reciprocal_argument(&self, (factor, exponent): (NodeId, i32)) -> Option<NodeId> {
-        match exponent < 0 {
-            true => self.root_argument(factor),
-            false => self.negative_power(factor).map(|(base, _)| base),
-        }
+    /// Returns base s and exponent p of a factor s^-p, the reciprocal of a root or of a real power.
+    pub(super) fn reciprocal(&self, (factor, exponent): (NodeId, i32)) -> Option<(NodeId, f64)> {
+        let (inner, power) = match exponent < 0 {
+            true => (
+                self.root_argument(factor).map(|_| factor)?,
+                -f64::from(exponent),
+            ),
+            false => {
+                let (base, power) = self.negative_power(factor)?;
+                (base, -power * f64::from(exponent))
+            }
+        };
+        let (base, own) = self.base_power(inner);
+        Some((base, own * power))
+    }
+
+    fn reciprocal_argument(&self, factor: (NodeId, i32)) -> Option<NodeId> {
+        self.reciprocal(factor).map(|(base, _)| base)
     }
 
     /// Returns the arguments of all roots with unguarded reciprocals in a node.
@@ -127,7 +193,7 @@ impl Graph {
                 .filter_map(|factor| self.reciprocal_argument(*factor));
             found.extend(arguments);
         }
-        found.extend(self.negative_power(id).map(|(base, _)| base));
+        found.extend(self.reciprocal_argument((id, 1)));
         for operand in self.operands(&operation) {
             if self.has_reciprocal_root(operand) {
                 found.extend(self.reciprocal_arguments(operand).iter());
@@ -141,7 +207,7 @@ impl Graph {
     }
 
     /// Returns the order of a node in `argument`; negative without a proof that the node is bounded.
-    fn order(&mut self, argument: NodeId, id: NodeId) -> f64 {
+    pub(super) fn order(&mut self, argument: NodeId, id: NodeId) -> f64 {
         if let Some(&known) = self.orders_at_zeros.orders.get(&(argument, id)) {
             return known;
         }
@@ -154,21 +220,25 @@ impl Graph {
     }
 
     fn order_by(&mut self, argument: NodeId, bounds: &Bounds, id: NodeId) -> f64 {
-        if id == argument {
-            return 1.0;
+        let (base, power) = self.base_power(id);
+        if base == argument {
+            return power;
         }
         if let Some(guard) = self.flat_guard(id) {
             return self.order(argument, guard.inner);
         }
         if let Some((factor, exponent)) = self.guarded_power(id) {
-            return f64::from(exponent) * self.factor_order(argument, factor, exponent);
+            let exponent = f64::from(exponent);
+            return exponent * self.factor_order(argument, factor, exponent);
         }
         match self.operation(id).clone() {
-            Operation::Product(factors) => self.product_order(argument, bounds, &factors, None),
+            Operation::Product(factors) => {
+                self.product_order(argument, bounds, &as_real(&factors), None)
+            }
             Operation::Sum(terms) => {
                 let orders = terms.iter().map(|(_, term)| self.order(argument, *term));
                 let least = orders.fold(f64::INFINITY, f64::min);
-                least.max(self.product_order(argument, bounds, &[(id, 1)], Some(id)))
+                least.max(self.product_order(argument, bounds, &[(id, 1.0)], Some(id)))
             }
             Operation::Call(Function::Sqrt, a) => 0.5 * self.order(argument, a[0]),
             Operation::Call(function, a) if vanishes_with_argument(function) => {
@@ -183,7 +253,7 @@ impl Graph {
                 .order(argument, then)
                 .min(self.order(argument, otherwise)),
             Operation::Power(base, exponent) => match self.as_constant(exponent) {
-                Some(exponent) if exponent > 0.0 || base == argument => {
+                Some(exponent) if exponent > 0.0 || self.base_power(base).0 == argument => {
                     exponent * self.order(argument, base)
                 }
                 Some(_) if self.order(argument, base) != 0.0 => f64::NEG_INFINITY,
@@ -192,13 +262,13 @@ impl Graph {
             Operation::Total(vector)
             | Operation::Apply { vector, .. }
             | Operation::CholeskySolve(_, vector) => {
-                let of_node = self.product_order(argument, bounds, &[(id, 1)], Some(id));
+                let of_node = self.product_order(argument, bounds, &[(id, 1.0)], Some(id));
                 of_node.max(self.order(argument, vector))
             }
             operation => {
                 let operands = self.operands(&operation);
                 let bounded = self.bounded(argument, &operands);
-                bounded.max(self.product_order(argument, bounds, &[(id, 1)], Some(id)))
+                bounded.max(self.product_order(argument, bounds, &[(id, 1.0)], Some(id)))
             }
         }
     }
@@ -216,67 +286,74 @@ impl Graph {
         &mut self,
         argument: NodeId,
         bounds: &Bounds,
-        factors: &[(NodeId, i32)],
+        factors: &[(NodeId, f64)],
         own: Option<NodeId>,
     ) -> f64 {
-        let mut left: HashMap<NodeId, i32> = HashMap::new();
+        let mut left = HashMap::new();
         for &(factor, exponent) in factors {
             self.split_absolute(factor, exponent, &mut left);
         }
         let mut order = 0.0;
         for (monomial, each) in bounds.iter() {
-            let held =
-                |(node, exponent): &(NodeId, i32)| left.get(node).map_or(0, |n| n / exponent);
-            let times = monomial.iter().map(held).min().unwrap_or(0).max(0);
-            for (node, exponent) in monomial {
-                left.entry(*node).and_modify(|n| *n -= times * exponent);
-            }
-            order += f64::from(times) * each;
+            let times = held_times(monomial, &left);
+            take(monomial, times, &mut left);
+            order += times * each;
         }
-        let mut left: Vec<(NodeId, i32)> = left.into_iter().filter(|(_, n)| *n != 0).collect();
-        left.sort_unstable();
-        for (factor, exponent) in left {
+        for (factor, exponent) in sorted(left) {
             // Without a monomial in it, the order of the node itself is unknown.
             if own == Some(factor) {
                 continue;
             }
-            order += f64::from(exponent) * self.factor_order(argument, factor, exponent);
+            order += exponent * self.factor_order(argument, factor, exponent);
         }
         order
     }
 
-    /// Returns the order of a factor. A reciprocal has an order only for the root itself, which is bounded
+    /// Returns the order of a factor. A reciprocal has an order only for powers of the argument, which are bounded
     /// below.
-    fn factor_order(&mut self, argument: NodeId, factor: NodeId, exponent: i32) -> f64 {
-        if self.root_argument(factor) == Some(argument) {
-            return 0.5;
+    fn factor_order(&mut self, argument: NodeId, factor: NodeId, exponent: f64) -> f64 {
+        let (base, power) = self.base_power(factor);
+        if base == argument {
+            return power;
         }
         match self.order(argument, factor) {
-            order if exponent > 0 || order == 0.0 => order,
+            order if exponent > 0.0 || order == 0.0 => order,
             _ => f64::INFINITY,
         }
     }
 
     /// Adds the factors of a power; the absolute value of a product has the factors of the product.
-    fn split_absolute(&self, factor: NodeId, exponent: i32, into: &mut HashMap<NodeId, i32>) {
+    pub(super) fn split_absolute(
+        &self,
+        factor: NodeId,
+        exponent: f64,
+        into: &mut HashMap<NodeId, f64>,
+    ) {
         match self.operation(factor) {
             Operation::Call(Function::Abs, a) => self.split_absolute(a[0], exponent, into),
-            Operation::Call(Function::Sign, _) if exponent > 0 => {}
+            Operation::Call(Function::Sign, _) if exponent > 0.0 => {}
+            Operation::Call(Function::Sqrt, a) if exponent > 0.0 => {
+                self.split_absolute(a[0], 0.5 * exponent, into);
+            }
+            Operation::Power(base, power) if exponent > 0.0 => match self.as_constant(*power) {
+                Some(power) if power > 0.0 => self.split_absolute(*base, power * exponent, into),
+                _ => *into.entry(factor).or_insert(0.0) += exponent,
+            },
             Operation::Product(factors) => {
                 for &(inner, power) in factors {
-                    self.split_absolute(inner, power * exponent, into);
+                    self.split_absolute(inner, f64::from(power) * exponent, into);
                 }
             }
             Operation::Sum(terms) if terms.len() == 1 => {
                 self.split_absolute(terms[0].1, exponent, into);
             }
-            _ => *into.entry(factor).or_insert(0) += exponent,
+            _ => *into.entry(factor).or_insert(0.0) += exponent,
         }
     }
 
     /// Returns the monomials that vanish with a sum of terms of one sign. `None` if the sum can have terms of
     /// other signs, or a term of parameters, with which it does not vanish.
-    fn bounds(&mut self, argument: NodeId) -> Option<Bounds> {
+    pub(super) fn bounds(&mut self, argument: NodeId) -> Option<Bounds> {
         if let Some(known) = self.orders_at_zeros.bounds.get(&argument) {
             return known.clone();
         }
@@ -288,40 +365,39 @@ impl Graph {
         bounds
     }
 
-    fn add_bounds(&self, id: NodeId, is_sole: bool, into: &mut Vec<(Monomial, f64)>) -> bool {
+    fn add_bounds(&mut self, id: NodeId, is_sole: bool, into: &mut Vec<(Monomial, f64)>) -> bool {
         if self.dependence(id).is_parameter_only() {
             return false;
         }
-        if let Operation::Sum(terms) = self.operation(id) {
+        if let Operation::Sum(terms) = self.operation(id).clone() {
             let is_sole = is_sole && terms.len() == 1;
             return terms.iter().all(|(factor, term)| {
                 (is_sole || factor.value() > 0.0) && self.add_bounds(*term, is_sole, into)
             });
         }
         let mut factors = HashMap::new();
-        self.split_absolute(id, 1, &mut factors);
+        self.split_absolute(id, 1.0, &mut factors);
         factors.retain(|factor, exponent| {
-            *exponent > 0 && !self.dependence(*factor).is_parameter_only()
+            *exponent > 0.0 && !self.dependence(*factor).is_parameter_only()
         });
-        let mut factors: Monomial = factors.into_iter().collect();
-        factors.sort_unstable();
-        if let [(factor, 1)] = factors[..]
+        let factors = sorted(factors);
+        if let [(factor, 1.0)] = factors[..]
             && factor != id
         {
             return self.add_bounds(factor, is_sole, into);
         }
-        let is_square = factors.iter().all(|(_, exponent)| exponent % 2 == 0);
-        if factors.is_empty() || !(is_sole || self.is_never_negative(id)) {
+        let is_square = factors.iter().all(|(_, exponent)| exponent % 2.0 == 0.0);
+        if factors.is_empty() || !(is_sole || is_square || self.is_never_negative(id)) {
             return false;
         }
-        if is_square {
-            let halves = factors
-                .iter()
-                .map(|(factor, exponent)| (*factor, exponent / 2));
-            into.push((halves.collect(), 0.5));
-        } else {
-            into.push((factors, 1.0));
+        if let [(factor, exponent)] = factors[..]
+            && matches!(self.operation(factor), Operation::Sum(_))
+            && let Some(inner) = self.bounds(factor)
+        {
+            let of_inner = inner.iter();
+            into.extend(of_inner.map(|(monomial, order)| (monomial.clone(), order / exponent)));
         }
+        into.push((factors, 1.0));
         true
     }
 
@@ -347,7 +423,7 @@ impl Graph {
 }
 
 /// Returns true if |function(x)| <= C |x| near 0.
-fn vanishes_with_argument(function: Function) -> bool {
+pub(super) fn vanishes_with_argument(function: Function) -> bool {
     matches!(
         function,
         Function::Abs
@@ -361,22 +437,32 @@ fn vanishes_with_argument(function: Function) -> bool {
     )
 }
 
-/// Guards every reciprocal of the root of `argument` in a node.
-fn guard(graph: &mut Graph, id: NodeId, argument: NodeId) -> NodeId {
-    let replacement = |graph: &mut Graph, node: NodeId| guarded(graph, node, argument);
+/// Returns the node with all reciprocals of roots of `argument` guarded; with a condition, only where it is 0.
+fn guard(graph: &mut Graph, id: NodeId, argument: NodeId, condition: Option<NodeId>) -> NodeId {
+    let replacement = |graph: &mut Graph, node: NodeId| guarded(graph, node, argument, condition);
     substitute(graph, id, &replacement, &mut HashMap::new())
 }
 
-fn guarded(graph: &mut Graph, id: NodeId, argument: NodeId) -> Option<NodeId> {
-    if !graph.has_reciprocal_root(id) || graph.guarded_power(id).is_some() {
+fn guarded(
+    graph: &mut Graph,
+    id: NodeId,
+    argument: NodeId,
+    condition: Option<NodeId>,
+) -> Option<NodeId> {
+    if !graph.has_reciprocal_root(id) {
         return Some(id);
     }
-    let zero = graph.zero();
-    if graph
-        .negative_power(id)
-        .is_some_and(|(base, _)| base == argument)
+    if let Some((base, exponent)) = graph.guarded_power(id) {
+        let power = graph.integer_power(base, exponent);
+        return match guarded(graph, power, argument, condition) {
+            Some(anew) if anew != power => Some(anew),
+            _ => Some(id),
+        };
+    }
+    if let Some((base, _)) = graph.negative_power(id)
+        && graph.base_power(base).0 == argument
     {
-        return Some(graph.select(argument, zero, id, zero));
+        return Some(guarded_reciprocal(graph, base, id, condition));
     }
     let Operation::Product(factors) = graph.operation(id).clone() else {
         return None;
@@ -389,15 +475,59 @@ fn guarded(graph: &mut Graph, id: NodeId, argument: NodeId) -> Option<NodeId> {
     }
     let mut rebuilt = Vec::with_capacity(factors.len());
     for &(factor, exponent) in &factors {
-        rebuilt.push(
-            match exponent < 0 && graph.root_argument(factor) == Some(argument) {
-                true => {
-                    let reciprocal = graph.integer_power(factor, -1);
-                    (graph.select(factor, zero, reciprocal, zero), -exponent)
-                }
-                false => (guard(graph, factor, argument), exponent),
-            },
-        );
+        let is_reciprocal = graph.reciprocal_argument((factor, exponent)) == Some(argument);
+        rebuilt.push(match exponent < 0 && is_reciprocal {
+            true => {
+                let reciprocal = graph.integer_power(factor, -1);
+                let reciprocal = guarded_reciprocal(graph, factor, reciprocal, condition);
+                (reciprocal, -exponent)
+            }
+            false => (guard(graph, factor, argument, condition), exponent),
+        });
     }
     Some(graph.product(&rebuilt))
+}
+
+/// Returns the reciprocal, or 0 if the root and the condition are 0.
+fn guarded_reciprocal(
+    graph: &mut Graph,
+    root: NodeId,
+    reciprocal: NodeId,
+    condition: Option<NodeId>,
+) -> NodeId {
+    let zero = graph.zero();
+    let at_zero = graph.select(root, zero, reciprocal, zero);
+    match condition {
+        Some(condition) => graph.select(condition, zero, reciprocal, at_zero),
+        None => at_zero,
+    }
+}
+
+/// Returns the largest power of a monomial that divides a product.
+pub(super) fn held_times(monomial: &Monomial, product: &HashMap<NodeId, f64>) -> f64 {
+    let held = |(node, exponent): &(NodeId, f64)| product.get(node).map_or(0.0, |n| n / exponent);
+    let times = monomial.iter().map(held);
+    times.fold(f64::INFINITY, f64::min).max(0.0)
+}
+
+/// Divides a product by a power of a monomial.
+pub(super) fn take(monomial: &Monomial, times: f64, product: &mut HashMap<NodeId, f64>) {
+    for (node, exponent) in monomial {
+        product.entry(*node).and_modify(|n| *n -= times * exponent);
+    }
+}
+
+/// Returns the factors with nonzero exponents in the order of their nodes.
+pub(super) fn sorted(factors: HashMap<NodeId, f64>) -> Monomial {
+    let mut factors: Monomial = factors
+        .into_iter()
+        .filter(|(_, exponent)| exponent.abs() > EXPONENT_ROUNDING)
+        .collect();
+    factors.sort_unstable_by_key(|(node, _)| *node);
+    factors
+}
+
+fn as_real(factors: &[(NodeId, i32)]) -> Monomial {
+    let real = |&(factor, exponent): &(NodeId, i32)| (factor, f64::from(exponent));
+    factors.iter().map(real).collect()
 }

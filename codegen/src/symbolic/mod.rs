@@ -2,8 +2,8 @@
 //!
 //! - Nodes: `graph` and `node_map` store them, `operation` and `arguments` define them, `simplify` applies
 //!   algebraic laws in their constructors, `tables` and `table_text` hold constants of a basis.
-//! - Derivatives: `differentiate`, `modal_derivative` and `matrix` keep the structure; `limits` and `orders`
-//!   handle zeros of roots, `switches`, `branches` and `flat` operations that switch.
+//! - Derivatives: `differentiate`, `modal_derivative` and `matrix` keep the structure; `limits`, `cofactors` and
+//!   `orders` handle zeros of roots, `switches`, `branches` and `flat` operations that switch.
 //! - Transformations: `substitute`, `expand`, `factor`, `trigonometry` and `association` (multiplication
 //!   order), with `degree` and `operation_count` to compare forms.
 //! - `formula` prints nodes.
@@ -11,6 +11,7 @@
 pub(crate) mod arguments;
 pub(crate) mod association;
 pub(crate) mod branches;
+mod cofactors;
 pub(crate) mod degree;
 pub mod differentiate;
 pub(crate) mod expand;

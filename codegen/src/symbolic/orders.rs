@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use crate::symbolic::operation::NodeId;
 
-/// Powers of nodes with positive exponents.
-pub(crate) type Monomial = Vec<(NodeId, i32)>;
+/// Powers of nodes.
+pub(crate) type Monomial = Vec<(NodeId, f64)>;
 
 /// Monomials with their orders in s: |monomial| <= C s^order.
 pub(crate) type Bounds = Arc<Vec<(Monomial, f64)>>;
@@ -17,6 +17,10 @@ pub(crate) struct Orders {
     pub bounds: HashMap<NodeId, Option<Bounds>>,
     /// Orders by the argument of a root and a node.
     pub orders: HashMap<(NodeId, NodeId), f64>,
+    /// Cofactors by the arguments of roots and a node.
+    pub cofactors: HashMap<(Arc<Vec<NodeId>>, NodeId), Option<NodeId>>,
+    /// True for nodes that are continuous functions.
+    pub continuous: HashMap<NodeId, bool>,
     /// Arguments of the roots whose reciprocals a node contains.
     pub arguments: HashMap<NodeId, Arc<Vec<NodeId>>>,
 }

@@ -83,7 +83,7 @@ pub(crate) fn acceleration(evaluator: &mut Evaluator, state: &[f64]) -> f64 {
 }
 
 /// Forces whose derivatives vanish at 0.
-const SMOOTH_ENOUGH: [&str; 16] = [
+const SMOOTH_ENOUGH: [&str; 26] = [
     "-norm(v)*dot(x)/s^2",
     "-norm(plane)*dot(x)/s^2",
     "norm(v)*dot(v, v)/s^3",
@@ -100,6 +100,16 @@ const SMOOTH_ENOUGH: [&str; 16] = [
     "(norm(v)/s + (dot(x)/s)^2)*dot(x)/s",
     "sin(norm(v)/s)*tanh(dot(x)/s)",
     "(1 - exp(-norm(v)/s))*dot(x)/s",
+    "norm(plane)*dot(z)/s^2",
+    "norm(plane)*sin(z/l)/s",
+    "norm(plane)*abs(dot(z))/s^2",
+    "norm([x, y])*norm([y, z])/l^2",
+    "(norm(plane)*z + norm(v)*x)/(l*s)",
+    "sqrt(norm(v)/s)*dot(x)/s",
+    "sqrt(sqrt(norm(v)/s))*dot(y)/s",
+    "((dot(x)^4 + dot(y)^4)/s^4)^(1/4)*dot(y)/s",
+    "(abs(dot(x)/s)^1.5 + abs(dot(y)/s)^1.5)^(2/3)*dot(y)/s",
+    "sqrt(norm(v)/s + norm(plane)/s)*dot(x)/s",
 ];
 
 #[test]
@@ -117,7 +127,13 @@ fn products_that_vanish_with_a_root_have_zero_derivative() {
             found.iter().all(|entry| *entry == 0.0),
             "{force}: {found:?}"
         );
-        // A single zero speed or position needs no limit.
+    }
+}
+
+#[test]
+fn one_zero_alone_needs_no_limit() {
+    for force in SMOOTH_ENOUGH {
+        let mut evaluator = evaluator(&pushed(force), &[Output::Jacobians]);
         for place in 0..6 {
             let mut state = [0.3, -0.2, 0.4, 0.5, 0.7, -0.6];
             state[place] = 0.0;
@@ -163,6 +179,12 @@ fn derivatives_without_a_limit_are_not_finite() {
         "abs(x/l)^0.5*sign(x)",
         "abs(x/l)^0.3*sign(x)",
         "norm(v)*x/(norm(r)*s)",
+        "norm(plane)*sign(z)/s",
+        "norm(plane)*(z - l)/(l*s)",
+        "norm(plane)*exp(z/l)/s",
+        "norm(plane)*dot(z)/(s*norm(v))",
+        "sqrt(norm(plane)/s)*dot(z)/s",
+        "sqrt(max(x/l, 0))",
     ] {
         let mut evaluator = evaluator(&pushed(force), &[Output::Jacobians]);
         let found = jacobian(&mut evaluator, &[0.0; 6]);
@@ -171,6 +193,62 @@ fn derivatives_without_a_limit_are_not_finite() {
             "{force}: {found:?}"
         );
     }
+}
+
+/// A factor beside a root decides at each point of the root's zeros.
+#[test]
+fn root_times_other_factor_has_a_limit_only_at_zeros_of_that_factor() {
+    let at = |z: f64, z_rate: f64| [0.0, 0.0, z, 0.0, 0.0, z_rate];
+    for (force, limit, none) in [
+        ("norm(plane)*dot(z)/s^2", at(0.7, 0.0), at(0.7, 1.0)),
+        ("norm(plane)*sin(z/l)/s", at(0.0, 0.3), at(1.0, 0.3)),
+        ("norm(plane)*(z - l)/(l*s)", at(1.0, 0.0), at(0.0, 0.0)),
+        ("norm([x, y])*norm([y, z])/l^2", at(0.0, 1.0), at(1.0, 1.0)),
+        ("norm(plane)*z*dot(z)/(l*s^2)", at(0.0, 2.0), at(1.0, 2.0)),
+        (
+            "norm(plane)*(z^2 + l*dot(z)*abs(z)/s)/(l^2*s)",
+            at(0.0, 1.0),
+            at(1.0, 0.0),
+        ),
+    ] {
+        let mut evaluator = evaluator(&pushed(force), &[Output::Jacobians, Output::Products]);
+        let found = gradient(&mut evaluator, &limit);
+        assert_eq!(found, [0.0; 6], "{force}");
+        let found = jacobian(&mut evaluator, &limit);
+        assert!(
+            found[3..].iter().all(|entry| *entry == 0.0),
+            "{force}: {found:?}"
+        );
+        let found = jacobian(&mut evaluator, &none);
+        assert!(
+            found.iter().any(|entry| !entry.is_finite()),
+            "{force}: {found:?}"
+        );
+        // A little away from the zeros of the root the derivative is that of the formula.
+        let mut near = none;
+        let first = 3 * usize::from(force.contains("plane"));
+        (near[first], near[first + 1]) = (3e-3, 4e-3);
+        let found = gradient(&mut evaluator, &near);
+        let step = 1e-7;
+        let mut moved = |by: f64| {
+            let mut state = near;
+            state[first] += by;
+            acceleration(&mut evaluator, &state)
+        };
+        let expected = (moved(step) - moved(-step)) / (2.0 * step);
+        assert!(
+            (found[first] - expected).abs() < 1e-6,
+            "{force}: {found:?} {expected}"
+        );
+    }
+}
+
+/// The product of two norms has the second derivative x y/(n_1 n_2) without a limit at 0, although each of its
+/// quotients is bounded.
+#[test]
+fn each_factor_cancels_one_root_only() {
+    let edged = second_derivatives("norm([x, y])*norm([y, z])/l^2");
+    assert!(edged.iter().any(|entry| !entry.is_finite()), "{edged:?}");
 }
 
 /// Returns the Jacobian at 0 of the forces of a potential: its second derivatives.
