@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use eomgen_codegen::program::evaluator::{Evaluator, MachineCode, Point};
 use eomgen_codegen::program::{Op, Program, Variable};
-use eomgen_codegen::singular_terms::without_derivative;
+use eomgen_codegen::singular_terms::{SingularTerm, singular_terms};
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::ids::FieldId;
 use eomgen_model_spec::model::RESIDUAL;
@@ -12,6 +12,16 @@ use eomgen_model_spec::model::RESIDUAL;
 use crate::error::Error;
 use crate::instance::Instance;
 use crate::model::{CompiledModel, evaluator};
+
+/// Largest magnitude of a state or an input whose fourth power does not overflow.
+const LARGEST_VALUE: f64 = 1e75;
+
+/// Variables listed in a message.
+const MAX_LISTED: usize = 6;
+
+/// Cure of a term without a derivative.
+const SMOOTH_FORMS: &str = "choose another state (--state), or write a smooth form with a small eps: sqrt(v^2 + eps^2) \
+    instead of norm(v) or abs(v), x/sqrt(x + eps) instead of sqrt(x)";
 
 /// A Jacobian of a model: the function and the variable of differentiation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -244,29 +254,94 @@ impl Instance<'_> {
         })
     }
 
-    /// Returns the error for a point without a linearisation, with the places of all terms without
-    /// a derivative.
-    fn not_linear(&self, point: Point<'_>) -> Error {
+    /// Returns the error for a point without a linearisation, with its cause.
+    pub(crate) fn not_linear(&self, point: Point<'_>) -> Error {
         let model = self.model().model();
-        let message = format!(
-            "the model `{}` has no linearisation at this point: a derivative has no finite limit",
-            model.name
-        );
-        let places = without_derivative(model, self.model().orders(), self.values(), point);
-        let places = match places {
-            Ok(places) => places,
+        if let Some(far) = self.out_of_range(point) {
+            return Error::Request(far);
+        }
+        let found = singular_terms(model, self.model().orders(), self.values(), point);
+        let found = match found {
+            Ok(found) => found,
             Err(found) => return found.into(),
         };
-        let Some((first, others)) = places.split_first() else {
-            return Error::Request(message);
+        let Some((first, others)) = found.split_first() else {
+            return Error::Request(format!(
+                "an acceleration of the model `{}` or its derivative is not finite at this state: check for a \
+                 stiffness or mass that is too large or too small",
+                model.name
+            ));
         };
-        let found = Diagnostic::error(message)
-            .at(*first, "has no derivative at this point")
-            .help("linearise at another state (--state), or use a smooth term: sqrt(v^2 + e^2) instead of abs(v)");
-        let found = others.iter().fold(found, |found, place| {
-            found.also(*place, "has no derivative either")
+        let what = match first.has_value {
+            true => "a derivative has no finite limit",
+            false => "a term has no finite value",
+        };
+        let message = format!(
+            "the model `{}` has no linearisation at this state: {what}",
+            model.name
+        );
+        let diagnostic = Diagnostic::error(message)
+            .at(first.span, self.singularity(first, point))
+            .help(SMOOTH_FORMS);
+        let diagnostic = others.iter().fold(diagnostic, |diagnostic, other| {
+            diagnostic.also(other.span, self.singularity(other, point))
         });
-        Diagnostics::one(model.source.clone(), found).into()
+        Diagnostics::one(model.source.clone(), diagnostic).into()
+    }
+
+    /// Returns the message for a state or an input so large that its powers overflow.
+    fn out_of_range(&self, point: Point<'_>) -> Option<String> {
+        let states = self.model().state_names().into_iter().zip(point.state);
+        let inputs = self.model().model().inputs.iter();
+        let inputs = inputs.map(|input| input.name.clone()).zip(point.inputs);
+        let mut all = states.chain(inputs);
+        let (name, value) = all.find(|(_, value)| !(value.abs() <= LARGEST_VALUE))?;
+        Some(format!(
+            "{name} = {value:e} (SI) is out of range: its powers exceed the largest number of a computer, about \
+             1e308; give a value that the machine can reach"
+        ))
+    }
+
+    /// Returns kind, variables and point of a singularity, for a message.
+    fn singularity(&self, term: &SingularTerm, point: Point<'_>) -> String {
+        let program = self.model().program();
+        let names = self.model().state_names();
+        let units = self.model().state_units();
+        let inputs = &self.model().model().inputs;
+        let quantity = |variable: &Variable| {
+            let place = program.variable_place(*variable);
+            match variable {
+                Variable::Input(_) => {
+                    let input = &inputs[place];
+                    (
+                        input.name.clone(),
+                        point.inputs[place],
+                        input.unit.to_string(),
+                    )
+                }
+                _ => (
+                    names[place].clone(),
+                    point.state[place],
+                    units[place].clone(),
+                ),
+            }
+        };
+        let list = |parts: Vec<String>| match parts.get(..MAX_LISTED) {
+            Some(first) if parts.len() > MAX_LISTED => format!("{}, ...", first.join(", ")),
+            _ => parts.join(", "),
+        };
+        let at = term.of.iter().map(quantity);
+        let at = list(
+            at.map(|(name, value, unit)| format!("{name} = {value} {unit}"))
+                .collect(),
+        );
+        let by = term.by.iter().map(quantity);
+        let by = list(by.map(|(name, ..)| format!("`{name}`")).collect());
+        match (term.has_value, term.by.is_empty()) {
+            (false, _) => format!("the {} has no finite value at {at}", term.name),
+            (true, true) => format!("the {} has no derivative at {at}", term.name),
+            (true, false) => format!("the {} has no derivative by {by} at {at}", term.name),
+        }
     }
 }
 
@@ -326,34 +401,70 @@ pull = { value = "k*x + u", unit = "N" }
 "#;
 
     #[test]
-    fn linearisation_error_names_term_without_derivative() {
-        for force in [
-            "F*dot(x)/abs(dot(x))",
-            "F*sqrt(abs(x)/l)",
-            "F*(abs(x)/l)^0.3",
+    fn term_without_derivative_is_named_with_variable_and_point() {
+        for (force, cause, place) in [
+            (
+                "F*dot(x)/abs(dot(x))",
+                "a term has no finite value",
+                "the force `motor` has no finite value at x_dot = 0 m/s, u = 0 N",
+            ),
+            (
+                "F*sqrt(abs(x)/l)",
+                "a derivative has no finite limit",
+                "the force `motor` has no derivative by `x` at x = 0 m, u = 0 N",
+            ),
+            (
+                "F*(abs(x)/l)^0.3",
+                "a derivative has no finite limit",
+                "the force `motor` has no derivative by `x` at x = 0 m, u = 0 N",
+            ),
+            (
+                "F*sqrt(max(x/l, 0))",
+                "a derivative has no finite limit",
+                "the force `motor` has no derivative by `x` at x = 0 m, u = 0 N",
+            ),
         ] {
-            let text = DRIVEN
-                .replace("value = \"u\"", &format!("value = \"u + {force}\""))
-                .replace(
-                    "c = {",
-                    "F = { value = 1, unit = \"N\" }\nl = { value = 1, unit = \"m\" }\nc = {",
-                );
-            let model = CompiledModel::of_text("driven.toml", &text, Orders::Declared);
-            let model = model.unwrap_or_else(|error| panic!("{force}: {error}"));
-            let run = model.at_declared().expect("an instance");
-            let point = Point {
-                t: 0.0,
-                state: &[0.0, 0.0],
-                inputs: &[0.0],
-            };
-            let Err(Error::Specification(found)) = run.linearise(point) else {
-                panic!("{force} was linearised");
-            };
-            let said = found.render(false);
-            assert!(
-                said.contains("no finite limit") && said.contains(force),
-                "{said}"
+            let found = refused(force, [0.0, 0.0]).to_string();
+            for part in [cause, place, force, "sqrt(v^2 + eps^2)"] {
+                assert!(found.contains(part), "{part}: {found}");
+            }
+        }
+    }
+
+    #[test]
+    fn state_out_of_range_is_named() {
+        let found = refused("F*x/l", [1e300, 0.0]).to_string();
+        assert!(
+            found.starts_with("x = 1e300 (SI) is out of range"),
+            "{found}"
+        );
+        let found = refused("F*(x/l)^3", [0.0, -1e200]).to_string();
+        assert!(
+            found.starts_with("x_dot = -1e200 (SI) is out of range"),
+            "{found}"
+        );
+    }
+
+    /// Returns the error of the driven machine with another force.
+    fn refused(force: &str, state: [f64; 2]) -> Error {
+        let text = DRIVEN
+            .replace("value = \"u\"", &format!("value = \"u + {force}\""))
+            .replace("1/2*k*x^2", "1/2*k*x^2 + 1/4*k*x^4/l^2")
+            .replace(
+                "c = {",
+                "F = { value = 1, unit = \"N\" }\nl = { value = 1, unit = \"m\" }\nc = {",
             );
+        let model = CompiledModel::of_text("driven.toml", &text, Orders::Declared);
+        let model = model.unwrap_or_else(|error| panic!("{force}: {error}"));
+        let run = model.at_declared().expect("an instance");
+        let point = Point {
+            t: 0.0,
+            state: &state,
+            inputs: &[0.0],
+        };
+        match run.linearise(point) {
+            Err(error) => error,
+            Ok(_) => panic!("{force} was linearised"),
         }
     }
 

@@ -142,7 +142,7 @@ impl<'i, 'm> Search<'i, 'm> {
                 break;
             }
             let (trial, way) = self.moved(at, &(step * (longest * 0.5_f64.powi(halving))));
-            let Ok(there) = self.linearised(&trial) else {
+            let Some(there) = self.try_linearised(&trial) else {
                 continue;
             };
             if there.measured_by(&here.sizes) >= before {
@@ -178,12 +178,18 @@ impl<'i, 'm> Search<'i, 'm> {
             }
         });
         let (trial, way) = self.moved(at, &change);
-        let there = self.linearised(&trial).ok()?;
+        let there = self.try_linearised(&trial)?;
         (way.amax() > 0.0).then_some((trial, there))
     }
 
     /// Returns the accelerations at a point and their derivatives with respect to the unknowns.
     pub fn linearised(&mut self, at: &OperatingPoint) -> Result<Linear, Error> {
+        let found = self.try_linearised(at);
+        found.ok_or_else(|| self.instance.not_linear(at.point()))
+    }
+
+    /// Returns the same, or `None` if a number is not finite.
+    fn try_linearised(&mut self, at: &OperatingPoint) -> Option<Linear> {
         let degrees = self.instance.model().program().degrees_of_freedom();
         let states = at.state.len();
         let mut rates = vec![0.0; states];
@@ -215,10 +221,7 @@ impl<'i, 'm> Search<'i, 'm> {
             .chain(matrix.iter())
             .all(|number| number.is_finite())
         {
-            let reason = "an acceleration or its derivative is not finite at this state: check for a stiffness or \
-                          mass that is too large or too small, or start at another state (--state)"
-                .to_owned();
-            return Err(Error::Request(reason));
+            return None;
         }
         let sizes = DVector::from_fn(rows, |row, _| {
             let term = |(entry, value): (f64, &f64)| (entry * value).abs();
@@ -232,7 +235,7 @@ impl<'i, 'm> Search<'i, 'm> {
             let terms = of_states.chain(of_inputs).chain(of_scales);
             terms.fold(accelerations[row].abs(), f64::max)
         });
-        Ok(Linear {
+        Some(Linear {
             accelerations,
             matrix,
             sizes,
