@@ -12,9 +12,17 @@ use eomgen_model_spec::model::Function;
 /// Relative widening of bounds, so that a range as narrow as rounding is no contradiction.
 const SLACK: f64 = 1e-9;
 
+/// Relative rounding error of an affine form at the end of a range.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// Kind of an inequality.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Relation {
+    /// > 0.
     Positive,
+    /// >= 0, and > 0 at some states.
+    PositiveInside,
+    /// >= 0.
     NotNegative,
 }
 
@@ -22,7 +30,8 @@ impl Oracle {
     /// Returns true if bounds prove that no state has these sides of the first switches of
     /// [`Oracle::switches`]. `sizes` and `input_sizes` only scale the inequalities.
     ///
-    /// States on the boundary of a range or of a function's domain are ignored.
+    /// Ranges are closed: a regime beyond a switching surface at the end of a range is empty. States on the boundary
+    /// of a function's domain are ignored.
     pub fn is_empty(&self, sides: &[Side], sizes: &[f64], input_sizes: &[f64]) -> bool {
         let switches = self.switches.get(..sides.len()).unwrap_or_default();
         let imposed = Imposed { switches, sides };
@@ -32,14 +41,16 @@ impl Oracle {
             rows.extend(side_rows(&mut forms, switch, *side));
         }
         for argument in self.domain_arguments() {
-            rows.push((forms.of(argument), Relation::NotNegative));
+            rows.push((forms.of(argument), Relation::PositiveInside));
         }
         let is_false = |(form, relation): &(Affine, Relation)| {
-            form.terms.is_empty()
-                && match relation {
-                    Relation::Positive => form.constant <= 0.0,
-                    Relation::NotNegative => form.constant < 0.0,
-                }
+            let (most, rounding) = self.largest_value(form, &forms);
+            match relation {
+                Relation::Positive => most <= rounding,
+                Relation::PositiveInside if !form.terms.is_empty() => most <= rounding,
+                Relation::PositiveInside => most < -rounding,
+                Relation::NotNegative => most < -rounding,
+            }
         };
         if rows.iter().any(is_false) {
             return true;
@@ -47,6 +58,24 @@ impl Oracle {
         let rows = rows.into_iter().map(|(form, _)| form);
         let rows: Vec<Affine> = rows.filter(|form| !form.terms.is_empty()).collect();
         cone_is_empty(&self.homogeneous(&rows, &forms, sizes, input_sizes))
+    }
+
+    /// Returns the largest value of a form within the closed ranges of its variables, and its rounding error.
+    fn largest_value(&self, form: &Affine, forms: &Forms<'_>) -> (f64, f64) {
+        let (mut most, mut size) = (form.constant, form.constant.abs());
+        for (variable, coefficient) in &form.terms {
+            let bounds = self.variable_bounds(*variable, forms);
+            let end = match *coefficient > 0.0 {
+                true => bounds.high,
+                false => bounds.low,
+            };
+            most += coefficient * end;
+            size += (coefficient * end).abs();
+        }
+        match size.is_finite() {
+            true => (most, ROUNDING * size),
+            false => (f64::INFINITY, 0.0),
+        }
     }
 
     /// Returns rows and bounds as a homogeneous system of scaled variables; the last one is 1.
@@ -163,7 +192,7 @@ fn side_rows(forms: &mut Forms<'_>, switch: &Switch, side: Side) -> Vec<(Affine,
     let signed = |sign: f64| Affine::default().plus(sign, &quantity);
     match (side, width) {
         (Side::Free, Some(width)) => [1.0, -1.0]
-            .map(|sign| (signed(sign).plus(1.0, &width), Relation::NotNegative))
+            .map(|sign| (signed(sign).plus(1.0, &width), Relation::PositiveInside))
             .into(),
         // It is unknown if an atom is at rest at 0.
         (Side::Free, None) if quantity.has_atoms() => Vec::new(),

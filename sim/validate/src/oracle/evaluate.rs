@@ -6,6 +6,7 @@ use super::functions;
 use super::scene::{Direction, Motion, Scene};
 use super::tree::Tree;
 use eomgen_model_spec::ast::BinaryOperator;
+use eomgen_model_spec::model::Function;
 use num_dual::{Dual, DualNum, HyperDual};
 use std::cell::Cell;
 
@@ -20,6 +21,8 @@ pub(super) trait Level: DualNum<Primitive = f64> + Copy {
     fn kept<'p>(pass: &'p Pass<'_>, definition: usize) -> Option<&'p Cell<Option<Self>>>;
     /// Returns integral `index` with the derivatives that are cached for all rows, if they are.
     fn integral(pass: &Pass<'_>, index: usize) -> Option<Self>;
+    /// Returns true if the value and all its derivatives are 0.
+    fn is_constant_zero(&self) -> bool;
 }
 
 impl Level for Number {
@@ -46,6 +49,11 @@ impl Level for Number {
     fn integral(pass: &Pass<'_>, index: usize) -> Option<Self> {
         pass.scene.integral(index, pass.directions)
     }
+
+    fn is_constant_zero(&self) -> bool {
+        let parts = [self.re, self.eps1, self.eps2, self.eps1eps2];
+        parts.iter().all(|part| part.value == 0.0)
+    }
 }
 
 impl Level for Dual<Number> {
@@ -68,6 +76,10 @@ impl Level for Dual<Number> {
 
     fn integral(_: &Pass<'_>, _: usize) -> Option<Self> {
         None
+    }
+
+    fn is_constant_zero(&self) -> bool {
+        self.re.is_constant_zero() && self.eps.is_constant_zero()
     }
 }
 
@@ -149,13 +161,27 @@ impl<'s> Pass<'s> {
                 .unwrap_or_else(|| self.over_places(*set, body, frame)),
             Tree::Sum { field, body } => self.over_modes(*field, body, frame),
             Tree::Negate(operand) => -self.evaluate::<N>(operand, frame),
-            Tree::Binary(operator, left, right) => combine(
-                *operator,
-                self.evaluate::<N>(left, frame),
-                self.evaluate::<N>(right, frame),
-            ),
+            Tree::Binary(operator, left, right) => {
+                let [first, second] = [left, right].map(|side| self.evaluate::<N>(side, frame));
+                let is_power = *operator == BinaryOperator::Power;
+                match is_power && self.has_zero_power((left, &first), second.re(), frame) {
+                    true => N::from(0.0),
+                    false => combine(*operator, first, second),
+                }
+            }
             Tree::Power(base, exponent) => {
-                functions::constant_power(self.evaluate::<N>(base, frame), *exponent)
+                let value = self.evaluate::<N>(base, frame);
+                match self.has_zero_power((base, &value), *exponent, frame) {
+                    true => N::from(0.0),
+                    false => functions::constant_power(value, *exponent),
+                }
+            }
+            Tree::Call(Function::Sqrt, arguments) if arguments.len() == 1 => {
+                let value = self.evaluate::<N>(&arguments[0], frame);
+                match self.has_zero_power((&arguments[0], &value), 0.5, frame) {
+                    true => N::from(0.0),
+                    false => value.sqrt(),
+                }
             }
             Tree::Call(function, arguments) => self.call(*function, arguments, frame),
             Tree::Time => N::of(self.time()),
@@ -181,6 +207,46 @@ impl<'s> Pass<'s> {
             Tree::Mode { field } => N::of(self.mode(*field, frame)),
             still => N::from(self.still(still, frame)),
         }
+    }
+
+    /// Returns true if a power of a base that is 0 with all its derivatives is 0 with all its derivatives. The
+    /// chain rule gives infinity times 0 there. An exponent above 1 is enough. For another exponent the base has to
+    /// be 0 because of a switch: it is constant then, unlike x^4.
+    fn has_zero_power<N: Level>(
+        &self,
+        (base, value): (&Tree, &N),
+        exponent: f64,
+        frame: &Frame<'_>,
+    ) -> bool {
+        exponent > 0.0
+            && value.is_constant_zero()
+            && (exponent > 1.0 || self.is_beside_switch(base, frame))
+    }
+
+    /// Returns true if an expression contains a switch with the state beside its surface.
+    fn is_beside_switch(&self, tree: &Tree, frame: &Frame<'_>) -> bool {
+        let value = |tree: &Tree| self.evaluate::<Number>(tree, frame).re.value;
+        let is_beside = match tree {
+            Tree::Call(Function::Max | Function::Min, arguments) => {
+                let mut values = arguments.iter().map(value);
+                values.next() != values.next()
+            }
+            Tree::Call(Function::Deadzone | Function::Contact, arguments) => {
+                let mut values = arguments.iter().map(|argument| value(argument).abs());
+                values.next() != values.next()
+            }
+            Tree::Call(Function::Above, arguments) => {
+                arguments.iter().all(|argument| value(argument) != 0.0)
+            }
+            Tree::Definition(index) => {
+                let definition = self.scene.system.definitions.get(*index);
+                definition.is_some_and(|tree| self.is_beside_switch(tree, &Frame::Outside))
+            }
+            Tree::Places { .. } | Tree::Sum { .. } => return false,
+            _ => false,
+        };
+        let mut children = tree.children().into_iter();
+        is_beside || children.any(|child| self.is_beside_switch(child, frame))
     }
 
     fn state_rate<N: Level>(&self, index: usize, frame: &Frame<'_>) -> N {
@@ -263,12 +329,7 @@ impl<'s> Pass<'s> {
         sum
     }
 
-    fn call<N: Level>(
-        &self,
-        function: eomgen_model_spec::model::Function,
-        arguments: &[Tree],
-        frame: &Frame<'_>,
-    ) -> N {
+    fn call<N: Level>(&self, function: Function, arguments: &[Tree], frame: &Frame<'_>) -> N {
         let side = self
             .scene
             .imposed

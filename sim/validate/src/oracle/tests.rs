@@ -289,3 +289,123 @@ fn wrong_lengths_are_rejected() {
         assert!(matches!(found, Err(OracleError::Length { .. })));
     }
 }
+
+/// Powers of clipped expressions are constant on the flat side, with all derivatives.
+#[test]
+fn powers_of_clipped_expressions_have_forces_on_both_sides() {
+    // The potential, and minus its derivative by y at y = 0.25 with k = 300, b = 0.01.
+    let root = |y: f64| y.sqrt();
+    for (potential, force) in [
+        ("1/2.5*k*b^-0.5*max(y, 0)^2.5", -3000.0 * 0.25_f64.powf(1.5)),
+        ("1/1.5*k*b^0.5*max(y, 0)^1.5", -30.0 * root(0.25)),
+        ("k*b^1.5*sqrt(max(y, 0))", -300.0 * 1e-3 * 0.5 / root(0.25)),
+        (
+            "k*b^2*(max(y, 0)/b)^0.3",
+            -300.0 * 1e-2 * 0.3 * 25.0_f64.powf(-0.7),
+        ),
+        (
+            "k*b^2*(max(deadzone(y, b), 0)/b)^1.5",
+            -300.0 * 1e-2 * 1.5 * root(24.0),
+        ),
+        (
+            "k*b^2*(-min(0, -y)/b)^1.5",
+            -300.0 * 1e-2 * 1.5 * root(25.0),
+        ),
+    ] {
+        let text = SPRING.replace("1/2*k*deadzone(y, b)^2", potential);
+        let oracle = oracle(&text, 0);
+        let found = |y: f64| accelerations(&oracle, 0.0, &[y, 0.0], &[0.0]);
+        assert_close(&found(0.25), &[force / 2.0], 1e-13);
+        assert_eq!(found(-0.25), [0.0], "{potential}");
+    }
+}
+
+/// Forces with clipped powers of a rate, and with an exponent that moves.
+#[test]
+fn forces_with_clipped_powers_are_numbers_on_both_sides() {
+    for (force, expected) in [
+        (
+            "-c*b^-0.5*max(y, 0)^1.5/t_0",
+            -5.0 * 10.0 * 0.25_f64.powf(1.5),
+        ),
+        (
+            "-c*b/t_0*(max(y, 0)/b)^(1 + y/b)",
+            -5.0 * 0.01 * 25.0_f64.powi(26),
+        ),
+        ("-c*b/t_0*sqrt(max(y/b, 0))", -5.0 * 0.01 * 5.0),
+    ] {
+        let text = SPRING.replace("-c*contact(y, b)*dot(y)", force).replace(
+            "[coordinates]",
+            "t_0 = { value = 1, unit = \"s\" }\n[coordinates]",
+        );
+        let oracle = oracle(&text, 0);
+        let found = |y: f64| accelerations(&oracle, 0.0, &[y, 0.0], &[0.0]);
+        let spring = 300.0 * 0.24;
+        assert_close(&found(0.25), &[(expected - spring) / 2.0], 1e-12);
+        assert_close(&found(-0.25), &[spring / 2.0], 1e-14);
+    }
+}
+
+/// A clipped power inside the integral of a field's energy.
+#[test]
+fn field_energy_with_clipped_power_is_finite_where_the_field_is_clipped() {
+    let text = BEAM.replace(
+        "1/2*integral(E*I*diff(w, x, 2)^2, w)",
+        "1/2*integral(E*I*diff(w, x, 2)^2 + E*A*(max(w, 0)/l)^2.5, w)",
+    );
+    let (clipped, plain) = (oracle(&text, 1), oracle(BEAM, 1));
+    let found = |oracle: &Oracle, q: f64| accelerations(oracle, 0.0, &[0.0, q, 0.0, 0.0], &[0.0]);
+    // The first mode of a clamped beam has one sign.
+    let sides = [1e-3, -1e-3].map(|q| {
+        let (with, without) = (found(&clipped, q), found(&plain, q));
+        assert!(with.iter().all(|number| number.is_finite()), "{with:?}");
+        let pairs = with.iter().zip(&without);
+        let differs = |(a, b): (&f64, &f64)| (a - b).abs() > 1e-6 * b.abs();
+        pairs.filter(|(a, b)| differs((*a, *b))).count()
+    });
+    assert_eq!(
+        sides.iter().filter(|count| **count == 0).count(),
+        1,
+        "{sides:?}"
+    );
+}
+
+/// The ends of a range belong to it, so that a regime beyond a switching surface at an end is empty.
+#[test]
+fn regimes_beyond_a_surface_at_the_end_of_a_range_are_empty() {
+    for (range, force, sides) in [
+        ("[0, 1]", "-c*max(dot(y), 0)*above(y)", vec![Side::Plus]),
+        ("[-1, 0]", "-c*abs(y)/t_0", vec![Side::Minus]),
+        ("[\"3*b\", 1]", "-c*max(y, 3*b)/t_0", vec![Side::Plus]),
+        ("[\"-b\", \"b\"]", "-c*deadzone(y, b)/t_0", vec![Side::Free]),
+        ("[\"b\", 1]", "-c*deadzone(y, b)/t_0", vec![Side::Plus]),
+        (
+            "[-0.001, 1]",
+            "-c*abs(y)/t_0",
+            vec![Side::Minus, Side::Plus],
+        ),
+    ] {
+        let text = SPRING
+            .replace("1/2*k*deadzone(y, b)^2", "1/2*k*y^2")
+            .replace("-c*contact(y, b)*dot(y)", force)
+            .replace(
+                "y = { unit = \"m\"",
+                &format!("y = {{ range = {range}, unit = \"m\""),
+            )
+            .replace(
+                "[coordinates]",
+                "t_0 = { value = 1, unit = \"s\" }\n[coordinates]",
+            );
+        let oracle = oracle(&text, 0);
+        let place = oracle.switches().len() - 1;
+        let possible: Vec<Side> = [Side::Minus, Side::Plus, Side::Free]
+            .into_iter()
+            .filter(|side| oracle.switches()[place].sides().contains(side))
+            .filter(|side| match place {
+                0 => !oracle.is_empty(&[*side], &[1.0, 1.0], &[1.0]),
+                _ => !oracle.is_empty(&[Side::Plus, *side], &[1.0, 1.0], &[1.0]),
+            })
+            .collect();
+        assert_eq!(possible, sides, "{range} {force}");
+    }
+}
