@@ -5,11 +5,14 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use eomgen_discover::error::DiscoverError;
-use eomgen_model_spec::diagnostic::Diagnostics;
+use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, Severity};
 use eomgen_model_spec::source::Source;
 use eomgen_model_spec::variant::ModelError;
 use eomgen_model_spec::visible::{visible, visible_in_strings};
 use eomgen_records::Refusal;
+use serde_json::{Value, json};
+
+use crate::output::SCHEMA;
 
 pub type Result<T = (), E = Error> = std::result::Result<T, E>;
 
@@ -18,6 +21,8 @@ pub enum Error {
     Input(String),
     /// Diagnostics of a specification or dataset file.
     Specification(Diagnostics),
+    /// Negative result with its message.
+    Stopped(String),
     /// Negative result; all messages are printed.
     Failed,
 }
@@ -63,6 +68,26 @@ impl Error {
         }
     }
 
+    /// Returns the document that `--json` prints for an error; `None` if the command printed its own.
+    pub fn to_json(&self) -> Option<Value> {
+        let (message, diagnostics) = match self {
+            Self::Input(message) => {
+                let message = message.strip_prefix("error: ").unwrap_or(message);
+                (message.to_owned(), json!([]))
+            }
+            Self::Specification(found) => {
+                let is_error = |finding: &&Diagnostic| finding.severity == Severity::Error;
+                let first = found.list().iter().find(is_error);
+                let message = first.map(|finding| finding.message.clone());
+                (message.unwrap_or_default(), json!(found.records()))
+            }
+            Self::Stopped(message) => (message.clone(), json!([])),
+            Self::Failed => return None,
+        };
+        let error = json!({ "message": message, "diagnostics": diagnostics });
+        Some(json!({ "schema": SCHEMA, "error": error }))
+    }
+
     /// Prints the error to stderr and returns the exit status.
     pub fn report(&self) -> ExitCode {
         match self {
@@ -72,6 +97,10 @@ impl Error {
                 warn(&format!("error: {message}"));
             }
             Self::Specification(diagnostics) => warn_of(diagnostics),
+            Self::Stopped(message) => {
+                warn(&format!("error: {message}"));
+                return ExitCode::from(1);
+            }
             Self::Failed => return ExitCode::from(1),
         }
         ExitCode::from(2)

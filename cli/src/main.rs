@@ -40,10 +40,21 @@ mod tour;
 use std::process::ExitCode;
 
 use arguments::{Arguments, Command, Paper};
-use error::Result;
+use error::{Error, Result, say_json};
 
 fn main() -> ExitCode {
-    let arguments = Arguments::read();
+    // A command line with an error has no parsed options.
+    let is_json = std::env::args_os().any(|argument| argument == "--json");
+    let arguments = match Arguments::read() {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            if is_json && error.use_stderr() {
+                print_error(&Error::input(error.render().to_string().trim_end()));
+            }
+            error.exit()
+        }
+    };
+    let is_check = matches!(arguments.command, Command::Check(_));
     let result: Result = match arguments.command {
         Command::Check(options) => commands::check::run(&options),
         Command::Derive(options) => commands::derive::run(&options),
@@ -68,6 +79,19 @@ fn main() -> ExitCode {
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
-        Err(error) => error.report(),
+        Err(error) => {
+            // `check` prints its own document.
+            if is_json && !is_check {
+                print_error(&error);
+            }
+            error.report()
+        }
+    }
+}
+
+/// Prints an error as a JSON document on stdout. Errors of writing are ignored: stderr has the message.
+fn print_error(error: &Error) {
+    if let Some(document) = error.to_json() {
+        let _ = say_json(&document);
     }
 }

@@ -10,7 +10,7 @@ use eomgen_model_spec::model::Field;
 use eomgen_plot::modes::{Bar, Mode, Modes, Shape, modes};
 
 use crate::error::{Error, Result};
-use crate::regime::Side;
+use crate::regime::{Side, summary};
 
 /// Maximum number of modes in a figure.
 const MAX_MODES: usize = 12;
@@ -47,7 +47,7 @@ pub fn figure(run: &Instance<'_>, regime: &[Side], found: &[NaturalMode]) -> Res
     };
     let figure = Modes {
         title: format!("Natural modes of {title}{count}"),
-        notes: regime
+        notes: summary(regime)
             .chunks(SIDES_PER_LINE)
             .map(in_regime)
             .take(MAX_LINES)
@@ -57,8 +57,7 @@ pub fn figure(run: &Instance<'_>, regime: &[Side], found: &[NaturalMode]) -> Res
     modes(&figure).map_err(|error| Error::input(format!("--plot: {error}")))
 }
 
-fn in_regime(sides: &[Side]) -> String {
-    let sides: Vec<String> = sides.iter().map(Side::to_string).collect();
+fn in_regime(sides: &[String]) -> String {
     format!("where {}", sides.join(", "))
 }
 

@@ -75,10 +75,7 @@ fn equilibrium_near(run: &Instance<'_>, start: &[(&str, f64)]) -> Result<Equilib
 /// Finds an equilibrium; the command fails if there is none.
 pub fn equilibrium(run: &Instance<'_>, request: EquilibriumRequest<'_>) -> Result<Equilibrium> {
     match run.equilibrium(request) {
-        Err(Failure::Stopped { reason, .. }) => {
-            warn(&format!("error: {reason}"));
-            Err(Error::Failed)
-        }
+        Err(Failure::Stopped { reason, .. }) => Err(Error::Stopped(reason)),
         Err(other) => Err(other.into()),
         Ok(found) => {
             if !found.running.is_empty() {

@@ -34,7 +34,45 @@ impl Side {
     }
 }
 
-/// Returns the sides of all switching surfaces at a point; a surface over modes has one per mode.
+/// Largest number of surfaces in a summary.
+const MAX_SURFACES: usize = 12;
+
+/// One text per surface, with counts for surfaces of a field; the last text counts the surfaces left out.
+pub fn summary(sides: &[Side]) -> Vec<String> {
+    let surfaces: Vec<&[Side]> = sides
+        .chunk_by(|one, next| one.formula == next.formula)
+        .collect();
+    let mut texts: Vec<String> = surfaces
+        .iter()
+        .take(MAX_SURFACES)
+        .map(|surface| counts(surface))
+        .collect();
+    if let Some(left @ 1..) = surfaces.len().checked_sub(MAX_SURFACES) {
+        texts.push(format!("and {left} other surfaces (--json lists all)"));
+    }
+    texts
+}
+
+/// The side of a surface, or the number of places on each side.
+fn counts(surface: &[Side]) -> String {
+    let [first, others @ ..] = surface else {
+        return String::new();
+    };
+    let places = surface.len();
+    if others.is_empty() {
+        return first.to_string();
+    }
+    let counts: Vec<String> = ['>', '<', '=']
+        .into_iter()
+        .filter_map(|sign| {
+            let count = surface.iter().filter(|side| side.sign() == sign).count();
+            (count > 0).then(|| format!("{sign} 0 at {count}"))
+        })
+        .collect();
+    format!("{} {} of {places} places", first.formula, counts.join(", "))
+}
+
+/// The sides of all switching surfaces at a point, surfaces over modes one by one.
 pub fn regime(run: &Instance<'_>, at: &OperatingPoint) -> Result<Vec<Side>> {
     let mut evaluator = run.interpreter()?;
     let mut values = vec![0.0; evaluator.guard_count()];
@@ -48,4 +86,46 @@ pub fn regime(run: &Instance<'_>, at: &OperatingPoint) -> Result<Vec<Side>> {
     Ok(sides
         .map(|(formula, value)| Side { formula, value })
         .collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn side(formula: &str, value: f64) -> Side {
+        Side {
+            formula: formula.to_owned(),
+            value,
+        }
+    }
+
+    #[test]
+    fn surfaces_of_a_field_are_counted() {
+        let mut sides = vec![side("x", -1.0), side("y - b", 0.0)];
+        let field = (0..200).map(|place| side("w", f64::from(place - 50)));
+        sides.extend(field);
+        let expected = [
+            "x < 0",
+            "y - b = 0",
+            "w > 0 at 149, < 0 at 50, = 0 at 1 of 200 places",
+        ];
+        assert_eq!(summary(&sides), expected);
+        let rest: Vec<Side> = (0..20)
+            .map(|place| side("w", f64::from(place)))
+            .skip(1)
+            .collect();
+        assert_eq!(summary(&rest), ["w > 0 at 19 of 19 places"]);
+    }
+
+    #[test]
+    fn surfaces_beyond_twelve_are_a_number() {
+        let sides: Vec<Side> = (0..15)
+            .map(|place| side(&format!("x_{place}"), 1.0))
+            .collect();
+        let found = summary(&sides);
+        assert_eq!(found.len(), 13);
+        assert_eq!(found[12], "and 3 other surfaces (--json lists all)");
+        assert_eq!(summary(&sides[..12]).len(), 12);
+        assert!(summary(&[]).is_empty());
+    }
 }

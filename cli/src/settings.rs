@@ -59,16 +59,13 @@ pub fn stabilised(model: Model) -> Result<Model> {
 /// Returns the model with inputs replaced by the `NAME=EXPR` of `--input`.
 pub fn with_inputs(mut model: Model, prescribed: &[String]) -> Result<Model> {
     for text in prescribed {
-        let wrong = |what: &str| Error::input(format!("--input {text}: {what}"));
-        let (name, value) = text
-            .split_once('=')
-            .ok_or_else(|| wrong("expected NAME=EXPRESSION, such as u=2*sin(3*t)"))?;
+        let given = Assignment::split("--input", text).map_err(Error::Specification)?;
         let edit = Edit::PrescribeInput(PrescribeInput {
-            name: name.trim().to_owned(),
-            value: value.trim().to_owned(),
+            name: given.name().to_owned(),
+            value: given.value().to_owned(),
         });
-        let edited = edit::apply(&model.source, &[edit])
-            .map_err(|error| wrong(&messages(&error, &model)))?;
+        let edited = edit::apply(&model.source, &[edit]);
+        let edited = edited.map_err(|error| not_prescribed(&error, &given, &model))?;
         let source = model.source.edited(edited);
         let checked = eomgen_model_spec::check(source).map_err(Error::Specification)?;
         model = checked.model;
@@ -76,8 +73,21 @@ pub fn with_inputs(mut model: Model, prescribed: &[String]) -> Result<Model> {
     Ok(model)
 }
 
-/// Returns the messages of an edit, without places: these refer to the edited text.
-fn messages(error: &EditError, model: &Model) -> String {
+/// The error of `--input`, at its place in the option's text.
+fn not_prescribed(error: &EditError, given: &Assignment, model: &Model) -> Error {
+    let found = match error {
+        EditError::Invalid(found) => given.relocated(found),
+        EditError::MissingTerm { .. } => Some(given.refuse_name(said(error, model), None)),
+        _ => None,
+    };
+    match found {
+        Some(found) => Error::Specification(found),
+        None => Error::input(format!("--input {}: {}", given.text(), said(error, model))),
+    }
+}
+
+/// What is wrong with an edit, without the places of the edited text, which nobody has.
+fn said(error: &EditError, model: &Model) -> String {
     match error {
         EditError::Invalid(found) => {
             let messages = found.list().iter().map(|one| match &one.help {

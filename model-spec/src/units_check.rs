@@ -27,7 +27,11 @@ pub fn check(resolved: &mut Resolved, found: &mut Diagnostics) {
     units.coordinates();
     units.inputs();
     units.fields();
-    if units.definitions() && units.short_forms(&resolved.demanded, &resolved.alike) {
+    // A wrong unit of gravity would be reported at the rotations of frames, whose definitions contain it.
+    if units.demands(&resolved.demanded)
+        && units.definitions()
+        && units.short_forms(&resolved.demanded, &resolved.alike)
+    {
         units.states();
         units.energies();
         units.forces();
@@ -276,6 +280,13 @@ impl Units<'_, '_> {
         for vector in vectors {
             self.alike(vector);
         }
+        self.demands(demanded);
+        !clean || self.found.is_empty()
+    }
+
+    /// Checks the units of quantities as far as they are known. Returns false after an error.
+    fn demands(&mut self, demanded: &[(Expr, Dimension, String)]) -> bool {
+        let clean = self.found.is_empty();
         for (value, dimension, subject) in demanded {
             let expected = format!("expected {}", Words(*dimension));
             self.expect(value, *dimension, subject, &expected);

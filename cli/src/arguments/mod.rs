@@ -30,8 +30,11 @@ pub struct Arguments {
 
 impl Arguments {
     /// Parses the command line of the process. Earlier names of commands are accepted and not listed.
-    pub fn read() -> Self {
-        Self::parse_from(current_names(std::env::args_os().collect()))
+    ///
+    /// # Errors
+    /// Wrong arguments, and requests for help or the version.
+    pub fn read() -> Result<Self, clap::Error> {
+        Self::try_parse_from(current_names(std::env::args_os().collect()))
     }
 }
 

@@ -21,9 +21,9 @@ pub fn run(options: &Check) -> Result {
     let examined = match examine_specification(options) {
         Ok(found) => found,
         Err(error) => {
-            if let (true, Error::Specification(found)) = (options.output.json, &error) {
-                let document =
-                    json!({"schema": SCHEMA, "passed": false, "diagnostics": found.records()});
+            if let (true, Some(mut document)) = (options.output.json, error.to_json()) {
+                document["passed"] = json!(false);
+                document["diagnostics"] = document["error"]["diagnostics"].clone();
                 say_json(&document)?;
             }
             return Err(error);

@@ -10,7 +10,7 @@ use crate::error::{Error, Result, say, say_json};
 use crate::mode_figure::figure;
 use crate::operating_point::{head, is_equilibrium, model, named, point, shape_names};
 use crate::output::Destination;
-use crate::regime::{Side, regime};
+use crate::regime::{Side, regime, summary};
 
 pub fn run(options: &Modes) -> Result {
     let drawing = options.plot.as_deref();
@@ -62,10 +62,7 @@ fn record(mode: &NaturalMode) -> Value {
 fn sides(regime: &[Side]) -> String {
     match regime {
         [] => String::new(),
-        sides => {
-            let sides: Vec<String> = sides.iter().map(Side::to_string).collect();
-            format!("regime: {}\n", sides.join(", "))
-        }
+        sides => format!("regime: {}\n", summary(sides).join(", ")),
     }
 }
 

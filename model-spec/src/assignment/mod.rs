@@ -69,7 +69,36 @@ impl Assignment {
         Diagnostics::one(self.source.clone(), wrong)
     }
 
-    fn value(&self) -> &str {
+    /// Findings of a text that contains the value, at the same places of this option; `None` if one of them has no
+    /// place in the value.
+    pub fn relocated(&self, found: &Diagnostics) -> Option<Diagnostics> {
+        let (text, value) = (&found.source().text, self.value());
+        let shifted = |span: Span| {
+            let mut starts = text.match_indices(value).map(|(start, _)| start);
+            let start =
+                starts.find(|start| *start <= span.start && span.end <= start + value.len())?;
+            Some(self.place(span.start - start, span.end - start))
+        };
+        let mut here = Diagnostics::new(self.source.clone());
+        for finding in found.list() {
+            let primary = finding.primary.as_ref()?;
+            let mut moved = finding.clone().at(shifted(primary.span)?, &*primary.text);
+            moved
+                .secondary
+                .retain_mut(|label| match shifted(label.span) {
+                    Some(span) => {
+                        label.span = span;
+                        true
+                    }
+                    None => false,
+                });
+            here.push(moved);
+        }
+        Some(here)
+    }
+
+    /// The value.
+    pub fn value(&self) -> &str {
         &self.source.text[self.value.start..self.value.end]
     }
 

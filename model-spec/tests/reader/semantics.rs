@@ -664,6 +664,35 @@ fn zero_components_keep_the_unit_of_their_vector() {
     checked(GRAVITY);
 }
 
+/// Frames and bodies multiply gravity by their rotations; its unit error is found at gravity.
+#[test]
+fn unit_error_of_gravity_is_reported_at_gravity() {
+    for (gravity, message) in [
+        (
+            "[1, \"-g\", 0]",
+            "the x component of gravity is a pure number",
+        ),
+        (
+            "[\"a*l\", 0, \"-g\"]",
+            "the x component of gravity is in m^2/s^2",
+        ),
+        (
+            "[\"a\", \"-g\", \"m\"]",
+            "the z component of gravity is in kg",
+        ),
+        (
+            "[\"a\", \"-g/l\", \"g\"]",
+            "the y component of gravity is in 1/s^2",
+        ),
+    ] {
+        let text = GRAVITY.replace("[\"a\", \"0*a\", \"-g\"]", gravity);
+        let found = refused(&text);
+        assert!(found.contains(message), "{found}");
+        assert!(found.contains("gravity = ["), "{found}");
+        assert!(!found.contains("rotation"), "{found}");
+    }
+}
+
 /// Gravity with a component 0*a, in rotating frames.
 const GRAVITY: &str = r#"[model]
 name = "two_frames"

@@ -10,13 +10,18 @@ use crate::refusal::Refusal;
 use crate::samples::{JITTER, span, typical_step};
 use crate::windows::{LONGEST_DELAY, LONGEST_LEAD};
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
+use eomgen_model_spec::model::Input;
 
 const MOST_MISSING: f64 = 0.5;
 
 /// Range in standard deviations beyond any sensor's resolution: the unit or noise is wrong.
 const MOST_STANDARD_DEVIATIONS: f64 = 1e10;
 
-/// Fraction of samples at an extreme, with equal neighbours, beyond which a channel is clipped.
+/// Largest magnitude of an input, SI; its fourth power does not overflow.
+const LARGEST_INPUT: f64 = 1e75;
+
+/// Fraction of samples at the largest or smallest value, with equal neighbours, beyond which a
+/// channel counts as clipped.
 const CLIPPED: f64 = 0.02;
 
 /// RMS difference of two records, in standard deviations of the noise, below which they are the
@@ -29,12 +34,20 @@ const MOVES: f64 = 20.0;
 /// Number of samples to compare first when one record is shifted along another.
 const PROBES: usize = 16;
 
-/// Checks all records and returns notes, or the first problem.
-pub fn examine(dataset: &Dataset, description: &Description) -> Result<Vec<String>, Refusal> {
+/// Checks all records and returns notes.
+///
+/// # Errors
+/// The first problem that makes a result impossible.
+pub fn examine(
+    dataset: &Dataset,
+    description: &Description,
+    inputs: &[Input],
+) -> Result<Vec<String>, Refusal> {
     let mut notes = Vec::new();
     for record in dataset.train.iter().chain(&dataset.test) {
         notes.extend(timing(record));
         notes.extend(held_inputs(record));
+        input_sizes(record, inputs)?;
         for (channel, column) in dataset.channels.iter().zip(&record.channels) {
             notes.extend(values(record, &channel.name, channel.noise, column)?);
         }
@@ -98,6 +111,22 @@ pub(crate) fn held_inputs(record: &Record) -> Option<String> {
             record.name
         )
     })
+}
+
+/// Rejects inputs so large that their powers overflow.
+fn input_sizes(record: &Record, inputs: &[Input]) -> Result<(), Refusal> {
+    for (input, column) in inputs.iter().zip(&record.input_columns) {
+        let samples = record.times.iter().zip(column);
+        if let Some((time, value)) = samples.into_iter().find(|(_, v)| v.abs() > LARGEST_INPUT) {
+            let message = format!(
+                "input `{}` is {value:e} (SI) at t = {time} s: its powers exceed the largest number of a computer, \
+                 about 1e308; expected values that the machine can reach",
+                input.name
+            );
+            return Err(Refusal::file(&record.path, message));
+        }
+    }
+    Ok(())
 }
 
 fn values(record: &Record, name: &str, noise: f64, column: &[f64]) -> Result<Vec<String>, Refusal> {

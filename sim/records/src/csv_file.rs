@@ -168,8 +168,13 @@ pub(crate) fn behind_skipped<'b>(
         return Err(Refusal::file(path, "is UTF-16; expected UTF-8 or ASCII"));
     }
     let mut text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    // Without line feeds, carriage returns end the lines.
+    let is_end = match text.contains(&b'\n') {
+        true => |byte: &u8| *byte == b'\n',
+        false => |byte: &u8| *byte == b'\r',
+    };
     for _ in 0..format.skip {
-        let Some(end) = text.iter().position(|byte| *byte == b'\n') else {
+        let Some(end) = text.iter().position(is_end) else {
             return Err(Refusal::file(
                 path,
                 format!(
@@ -184,7 +189,7 @@ pub(crate) fn behind_skipped<'b>(
         return Ok(Cow::Borrowed(text));
     }
     let mut parted = Vec::with_capacity(text.len());
-    for line in text.split(|byte| *byte == b'\n') {
+    for line in text.split(is_end) {
         let words = line.split(u8::is_ascii_whitespace);
         for word in words.filter(|word| !word.is_empty()) {
             parted.extend_from_slice(word);

@@ -101,7 +101,7 @@ pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
     dataset.train = read("train", &description.records.train)?;
     dataset.test = read("test", &description.records.test)?;
     dataset.notes.append(&mut notes);
-    let notes = examine(&dataset, &description)?;
+    let notes = examine(&dataset, &description, &model.inputs)?;
     dataset.notes.extend(notes);
     if dataset.gives_motion() {
         let notes = without_rest(&mut dataset, model);

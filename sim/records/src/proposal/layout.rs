@@ -20,7 +20,10 @@ pub(crate) struct Layout {
 }
 
 pub(crate) fn found(text: &str) -> Option<Layout> {
-    let lines: Vec<&str> = text.lines().take(LINES).collect();
+    let lines: Vec<&str> = match text.contains('\n') {
+        true => text.lines().take(LINES).collect(),
+        false => text.split('\r').take(LINES).collect(),
+    };
     let comment = COMMENTS.into_iter().find(|sign| {
         let begin = |line: &&str| line.trim_start().starts_with(*sign);
         lines.iter().any(begin)

@@ -329,8 +329,8 @@ fn forces_with_clipped_powers_are_numbers_on_both_sides() {
             -5.0 * 10.0 * 0.25_f64.powf(1.5),
         ),
         (
-            "-c*b/t_0*(max(y, 0)/b)^(1 + y/b)",
-            -5.0 * 0.01 * 25.0_f64.powi(26),
+            "-c*b/t_0*(max(y, 0)/b)^(1 + y^2/(1000*b^2))",
+            -5.0 * 0.01 * 25.0_f64.powf(1.625),
         ),
         ("-c*b/t_0*sqrt(max(y/b, 0))", -5.0 * 0.01 * 5.0),
     ] {
@@ -374,11 +374,27 @@ fn field_energy_with_clipped_power_is_finite_where_the_field_is_clipped() {
 #[test]
 fn regimes_beyond_a_surface_at_the_end_of_a_range_are_empty() {
     for (range, force, sides) in [
-        ("[0, 1]", "-c*max(dot(y), 0)*above(y)", vec![Side::Plus]),
-        ("[-1, 0]", "-c*abs(y)/t_0", vec![Side::Minus]),
-        ("[\"3*b\", 1]", "-c*max(y, 3*b)/t_0", vec![Side::Plus]),
+        (
+            "[0, 1], initial = 0.5",
+            "-c*max(dot(y), 0)*above(y)",
+            vec![Side::Plus],
+        ),
+        (
+            "[-1, 0], initial = -0.5",
+            "-c*abs(y)/t_0",
+            vec![Side::Minus],
+        ),
+        (
+            "[\"3*b\", 1], initial = 0.5",
+            "-c*max(y, 3*b)/t_0",
+            vec![Side::Plus],
+        ),
         ("[\"-b\", \"b\"]", "-c*deadzone(y, b)/t_0", vec![Side::Free]),
-        ("[\"b\", 1]", "-c*deadzone(y, b)/t_0", vec![Side::Plus]),
+        (
+            "[\"b\", 1], initial = 0.5",
+            "-c*deadzone(y, b)/t_0",
+            vec![Side::Plus],
+        ),
         (
             "[-0.001, 1]",
             "-c*abs(y)/t_0",
