@@ -37,7 +37,7 @@ impl Side {
 /// Largest number of surfaces in a summary.
 const MAX_SURFACES: usize = 12;
 
-/// One text per surface, with counts for surfaces of a field; the last text counts the surfaces left out.
+/// Returns one text per surface, with counts for surfaces of a field. The last text counts omitted surfaces.
 pub fn summary(sides: &[Side]) -> Vec<String> {
     let surfaces: Vec<&[Side]> = sides
         .chunk_by(|one, next| one.formula == next.formula)
@@ -53,7 +53,7 @@ pub fn summary(sides: &[Side]) -> Vec<String> {
     texts
 }
 
-/// The side of a surface, or the number of places on each side.
+/// Returns the side of a surface, or the number of places on each side.
 fn counts(surface: &[Side]) -> String {
     let [first, others @ ..] = surface else {
         return String::new();
@@ -72,7 +72,7 @@ fn counts(surface: &[Side]) -> String {
     format!("{} {} of {places} places", first.formula, counts.join(", "))
 }
 
-/// The sides of all switching surfaces at a point, surfaces over modes one by one.
+/// Returns the sides of all switching surfaces at a point; a surface over modes has one per mode.
 pub fn regime(run: &Instance<'_>, at: &OperatingPoint) -> Result<Vec<Side>> {
     let mut evaluator = run.interpreter()?;
     let mut values = vec![0.0; evaluator.guard_count()];

@@ -73,21 +73,25 @@ pub fn with_inputs(mut model: Model, prescribed: &[String]) -> Result<Model> {
     Ok(model)
 }
 
-/// The error of `--input`, at its place in the option's text.
+/// Returns the error of `--input` at its place in the option's text.
 fn not_prescribed(error: &EditError, given: &Assignment, model: &Model) -> Error {
     let found = match error {
         EditError::Invalid(found) => given.relocated(found),
-        EditError::MissingTerm { .. } => Some(given.refuse_name(said(error, model), None)),
+        EditError::MissingTerm { .. } => Some(given.refuse_name(messages(error, model), None)),
         _ => None,
     };
     match found {
         Some(found) => Error::Specification(found),
-        None => Error::input(format!("--input {}: {}", given.text(), said(error, model))),
+        None => Error::input(format!(
+            "--input {}: {}",
+            given.text(),
+            messages(error, model)
+        )),
     }
 }
 
-/// What is wrong with an edit, without the places of the edited text, which nobody has.
-fn said(error: &EditError, model: &Model) -> String {
+/// Returns the messages of an edit, without places: these refer to the edited text.
+fn messages(error: &EditError, model: &Model) -> String {
     match error {
         EditError::Invalid(found) => {
             let messages = found.list().iter().map(|one| match &one.help {

@@ -20,8 +20,7 @@ const MOST_STANDARD_DEVIATIONS: f64 = 1e10;
 /// Largest magnitude of an input, SI; its fourth power does not overflow.
 const LARGEST_INPUT: f64 = 1e75;
 
-/// Fraction of samples at the largest or smallest value, with equal neighbours, beyond which a
-/// channel counts as clipped.
+/// Fraction of samples at an extreme, with equal neighbours, beyond which a channel is clipped.
 const CLIPPED: f64 = 0.02;
 
 /// RMS difference of two records, in standard deviations of the noise, below which they are the
@@ -34,10 +33,7 @@ const MOVES: f64 = 20.0;
 /// Number of samples to compare first when one record is shifted along another.
 const PROBES: usize = 16;
 
-/// Checks all records and returns notes.
-///
-/// # Errors
-/// The first problem that makes a result impossible.
+/// Checks all records and returns notes, or the first problem.
 pub fn examine(
     dataset: &Dataset,
     description: &Description,
