@@ -1,0 +1,1 @@
+//! Selects features of shared dependencies; see `Cargo.toml`. Contains no code.
