@@ -1,4 +1,4 @@
-//! Compares a model with measurements, finds what it lacks, names it and adds it.
+//! Comparison of a model with measured records, and search for the missing effects.
 //!
 //! ```no_run
 //! use std::path::Path;
@@ -32,12 +32,11 @@
 //! # }
 //! ```
 //!
-//! Data flows one way: [`model`] (a model that can be run, and what is unknown of it); [`fit`]
-//! (estimates, how well they are known, and what they leave); [`catalogue`] (what a model may
-//! lack, and where); [`mod@residual_force`] (in which equation a force is missing, and what it is
-//! like); [`mod@search`] (which effects are accepted); [`empirical`] (what remains and has no name);
-//! [`report`] (the result, for programs and for people). [`thresholds`] holds what decides,
-//! [`error`] what can go wrong, [`ids`] the indices of everything that is counted.
+//! Data flows one way: [`model`] (compiled model and unknowns), [`fit`] (estimates, uncertainties and
+//! residuals), [`catalogue`] (effects and their sites), [`mod@residual_force`] (equation and form of a
+//! missing force), [`mod@search`] (accepted effects), [`empirical`] (unnamed expressions),
+//! [`experiment`] (next experiments), [`report`] (results as documents and pages). [`thresholds`]
+//! contains the limits of decisions, [`error`] the errors, [`ids`] the typed indices.
 
 pub mod catalogue;
 pub mod empirical;

@@ -32,9 +32,8 @@ fn effect(effect: &FoundEffect, files: &[ExperimentFile]) -> Markup {
             @match effect.status {
                 Status::Named => { "No other tested effect has the same response." },
                 Status::Provisional => {
-                    "It may be a substitute for another effect: a large residual remains, or a nuisance is at \
-                     the "
-                    "bound of the fit."
+                    "It may be a substitute for another effect: a large residual remains, or a nuisance is at "
+                    "the bound of the fit."
                 },
                 Status::Class => {
                     "The records do not separate it from "
@@ -66,7 +65,8 @@ fn effect(effect: &FoundEffect, files: &[ExperimentFile]) -> Markup {
             }
             dt { "evidence" }
             dd {
-                "reduction of the held-out residual: " (percent(effect.statistics.held_out)) ", " (plain(effect.statistics.held_out_errors, 2)) " standard errors"
+                "reduction of the held-out residual: " (percent(effect.statistics.held_out))
+                ", " (plain(effect.statistics.held_out_errors, 2)) " standard errors"
                 @if let Some(p) = effect.adjusted_p_value {
                     "; probability that noise alone gives as much for any fitted effect: " (probability(p))
                 }
