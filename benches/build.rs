@@ -1,4 +1,4 @@
-//! Emits the planetary arm at the orders that are compared, most of which are not checked in.
+//! Emits the planetary arm at the compared orders.
 
 use std::error::Error;
 use std::fmt::Write;
@@ -8,14 +8,13 @@ use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_codegen::rust::{Packaging, emit};
 use eomgen_codegen::variant::Variant;
 
-/// The orders; the macro in `benches/rates.rs` goes through the same.
+/// Orders, the same as in the macro of `benches/rates.rs`.
 const ORDERS: [usize; 9] = [0, 1, 2, 4, 8, 16, 32, 64, 128];
 
-/// The orders with functions on request; the macros in `benches/jacobian.rs` and `lanes.rs`
-/// go through them.
+/// Orders with additional functions, the same as in the macros of `benches/jacobian.rs` and `lanes.rs`.
 const FULL_ORDERS: [usize; 3] = [4, 16, 64];
 
-/// What is requested there.
+/// Additional functions.
 const OUTPUTS: &[Output] = &[Output::Jacobians, Output::Products, Output::Lanes];
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -1,5 +1,4 @@
-//! From the checked model of the arm to its source: derivation, lowering and emission, and
-//! all three together, at a small and at the largest order.
+//! Derivation, lowering and emission of the arm, separately and together, at a small and at the largest order.
 
 use std::path::Path;
 
@@ -12,7 +11,7 @@ fn derivation(criterion: &mut Criterion) {
     let path =
         Path::new(env!("CARGO_MANIFEST_DIR")).join("../model-spec/models/planetary_arm.toml");
     let Ok(checked) = eomgen_model_spec::load(&path) else {
-        panic!("the shipped specification is in order");
+        panic!("the shipped specification is valid");
     };
     let model = checked.model;
     let Ok(values) = model.parameter_values() else {

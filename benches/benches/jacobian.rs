@@ -1,12 +1,12 @@
-//! The arm's Jacobian of the rates by the state, and its products with one vector, beside one
-//! right-hand side: what they cost in right-hand sides, and a structural nonzero in nanoseconds.
+//! Jacobian of the arm's rates by the state and its products with a vector, compared with a right-hand side, and the time
+//! per structural nonzero.
 
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use eomgen_benches::{generated, state, variants};
 
-/// Results are looked at where they lie: a copy of them would be timed with the call.
+/// Results are observed in place, so that the time of a copy is not included.
 macro_rules! compare {
     ($criterion:ident, $($order:literal $module:ident),*) => {$({
         use variants::$module as arm;

@@ -1,6 +1,6 @@
-//! The arm at many states: one by one, and eight at once in every kind of registers that this
-//! machine has. Prints nanoseconds for a state and how many times the throughput of one by one
-//! they are. The best of many rounds counts: whatever else runs makes a round longer only.
+//! The arm at many states, one by one and 8-wide in every kind of registers of this machine. Prints nanoseconds per state
+//! and the throughput relative to one by one. The fastest of many rounds counts, because other work only lengthens a
+//! round.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -8,7 +8,7 @@ use std::time::Instant;
 use eomgen_benches::{generated, state};
 use eomgen_lanes::{LANES, Lanes, Registers, Task, Vector};
 
-/// Of this crate, because a scalar is made of its own or of the traits of its own.
+/// Emitted in this crate: `scalar!` implements traits of the emitted module, which must be local.
 #[allow(dead_code)]
 mod variants {
     include!(concat!(env!("OUT_DIR"), "/variants.rs"));
@@ -18,14 +18,13 @@ mod variants {
 ::eomgen_lanes::scalar!(variants::full_order_16);
 ::eomgen_lanes::scalar!(variants::full_order_64);
 
-/// States.
+/// Number of states.
 const STATES: usize = 16;
 
-/// Calls for each of them in a round: the states are lanes throughout, as in a task that
-/// integrates a motion.
+/// Calls per state in a round. The states remain in lanes throughout, as in the integration of a motion.
 const PASSES: usize = 32;
 
-/// Rounds of which the best counts.
+/// Number of rounds; the fastest counts.
 const ROUNDS: usize = 2000;
 
 fn best(mut round: impl FnMut()) -> f64 {
@@ -37,7 +36,7 @@ fn best(mut round: impl FnMut()) -> f64 {
     (0..ROUNDS).map(seconds).fold(f64::INFINITY, f64::min) / (PASSES * STATES) as f64 * 1e9
 }
 
-/// A frequency a little different in every lane, so that no two lanes are alike.
+/// Returns slightly different times, so that all lanes differ.
 fn times(place: usize) -> [f64; LANES] {
     std::array::from_fn(|k| 0.3 + 1e-3 * (LANES * place + k) as f64)
 }
@@ -101,7 +100,7 @@ macro_rules! compare {
             print!(", {registers:?} {time:6.1} ns ({:.2} times)", alone / time);
             for (place, rates) in single_rates.iter().enumerate() {
                 let found = lane_rates[place / LANES].map(|numbers| numbers[place % LANES]);
-                assert_eq!(rates, &found, "lanes and single numbers differ");
+                assert_eq!(rates, &found, "lanes and scalars differ");
             }
         }
         println!();

@@ -1,5 +1,5 @@
-//! One right-hand side of the arm as emitted Rust, as machine code made in the process and
-//! interpreted; and the time from a program to an evaluator with machine code.
+//! Right-hand side of the arm as emitted Rust, as machine code generated in the process, and interpreted; and the time
+//! to generate the machine code.
 
 use std::hint::black_box;
 use std::path::Path;
@@ -15,7 +15,7 @@ fn program(order: usize) -> Program {
     let path =
         Path::new(env!("CARGO_MANIFEST_DIR")).join("../model-spec/models/planetary_arm.toml");
     let Ok(checked) = eomgen_model_spec::load(&path) else {
-        panic!("the shipped specification is in order");
+        panic!("the shipped specification is valid");
     };
     let model = checked.model;
     let Ok(values) = model.parameter_values() else {
@@ -25,7 +25,7 @@ fn program(order: usize) -> Program {
     lower(&model, &equations, &values)
 }
 
-/// Results are looked at where they lie: a copy of them would be timed with the call.
+/// Results are observed in place, so that the time of a copy is not included.
 macro_rules! compare {
     ($criterion:ident, $($order:literal $module:ident),*) => {$({
         use variants::$module as arm;

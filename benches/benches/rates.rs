@@ -1,7 +1,5 @@
-//! One right-hand side of the arm in one run: generated, hand-written in O(S), and
-//! hand-assembled Eq. (22), all with prepared coefficients and the same sine, beside the
-//! floor: one sine and copying the rates. Each is one call: emitted functions, which
-//! are generic, are kept from being inlined, and so are the others.
+//! Right-hand side of the arm in one run: generated, hand-written in O(S), and hand-assembled Eq. (22), with prepared
+//! coefficients and the same sine, and the floor: one sine and a copy of the rates. Each is a call that is not inlined.
 
 use std::hint::black_box;
 
@@ -11,7 +9,7 @@ use eomgen_benches::{at_all_orders, generated, state, variants};
 use eomgen_paper::reference::PlanetaryArmParameters;
 use eomgen_paper::reference::equation_22::{Eliminated, Equation22};
 
-/// Results are looked at where they are written: a copy of them would be timed with the call.
+/// Results are observed in place, so that the time of a copy is not included.
 macro_rules! compare {
     ($criterion:ident, $($order:literal $module:ident),*) => {$({
         use variants::$module as arm;

@@ -1,4 +1,4 @@
-//! A model's energies for CasADi: the same expressions, one by one, as a module in Python.
+//! Energies of a model as expressions of a CasADi module in Python.
 
 use std::fmt::Write;
 
@@ -6,7 +6,7 @@ use eomgen_model_spec::ast::BinaryOperator;
 use eomgen_model_spec::ids::{DefinitionId, ParameterId};
 use eomgen_model_spec::model::{Expr, ExprKind, Model, ParameterValue};
 
-/// The module; nothing for a model with an expression that rigid trees do not have.
+/// Returns the module, or none for an expression that rigid trees do not need.
 pub fn definitions(model: &Model) -> Option<String> {
     let mut text = String::from("import casadi as ca\n\n\ndef energies():\n");
     let degrees = model.coordinates.len();

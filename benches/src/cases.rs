@@ -1,5 +1,4 @@
-//! The cases that [`crate::instructions`] counts, each a function of its own that callgrind
-//! can tell apart.
+//! Cases that [`crate::instructions`] counts. Each is a separate function for callgrind.
 
 use std::hint::black_box;
 use std::path::Path;
@@ -14,8 +13,7 @@ use crate::contenders::equation_22;
 use crate::instructions::CALLS;
 use crate::{state, variants};
 
-/// A function for each contender at an order, and one that prepares and calls them all: what
-/// is done once is not counted.
+/// Defines a function for each contender at an order, and one that prepares and calls them. Preparation is not counted.
 macro_rules! right_hand_sides {
     ($($order:literal $module:ident $generated:ident $hand_written:ident $equation_22:ident),* $(,)?) => {
         $(
@@ -76,7 +74,7 @@ right_hand_sides!(
     128 order_128 generated_128 hand_written_128 equation_22_128,
 );
 
-/// As many calls as are counted.
+/// Repeats the counted call.
 #[inline(always)]
 fn repeat(mut call: impl FnMut()) {
     for _ in 0..CALLS {
@@ -84,7 +82,7 @@ fn repeat(mut call: impl FnMut()) {
     }
 }
 
-/// Derivation and emission with every field at an order.
+/// Derives and emits a model with every field at an order.
 fn emitted(model: &Model, order: usize) {
     let variant = Variant::derive(model, &vec![order; model.fields.len()]);
     let Ok(variant) = variant else {
@@ -107,7 +105,7 @@ fn derive_and_emit_128(model: &Model) {
 /// Runs every case.
 ///
 /// # Panics
-/// If the shipped specification is not where it was when this was compiled.
+/// If the shipped specification has moved since compilation.
 pub fn run() {
     run_right_hand_sides();
     let path =

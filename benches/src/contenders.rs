@@ -1,11 +1,9 @@
-//! What generated code is compared with, each as one call that is not inlined: emitted
-//! functions are not inlined into other crates, so neither are the others. All write their
-//! result to where the caller wants it.
+//! Code that generated code is compared with. Each contender is a call that is not inlined, as emitted functions are not
+//! inlined into other crates. All write their result to memory of the caller.
 
 use eomgen_paper::reference::equation_22::{Equation22, copy_in_pairs};
 
-/// Calls a macro with every order that is compared and the module of [`crate::variants`]
-/// that holds it.
+/// Calls a macro with every compared order and its module of [`crate::variants`].
 #[macro_export]
 macro_rules! at_all_orders {
     ($with:ident) => {
@@ -16,7 +14,7 @@ macro_rules! at_all_orders {
     };
 }
 
-/// Defines `generated`, one call of the rates of the emitted module in scope under this name.
+/// Defines `generated`, a call of the rates of an emitted module in scope.
 #[macro_export]
 macro_rules! generated {
     ($arm:ident) => {
@@ -32,14 +30,14 @@ macro_rules! generated {
     };
 }
 
-/// What nobody can go below: one sine, and the rates as they stand in the state.
+/// Computes the floor: one sine and a copy of the rates in the state.
 #[inline(never)]
 pub fn floor<const N: usize>(t: f64, state: &[f64; N], omega: f64, rates: &mut [f64; N]) {
     copy_in_pairs(&state[N / 2..], &mut rates[..N / 2]);
     rates[N / 2] = eomgen_elementary::sin(omega * t);
 }
 
-/// Hand-assembled Eq. (22).
+/// Computes the rates by the hand-assembled Eq. (22).
 #[inline(never)]
 pub fn equation_22<const S: usize, const N: usize>(
     arm: &Equation22<S>,

@@ -1,5 +1,4 @@
-//! The record of how fast the generated right-hand side is beside the other contenders:
-//! what one run found, as a line of a table and as curves. Measuring is not here.
+//! History of times and instruction counts of the contenders: table lines and figures.
 
 use std::fmt::Write;
 
@@ -7,37 +6,37 @@ use eomgen_plot::{Axes, Frame, Panel, Plate, PlotError, Series, plate};
 
 use crate::instructions::Count;
 
-/// The fastest of many calls at one order.
+/// Fastest of many calls at one order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Times {
-    /// The order S.
+    /// Order S.
     pub order: usize,
-    /// Of calls that wait for nothing, so that several are under way at once.
+    /// Independent calls, which overlap in the processor.
     pub overlapping: Contenders,
-    /// Of calls each of which takes its time t from the result of the one before.
+    /// Dependent calls: each takes its time t from the previous result.
     pub waiting: Contenders,
 }
 
-/// A call of each contender, s.
+/// Time of a call of each contender, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contenders {
-    /// One sine and copying the rates.
+    /// One sine and a copy of the rates.
     pub floor: f64,
-    /// Generated.
+    /// Generated code.
     pub generated: f64,
-    /// Written by hand in O(S).
+    /// Hand-written code in O(S).
     pub hand_written: f64,
     /// Hand-assembled Eq. (22).
     pub equation_22: f64,
 }
 
-/// Curves with their names.
+/// Named curves.
 type Named<'a> = Vec<(String, &'a [f64])>;
 
-/// The orders whose ratios are kept.
+/// Orders with recorded ratios.
 const KEPT: [usize; 3] = [4, 16, 64];
 
-/// The cases whose instructions are kept.
+/// Cases with recorded instruction counts.
 const COUNTED: [&str; 5] = [
     "generated_4",
     "generated_16",
@@ -46,10 +45,10 @@ const COUNTED: [&str; 5] = [
     "derive_and_emit_128",
 ];
 
-/// The columns of the table before those of each order and of each count.
+/// First columns of the table, before those of orders and counts.
 const FIRST: &str = "date,commit,features,floor_4_ns";
 
-/// The first line of the table.
+/// Returns the header of the table.
 pub fn heading() -> String {
     let mut line = FIRST.to_owned();
     for order in KEPT {
@@ -71,8 +70,8 @@ pub fn heading() -> String {
     line + "\n"
 }
 
-/// A line of the table; `run` is date, commit and target features. What was not counted is
-/// empty. The floor is that of order 4 throughout, called as what is compared with it.
+/// Returns a line of the table. `run` is date, commit and target features. Fields of missing counts are empty. The floor
+/// is that of order 4, with the same kind of calls as the contender.
 pub fn line(run: &[String; 3], times: &[Times], counts: &[Count]) -> String {
     let at = |order: usize| times.iter().find(|times| times.order == order);
     let floor_of = |way: fn(&Times) -> Contenders| at(4).map_or(f64::NAN, |t| way(t).floor);
@@ -109,7 +108,7 @@ pub fn line(run: &[String; 3], times: &[Times], counts: &[Count]) -> String {
     line + "\n"
 }
 
-/// The times of one run as a table, ns.
+/// Returns the times of a run as a table, ns.
 pub fn table(times: &[Times]) -> String {
     let line = |order: usize, calls: &str, c: &Contenders| {
         let all = [c.floor, c.generated, c.hand_written, c.equation_22].map(|time| 1e9 * time);
@@ -124,10 +123,10 @@ pub fn table(times: &[Times]) -> String {
     format!("order,calls,floor,generated,hand_written,equation_22\n{lines}")
 }
 
-/// The times of calls that overlap in one run, over the order, as SVG.
+/// Draws the times of overlapping calls over the order, as SVG.
 ///
 /// # Errors
-/// If there is nothing to draw.
+/// An empty figure.
 pub fn curves(times: &[Times]) -> Result<String, PlotError> {
     let orders: Vec<f64> = times.iter().map(|times| times.order as f64).collect();
     let of = |time: fn(&Contenders) -> f64| -> Vec<f64> {
@@ -149,10 +148,10 @@ pub fn curves(times: &[Times]) -> Result<String, PlotError> {
     )
 }
 
-/// The ratios and counts of all runs of a table, as SVG.
+/// Draws ratios and counts of all runs of a table, as SVG.
 ///
 /// # Errors
-/// If there is nothing to draw.
+/// An empty figure.
 pub fn development(table: &str) -> Result<String, PlotError> {
     let runs: Vec<f64> = (1..table.lines().count()).map(|run| run as f64).collect();
     let of = |names: &[String]| -> Vec<(String, Vec<f64>)> {
@@ -186,7 +185,7 @@ pub fn development(table: &str) -> Result<String, PlotError> {
     draw("Ratios of times and instructions of all runs", frames)
 }
 
-/// A column of the table by its name; what is empty is not a number.
+/// Returns a column of the table; empty fields are NaN.
 fn column(table: &str, name: &str) -> Vec<f64> {
     let mut lines = table.lines();
     let heading = lines.next().unwrap_or_default();
@@ -256,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_has_the_columns_of_the_heading() {
+    fn lines_match_the_header() {
         let all = [4, 16, 64].map(times);
         let run = ["2026-01-02", "abc", "sse2"].map(String::from);
         let text = heading() + &line(&run, &all, &[("generated_16".to_owned(), 321)]);

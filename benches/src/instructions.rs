@@ -1,26 +1,25 @@
-//! Instructions of [`crate::cases`], counted by callgrind: figures that do not
-//! depend on what else the machine does. They do depend on the compiler, and a little on the
-//! seeds of hash maps where something is derived.
+//! Instruction counts of [`crate::cases`] by callgrind. They do not depend on other work of the machine, but on the
+//! compiler, and for derivations slightly on the seeds of hash maps.
 
 use std::path::Path;
 use std::process::Command;
 
-/// How often a right-hand side is called; its instructions are those of all calls by this.
+/// Number of calls of a right-hand side; counts are divided by it.
 pub const CALLS: u64 = 100;
 
-/// Cases that are done once.
+/// Prefix of cases that run once.
 const ONCE: &str = "derive_and_emit";
 
-/// A case and the instructions of one call.
+/// Case and its instructions per call.
 pub type Count = (String, u64);
 
-/// The argument by which a program that this is asked to count runs the cases.
+/// Argument with which a counted program runs the cases.
 pub const ARGUMENT: &str = "cases";
 
-/// The instructions of every case, in the order of `names`, when `program` runs them.
+/// Counts the instructions of every case in `program`, in the order of `names`.
 ///
 /// # Errors
-/// What is missing or went wrong, in words.
+/// A missing tool or case, or a failed command.
 pub fn counted(program: &Path, folder: &Path, names: &[String]) -> Result<Vec<Count>, String> {
     let profile = folder.join("callgrind.out");
     run(Command::new("valgrind")
@@ -34,14 +33,14 @@ pub fn counted(program: &Path, folder: &Path, names: &[String]) -> Result<Vec<Co
     names
         .iter()
         .map(|name| {
-            let total = total(&table, name).ok_or(format!("callgrind does not know {name}"))?;
+            let total = total(&table, name).ok_or(format!("the output of callgrind has no {name}"))?;
             let calls = if name.starts_with(ONCE) { 1 } else { CALLS };
             Ok((name.clone(), total / calls))
         })
         .collect()
 }
 
-/// Whether instructions can be counted here.
+/// Returns whether this machine has valgrind.
 pub fn available() -> bool {
     run(Command::new("valgrind").arg("--version")).is_ok()
 }
@@ -57,8 +56,8 @@ fn run(command: &mut Command) -> Result<String, String> {
     Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
-/// The inclusive instructions of a function in callgrind's table, whose lines are a number
-/// with commas, a share in parentheses, and a place with the function's name.
+/// Returns the inclusive instructions of a function in callgrind's table. Its lines are a number with commas, a share in
+/// parentheses, and a place with the function's name.
 fn total(table: &str, name: &str) -> Option<u64> {
     let line = table.lines().find(|line| {
         line.match_indices("cases::").any(|(place, prefix)| {
@@ -71,7 +70,7 @@ fn total(table: &str, name: &str) -> Option<u64> {
     number.replace(',', "").parse().ok()
 }
 
-/// A table of counts as it is kept: one case and its number a line.
+/// Parses a table of counts with a case and its number per line.
 pub fn read(text: &str) -> Vec<Count> {
     let parts = text.lines().filter_map(|line| line.split_once(','));
     parts
@@ -79,14 +78,14 @@ pub fn read(text: &str) -> Vec<Count> {
         .collect()
 }
 
-/// The same as text.
-pub fn written(counts: &[Count]) -> String {
+/// Formats a table of counts.
+pub fn format_counts(counts: &[Count]) -> String {
     let line = |(name, number): &Count| format!("{name},{number}\n");
     let lines: String = counts.iter().map(line).collect();
     format!("case,instructions\n{lines}")
 }
 
-/// The names of all cases.
+/// Returns the names of all cases.
 pub fn names() -> Vec<String> {
     let orders = [0, 1, 2, 4, 8, 16, 32, 64, 128];
     let sides = orders.iter().flat_map(|order| {
@@ -107,15 +106,15 @@ mod tests {
 ";
 
     #[test]
-    fn a_function_is_found_by_its_whole_name() {
+    fn functions_are_found_by_their_whole_name() {
         assert_eq!(total(TABLE, "generated_64"), Some(1_234_500));
         assert_eq!(total(TABLE, "generated_6"), Some(56_700));
         assert_eq!(total(TABLE, "generated_4"), None);
     }
 
     #[test]
-    fn a_table_is_read_as_it_was_written() {
+    fn written_tables_are_read_back() {
         let counts = vec![("a_1".to_owned(), 5), ("b_2".to_owned(), 70)];
-        assert_eq!(read(&written(&counts)), counts);
+        assert_eq!(read(&format_counts(&counts)), counts);
     }
 }

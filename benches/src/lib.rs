@@ -1,7 +1,6 @@
-//! What the criterion benches of `benches/` compare: the planetary arm as emitted for
-//! orders from 0 to 128 ([`variants`]) beside the other [`contenders`], and a state to
-//! evaluate it at; and how [`instructions`] are counted and the [`history`] of both is kept. [`rigid_specifications`] and
-//! [`casadi_contender`] are what rigid trees are compared by.
+//! Common code of the benchmarks: the planetary arm emitted for orders from 0 to 128 ([`variants`]), the other
+//! [`contenders`], counts of [`instructions`], and the [`history`] of times and counts. [`rigid_specifications`] and
+//! [`casadi_contender`] are for the benchmark of rigid trees.
 
 pub mod casadi_contender;
 pub mod cases;
@@ -10,12 +9,12 @@ pub mod history;
 pub mod instructions;
 pub mod rigid_specifications;
 
-/// One module per order, emitted when this crate is built.
+/// One module per order, emitted by the build script.
 pub mod variants {
     include!(concat!(env!("OUT_DIR"), "/variants.rs"));
 }
 
-/// A state of `N` numbers in contact on one mesh and free on the other, modes in motion.
+/// Returns a state of `N` numbers with contact in one mesh, separation in the other, and vibrating modes.
 pub fn state<const N: usize>() -> [f64; N] {
     let mut state = [0.0; N];
     let degrees = N / 2;

@@ -1,11 +1,11 @@
-//! Specifications of rigid trees, written by program: planar arms with Cartesian definitions and with
-//! energies simplified by hand, chains of pendulums, and the shipped PUMA 560 cut short.
+//! Generated specifications of rigid trees: planar arms with Cartesian definitions and with energies simplified by hand,
+//! chains of pendulums, and the first joints of the shipped PUMA 560.
 
 use std::fmt::Write;
 
 use eomgen_model_spec::models::PUMA_560;
 
-/// A planar arm of this many links with a torque at every joint, its energies of Cartesian positions.
+/// Returns a planar arm with a torque at every joint and energies in Cartesian positions.
 pub fn planar_arm(links: usize) -> String {
     let mut text = head(&format!("planar_{links}r"), links);
     text += "[definitions]\n";
@@ -33,7 +33,7 @@ pub fn planar_arm(links: usize) -> String {
     text + &torques(links)
 }
 
-/// The same arm with energies simplified by hand: of the angles between links.
+/// Returns the same arm with energies simplified by hand, in angles between links.
 pub fn planar_arm_by_hand(links: usize) -> String {
     let mut text = head(&format!("planar_{links}r_by_hand"), links);
     text += "[definitions]\n";
@@ -66,7 +66,7 @@ pub fn planar_arm_by_hand(links: usize) -> String {
     text + &torques(links)
 }
 
-/// Parameters, coordinates and inputs of a planar arm.
+/// Returns parameters, coordinates and inputs of a planar arm.
 fn head(name: &str, links: usize) -> String {
     let mut text = format!(
         "[model]\nname = \"{name}\"\n[parameters]\ng = {{ value = 9.81, unit = \"m/s^2\" }}\n"
@@ -97,14 +97,14 @@ fn torques(links: usize) -> String {
     String::from("[forces]\n") + &joints.collect::<String>()
 }
 
-/// A spherical pendulum of Cartesian positions.
+/// Returns a spherical pendulum in Cartesian positions.
 pub fn spherical_pendulum() -> String {
     SPHERICAL_HEAD.to_owned()
         + "[definitions]\nx = \"l*sin(theta)*cos(phi)\"\ny = \"l*sin(theta)*sin(phi)\"\nz = \"-l*cos(theta)\"\n\
            [kinetic]\nbob = \"1/2*m*(dot(x)^2 + dot(y)^2 + dot(z)^2)\"\n[potential]\nbob = \"m*g*z\"\n"
 }
 
-/// The same with energies simplified by hand.
+/// Returns the same pendulum with energies simplified by hand.
 pub fn spherical_pendulum_by_hand() -> String {
     SPHERICAL_HEAD.to_owned()
         + "[kinetic]\nbob = \"1/2*m*l^2*(dot(theta)^2 + sin(theta)^2*dot(phi)^2)\"\n\
@@ -115,7 +115,7 @@ const SPHERICAL_HEAD: &str = "[model]\nname = \"spherical_pendulum\"\n[parameter
     m = { value = 0.5, unit = \"kg\" }\nl = { value = 0.8, unit = \"m\" }\ng = { value = 9.81, unit = \"m/s^2\" }\n\
     [coordinates]\ntheta = { unit = \"rad\", initial = 1.0 }\nphi = { unit = \"rad\", initial_rate = 2.0 }\n";
 
-/// A chain of this many pendulums, each bob placed from the one before.
+/// Returns a chain of pendulums; each position is relative to the previous bob.
 pub fn chain(bobs: usize) -> String {
     let mut text = format!(
         "[model]\nname = \"chain_{bobs}\"\n[parameters]\nm = {{ value = 0.2, unit = \"kg\" }}\n\
@@ -145,7 +145,7 @@ pub fn chain(bobs: usize) -> String {
     text
 }
 
-/// The first joints of the shipped PUMA 560.
+/// Returns the first joints of the shipped PUMA 560.
 pub fn puma(joints: usize) -> String {
     let beyond = |line: &&str| {
         let entry = ["q_", "u_", "link_", "joint_"]

@@ -1,6 +1,5 @@
-//! The controller on a Cortex-M without operating system, standard library or allocator:
-//! prints the bits of the motion, the instructions that a call takes and the depth of the
-//! stack. `controller` is the one in Rust or the one in C.
+//! The controller on a Cortex-M without operating system, standard library or allocator. Prints the bits of the motion,
+//! the instructions per call and the stack depth. `controller` is the one in Rust or in C.
 #![no_std]
 #![no_main]
 
@@ -13,14 +12,14 @@ use controller::{
 };
 use cortex::{end, instructions, print, stack_depth};
 
-/// Steps of the run.
+/// Number of steps.
 const STEPS: u32 = 250;
-/// The state is printed after every so many steps.
+/// Number of steps between printed states.
 const SHOWN: u32 = 50;
-/// Hexadecimal digits of a number.
+/// Number of hexadecimal digits.
 const DIGITS: usize = 2 * size_of::<Real>();
 
-/// A function of its own, so that its stack is seen.
+/// Separate function, to measure its stack.
 #[inline(never)]
 fn prepared_from(parameters: &Parameters) -> Coefficients {
     controller::prepared_from(parameters)

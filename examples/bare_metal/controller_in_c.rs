@@ -1,26 +1,25 @@
-//! The controller in C (`controller.c`) with the names of the one in Rust, so that one board and
-//! one host program run either.
+//! Controller in C (`controller.c`) with the interface of the one in Rust, for the same board and host programs.
 #![no_std]
 
 use core::ffi::c_int;
 
-/// What all numbers are: `f64`, or `f32` with `--cfg single`.
+/// Number type: `f64`, or `f32` with `--cfg single`.
 #[cfg(not(single))]
 pub type Real = f64;
-/// What all numbers are: `f64`, or `f32` with `--cfg single`.
+/// Number type: `f64`, or `f32` with `--cfg single`.
 #[cfg(single)]
 pub type Real = f32;
 
-/// Numbers in the state.
+/// Number of states.
 pub const STATES: usize = 14;
 
-/// The state: deflections, the carrier's path, the modes, and the rates of all.
+/// State: deflections, path of the carrier, modes, and their rates.
 pub type State = [Real; STATES];
 
-/// Length of a step, s.
+/// Step size, s.
 pub const STEP: Real = 20e-6;
 
-/// How many numbers a structure of the emitted C has, as `run` asked the C compiler.
+/// Number of values in a structure of the emitted C, which `run` obtains from the C compiler.
 const fn count(text: &str) -> usize {
     match usize::from_str_radix(text, 10) {
         Ok(count) => count,
@@ -28,19 +27,19 @@ const fn count(text: &str) -> usize {
     }
 }
 
-/// The arm's parameters.
+/// Parameters of the arm.
 #[repr(C)]
 pub struct Parameters([f64; count(env!("ARM_PARAMETERS"))]);
 
-/// The arm's coefficients.
+/// Coefficients of the arm.
 #[repr(C)]
 pub struct Coefficients {
     numbers: [Real; count(env!("ARM_COEFFICIENTS"))],
-    /// Whether the mass matrix is positive definite: 1 or 0.
+    /// 1 if the mass matrix is positive definite, else 0.
     pub positive_definite: c_int,
 }
 
-/// The arm's inputs.
+/// Inputs of the arm.
 #[repr(C)]
 pub struct Inputs {
     /// Torque of the motor, N m.
@@ -64,38 +63,38 @@ unsafe extern "C" {
 impl Default for Parameters {
     fn default() -> Self {
         let mut parameters = Self([0.0; _]);
-        // SAFETY: the structure in C holds as many doubles.
+        // SAFETY: the structure in C has the same number of doubles.
         unsafe { controller_default_parameters(&mut parameters) };
         parameters
     }
 }
 
-/// The coefficients of parameters, prepared in double precision.
+/// Prepares coefficients in double precision.
 #[inline]
 pub fn prepared_from(parameters: &Parameters) -> Coefficients {
     let mut prepared = Coefficients {
         numbers: [0.0; _],
         positive_definite: 0,
     };
-    // SAFETY: the structure in C holds as many numbers and the flag.
+    // SAFETY: the structure in C has the same number of values and the flag.
     unsafe { controller_prepare(parameters, &mut prepared) };
     prepared
 }
 
-/// The coefficients of the specification's parameters.
+/// Prepares the coefficients of the specification's parameters.
 pub fn prepared() -> Coefficients {
     prepared_from(&Parameters::default())
 }
 
-/// Where a run begins.
+/// Returns the initial state.
 pub fn displaced() -> State {
     let mut state = [0.0; STATES];
-    // SAFETY: the state in C is as long.
+    // SAFETY: the state in C has the same length.
     unsafe { controller_displaced(state.as_mut_ptr()) };
     state
 }
 
-/// The emitted rates.
+/// Calls the emitted rates.
 #[inline]
 pub fn rates_into(
     t: Real,
@@ -105,15 +104,15 @@ pub fn rates_into(
     rates: &mut State,
 ) {
     let (state, rates) = (state.as_ptr(), rates.as_mut_ptr());
-    // SAFETY: arrays and structures in C are as long.
+    // SAFETY: arrays and structures in C have the same length.
     unsafe { planetary_arm_rig_rates(t, state, inputs, coefficients, rates) };
 }
 
-/// One step of the closed loop at time `t`, s.
+/// Computes a step of the closed loop at time `t`, s.
 #[inline]
 pub fn step(t: Real, state: &State, coefficients: &Coefficients) -> State {
     let mut next = [0.0; STATES];
-    // SAFETY: arrays and the structure in C are as long.
+    // SAFETY: arrays and the structure in C have the same length.
     unsafe { controller_step(t, state.as_ptr(), coefficients, next.as_mut_ptr()) };
     next
 }

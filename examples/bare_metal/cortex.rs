@@ -1,18 +1,17 @@
-//! What a Cortex-M needs to start without operating system, standard library or allocator, and to say what it did:
-//! start-up, printing through the semihosting of a debugger or an emulator, the timer that counts instructions,
-//! the painted stack. Knows no controller.
+//! Start-up code of a Cortex-M without operating system, standard library or allocator, with output through the
+//! semihosting of a debugger or emulator, an instruction counter, and stack painting.
 //!
-//! Instructions are counted by the SysTick timer. Under QEMU with `-icount shift=0` an
-//! instruction takes a nanosecond and a tick of the 25 MHz clock 40 of them.
+//! The SysTick timer counts instructions. In QEMU with `-icount shift=0` an instruction takes 1 ns, and a tick of the
+//! 25 MHz clock 40 ns.
 
 use core::arch::{asm, global_asm};
 use core::hint::black_box;
 use core::panic::PanicInfo;
 use core::ptr::{addr_of, read_volatile, write_volatile};
 
-/// Calls over which instructions are averaged.
+/// Number of calls over which instructions are averaged.
 const CALLS: u32 = 200;
-/// What the stack is painted with.
+/// Pattern of the painted stack.
 const PAINT: u32 = 0xa5a5_5a5a;
 /// Instructions per tick of the timer.
 const INSTRUCTIONS_PER_TICK: u32 = 40;
@@ -20,11 +19,10 @@ const INSTRUCTIONS_PER_TICK: u32 = 40;
 const SYSTICK_CONTROL: *mut u32 = 0xe000_e010 as *mut u32;
 const SYSTICK_RELOAD: *mut u32 = 0xe000_e014 as *mut u32;
 const SYSTICK_CURRENT: *mut u32 = 0xe000_e018 as *mut u32;
-/// The timer counts down from here.
+/// Start value of the timer, which counts down.
 const SYSTICK_LARGEST: u32 = 0x00ff_ffff;
 
-// The vector table, and what runs first: the floating-point unit is switched on before any
-// code that may use it.
+// Vector table and reset handler, which enables the floating-point unit before any code uses it.
 global_asm!(
     ".section .vectors, \"a\"",
     ".word stack_top",
@@ -52,7 +50,7 @@ global_asm!(
 );
 
 unsafe extern "C" {
-    /// Is nowhere defined: a program with a panic left in it does not link.
+    /// Undefined symbol: a program that can panic does not link.
     fn a_panic_is_left_in_the_program() -> !;
     static stack_bottom: u32;
 }
@@ -63,15 +61,15 @@ fn panic(_: &PanicInfo<'_>) -> ! {
     unsafe { a_panic_is_left_in_the_program() }
 }
 
-/// Asks the debugger or emulator for a service.
+/// Calls a service of the debugger or emulator.
 fn semihosting(operation: u32, argument: usize) {
-    // SAFETY: the host reads at most the string or the word that `argument` is about.
+    // SAFETY: the host reads at most the string or word at `argument`.
     unsafe {
         asm!("bkpt #0xab", inout("r0") operation => _, in("r1") argument, options(nostack));
     }
 }
 
-/// Writes a line of a name and a number of so many hexadecimal digits.
+/// Writes a line with a name and a number of `digits` hexadecimal digits.
 pub fn print(name: &[u8; 16], number: u64, digits: usize) {
     let mut line = [0_u8; 40];
     for (place, letter) in line.iter_mut().zip(name) {
@@ -92,10 +90,10 @@ pub fn print(name: &[u8; 16], number: u64, digits: usize) {
     semihosting(0x04, line.as_ptr() as usize);
 }
 
-/// Ticks that `work` takes.
+/// Returns the ticks of `work`.
 #[inline(never)]
 fn ticks(mut work: impl FnMut()) -> u32 {
-    // SAFETY: the registers of the timer, which nothing else uses.
+    // SAFETY: registers of the timer, which no other code uses.
     unsafe {
         write_volatile(SYSTICK_RELOAD, SYSTICK_LARGEST);
         write_volatile(SYSTICK_CURRENT, 0);
@@ -108,7 +106,7 @@ fn ticks(mut work: impl FnMut()) -> u32 {
     }
 }
 
-/// Instructions of one of `CALLS` calls, the loop around them not counted.
+/// Returns the instructions per call, averaged over `CALLS` calls, without the loop.
 pub fn instructions(mut call: impl FnMut()) -> u32 {
     let calls = ticks(|| {
         for _ in 0..CALLS {
@@ -123,12 +121,12 @@ pub fn instructions(mut call: impl FnMut()) -> u32 {
     calls.saturating_sub(loop_alone) * INSTRUCTIONS_PER_TICK / CALLS
 }
 
-/// The address of the lowest word of the stack.
+/// Returns the address of the lowest word of the stack.
 fn bottom() -> *mut u32 {
     addr_of!(stack_bottom).cast_mut()
 }
 
-/// Where the stack ends now.
+/// Returns the stack pointer.
 #[inline(always)]
 fn stack_pointer() -> usize {
     let pointer: usize;
@@ -137,13 +135,13 @@ fn stack_pointer() -> usize {
     pointer
 }
 
-/// Bytes of stack that `work` takes below its caller.
+/// Returns the bytes of stack that `work` uses below its caller.
 #[inline(never)]
 pub fn stack_depth(work: impl FnOnce()) -> u32 {
     let here = stack_pointer();
     let mut place = bottom();
     while (place as usize) < here {
-        // SAFETY: below the stack pointer and above the program's data.
+        // SAFETY: between the program's data and the stack pointer.
         unsafe {
             write_volatile(place, PAINT);
             place = place.add(1);
@@ -160,7 +158,7 @@ pub fn stack_depth(work: impl FnOnce()) -> u32 {
     (here - place as usize) as u32
 }
 
-/// The program ends.
+/// Ends the program.
 pub fn end() -> ! {
     semihosting(0x18, 0x2_0026);
     loop {}

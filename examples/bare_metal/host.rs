@@ -1,10 +1,10 @@
-//! The controller on the machine that it is developed on: prints the bits of the same motion.
+//! The controller on the development machine: prints the bits of the same motion.
 
 use controller::{Real, State, displaced, prepared, step};
 
 fn main() {
     let coefficients = prepared();
-    // A truth value in Rust, a number in C.
+    // `bool` in Rust, an integer in C.
     assert_eq!(i32::from(coefficients.positive_definite), 1);
     let mut state: State = displaced();
     for count in 1..=250_u32 {

@@ -1,34 +1,34 @@
-//! The arm under the observer's torque, for half a second: the same run on a microcontroller and on any other
-//! machine, to the bit. The observer sees the arm by its sensors alone, and these fail at times.
+//! The arm under the torque of the observer's feedback, for half a second. The run has the same bits on a microcontroller
+//! and on any other machine. The observer receives sensor values only, and some of them are NaN.
 #![no_std]
 #![forbid(unsafe_code)]
 
 use controller::{Coefficients, Inputs, STEP, State, displaced, driven};
 use observer::{DEVIATION, MEASURED, Observer, SENSORS};
 
-/// Steps from one measurement to the next.
+/// Number of steps per measurement.
 pub const STEPS: u32 = 50;
-/// Measurements of the run, one each millisecond.
+/// Number of measurements, one per millisecond.
 pub const MEASUREMENTS: u32 = 500;
-/// After so many the state is printed.
+/// Number of measurements between printed states.
 pub const SHOWN: u32 = 100;
-/// Of so many measurements the sun's encoder loses one: it says NaN.
+/// Period, in measurements, with which the sun's encoder returns NaN.
 const LOST: u32 = 7;
-/// From this one up to that, all sensors say NaN.
+/// Range of measurements in which all sensors return NaN.
 const ALL_LOST: core::ops::Range<u32> = 200..220;
 
-/// The arm and its observer.
+/// Arm and observer.
 pub struct Rig {
-    /// The state of the arm.
+    /// State of the arm.
     pub arm: State,
-    /// What the observer takes it for.
+    /// Observer.
     pub observer: Observer,
     measurements: u32,
     noise: u64,
 }
 
 impl Rig {
-    /// The carrier is displaced by 2 mm, which the observer does not know.
+    /// Creates the arm with a displacement of the carrier of 2 mm, unknown to the observer.
     pub fn new(coefficients: &Coefficients) -> Self {
         Self {
             arm: displaced(),
@@ -38,11 +38,11 @@ impl Rig {
         }
     }
 
-    /// A number of mean 0 and standard deviation 1: the sum of three uniform ones from -1 to 1.
+    /// Returns a number of mean 0 and standard deviation 1: the sum of three uniform ones from -1 to 1.
     fn noise(&mut self) -> f64 {
         let mut sum = 0.0;
         for _ in 0..3 {
-            // Knuth's constants for a linear congruential generator of 64 bits.
+            // Knuth's constants of a 64-bit linear congruential generator.
             self.noise = self
                 .noise
                 .wrapping_mul(6_364_136_223_846_793_005)
@@ -52,7 +52,7 @@ impl Rig {
         sum
     }
 
-    /// Up to the next measurement, and that.
+    /// Simulates up to the next measurement and updates the observer.
     pub fn measure(&mut self, coefficients: &Coefficients) {
         let begin = self.measurements * STEPS;
         for count in begin..begin + STEPS {

@@ -1,56 +1,56 @@
-//! An extended Kalman filter for the planetary arm on its test rig, with the rates and the Jacobians
-//! that eomgen emitted. It feeds the state feedback of `controller`. Nothing of a board is here.
+//! Extended Kalman filter for the planetary arm on its test rig, with emitted rates and Jacobians. Its estimate is the
+//! input of the state feedback in `controller`.
 //!
-//! The method: A. Gelb (ed.), "Applied Optimal Estimation", 1974, section 6.1, continuous
-//! motion and discrete measurements, which are taken in one after the other.
+//! Method: A. Gelb (ed.), "Applied Optimal Estimation", 1974, section 6.1, continuous motion and discrete measurements,
+//! with sequential updates.
 #![no_std]
 #![forbid(unsafe_code)]
 
 use arm::{OBSERVABLES, OBSERVABLES_BY_STATE, RATES_BY_STATE, STATES};
 use controller::{Coefficients, Inputs, STEP, State, driven, torque};
 
-/// Positions, and as many rates.
+/// Number of positions, and of rates.
 const HALF: usize = STATES / 2;
 
-/// A matrix of the state's size, row by row.
+/// Square matrix of the state's size, row by row.
 type Matrix = [State; STATES];
 
-/// Sensors.
+/// Number of sensors.
 pub const SENSORS: usize = 3;
-/// What they measure, by the number of the observable: the angles of the sun and of the carrier,
-/// rad, and, by a strain gauge, the deflection of the arm's end, m.
+/// Indices of the measured observables: angles of the sun and of the carrier, rad, and deflection of the arm's end, m, by
+/// a strain gauge.
 pub const MEASURED: [usize; SENSORS] = [0, 2, 3];
-/// What they are off by: one standard deviation, rad, rad and m.
+/// Standard deviations of the sensor noise, rad, rad and m.
 pub const DEVIATION: [f64; SENSORS] = [1e-4, 2e-5, 2e-5];
 
-/// One standard deviation of the state where a run begins: the deflections of the meshes, the
-/// carrier's path and the modes, m, then the rates of all, m/s.
+/// Standard deviations of the initial state: deflections of the meshes, path of the carrier and modes, m, then their rates,
+/// m/s.
 const BEGIN: State = [
     3e-5, 3e-5, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1,
 ];
-/// What the linearisation does not know of the meshes' forces, where play opens and closes: white
-/// noise, as the deflection that would make such a force, m s^(1/2).
+/// White noise of the mesh forces, which covers changes of contact that the linearisation lacks, as an equivalent
+/// deflection, m s^(1/2).
 const FORCES: f64 = 1e-7;
 
-/// The estimate of the state and what is known of its error.
+/// Estimate of the state and covariance of its error.
 pub struct Observer {
-    /// The estimate.
+    /// Estimate.
     pub state: State,
-    /// The covariance of its error, SI.
+    /// Covariance of the estimation error, SI.
     covariance: Matrix,
-    /// The rates of all by the deflection of each mesh, where both are in contact.
+    /// Derivatives of the rates by the deflection of each mesh, with both in contact.
     by_meshes: [State; 2],
-    /// Measured values that were no numbers, and were left out.
+    /// Number of skipped measured values, which were NaN.
     pub left_out: u32,
 }
 
-/// The Jacobian of the rates by the state.
+/// Computes the Jacobian of the rates by the state.
 fn jacobian(t: f64, state: &State, torque: f64, coefficients: &Coefficients) -> Matrix {
     let inputs = Inputs { u: torque };
     RATES_BY_STATE.dense(&arm::rates_by_state(t, state, &inputs, coefficients))
 }
 
-/// to + factor from
+/// Adds factor from.
 fn add(to: &mut State, factor: f64, from: &State) {
     for (number, other) in to.iter_mut().zip(from) {
         *number += factor * other;
@@ -67,8 +67,8 @@ fn transposed(matrix: &Matrix) -> Matrix {
     transposed
 }
 
-/// Each column of a matrix after a step of the linearised motion: rates first, and positions by the new
-/// rates (the symplectic method of Euler), so that oscillations do not grow.
+/// Computes a step of the linearised motion for each column of a matrix, by the symplectic Euler method: rates first, then
+/// positions with the new rates. Oscillations then do not grow.
 fn carried(matrix: &Matrix, jacobian: &Matrix) -> Matrix {
     let mut carried = *matrix;
     for i in 0..HALF {
@@ -84,7 +84,7 @@ fn carried(matrix: &Matrix, jacobian: &Matrix) -> Matrix {
 }
 
 impl Observer {
-    /// At rest, as far as is known.
+    /// Creates an observer with an estimate at rest.
     pub fn new(coefficients: &Coefficients) -> Self {
         let mut contact = [0.0; STATES];
         (contact[0], contact[1]) = (1e-3, 1e-3);
@@ -103,18 +103,18 @@ impl Observer {
         }
     }
 
-    /// The torque of the controller for the estimate, N m.
+    /// Returns the torque of the controller for the estimate, N m.
     pub fn torque(&self) -> f64 {
         torque(&self.state)
     }
 
-    /// One step after time `t`, s, under the torque that the arm is given, N m.
+    /// Propagates the estimate over a step after time `t`, s, under a torque, N m.
     pub fn step(&mut self, t: f64, torque: f64, coefficients: &Coefficients) {
         let jacobian = jacobian(t, &self.state, torque, coefficients);
         let half = transposed(&carried(&self.covariance, &jacobian));
         let both = carried(&half, &jacobian);
-        // As much as its transpose: left alone, what rounding makes of their difference grows and
-        // ruins the filter within a third of a second.
+        // Symmetrised: otherwise the rounding error of the asymmetry grows, and the filter fails within a third of a
+        // second.
         let other = transposed(&both);
         for i in 0..STATES {
             let mut row = [0.0; STATES];
@@ -128,7 +128,7 @@ impl Observer {
         self.state = driven(t, &self.state, torque, coefficients);
     }
 
-    /// Takes in what the sensors say at time `t`, s. What is no number is left out, and counted.
+    /// Updates the estimate with the sensor values at time `t`, s. NaN values are skipped and counted.
     pub fn measured(&mut self, t: f64, values: &[f64; SENSORS], coefficients: &Coefficients) {
         let inputs = Inputs::default();
         for sensor in 0..SENSORS {
@@ -145,7 +145,7 @@ impl Observer {
         }
     }
 
-    /// Takes in by how much a quantity was measured larger than expected, given its slopes.
+    /// Updates the estimate with the residual of a measured quantity, given its derivatives.
     fn taken(&mut self, slopes: &State, larger: f64, deviation: f64) {
         let mut direction = [0.0; STATES];
         let mut variance = deviation * deviation;

@@ -1,5 +1,5 @@
-//! The observer on a Cortex-M without operating system, standard library or allocator: prints the
-//! bits of the run, the instructions of a step and of a measurement and the depth of the stack.
+//! The observer on a Cortex-M without operating system, standard library or allocator. Prints the bits of the run, the
+//! instructions per step and per measurement, and the stack depth.
 #![no_std]
 #![no_main]
 
@@ -12,7 +12,7 @@ use cortex::{end, instructions, print, stack_depth};
 use observed::{MEASUREMENTS, Rig, SHOWN};
 use observer::{Observer, SENSORS};
 
-/// Functions of their own, so that their stacks are seen.
+/// Separate functions, to measure their stacks.
 #[inline(never)]
 fn step(observer: &mut Observer, coefficients: &Coefficients) {
     observer.step(black_box(0.1), black_box(0.1), coefficients);

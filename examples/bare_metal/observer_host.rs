@@ -1,10 +1,10 @@
-//! The observer on the machine that it is developed on: prints the bits of the same run, says how far the
-//! estimate is from the arm, and asserts it.
+//! The observer on the development machine: prints the bits of the same run, prints the estimation errors, and asserts
+//! their limits.
 
 use controller::prepared;
 use observed::{MEASUREMENTS, Rig, SHOWN};
 
-/// The numbers of the carrier's path and of the first mode in the state.
+/// Indices of the carrier's path and of the first mode in the state.
 const CARRIER: usize = 2;
 const MODE: usize = 3;
 
@@ -12,7 +12,7 @@ fn main() {
     let coefficients = prepared();
     let mut rig = Rig::new(&coefficients);
     let off = |rig: &Rig, i: usize| 1e6 * (rig.observer.state[i] - rig.arm[i]);
-    eprintln!("after    carrier, um: arm  observer is off by   first mode, um: arm  off by");
+    eprintln!("after    carrier, um: arm   estimation error   first mode, um: arm   error");
     for count in 1..=MEASUREMENTS {
         rig.measure(&coefficients);
         let (arm, estimate) = (&rig.arm, &rig.observer.state);
@@ -31,8 +31,8 @@ fn main() {
             }
         }
     }
-    eprintln!("{} measured values were no numbers", rig.observer.left_out);
-    // 20 times in which all three were lost, and 69 in which the first was.
+    eprintln!("{} measured values were NaN", rig.observer.left_out);
+    // 20 measurements without all three values, and 69 without the first.
     assert_eq!(rig.observer.left_out, 20 * 3 + 500 / 7 - 3);
     assert!(off(&rig, CARRIER).abs() < 5.0 && off(&rig, MODE).abs() < 30.0);
     assert!(rig.arm[CARRIER].abs() < 50e-6);

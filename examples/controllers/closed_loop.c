@@ -1,4 +1,4 @@
-/* The planetary arm, with its contacts, under state feedback u = -gain x: what lqr.py calls. */
+/* The planetary arm with its contacts under state feedback u = -gain x, called by lqr.py. */
 #include "planetary_arm_rig.h"
 
 enum { STATES = planetary_arm_rig_STATES };
@@ -14,9 +14,9 @@ static double torque(const double *gain, const double *state) {
     return u;
 }
 
-/* Steps of length `step`, s, by the classical method of Runge and Kutta, from the first row of
- * `states`, which takes a row for each step and one for the beginning. `play` is the half backlash
- * of both meshes, m. Returns 0 where the parameters are not admissible. */
+/* Simulates with steps of `step`, s, by the classical Runge-Kutta method, from the first row of `states`.
+ * Each step writes a further row. `play` is the half backlash of both meshes, m. Returns 0 if the
+ * parameters are not admissible. */
 int closed_loop(double play, const double *gain, double step, int steps, double *states) {
     static const double along[4] = {0, 0.5, 0.5, 1}, weight[4] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
     planetary_arm_rig_parameters parameters;

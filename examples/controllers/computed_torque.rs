@@ -1,23 +1,22 @@
-//! Computed torque for the arm of two links, from its emitted inverse dynamics, beside the same gains
-//! alone: on the rigid arm that the controller knows, on one whose tip is heavier than it knows,
-//! and on one whose links bend. `rigid` and `flexible` are what `eomgen generate` left, see
-//! docs/controllers.md.
+//! Computed torque for the two-link arm, from its emitted inverse dynamics, compared with the same gains without inverse
+//! dynamics. The controlled arms are the rigid arm of the controller's model, one with a heavier tip, and one with
+//! flexible links. `rigid` and `flexible` are emitted by `eomgen generate`, see docs/controllers.md.
 //!
-//! The method: M. W. Spong, S. Hutchinson and M. Vidyasagar, "Robot Modeling and Control", 2006,
+//! Method: M. W. Spong, S. Hutchinson and M. Vidyasagar, "Robot Modeling and Control", 2006,
 //! section 8.3.
 
-/// Length of a step, s; the torques are held so long.
+/// Step size and sample time of the torques, s.
 const STEP: f64 = 2.5e-4;
-/// How long the way takes, s, and how long a run.
+/// Duration of the motion and of a run, s.
 const WAY: f64 = 2.0;
 const DURATION: f64 = 2.5;
-/// From where to where, rad: from hanging down.
+/// Start and end of the motion, rad, from hanging down.
 const BEGIN: [f64; 2] = [-std::f64::consts::FRAC_PI_2, 0.0];
 const END: [f64; 2] = [0.3, 1.0];
-/// The error of a joint decays as that of a critically damped oscillator, rad/s.
+/// Natural frequency of the critically damped error of a joint, rad/s.
 const BANDWIDTH: f64 = 20.0;
 
-/// Angles, rates and accelerations of both joints at time `t`: the path of least jerk.
+/// Returns angles, rates and accelerations of both joints at time `t` on the minimum-jerk path.
 fn path(t: f64) -> [[f64; 2]; 3] {
     let s = (t / WAY).clamp(0.0, 1.0);
     let along = s * s * s * (10.0 - 15.0 * s + 6.0 * s * s);
@@ -31,7 +30,7 @@ fn path(t: f64) -> [[f64; 2]; 3] {
     ]
 }
 
-/// Accelerations that bring the joints back to the path.
+/// Returns accelerations that reduce the error of the joints.
 fn back(t: f64, angles: [f64; 2], rates: [f64; 2]) -> [f64; 2] {
     let [wanted, wanted_rates, _] = path(t);
     let back = |j: usize| {
@@ -40,7 +39,7 @@ fn back(t: f64, angles: [f64; 2], rates: [f64; 2]) -> [f64; 2] {
     [back(0), back(1)]
 }
 
-/// The torques of the gains alone, N m, by the inertia at each joint where the run begins, kg m^2.
+/// Returns the torques of the gains, N m, with the initial inertia at each joint, kg m^2.
 fn gains_alone(arm: &rigid::Coefficients, t: f64, angles: [f64; 2], rates: [f64; 2]) -> [f64; 2] {
     let begin = [BEGIN[0], BEGIN[1], 0.0, 0.0];
     let inertia = rigid::mass_matrix(0.0, &begin, &rigid::Inputs::default(), arm);
@@ -48,7 +47,7 @@ fn gains_alone(arm: &rigid::Coefficients, t: f64, angles: [f64; 2], rates: [f64;
     [inertia[0][0] * back[0], inertia[1][1] * back[1]]
 }
 
-/// The torques for the path's accelerations and those back to it, N m, of the rigid arm.
+/// Returns the computed torques, N m, by inverse dynamics of the rigid arm.
 fn computed(arm: &rigid::Coefficients, t: f64, angles: [f64; 2], rates: [f64; 2]) -> [f64; 2] {
     let back = back(t, angles, rates);
     let [_, _, ahead] = path(t);
@@ -57,13 +56,13 @@ fn computed(arm: &rigid::Coefficients, t: f64, angles: [f64; 2], rates: [f64; 2]
     rigid::inverse_dynamics(t, &state, &rigid::Inputs::default(), arm, &accelerations)
 }
 
-/// How far a run was from its path, rad: the largest error of both joints on the way, and at the end.
+/// Largest error of both joints during the motion and at the end, rad.
 struct Tracking {
     way: f64,
     end: f64,
 }
 
-/// One step by the classical method of Runge and Kutta.
+/// Computes a step of the classical Runge-Kutta method.
 fn stepped<const N: usize>(
     t: f64,
     state: &[f64; N],
@@ -77,7 +76,7 @@ fn stepped<const N: usize>(
     std::array::from_fn(|i| state[i] + STEP / 6.0 * (one[i] + 2.0 * (two[i] + three[i]) + four[i]))
 }
 
-/// Follows the path on a machine of `N` states whose joints are the first coordinates.
+/// Simulates a machine of `N` states, whose first coordinates are the joints.
 fn followed<const N: usize>(
     law: impl Fn(f64, [f64; 2], [f64; 2]) -> [f64; 2],
     rates: impl Fn(f64, &[f64; N], [f64; 2]) -> [f64; N],
@@ -97,7 +96,7 @@ fn followed<const N: usize>(
     tracking
 }
 
-/// Both laws on one machine; prints and returns their errors, the gains alone first.
+/// Runs both control laws on a machine, prints and returns their errors.
 fn compared<const N: usize>(
     name: &str,
     known: &rigid::Coefficients,

@@ -1,12 +1,12 @@
-"""A linear-quadratic regulator for the planetary arm from its linearisation, tried on the arm with its play.
+"""Linear-quadratic regulator for the planetary arm from its linearisation, tested on the arm with play.
 
     eomgen linearise model-spec/models/planetary_arm_rig.toml --state x_sp=1e-3 --state x_pr=1e-3 --out contact.json
     eomgen generate model-spec/models/planetary_arm_rig.toml --target c99 --out arm
     cc -shared -fPIC -std=c99 -O2 -I arm examples/controllers/closed_loop.c arm/planetary_arm_rig.c -o arm.so
     python examples/controllers/lqr.py contact.json arm.so
 
-Linearised where both meshes are in contact, the torque moves every state. Linearised at rest, without `--state`,
-the meshes are open and it moves the sun alone: that is said, and no gain is computed.
+With both meshes in contact, the torque moves every state. At rest, without `--state`, the meshes are open and the
+torque moves only the sun; the program then rejects the linearisation.
 """
 
 import ctypes
@@ -17,16 +17,16 @@ import numpy as np
 from scipy.integrate import simpson
 from scipy.linalg import matrix_balance, solve_continuous_are
 
-LARGE = {"m": 1e-3, "m/s": 1.0}  # what costs as much as 1 N m of torque, by the unit of the state
+LARGE = {"m": 1e-3, "m/s": 1.0}  # same cost as 1 N m of torque, by unit of the state
 STEP, DURATION = 20e-6, 2.0  # s
 PLAY = 25e-6  # m, half the backlash
 
 
 def reached(A, B):
-    """An orthonormal basis of what the inputs reach: the Krylov space of (A, B).
+    """Returns an orthonormal basis of the controllable subspace, the Krylov space of (A, B).
 
-    Powers of A would leave nothing of small directions, so each new one is made orthogonal to
-    those before it (the staircase of P. Van Dooren, IEEE Trans. Autom. Control 26, 1981).
+    Powers of A would lose small directions, so each new direction is orthogonalised against the previous ones
+    (staircase algorithm of P. Van Dooren, IEEE Trans. Autom. Control 26, 1981).
     """
     size = np.linalg.norm(A, 2)
     basis = np.empty((len(A), 0))
@@ -42,9 +42,9 @@ def reached(A, B):
 
 
 def gain(document):
-    """The gain K of u = -K x, P of the cost x P x from x to rest, and what states count from.
+    """Returns the gain K of u = -K x, the matrix P of the cost x P x, and the scales of the states.
 
-    Refuses what the input cannot control.
+    Exits with an error if the input cannot control all states.
     """
     A, B = np.array(document["A"]), np.array(document["B"])
     _, (scale, _) = matrix_balance(A, permute=False, separate=True)
@@ -55,7 +55,7 @@ def gain(document):
         out = ", ".join(name for name, alone in zip(document["states"], out) if alone) or "the rest"
         sys.exit(
             f"error: the torque does not move {out}: no gain controls them\n"
-            "help: linearise where both meshes are in contact: --state x_sp=1e-3 --state x_pr=1e-3"
+            "help: linearise with both meshes in contact: --state x_sp=1e-3 --state x_pr=1e-3"
         )
     large = np.array([LARGE[unit] for unit in document["units"]["states"]])
     A, B = A / large[:, None] * large, B / large[:, None]
@@ -69,7 +69,7 @@ def gain(document):
 
 
 def motion(library, play, K, begin):
-    """The states of the arm with its contacts, a row for each step."""
+    """Simulates the arm with its contacts. Returns a row of states for each step."""
     states = np.zeros((round(DURATION / STEP) + 1, len(K)))
     states[0] = begin
     pointer = ctypes.POINTER(ctypes.c_double)
@@ -91,9 +91,9 @@ def main():
         rates = ((states / large) ** 2).sum(axis=1) + (states @ K) ** 2
         cost = simpson(rates, dx=STEP) / (begin @ P @ begin)
         late = states[round(0.75 * len(states)) :, 2]
-        print(f"play of {2e6 * play:.0f} um: {cost:.3f} of the cost that the Riccati equation says")
+        print(f"play of {2e6 * play:.0f} um: cost {cost:.3f} times that of the Riccati equation")
         print(f"    the carrier within {1e6 * abs(late).max():.2f} um after {0.75 * DURATION} s")
-        # Without play the arm is linear, so that its cost is the predicted one. Within its play nothing holds it.
+        # Without play the arm is linear and has the predicted cost. Within the play no force acts on it.
         assert abs(cost - 1) < (0.05 if play else 1e-3) and abs(late).max() < (play or 1e-6)
 
 

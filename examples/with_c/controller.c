@@ -1,5 +1,5 @@
-/* The arm starts from rest with twice the play of the specification. `arm4` is where
- * `eomgen generate --target c99` left the arm, see docs/embedding.md. */
+/* The arm starts from rest with twice the specified play. `arm4` is the output folder of
+ * `eomgen generate --target c99`, see docs/embedding.md. */
 #include "planetary_arm.h"
 #include <stdio.h>
 

@@ -1,5 +1,5 @@
-//! The arm starts from rest with twice the play of the specification. `arm4` is what
-//! `eomgen generate` left, see docs/embedding.md.
+//! The arm starts from rest with twice the specified play. `arm4` is emitted by `eomgen generate`, see
+//! docs/embedding.md.
 
 use arm4::{Coefficients, Inputs, Parameters, STATE_NAMES, STATES, rates};
 

@@ -1,10 +1,8 @@
-//! Eight numbers at once in emitted equations of motion, in the widest registers that the
-//! machine turns out to have: one of 512 bits, two of 256, or what the compiler makes of eight
-//! numbers. Each lane has the bits that its numbers would give alone.
+//! 8-wide SIMD for emitted equations of motion. At run time the crate selects the widest registers of the machine: one of
+//! 512 bits, two of 256 bits, or eight plain numbers. Each lane has the same bits as a scalar evaluation.
 //!
-//! A model is emitted with `lanes`, [`scalar!`] makes [`Lanes`] a scalar of it, and a [`Task`]
-//! holds the loop over many states. It is written once, compiled for each kind of register,
-//! and [`run`] picks.
+//! Emit a model with `lanes`, make [`Lanes`] a scalar of it with [`scalar!`], and implement a [`Task`] with the loop over
+//! many states. The task is compiled for each kind of register, and [`run`] selects one.
 //!
 //! ```
 //! mod pendulum {
@@ -53,8 +51,8 @@
 //! assert!(states[99][1][7] < 0.0);
 //! ```
 //!
-//! The pipeline: `vector` (what registers do, and eight plain numbers), `x86` (registers of
-//! x86-64), `task` (which are there), `scalar` (the traits of emitted code).
+//! `vector` defines the operations and the plain implementation, `x86` the registers of x86-64, `task` their selection,
+//! and `scalar` the traits of emitted code.
 
 mod scalar;
 mod task;

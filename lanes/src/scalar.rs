@@ -1,4 +1,4 @@
-//! Lanes as what emitted equations are computed with.
+//! Lanes as the number type of emitted equations.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -12,30 +12,30 @@ const SIGN: u64 = 1 << 63;
 const ONE: u64 = 0x3ff0_0000_0000_0000;
 const MANTISSA: u64 = 0x000f_ffff_ffff_ffff;
 
-/// 2^52: the bits of an integer below it are the last bits of the sum.
+/// 2^52. Added to an integer below it, the integer's bits are the last bits of the sum.
 const INTEGER_ALIGNER: f64 = (1_u64 << 52) as f64;
 
 impl<V: Vector> Lanes<V> {
-    /// The same number in every lane.
+    /// Sets every lane to the same number.
     #[inline(always)]
     pub fn splat(value: f64) -> Self {
         Self(V::splat(value))
     }
 
-    /// These numbers.
+    /// Creates lanes from numbers.
     #[inline(always)]
     pub fn from_array(numbers: [f64; LANES]) -> Self {
         Self(V::from_array(numbers))
     }
 
-    /// The numbers.
+    /// Returns the numbers.
     #[inline(always)]
     pub fn to_array(self) -> [f64; LANES] {
         self.0.to_array()
     }
 
-    /// Each entry's numbers. An array's own `map` would be a call, compiled for the plainest
-    /// machine and dearer than what lanes gain.
+    /// Creates lanes from the numbers of each entry. `array::map` is not used: it is not inlined, would be compiled for
+    /// the baseline instruction set, and costs more than SIMD gains.
     #[inline(always)]
     pub fn from_arrays<const N: usize>(entries: &[[f64; LANES]; N]) -> [Self; N] {
         let mut lanes = [Self::splat(0.0); N];
@@ -45,7 +45,7 @@ impl<V: Vector> Lanes<V> {
         lanes
     }
 
-    /// The numbers of each entry.
+    /// Returns the numbers of each entry.
     #[inline(always)]
     pub fn to_arrays<const N: usize>(lanes: &[Self; N]) -> [[f64; LANES]; N] {
         let mut entries = [[0.0; LANES]; N];
@@ -55,45 +55,45 @@ impl<V: Vector> Lanes<V> {
         entries
     }
 
-    /// `then` where a > b, `otherwise` elsewhere, also where either is NaN.
+    /// Returns `then` in lanes with a > b, else `otherwise`, also if one of them is NaN.
     #[inline(always)]
     pub fn select_greater(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
         Self(V::select_greater(a.0, b.0, then.0, otherwise.0))
     }
 
-    /// `then` where a = b, `otherwise` elsewhere, also where either is NaN.
+    /// Returns `then` in lanes with a = b, else `otherwise`, also if one of them is NaN.
     #[inline(always)]
     pub fn select_equal(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
         Self(V::select_equal(a.0, b.0, then.0, otherwise.0))
     }
 
-    /// Whether a > b in every lane.
+    /// Returns whether a > b in every lane.
     #[inline(always)]
     pub fn all_greater(a: Self, b: Self) -> bool {
         let (a, b) = (a.to_array(), b.to_array());
         a.iter().zip(b).all(|(a, b)| *a > b)
     }
 
-    /// The sign bits cleared.
+    /// Returns the absolute values.
     #[inline(always)]
     pub fn magnitude(self) -> Self {
         Self(self.0.and(!SIGN))
     }
 
-    /// The magnitudes with the sign bits of others.
+    /// Returns the absolute values with the signs of `sign`.
     #[inline(always)]
     pub fn copy_sign(self, sign: Self) -> Self {
         Self(self.0.and(!SIGN).or(sign.0.and(SIGN)))
     }
 
-    /// 2^k for integral k from -1022 to 1024, by its place in the exponent.
+    /// Returns 2^k for integral k from -1022 to 1024, written to the exponent bits.
     #[inline(always)]
     pub fn power_of_two(self) -> Self {
         let aligned = self.0.add(V::splat(INTEGER_ALIGNER + 1023.0));
         Self(aligned.mantissa_to_exponent())
     }
 
-    /// The unbiased exponent fields, as numbers.
+    /// Returns the unbiased exponents as numbers.
     #[inline(always)]
     pub fn exponent(self) -> Self {
         let field = self.0.and(!SIGN).exponent_to_mantissa();
@@ -102,7 +102,7 @@ impl<V: Vector> Lanes<V> {
         Self(number.sub(V::splat(1023.0)))
     }
 
-    /// The mantissas under the exponent of 1.
+    /// Returns the significands, scaled to [1, 2).
     #[inline(always)]
     pub fn significand(self) -> Self {
         Self(self.0.and(MANTISSA).or(V::splat(f64::from_bits(ONE))))

@@ -1,24 +1,24 @@
-//! Which registers a machine has, and tasks compiled for each kind.
+//! Selection of registers, and tasks that are compiled for each kind.
 
 use crate::vector::{Plain, Vector};
 
-/// Work on lanes, compiled once for each kind of registers. `run` and what it calls with lanes
-/// must be inlined into one piece: a function of its own is compiled for the plainest machine.
+/// Work on lanes, compiled for each kind of registers. `run` and all functions of lanes that it calls must be inlined: a
+/// separate function is compiled for the baseline instruction set.
 pub trait Task {
-    /// What it returns.
+    /// Result of the task.
     type Output;
-    /// The work. Write `#[inline(always)]` above it.
+    /// Runs the task. Mark the implementation `#[inline(always)]`.
     fn run<V: Vector>(self) -> Self::Output;
 }
 
 /// Kinds of registers, widest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Registers {
-    /// One of 512 bits (AVX-512 F and DQ).
+    /// One register of 512 bits (AVX-512 F and DQ).
     Wide,
-    /// Two of 256 bits (AVX2).
+    /// Two registers of 256 bits (AVX2).
     Pair,
-    /// Whatever the compiler makes of eight numbers.
+    /// Eight plain numbers.
     Plain,
 }
 
@@ -26,7 +26,7 @@ impl Registers {
     /// Every kind, widest first.
     pub const ALL: [Self; 3] = [Self::Wide, Self::Pair, Self::Plain];
 
-    /// Whether this machine has them.
+    /// Returns whether this machine has the registers.
     pub fn are_there(self) -> bool {
         match self {
             #[cfg(target_arch = "x86_64")]
@@ -53,14 +53,14 @@ pub fn run<T: Task>(task: T) -> T::Output {
     task.run::<Plain>()
 }
 
-/// Runs a task with these registers, or with plain numbers if the machine lacks them.
+/// Runs a task with given registers, or with plain numbers if the machine lacks them.
 #[inline]
 #[allow(unsafe_code)]
 pub fn run_with<T: Task>(registers: Registers, task: T) -> T::Output {
     match registers {
         #[cfg(target_arch = "x86_64")]
         Registers::Wide if registers.are_there() => {
-            // SAFETY: the machine has the instructions, as was just asked.
+            // SAFETY: the condition above checks that the machine has the instructions.
             unsafe { crate::x86::with_wide(task) }
         }
         #[cfg(target_arch = "x86_64")]

@@ -1,48 +1,47 @@
-//! What registers of eight numbers do, and the eight plain numbers that do it anywhere.
+//! Operations on registers of eight numbers, and their implementation with plain numbers.
 
-/// How many numbers.
+/// Number of lanes.
 pub const LANES: usize = 8;
 
-/// Only this crate's registers are vectors: a [`crate::Task`] is given none that the machine
-/// lacks.
+/// Restricts [`Vector`] to this crate, so that a [`crate::Task`] never runs with registers that the machine lacks.
 pub trait Sealed {}
 
-/// Eight numbers. Every operation is that of `f64` in each lane, with its very bits.
+/// Eight numbers. Every operation gives the same bits in each lane as `f64`.
 pub trait Vector: Sealed + Copy {
-    /// The same number in every lane.
+    /// Sets every lane to the same number.
     fn splat(value: f64) -> Self;
-    /// These numbers.
+    /// Creates a vector from numbers.
     fn from_array(numbers: [f64; LANES]) -> Self;
-    /// The numbers.
+    /// Returns the numbers.
     fn to_array(self) -> [f64; LANES];
-    /// a + b
+    /// Returns a + b.
     fn add(self, other: Self) -> Self;
-    /// a - b
+    /// Returns a - b.
     fn sub(self, other: Self) -> Self;
-    /// a b
+    /// Returns a b.
     fn mul(self, other: Self) -> Self;
-    /// a / b
+    /// Returns a / b.
     fn div(self, other: Self) -> Self;
-    /// `then` where a > b, else `otherwise`.
+    /// Returns `then` in lanes with a > b, else `otherwise`.
     fn select_greater(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
-    /// `then` where a = b, else `otherwise`.
+    /// Returns `then` in lanes with a = b, else `otherwise`.
     fn select_equal(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
-    /// The bits of these numbers and of others where both have them.
+    /// Returns the bitwise AND with `bits`.
     fn and(self, bits: u64) -> Self;
-    /// The bits of these numbers and those of others.
+    /// Returns the bitwise OR.
     fn or(self, other: Self) -> Self;
-    /// The bits of these numbers where these are not set.
+    /// Returns the bitwise exclusive OR with `bits`.
     fn flip(self, bits: u64) -> Self;
-    /// The bits moved up by the width of the mantissa.
+    /// Shifts the bits left by the width of the mantissa.
     fn mantissa_to_exponent(self) -> Self;
-    /// The bits moved down by the width of the mantissa.
+    /// Shifts the bits right by the width of the mantissa.
     fn exponent_to_mantissa(self) -> Self;
 }
 
-/// The width of the mantissa.
+/// Width of the mantissa, bits.
 pub const MANTISSA_BITS: u32 = 52;
 
-/// Eight plain numbers, for machines of any kind.
+/// Eight plain numbers, for every machine.
 #[derive(Clone, Copy)]
 pub struct Plain([f64; LANES]);
 

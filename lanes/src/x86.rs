@@ -1,16 +1,13 @@
-//! Registers of x86-64. The only place with `unsafe`: instructions that not every machine has.
+//! Registers of x86-64. This module contains all `unsafe` code: instructions that some machines lack.
 //!
-//! All of it is sound for one reason. The types are not named outside this crate; a
-//! [`crate::Task`] is the only place where one of them stands for its `Vector`, and it is run
-//! with it in [`with_wide`] and [`with_pairs`] alone, which are called where the machine was
-//! found to have the instructions.
+//! Soundness: the types are private to this crate. They are used as the `Vector` of a [`crate::Task`] only in
+//! [`with_wide`] and [`with_pairs`], which are called only after the instructions were detected.
 //!
-//! `fearless_simd`, which the solvers use, was tried in its place. A number of emitted code is
-//! made from its value alone, so that the token of a set of instructions would have to be
-//! claimed, with `unsafe`, here too. With AVX2 the arm's rates took, in 50 paired runs, the same
-//! time at 4 modes (5.0 ns a state), 3 % less at 16 (8.8 against 9.1 ns) and 3 % more at 64
-//! (24.9 against 24.1 ns), the bits being the same. Its registers of 512 bits ask for what
-//! Ice Lake has; those here for AVX-512 F and DQ.
+//! `fearless_simd`, which the solvers use, has no advantage here. Emitted code creates a number from its value only, so
+//! that its instruction-set token would need `unsafe` as well. With AVX2 and equal bits, the arm's rates took in 50
+//! paired runs the same time at 4 modes (5.0 ns per state), 3 % less at 16 modes (8.8 ns instead of 9.1 ns) and 3 % more
+//! at 64 modes (24.9 ns instead of 24.1 ns). Its 512-bit registers need the instructions of Ice Lake; these need AVX-512
+//! F and DQ.
 #![allow(unsafe_code)]
 
 use std::arch::x86_64::*;
@@ -26,19 +23,19 @@ pub struct Wide(__m512d);
 #[derive(Clone, Copy)]
 pub struct Pair([__m256d; 2]);
 
-/// Runs a task with [`Wide`], compiled for it.
+/// Runs a task, compiled for [`Wide`].
 ///
 /// # Safety
-/// The machine has AVX-512 F and DQ.
+/// The machine must have AVX-512 F and DQ.
 #[target_feature(enable = "avx512f,avx512dq")]
 pub unsafe fn with_wide<T: Task>(task: T) -> T::Output {
     task.run::<Wide>()
 }
 
-/// Runs a task with [`Pair`], compiled for it.
+/// Runs a task, compiled for [`Pair`].
 ///
 /// # Safety
-/// The machine has AVX2.
+/// The machine must have AVX2.
 #[target_feature(enable = "avx2")]
 pub unsafe fn with_pairs<T: Task>(task: T) -> T::Output {
     task.run::<Pair>()
@@ -51,7 +48,7 @@ impl Sealed for Wide {}
 impl Vector for Wide {
     #[inline(always)]
     fn splat(value: f64) -> Self {
-        // SAFETY: a task runs with this type where the machine has AVX-512 (see above); so for
+        // SAFETY: tasks use this type only on machines with AVX-512 (see the module documentation). This holds for
         // every block below.
         Self(unsafe { _mm512_set1_pd(value) })
     }
@@ -135,11 +132,11 @@ impl Pair {
         ])
     }
 
-    /// `then` where the mask is set.
+    /// Returns `then` in lanes whose mask is set.
     #[inline(always)]
     fn choose(mask: Self, then: Self, otherwise: Self) -> Self {
         let half = |i: usize| {
-            // SAFETY: a task runs with this type where the machine has AVX2 (see above); so for
+            // SAFETY: tasks use this type only on machines with AVX2 (see the module documentation). This holds for
             // every block below.
             unsafe { _mm256_blendv_pd(otherwise.0[i], then.0[i], mask.0[i]) }
         };

@@ -1,22 +1,21 @@
-//! The arm at S = 4 as the general solvers see it: the generated equations with their
-//! switching surfaces, and the same motion in variables that make the right-hand side
-//! continuous. No solver is called here.
+//! The arm at S = 4 for the general solvers: the generated equations with their switching surfaces, and the same motion
+//! in variables with a continuous right-hand side.
 
 use eomgen_generated::planetary_arm_order_4 as g;
 use eomgen_sim::ode::System;
 
-/// Numbers in the state: x_sp, x_pr, x_c, q_1 .. q_4 (m), then their rates (m/s).
+/// Number of states: x_sp, x_pr, x_c, q_1 .. q_4 (m), then their rates (m/s).
 pub const STATES: usize = g::STATES;
 
 const DEGREES: usize = STATES / 2;
 
-/// The generated equations, with both ends of either play as switching surfaces.
+/// Generated equations; both ends of each play are switching surfaces.
 pub struct Located {
     coefficients: g::Coefficients,
 }
 
 impl Located {
-    /// The reference case: the specification's own parameters.
+    /// Creates the reference case, with the parameters of the specification.
     pub fn new() -> Self {
         Self {
             coefficients: g::Coefficients::prepare(&g::Parameters::default()),
@@ -46,34 +45,33 @@ impl System for Located {
     }
 }
 
-/// One row of accelerations, padded to whole lanes.
+/// Row of accelerations, padded to full lanes.
 type Lanes = [f64; DEGREES + 1];
 
-/// The equations in momentum-like variables.
+/// Equations in momentum-like variables.
 ///
 /// The damping force of a mesh is c times the rate of its compression, so with
-/// u = q' + d_sp psi(x_sp) + d_pr psi(x_pr), where psi(x) is the compression and -d the
-/// accelerations by unit rates of compression, u' is the acceleration without mesh damping:
-/// continuous where a mesh opens or closes, which the acceleration is not.
+/// u = q' + d_sp psi(x_sp) + d_pr psi(x_pr), u' is the acceleration without mesh damping. Here psi(x) is the compression
+/// and -d the acceleration per rate of compression. Unlike the acceleration, u' is continuous when a mesh opens or closes.
 pub struct Momentum {
     half_width: [f64; 2],
     /// d_sp and d_pr, 1/s.
     damping: [Lanes; 2],
-    /// Accelerations by unit compression of either mesh, 1/s^2.
+    /// Accelerations per compression of each mesh, 1/s^2.
     stiffness: [Lanes; 2],
-    /// Accelerations by unit deflection of each mode, 1/s^2.
+    /// Accelerations per deflection of each mode, 1/s^2.
     modes: [Lanes; 4],
-    /// The motor's constant part and the amplitude of its ripple on x_sp'', m/s^2.
+    /// Constant part and ripple amplitude of the motor in x_sp'', m/s^2.
     motor: [f64; 2],
-    /// The motor's fall with x_sp' + x_pr' + 2 x_c', 1/s.
+    /// Decrease of the motor's acceleration per x_sp' + x_pr' + 2 x_c', 1/s.
     fall: f64,
     /// Angular frequency of the ripple, rad/s.
     omega: f64,
 }
 
 impl Momentum {
-    /// The reference case. The coefficients are read off the generated equations, which
-    /// are linear where the meshes stay on one side.
+    /// Creates the reference case. The coefficients follow from the generated equations, which are linear within a
+    /// regime.
     pub fn new() -> Self {
         let damped = g::Parameters::default();
         let undamped = g::Parameters {
@@ -110,7 +108,7 @@ impl Momentum {
         }
     }
 
-    /// The rates of x_sp, x_pr, x_c, q_1 .. q_4 (m) and their u (m/s).
+    /// Computes the rates of x_sp, x_pr, x_c, q_1 .. q_4 (m) and of their u (m/s).
     #[inline]
     pub fn rates(&self, t: f64, y: &[f64; STATES]) -> [f64; STATES] {
         let sp = compression(y[0], self.half_width[0]);
@@ -135,7 +133,7 @@ impl Momentum {
     }
 }
 
-/// What remains of x outside the play, m.
+/// Returns deadzone(x), m.
 fn compression(x: f64, half_width: f64) -> f64 {
     x - x.clamp(-half_width, half_width)
 }

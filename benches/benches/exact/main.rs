@@ -1,11 +1,9 @@
-//! The exact propagator against general solvers at equal error, in one run: first a table
-//! (the tolerance each peer needs, its error, the time of one simulated second), then
-//! criterion's measurements of the same.
+//! The exact propagator and general solvers at equal error. First a table lists the required tolerance of each peer, its
+//! error, and the time per simulated second; then Criterion measures the same.
 //!
-//! The case is the arm at S = 4, b = 25 um, omega = 10 pi, one second from rest. The error
-//! is the largest |x_sp - reference| on a grid of 1 ms; the reference is the exact
-//! propagator's, and the table ends with its distance from the tightest peer. Pipeline:
-//! `arm` (right-hand sides), `peers` (solvers), `table` (search for tolerances, print).
+//! The case is the arm at S = 4, b = 25 um, omega = 10 pi, one second from rest. The error is the largest
+//! |x_sp - reference| on a grid of 1 ms, with the exact propagator as the reference. The table ends with its distance
+//! from the most accurate peer. `arm` has the right-hand sides, `peers` the solvers, `table` the search for tolerances.
 
 mod arm;
 mod peers;
@@ -20,10 +18,10 @@ use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::Trajectory;
 use eomgen_sim::piecewise_linear::{PiecewiseLinear, Propagator};
 
-/// The orders at which the cost of a switch is told.
+/// Orders at which the cost of a switch is printed.
 const ORDERS: [usize; 4] = [0, 4, 16, 64];
 
-/// The exact propagator at one order.
+/// Exact propagator at one order.
 struct Exact {
     order: usize,
     derived: PiecewiseLinear,
@@ -47,7 +45,7 @@ impl Exact {
         }
     }
 
-    /// One second from rest, its regimes kept from the last call.
+    /// Simulates one second from rest, with cached regimes.
     fn second(&mut self, samples: &[f64]) -> Trajectory {
         let none = HeldInputs::zero(0);
         self.propagator
@@ -55,7 +53,7 @@ impl Exact {
             .expect("a simulation")
     }
 
-    /// One second from rest at parameters never seen before: every regime is made anew.
+    /// Simulates one second from rest at new parameters, without cached regimes.
     fn anew(&mut self) -> Trajectory {
         self.propagator = self
             .derived

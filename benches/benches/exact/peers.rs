@@ -1,5 +1,4 @@
-//! The general solvers under test. Each gives the end of one second from rest at a
-//! tolerance, and x_sp on a grid of times so that its error can be told.
+//! General solvers under test. Each computes one second from rest at a tolerance, and x_sp on a grid of times.
 
 use differential_equations::methods::{Adaptive, DormandPrince, ExplicitRungeKutta, Ordinary};
 use differential_equations::ode::{ODE, OrdinaryNumericalMethod};
@@ -8,7 +7,7 @@ use eomgen_sim::ode::{Method, Settings, simulate};
 
 use crate::arm::{Located, Momentum, STATES};
 
-/// The first step, s; the error estimate corrects it at once.
+/// First step size, s; the error estimate corrects it.
 const FIRST_STEP: f64 = 1e-6;
 
 type State = [f64; STATES];
@@ -17,7 +16,7 @@ type Dopri5 = ExplicitRungeKutta<Ordinary, DormandPrince, f64, State, 5, 7, 7>;
 type Verner6 = ExplicitRungeKutta<Ordinary, Adaptive, f64, State, 6, 9, 10>;
 type Verner7 = ExplicitRungeKutta<Ordinary, Adaptive, f64, State, 7, 10, 13>;
 
-/// Every peer.
+/// All peers.
 pub const ALL: [Peer; 6] = [
     Peer::Located(Method::DormandPrince853),
     Peer::Located(Method::Adams),
@@ -27,17 +26,17 @@ pub const ALL: [Peer; 6] = [
     Peer::Continuous(Scheme::Verner7),
 ];
 
-/// A general solver and how it meets the switches.
+/// General solver and its treatment of switches.
 #[derive(Clone, Copy)]
 pub enum Peer {
-    /// This project's solver with the generated equations: every switch is located.
+    /// Solver of this project with the generated equations; every switch is located.
     Located(Method),
-    /// The crate `differential-equations` by itself, in momentum-like variables: switches
-    /// are kinks of second order that its error control steps over.
+    /// Crate `differential-equations`, in momentum-like variables. Its error control handles switches as
+    /// discontinuities of the second derivative.
     Continuous(Scheme),
 }
 
-/// A pair of Runge-Kutta methods.
+/// Embedded Runge-Kutta pair.
 #[derive(Clone, Copy)]
 pub enum Scheme {
     /// Dormand and Prince, order 8(5,3).
@@ -50,17 +49,16 @@ pub enum Scheme {
     Verner7,
 }
 
-/// The arm in the forms that the peers integrate.
+/// Equations of the arm for the peers.
 pub struct Problem {
     located: Located,
     momentum: Momentum,
-    /// The largest magnitude of each state, on which errors are measured. Known beforehand,
-    /// which no user of a general solver has.
+    /// Largest magnitude of each state, the scale of its tolerance. Users of a general solver do not have it.
     pub magnitudes: State,
 }
 
 impl Problem {
-    /// The reference case with the magnitudes of its states.
+    /// Creates the reference case with the magnitudes of its states.
     pub fn new(magnitudes: State) -> Self {
         Self {
             located: Located::new(),
@@ -71,7 +69,7 @@ impl Problem {
 }
 
 impl Peer {
-    /// What the table calls it.
+    /// Name in the table.
     pub fn name(self) -> &'static str {
         match self {
             Self::Located(Method::DormandPrince853) => "DOP853, located",
@@ -84,12 +82,12 @@ impl Peer {
         }
     }
 
-    /// x_sp (m) after one second; `None` if the solver gives up.
+    /// Returns x_sp (m) after one second, or `None` if the solver fails.
     pub fn end(self, problem: &Problem, tolerance: f64) -> Option<f64> {
         self.run(problem, tolerance, &[]).map(|(end, _)| end)
     }
 
-    /// x_sp (m) at `times` (s, ascending up to 1).
+    /// Returns x_sp (m) at `times` (s, ascending up to 1).
     pub fn samples(self, problem: &Problem, tolerance: f64, times: &[f64]) -> Option<Vec<f64>> {
         self.run(problem, tolerance, times)
             .map(|(_, samples)| samples)
@@ -125,7 +123,7 @@ impl Scheme {
     }
 }
 
-/// One second from rest with located switches: x_sp at its end and at `times`.
+/// Simulates one second from rest with located switches. Returns x_sp at the end and at `times`.
 fn locate(arm: &Located, method: Method, tolerance: f64, times: &[f64]) -> Option<(f64, Vec<f64>)> {
     let settings = Settings {
         method,
@@ -144,7 +142,7 @@ impl ODE<f64, State> for Momentum {
     }
 }
 
-/// One second from rest: x_sp at its end and at `times`.
+/// Simulates one second from rest. Returns x_sp at the end and at `times`.
 fn drive<M: OrdinaryNumericalMethod<f64, State>>(
     arm: &Momentum,
     mut method: M,
@@ -174,8 +172,8 @@ fn drive<M: OrdinaryNumericalMethod<f64, State>>(
     Some((method.y()[0], samples))
 }
 
-/// x_sp at `time` inside a step from `t`: one shorter step of order 8 from the same start,
-/// whatever the method, for the crate's interpolation is of lower order.
+/// Returns x_sp at `time` within a step from `t`, by a shorter step of order 8, because the interpolation of the crate has
+/// a lower order.
 fn inside(arm: &Momentum, t: f64, y: &State, time: f64) -> Option<f64> {
     let length = time - t;
     if length <= 0.0 {

@@ -1,4 +1,4 @@
-//! The loosest tolerance at which each peer keeps the error, and the table of times.
+//! Loosest tolerance of each peer that meets the error, and the table of times.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -9,26 +9,25 @@ use crate::Exact;
 use crate::arm::STATES;
 use crate::peers::{ALL, Peer, Problem};
 
-/// The error that everyone must keep, m.
+/// Error limit of all peers, m.
 const ERROR: f64 = 1e-9;
 
-/// Tolerances are tried from the first to the last, closer together where the error is
-/// first kept.
+/// Range of tolerances, searched from the loosest on and refined at the first that meets the error.
 const LOOSEST: f64 = 1e-4;
 const TIGHTEST: f64 = 1e-12;
 
-/// Rounds of measurement; each measures everyone once, so that all see the same machine.
+/// Number of rounds; each measures all peers, under the same load of the machine.
 const ROUNDS: usize = 12;
 
-/// Every measurement goes on for so long, s: a short one would be less disturbed than a
-/// long one where the machine has other work.
+/// Duration of every measurement, s. It is equal for all, because other work on the machine disturbs long measurements
+/// more.
 const MEASURED: f64 = 0.04;
 
-/// The peers with the tolerances found for them.
+/// Peers with their tolerances.
 pub struct Tuned {
-    /// What they integrate.
+    /// Problem.
     pub problem: Problem,
-    /// Those that keep the error at all.
+    /// Peers that meet the error.
     pub peers: Vec<(Peer, f64)>,
 }
 
@@ -105,7 +104,7 @@ fn print_switches(orders: &mut [Exact]) {
     println!();
 }
 
-/// Seconds for each call of `work`.
+/// Returns the seconds per call of `work`.
 fn seconds<T>(mut work: impl FnMut() -> T) -> f64 {
     let start = Instant::now();
     let mut calls = 0.0;
@@ -119,9 +118,9 @@ fn seconds<T>(mut work: impl FnMut() -> T) -> f64 {
     }
 }
 
-/// The loosest tolerance with an error of at most [`ERROR`], and that error: by whole
-/// decades until it is kept, then by tenths of the decade before. The first that keeps it
-/// counts, even if a tighter one would not: kinks that are not located make errors jump.
+/// Returns the loosest tolerance with an error of at most [`ERROR`], and the error. The search goes by decades until the
+/// error is met, then by tenths of the previous decade. The first tolerance that meets the error counts, even if a
+/// tighter one does not: errors jump at switches that are not located.
 fn loosest(error: impl Fn(f64) -> f64) -> Option<(f64, f64)> {
     let step = |from: f64, tenths: i32| from * 10.0_f64.powf(-f64::from(tenths) / 10.0);
     let decades = (0..).map(|decade| step(LOOSEST, 10 * decade));

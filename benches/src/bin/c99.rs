@@ -1,9 +1,9 @@
-//! The emitted C beside the emitted Rust and beside the same equations written by hand in C, in turn
-//! over the same states of the planetary arm, half of whose meshes are in contact:
+//! Times of emitted C, emitted Rust and hand-written C for the same states of the planetary arm, with contact in half of
+//! the meshes:
 //!
 //!     cargo run --release -p eomgen-benches --bin c99
 //!
-//! The Rust is compiled as this program is, the C by `cc` with the flags that the table names.
+//! The Rust is compiled with this program, the C by `cc` with the flags in the table.
 
 use std::error::Error;
 use std::hint::black_box;
@@ -18,22 +18,21 @@ use eomgen_model_spec::model::Model;
 use eomgen_paper::reference::PlanetaryArmParameters;
 use eomgen_paper::reference::equation_22::Eliminated;
 
-/// States that a pass goes over.
+/// Number of states in a pass.
 const STATES: usize = 1024;
-/// Passes of one turn, and turns of each program: the fastest pass counts, which other work on the
-/// machine disturbs least.
+/// Number of passes per turn, and of turns per program. The fastest pass counts: other work disturbs it least.
 const PASSES: usize = 200;
 const TURNS: usize = 8;
-/// Without fused or reordered operations the C has the bits of the Rust.
+/// Flags without fused or reordered operations, for which C and Rust give the same bits.
 const FLAGS: [&[&str]; 3] = [
     &["-std=c99", "-O3"],
     &["-std=c99", "-O3", "-march=native"],
     &["-std=c99", "-O3", "-march=native", "-ffast-math"],
 ];
-/// How far the rates of the two in C may be apart, relative to the largest: they sum in different orders.
-const APART: f64 = 1e-12;
+/// Largest relative difference of the rates of the two C programs, which sum in different orders.
+const MAX_DIFFERENCE: f64 = 1e-12;
 
-/// Numbers in (-1, 1), the same ones every time.
+/// Returns a fixed sequence of numbers in (-1, 1).
 fn numbers() -> impl FnMut() -> f64 {
     let mut state = 1_u64;
     move || {
@@ -44,7 +43,7 @@ fn numbers() -> impl FnMut() -> f64 {
     }
 }
 
-/// States with deflections of both signs within 50 um, twice the play.
+/// Returns states with deflections of both signs within 50 um, twice the play.
 fn states<const N: usize>() -> Vec<[f64; N]> {
     let mut number = numbers();
     let one = |k: usize, number: f64| match k % (N / 2) {
@@ -57,7 +56,7 @@ fn states<const N: usize>() -> Vec<[f64; N]> {
         .collect()
 }
 
-/// Least times of a call, ns.
+/// Shortest times of a call, ns.
 #[derive(Clone, Copy)]
 struct Times {
     rust: f64,
@@ -65,7 +64,7 @@ struct Times {
     by_hand: f64,
 }
 
-/// Runs a command; what it prints.
+/// Runs a command and returns its output.
 fn run(command: &mut Command) -> Result<String, Box<dyn Error>> {
     let output = command.output()?;
     if !output.status.success() {
@@ -75,7 +74,7 @@ fn run(command: &mut Command) -> Result<String, Box<dyn Error>> {
     Ok(String::from_utf8(output.stdout)?)
 }
 
-/// Compiles both in C with these flags.
+/// Compiles both C programs with given flags.
 fn compile(order: usize, flags: &[&str], folder: &Path) -> Result<(), Box<dyn Error>> {
     let by_hand = Path::new(env!("CARGO_MANIFEST_DIR")).join("c");
     run(Command::new("cc")
@@ -91,8 +90,8 @@ fn compile(order: usize, flags: &[&str], folder: &Path) -> Result<(), Box<dyn Er
     Ok(())
 }
 
-/// The times at one order and with these flags.
-fn measured(
+/// Measures the times at one order with given flags.
+fn measure_flags(
     flags: &[&str],
     order: usize,
     folder: &Path,
@@ -118,8 +117,8 @@ fn measured(
         let &[emitted, by_hand, apart] = found?.as_slice() else {
             return Err(format!("not three numbers: {printed}").into());
         };
-        if apart.is_nan() || apart > APART {
-            return Err(format!("at order {order} the two in C are {apart:e} apart").into());
+        if apart.is_nan() || apart > MAX_DIFFERENCE {
+            return Err(format!("at order {order} the rates of the two C programs differ by {apart:e}").into());
         }
         best.emitted = best.emitted.min(emitted);
         best.by_hand = best.by_hand.min(by_hand);
@@ -127,7 +126,7 @@ fn measured(
     Ok(best)
 }
 
-/// Measures one order with every set of flags.
+/// Measures one order with all flags.
 macro_rules! order {
     ($model:ident, $order:literal, $module:ident) => {{
         use variants::$module as arm;
@@ -155,7 +154,7 @@ macro_rules! order {
             }
         };
         for flags in FLAGS {
-            let times = measured(flags, $order, folder.path(), &mut rust)?;
+            let times = measure_flags(flags, $order, folder.path(), &mut rust)?;
             println!(
                 "| {} | `{}` | {:.1} | {:.1} | {:.1} | {:.2} | {:.2} |",
                 $order,
@@ -170,7 +169,7 @@ macro_rules! order {
     }};
 }
 
-/// Writes the emitted C of an order.
+/// Emits the C of an order.
 fn emit(model: &Model, order: usize, folder: &Path) -> Result<(), Box<dyn Error>> {
     let variant = Variant::derive(model, &[order]).map_err(|found| found.render(false))?;
     let files = c::emit(&variant.program)?;

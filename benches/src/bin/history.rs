@@ -16,13 +16,12 @@ use eomgen_benches::{at_all_orders, cases, state, variants};
 use eomgen_paper::reference::PlanetaryArmParameters;
 use eomgen_paper::reference::equation_22::{Eliminated, Equation22};
 
-/// Calls that are timed together.
+/// Number of calls per measurement.
 const CALLS: u32 = 100;
-/// How often each contender is timed, one after the other: the fastest counts, which other
-/// work on the machine disturbs least.
+/// Number of measurements per contender. The fastest counts: other work disturbs it least.
 const ROUNDS: usize = 600;
 
-/// The fastest call of each, s.
+/// Returns the time of the fastest call of each contender, s.
 fn fastest(contenders: &mut [&mut dyn FnMut(); 4]) -> [f64; 4] {
     let mut best = [f64::INFINITY; 4];
     for _ in 0..ROUNDS {
@@ -35,23 +34,23 @@ fn fastest(contenders: &mut [&mut dyn FnMut(); 4]) -> [f64; 4] {
     best
 }
 
-/// The time of a call that waits for nothing.
+/// Returns the time t of an independent call.
 #[inline(always)]
 fn known(_: f64) -> f64 {
     black_box(0.3)
 }
 
-/// The time of a call that is known with a result: the rate that holds the sine.
+/// Returns the time t of a call that depends on the previous result, the rate with the sine.
 #[inline(always)]
 fn with(result: f64) -> f64 {
     0.3 + 0.0 * result
 }
 
-/// The fastest call of each contender, its time t from this function of the result before.
+/// Measures the fastest call of each contender. The time t of a call is a function of the previous result.
 macro_rules! calls {
     ($t:ident, $arm:ident, $state:ident, $inputs:ident, $coefficients:ident, $eliminated:ident, $equation:ident) => {{
         let [a, b, c, d] = &mut [$state; 4];
-        // The row with the motor's sine.
+        // Row with the motor's sine.
         let row = $arm::DEGREES_OF_FREEDOM;
         let [floor, generated, hand_written, equation_22] = fastest(&mut [
             &mut || {
@@ -119,7 +118,7 @@ macro_rules! times {
     };
 }
 
-/// The widest vectors that this program was compiled for.
+/// Returns the widest SIMD instruction set of this build.
 fn features() -> &'static str {
     if cfg!(target_feature = "avx512f") {
         "avx512"
@@ -132,7 +131,7 @@ fn features() -> &'static str {
     }
 }
 
-/// What git says, empty without it.
+/// Returns the output of git, empty on a failure.
 fn git(arguments: &[&str]) -> String {
     let output = Command::new("git").args(arguments).output();
     output.map_or_else(
@@ -154,7 +153,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         std::fs::create_dir_all(&profile)?;
         counted(&here, &profile, &names())?
     } else {
-        eprintln!("SKIPPED: instructions were not counted, for want of valgrind");
+        eprintln!("SKIPPED: instructions were not counted, because valgrind is missing");
         Vec::new()
     };
     let run = [

@@ -1,11 +1,11 @@
-//! Forward and inverse dynamics of rigid trees, as emitted in C, beside CasADi's of the same expressions and
-//! Pinocchio's of the same arm, in turn over the same states:
+//! Times of forward and inverse dynamics of rigid trees for the same states: emitted C, CasADi with the same expressions,
+//! and Pinocchio with the same arm:
 //!
 //!     cargo run --release -p eomgen-benches --bin rigid_trees
 //!
-//! CasADi and Pinocchio come with Python, which the variable PYTHON names, `python3` otherwise: `pip install casadi pin
-//! cmeel-eigen`. Where one is missing this is said and its columns stay empty. Operations are those of a call with
-//! functions counted as one, of what is emitted and of energies simplified by hand.
+//! CasADi and Pinocchio are Python packages (`pip install casadi pin cmeel-eigen`) for the Python of the variable PYTHON,
+//! `python3` by default. If one is missing, the program prints a message and its columns are empty. The counts of
+//! operations per call, with a function counted as one, are of emitted code and of energies simplified by hand.
 
 use std::error::Error;
 use std::path::Path;
@@ -22,18 +22,18 @@ use eomgen_model_spec::source::Source;
 
 type Outcome<T> = Result<T, Box<dyn Error>>;
 
-/// How far the contenders may be apart, relative to the largest number of a call: they sum in different orders.
-const APART: f64 = 1e-10;
-/// So many lines of what a command said are shown where it fails.
-const MOST_SAID: usize = 20;
-/// Limits of Boost's that Pinocchio's headers want raised, as its package says.
+/// Largest difference of the contenders, relative to the largest number of a call; they sum in different orders.
+const MAX_DIFFERENCE: f64 = 1e-10;
+/// Number of printed lines of a failed command.
+const MAX_LINES: usize = 20;
+/// Boost limits that Pinocchio requires, according to its package.
 const LIMITS: [&str; 4] = [
     "-DBOOST_MPL_LIMIT_LIST_SIZE=30",
     "-DBOOST_MPL_LIMIT_VECTOR_SIZE=30",
     "-DBOOST_MPL_CFG_NO_PREPROCESSED_HEADERS",
     "-DBOOST_FUSION_INVOKE_MAX_ARITY=12",
 ];
-/// The PUMA 560 for Pinocchio: a turn about x, a shift, mass, centre and inertia of each link.
+/// PUMA 560 for Pinocchio: rotation about x, translation, mass, centre and inertia of each link.
 const ARM: &str = "\
 JOINT(M_PI / 2, 0, 0, 0, 0, 0, 0, 0, 0.35, 0.35, 0.35)
 JOINT(0, 0, 0, 0, 17.4, 0.4318 - 0.3638, 0.006, 0.2275, 0.13, 0.524, 0.539)
@@ -43,12 +43,12 @@ JOINT(-M_PI / 2, 0, 0.4318, 0, 0.34, 0, 0, 0, 0.0003, 0.0004, 0.0003)
 JOINT(0, 0, 0, 0, 0.09, 0, 0, 0.032, 0.00015, 0.00015, 4e-5)
 ";
 
-/// Runs a command; what it prints.
+/// Runs a command and returns its output.
 fn run(command: &mut Command) -> Outcome<String> {
     let output = command.output()?;
     if !output.status.success() {
         let said = String::from_utf8_lossy(&output.stderr);
-        let said: Vec<&str> = said.lines().take(MOST_SAID).collect();
+        let said: Vec<&str> = said.lines().take(MAX_LINES).collect();
         let said = said.join("\n");
         return Err(format!("{command:?}: {said}").into());
     }
@@ -59,8 +59,8 @@ fn python() -> Command {
     Command::new(std::env::var("PYTHON").unwrap_or_else(|_| "python3".to_owned()))
 }
 
-/// The model of a specification and its program, with inverse dynamics.
-fn derived(text: String) -> Outcome<(Model, Program)> {
+/// Derives a specification with inverse dynamics.
+fn derive_text(text: String) -> Outcome<(Model, Program)> {
     let checked = eomgen_model_spec::check(Source::new("rigid_tree.toml", text))
         .map_err(|found| found.render(false))?;
     let variant = Variant::derive_with(&checked.model, &[], &[Output::InverseDynamics])
@@ -74,7 +74,7 @@ fn operations(program: &Program) -> (usize, usize) {
     (program.operations(&program.accelerations.all()), inverse)
 }
 
-/// Where the headers are that come with Pinocchio's package.
+/// Returns the include folder of Pinocchio's package.
 fn pinocchio() -> Option<String> {
     let asked = "import pathlib, pinocchio; print(pathlib.Path(pinocchio.__file__).parents[4])";
     let folder = run(python().args(["-c", asked])).ok()?.trim().to_owned();
@@ -100,8 +100,8 @@ fn compile_peer(sources: &Path, folder: &Path, package: &str) -> Outcome<()> {
     Ok(())
 }
 
-/// Least times of a call, ns: emitted, CasADi, Pinocchio (0 without it), forward and then inverse.
-fn measured(model: &Model, program: &Program, peer: Option<&str>) -> Outcome<[f64; 6]> {
+/// Measures the shortest times of a call, ns: emitted, CasADi, Pinocchio (0 if missing), forward and then inverse.
+fn measure(model: &Model, program: &Program, peer: Option<&str>) -> Outcome<[f64; 6]> {
     let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("rigid_trees");
     let folder = tempfile::tempdir()?;
     let folder = folder.path();
@@ -109,7 +109,7 @@ fn measured(model: &Model, program: &Program, peer: Option<&str>) -> Outcome<[f6
     let files = c::emit(program)?;
     std::fs::write(folder.join(format!("{name}.h")), files.header)?;
     std::fs::write(folder.join(format!("{name}.c")), files.source)?;
-    let module = definitions(model).ok_or("an expression that CasADi has no word for")?;
+    let module = definitions(model).ok_or("an expression that CasADi does not support")?;
     std::fs::write(folder.join("definitions.py"), module)?;
     std::fs::copy(sources.join("contender.py"), folder.join("contender.py"))?;
     run(python().arg("contender.py").current_dir(folder))?;
@@ -125,7 +125,7 @@ fn measured(model: &Model, program: &Program, peer: Option<&str>) -> Outcome<[f6
     if let Some(package) = peer {
         compile_peer(&sources, folder, package)?;
         let libraries = format!("{package}/lib");
-        // What is linked stands before the libraries that it is linked with.
+        // Linkers expect objects before libraries.
         compiler
             .arg("-DPEER")
             .arg(folder.join("peer.o"))
@@ -138,13 +138,13 @@ fn measured(model: &Model, program: &Program, peer: Option<&str>) -> Outcome<[f6
     let &[a, b, c, d, e, f, apart] = found?.as_slice() else {
         return Err(format!("not seven numbers: {printed}").into());
     };
-    if apart.is_nan() || apart > APART {
-        return Err(format!("{name}: the contenders are {apart:e} apart").into());
+    if apart.is_nan() || apart > MAX_DIFFERENCE {
+        return Err(format!("{name}: the contenders differ by {apart:e}").into());
     }
     Ok([a, b, c, d, e, f])
 }
 
-/// A ratio, or nothing beside what was not measured.
+/// Formats a ratio, or returns an empty text if there is no measurement.
 fn ratio(a: f64, b: f64) -> String {
     match b > 0.0 {
         true => format!("{:.2}", a / b),
@@ -152,16 +152,16 @@ fn ratio(a: f64, b: f64) -> String {
     }
 }
 
-/// Times of all trees, in turn with those of CasADi and Pinocchio.
+/// Prints the times of all trees.
 fn times() -> Outcome<()> {
     if run(python().args(["-c", "import casadi"])).is_err() {
-        println!("no times: Python finds no `casadi` (pip install casadi)");
+        println!("no times: the Python package `casadi` is missing (pip install casadi)");
         return Ok(());
     }
     let package = pinocchio();
     if package.is_none() {
         println!(
-            "nothing of Pinocchio: Python finds no `pin` with `cmeel-eigen` (pip install pin cmeel-eigen)"
+            "no Pinocchio: the Python packages `pin` and `cmeel-eigen` are missing (pip install pin cmeel-eigen)"
         );
     }
     println!(
@@ -178,9 +178,9 @@ fn times() -> Outcome<()> {
         specifications::chain(20),
     ];
     for text in trees {
-        let (model, program) = derived(text)?;
+        let (model, program) = derive_text(text)?;
         let peer = package.as_deref().filter(|_| model.name == "puma_6");
-        let [rates, casadi, aba, inverse, casadi_inverse, rnea] = measured(&model, &program, peer)?;
+        let [rates, casadi, aba, inverse, casadi_inverse, rnea] = measure(&model, &program, peer)?;
         let (forward_operations, inverse_operations) = operations(&program);
         println!(
             "| {} | {forward_operations} | {rates:.0} | {} | {} | {inverse_operations} | {inverse:.0} | {} | {} | {} |",
@@ -213,8 +213,8 @@ fn main() -> Outcome<()> {
         ),
     ];
     for (cartesian, by_hand) in pairs {
-        let (model, program) = derived(cartesian)?;
-        let (cartesian, by_hand) = (operations(&program).0, operations(&derived(by_hand)?.1).0);
+        let (model, program) = derive_text(cartesian)?;
+        let (cartesian, by_hand) = (operations(&program).0, operations(&derive_text(by_hand)?.1).0);
         let ratio = cartesian as f64 / by_hand as f64;
         println!("| {} | {cartesian} | {by_hand} | {ratio:.2} |", model.name);
     }

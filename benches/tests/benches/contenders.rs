@@ -1,13 +1,13 @@
-//! The contenders of the bench `rates` compute the same: a fast wrong one proves nothing.
+//! Agreement of the contenders of the bench `rates`.
 
 use eomgen_benches::{state, variants};
 use eomgen_paper::reference::PlanetaryArmParameters;
 use eomgen_paper::reference::equation_22::{Coefficients, Eliminated};
 
-/// Rounding of some tens of operations, relative to the largest term of a row.
+/// Rounding error of some tens of operations, relative to the largest term of a row.
 const TOLERANCE: f64 = 1e-12;
 
-/// In contact and free on each side, at a mesh's deflection of 3e-5 m and -1e-5 m.
+/// Mesh deflections with contact on each side and with separation, m.
 const DEFLECTIONS: [f64; 3] = [-3e-5, 1e-5, 4e-5];
 
 macro_rules! agree {

@@ -1,5 +1,4 @@
-//! What rigid trees are compared by: Cartesian definitions take hardly more operations than energies
-//! simplified by hand, and CasADi has a word for every expression.
+//! Operation counts of rigid trees, and their expressions in CasADi.
 
 use eomgen_benches::casadi_contender::definitions;
 use eomgen_benches::rigid_specifications as specifications;
@@ -47,7 +46,7 @@ fn cartesian_definitions_take_at_most_15_percent_more_than_energies_by_hand() {
 }
 
 #[test]
-fn every_tree_has_its_energies_in_python() {
+fn every_tree_has_energies_in_casadi() {
     for text in [
         specifications::planar_arm(3),
         specifications::puma(4),
@@ -55,7 +54,7 @@ fn every_tree_has_its_energies_in_python() {
         specifications::chain(10),
     ] {
         let model = model(text);
-        let module = definitions(&model).expect("no expression without a word");
+        let module = definitions(&model).expect("expressions that CasADi supports");
         assert_eq!(module.matches("T += ").count(), model.kinetic.len());
         assert_eq!(
             module.matches("d[").count() > 0,

@@ -1,9 +1,9 @@
-//! What the filters have in common.
+//! Interface of the filters.
 
 use crate::motion::State;
 use arm::Coefficients;
 
-/// A filter: how it carries its covariance from measurement to measurement, and takes one in.
+/// Filter: propagation of the covariance and measurement update.
 pub trait Filter {
     fn carried(&mut self, arm: &Coefficients, t: f64);
     fn taken(&mut self, arm: &Coefficients, t: f64, which: usize, value: f64, deviation: f64);

@@ -1,10 +1,9 @@
-//! An extended Kalman filter for the planetary arm with 16 modes, from emitted products of the
-//! Jacobian with vectors: the covariance is S S', and the columns of S are carried along the motion by a
-//! product each, so that no Jacobian is formed. Beside it the textbook's filter with the Jacobian.
-//! `arm` is what `eomgen generate` left, see docs/controllers.md.
+//! Extended Kalman filter for the planetary arm with 16 modes, with emitted Jacobian-vector products. The covariance is
+//! S S'; a product propagates each column of S, so that no Jacobian is formed. The reference is the standard filter with
+//! the Jacobian. `arm` is emitted by `eomgen generate`, see docs/controllers.md.
 //!
-//! The method: M. Verlaan and A. W. Heemink, "Tidal flow forecasting using reduced rank square
-//! root filters", Stochastic Hydrology and Hydraulics 11, 1997; measurements one after the other by
+//! Method: M. Verlaan and A. W. Heemink, "Tidal flow forecasting using reduced rank square
+//! root filters", Stochastic Hydrology and Hydraulics 11, 1997; sequential measurement updates by
 //! J. E. Potter's formula.
 
 mod filter;
@@ -20,15 +19,15 @@ use motion::{MEASURED, MEASUREMENTS, STEP, STEPS, State, begin, expected, motion
 use products::Products;
 use textbook::Textbook;
 
-/// How far a filter is from the arm in the second half of the run, root mean square: the carrier's path, m, its
-/// rate, m/s, and the arm's first mode, m.
+/// States whose RMS error over the second half of the run is printed: path of the carrier, m, its rate, m/s, and first
+/// mode of the arm, m.
 const JUDGED: [(usize, &str, &str); 3] = [
     (2, "carrier", "um"),
     (2 + STATES / 2, "its rate", "um/s"),
     (3, "first mode", "um"),
 ];
 
-/// Runs a filter over the records; prints how far it was, returns its estimates and variances at the end.
+/// Runs a filter and prints its RMS errors. Returns its final estimates and variances.
 fn filtered(
     name: &str,
     arm: &Coefficients,
@@ -45,7 +44,7 @@ fn filtered(
         }
         assert!(
             filter.estimate().iter().all(|x| x.is_finite()),
-            "lost after {t} s"
+            "the estimate is not finite after {t} s"
         );
         if period >= MEASUREMENTS / 2 {
             for (square, (which, _, _)) in squares.iter_mut().zip(JUDGED) {
@@ -58,7 +57,7 @@ fn filtered(
     for (square, (which, what, unit)) in squares.iter().zip(JUDGED) {
         let error = 1e6 * (square / (MEASUREMENTS / 2) as f64).sqrt();
         print!(
-            " {what} {error:.2} {unit} (claims {:.2})",
+            " {what} {error:.2} {unit} (sd {:.2})",
             1e6 * filter.variance(which).sqrt()
         );
     }
@@ -69,8 +68,8 @@ fn filtered(
     ]
 }
 
-/// The largest difference of two lists, for each number by its claimed deviation.
-fn apart(one: &State, other: &State, size: impl Fn(usize) -> f64) -> f64 {
+/// Returns the largest difference of two lists, each entry relative to its size.
+fn difference(one: &State, other: &State, size: impl Fn(usize) -> f64) -> f64 {
     (0..STATES)
         .map(|i| (one[i] - other[i]).abs() / size(i))
         .fold(0.0, f64::max)
@@ -101,11 +100,11 @@ fn main() {
         };
         let name = format!("products, {rank} columns");
         let [same, claimed] = filtered(&name, arm, &motion, products);
-        let away = apart(&same, &estimate, |i| variance[i].sqrt());
-        let claims = apart(&claimed, &variance, |i| variance[i]);
-        println!("    from the first: {away:.0e} of its deviations, {claims:.0e} of its variances");
+        let away = difference(&same, &estimate, |i| variance[i].sqrt());
+        let claims = difference(&claimed, &variance, |i| variance[i]);
+        println!("    difference from the first filter: {away:.0e} standard deviations, {claims:.0e} of the variances");
         if rank == STATES {
-            assert!(away < 1e-7 && claims < 1e-9, "two filters in place of one");
+            assert!(away < 1e-7 && claims < 1e-9, "the filters differ");
         }
         assert!(away < 1.0, "{rank} columns are too few");
     }

@@ -1,25 +1,24 @@
-//! The arm as it moves, what is measured of it, and the columns of whatever is carried along its motion.
+//! Simulated motion of the arm, measurements, and propagation of columns along the motion.
 
 use arm::{Coefficients, Inputs, STATES};
 
 pub type State = [f64; STATES];
 
-/// Length of a step, s, steps from measurement to measurement, and measurements.
+/// Step size, s, steps per measurement, and number of measurements.
 pub const STEP: f64 = 1e-5;
 pub const STEPS: usize = 100;
 pub const MEASUREMENTS: usize = 100;
-/// What is measured, by the number of the observable, with one standard deviation: the angle of the sun, rad,
-/// that of the carrier, rad, and the deflection of the arm's end, m.
+/// Indices of the measured observables and standard deviations of the noise: angle of the sun, rad, angle of the carrier,
+/// rad, deflection of the arm's end, m.
 pub const MEASURED: [(usize, f64); 3] = [(0, 1e-4), (2, 2e-5), (3, 1e-5)];
-/// The torque, N m: it loads the meshes on one side all the way.
+/// Torque, N m, which keeps the meshes in contact on one side.
 pub const TORQUE: f64 = 3.0;
-/// What the torque has besides, of which the filters do not know: one standard deviation, N m, drawn anew for
-/// each measurement.
+/// Standard deviation of the unknown torque disturbance, N m, which is drawn for each measurement.
 pub const DISTURBANCE: f64 = 0.05;
-/// The deflections of both meshes where the run begins, m: in contact.
+/// Initial deflections of both meshes, m, in contact.
 pub const DEFLECTION: f64 = 25.5e-6;
-/// The states that are uncertain where the run begins, by their numbers, with one standard deviation: the deflections
-/// of the meshes, the carrier's path, two modes, all m, and the carrier's rate, m/s.
+/// Indices and standard deviations of uncertain initial states: deflections of the meshes, path of the carrier, two modes
+/// (m), and rate of the carrier (m/s).
 pub const UNCERTAIN: [(usize, f64); 6] = [
     (0, 1e-7),
     (1, 1e-7),
@@ -28,13 +27,13 @@ pub const UNCERTAIN: [(usize, f64); 6] = [
     (4, 1e-5),
     (21, 1e-2),
 ];
-/// Gaussian numbers of mean 0 and standard deviation 1, nearly: the sum of twelve uniform ones.
+/// Approximately standard normal numbers: sums of twelve uniform ones.
 struct Noise(u64);
 
 impl Noise {
     fn next(&mut self) -> f64 {
         let mut uniform = || {
-            // Knuth's constants for a linear congruential generator of 64 bits.
+            // Knuth's constants of a 64-bit linear congruential generator.
             self.0 = self
                 .0
                 .wrapping_mul(6364136223846793005)
@@ -49,8 +48,8 @@ pub fn moved(state: &State, by: f64, rate: &State) -> State {
     std::array::from_fn(|i| state[i] + by * rate[i])
 }
 
-/// A step of the method of Runge and Kutta for a state and the columns beside it, whose rates are those of the
-/// linearised motion at the state of each stage. `times` is the Jacobian there, times columns.
+/// Computes a Runge-Kutta step of a state and of columns, which follow the linearised motion at the state of each stage.
+/// `times` multiplies columns by the Jacobian.
 pub fn stepped(
     arm: &Coefficients,
     t: f64,
@@ -83,19 +82,19 @@ pub fn stepped(
     }
 }
 
-/// An observable of a state. All that are measured are linear, so it is that of a column too.
+/// Returns an observable of a state, or of a column, because measured observables are linear.
 pub fn measured(arm: &Coefficients, t: f64, state: &State, which: usize) -> f64 {
     arm::observables(t, state, &Inputs::default(), arm)[which]
 }
 
-/// The state that the filters begin with.
+/// Returns the initial estimate.
 pub fn expected() -> State {
     let mut state = [0.0; STATES];
     (state[0], state[1]) = (DEFLECTION, DEFLECTION);
     state
 }
 
-/// Columns of the covariance that they begin with.
+/// Returns columns of the initial covariance.
 pub fn begin() -> Vec<State> {
     let column = |(which, deviation): &(usize, f64)| {
         let mut column = [0.0; STATES];
@@ -105,8 +104,8 @@ pub fn begin() -> Vec<State> {
     UNCERTAIN.iter().map(column).collect()
 }
 
-/// The arm as it moves with its disturbance, from a state that the filters do not know, and what is measured of it:
-/// after each period its state and its record.
+/// Simulates the arm with its disturbance from a state that the filters do not know. Returns state and measurements after
+/// each period.
 pub fn motion(arm: &Coefficients) -> Vec<(State, [f64; MEASURED.len()])> {
     let mut noise = Noise(7);
     let mut state = expected();

@@ -1,13 +1,13 @@
-//! The filter by products: the covariance is S S', and each column of S is carried by a product.
+//! Filter with Jacobian-vector products: the covariance is S S', and a product propagates each column of S.
 
 use crate::filter::Filter;
 use crate::motion::{DISTURBANCE, STEP, STEPS, State, measured, moved, stepped};
 use arm::{Coefficients, Inputs, STATES};
 
-/// What is counted equal where columns are dropped: 1 mm and 1 m/s.
+/// Scales of positions and rates for the selection of columns: 1 mm and 1 m/s.
 const LARGE: [f64; 2] = [1e-3, 1.0];
 
-/// What the columns change by: the Jacobian times each, and for the last the torque's disturbance besides. A product each.
+/// Computes the rates of the columns: a product with the Jacobian each; the last column includes the torque disturbance.
 fn by_products(arm: &Coefficients) -> impl Fn(f64, &State, &Inputs, &[State]) -> Vec<State> {
     |t, state, inputs, columns| {
         let last = columns.len() - 1;
@@ -21,11 +21,11 @@ fn by_products(arm: &Coefficients) -> impl Fn(f64, &State, &Inputs, &[State]) ->
     }
 }
 
-/// With the covariance as S S'.
+/// Filter with the covariance S S'.
 pub struct Products {
     pub estimate: State,
     pub columns: Vec<State>,
-    /// Columns that are kept.
+    /// Maximum number of columns.
     pub rank: usize,
 }
 
@@ -77,8 +77,8 @@ impl Filter for Products {
     }
 }
 
-/// The columns of the largest part of S S', at most `rank`: S times the eigenvectors of S' S, by Jacobi's rotations of
-/// columns until all are orthogonal.
+/// Returns the largest orthogonal columns of S S', at most `rank`: S times the eigenvectors of S' S, by Jacobi rotations
+/// of columns.
 fn largest(columns: &[State], rank: usize) -> Vec<State> {
     let size = |i: usize| LARGE[usize::from(i >= STATES / 2)];
     let mut columns: Vec<State> = columns

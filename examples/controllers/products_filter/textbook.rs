@@ -1,11 +1,11 @@
-//! The textbook's filter: the covariance is a matrix, and the Jacobians carry it.
+//! Standard filter: Jacobians propagate the covariance matrix.
 
 use crate::filter::Filter;
 use crate::motion::{DISTURBANCE, STEP, STEPS, State, measured, moved, stepped};
 use arm::{Coefficients, Inputs, RATES_BY_INPUTS, RATES_BY_STATE, STATES};
 
-/// What the columns change by: the Jacobian by the state times each, and for the last what the torque's
-/// disturbance does besides.
+/// Computes the rates of the columns: the Jacobian by the state times each; the last column includes the torque
+/// disturbance.
 fn by_jacobians(arm: &Coefficients) -> impl Fn(f64, &State, &Inputs, &[State]) -> Vec<State> {
     |t, state, inputs, columns| {
         let by_state = arm::rates_by_state(t, state, inputs, arm);
@@ -27,7 +27,7 @@ fn by_jacobians(arm: &Coefficients) -> impl Fn(f64, &State, &Inputs, &[State]) -
     }
 }
 
-/// With the covariance as a matrix, by the Jacobian: the textbook's.
+/// Filter with a covariance matrix.
 pub struct Textbook {
     pub estimate: State,
     pub covariance: Vec<State>,
@@ -35,7 +35,7 @@ pub struct Textbook {
 
 impl Filter for Textbook {
     fn carried(&mut self, arm: &Coefficients, t: f64) {
-        // The columns of the transition matrix, and what the disturbance does.
+        // Columns of the transition matrix, and the effect of the disturbance.
         let mut flow = vec![[0.0; STATES]; STATES + 1];
         for (k, column) in flow.iter_mut().take(STATES).enumerate() {
             column[k] = 1.0;

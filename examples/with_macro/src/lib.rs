@@ -1,5 +1,4 @@
-//! Two machines at compile time: the planetary arm from its file, and a pendulum written in
-//! place.
+//! Two models at compile time: the planetary arm from its file, and a pendulum in the source.
 #![no_std]
 
 /// The planetary arm with four modes.
@@ -20,7 +19,7 @@ pub mod pendulum {
         coordinates { theta: { unit: rad, doc: "from hanging down", initial: pi/2 } }
         inputs { u: { unit: N m, doc: "torque at the pivot" } }
         definitions {
-            // Where the bob is; its speed follows.
+            // Position of the bob.
             x: l*sin(theta),
             y: -l*cos(theta),
         }

@@ -1,4 +1,4 @@
-//! A pendulum comes to rest: the motor takes the energy out.
+//! A motor damps a pendulum.
 
 use with_macro::pendulum::{Coefficients, Inputs, Parameters, energy, rates};
 

@@ -1,4 +1,4 @@
-//! The kernel of a regime on lanes that are all in it: each has the bits of its numbers alone.
+//! Kernel of a regime on lanes: the bits are those of a scalar evaluation.
 
 use eomgen_lanes::{LANES, Lanes, Registers, Task, Vector};
 
@@ -9,7 +9,7 @@ mod arm {
 }
 eomgen_lanes::scalar!(arm);
 
-/// x_sp above its play, x_pr within it: the guards are x - b and x + b of each.
+/// Regime with x_sp above its play and x_pr within it; the guards are x - b and x + b of each.
 const REGIME: u32 = 0b1011;
 
 struct All<'a> {
@@ -31,7 +31,7 @@ impl Task for All<'_> {
 }
 
 #[test]
-fn lanes_within_one_regime() {
+fn lanes_within_one_regime_match_scalars() {
     let coefficients = arm::Coefficients::prepare(&arm::Parameters::default());
     let mut states: [[f64; LANES]; arm::STATES] = std::array::from_fn(|i| {
         std::array::from_fn(|k| 1e-3 * (1.0 + i as f64) / (1.0 + k as f64))

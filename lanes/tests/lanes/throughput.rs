@@ -1,6 +1,5 @@
-//! Lanes in a task that calls the rates in several places, as a method of Runge and Kutta does:
-//! were one of the functions below not inlined there, it would be compiled for the plainest
-//! machine, and lanes would be slower than one state after the other.
+//! Throughput of a task that calls the rates several times, as a Runge-Kutta method does. A function that is not inlined
+//! would be compiled for the baseline instruction set, and lanes would be slower than scalars.
 
 use std::hint::black_box;
 use std::ops::{Add, Mul};
@@ -15,16 +14,16 @@ mod arm {
 }
 eomgen_lanes::scalar!(arm);
 
-/// How often each is timed at least; the fastest counts, which other work disturbs least.
+/// Minimum number of measurements. The fastest counts: other work disturbs it least.
 const ROUNDS: usize = 300;
-/// How long lanes that seem slow are timed again: a machine can be slow for a while, s.
+/// Longest time for repeated measurements of slow lanes, s: a machine can be slow for a while.
 const PATIENCE: f64 = 3.0;
 const STEPS: usize = 10;
 const STEP: f64 = 1e-6;
 
 type State<T> = [T; arm::STATES];
 
-/// x + h y
+/// Returns x + h y.
 #[inline(always)]
 fn moved<T: Copy + Add<Output = T> + Mul<Output = T>>(
     x: &State<T>,
@@ -38,7 +37,7 @@ fn moved<T: Copy + Add<Output = T> + Mul<Output = T>>(
     moved
 }
 
-/// One step of the classical method over `h`, whose parts are given as numbers of this type.
+/// Computes a step of the classical Runge-Kutta method over `h`.
 macro_rules! step {
     ($rates:path, $t:expr, $state:expr, $c:expr, $h:expr, $half:expr, $sixth:expr, $third:expr) => {{
         let inputs = arm::Inputs::default();
@@ -105,10 +104,10 @@ fn seconds(call: impl FnOnce()) -> f64 {
 }
 
 #[test]
-fn steps_of_eight_are_faster_than_one_after_the_other() {
+fn eight_wide_steps_are_faster_than_scalar_steps() {
     if cfg!(debug_assertions) {
         skips::skip(
-            "lanes were not timed, nothing is inlined without optimisation: cargo test --release",
+            "lanes were not timed, because this build is not optimised: cargo test --release",
         );
         return;
     }
@@ -117,7 +116,7 @@ fn steps_of_eight_are_faster_than_one_after_the_other() {
     for registers in [Registers::Wide, Registers::Pair] {
         if !registers.are_there() {
             skips::skip(&format!(
-                "{registers:?} was not timed, this machine has no such registers"
+                "{registers:?} was not timed: this machine lacks the registers"
             ));
             continue;
         }
@@ -139,7 +138,7 @@ fn steps_of_eight_are_faster_than_one_after_the_other() {
             assert_eq!(states.map(|numbers| numbers[3]), state);
         }
         let times = LANES as f64 * one / eight;
-        // 2.7 and 1.6 times where it was tried; 0.8 and 0.4 with a sum that is not inlined.
+        // Measured: 2.7 and 1.6 times; 0.8 and 0.4 times with a sum that is not inlined.
         assert!(
             times > 1.0,
             "{registers:?}: {times:.2} times the throughput"

@@ -1,4 +1,4 @@
-//! The nonzeros of a Jacobian with their places, and rates in single precision.
+//! Nonzeros of a Jacobian with their indices, and rates in single precision.
 
 /// The planetary arm with its Jacobians.
 mod arm {
@@ -24,7 +24,7 @@ fn main() {
         dense.as_flattened().len()
     );
 
-    // Prepared in double precision, so that every coefficient is right to its last bit.
+    // Preparation in double precision makes every coefficient correctly rounded.
     let single = coefficients.cast::<f32>();
     let rates = arm::rates(0.0_f32, &[1e-4; STATES], &Inputs::default(), &single);
     println!("{rates:?}");

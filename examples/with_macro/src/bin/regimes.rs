@@ -1,4 +1,4 @@
-//! The rates in the regime that a state is in.
+//! Rates in the regime of a state.
 
 /// The planetary arm with its regimes.
 mod arm {
@@ -9,7 +9,7 @@ mod arm {
 
 use arm::{Coefficients, Inputs, Parameters, STATES};
 
-/// Both meshes within their play.
+/// Regime with both meshes within their play.
 const WITHIN: u32 = 0b1010;
 
 fn main() {
