@@ -93,8 +93,8 @@ impl Fit {
         )
     }
 
-    /// Converts a state of this model to one of another model. States of only the other model are
-    /// 0.
+    /// Converts a state of this model to one of another model. States that exist only in the other
+    /// model are 0.
     pub fn mapped(&self, model: &EstimationModel, state: &[f64]) -> Vec<f64> {
         if state.is_empty() {
             return Vec::new();

@@ -152,7 +152,7 @@ impl EstimationModel {
         state
     }
 
-    /// Converts a state of another model to this one. States of only this model are 0.
+    /// Converts a state of another model to this one. States that exist only in this model are 0.
     pub fn mapped(&self, other: &Self, state: &[f64]) -> Vec<f64> {
         let value = |name: &String| {
             let index = other.states.iter().position(|known| known == name);
