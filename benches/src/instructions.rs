@@ -33,7 +33,8 @@ pub fn counted(program: &Path, folder: &Path, names: &[String]) -> Result<Vec<Co
     names
         .iter()
         .map(|name| {
-            let total = total(&table, name).ok_or(format!("the output of callgrind has no {name}"))?;
+            let total =
+                total(&table, name).ok_or(format!("the output of callgrind has no {name}"))?;
             let calls = if name.starts_with(ONCE) { 1 } else { CALLS };
             Ok((name.clone(), total / calls))
         })

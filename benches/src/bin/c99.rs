@@ -118,7 +118,10 @@ fn measure_flags(
             return Err(format!("not three numbers: {printed}").into());
         };
         if apart.is_nan() || apart > MAX_DIFFERENCE {
-            return Err(format!("at order {order} the rates of the two C programs differ by {apart:e}").into());
+            return Err(format!(
+                "at order {order} the rates of the two C programs differ by {apart:e}"
+            )
+            .into());
         }
         best.emitted = best.emitted.min(emitted);
         best.by_hand = best.by_hand.min(by_hand);

@@ -214,7 +214,10 @@ fn main() -> Outcome<()> {
     ];
     for (cartesian, by_hand) in pairs {
         let (model, program) = derive_text(cartesian)?;
-        let (cartesian, by_hand) = (operations(&program).0, operations(&derive_text(by_hand)?.1).0);
+        let (cartesian, by_hand) = (
+            operations(&program).0,
+            operations(&derive_text(by_hand)?.1).0,
+        );
         let ratio = cartesian as f64 / by_hand as f64;
         println!("| {} | {cartesian} | {by_hand} | {ratio:.2} |", model.name);
     }

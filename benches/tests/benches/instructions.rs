@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use eomgen_benches::instructions::{available, counted, names, read, format_counts};
+use eomgen_benches::instructions::{available, counted, format_counts, names, read};
 
 /// Largest accepted increase, percent.
 const RISE: u64 = 5;

@@ -193,7 +193,7 @@ fn page_has_every_section() {
         "Accelerations",
         "Switching surfaces",
         "101 operations",
-        "against 202",
+        "most expensive order takes 202",
         "one warning",
         "Checks passed: 1; failed: 0; not run: 1",
         "<msup><mn>10</mn><mn>−12</mn></msup>",

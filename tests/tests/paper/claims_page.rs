@@ -48,7 +48,7 @@ fn page_has_a_row_for_every_claim() {
         assert_page_contains(&format!(
             "| `{}` | {} | {} | {} | {} | {} |",
             text("id"),
-            text("place"),
+            text("source"),
             text("statement"),
             verdict_word(&assumed["verdict"]),
             verdict_word(&assumed["strict"]),

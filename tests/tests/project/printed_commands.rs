@@ -360,8 +360,10 @@ fn are_tests(command: &str) {
         Some(package) => panic!("a package that is not known here: {package}"),
     };
     if let Some(name) = after("--test") {
-        let file = project().join(folder).join(format!("tests/{name}.rs"));
-        assert!(file.exists(), "{command}: {}", file.display());
+        let tests = project().join(folder).join("tests");
+        let files = [format!("{name}.rs"), format!("{name}/main.rs")];
+        let exists = files.iter().any(|file| tests.join(file).exists());
+        assert!(exists, "{command}: no test {name} in {}", tests.display());
     }
 }
 

@@ -37,7 +37,7 @@ fn engines_are_asked_for_what_they_can_do() {
         (&["--engine", "pbs"][..], "slurm, dask"),
         (
             &["--engine", "slurm", "--shard", "1/2"],
-            "--shards says how many",
+            "--shards sets their number",
         ),
         (&["--shards", "4"], "--shards needs --engine"),
         (&["--engine", "slurm", "--shards", "0"], "1..=1000"),
@@ -114,7 +114,10 @@ fn what_makes_no_sense_is_refused_before_anything_is_written() {
         (vec!["--vary", c, "--frequency", "k"], "angular frequency"),
         (vec!["--vary", c, "--periods", "1"], "at least 2 --periods"),
         (vec!["--vary", c, "--transient", "9999999"], "--transient"),
-        (vec!["--vary", c, "--measure", "fly"], "there is"),
+        (
+            vec!["--vary", c, "--measure", "fly"],
+            "expected one of lyapunov",
+        ),
         (
             vec!["--vary", c, "--measure", "poincare"],
             "name each measure once",

@@ -149,7 +149,7 @@ fn sections_that_make_no_sense_are_refused() {
         ),
         (
             &["--measure", "poincare", "--section", "x=0"],
-            "--until as well",
+            "--until is missing",
         ),
         (
             &["--measure", "poincare", "--section", "x=0", "--until", "-1"],
