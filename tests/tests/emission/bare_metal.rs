@@ -30,8 +30,8 @@ fn has_c_compilers() -> bool {
     let there = is_available("arm-none-eabi-gcc") && is_available("cc");
     if !there {
         skips::skip(
-            "the controller in C was not run on microcontrollers, for want of \
-             arm-none-eabi-gcc and cc (Debian: apt-get install gcc-arm-none-eabi gcc)",
+            "the controller in C was not run on microcontrollers: \
+             arm-none-eabi-gcc or cc is missing (Debian: apt-get install gcc-arm-none-eabi gcc)",
         );
     }
     there

@@ -1,13 +1,13 @@
-//! The program and the Python package have their dependencies with the features that the tests and
-//! benches ask of them: `cargo run`, `cargo test --workspace` and `pip install ./python`, one after
-//! the other as in `.ci/run`, then compile nothing twice.
+//! The program and the Python package build their dependencies with the same features as the tests
+//! and benches. So `cargo run`, `cargo test --workspace` and `pip install ./python`, run in
+//! sequence by `.ci/run`, compile nothing twice.
 
 use std::collections::BTreeSet;
 use std::process::Command;
 
 use eomgen_tests::models::project;
 
-/// Packages with their features, of what is chosen and all that it needs.
+/// Returns the packages, with features, of the chosen packages and their dependencies.
 fn packages(chosen: &[&str]) -> BTreeSet<String> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let output = Command::new(cargo)
@@ -26,8 +26,9 @@ fn packages(chosen: &[&str]) -> BTreeSet<String> {
 /// The program and the Python package.
 const PROGRAMS: [&str; 2] = ["eomgen-cli", "eomgen-python"];
 
-/// Compares what each needs alone, along these edges, with what is built for the tests.
-fn compare(edges: &str, whole: &BTreeSet<String>) {
+/// Asserts that each package, with the dependencies along these edges, has the same features as in
+/// the tests.
+fn assert_same_features(edges: &str, whole: &BTreeSet<String>) {
     for package in PROGRAMS {
         let alone = packages(&["--package", package, "--edges", edges]);
         let twice: Vec<_> = alone.difference(whole).collect();
@@ -40,16 +41,16 @@ fn compare(edges: &str, whole: &BTreeSet<String>) {
 }
 
 #[test]
-fn what_the_program_needs_is_built_as_the_tests_need_it() {
-    // What is built for the compiler itself, with features of its own, stays out.
+fn dependencies_have_the_same_features_as_in_tests() {
+    // Crates built for the compiler with other features are excluded.
     let hosts = ["--exclude", "eomgen-macros", "--exclude", "eomgen-build"];
     let whole = ["--workspace", "--edges", "normal,dev,no-proc-macro"];
     let whole = packages(&[&whole[..], &hosts].concat());
-    compare("normal,no-proc-macro", &whole);
+    assert_same_features("normal,no-proc-macro", &whole);
 }
 
 #[test]
-fn macros_that_it_is_compiled_with_are_those_of_the_tests() {
+fn build_dependencies_have_the_same_features_as_in_tests() {
     let whole = packages(&["--workspace", "--edges", "normal,build,dev"]);
-    compare("normal,build", &whole);
+    assert_same_features("normal,build", &whole);
 }

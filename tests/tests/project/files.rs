@@ -1,5 +1,5 @@
-//! What the program leaves on the disk: whole files or none, the same bytes for the same
-//! input, nothing in the place of what is no file.
+//! Output files of the program: complete or absent, reproducible, and never in place of a special
+//! file.
 
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
@@ -8,18 +8,16 @@ use std::time::Duration;
 use eomgen_tests::models::path;
 use eomgen_tests::program::{self, accepted, refused, text};
 
-/// A shipped specification's path as an argument.
 fn spec(name: &str) -> String {
     path(name).display().to_string()
 }
 
-/// A path as an argument.
 fn shown(path: &Path) -> String {
     path.display().to_string()
 }
 
 #[test]
-fn the_same_input_gives_the_same_bytes() {
+fn same_input_gives_same_bytes() {
     let folder = tempfile::tempdir().expect("a folder");
     let made = |run: &str| {
         let out = folder.path().join(run);
@@ -44,7 +42,7 @@ fn the_same_input_gives_the_same_bytes() {
 }
 
 #[test]
-fn an_output_in_the_place_of_no_file_is_refused() {
+fn output_in_place_of_a_non_file_is_rejected() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("file");
     std::fs::write(&file, "kept").expect("a file");
@@ -66,7 +64,7 @@ fn an_output_in_the_place_of_no_file_is_refused() {
 
 #[cfg(unix)]
 #[test]
-fn devices_pipes_and_links_stay_what_they_are() {
+fn devices_pipes_and_links_are_preserved() {
     let folder = tempfile::tempdir().expect("a folder");
     let (pipe, link, target) = (
         folder.path().join("pipe"),
@@ -105,9 +103,10 @@ fn devices_pipes_and_links_stay_what_they_are() {
     );
 }
 
-/// `-` is stdout, where nothing else is said then; a device takes the bytes and stays one.
+/// `-` writes to stdout and suppresses messages there; a device receives the bytes and is not
+/// replaced.
 #[test]
-fn one_file_goes_to_stdout_or_to_a_device() {
+fn output_can_go_to_stdout_or_a_device() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("a.csv");
     let simulate =
@@ -142,14 +141,16 @@ fn one_file_goes_to_stdout_or_to_a_device() {
 
 #[cfg(unix)]
 #[test]
-fn a_folder_that_cannot_be_written_is_refused() {
+fn unwritable_folder_is_rejected() {
     use std::os::unix::fs::PermissionsExt;
     let folder = tempfile::tempdir().expect("a folder");
     let closed = folder.path().join("closed");
     std::fs::create_dir(&closed).expect("a folder");
     std::fs::set_permissions(&closed, PermissionsExt::from_mode(0o555)).expect("a closed folder");
     if std::fs::write(closed.join("probe"), "").is_ok() {
-        skips::skip("no folder is closed to this user, root most likely: run as another");
+        skips::skip(
+            "rejection of a read-only folder was not tested: this user (root?) can write to it",
+        );
         return;
     }
     let out = shown(&closed.join("a.csv"));
@@ -157,7 +158,7 @@ fn a_folder_that_cannot_be_written_is_refused() {
     assert!(message.contains("cannot write"), "{message}");
 }
 
-/// Starts a simulation of the pendulum whose table has `rows` rows and a header.
+/// Starts a simulation of the pendulum with a table of `rows` rows and a header.
 fn start(out: &Path, rows: usize, parameter: &str) -> Child {
     let until = (rows - 1) as f64 * 1e-3;
     Command::new(program::path())
@@ -179,11 +180,11 @@ fn start(out: &Path, rows: usize, parameter: &str) -> Child {
 }
 
 #[test]
-fn a_killed_run_leaves_the_file_whole_or_not_at_all() {
+fn killed_run_leaves_a_complete_file_or_none() {
     const ROWS: usize = 100_001;
     let folder = tempfile::tempdir().expect("a folder");
     let whole = folder.path().join("whole.csv");
-    // The program may have to be built first, which is not part of a run.
+    // Builds the program first, outside the timing.
     program::path();
     let begun = std::time::Instant::now();
     assert!(
@@ -211,7 +212,7 @@ fn a_killed_run_leaves_the_file_whole_or_not_at_all() {
 }
 
 #[test]
-fn two_runs_that_write_one_file_leave_one_of_both() {
+fn concurrent_runs_leave_one_complete_file() {
     const ROWS: usize = 2001;
     let folder = tempfile::tempdir().expect("a folder");
     let alone = |parameter: &str| {
@@ -237,5 +238,5 @@ fn two_runs_that_write_one_file_leave_one_of_both() {
     let names: Vec<_> = std::fs::read_dir(folder.path())
         .expect("the folder")
         .collect();
-    assert_eq!(names.len(), 2, "temporary files are left: {names:?}");
+    assert_eq!(names.len(), 2, "temporary files remain: {names:?}");
 }

@@ -1,7 +1,7 @@
-//! How the files of every crate import each other: between folders data flows one way, and the
-//! few circles of files that stay are those that `docs/architecture.md` names. A re-export is no
-//! import; who imports by it imports from where the item is. Between crates the build itself
-//! refuses circles.
+//! Imports between the files of each crate: folders import in one direction, and
+//! `docs/architecture.md` lists the few import circles between files with a reason. An item used
+//! through a re-export counts as imported from its own file. The compiler excludes circles between
+//! crates.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -9,27 +9,26 @@ use std::path::{Path, PathBuf};
 use eomgen_tests::models::project;
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
-/// The most circles of files in all crates together.
-const MOST_CIRCLES: usize = 8;
+/// Maximum number of circles of files in all crates.
+const MAX_CIRCLES: usize = 8;
 
-/// A path of names within a crate.
 type Names = Vec<String>;
 
-/// A file: the paths that it uses, from its crate's root, and what it exports again.
+/// Imports of a file as paths from the root of its crate, and its re-exports.
 #[derive(Default)]
 struct File {
     uses: BTreeSet<Names>,
     exports: BTreeMap<String, Names>,
 }
 
-/// The files of a crate by module, and which of them each imports from.
+/// Files of a crate by module, and the imports of each.
 struct Crate {
     files: BTreeMap<Names, File>,
     imports: BTreeMap<Names, BTreeSet<Names>>,
 }
 
-/// Folders `src` with a manifest beside them.
-fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+/// Collects the folders `src` of all packages.
+fn collect_sources(folder: &Path, found: &mut Vec<PathBuf>) {
     if folder.join("Cargo.toml").is_file() && folder.join("src").is_dir() {
         found.push(folder.join("src"));
     }
@@ -37,13 +36,13 @@ fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
         let name = entry.file_name();
         let skipped = ["target", "src", ".git"].iter().any(|known| name == *known);
         if entry.path().is_dir() && !skipped {
-            sources(&entry.path(), found);
+            collect_sources(&entry.path(), found);
         }
     }
 }
 
-/// Rust files below a folder, with their modules.
-fn modules(folder: &Path, module: &Names, found: &mut BTreeMap<Names, PathBuf>) {
+/// Collects the Rust files below a folder with their modules.
+fn collect_modules(folder: &Path, module: &Names, found: &mut BTreeMap<Names, PathBuf>) {
     for entry in std::fs::read_dir(folder).expect("a folder").flatten() {
         let path = entry.path();
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
@@ -52,15 +51,15 @@ fn modules(folder: &Path, module: &Names, found: &mut BTreeMap<Names, PathBuf>) 
             inner.push(name.into_owned());
         }
         if path.is_dir() {
-            modules(&path, &inner, found);
+            collect_modules(&path, &inner, found);
         } else if path.extension().is_some_and(|kind| kind == "rs") {
             found.insert(inner, path);
         }
     }
 }
 
-/// The paths of a tree of imports, `a::{b, c as d}`, after `prefix`.
-fn tree(tokens: &[TokenTree], prefix: &Names, found: &mut Vec<Names>) {
+/// Collects the paths of a `use` tree, such as `a::{b, c as d}`, after `prefix`.
+fn collect_paths(tokens: &[TokenTree], prefix: &Names, found: &mut Vec<Names>) {
     let is_comma = |token: &TokenTree| matches!(token, TokenTree::Punct(p) if p.as_char() == ',');
     for branch in tokens.split(is_comma) {
         let mut path = prefix.clone();
@@ -71,7 +70,7 @@ fn tree(tokens: &[TokenTree], prefix: &Names, found: &mut Vec<Names>) {
                 TokenTree::Ident(name) => path.push(name.to_string()),
                 TokenTree::Group(group) if group.delimiter() == Delimiter::Brace => {
                     let inner: Vec<TokenTree> = group.stream().into_iter().collect();
-                    tree(&inner, &path, found);
+                    collect_paths(&inner, &path, found);
                     is_whole = false;
                 }
                 _ => {}
@@ -83,8 +82,8 @@ fn tree(tokens: &[TokenTree], prefix: &Names, found: &mut Vec<Names>) {
     }
 }
 
-/// A path from the crate's root, given where it is written; none if it leads elsewhere.
-fn resolved(path: &Names, module: &Names) -> Option<Names> {
+/// Resolves a path written in `module` to one from the crate's root; `None` if it leaves the crate.
+fn resolve(path: &Names, module: &Names) -> Option<Names> {
     let first = path.first()?.as_str();
     let rest = |from: &[String], skipped: usize| [from, &path[skipped..]].concat();
     match first {
@@ -98,8 +97,8 @@ fn resolved(path: &Names, module: &Names) -> Option<Names> {
     }
 }
 
-/// Whether a token stands there.
-fn is(tokens: &[TokenTree], place: usize, wanted: &str) -> bool {
+/// Returns true if the token at `place` is `wanted`.
+fn is_token(tokens: &[TokenTree], place: usize, wanted: &str) -> bool {
     tokens.get(place).is_some_and(|token| match token {
         TokenTree::Ident(name) => name == wanted,
         TokenTree::Punct(mark) => wanted.starts_with(mark.as_char()) && wanted.len() == 1,
@@ -111,28 +110,28 @@ fn read(stream: TokenStream, module: &Names, file: &mut File) {
     let tokens: Vec<TokenTree> = stream.into_iter().collect();
     let mut place = 0;
     while place < tokens.len() {
-        // Tests may import what they like.
-        if is(&tokens, place, "#")
+        // Test modules are not checked.
+        if is_token(&tokens, place, "#")
             && tokens.get(place + 1).map(ToString::to_string) == Some("[cfg (test)]".into())
         {
             place += 2;
             while place < tokens.len()
-                && !is(&tokens, place, ";")
+                && !is_token(&tokens, place, ";")
                 && !matches!(&tokens[place], TokenTree::Group(g) if g.delimiter() == Delimiter::Brace)
             {
                 place += 1;
             }
-        } else if is(&tokens, place, "use") {
-            let length = (place..tokens.len()).take_while(|at| !is(&tokens, *at, ";"));
+        } else if is_token(&tokens, place, "use") {
+            let length = (place..tokens.len()).take_while(|at| !is_token(&tokens, *at, ";"));
             let end = place + length.count();
             let mut paths = Vec::new();
-            tree(&tokens[place + 1..end], &Names::new(), &mut paths);
+            collect_paths(&tokens[place + 1..end], &Names::new(), &mut paths);
             let is_visible = |token: &TokenTree| {
                 let text = token.to_string();
                 text == "pub" || text.starts_with("(crate") || text.starts_with("(super")
             };
             let is_export = place > 0 && is_visible(&tokens[place - 1]);
-            for path in paths.iter().filter_map(|path| resolved(path, module)) {
+            for path in paths.iter().filter_map(|path| resolve(path, module)) {
                 match path.last().cloned() {
                     Some(name) if is_export => drop(file.exports.insert(name, path)),
                     _ => drop(file.uses.insert(path)),
@@ -141,19 +140,19 @@ fn read(stream: TokenStream, module: &Names, file: &mut File) {
             place = end;
         } else if ["crate", "super", "self"]
             .iter()
-            .any(|w| is(&tokens, place, w))
-            && is(&tokens, place + 1, ":")
-            && is(&tokens, place + 2, ":")
+            .any(|w| is_token(&tokens, place, w))
+            && is_token(&tokens, place + 1, ":")
+            && is_token(&tokens, place + 2, ":")
         {
             let mut path = vec![tokens[place].to_string()];
             place += 1;
-            while is(&tokens, place, ":") && is(&tokens, place + 1, ":") {
+            while is_token(&tokens, place, ":") && is_token(&tokens, place + 1, ":") {
                 if let Some(TokenTree::Ident(name)) = tokens.get(place + 2) {
                     path.push(name.to_string());
                 }
                 place += 3;
             }
-            file.uses.extend(resolved(&path, module));
+            file.uses.extend(resolve(&path, module));
             place -= 1;
         } else if let TokenTree::Group(group) = &tokens[place] {
             read(group.stream(), module, file);
@@ -165,7 +164,7 @@ fn read(stream: TokenStream, module: &Names, file: &mut File) {
 impl Crate {
     fn read(source: &Path) -> Self {
         let mut paths = BTreeMap::new();
-        modules(source, &Names::new(), &mut paths);
+        collect_modules(source, &Names::new(), &mut paths);
         let is_test = |module: &Names| {
             let name = module.last().map_or("", String::as_str);
             name == "tests" || name.starts_with("test_")
@@ -192,7 +191,7 @@ impl Crate {
         found
     }
 
-    /// The file in which what a path names is written.
+    /// Returns the file that defines the item of a path.
     fn file_of(&self, path: &Names) -> Option<Names> {
         let lengths = (0..=path.len()).rev();
         let module = lengths.map(|length| &path[..length]);
@@ -211,7 +210,7 @@ impl Crate {
         }
     }
 
-    /// Files that import each other, directly or by others.
+    /// Returns the sets of files that import each other, directly or indirectly.
     fn circles(&self) -> BTreeSet<BTreeSet<String>> {
         let reach: BTreeMap<_, _> = (self
             .files
@@ -228,7 +227,7 @@ impl Crate {
         reach.keys().map(|file| circle(file)).collect()
     }
 
-    /// Folders that import from themselves by way of others.
+    /// Returns the folders that import from themselves through others.
     fn folders_both_ways(&self) -> Vec<String> {
         let is_folder = |name: &String| self.files.keys().any(|m| m.len() > 1 && m[0] == *name);
         let mut arrows = BTreeMap::<String, BTreeSet<String>>::new();
@@ -248,7 +247,7 @@ impl Crate {
     }
 }
 
-/// All that arrows lead to, one after the other.
+/// Returns all nodes reachable from `from`.
 fn reachable<K: Ord + Clone>(arrows: &BTreeMap<K, BTreeSet<K>>, from: &K) -> BTreeSet<K> {
     let mut found = BTreeSet::new();
     let mut waiting = vec![from];
@@ -264,7 +263,7 @@ fn reachable<K: Ord + Clone>(arrows: &BTreeMap<K, BTreeSet<K>>, from: &K) -> BTr
 
 fn crates() -> Vec<(String, Crate)> {
     let mut folders = Vec::new();
-    sources(project(), &mut folders);
+    collect_sources(project(), &mut folders);
     assert!(folders.len() > 20, "{folders:?}");
     let name = |source: &PathBuf| {
         let inside = source.strip_prefix(project()).unwrap_or(source);
@@ -275,18 +274,18 @@ fn crates() -> Vec<(String, Crate)> {
 }
 
 #[test]
-fn data_flows_one_way_between_the_folders_of_a_crate() {
+fn folders_of_a_crate_import_in_one_direction() {
     let mut arrows = 0;
     for (name, read) in crates() {
         arrows += read.imports.values().map(BTreeSet::len).sum::<usize>();
         let back = read.folders_both_ways();
         assert!(back.is_empty(), "{name}: these import each other: {back:?}");
     }
-    assert!(arrows > 1000, "{arrows} imports: nothing was looked at");
+    assert!(arrows > 1000, "only {arrows} imports were found");
 }
 
 #[test]
-fn circles_of_files_are_few_and_named_with_their_reason() {
+fn circles_of_files_are_few_and_documented() {
     let page = std::fs::read_to_string(project().join("docs/architecture.md")).expect("the page");
     let (_, section) = page.split_once("### Circles of files").expect("a section");
     let section = section.split("\n#").next().unwrap_or(section);
@@ -306,6 +305,10 @@ fn circles_of_files_are_few_and_named_with_their_reason() {
             assert!(named.is_some(), "{name}: no reason is given for {circle:?}");
         }
     }
-    assert_eq!(found, items.len(), "circles that the page names");
-    assert!(found <= MOST_CIRCLES, "{found} circles of files");
+    assert_eq!(
+        found,
+        items.len(),
+        "docs/architecture.md lists other circles"
+    );
+    assert!(found <= MAX_CIRCLES, "{found} circles of files");
 }

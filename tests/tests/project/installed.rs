@@ -1,4 +1,4 @@
-//! The program is installed as README.md says, and can do what it is installed for.
+//! Installation of the program as documented in README.md.
 
 use std::process::Command;
 
@@ -6,10 +6,10 @@ use eomgen_tests::models::path;
 use eomgen_tests::program::{cargo, target, text};
 
 #[test]
-fn an_installed_program_says_its_version_and_checks_a_specification() {
+fn installed_program_prints_version_and_checks_specification() {
     let root = tempfile::tempdir().expect("a folder");
     let (target, profile) = target();
-    // As printed, but for where to: not among this machine's programs, and from what is built.
+    // The documented command, with a temporary root and the dependencies already built.
     let output = cargo()
         .args(["install", "--path", "cli", "--offline", "--locked"])
         .args(["--profile", &profile, "--no-track", "--target-dir"])

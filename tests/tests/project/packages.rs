@@ -1,5 +1,5 @@
-//! The packages, as a registry would have them: each says what it is and whose, is built from
-//! its own files, and needs packages that can be had as well.
+//! Packages as published: each has complete metadata, builds from its own files, and depends only
+//! on published packages.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -19,14 +19,14 @@ fn cargo(arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).expect("UTF-8")
 }
 
-/// The workspace's packages that are published, and all.
+/// Returns the published packages of the workspace, and all packages.
 fn packages() -> (Vec<Value>, Vec<Value>) {
     let metadata = cargo(&["metadata", "--format-version", "1", "--no-deps"]);
     let mut metadata: Value = serde_json::from_str(&metadata).expect("JSON");
     let Value::Array(all) = metadata["packages"].take() else {
         panic!("no packages: {metadata}");
     };
-    // `publish = false` is the empty list of registries.
+    // Cargo reports `publish = false` as an empty list of registries.
     let published = all.iter().filter(|package| package["publish"].is_null());
     (published.cloned().collect(), all)
 }
@@ -40,7 +40,7 @@ fn folder(package: &Value) -> &Path {
     manifest.parent().expect("a folder")
 }
 
-/// All files of Rust below a folder.
+/// Returns all Rust files below a folder.
 fn sources(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).into_iter().flatten() {
@@ -55,7 +55,7 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
 }
 
 #[test]
-fn what_is_published_says_what_it_is() {
+fn published_packages_have_complete_metadata() {
     let (published, all) = packages();
     assert!(published.len() >= 8 && published.len() < all.len());
     for package in &published {
@@ -86,7 +86,7 @@ fn what_is_published_says_what_it_is() {
 }
 
 #[test]
-fn the_repository_is_named_in_one_line() {
+fn repository_is_set_in_one_line() {
     let (published, all) = packages();
     let repository = published[0]["repository"].as_str().expect("a URL");
     let manifests = all.iter().map(|package| folder(package).join("Cargo.toml"));
@@ -99,12 +99,12 @@ fn the_repository_is_named_in_one_line() {
 }
 
 #[test]
-fn what_is_published_needs_only_what_is_published() {
+fn published_packages_depend_on_published_packages_only() {
     let (published, _) = packages();
     let known: Vec<&str> = published.iter().map(name).collect();
     for package in &published {
         let needed = package["dependencies"].as_array().expect("a list");
-        // What tests need stays behind.
+        // Dev-dependencies are not published.
         let needed = needed.iter().filter(|needed| needed["kind"] != "dev");
         for needed in needed.filter(|needed| needed["path"].is_string()) {
             let shown = format!("{} needs {}", name(package), name(needed));
@@ -118,7 +118,7 @@ fn what_is_published_needs_only_what_is_published() {
 }
 
 #[test]
-fn no_source_includes_a_file_outside_its_package() {
+fn sources_include_no_file_outside_their_package() {
     for package in packages().0 {
         let root = folder(&package).canonicalize().expect("a folder");
         for source in sources(&root.join("src")) {
@@ -139,7 +139,7 @@ fn no_source_includes_a_file_outside_its_package() {
 }
 
 #[test]
-fn the_macro_alone_brings_no_solver() {
+fn macro_depends_on_no_solver() {
     let tree = [
         "tree",
         "--package",

@@ -1,8 +1,8 @@
-//! Every command that README.md and docs/ print does what they say: the program's are run, in
-//! the order of the pages and in one folder, as a reader would; the others are found where
-//! `.ci/run` runs them. A command of a form that is not known here fails.
+//! Commands printed in README.md and docs/. Commands of the program run in the order of the pages
+//! and in one folder, and their output must match. Other commands must occur in `.ci/run`. A
+//! command of an unknown form fails the test.
 //!
-//! A reader's folder is made of links here, and shells are those of Unix.
+//! The folder consists of links, and the commands need a Unix shell.
 #![cfg(unix)]
 
 use std::collections::BTreeMap;
@@ -15,10 +15,10 @@ use eomgen_tests::models::{path, project};
 use eomgen_tests::pages::{Printed, in_blocks, in_text, pages};
 use eomgen_tests::program::{self, text};
 
-/// The longest that one command may take.
-const LIMIT: Duration = Duration::from_secs(300);
+/// Timeout of a command.
+const TIMEOUT: Duration = Duration::from_secs(300);
 
-/// What is too much for every run of the tests: it is run with other arguments here.
+/// Replacements that reduce long-running commands.
 const REDUCED: [(&str, &str); 2] = [
     (
         "--vary b_sp,b_pr=0:100e-6:40 --vary omega=10:60:40",
@@ -30,92 +30,92 @@ const REDUCED: [(&str, &str); 2] = [
     ),
 ];
 
-/// What another test runs, with the file that does.
+/// Commands that another test runs, with its file.
 const ELSEWHERE: [(&str, &str); 15] = [
     (
         "cargo install --path cli",
         "tests/tests/project/installed.rs",
     ),
-    // The same commands, as the package's own page has them.
+    // The package's own page prints the same commands.
     ("python3 -m venv .venv", "tests/tests/hosts/python.rs"),
     ("pip install ./python", "tests/tests/hosts/python.rs"),
-    // What it would bring into a project.
+    // The test checks the dependencies that this command adds.
     ("cargo add eomgen", "tests/tests/project/packages.rs"),
-    // The bench of a small machine, built and run.
+    // The test builds and runs the benchmark of a small machine.
     (
         "cd emps && cargo bench -- --",
         "tests/tests/emission/bench_of_a_model.rs",
     ),
-    // Searches of one set, and what they say of the assumed values against docs/claims.json.
+    // The test runs searches of one set and compares the assumed values with docs/claims.json.
     (
         "cargo run --release -- paper claims ",
         "tests/tests/paper/study_search.rs",
     ),
-    // All four studies.
+    // The test runs all four studies.
     (
         "cargo run --release -- paper study ",
         "tests/tests/paper/study.rs",
     ),
-    // The same script, with the arm as it is emitted.
+    // The test runs the script with the currently emitted arm.
     (
         "examples/bare_metal/run rig4/lib.rs",
         "tests/tests/emission/bare_metal.rs",
     ),
-    // The same script, and what it prints.
+    // The test runs the script and compares its output.
     (
         "examples/bare_metal/observe rig4_jacobians/lib.rs",
         "tests/tests/emission/bare_metal.rs",
     ),
-    // Six cases of the suite.
+    // The test runs six cases of the suite.
     (
         "cargo run --release -p eomgen-blind -- ",
         "tests/tests/discovery/blind.rs",
     ),
-    // Counts and figures with the numbers of the record; timing is for an idle machine.
+    // The test checks counts and figures against the record; timing needs an idle machine.
     (
         "cargo run --release -p eomgen-benches --bin history",
         "benches/tests/benches/instructions.rs",
     ),
-    // The emitted C, compiled and compared; timing is for an idle machine.
+    // The test compiles and compares the emitted C; timing needs an idle machine.
     (
         "cargo run --release -p eomgen-benches --bin c99",
         "tests/tests/hosts/c99/mod.rs",
     ),
-    // The same specifications, by counted operations; timing is for an idle machine.
+    // The test counts operations of the same specifications; timing needs an idle machine.
     (
         "cargo run --release -p eomgen-benches --bin rigid_trees",
         "benches/tests/benches/rigid_trees.rs",
     ),
-    // The same test, with fewer models.
+    // The test uses fewer models by default.
     (
         "EOMGEN_SMOOTH_MODELS=300 ",
         "tests/tests/equations/smooth_models.rs",
     ),
-    // The same test, keeping what it finds.
+    // The test without rewriting its records.
     (
         "EOMGEN_REFRESH=1 cargo test ",
         "benches/tests/benches/instructions.rs",
     ),
 ];
 
-/// Output that is shown without a command, and the file that another test compares it with.
+/// Output shown without a command, and the file with which another test compares it.
 const SHOWN_ELSEWHERE: [(&str, &str); 1] = [(
-    // The compiler's, for a mistake in a macro.
+    // Compiler error for a mistake in a macro.
     "error: unknown name `thta`",
     "tests/macro_errors/errors/misspelt_name.stderr",
 )];
 
-/// Figures that a printed command leaves, and where the pages have them.
+/// Figures written by a printed command, and their copies in the docs.
 const FIGURES: [(&str, &str); 1] = [("tour/trajectory.svg", "docs/tour.svg")];
 
-/// Words of the pages that a reader puts something in the place of.
+/// Placeholders in commands, and their replacements.
 const PLACES: [(&str, &str); 3] = [
     ("SPEC ", "model-spec/models/emps.toml "),
     ("DATASET.toml", "dataset.toml"),
     ("NAME.toml", "pendulum.toml"),
 ];
 
-/// A specification with the mistake that the pages show on its 16th line.
+/// Specification with the error that the pages show on line 16.
 const WRONG: &str = r#"[model]
 name = "wrong"
 
@@ -134,7 +134,7 @@ bob = "1/2*m*l^2*dot(theta)^2"
 spring = "1/2*k*theta^2"
 "#;
 
-/// One with the mistake of its 19th line.
+/// Specification with the misspelling shown on line 19.
 const MISSPELT: &str = r#"[model]
 name = "misspelt"
 
@@ -156,7 +156,7 @@ gravity = "-m*g*l*cos(theta)"
 friction = { on = "theta", value = "-c*dot(thta)" }
 "#;
 
-/// One with the circle of its fourth and fifth line.
+/// Specification with the circular definition shown on lines 4 and 5.
 const CIRCLE: &str = r#"[model]
 name = "circle"
 [parameters]
@@ -168,9 +168,10 @@ x = { unit = "m" }
 mass = "1/2*a*dot(x)^2"
 "#;
 
-/// A folder as a reader has it: the project, and the files that the pages have one write.
-fn reader() -> Measured {
-    // Records of a stage with dry friction, to compare and to discover with.
+/// Returns a folder with links to the project and the files that the pages tell the reader to
+/// write.
+fn reader_folder() -> Measured {
+    // Records of a stage with dry friction, for `compare` and `discover`.
     let measured = Measured::stage(3.0);
     let (_, readme) = pages()
         .into_iter()
@@ -196,13 +197,13 @@ fn reader() -> Measured {
     measured
 }
 
-/// Runs a command of the program, which must do what it was asked; all it says. Words may stand in
-/// single quotes, but hold no space. A specification with an error is refused.
-fn said(arguments: &str, folder: &Path, refused: bool) -> String {
+/// Runs a command of the program; returns its stdout and stderr. With `refused` it must exit with
+/// an error status. Words may be in single quotes but must not contain spaces.
+fn run_program(arguments: &str, folder: &Path, refused: bool) -> String {
     let output = assert_cmd::Command::new(program::path())
         .args(arguments.split(' ').map(|word| word.trim_matches('\'')))
         .current_dir(folder)
-        .timeout(LIMIT)
+        .timeout(TIMEOUT)
         .output()
         .expect("the program can be run");
     let said = text(&output.stderr) + &text(&output.stdout);
@@ -211,8 +212,8 @@ fn said(arguments: &str, folder: &Path, refused: bool) -> String {
     said
 }
 
-/// Runs a line of compilers and what they made; what is printed.
-fn compiled(line: &str, folder: &Path) -> String {
+/// Runs a line of compilers and compiled programs; returns the output.
+fn run_compilers(line: &str, folder: &Path) -> String {
     let output = Command::new("sh")
         .args(["-c", line])
         .current_dir(folder)
@@ -222,7 +223,7 @@ fn compiled(line: &str, folder: &Path) -> String {
     text(&output.stdout)
 }
 
-/// Whether there is a Python with SciPy; says so if not.
+/// Returns true if Python has SciPy; otherwise reports the skip.
 fn scipy() -> bool {
     let found = Command::new("python3")
         .args(["-c", "import numpy, scipy"])
@@ -230,15 +231,15 @@ fn scipy() -> bool {
     let there = found.is_ok_and(|output| output.status.success());
     if !there {
         skips::skip(
-            "the regulator of docs/controllers.md was not computed, for want of python3 with \
-             numpy and scipy (pip install scipy)",
+            "the regulator of docs/controllers.md was not computed: python3 with \
+             numpy and scipy is missing (pip install scipy)",
         );
     }
     there
 }
 
-/// Runs an example in Python; all it says. It refuses with status 1.
-fn by_python(line: &str, folder: &Path, refused: bool) -> String {
+/// Runs a Python example; returns its stdout and stderr. With `refused` it must exit with status 1.
+fn run_python(line: &str, folder: &Path, refused: bool) -> String {
     let output = Command::new("sh")
         .args(["-c", line])
         .current_dir(folder)
@@ -254,40 +255,43 @@ fn by_python(line: &str, folder: &Path, refused: bool) -> String {
     said
 }
 
-/// A line without what differs from run to run or from machine to machine: how long something
-/// took, and by how many roundings a check missed its mark.
-fn settled(line: &str) -> String {
+/// Returns a line without the parts that vary between runs or machines: durations and rounding
+/// errors of checks.
+fn without_variable_parts(line: &str) -> String {
     match line.split_once(" passed ") {
         Some((check, _)) => format!("{} passed", check.trim_end()),
         None => line.trim_end().to_owned(),
     }
 }
 
-/// Asserts that the output holds the lines shown, in their order and without gaps but at `...`.
-fn shows(shown: &[String], output: &str, command: &str) {
-    let lines: Vec<String> = output.lines().map(settled).collect();
+/// Asserts that the output contains the shown lines in order, with gaps only at `...`.
+fn assert_shows(shown: &[String], output: &str, command: &str) {
+    let lines: Vec<String> = output.lines().map(without_variable_parts).collect();
     let mut from = 0;
     for part in shown.split(|line| line.trim() == "...") {
-        let part: Vec<String> = part.iter().map(|line| settled(line)).collect();
+        let part: Vec<String> = part
+            .iter()
+            .map(|line| without_variable_parts(line))
+            .collect();
         let place = (from..=lines.len()).find(|start| lines[*start..].starts_with(&part));
-        let place = place.unwrap_or_else(|| panic!("{command} does not say {part:#?}:\n{output}"));
+        let place =
+            place.unwrap_or_else(|| panic!("{command} does not print {part:#?}:\n{output}"));
         from = place + part.len();
     }
 }
 
-/// What a command of the pages is.
+/// Form of a printed command.
 enum Form<'a> {
-    /// Arguments of the program.
     Program(&'a str),
-    /// A line for compilers.
+    /// Line of compiler commands.
     Compilers,
-    /// An example in Python that needs SciPy.
+    /// Python example that needs SciPy.
     Scipy,
-    /// Named in the lists above.
+    /// Command listed in the constants above.
     Elsewhere(&'static str),
-    /// Tests that the whole test command runs, of a package and maybe of one file.
+    /// Tests of a package, or of one of its files, that the full test run includes.
     Tests(&'a str),
-    /// What `.ci/run` holds these words for.
+    /// Command for which `.ci/run` contains these words.
     Ci(Vec<&'a str>),
 }
 
@@ -309,7 +313,7 @@ fn form(command: &str) -> Form<'_> {
         ["cargo", "test", "--release", ref rest @ ..] => match rest {
             ["--workspace"] => Form::Tests(""),
             ["-p", _, ..] => Form::Tests(command),
-            _ => panic!("a form of tests that is not known here: {command}"),
+            _ => panic!("unknown form of a test command: {command}"),
         },
         [
             "cargo",
@@ -334,19 +338,19 @@ fn form(command: &str) -> Form<'_> {
         ["cargo", "build", "--release"] => Form::Ci(vec!["cargo run --release"]),
         ["apt-get", "install", package] => Form::Ci(vec!["for tool in", package]),
         ["rustup", "target", "add", target] => Form::Ci(vec!["rustup target add", target]),
-        _ => panic!("a command of a form that is not known here: {command}"),
+        _ => panic!("unknown form of a command: {command}"),
     }
 }
 
-/// The command with something in its places, as small as it is run here.
-fn meant(command: &str) -> String {
+/// Returns the command with placeholders replaced and reduced arguments.
+fn runnable_command(command: &str) -> String {
     let replaced = |command: String, (from, to): &(&str, &str)| command.replace(from, to);
     let command = PLACES.iter().fold(command.to_owned(), replaced);
     REDUCED.iter().fold(command, replaced)
 }
 
 /// Asserts that a package has these tests.
-fn are_tests(command: &str) {
+fn assert_are_tests(command: &str) {
     let words: Vec<&str> = command.split(' ').collect();
     let after = |flag: &str| {
         let place = words.iter().position(|word| *word == flag);
@@ -357,7 +361,7 @@ fn are_tests(command: &str) {
         Some(&"eomgen-benches") => "benches",
         Some(&"eomgen-elementary") => "codegen/elementary",
         None => return,
-        Some(package) => panic!("a package that is not known here: {package}"),
+        Some(package) => panic!("unknown package: {package}"),
     };
     if let Some(name) = after("--test") {
         let tests = project().join(folder).join("tests");
@@ -368,8 +372,8 @@ fn are_tests(command: &str) {
 }
 
 #[test]
-fn every_printed_command_does_what_the_pages_say() {
-    let folder = reader();
+fn printed_commands_give_the_printed_output() {
+    let folder = reader_folder();
     let place = folder.file(".");
     let ci = std::fs::read_to_string(project().join(".ci/run")).expect(".ci/run");
     let (in_blocks, _) = in_blocks();
@@ -382,24 +386,24 @@ fn every_printed_command_does_what_the_pages_say() {
         output,
     } in in_text().into_iter().chain(in_blocks)
     {
-        let meant = meant(&command);
+        let meant = runnable_command(&command);
         let mut once = |run: &dyn Fn() -> String| {
             let found = outputs.entry(meant.clone()).or_insert_with(run);
-            shows(&output, found, &command);
+            assert_shows(&output, found, &command);
         };
         match form(&meant) {
             Form::Program(arguments) => {
                 let refused = output.first().is_some_and(|line| line.starts_with("error"));
-                once(&|| said(arguments, &place, refused));
+                once(&|| run_program(arguments, &place, refused));
             }
-            Form::Compilers => once(&|| compiled(&meant, &place)),
+            Form::Compilers => once(&|| run_compilers(&meant, &place)),
             Form::Scipy if !scipy => {}
             Form::Scipy => {
                 let refused = output.iter().any(|line| line.starts_with("error"));
-                once(&|| by_python(&meant, &place, refused));
+                once(&|| run_python(&meant, &place, refused));
             }
             Form::Elsewhere(file) => assert!(project().join(file).exists(), "{file}"),
-            Form::Tests(command) => are_tests(command),
+            Form::Tests(command) => assert_are_tests(command),
             Form::Ci(words) => {
                 let line = |line: &str| words.iter().all(|word| line.contains(word));
                 assert!(
@@ -414,20 +418,20 @@ fn every_printed_command_does_what_the_pages_say() {
         let left = std::fs::read(folder.file(left)).expect("a figure");
         assert!(
             left == kept,
-            "the figure of a page is not what its command leaves"
+            "the figure of a page differs from that of its command"
         );
     }
 }
 
 #[test]
-fn what_is_shown_without_a_command_is_compared_elsewhere() {
+fn output_without_command_is_compared_in_another_test() {
     for block in in_blocks().1 {
         let known = SHOWN_ELSEWHERE
             .iter()
             .find(|(first, _)| block.lines[0] == *first);
-        let (_, file) = known.unwrap_or_else(|| panic!("no command above: {block:#?}"));
+        let (_, file) = known.unwrap_or_else(|| panic!("output without a command: {block:#?}"));
         let kept = std::fs::read_to_string(project().join(file)).expect("the message as kept");
-        // All but the place, which is that of another file.
+        // The location is that of another file.
         for line in block.lines.iter().take_while(|line| !line.contains("-->")) {
             assert!(kept.contains(line.trim()), "{line} is not in {file}");
         }
@@ -435,7 +439,7 @@ fn what_is_shown_without_a_command_is_compared_elsewhere() {
 }
 
 #[test]
-fn every_figure_of_the_pages_has_its_command() {
+fn figures_of_the_pages_have_commands() {
     let table = std::fs::read_to_string(project().join("docs/figures.md")).expect("a page");
     for entry in std::fs::read_dir(project().join("docs")).expect("docs") {
         let path = entry.expect("an entry").path();
@@ -459,7 +463,7 @@ fn every_figure_of_the_pages_has_its_command() {
 }
 
 #[test]
-fn what_is_named_is_printed_somewhere() {
+fn listed_commands_occur_in_the_pages() {
     let all: Vec<Printed> = in_text().into_iter().chain(in_blocks().0).collect();
     let printed = |text: &str| all.iter().any(|printed| printed.command.contains(text));
     for text in REDUCED

@@ -1,8 +1,8 @@
-//! What the program prepares for its user's shell: completions and man pages.
+//! Shell completions and man pages.
 
 use eomgen_tests::program::{accepted, refused, run, text};
 
-/// The commands, as the help lists them.
+/// Returns the commands listed by the help.
 fn commands() -> Vec<String> {
     let help = accepted(&["--help"]);
     let (_, list) = help.split_once("Commands:\n").expect("a list of commands");
@@ -18,7 +18,7 @@ fn commands() -> Vec<String> {
 }
 
 #[test]
-fn completions_know_commands_and_options_in_every_shell() {
+fn completions_of_every_shell_contain_commands_and_options() {
     for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
         let script = accepted(&["completions", shell]);
         for command in commands() {
@@ -32,11 +32,11 @@ fn completions_know_commands_and_options_in_every_shell() {
 }
 
 #[test]
-fn bash_takes_its_completions() {
+fn bash_completes_an_option() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("eomgen");
     std::fs::write(&file, accepted(&["completions", "bash"])).expect("a file");
-    // What bash offers after `eomgen simulate --sol`.
+    // Requests the completions of `eomgen simulate --sol`.
     let script = format!(
         "source {} && COMP_WORDS=(eomgen simulate --sol) COMP_CWORD=2 && \
          _eomgen eomgen --sol simulate && echo \"${{COMPREPLY[@]}}\"",
@@ -46,14 +46,14 @@ fn bash_takes_its_completions() {
         .args(["-c", &script])
         .output()
     else {
-        skips::skip("bash_takes_its_completions: no bash here");
+        skips::skip("bash completions were not tested: bash is missing");
         return;
     };
     assert_eq!(text(&output.stdout).trim(), "--solver", "{output:?}");
 }
 
 #[test]
-fn every_command_has_a_man_page_with_its_example() {
+fn man_pages_of_all_commands_have_an_example() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("man1");
     let said = accepted(&["man", "--out", &out.display().to_string()]);
@@ -83,7 +83,7 @@ fn every_command_has_a_man_page_with_its_example() {
 }
 
 #[test]
-fn man_pages_are_not_written_over_a_file() {
+fn man_pages_do_not_replace_a_file() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("taken");
     std::fs::write(&file, "mine").expect("a file");

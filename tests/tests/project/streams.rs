@@ -1,5 +1,5 @@
-//! What the program says, and to whom: one JSON document on standard output where asked,
-//! messages on standard error, and no fuss when nobody listens.
+//! Output streams: one JSON document on stdout with `--json`, messages on stderr, and closed or
+//! full streams.
 
 use std::fs::File;
 use std::process::{Command, Stdio};
@@ -8,12 +8,11 @@ use eomgen_tests::models::{path, project};
 use eomgen_tests::program::{self, eomgen, run, text};
 use serde_json::Value;
 
-/// A shipped specification's path as an argument.
 fn spec(name: &str) -> String {
     path(name).display().to_string()
 }
 
-/// Runs a command with `--json` in the project's folder; the document it prints.
+/// Runs a command with `--json` in the project's folder; returns the printed document.
 fn document(arguments: &[&str], status: i32) -> Value {
     let mut command = eomgen();
     let output = command
@@ -33,7 +32,7 @@ fn document(arguments: &[&str], status: i32) -> Value {
 }
 
 #[test]
-fn with_json_every_command_prints_one_document() {
+fn json_option_prints_one_document_for_every_command() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("out").display().to_string();
     let table = folder.path().join("a.csv").display().to_string();
@@ -55,13 +54,13 @@ fn with_json_every_command_prints_one_document() {
             "{key}: {certificate}"
         );
     }
-    // The warning that nothing gives the force goes to standard error.
+    // The warning about the undriven force goes to stderr.
     let simulated = document(&["simulate", &emps, "--until", "1", "--out", &table], 0);
     assert_eq!(simulated["rows"], 1001);
 }
 
 #[test]
-fn a_specification_with_errors_is_described_in_json() {
+fn errors_of_a_specification_are_printed_as_json() {
     let folder = tempfile::tempdir().expect("a folder");
     let broken = folder.path().join("broken.toml");
     let text = std::fs::read_to_string(path("pendulum")).expect("the pendulum");
@@ -79,7 +78,7 @@ fn a_specification_with_errors_is_described_in_json() {
 }
 
 #[test]
-fn nothing_is_said_on_standard_error_when_all_is_well() {
+fn stderr_is_empty_on_success() {
     for arguments in [["check", "pendulum"], ["derive", "furuta_pendulum"]] {
         let output = run(&[arguments[0], &spec(arguments[1])]);
         assert_eq!(output.status.code(), Some(0));
@@ -88,7 +87,7 @@ fn nothing_is_said_on_standard_error_when_all_is_well() {
 }
 
 #[test]
-fn a_reader_that_leaves_early_is_no_error() {
+fn closed_pipe_is_not_an_error() {
     let mut child = Command::new(program::path())
         .args(["derive", &spec("planetary_arm"), "--order", "128", "--json"])
         .stdout(Stdio::piped())
@@ -103,7 +102,7 @@ fn a_reader_that_leaves_early_is_no_error() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_full_device_is_an_error_of_standard_output_alone() {
+fn full_device_is_an_error_for_stdout_only() {
     let full = || {
         File::options()
             .write(true)
@@ -119,7 +118,7 @@ fn a_full_device_is_an_error_of_standard_output_alone() {
     assert_eq!(output.status.code(), Some(2));
     assert!(text(&output.stderr).contains("cannot write to stdout"));
 
-    // A warning nobody can read, and an error nobody can read.
+    // Stderr is full as well: the warning and the error cannot be written.
     let folder = tempfile::tempdir().expect("a folder");
     let simulate = |until: &str| {
         let mut command = Command::new(program::path());

@@ -1,10 +1,10 @@
-//! Wrong use of the program: exit status 2 and a message that says what would be right.
+//! Invalid use of the program: exit status 2 and a message with the remedy.
 
 use eomgen_tests::measured::Measured;
 use eomgen_tests::models::path;
 use eomgen_tests::program::{accepted, eomgen, refused};
 
-/// Every command with the specification it is given.
+/// Commands that take a specification.
 const COMMANDS: [&str; 9] = [
     "check",
     "derive",
@@ -17,12 +17,12 @@ const COMMANDS: [&str; 9] = [
     "trim",
 ];
 
-/// A shipped specification's path as an argument.
 fn spec(name: &str) -> String {
     path(name).display().to_string()
 }
 
-/// A command on a specification, with what else it needs; nothing is written.
+/// Returns the arguments of a command on a specification, with its other required arguments; writes
+/// no files.
 fn arguments(command: &'static str, name: &str, more: &[&str]) -> Vec<String> {
     let needed: &[&str] = match command {
         "generate" => &["--out", "never-made"],
@@ -40,8 +40,8 @@ fn arguments(command: &'static str, name: &str, more: &[&str]) -> Vec<String> {
         .collect()
 }
 
-/// The message of a refusal that leaves nothing in its folder.
-fn message(arguments: &[String]) -> String {
+/// Runs a command that must be rejected without writing files; returns its message.
+fn rejection(arguments: &[String]) -> String {
     let folder = tempfile::tempdir().expect("a folder");
     let mut command = eomgen();
     let output = command.args(arguments).current_dir(folder.path()).output();
@@ -54,19 +54,19 @@ fn message(arguments: &[String]) -> String {
     let left = std::fs::read_dir(folder.path())
         .expect("the folder")
         .count();
-    assert_eq!(left, 0, "{shown} left something");
+    assert_eq!(left, 0, "{shown} wrote files");
     message
 }
 
-/// Asserts that `simulate` with these options is refused with a message that holds `part`.
-fn simulate_refuses(name: &str, options: &[&str], part: &str) {
-    let found = message(&arguments("simulate", name, options));
+/// Asserts that `simulate` with these options is rejected with a message that contains `part`.
+fn assert_simulate_rejects(name: &str, options: &[&str], part: &str) {
+    let found = rejection(&arguments("simulate", name, options));
     assert!(found.contains(part), "{options:?}: {found}");
 }
 
-/// What is said where the solver stops on the arm with these options: before it has begun (exit
-/// status 2) or after (1).
-fn stops(options: &[&str]) -> String {
+/// Simulates the arm with options that stop the solver, before its start (exit status 2) or after
+/// (1); returns the message.
+fn stop_message(options: &[&str]) -> String {
     let folder = tempfile::tempdir().expect("a folder");
     let arguments = arguments("simulate", "planetary_arm", options);
     let output = eomgen().args(arguments).current_dir(folder.path()).output();
@@ -76,7 +76,7 @@ fn stops(options: &[&str]) -> String {
 }
 
 #[test]
-fn commands_and_options_that_do_not_exist_are_refused() {
+fn unknown_commands_and_options_are_rejected() {
     assert!(refused(&["fly"]).contains("fly"));
     assert!(refused(&["check", &spec("pendulum"), "--fly"]).contains("--fly"));
     assert!(refused(&["derive", &spec("pendulum"), "--format", "word"]).contains("latex"));
@@ -91,7 +91,7 @@ fn commands_and_options_that_do_not_exist_are_refused() {
 }
 
 #[test]
-fn help_has_an_example_and_succeeds() {
+fn help_succeeds_and_has_an_example() {
     assert!(accepted(&["--help"]).contains("simulate"));
     assert!(accepted(&["--version"]).starts_with("eomgen "));
     for command in COMMANDS
@@ -99,7 +99,7 @@ fn help_has_an_example_and_succeeds() {
         .chain(["dataset", "sweep", "merge", "paper", "tour"])
     {
         let help = accepted(&[command, "--help"]);
-        // The line of the usage names the command too.
+        // The usage line contains the command, too.
         let example = help.split_once("Example").map(|(_, example)| example);
         assert!(
             example.is_some_and(|example| example.contains(&format!("eomgen {command} "))),
@@ -108,9 +108,8 @@ fn help_has_an_example_and_succeeds() {
     }
 }
 
-/// Earlier names of options and commands keep working; help does not list them.
 #[test]
-fn earlier_names_work_and_are_not_listed() {
+fn earlier_names_work_but_are_not_listed() {
     let pendulum = spec("pendulum");
     let out = |arguments: &[&str]| accepted(arguments);
     for command in ["linearise", "modes"] {
@@ -192,13 +191,13 @@ fn simulate_starts_at_the_equilibrium_nearest_to_a_state() {
 }
 
 #[test]
-fn generate_check_without_all_is_refused_and_writes_nothing() {
+fn generate_check_without_all_is_rejected() {
     for more in [
         &["--check"][..],
         &["--check", "--certify"],
         &["--check", "--target", "c99", "--json"],
     ] {
-        let refusal = message(&arguments("generate", "pendulum", more));
+        let refusal = rejection(&arguments("generate", "pendulum", more));
         assert!(refusal.contains("generate --all --check"), "{refusal}");
     }
     refused(&["generate", "--check"]);
@@ -206,7 +205,7 @@ fn generate_check_without_all_is_refused_and_writes_nothing() {
 }
 
 #[test]
-fn a_proposed_dataset_file_is_written_whole_beside_its_record_or_not_at_all() {
+fn proposed_dataset_file_is_complete_or_absent() {
     let measured = Measured::stage(0.0);
     let record = measured.file("train.csv").display().to_string();
     let out = measured.file("proposed.toml").display().to_string();
@@ -232,7 +231,7 @@ fn a_proposed_dataset_file_is_written_whole_beside_its_record_or_not_at_all() {
 }
 
 #[test]
-fn orders_that_are_none_are_refused_by_every_command() {
+fn invalid_orders_are_rejected_by_every_command() {
     for command in COMMANDS {
         for order in [
             "-1",
@@ -243,24 +242,24 @@ fn orders_that_are_none_are_refused_by_every_command() {
             "99999999999999999999",
             "٣",
         ] {
-            let found = message(&arguments(command, "planetary_arm", &["--order", order]));
+            let found = rejection(&arguments(command, "planetary_arm", &["--order", order]));
             assert!(
                 found.contains("whole number from 0 to 128"),
                 "{command} {order}: {found}"
             );
         }
-        let found = message(&arguments(command, "planetary_arm", &["--order", "129"]));
+        let found = rejection(&arguments(command, "planetary_arm", &["--order", "129"]));
         assert!(
             found.contains("the highest order is 128"),
             "{command}: {found}"
         );
-        let found = message(&arguments(command, "pendulum", &["--order", "4"]));
+        let found = rejection(&arguments(command, "pendulum", &["--order", "4"]));
         assert!(found.contains("no field"), "{command}: {found}");
     }
 }
 
 #[test]
-fn a_certificate_for_different_orders_is_refused() {
+fn certificate_with_different_orders_is_rejected() {
     let folder = tempfile::tempdir().expect("a folder");
     let spec = folder.path().join("two_fields.toml");
     let two = include_str!("../../features/two_fields.toml").replacen("order = 3", "order = 1", 1);
@@ -272,7 +271,7 @@ fn a_certificate_for_different_orders_is_refused() {
 }
 
 #[test]
-fn parameters_that_cannot_be_set_are_refused() {
+fn invalid_parameter_assignments_are_rejected() {
     for (assignment, part) in [
         ("b_spp=1", "did you mean `b_sp`"),
         ("=1", "NAME=VALUE"),
@@ -288,14 +287,14 @@ fn parameters_that_cannot_be_set_are_refused() {
         ("l=0", "greater than"),
         ("z_s=0", "division by 0"),
     ] {
-        simulate_refuses("planetary_arm", &["--set", assignment], part);
+        assert_simulate_rejects("planetary_arm", &["--set", assignment], part);
     }
 }
 
-/// What has no inertia where it begins is refused by all that would use its accelerations, at
-/// the coordinate. Its equations can be read.
+/// A coordinate without inertia in the initial state is rejected by all commands that compute
+/// accelerations, with its location. Its equations can be derived.
 #[test]
-fn coordinates_without_inertia_of_their_own_are_refused() {
+fn coordinates_without_inertia_are_rejected() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("spec.toml");
     let text = "[model]\nname = \"two\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\n\
@@ -327,22 +326,22 @@ fn coordinates_without_inertia_of_their_own_are_refused() {
 }
 
 #[test]
-fn parameters_without_a_motion_are_refused() {
+fn parameters_without_solution_are_rejected() {
     for assignment in ["rho=-7900", "rho=0", "I_p=-1", "l=1e300"] {
-        simulate_refuses("planetary_arm", &["--set", assignment], "positive definite");
+        assert_simulate_rejects("planetary_arm", &["--set", assignment], "positive definite");
     }
     for assignment in ["r_s=0", "m=0"] {
-        simulate_refuses("planetary_arm", &["--set", assignment], "division by 0");
+        assert_simulate_rejects("planetary_arm", &["--set", assignment], "division by 0");
     }
-    // Values so large or small that a rate overflows, or so stiff that no step is short
-    // enough: the general solver has begun by then.
+    // Values so extreme that a rate overflows or no step size is small enough: the general solver
+    // stops after its start.
     for assignment in ["l=1e-300", "omega=1e300", "k_sp=1e300", "alpha=90"] {
         let general = ["--solver", "rk", "--set", assignment];
-        let found = stops(&general);
+        let found = stop_message(&general);
         assert!(found.contains("at t = "), "{assignment}: {found}");
     }
     let fast = ["--solver", "rk", "--set", "omega=1e300"];
-    let found = stops(&fast);
+    let found = stop_message(&fast);
     assert!(found.contains("`x_sp`"), "{found}");
     for (assignment, part) in [
         ("l=1e-300", "a coefficient"),
@@ -351,17 +350,17 @@ fn parameters_without_a_motion_are_refused() {
         ("alpha=90", "slower motion"),
     ] {
         let exact = ["--solver", "exact", "--set", assignment];
-        let found = stops(&exact);
+        let found = stop_message(&exact);
         assert!(found.contains(part), "{assignment}: {found}");
     }
-    // The general solver is tried after the exact one, and says why it stops.
-    let found = stops(&["--set", "k_sp=1e300"]);
+    // The general solver runs after the exact one and prints the reason of its stop.
+    let found = stop_message(&["--set", "k_sp=1e300"]);
     assert!(found.starts_with("warning: not solved exactly"), "{found}");
     assert!(found.contains("at t = "), "{found}");
 }
 
 #[test]
-fn times_that_are_none_are_refused() {
+fn invalid_times_are_rejected() {
     for (option, value, part) in [
         ("--until", "0", "after 0"),
         ("--until", "-1", "after 0"),
@@ -383,11 +382,11 @@ fn times_that_are_none_are_refused() {
         let mut given = arguments("simulate", "pendulum", &[]);
         given.retain(|argument| option != "--until" || !["--until", "0.01"].contains(&&**argument));
         given.extend([option.to_owned(), value.to_owned()]);
-        let found = message(&given);
+        let found = rejection(&given);
         assert!(found.contains(part), "{option} {value}: {found}");
     }
-    // Farther than the sine of the motor's ripple is known: the general solver has begun by
-    // the time it finds that out.
+    // Beyond the range of the sine in the motor's ripple: the general solver detects this during
+    // the run.
     let arm = spec("planetary_arm");
     for (solver, status, part) in [
         ("exact", 2, "shorten the time"),
@@ -406,8 +405,8 @@ fn times_that_are_none_are_refused() {
 }
 
 #[test]
-fn the_exact_solver_is_refused_what_is_not_linear_and_has_no_tolerance() {
-    let found = message(&arguments("simulate", "pendulum", &["--solver", "exact"]));
+fn exact_solver_rejects_nonlinear_models_and_ignores_tolerance() {
+    let found = rejection(&arguments("simulate", "pendulum", &["--solver", "exact"]));
     assert!(
         found.contains("`") && found.contains("sin(theta)") && found.contains("--solver rk"),
         "{found}"
@@ -435,9 +434,9 @@ fn the_exact_solver_is_refused_what_is_not_linear_and_has_no_tolerance() {
     assert_eq!(said("adams", "planetary_arm", &[]).0, "adams");
 }
 
-/// The README lists the commands that have no `--json`: `schema`, `completions` and `man`.
+/// README.md lists the commands without `--json`: `schema`, `completions` and `man`.
 #[test]
-fn every_command_on_a_specification_prints_one_json_document() {
+fn commands_on_a_specification_print_one_json_document() {
     for command in COMMANDS {
         let folder = tempfile::tempdir().expect("a folder");
         let mut program = eomgen();

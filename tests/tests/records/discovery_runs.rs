@@ -1,5 +1,4 @@
-//! Runs of `discover`: one that is killed leaves nothing half written, and the same seed gives
-//! the same bytes.
+//! Runs of `discover`: a killed run leaves no partial file, and the same seed gives the same bytes.
 
 use std::process::{Command, Stdio};
 use std::time::Duration;
@@ -8,7 +7,7 @@ use eomgen_tests::measured::Measured;
 use eomgen_tests::program;
 
 #[test]
-fn a_killed_run_leaves_nothing_half_written() {
+fn killed_run_leaves_no_partial_file() {
     let measured = Measured::stage(3.0);
     for wait in [0.02, 0.1, 0.3, 0.6, 1.0, 1.5] {
         let mut child = Command::new(program::path())
@@ -30,12 +29,12 @@ fn a_killed_run_leaves_nothing_half_written() {
             }
         }
     }
-    // It can be run again in the same place.
+    // The run can be repeated in the same folder.
     measured.answered("discover", "killed");
 }
 
 #[test]
-fn the_same_seed_gives_the_same_bytes() {
+fn same_seed_gives_same_bytes() {
     let measured = Measured::stage(3.0);
     let [one, other] = ["one", "other"].map(|out| {
         let (mut result, _) = measured.answered("discover", out);

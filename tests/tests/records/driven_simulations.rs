@@ -1,17 +1,16 @@
-//! Simulations driven by a record: what a motor's force does to a ballscrew axis is known in
-//! closed form, and records that are none are refused with their place.
+//! Simulations driven by a record: the motion of a ballscrew axis against its closed form, and
+//! invalid records rejected with their location.
 
 use std::path::{Path, PathBuf};
 
 use eomgen_tests::models::path;
 use eomgen_tests::program::{accepted, refused};
 
-/// A dataset in a folder of its own.
 struct Dataset {
     folder: tempfile::TempDir,
 }
 
-/// The description of a dataset with one record, in ms and kN.
+/// Description of a dataset with one record, in ms and kN.
 const DESCRIPTION: &str = r#"
 [records]
 train = ["train.csv"]
@@ -34,7 +33,7 @@ impl Dataset {
         Self { folder }
     }
 
-    /// Arguments that simulate the axis with this dataset.
+    /// Returns the arguments of a simulation of the axis with this dataset.
     fn arguments(&self, more: &[&str]) -> Vec<String> {
         let mut arguments = vec!["simulate".to_owned(), path("emps").display().to_string()];
         arguments.extend([
@@ -50,7 +49,7 @@ impl Dataset {
         self.folder.path().join(name)
     }
 
-    /// The message with which the record is refused; nothing is written.
+    /// Returns the message of the rejected record; asserts that no table is written.
     fn refused(&self, more: &[&str]) -> String {
         std::fs::remove_file(self.file("a.csv")).ok();
         let arguments = self.arguments(more);
@@ -60,7 +59,7 @@ impl Dataset {
         message
     }
 
-    /// Rows of t, q and q' of the simulation.
+    /// Simulates and returns rows of t, q and q'.
     fn simulated(&self, more: &[&str]) -> Vec<[f64; 3]> {
         let arguments = self.arguments(more);
         let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
@@ -80,7 +79,7 @@ fn rows(path: &Path) -> Vec<[f64; 3]> {
     text.lines().skip(1).map(row).collect()
 }
 
-/// M q'' = F - F_v q' over a time with constant F: the speed decays to F/F_v.
+/// M q'' = F - F_v q' with constant F: the speed tends to F/F_v.
 fn coast([q, v]: [f64; 2], force: f64, time: f64) -> [f64; 2] {
     let (mass, friction) = (95.0, 210.0);
     let (lasting, rate) = (force / friction, friction / mass);
@@ -91,7 +90,7 @@ fn coast([q, v]: [f64; 2], force: f64, time: f64) -> [f64; 2] {
     ]
 }
 
-/// Times in s and forces in N that hold from there on.
+/// Times in s and forces in N, held until the next.
 const STEPS: [(f64, f64); 5] = [
     (0.0, 100.0),
     (0.3, -250.0),
@@ -100,13 +99,13 @@ const STEPS: [(f64, f64); 5] = [
     (1.5, 7.0),
 ];
 
-/// The same as a record in ms and kN.
+/// Returns [`STEPS`] as a record in ms and kN.
 fn record() -> String {
     let lines = STEPS.map(|(t, force)| format!("{:?},x,{:?}\n", t * 1e3, force / 1e3));
     format!("time,comment,f\n{}", lines.concat())
 }
 
-/// Position and speed at a time, from rest at 0.
+/// Returns position and speed at a time, from rest at 0.
 fn closed_form(t: f64) -> [f64; 2] {
     let mut state = [0.0, 0.0];
     for (index, (begin, force)) in STEPS.iter().enumerate() {
@@ -121,11 +120,11 @@ fn closed_form(t: f64) -> [f64; 2] {
     state
 }
 
-/// Deviations allowed with a relative tolerance of 1e-12 per step; q reaches 0.6 m.
+/// Maximum deviation with a relative tolerance of 1e-12 per step; q reaches 0.6 m.
 const TOLERANCE: f64 = 1e-11;
 
 #[test]
-fn a_held_force_moves_the_axis_as_the_closed_form_says() {
+fn axis_under_held_force_matches_closed_form() {
     let dataset = Dataset::new(DESCRIPTION, &record());
     let options = ["--tolerance", "1e-12"];
     let at_the_record = dataset.simulated(&options);
@@ -152,7 +151,7 @@ fn a_held_force_moves_the_axis_as_the_closed_form_says() {
 }
 
 #[test]
-fn a_record_can_be_cut_short_and_begin_late() {
+fn record_can_be_truncated_and_start_late() {
     let late = "time,f\n2000,0.1\n2500,0.2\n3000,0\n";
     let dataset = Dataset::new(DESCRIPTION, late);
     let rows = dataset.simulated(&["--until", "2.75"]);
@@ -171,7 +170,7 @@ fn a_record_can_be_cut_short_and_begin_late() {
 }
 
 #[test]
-fn records_that_are_none_are_refused() {
+fn invalid_records_are_rejected() {
     for (record, part) in [
         ("", "is empty"),
         ("time,f\n", "has 0 samples"),
@@ -212,7 +211,7 @@ fn records_that_are_none_are_refused() {
 
 #[test]
 #[cfg(unix)]
-fn a_link_that_leads_out_of_the_datasets_folder_is_refused() {
+fn link_out_of_the_datasets_folder_is_rejected() {
     let elsewhere = tempfile::tempdir().expect("a folder");
     let secret = elsewhere.path().join("secret.csv");
     std::fs::write(&secret, "time,secret\n0,1\n1,2\n").expect("written");
@@ -229,7 +228,7 @@ fn a_link_that_leads_out_of_the_datasets_folder_is_refused() {
 }
 
 #[test]
-fn datasets_that_are_none_are_refused() {
+fn invalid_datasets_are_rejected() {
     for (from, to, part) in [
         ("unit = \"kN\"", "unit = \"m\"", "expected N"),
         ("unit = \"kN\"", "unit = \"kQ\"", "kQ"),
@@ -276,7 +275,7 @@ fn datasets_that_are_none_are_refused() {
 }
 
 #[test]
-fn record_names_that_are_none_are_refused() {
+fn invalid_record_names_are_rejected() {
     let dataset = Dataset::new(DESCRIPTION, &record());
     for name in [
         "train[1]",
@@ -297,7 +296,7 @@ fn record_names_that_are_none_are_refused() {
 }
 
 #[test]
-fn an_input_without_a_record_is_zero_with_a_warning() {
+fn input_without_record_is_zero_with_a_warning() {
     let description = DESCRIPTION.replace("[inputs.force]", "[inputs.torque]");
     let dataset = Dataset::new(&description, &record());
     let arguments = dataset.arguments(&[]);
@@ -313,7 +312,7 @@ fn an_input_without_a_record_is_zero_with_a_warning() {
     assert!(rows(&dataset.file("a.csv")).iter().all(|row| row[1] == 0.0));
 }
 
-/// A mass on a spring whose foot is moved as prescribed: m (r'' + s'') + k r = 0.
+/// Mass on a spring with prescribed motion of its foot: m (r'' + s'') + k r = 0.
 const MOVED_FOOT: &str = r#"
 [model]
 name = "moved_foot"
@@ -333,7 +332,8 @@ foot = "s"
 rate = "s_dot"
 "#;
 
-/// r, r', s and s' at 2 s for s = 0.01 sin(7 t), in closed form: r'' + 100 r = 0.49 sin(7 t).
+/// Returns r, r', s and s' at 2 s for s = 0.01 sin(7 t), in closed form: r'' + 100 r = 0.49 sin(7
+/// t).
 fn moved_foot() -> [f64; 4] {
     let (amplitude, w, natural, t) = (0.01, 7.0_f64, 10.0_f64, 2.0);
     let forced = amplitude * w * w / (natural * natural - w * w);
@@ -346,7 +346,7 @@ fn moved_foot() -> [f64; 4] {
 }
 
 #[test]
-fn prescribed_motion_moves_as_its_expression_and_as_its_record() {
+fn prescribed_motion_by_expression_and_by_record_match_closed_form() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = |name: &str| folder.path().join(name).display().to_string();
     std::fs::write(file("foot.toml"), MOVED_FOOT).expect("a file");
@@ -381,7 +381,7 @@ fn prescribed_motion_moves_as_its_expression_and_as_its_record() {
         let found = last(&["--input", expression, "--until", "2", "--solver", solver]);
         assert!(off(&found) < bound, "{solver}: {found:?}");
     }
-    // What a cubic spline through samples of 5 ms leaves of the rate, and of the motion.
+    // The bounds are the errors of a cubic spline through samples of 5 ms.
     let found = last(&["--record", &file("dataset.toml")]);
     assert!(off(&found[..2]) < 1e-6 && off(&found) < 1e-5, "{found:?}");
     let held = refused(&[

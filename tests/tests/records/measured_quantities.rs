@@ -1,6 +1,6 @@
-//! What channels may measure, on a driven mass on a spring with dry friction: accelerations, from which the
-//! friction is found, alone or beside a position, and none where the mass rests; and two quantities in
-//! proportion, as both encoders of a joint show. Records are Newton's law and Coulomb's, in small steps.
+//! Channels of a driven mass on a spring with dry friction: acceleration only or with position,
+//! intervals at rest, and two proportional quantities such as both encoders of a joint. The records
+//! integrate Newton's and Coulomb's laws with small steps.
 
 use eomgen_tests::program;
 use serde_json::Value;
@@ -69,13 +69,13 @@ unit = "m"
 noise = 1e-5
 "#;
 
-/// Dry friction, N.
 const FRICTION: f64 = 2.0;
 
-/// Of the accelerometer, m/s^2, and of the position, m.
+/// Noise of the accelerometer, m/s^2, and of the position, m.
 const NOISE: [f64; 2] = [5e-3, 1e-5];
 
-/// A record: t, u, x, a. `idle`: the force alone does not move the mass in every other half second.
+/// Returns a record of t, u, x, a. With `idle`, the force is too small to move the mass in every
+/// other half second.
 fn record(friction: f64, turn: f64, idle: bool) -> String {
     let (m, c, k) = (2.0, 6.0, 300.0);
     let (mut x, mut v, mut noise): (f64, f64, f64) = (0.0, 0.0, 0.3 + 0.1 * turn);
@@ -91,7 +91,7 @@ fn record(friction: f64, turn: f64, idle: bool) -> String {
             true => 0.0,
             false => wave,
         };
-        // Where the mass rests friction bears what the others do, as far as it can.
+        // At rest, friction balances the other forces up to its level.
         let acceleration = |x: f64, v: f64| {
             let others = u - c * v - k * x;
             match v == 0.0 {
@@ -105,7 +105,7 @@ fn record(friction: f64, turn: f64, idle: bool) -> String {
         for _ in 0..200 {
             let h = 2.5e-5;
             let after = v + h * acceleration(x, v);
-            // Friction turns no motion round: it stops it.
+            // Friction stops the motion but does not reverse it.
             v = if v * after < 0.0 { 0.0 } else { after };
             x += h * v;
         }
@@ -113,8 +113,13 @@ fn record(friction: f64, turn: f64, idle: bool) -> String {
     text
 }
 
-/// What `command` finds in records of these channels.
-fn answered(command: &str, specification: &str, dataset: &str, records: [String; 2]) -> Value {
+/// Runs `command` on records of these channels; returns its document.
+fn run_on_records(
+    command: &str,
+    specification: &str,
+    dataset: &str,
+    records: [String; 2],
+) -> Value {
     let folder = tempfile::tempdir().expect("a folder");
     let file = |name: &str| folder.path().join(name);
     let [train, test] = &records;
@@ -131,10 +136,10 @@ fn answered(command: &str, specification: &str, dataset: &str, records: [String;
 }
 
 #[test]
-fn a_hidden_friction_is_found_from_an_accelerometer_alone_and_beside_a_position() {
+fn friction_is_found_from_acceleration_with_and_without_position() {
     for dataset in [DATASET.to_owned(), format!("{DATASET}{POSITION}")] {
         let records = || [record(FRICTION, 0.0, false), record(FRICTION, 1.0, false)];
-        let found = answered("discover", OSCILLATOR, &dataset, records());
+        let found = run_on_records("discover", OSCILLATOR, &dataset, records());
         assert_eq!(found["verdict"], "effects_found", "{found:#}");
         let effects = found["effects"].as_array().expect("effects");
         assert_eq!(effects.len(), 1, "{effects:#?}");
@@ -145,12 +150,12 @@ fn a_hidden_friction_is_found_from_an_accelerometer_alone_and_beside_a_position(
         assert!((level / FRICTION - 1.0).abs() < 0.03, "{level}");
     }
     let nothing = [record(0.0, 0.0, false), record(0.0, 1.0, false)];
-    let found = answered("discover", OSCILLATOR, DATASET, nothing);
+    let found = run_on_records("discover", OSCILLATOR, DATASET, nothing);
     assert_eq!(found["verdict"], "no_significant_gap", "{found:#}");
 }
 
 #[test]
-fn friction_that_holds_leaves_no_acceleration() {
+fn sticking_mass_has_zero_acceleration() {
     let with_friction = OSCILLATOR.replace(
         "[coordinates]",
         "F_c = { value = 12, unit = \"N\" }\n\n[coordinates]",
@@ -161,13 +166,13 @@ fn friction_that_holds_leaves_no_acceleration() {
         let last = line.rsplit(',').next().and_then(|a| a.parse::<f64>().ok());
         last.is_some_and(|a| a.abs() < 1e-2)
     });
-    assert!(resting.count() > 100, "the mass rests");
-    let found = answered("compare", &with_friction, DATASET, records);
+    assert!(resting.count() > 100, "the mass never rests");
+    let found = run_on_records("compare", &with_friction, DATASET, records);
     assert_eq!(found["verdict"], "no_significant_gap", "{:#}", found["gap"]);
 }
 
 #[test]
-fn both_encoders_of_a_joint_show_quantities_in_proportion() {
+fn both_encoders_of_a_joint_are_proportional_channels() {
     let geared =
         format!("{OSCILLATOR}\n[observables]\nmotor = {{ value = \"50*x\", unit = \"m\" }}\n");
     let accelerometer = DATASET.split_once("[channels.accelerometer]");
@@ -178,7 +183,7 @@ fn both_encoders_of_a_joint_show_quantities_in_proportion() {
         .replace("column = \"x\"", "column = \"a\"")
         .replace("1e-5", "2e-3");
     let dataset = format!("{begin}{POSITION}{motor}\n[initial]{end}");
-    // The other encoder in the place of the accelerometer's column: coarser, and of its own gain.
+    // The second encoder replaces the accelerometer's column: coarser, with another gain.
     let both = |gain: f64, friction: f64, turn: f64| {
         let mut noise = 0.4;
         let mut text = "t,u,x,a\n".to_owned();
@@ -198,7 +203,7 @@ fn both_encoders_of_a_joint_show_quantities_in_proportion() {
     };
     let found = |gain: f64, friction: f64| {
         let records = [0.0, 1.0].map(|turn| both(gain, friction, turn));
-        answered("discover", &geared, &dataset, records)
+        run_on_records("discover", &geared, &dataset, records)
     };
     for (gain, friction, effect) in [
         (1.0, FRICTION, Some("coulomb_friction")),

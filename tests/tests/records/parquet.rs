@@ -1,10 +1,10 @@
-//! Parquet records: read as CSV ones are, and refused where they are broken.
+//! Parquet records: same results as CSV records, and broken files are rejected.
 
 use eomgen_tests::measured::{Measured, record};
 use eomgen_tests::models::path;
 use eomgen_tests::program;
 
-/// Simulates the pendulum from this angle into a file, CSV or Parquet.
+/// Simulates the pendulum from this angle into a CSV or Parquet file.
 fn swing(measured: &Measured, angle: &str, file: &str) {
     let text = std::fs::read_to_string(path("pendulum")).expect("a specification");
     let other = text.replace("3/4*pi", angle);
@@ -32,7 +32,7 @@ initial = { state = "estimate" }
 "#;
 
 #[test]
-fn parquet_records_are_read_as_csv_ones_are() {
+fn parquet_records_give_the_results_of_csv_records() {
     let measured = Measured::stage(0.0);
     let specification = path("pendulum").display().to_string();
     let [one, other] = ["csv", "parquet"].map(|format| {
@@ -55,7 +55,7 @@ fn parquet_records_are_read_as_csv_ones_are() {
 }
 
 #[test]
-fn parquet_records_that_are_broken_are_refused() {
+fn broken_parquet_records_are_rejected() {
     let measured = Measured::stage(0.0);
     swing(&measured, "2/3*pi", "whole.parquet");
     swing(&measured, "4/5*pi", "test.parquet");
@@ -68,7 +68,7 @@ fn parquet_records_that_are_broken_are_refused() {
     let cut = |part: f64| whole[..(part * whole.len() as f64) as usize].to_vec();
     let mut spoilt = vec![Vec::new(), cut(0.01), cut(0.5), cut(0.999)];
     spoilt.push(record(0.0, 0.0).into_bytes());
-    // The footer tells where the columns are.
+    // The footer contains the positions of the columns.
     let mut footer = whole.clone();
     let end = footer.len();
     footer[end - 60..end - 20].fill(0xff);

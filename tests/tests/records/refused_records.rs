@@ -1,17 +1,17 @@
-//! Records that cannot be believed are refused with the reason, by `compare` and `discover`
-//! alike; what only weakens them is noted.
+//! Implausible records are rejected with the reason by `compare` and `discover`; weaknesses of a
+//! record are noted.
 
 use eomgen_tests::measured::{DESCRIPTION, Measured, SAMPLES, record};
 
 #[test]
-fn sound_records_are_compared() {
+fn valid_records_are_compared() {
     let (result, warned) = Measured::stage(0.0).answered("compare", "out");
     assert_eq!(result["verdict"], "no_significant_gap", "{result:#}");
     assert_eq!(warned, "fitting the original model\n");
 }
 
-/// The record with a change to the cells of its lines.
-fn changed(change: impl Fn(usize, &mut Vec<String>)) -> String {
+/// Returns the record with `change` applied to the cells of each line.
+fn change_cells(change: impl Fn(usize, &mut Vec<String>)) -> String {
     let text = record(0.0, 0.0);
     let line = |(place, line): (usize, &str)| {
         let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
@@ -21,9 +21,9 @@ fn changed(change: impl Fn(usize, &mut Vec<String>)) -> String {
     text.lines().enumerate().map(line).collect()
 }
 
-/// The record with a change to column `column` of the lines from `from` on.
-fn replaced(column: usize, from: usize, by: impl Fn(usize, &str) -> String) -> String {
-    changed(|place, cells| {
+/// Returns the record with `by` applied to column `column` of the lines from `from` on.
+fn change_column(column: usize, from: usize, by: impl Fn(usize, &str) -> String) -> String {
+    change_cells(|place, cells| {
         if place >= from.max(1) {
             cells[column] = by(place, &cells[column]);
         }
@@ -31,7 +31,7 @@ fn replaced(column: usize, from: usize, by: impl Fn(usize, &str) -> String) -> S
 }
 
 #[test]
-fn training_records_that_are_none_are_refused() {
+fn invalid_training_records_are_rejected() {
     let sound = record(0.0, 0.0);
     let whole = sound.len();
     let missing = |_: usize, _: &str| "NaN".to_owned();
@@ -68,39 +68,39 @@ fn training_records_that_are_none_are_refused() {
             "two columns `t`",
         ),
         (
-            replaced(2, 100, missing).into_bytes(),
+            change_column(2, 100, missing).into_bytes(),
             "301 of 400 samples are missing",
         ),
         (
-            replaced(2, 1, missing).into_bytes(),
+            change_column(2, 1, missing).into_bytes(),
             "400 of 400 samples are missing",
         ),
         (
-            replaced(1, 300, missing).into_bytes(),
+            change_column(1, 300, missing).into_bytes(),
             "input `force`: 101 of 400",
         ),
         (
-            replaced(0, 200, missing).into_bytes(),
+            change_column(0, 200, missing).into_bytes(),
             "line 201: the time is missing",
         ),
         (
-            replaced(0, 200, |_, _| "0.5".to_owned()).into_bytes(),
+            change_column(0, 200, |_, _| "0.5".to_owned()).into_bytes(),
             "the time does not increase",
         ),
         (
-            replaced(2, 7, |_, _| "oops".to_owned()).into_bytes(),
+            change_column(2, 7, |_, _| "oops".to_owned()).into_bytes(),
             "line 8: column 3: \"oops\" is not a number",
         ),
         (
-            replaced(2, 1, |_, _| "0.25".to_owned()).into_bytes(),
+            change_column(2, 1, |_, _| "0.25".to_owned()).into_bytes(),
             "the sensor is dead",
         ),
         (
-            replaced(2, 1, |i, cell| format!("{cell}e{}", i % 40)).into_bytes(),
+            change_column(2, 1, |i, cell| format!("{cell}e{}", i % 40)).into_bytes(),
             "correct its `unit` or its `noise`",
         ),
         (
-            replaced(0, 390, |i, _| format!("{i}e9")).into_bytes(),
+            change_column(0, 390, |i, _| format!("{i}e9")).into_bytes(),
             "most of the record is missing",
         ),
         (
@@ -125,7 +125,7 @@ fn training_records_that_are_none_are_refused() {
 }
 
 #[test]
-fn datasets_that_say_something_else_are_refused() {
+fn contradictory_datasets_are_rejected() {
     let measured = Measured::stage(0.0);
     for (from, to, part) in [
         ("unit = \"m\"", "unit = \"N\"", "is in N, expected m"),
@@ -218,14 +218,14 @@ fn datasets_that_say_something_else_are_refused() {
 }
 
 #[test]
-fn a_test_record_that_is_the_training_record_is_refused() {
+fn test_record_equal_to_training_record_is_rejected() {
     let measured = Measured::stage(0.0);
     let sound = record(0.0, 0.0);
     let lines: Vec<&str> = sound.lines().collect();
     let later: String = (lines[..1].iter().chain(&lines[81..]))
         .map(|l| format!("{l}\n"))
         .collect();
-    let negative = changed(|place, cells| {
+    let negative = change_cells(|place, cells| {
         for cell in cells.iter_mut().skip(1).filter(|_| place > 0) {
             *cell = match cell.strip_prefix('-') {
                 Some(positive) => positive.to_owned(),
@@ -233,7 +233,7 @@ fn a_test_record_that_is_the_training_record_is_refused() {
             };
         }
     });
-    let holed = replaced(2, 1, |place, cell| {
+    let holed = change_column(2, 1, |place, cell| {
         if place % 9 == 1 {
             String::new()
         } else {
@@ -253,7 +253,7 @@ fn a_test_record_that_is_the_training_record_is_refused() {
 }
 
 #[test]
-fn two_channels_that_are_one_column_are_refused() {
+fn two_channels_with_the_same_values_are_rejected() {
     let measured = Measured::stage(0.0);
     let other = "[channels.again]\ncolumn = \"q\"\nobservable = \"q\"\nunit = \"m\"\nnoise = 1e-6\n\n[initial]";
     let description = DESCRIPTION.replacen("[initial]", other, 1);
@@ -266,10 +266,10 @@ fn two_channels_that_are_one_column_are_refused() {
 }
 
 #[test]
-fn columns_with_a_wrong_label_are_refused() {
+fn columns_with_wrong_sign_or_unit_are_reported() {
     let measured = Measured::stage(0.0);
     let scaled = |by: f64| {
-        replaced(2, 1, |_, cell| {
+        change_column(2, 1, |_, cell| {
             let value: f64 = cell.parse().expect("a number");
             format!("{:?}", value * by)
         })
@@ -294,16 +294,16 @@ fn columns_with_a_wrong_label_are_refused() {
     exchanged.write("dataset.toml", description.as_bytes());
     let (_, warned) = exchanged.answered("compare", "exchanged");
     assert!(warned.contains("`q` does not follow the model"), "{warned}");
-    // A gain that may be the sensor's is none of these.
+    // A gain within the sensor's prior is not rejected.
     measured.write("train.csv", scaled(1.02).as_bytes());
     measured.answered("compare", "gain");
 }
 
 #[test]
-fn huge_records_are_refused_before_they_are_read() {
+fn huge_records_are_rejected_before_reading() {
     let measured = Measured::stage(0.0);
     let file = std::fs::File::create(measured.file("train.csv")).expect("a file");
-    // A hole: a gigabyte that takes no room.
+    // A sparse file: a gigabyte that takes no disk space.
     file.set_len(1 << 30).expect("a long file");
     let message = measured.refused();
     assert!(
@@ -320,7 +320,7 @@ fn huge_records_are_refused_before_they_are_read() {
 }
 
 #[test]
-fn what_weakens_a_record_is_noted() {
+fn weaknesses_of_a_record_are_noted() {
     let measured = Measured::stage(0.0);
     let holes = |place: usize, cell: &str| {
         if place % 10 == 3 {
@@ -329,7 +329,7 @@ fn what_weakens_a_record_is_noted() {
             cell.to_owned()
         }
     };
-    measured.write("train.csv", replaced(2, 1, holes).as_bytes());
+    measured.write("train.csv", change_column(2, 1, holes).as_bytes());
     let (result, warned) = measured.answered("compare", "holes");
     assert!(
         warned.contains("40 samples of `q` are missing and are ignored"),
@@ -339,15 +339,15 @@ fn what_weakens_a_record_is_noted() {
         result["notes"].to_string().contains("missing"),
         "{result:#}"
     );
-    // A fortieth of the motion, from its crest, is cut off.
-    let clipped = replaced(2, 1, |_, cell| {
+    // The crests of the motion, a fortieth, are cut off.
+    let clipped = change_column(2, 1, |_, cell| {
         let value: f64 = cell.parse().expect("a number");
         format!("{:?}", value.min(0.1))
     });
     measured.write("train.csv", clipped.as_bytes());
     let (_, warned) = measured.answered("compare", "clipped");
     assert!(warned.contains("it may be clipped"), "{warned}");
-    let uneven = replaced(0, 1, |place, cell| {
+    let uneven = change_column(0, 1, |place, cell| {
         let t: f64 = cell.parse().expect("a number");
         format!("{:?}", if place % 20 == 0 { t + 0.002 } else { t })
     });
@@ -358,7 +358,7 @@ fn what_weakens_a_record_is_noted() {
 }
 
 #[test]
-fn hidden_characters_of_files_do_not_reach_the_terminal_or_the_report() {
+fn control_characters_of_files_are_escaped_in_terminal_and_report() {
     let hostile = "x\u{1b}[31m\u{202e}\u{9b}";
     let is_hidden = |letter: char| letter != '\n' && (letter.is_control() || letter == '\u{202e}');
     let measured = Measured::stage(0.0);

@@ -1,16 +1,16 @@
-//! Records seen together: those that contradict each other, and a search that is cut off.
+//! Several records: contradictory records, and a search stopped by its time limit.
 
 use eomgen_tests::measured::{DESCRIPTION, Measured, Moment, record_of};
 use eomgen_tests::program;
 use serde_json::Value;
 
-/// The notes of a document as one text.
+/// Returns the notes of a document as one text.
 fn notes(document: &Value) -> String {
     document["notes"].to_string()
 }
 
 #[test]
-fn records_that_contradict_each_other_are_named_with_what_each_says_alone() {
+fn contradictory_records_are_named_with_their_separate_fits() {
     let more = |at: Moment| -150.0 * at.v;
     let measured = Measured::stage(0.0);
     measured.write("other.csv", record_of(&more, 0.4).as_bytes());
@@ -26,7 +26,7 @@ fn records_that_contradict_each_other_are_named_with_what_each_says_alone() {
         "{found}"
     );
     assert!(warned.contains("contradict each other"), "{warned}");
-    // Two records of one machine do not, though something is missing in its model.
+    // Records of one machine with a missing effect do not contradict each other.
     let dry = |at: Moment| -3.0 * (at.v / 1e-4).tanh();
     let sound = Measured::stage(3.0);
     sound.write("other.csv", record_of(&dry, 0.4).as_bytes());
@@ -37,8 +37,8 @@ fn records_that_contradict_each_other_are_named_with_what_each_says_alone() {
 }
 
 #[test]
-fn another_payload_in_one_record_is_said_where_nobody_spoke_of_the_mass() {
-    // Of 95 kg, and 24 more: what the force and the guides make of the heavier stage.
+fn different_payload_in_one_record_is_reported() {
+    // The mass is 95 kg, plus 24 kg in one record.
     let payload = |at: Moment| (at.force - 210.0 * at.v) * (95.0 / 119.0 - 1.0);
     let measured = Measured::stage(0.0);
     measured.write("other.csv", record_of(&payload, 0.4).as_bytes());
@@ -52,8 +52,8 @@ fn another_payload_in_one_record_is_said_where_nobody_spoke_of_the_mass() {
 }
 
 #[test]
-fn what_held_out_records_of_something_else_do_not_confirm_is_said_all_the_same() {
-    // Dry friction of 3 N in two records; the third was made on a bench that shakes.
+fn effect_not_confirmed_by_held_out_record_is_reported() {
+    // Dry friction of 3 N in two records; the third is from a shaking bench.
     let dry = |at: Moment| -3.0 * (at.v / 1e-4).tanh();
     let shaken = |at: Moment| -3.0 * (at.v / 1e-4).tanh() + 90.0 * (61.0 * at.force).sin();
     let measured = Measured::stage(3.0);
@@ -74,7 +74,7 @@ fn what_held_out_records_of_something_else_do_not_confirm_is_said_all_the_same()
 }
 
 #[test]
-fn a_search_that_is_cut_off_leaves_what_is_known() {
+fn search_stopped_by_time_limit_writes_partial_results() {
     let measured = Measured::stage(3.0);
     let arguments = measured.arguments("discover", "cut");
     let mut arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();

@@ -1,4 +1,4 @@
-//! Every basis by its name: frequencies from textbooks, certificates, and what is refused.
+//! All bases by name: textbook frequencies, certificates, and rejected names.
 
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write;
@@ -10,13 +10,13 @@ use serde_json::Value;
 
 use super::{json, shipped, written};
 
-/// The stiffness, the mass per length and the length: a beam's frequency is
-/// (beta l/l)^2 sqrt(B/mu)/tau, that of a rod or string (beta l/l) sqrt(B/mu)/tau.
+/// Stiffness, mass per length and length. The frequency of a beam is (beta l/l)^2 sqrt(B/mu)/tau,
+/// that of a rod or string (beta l/l) sqrt(B/mu)/tau.
 const B: f64 = 3.0;
 const MU: f64 = 2.0;
 const LENGTH: f64 = 0.7;
 
-/// What bends or is stretched in this basis, `order` modes.
+/// Returns a uniform beam, rod or string with this basis.
 fn uniform(basis: &str, order: usize) -> String {
     let derivative = if is_rod(basis) { 1 } else { 2 };
     let unit = if is_rod(basis) { "N" } else { "N m^2" };
@@ -49,9 +49,9 @@ fn is_rod(basis: &str) -> bool {
     basis.starts_with("rod") || basis == "string"
 }
 
-/// Names with beta_r l of their first modes: R. D. Blevins, "Formulas for Natural Frequency and
-/// Mode Shape" (1979), Table 8-1; S. S. Rao, "Mechanical Vibrations", 8.2 to 8.5.
-fn published() -> Vec<(String, [f64; 3])> {
+/// Returns the names with beta_r l of their first modes: R. D. Blevins, "Formulas for Natural
+/// Frequency and Mode Shape" (1979), Table 8-1; S. S. Rao, "Mechanical Vibrations", 8.2 to 8.5.
+fn published_wavenumbers() -> Vec<(String, [f64; 3])> {
     let equal = [4.73004074, 7.85320462, 10.9956079];
     let pinned = [3.92660231, 7.06858275, 10.21017612];
     let guided = [2.36502037, 5.49780392, 8.63937983];
@@ -89,9 +89,9 @@ fn published() -> Vec<(String, [f64; 3])> {
 }
 
 #[test]
-fn frequencies_of_every_basis_are_those_of_textbooks() {
+fn frequencies_of_all_bases_match_textbooks() {
     let folder = tempfile::tempdir().expect("a folder");
-    for (basis, roots) in published() {
+    for (basis, roots) in published_wavenumbers() {
         let model = written(folder.path(), &uniform(&basis, 3));
         let found = json(&["modes", &model, "--json"]);
         let modes = found["modes"].as_array().expect("modes");
@@ -109,9 +109,9 @@ fn frequencies_of_every_basis_are_those_of_textbooks() {
     }
 }
 
-/// A field in every kind of expression: with itself, with the position, under a weight, to the
-/// fourth power, at both ends and between.
-fn everything(basis: &str, order: usize) -> String {
+/// Returns a model with the field in every kind of expression: with itself, with the position, with
+/// a weight, to the fourth power, at both ends and in between.
+fn all_expressions(basis: &str, order: usize) -> String {
     let mut text = uniform(basis, order).replace("\"N\"", "\"N m^2\"");
     text = text.replace(
         "\"1/2*integral(B*diff(w, x, 1)^2, w)\"",
@@ -133,10 +133,10 @@ inner_shear = { value = "B*at(diff(w, x, 3), x_0 + l/5)", unit = "N" }
 }
 
 #[test]
-fn every_basis_passes_its_certificate() {
-    for (basis, _) in published() {
+fn certificates_of_all_bases_pass() {
+    for (basis, _) in published_wavenumbers() {
         for order in [1, 4] {
-            let model = checked(&everything(&basis, order));
+            let model = checked(&all_expressions(&basis, order));
             let certificate = certificate(&model, &model);
             let failures: Vec<_> = certificate.failures().collect();
             assert!(certificate.passed, "{basis}, order {order}: {failures:#?}");
@@ -144,7 +144,7 @@ fn every_basis_passes_its_certificate() {
     }
 }
 
-/// A string that hangs from the end of a beam: its end moves with the beam's.
+/// A string hanging from the end of a beam; the ends are coupled.
 const BEAM_AND_STRING: &str = r#"
 [model]
 name = "beam_and_string"
@@ -178,7 +178,7 @@ tension = "1/2*integral(F*(diff(v, y, 1) - at(w, l)/(2*l))^2, v)"
 "#;
 
 #[test]
-fn fields_of_different_bases_pass_together() {
+fn coupled_fields_of_different_bases_pass() {
     for order in [0, 1, 5] {
         let text = BEAM_AND_STRING.replace("order = 3", &format!("order = {order}"));
         let model = checked(&text);
@@ -189,21 +189,24 @@ fn fields_of_different_bases_pass_together() {
 }
 
 #[test]
-fn a_certificate_tells_bases_apart() {
+fn certificate_fails_for_another_basis() {
     for (one, other) in [
         ("pinned_clamped", "clamped_pinned"),
         ("free_free", "clamped_clamped"),
         ("pinned_guided", "pinned_pinned"),
         ("free_guided", "guided_free"),
     ] {
-        let (model, subject) = (checked(&everything(one, 2)), checked(&everything(other, 2)));
+        let (model, subject) = (
+            checked(&all_expressions(one, 2)),
+            checked(&all_expressions(other, 2)),
+        );
         assert!(!certificate(&model, &subject).passed, "{one}, {other}");
     }
 }
 
-/// At the highest order the frequencies are still those of the roots, and sines those of sines.
+/// At the highest order the frequencies still match the roots, and the sine shapes are exact.
 #[test]
-fn the_highest_order_keeps_its_digits() {
+fn highest_order_keeps_its_digits() {
     let folder = tempfile::tempdir().expect("a folder");
     for (basis, quarters) in [("free_free", 2.0), ("pinned_clamped", 1.0), ("string", 0.0)] {
         let model = written(folder.path(), &uniform(basis, 128));
@@ -220,10 +223,10 @@ fn the_highest_order_keeps_its_digits() {
     }
 }
 
-/// The rigid motions are coordinates of their own: a free beam with both of them has two zero
-/// frequencies and the elastic ones beside them.
+/// Rigid motions are separate coordinates: a free beam has two zero frequencies and its elastic
+/// ones.
 #[test]
-fn a_free_beam_moves_as_its_coordinates_say() {
+fn free_beam_with_rigid_coordinates_has_two_zero_frequencies() {
     let text = uniform("free_free", 3)
         .replace(
             "[fields.w]",
@@ -250,10 +253,10 @@ fn a_free_beam_moves_as_its_coordinates_say() {
     );
 }
 
-/// Two discs on a shaft: tan b = b (m + d)/(b^2 m d - 1) with the discs' inertias over the
-/// shaft's (Rao, 8.3). A few modes are stiffer than all of them.
+/// Two discs on a shaft: tan b = b (m + d)/(b^2 m d - 1) with the discs' inertias divided by the
+/// shaft's (Rao, 8.3). A model with few modes is stiffer.
 #[test]
-fn the_shaft_and_its_disc_turn_at_the_frequencies_of_the_closed_form() {
+fn shaft_and_disc_match_closed_form_frequencies() {
     let model = load("shaft_and_disc");
     let values = model.parameter_values().expect("values");
     let value = |name: &str| {
@@ -285,7 +288,7 @@ fn the_shaft_and_its_disc_turn_at_the_frequencies_of_the_closed_form() {
 }
 
 #[test]
-fn an_unknown_basis_is_refused_with_the_one_that_was_meant() {
+fn unknown_basis_is_rejected_with_suggestion() {
     let folder = tempfile::tempdir().expect("a folder");
     for (wrong, said) in [
         ("pined_pinned", "did you mean `pinned_pinned`?"),
@@ -306,7 +309,7 @@ fn an_unknown_basis_is_refused_with_the_one_that_was_meant() {
     {
         write!(known, "{} ", name.as_str().expect("a name")).expect("written");
     }
-    for (basis, _) in published() {
+    for (basis, _) in published_wavenumbers() {
         assert!(known.contains(&format!("{basis} ")), "{basis}: {known}");
     }
 }

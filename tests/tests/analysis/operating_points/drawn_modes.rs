@@ -1,12 +1,12 @@
-//! `modes --plot`: curves against the closed form of a clamped beam, bars against the table, the regime
-//! of a piecewise model.
+//! `modes --plot`: curves against the closed form of a clamped beam, bars against the table, and
+//! the regime of a piecewise model.
 
 use eomgen_tests::program::{accepted, refused, run, text};
 use serde_json::Value;
 
 use super::{BEAM, OSCILLATOR, json, numbers, shipped, written};
 
-/// A spring that lies on a wall from one place on.
+/// Spring that touches a wall beyond some position.
 const WALL: &str = r#"
 [model]
 name = "wall"
@@ -24,7 +24,7 @@ spring = { on = "x", value = "-k*x" }
 wall = { on = "x", value = "-k_w*(x - d)*above(x - d)" }
 "#;
 
-/// Points of every curve of a drawing, in pixels.
+/// Returns the points of all curves of a drawing, in pixels.
 fn curves(svg: &str) -> Vec<Vec<(f64, f64)>> {
     let paths = svg
         .lines()
@@ -42,7 +42,7 @@ fn curves(svg: &str) -> Vec<Vec<(f64, f64)>> {
 }
 
 #[test]
-fn curves_are_the_shapes_of_a_clamped_beam() {
+fn curves_match_shapes_of_clamped_beam() {
     let folder = tempfile::tempdir().expect("a folder");
     let (spec, svg) = (written(folder.path(), BEAM), folder.path().join("a.svg"));
     let shown = svg.display().to_string();
@@ -50,8 +50,8 @@ fn curves_are_the_shapes_of_a_clamped_beam() {
     let svg = std::fs::read_to_string(svg).expect("the figure");
     let drawn = curves(&svg);
     assert_eq!(drawn.len(), 5);
-    // Deflections at half the length beside that at the free end: W. C. Young, R. G. Budynas,
-    // Roark's Formulas, and by hand from cosh - cos - sigma (sinh - sin).
+    // Ratio of the deflection at half the length to that at the free end: W. C. Young, R. G.
+    // Budynas, Roark's Formulas, and from cosh - cos - sigma (sinh - sin).
     for (curve, wavenumber) in drawn
         .iter()
         .zip([1.875104069_f64, 4.694091133, 7.854757438])
@@ -66,7 +66,7 @@ fn curves_are_the_shapes_of_a_clamped_beam() {
         for (place, (_, y)) in curve.iter().enumerate() {
             let s = place as f64 / (curve.len() - 1) as f64;
             let found = (y - first) / (last - first);
-            // Pixels have two decimals, and the end is some 50 of them away.
+            // Pixels have two decimals, and the deflection of the end is about 50 pixels.
             let expected: f64 = shape(s) / shape(1.0);
             assert!(
                 (found - expected).abs() < 1e-3,
@@ -79,12 +79,12 @@ fn curves_are_the_shapes_of_a_clamped_beam() {
 }
 
 #[test]
-fn a_piecewise_model_says_its_regime() {
+fn piecewise_model_prints_its_regime() {
     let folder = tempfile::tempdir().expect("a folder");
     let spec = written(folder.path(), WALL);
     let svg = folder.path().join("a.svg");
     let shown = svg.display().to_string();
-    // sqrt(k/m) = 5 rad/s before the wall, sqrt((k + k_w)/m) = 10 rad/s on it.
+    // sqrt(k/m) = 5 rad/s off the wall, sqrt((k + k_w)/m) = 10 rad/s on it.
     for (x, side, omega) in [("0", "<", 5.0), ("0.2", ">", 10.0)] {
         let at = format!("x={x}");
         let found = json(&["modes", &spec, "--state", &at, "--json", "--plot", &shown]);
@@ -105,7 +105,7 @@ fn a_piecewise_model_says_its_regime() {
 }
 
 #[test]
-fn figures_of_machines_of_every_kind_are_whole_documents() {
+fn figures_of_all_machines_are_complete_documents() {
     let folder = tempfile::tempdir().expect("a folder");
     let svg = folder.path().join("a.svg");
     let shown = svg.display().to_string();
@@ -133,7 +133,7 @@ fn figures_of_machines_of_every_kind_are_whole_documents() {
             modes["modes"].as_array().expect("modes").len().min(12)
         );
     }
-    // One coordinate that swings: the whole of it is its bar.
+    // A single coordinate has a single full bar.
     let spec = written(folder.path(), OSCILLATOR);
     let found = json(&["modes", &spec, "--json", "--plot", &shown]);
     assert_eq!(numbers(&found["modes"][0]["shape"]), [1.0]);
@@ -142,7 +142,7 @@ fn figures_of_machines_of_every_kind_are_whole_documents() {
 }
 
 #[test]
-fn a_figure_on_stdout_is_alone_there() {
+fn figure_on_stdout_excludes_other_output() {
     let folder = tempfile::tempdir().expect("a folder");
     let spec = written(folder.path(), OSCILLATOR);
     let output = run(&["modes", &spec, "--plot", "-"]);

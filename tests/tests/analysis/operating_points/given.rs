@@ -1,4 +1,4 @@
-//! Values given on the command line, and the equilibria that begin there.
+//! Values given on the command line, and the nearest equilibria.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use super::{OSCILLATOR, columns, json, shipped, written};
 
-/// A pendulum whose pivot has a motor.
+/// Pendulum with a motor at its pivot.
 const DRIVEN: &str = r#"
 [model]
 name = "driven_pendulum"
@@ -38,7 +38,7 @@ fn number(document: &Value, name: &str) -> f64 {
 }
 
 #[test]
-fn a_driven_pendulum_is_trimmed_to_the_nearer_rest() {
+fn trim_finds_nearest_equilibrium_of_driven_pendulum() {
     let folder = tempfile::tempdir().expect("a folder");
     let model = written(folder.path(), DRIVEN);
     let level = number(&json(&["trim", &model]), "theta");
@@ -60,7 +60,7 @@ fn a_driven_pendulum_is_trimmed_to_the_nearer_rest() {
 }
 
 #[test]
-fn modes_and_linearise_tell_whether_the_state_is_an_equilibrium() {
+fn modes_and_linearise_report_whether_state_is_equilibrium() {
     let folder = tempfile::tempdir().expect("a folder");
     let model = written(folder.path(), DRIVEN);
     for command in ["modes", "linearise"] {
@@ -98,7 +98,7 @@ fn modes_and_linearise_tell_whether_the_state_is_an_equilibrium() {
     assert!((number(&trimmed, "theta") - PI).abs() < 1e-9);
 }
 
-/// A mass without a spring's force at x = 0, and a pressure that settles.
+/// Mass with zero spring force at x = 0, and a pressure that decays.
 const MOVING: &str = r#"
 [model]
 name = "moving"
@@ -117,7 +117,7 @@ V = "1/2*k*x^2"
 "#;
 
 #[test]
-fn the_warning_names_what_changes_at_a_state_that_is_no_equilibrium() {
+fn warning_names_nonzero_rates_away_from_equilibrium() {
     let folder = tempfile::tempdir().expect("a folder");
     let model = written(folder.path(), MOVING);
     let parts = ["the machine moves", "the machine accelerates", "p changes"];
@@ -137,7 +137,7 @@ fn the_warning_names_what_changes_at_a_state_that_is_no_equilibrium() {
 }
 
 #[test]
-fn commands_read_expressions_and_units_alike() {
+fn all_commands_accept_expressions_and_units() {
     let folder = tempfile::tempdir().expect("a folder");
     let model = written(folder.path(), OSCILLATOR);
     // omega^2 = k/m.
@@ -183,7 +183,7 @@ fn commands_read_expressions_and_units_alike() {
 }
 
 #[test]
-fn frequencies_of_stiffnesses_of_any_size_are_found() {
+fn frequencies_for_all_magnitudes_of_stiffness_are_found() {
     let folder = tempfile::tempdir().expect("a folder");
     let model = written(folder.path(), OSCILLATOR);
     for stiffness in ["1e-200", "1e-9", "1e150", "1e300"] {
@@ -204,7 +204,7 @@ fn frequencies_of_stiffnesses_of_any_size_are_found() {
 }
 
 #[test]
-fn a_bicycle_that_rolls_upright_is_in_equilibrium_at_its_own_speed() {
+fn rolling_bicycle_is_in_equilibrium_at_its_speed() {
     let spec = concat!(
         env!("CARGO_MANIFEST_DIR"),
         "/../examples/constrained/bicycle.toml"
@@ -220,7 +220,7 @@ fn a_bicycle_that_rolls_upright_is_in_equilibrium_at_its_own_speed() {
 }
 
 #[test]
-fn modes_beside_a_clipped_root_are_those_of_the_spring() {
+fn modes_with_clipped_root_match_spring() {
     let folder = tempfile::tempdir().expect("a folder");
     let text = r#"
 [model]

@@ -1,20 +1,20 @@
-//! Growth of the work of `check` and `modes`: instructions counted by callgrind for a model and one of twice
-//! its size. Skipped without valgrind, and in unoptimised builds.
+//! Growth of the work of `check` and `modes`: instructions counted by callgrind for a model and one
+//! twice its size. Skipped without valgrind and in unoptimised builds.
 
 use std::process::Command;
 
 use eomgen_tests::program::path;
 
-/// Allowed ratio of instructions when a model doubles.
-const MOST: f64 = 2.5;
+/// Maximum ratio of instruction counts when a model doubles.
+const MAX_RATIO: f64 = 2.5;
 
-/// A section with a line for each of so many places.
+/// Returns a section with `count` lines.
 fn section(name: &str, count: usize, line: &dyn Fn(usize) -> String) -> String {
     let lines = (0..count).map(|place| line(place) + "\n");
     format!("[{name}]\n{}", lines.collect::<String>())
 }
 
-/// Masses on separate lines, with further sections.
+/// Returns independent masses with further sections.
 fn masses(count: usize, further: &str) -> String {
     "[model]\nname = \"grown\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\nk = { value = 3, unit = \"N/m\" }\n"
         .to_owned()
@@ -23,26 +23,26 @@ fn masses(count: usize, further: &str) -> String {
         + further
 }
 
-/// Masses that hang on a spring each.
-fn hung(count: usize) -> String {
+/// Returns masses on separate springs.
+fn masses_on_springs(count: usize) -> String {
     let spring = |k: usize| format!("V{k} = \"1/2*{}*k*q{k}^2\"", k + 1);
     masses(count, &section("potential", count, &spring))
 }
 
-/// Masses that fall on a floor each.
-fn falling(count: usize) -> String {
+/// Returns masses that fall on separate floors.
+fn masses_with_impacts(count: usize) -> String {
     let floor = |k: usize| format!("i{k} = {{ when = \"q{k}\", restitution = \"1/2\" }}");
     masses(count, &section("impacts", count, &floor))
 }
 
-/// Masses held together in pairs.
-fn paired(count: usize) -> String {
+/// Returns masses constrained in pairs.
+fn masses_with_constraints(count: usize) -> String {
     let pair = |k: usize| format!("c{k} = {{ zero = \"q{} - q{}\" }}", 2 * k, 2 * k + 1);
     masses(2 * count, &section("constraints", count, &pair))
 }
 
-/// A chain of springs with a named coefficient for each mass.
-fn named(count: usize) -> String {
+/// Returns a chain of springs with a named coefficient per mass.
+fn chain_with_coefficients(count: usize) -> String {
     let spring = |k: usize| match k {
         0 => "V0 = \"1/2*k*q0^2\"".to_owned(),
         _ => format!("V{k} = \"1/2*k*(q{k} - q{})^2\"", k - 1),
@@ -55,8 +55,8 @@ fn named(count: usize) -> String {
     )
 }
 
-/// Strings that each may hit a floor.
-fn strings(count: usize) -> String {
+/// Returns strings that can each hit a floor.
+fn strings_with_impacts(count: usize) -> String {
     let field = |k: usize| {
         format!(
             "[fields.w{k}]\nalong = \"s{k}\"\nfrom = 0\nto = \"l\"\nbasis = \"string\"\ncoordinates = \"q{k}_\"\n\
@@ -78,7 +78,7 @@ fn strings(count: usize) -> String {
         })
 }
 
-/// Instructions of a command on a specification.
+/// Counts the instructions of a command on a specification.
 fn instructions(command: &str, text: &str) -> f64 {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("model.toml");
@@ -98,52 +98,55 @@ fn instructions(command: &str, text: &str) -> f64 {
     count.trim().parse().expect("a number")
 }
 
-/// Fails if a command on a model of twice the size takes more than allowed.
-fn compare(command: &str, size: usize, text: impl Fn(usize) -> String) {
+/// Asserts that a command on a model of twice the size takes at most [`MAX_RATIO`] times the
+/// instructions.
+fn assert_growth(command: &str, size: usize, text: impl Fn(usize) -> String) {
     if Command::new("valgrind").arg("--version").output().is_err() {
         skips::skip(
-            "work was not counted, for want of valgrind (Debian: apt-get install valgrind)",
+            "instructions were not counted: valgrind is missing (Debian: apt-get install valgrind)",
         );
         return;
     }
     if cfg!(debug_assertions) {
-        skips::skip("work was not counted: it is that of optimised code, cargo test --release");
+        skips::skip(
+            "instructions were not counted: this needs optimised code (cargo test --release)",
+        );
         return;
     }
     let [single, double] = [size, 2 * size].map(|size| instructions(command, &text(size)));
     let ratio = double / single;
     assert!(
-        ratio <= MOST,
+        ratio <= MAX_RATIO,
         "{command}: {single} to {double}, {ratio:.2}-fold"
     );
 }
 
 #[test]
-fn check_of_masses_doubles_with_them() {
-    compare("check", 200, |count| masses(count, ""));
+fn check_of_masses_grows_linearly() {
+    assert_growth("check", 200, |count| masses(count, ""));
 }
 
 #[test]
-fn check_of_impacts_doubles_with_them() {
-    compare("check", 50, falling);
+fn check_of_impacts_grows_linearly() {
+    assert_growth("check", 50, masses_with_impacts);
 }
 
 #[test]
-fn check_of_constraints_doubles_with_them() {
-    compare("check", 50, paired);
+fn check_of_constraints_grows_linearly() {
+    assert_growth("check", 50, masses_with_constraints);
 }
 
 #[test]
-fn check_of_coefficients_doubles_with_them() {
-    compare("check", 100, named);
+fn check_of_coefficients_grows_linearly() {
+    assert_growth("check", 100, chain_with_coefficients);
 }
 
 #[test]
-fn check_of_fields_with_impacts_doubles_with_them() {
-    compare("check", 16, strings);
+fn check_of_fields_with_impacts_grows_linearly() {
+    assert_growth("check", 16, strings_with_impacts);
 }
 
 #[test]
-fn modes_of_independent_masses_double_with_them() {
-    compare("modes", 30, hung);
+fn modes_of_independent_masses_grow_linearly() {
+    assert_growth("modes", 30, masses_on_springs);
 }

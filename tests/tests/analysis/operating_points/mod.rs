@@ -1,4 +1,4 @@
-//! `linearise`, `modes`, `trim`, and what drives and starts `simulate`, against closed forms.
+//! `linearise`, `modes`, `trim`, and inputs and initial states of `simulate`, against closed forms.
 
 mod bases;
 mod drawn_modes;
@@ -17,7 +17,6 @@ fn shipped(name: &str) -> String {
     path(name).display().to_string()
 }
 
-/// Writes a specification.
 fn written(folder: &Path, text: &str) -> String {
     let file = folder.join("model.toml");
     std::fs::write(&file, text).expect("written");
@@ -55,7 +54,7 @@ motor = { on = "x", value = "u" }
 pull = { value = "k*x", unit = "N" }
 "#;
 
-/// A beam that nothing but its clamped end holds.
+/// Clamped-free beam.
 const BEAM: &str = r#"
 [model]
 name = "beam"
@@ -78,7 +77,7 @@ bending = "1/2*integral(B*diff(w, x, 2)^2, w)"
 "#;
 
 #[test]
-fn a_linearisation_has_the_matrices_of_the_closed_form() {
+fn linearisation_matches_closed_form() {
     let found = json(&[
         "linearise",
         &shipped("pendulum"),
@@ -107,7 +106,7 @@ fn a_linearisation_has_the_matrices_of_the_closed_form() {
         .map(numbers)
         .collect();
     assert_eq!(a[0], [0.0, 1.0]);
-    // Upright, the hanging frequency's square with the other sign.
+    // In the upright position the square of the hanging frequency has the opposite sign.
     let at = format!("theta={PI}");
     let hanging = json(&["modes", &shipped("pendulum"), "--state", &at, "--json"]);
     let mode = &hanging["modes"][0];
@@ -142,13 +141,13 @@ fn a_linearisation_has_the_matrices_of_the_closed_form() {
 }
 
 #[test]
-fn modes_are_those_of_textbooks() {
+fn modes_match_textbooks() {
     let folder = tempfile::tempdir().expect("a folder");
     let beam = written(folder.path(), BEAM);
     let found = json(&["modes", &beam, "--json"]);
     let modes = found["modes"].as_array().expect("modes");
     assert_eq!(modes.len(), 5);
-    // The roots of cosh(b) cos(b) = -1 (Rao, Mechanical Vibrations, 8.5).
+    // Roots of cosh(b) cos(b) = -1 (Rao, Mechanical Vibrations, 8.5).
     for (mode, root) in modes.iter().zip([
         1.875_104_068_711_961,
         4.694_091_132_974_175,
@@ -162,7 +161,7 @@ fn modes_are_those_of_textbooks() {
         );
         assert_eq!(mode["damping"], 0.0);
     }
-    // A hub that turns freely, its friction aside: one rigid motion, then the beam.
+    // Without friction the hub turns freely: one rigid motion, then the beam's modes.
     let hub = json(&[
         "modes",
         &shipped("hub_beam_tip_mass"),
@@ -192,14 +191,14 @@ fn modes_are_those_of_textbooks() {
 }
 
 #[test]
-fn equilibria_are_those_of_the_closed_form() {
-    // Its angle is from upright, and it begins at 3/4 pi: nearer to hanging.
+fn equilibria_match_closed_form() {
+    // The angle is measured from upright; the initial 3/4 pi is nearer to hanging.
     let hanging = json(&["trim", &shipped("pendulum"), "--json"]);
     let theta = hanging["at"]["theta"].as_f64().expect("an angle");
     assert!((theta - PI).abs() < 1e-9, "{hanging}");
     assert_eq!(hanging["stability"], "asymptotically stable");
     let spec = shipped("furuta_pendulum");
-    // It begins at 3 rad, next to hanging upright.
+    // The initial angle of 3 rad is next to upright.
     let upright = json(&["trim", &spec]);
     let theta = upright["at"]["theta"].as_f64().expect("an angle");
     assert!((theta - PI).abs() < 1e-9);
@@ -217,7 +216,7 @@ fn equilibria_are_those_of_the_closed_form() {
     assert!(said.contains("no equilibrium was found"), "{said}");
 }
 
-/// Rows of a CSV by the names of its columns.
+/// Returns the rows of a CSV, restricted to the named columns.
 fn columns(file: &Path, names: &[&str]) -> Vec<Vec<f64>> {
     let text = std::fs::read_to_string(file).expect("a file");
     let mut lines = text.lines();
@@ -240,7 +239,7 @@ fn columns(file: &Path, names: &[&str]) -> Vec<Vec<f64>> {
 }
 
 #[test]
-fn inputs_follow_expressions_and_motions_begin_where_they_are_told_to() {
+fn inputs_follow_expressions_and_initial_states_are_set() {
     let folder = tempfile::tempdir().expect("a folder");
     let model = written(folder.path(), OSCILLATOR);
     let out = folder.path().join("motion.csv");
@@ -264,13 +263,14 @@ fn inputs_follow_expressions_and_motions_begin_where_they_are_told_to() {
     };
     let omega = 5.0_f64;
     for solver in ["auto", "rk"] {
-        // A step of 10 N after 0.5 s; x = (F/k)(1 - cos(omega (t - 0.5))).
+        // A step of 10 N at 0.5 s: x = (F/k)(1 - cos(omega (t - 0.5))).
         for row in simulate(&["--input", "u=10*above(t - 0.5)", "--solver", solver]) {
             let after = (row[0] - 0.5).max(0.0);
             let right = 0.2 * (1.0 - (omega * after).cos());
             assert!((row[1] - right).abs() < 2e-8, "{solver} {row:?} {right}");
         }
-        // 3 sin(2 t), by numbers and by parameters: x = F/(k - m w^2) (sin(w t) - w/omega sin(omega t)).
+        // 3 sin(2 t), with numbers and with parameters: x = F/(k - m w^2) (sin(w t) - w/omega
+        // sin(omega t)).
         for input in ["u=3*sin(2*t)", "u=F_0*sin(w_0*t)"] {
             for row in simulate(&[
                 "--input",
@@ -302,7 +302,7 @@ fn inputs_follow_expressions_and_motions_begin_where_they_are_told_to() {
 }
 
 #[test]
-fn what_makes_no_sense_is_refused_with_what_would() {
+fn invalid_options_are_rejected_with_suggestion() {
     let folder = tempfile::tempdir().expect("a folder");
     let model = written(folder.path(), OSCILLATOR);
     let out = folder.path().join("none.csv").display().to_string();

@@ -1,4 +1,4 @@
-//! Shapes from a file: the frequencies of shapes that are known, certificates, and what is refused.
+//! Shapes from a file: frequencies of known shapes, certificates, and rejected files.
 
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write;
@@ -10,7 +10,7 @@ use eomgen_tests::program::{accepted, refused};
 
 use super::{json, written};
 
-/// A beam between x = 0.25 and 0.95 m with its shapes in `modes.csv`.
+/// Beam between x = 0.25 and 0.95 m with its shapes in `modes.csv`.
 const BEAM: &str = r#"
 [model]
 name = "beam"
@@ -34,7 +34,7 @@ inertia = "1/2*integral(mu*dot(w)^2, w)"
 elastic = "1/2*integral(B*diff(w, x, 2)^2, w)"
 "#;
 
-/// Every kind of expression of the field.
+/// All kinds of expressions of the field.
 const MORE: &str = r#"
 bed = "1/2*integral(B*exp(-x/l)*diff(w, x, 1)^2, w)/l^2 + 1/4*integral(B*w^4, w)/l^6"
 load = "-B*(2*integral(x*w, w)/l^4 + integral(w, w)/l^3)"
@@ -45,7 +45,7 @@ mixed = "B*integral(x^2*w*diff(w, x, 2), w)/l^4 + B*integral(diff(w, x, 1)*diff(
 moment = { value = "B*at(diff(w, x, 2), x_0 + l/2)", unit = "N m" }
 "#;
 
-/// Sines at `rows` places, denser towards the start.
+/// Returns a table of sine shapes at `rows` positions, denser towards the start.
 fn sines(rows: usize, modes: usize) -> String {
     let mut text = "x".to_owned();
     (1..=modes).for_each(|r| write!(text, ",phi_{r}").expect("written"));
@@ -65,10 +65,10 @@ fn with_table(folder: &Path, specification: &str, table: impl AsRef<[u8]>) -> St
     written(folder, specification)
 }
 
-/// A beam on two supports by its own modes in a table: by Rayleigh's principle frequencies are off
-/// by the square of the curvatures' error, (r pi h)^4/720 and a little at the ends.
+/// Simply supported beam with its modes in a table. By Rayleigh's principle the frequencies are
+/// wrong by the square of the curvature error: (r pi h)^4/720 and a little at the ends.
 #[test]
-fn frequencies_are_those_of_the_shapes_in_the_table() {
+fn frequencies_match_shapes_of_table() {
     let folder = tempfile::tempdir().expect("a folder");
     for (rows, tolerance) in [(41, 1e-4), (161, 1e-6)] {
         let model = with_table(folder.path(), BEAM, sines(rows, 3));
@@ -85,7 +85,7 @@ fn frequencies_are_those_of_the_shapes_in_the_table() {
 }
 
 #[test]
-fn a_table_passes_its_certificate() {
+fn certificate_with_table_passes() {
     let folder = tempfile::tempdir().expect("a folder");
     for (order, rows) in [(0, 9), (1, 9), (3, 9), (3, 60)] {
         let text = (BEAM.to_owned() + MORE).replace("order = 3", &format!("order = {order}"));
@@ -103,9 +103,9 @@ fn a_table_passes_its_certificate() {
     }
 }
 
-/// What is emitted tells by its hash from which table it came.
+/// The hash in the emitted code must depend on the table.
 #[test]
-fn the_hash_covers_the_table() {
+fn hash_includes_the_table() {
     let folder = tempfile::tempdir().expect("a folder");
     let hash = |table: &str| {
         let path = with_table(folder.path(), BEAM, table);
@@ -120,7 +120,7 @@ fn the_hash_covers_the_table() {
 }
 
 #[test]
-fn a_text_without_a_folder_has_no_table() {
+fn table_needs_a_folder() {
     let found = eomgen_model_spec::check(Source::new("beam.toml", BEAM)).expect_err("no folder");
     let said = found.render(false);
     assert!(
@@ -154,7 +154,7 @@ fn edits_keep_the_folder() {
 }
 
 #[test]
-fn tables_that_are_none_are_refused_with_the_place() {
+fn invalid_tables_are_rejected_with_location() {
     let folder = tempfile::tempdir().expect("a folder");
     let good = sines(21, 3);
     let lines: Vec<&str> = good.lines().collect();
@@ -226,7 +226,7 @@ fn tables_that_are_none_are_refused_with_the_place() {
 }
 
 #[test]
-fn shapes_that_are_not_enough_or_not_independent_are_refused() {
+fn too_few_or_dependent_shapes_are_rejected() {
     let folder = tempfile::tempdir().expect("a folder");
     let table = |third: fn(f64, f64) -> f64| {
         let mut text = "x,phi_1,phi_2,phi_3\n".to_owned();
@@ -263,7 +263,7 @@ fn shapes_that_are_not_enough_or_not_independent_are_refused() {
 }
 
 #[test]
-fn names_that_lead_elsewhere_are_refused() {
+fn paths_outside_the_folder_are_rejected() {
     let folder = tempfile::tempdir().expect("a folder");
     let inner = folder.path().join("inner");
     std::fs::create_dir(&inner).expect("a folder");

@@ -1,5 +1,5 @@
 //! `--measure lyapunov` against the closed form of a linear oscillator, against two motions of a
-//! nonlinear one, and beside `poincare`; where it is refused.
+//! nonlinear one, together with `poincare`, and rejected uses.
 
 use eomgen_tests::models::path;
 use eomgen_tests::program::accepted;
@@ -7,7 +7,7 @@ use eomgen_tests::program::accepted;
 use super::place::{Place, accept, column, refuse, table};
 
 #[test]
-fn the_exponent_of_a_linear_oscillator_is_minus_its_damping() {
+fn exponent_of_linear_oscillator_is_minus_damping() {
     let place = Place::new();
     let axes = ["--vary", "c=400:1000:3", "--vary", "omega=1:3:2"];
     let more = [
@@ -22,11 +22,11 @@ fn the_exponent_of_a_linear_oscillator_is_minus_its_damping() {
     let found = table(&place.at("map"));
     let (c, omega) = (column(&found, "c"), column(&found, "omega"));
     for point in 0..6 {
-        // Every tangent vector shrinks as exp(-c t/(2 m)) and turns.
+        // Every tangent vector decays as exp(-c t/(2 m)) and rotates.
         let expected = -c[point] / 1000.0 / 2.0;
         let lambda = column(&found, "lambda_1")[point];
-        // The length of a turning vector swings by a factor, which a mean over 400 periods
-        // divides by their time; it is less than the ratio of axes of the ellipse, 2.2.
+        // The length of a rotating vector varies by a factor below 2.2, the ratio of the ellipse's
+        // axes; the mean over 400 periods divides its logarithm by their time.
         let bound = 2.2_f64.ln() / (400.0 * std::f64::consts::TAU / omega[point]);
         assert!((lambda - expected).abs() < bound, "{point}: {lambda}");
         assert!(column(&found, "lambda_1_se")[point] < bound * 10.0);
@@ -37,7 +37,7 @@ fn the_exponent_of_a_linear_oscillator_is_minus_its_damping() {
 }
 
 #[test]
-fn play_makes_the_arm_chaotic() {
+fn arm_with_backlash_is_chaotic() {
     let place = Place::new();
     let (arm, out) = (path("planetary_arm").display().to_string(), place.at("arm"));
     let axis = ["--vary", "b_sp,b_pr=0:100e-6:2", "--set", "omega=60"];
@@ -54,7 +54,7 @@ fn play_makes_the_arm_chaotic() {
 }
 
 #[test]
-fn exponents_are_refused_where_they_make_no_sense() {
+fn invalid_uses_of_exponents_are_rejected() {
     let place = Place::new();
     let vary = ["--vary", "c=400:1000:3"];
     let few = ["--measure", "lyapunov", "--periods", "19"];
@@ -76,7 +76,7 @@ fn exponents_are_refused_where_they_make_no_sense() {
     assert!(!place.at("never").exists());
 }
 
-/// x'' + delta x' - x + x^3 = F cos(omega t) in units of 1.
+/// x'' + delta x' - x + x^3 = F cos(omega t) with unit parameters.
 const DUFFING: &str = r#"
 [model]
 name = "duffing"
@@ -99,8 +99,8 @@ damper = "1/2*delta*dot(x)^2"
 drive = { on = "x", value = "F*cos(omega*t)" }
 "#;
 
-/// The growth of the distance of two motions of Duffing's oscillator that begin close together, set
-/// back after every period (Benettin), by classical Runge-Kutta steps.
+/// Returns the growth rate of the distance of two close motions of Duffing's oscillator, rescaled
+/// after every period (Benettin), with classical Runge-Kutta steps.
 fn growth_of_a_distance(force: f64, transient: usize, periods: usize) -> f64 {
     const STEPS: usize = 400;
     const CLOSE: f64 = 1e-7;
@@ -131,7 +131,7 @@ fn growth_of_a_distance(force: f64, transient: usize, periods: usize) -> f64 {
 }
 
 #[test]
-fn the_exponent_of_duffings_oscillator_is_that_of_two_motions() {
+fn exponent_of_duffing_oscillator_matches_two_motions() {
     let place = Place::new();
     std::fs::write(place.at("duffing.toml"), DUFFING).expect("a specification");
     let (spec, out) = (place.at("duffing.toml"), place.at("duffing"));
@@ -148,7 +148,7 @@ fn the_exponent_of_duffings_oscillator_is_that_of_two_motions() {
     accepted(&[&what[..], &span].concat());
     let found = table(&out);
     let (lambda, error) = (column(&found, "lambda_1"), column(&found, "lambda_1_se"));
-    // In one well and periodic: the vector shrinks as exp(-delta t/2) while it turns.
+    // Periodic motion in one well: the tangent vector decays as exp(-delta t/2) while it rotates.
     assert!((lambda[0] + 0.125).abs() < 5e-3, "{lambda:?}");
     let expected = growth_of_a_distance(0.4, 50, 300);
     assert!(expected > 0.05, "chaotic: {expected}");
@@ -159,9 +159,9 @@ fn the_exponent_of_duffings_oscillator_is_that_of_two_motions() {
     );
 }
 
-/// Without a forcing the second half of a time is measured.
+/// Without forcing, the second half of the time span is measured.
 #[test]
-fn a_pendulum_that_comes_to_rest_has_the_exponent_of_its_damping() {
+fn exponent_of_pendulum_at_rest_is_minus_damping() {
     let place = Place::new();
     let text = DUFFING
         .replace("1/4*k_3*x^4 - 1/2*k*x^2", "1/4*k_3*x^4 + 1/2*k*x^2")

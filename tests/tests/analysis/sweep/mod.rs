@@ -1,5 +1,5 @@
-//! `eomgen sweep` and `eomgen merge`: the same bytes whatever the threads, shards and kills,
-//! against the closed form of a forced oscillator; what is refused.
+//! `eomgen sweep` and `eomgen merge`: equal bytes for any threads, shards and kills, numbers
+//! against the closed form of a forced oscillator, and rejected options.
 
 mod exponents;
 mod over_time;
@@ -20,7 +20,7 @@ use eomgen_tests::program::{self, accepted};
 use place::{MAP, Place, accept, column, merge_command, parts, refuse, results, table};
 
 #[test]
-fn the_numbers_are_those_of_the_closed_form() {
+fn sweep_matches_closed_form() {
     let place = Place::new();
     let span = ["--transient", "60", "--periods", "4"];
     let axes = ["--vary", "c=400:1000:3", "--vary", "omega=1:3:4"];
@@ -30,13 +30,13 @@ fn the_numbers_are_those_of_the_closed_form() {
     assert_eq!(c[..5], [400.0, 400.0, 400.0, 400.0, 700.0]);
     assert_eq!((omega[0], omega[3], omega[4]), (1.0, 3.0, 1.0));
     for (point, mean) in column(&table, "poincare_mean").iter().enumerate() {
-        // x = A sin(omega t) + B cos(omega t); at the forcing period that is B.
+        // x = A sin(omega t) + B cos(omega t), which is B at the forcing period.
         let (c, omega) = (c[point] / 1000.0, omega[point]);
         let stiffness = 4.0 - omega * omega;
         let amplitude = 3.0 / (stiffness.powi(2) + (c * omega).powi(2));
         let expected = -amplitude * c * omega;
-        // The transient decays as exp(-c t/(2 m)): 3e-11 after 60 periods at the smallest c
-        // and largest omega, times a resonance of a few m.
+        // The transient decays as exp(-c t/(2 m)): 3e-11 after 60 periods at the smallest c and
+        // largest omega, times a resonance of a few m.
         assert!(
             (mean - expected).abs() < 1e-9,
             "{point}: {mean} for {expected}"
@@ -51,7 +51,7 @@ fn the_numbers_are_those_of_the_closed_form() {
 }
 
 #[test]
-fn a_varied_expression_and_a_set_parameter_are_those_of_simulate() {
+fn varied_expression_and_set_parameter_match_simulate() {
     let place = Place::new();
     let vary = ["--vary", "zeta=0.1:0.3:2", "--set", "F=-2"];
     let span = ["--transient", "2", "--periods", "2"];
@@ -59,7 +59,7 @@ fn a_varied_expression_and_a_set_parameter_are_those_of_simulate() {
     let swept = table(&place.at("line"));
     let csv = place.at("x.csv").display().to_string();
     let spec = place.at("oscillator.toml").display().to_string();
-    // omega = 2: the fourth period begins at 3 pi.
+    // With omega = 2 the fourth period begins at 3 pi.
     let (until, sample) = (format!("{:?}", TAU * 1.5), format!("{:?}", TAU / 2.0));
     let settings = ["--set", "zeta=0.3", "--set", "F=-2", "--out", &csv];
     let times = ["--until", &until, "--interval", &sample];
@@ -68,12 +68,12 @@ fn a_varied_expression_and_a_set_parameter_are_those_of_simulate() {
     let last = text.lines().last().expect("a row").split(',').nth(1);
     let expected: f64 = last.expect("x").parse().expect("a number");
     let found = column(&swept, "poincare_2")[1];
-    // Two runs of the exact solver, with other samples; the table has all digits.
+    // Two runs of the exact solver with different samples; the table has all digits.
     assert!((found - expected).abs() < 1e-13, "{found} for {expected}");
 }
 
 #[test]
-fn threads_and_shards_leave_no_trace() {
+fn threads_and_shards_give_same_bytes() {
     let place = Place::new();
     let (one, two, shards) = (place.at("one"), place.at("two"), place.at("shards"));
     accept(&place.sweep("one", &[&MAP[..], &["--threads", "1"]].concat()));
@@ -91,14 +91,14 @@ fn threads_and_shards_leave_no_trace() {
     }
     accept(&merge_command(&shards));
     assert!(results(&one) == results(&shards), "three shards");
-    // Once more, with nothing left to do.
+    // Repeated with nothing left to compute.
     let text = accept(&place.sweep("one", &MAP));
     assert!(text.contains("0 points computed, 20 resumed"), "{text}");
     assert!(results(&one) == results(&two), "again");
 }
 
 #[test]
-fn shards_in_folders_of_their_own_can_be_collected() {
+fn shards_in_separate_folders_can_be_merged() {
     let place = Place::new();
     accept(&place.sweep("whole", &MAP));
     for shard in ["1/2", "2/2"] {
@@ -116,16 +116,16 @@ fn shards_in_folders_of_their_own_can_be_collected() {
     assert!(results(&place.at("whole")) == results(&first));
 }
 
-/// How many parts are whole: what a kill left unfinished is a file too, and is computed again.
-fn finished(folder: &Path) -> usize {
+/// Returns the number of finished parts; unfinished files after a kill are computed again.
+fn count_finished(folder: &Path) -> usize {
     let parts = parts(folder);
     parts.iter().filter(|name| name.ends_with(".part")).count()
 }
 
-/// Kills the program, without a chance to tidy up, once it has left some parts.
+/// Kills the program after it has written `some` parts.
 fn kill_after(mut child: Child, folder: &Path, some: usize) {
     let deadline = Instant::now() + Duration::from_secs(60);
-    while finished(folder) < some {
+    while count_finished(folder) < some {
         assert!(Instant::now() < deadline, "no parts in a minute");
         let ended = child.try_wait().expect("a child");
         assert!(ended.is_none(), "it ended before it was killed: {ended:?}");
@@ -136,9 +136,9 @@ fn kill_after(mut child: Child, folder: &Path, some: usize) {
 }
 
 #[test]
-fn a_killed_run_goes_on_to_the_same_bytes() {
+fn killed_run_resumes_to_same_bytes() {
     let place = Place::new();
-    // Points of some hundredths of a second, so that a kill falls between the first and last.
+    // Points of some 0.01 s, so that a kill falls between the first and the last.
     let slow = [
         "--vary",
         "c=400:1000:5",
@@ -172,12 +172,12 @@ fn a_killed_run_goes_on_to_the_same_bytes() {
     assert_eq!(
         parts(&killed),
         parts(&place.at("whole")),
-        "nothing unfinished is left"
+        "no unfinished file remains"
     );
 }
 
 #[test]
-fn the_arm_is_swept_in_both_meshes_at_once() {
+fn sweep_varies_both_meshes_together() {
     let place = Place::new();
     let (arm, out) = (path("planetary_arm").display().to_string(), place.at("arm"));
     accepted(&[

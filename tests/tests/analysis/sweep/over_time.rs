@@ -1,5 +1,5 @@
-//! Numbers of a course over time: against the response in closed form, and against the rows of
-//! `simulate`.
+//! Measures over time (`max`, `rms`, `final`) against the closed form of the response and the rows
+//! of `simulate`.
 
 use std::f64::consts::SQRT_2;
 
@@ -8,14 +8,14 @@ use eomgen_tests::program::accepted;
 
 use super::place::{Place, accept, column, refuse, table};
 
-/// The amplitude of the oscillator's answer to its forcing, m.
+/// Returns the amplitude of the forced response, m.
 fn amplitude(damping: f64, omega: f64) -> f64 {
     let (m, k, force) = (1.0, 4.0, 3.0);
     force / (k - m * omega * omega).hypot(damping * omega)
 }
 
 #[test]
-fn the_answer_to_a_forcing_has_its_amplitude() {
+fn forced_response_has_closed_form_amplitude() {
     let place = Place::new();
     let wide = ["--vary", "c=400:4000:4:log", "--vary", "omega=1:3:3"];
     let long = ["--transient", "60", "--periods", "3"];
@@ -37,7 +37,7 @@ fn the_answer_to_a_forcing_has_its_amplitude() {
                 "{name}: {found} for {right}"
             );
         };
-        // A third of a thousandth of the time lies between samples: (2 pi/667)^2/8.
+        // The maximum can fall between samples 1/667 of a period apart: (2 pi/667)^2/8.
         near("max:x", expected, 2e-5);
         near("max:x_dot", expected * omega[point], 2e-5);
         near("rms:x", expected / SQRT_2, 1e-8);
@@ -52,7 +52,7 @@ fn the_answer_to_a_forcing_has_its_amplitude() {
 }
 
 #[test]
-fn they_are_those_of_the_rows_of_simulate() {
+fn measures_over_time_match_rows_of_simulate() {
     let place = Place::new();
     let arm = path("planetary_arm").display().to_string();
     let (out, rows) = (place.at("arm"), place.at("arm.csv"));
@@ -122,7 +122,7 @@ fn they_are_those_of_the_rows_of_simulate() {
 }
 
 #[test]
-fn what_cannot_be_measured_is_refused() {
+fn invalid_measures_are_rejected() {
     let place = Place::new();
     for (more, what) in [
         (

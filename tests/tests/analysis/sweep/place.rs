@@ -1,4 +1,4 @@
-//! A folder with a specification to sweep, and what a sweep leaves there.
+//! Folder with a specification to sweep, and the files of a sweep.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use eomgen_sweep::{Folder, Table, merge};
 use eomgen_tests::program::{accepted, refused};
 
-/// m x'' + c x' + k x = F sin(omega t), with c in a unit of its own, so that units matter.
+/// m x'' + c x' + k x = F sin(omega t), with c in another unit, to test unit conversion.
 pub const OSCILLATOR: &str = r#"
 [model]
 name  = "oscillator"
@@ -30,7 +30,7 @@ damper = "zeta*sqrt(k*m)*dot(x)^2"
 drive = { on = "x", value = "F*sin(omega*t)" }
 "#;
 
-/// A folder with the oscillator in it.
+/// Temporary folder with the oscillator.
 pub struct Place {
     folder: tempfile::TempDir,
 }
@@ -46,7 +46,7 @@ impl Place {
         self.folder.path().join(name)
     }
 
-    /// The arguments of a sweep of the oscillator into a folder here.
+    /// Returns the arguments of a sweep of the oscillator into the folder `out`.
     pub fn sweep(&self, out: &str, more: &[&str]) -> Vec<String> {
         let spec = self.at("oscillator.toml").display().to_string();
         let out = self.at(out).display().to_string();
@@ -56,7 +56,7 @@ impl Place {
     }
 }
 
-/// Two axes, quick points.
+/// Two axes of points that take little time.
 pub const MAP: [&str; 8] = [
     "--vary",
     "c=400:1000:4",
@@ -80,7 +80,7 @@ pub fn merge_command(folder: &Path) -> Vec<String> {
     vec!["merge".to_owned(), folder.display().to_string()]
 }
 
-/// The bytes of every final file.
+/// Returns the names and bytes of all final files.
 pub fn results(folder: &Path) -> Vec<(String, Vec<u8>)> {
     let mut found = Vec::new();
     for entry in fs::read_dir(folder).expect("the folder") {

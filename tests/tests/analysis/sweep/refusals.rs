@@ -1,4 +1,4 @@
-//! Points without a number, sweeps that do not go together, options that make no sense.
+//! Points without a result, incompatible sweeps, and invalid options.
 
 use std::fs;
 
@@ -8,7 +8,7 @@ use eomgen_tests::program::{accepted, refused};
 use super::place::{MAP, OSCILLATOR, Place, accept, column, refuse, results, table};
 
 #[test]
-fn another_sweep_in_the_folder_is_refused_and_left_alone() {
+fn different_sweep_in_folder_is_rejected_and_unchanged() {
     let place = Place::new();
     accept(&place.sweep("map", &MAP));
     let before = results(&place.at("map"));
@@ -31,7 +31,7 @@ fn another_sweep_in_the_folder_is_refused_and_left_alone() {
 }
 
 #[test]
-fn engines_are_asked_for_what_they_can_do() {
+fn invalid_engine_options_are_rejected() {
     let place = Place::new();
     for (more, what) in [
         (&["--engine", "pbs"][..], "slurm, dask"),
@@ -55,9 +55,9 @@ fn engines_are_asked_for_what_they_can_do() {
 }
 
 #[test]
-fn points_without_a_number_say_why() {
+fn points_without_result_have_a_reason() {
     let place = Place::new();
-    // Without mass there is no motion, at a frequency of 0 no forcing period.
+    // Without mass there is no motion, and at frequency 0 no forcing period.
     let axes = ["--vary", "m=0:1:2", "--vary", "omega=0:2:2"];
     let more = ["--set", "zeta=0.1", "--periods", "2", "--json"];
     let json = accept(&place.sweep("few", &[&axes[..], &more[..]].concat()));
@@ -72,7 +72,7 @@ fn points_without_a_number_say_why() {
     assert_eq!(status[1..], [1.0, 5.0, 0.0]);
     let mean = column(&found, "poincare_mean");
     assert_eq!(mean.iter().filter(|mean| mean.is_nan()).count(), 3);
-    // Negative damping: growth by exp(9 t) for more than 950 s, beyond any number.
+    // Negative damping: growth by exp(9 t) for more than 950 s overflows.
     let growing = ["--vary", "c=-10000:-9000:2", "--transient", "300"];
     accept(&place.sweep("growing", &growing));
     let found = table(&place.at("growing"));
@@ -89,7 +89,7 @@ fn points_without_a_number_say_why() {
 }
 
 #[test]
-fn what_makes_no_sense_is_refused_before_anything_is_written() {
+fn invalid_sweeps_are_rejected_before_writing() {
     let place = Place::new();
     let c = "c=1:2:3";
     for (more, part) in [

@@ -1,5 +1,5 @@
-//! Random samples of uncertain parameters: against closed forms with their standard errors, the same
-//! bytes whatever the threads, shards and kills, and what is refused.
+//! Random samples of uncertain parameters: closed forms within standard errors, equal bytes for any
+//! threads, shards and kills, and rejected options.
 
 use std::fs;
 use std::path::Path;
@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use super::place::{Place, column, table};
 
-/// A mass on a spring under a force, none of it known exactly: displacements are linear in the force.
+/// Mass on a spring under a force, all uncertain; displacements are linear in the force.
 const UNCERTAIN: &str = r#"
 [model]
 name = "uncertain"
@@ -36,7 +36,7 @@ fn place() -> Place {
     place
 }
 
-/// The arguments of a sweep over samples into a folder.
+/// Returns the arguments of a sweep over samples into a folder.
 fn arguments(place: &Place, out: &str, more: &[&str]) -> Vec<String> {
     let [spec, out] = ["uncertain.toml", out].map(|name| place.at(name).display().to_string());
     let given = [
@@ -69,8 +69,8 @@ fn statistics(folder: &Path) -> Value {
     serde_json::from_slice(&text).expect("JSON")
 }
 
-/// All that is left but the parts.
-fn left(folder: &Path) -> Vec<(String, Vec<u8>)> {
+/// Returns all result files except the parts.
+fn result_files(folder: &Path) -> Vec<(String, Vec<u8>)> {
     let entries = fs::read_dir(folder).expect("the folder").flatten();
     let files = entries.filter(|entry| entry.path().is_file());
     let mut found: Vec<_> = files
@@ -84,7 +84,7 @@ fn left(folder: &Path) -> Vec<(String, Vec<u8>)> {
 }
 
 #[test]
-fn a_linear_measure_has_the_mean_and_the_deviation_of_the_closed_form() {
+fn mean_and_deviation_of_linear_measure_match_closed_form() {
     let place = place();
     let count = COUNT.to_string();
     accept(&arguments(
@@ -99,7 +99,7 @@ fn a_linear_measure_has_the_mean_and_the_deviation_of_the_closed_form() {
     let cos = (5.0_f64 * 0.5).cos();
     let (by_force, by_start) = ((1.0 - cos) / 50.0, cos);
     let mean = 3.0 * by_force + 0.025 * by_start;
-    // 5 % of 3 N, and a range of 30 mm whose deviation is that by sqrt(12).
+    // 5 % of 3 N, and a range of 30 mm with a standard deviation of 30 mm/sqrt(12).
     let parts = [0.15 * by_force, 0.03 / 12_f64.sqrt() * by_start];
     let sd = parts[0].hypot(parts[1]);
     let root = (COUNT as f64).sqrt();
@@ -114,7 +114,7 @@ fn a_linear_measure_has_the_mean_and_the_deviation_of_the_closed_form() {
         .map(|q| q.as_f64().expect("a number"))
         .collect();
     assert_eq!(quantiles.len(), 7);
-    // Each sample is the closed form at its parameters, x_0 in mm.
+    // Each sample matches the closed form at its parameters, with x_0 in mm.
     let table = table(&out);
     let (force, start) = (column(&table, "F"), column(&table, "x_0"));
     for (sample, x) in column(&table, "final:x").iter().enumerate() {
@@ -122,7 +122,7 @@ fn a_linear_measure_has_the_mean_and_the_deviation_of_the_closed_form() {
         assert!((x - expected).abs() < 1e-14, "{sample}: {x} {expected}");
         assert!((10.0..=40.0).contains(&start[sample]) && force[sample] > 0.0);
     }
-    // The start decides most, against the force: the cosine is negative.
+    // The initial value has the largest effect, opposite to the force: the cosine is negative.
     let ranks = &found["measured"]["final:x"]["rank_correlations"];
     let [by_f, by_x] = ["F", "x_0"].map(|name| ranks[name].as_f64().expect("a number"));
     assert!(by_f > 0.2 && by_x < -0.8, "{ranks}");
@@ -133,7 +133,7 @@ fn a_linear_measure_has_the_mean_and_the_deviation_of_the_closed_form() {
 }
 
 #[test]
-fn seeds_make_the_numbers_and_threads_shards_and_kills_leave_no_trace() {
+fn samples_depend_on_seed_but_not_on_threads_shards_or_kills() {
     let place = place();
     let few = ["--samples", "40"];
     let text = accept(&arguments(
@@ -145,7 +145,7 @@ fn seeds_make_the_numbers_and_threads_shards_and_kills_leave_no_trace() {
         text.contains("final:x: mean ") && text.contains("rank correlations: x_0 "),
         "{text}"
     );
-    let whole = left(&place.at("one"));
+    let whole = result_files(&place.at("one"));
     assert_eq!(whole.len(), 5);
     accept(&arguments(
         &place,
@@ -153,7 +153,7 @@ fn seeds_make_the_numbers_and_threads_shards_and_kills_leave_no_trace() {
         &[&few[..], &["--seed", "1", "--threads", "2"]].concat(),
     ));
     assert!(
-        left(&place.at("two")) == whole,
+        result_files(&place.at("two")) == whole,
         "two threads, the seed said"
     );
     for shard in ["2/2", "1/2"] {
@@ -164,14 +164,14 @@ fn seeds_make_the_numbers_and_threads_shards_and_kills_leave_no_trace() {
         ));
     }
     accepted(&["merge", &place.at("shards").display().to_string()]);
-    assert!(left(&place.at("shards")) == whole, "shards");
-    // As a kill leaves it: some parts are missing, one is cut short.
+    assert!(result_files(&place.at("shards")) == whole, "shards");
+    // After a kill some parts are missing and one is truncated.
     let parts = place.at("two/parts");
     fs::remove_file(parts.join("0007.part")).expect("removed");
     fs::write(parts.join("0009.part"), "eomgen sweep part 1").expect("cut");
     let text = accept(&arguments(&place, "two", &few));
     assert!(text.contains("2 points computed, 38 resumed"), "{text}");
-    assert!(left(&place.at("two")) == whole, "after a kill");
+    assert!(result_files(&place.at("two")) == whole, "after a kill");
     let message = refuse(&arguments(
         &place,
         "one",
@@ -192,14 +192,14 @@ fn seeds_make_the_numbers_and_threads_shards_and_kills_leave_no_trace() {
 }
 
 #[test]
-fn set_moves_what_uncertainties_are_about() {
+fn set_changes_the_nominal_value_of_uncertain_parameter() {
     let place = place();
     let few = ["--samples", "60", "--set", "F=-30"];
     accept(&arguments(&place, "out", &few));
     let forces = table(&place.at("out"));
     let forces = column(&forces, "F");
     let mean = forces.iter().sum::<f64>() / 60.0;
-    // 5 % of 30 N over the root of 60.
+    // 5 % of 30 N divided by sqrt(60).
     assert!((mean + 30.0).abs() < 4.0 * 1.5 / 60_f64.sqrt(), "{mean}");
     assert!(forces.iter().all(|force| *force < 0.0), "the sign stays");
     for (set, part) in [("F=0", "0.05 of 0"), ("x_0=50", "10 to 40 mm")] {
@@ -209,12 +209,12 @@ fn set_moves_what_uncertainties_are_about() {
             "{message}"
         );
     }
-    // Where nothing is sampled, an uncertainty has no say.
+    // Without samples, uncertainties have no effect.
     accept(&arguments(&place, "grid", &["--vary", "F=0:50:2"]));
 }
 
 #[test]
-fn wrong_requests_are_refused() {
+fn invalid_sample_options_are_rejected() {
     let place = place();
     for (more, part) in [
         (&["--samples", "0"][..], "expected a number from 1"),

@@ -1,10 +1,10 @@
-//! `--measure poincare:NAME` and `--section`: any coordinate, and models without a forcing.
+//! `--measure poincare:NAME` and `--section`: any coordinate, and models without forcing.
 
 use eomgen_tests::program::{accepted, refused};
 
 use super::place::{Place, accept, column, table};
 
-/// x = sin(t) and y = cos(1.5 t): two oscillators that nothing couples and nothing drives.
+/// x = sin(t) and y = cos(1.5 t): two independent free oscillators.
 const TWO: &str = r#"
 [model]
 name = "two"
@@ -38,7 +38,7 @@ fn borrowed(arguments: &[String]) -> Vec<&str> {
 }
 
 #[test]
-fn an_autonomous_model_is_seen_where_a_coordinate_goes_through_a_value() {
+fn section_at_a_coordinate_value_samples_autonomous_model() {
     let place = Place::new();
     let section = [
         "--measure",
@@ -52,19 +52,19 @@ fn an_autonomous_model_is_seen_where_a_coordinate_goes_through_a_value() {
     accept(&of_two(&place, &[&section[..], &span].concat()));
     let found = table(&place.at("two"));
     let one = |name: &str| column(&found, name)[0];
-    // x goes down through 0 at t = pi (2 k + 1), where y = cos(1.5 pi (2 k + 1)) = 0.
+    // x falls through 0 at t = pi (2 k + 1), when y = cos(1.5 pi (2 k + 1)) = 0.
     assert!((one("poincare:y_time") - std::f64::consts::TAU).abs() < 1e-7);
     for point in 1..=12 {
         let y = one(&format!("poincare:y_{point}"));
         assert!(y.abs() < 1e-6, "{point}: {y}");
     }
-    // The rates there are 1.5 and -1.5 in turn.
+    // The rates of y there alternate between 1.5 and -1.5.
     assert_eq!(one("poincare:y_period"), 2.0);
     assert_eq!(one("poincare:y_clusters"), 2.0);
 }
 
 #[test]
-fn upwards_is_another_section() {
+fn upward_section_samples_rising_crossings() {
     let place = Place::new();
     let section = [
         "--measure",
@@ -78,7 +78,7 @@ fn upwards_is_another_section() {
     accept(&of_two(&place, &[&section[..], &span].concat()));
     let found = table(&place.at("two"));
     for point in 1..=8_u32 {
-        // sin(t) = 1/2, upwards: t = pi/6 + 2 pi k.
+        // Rising sin(t) = 1/2: t = pi/6 + 2 pi k.
         let t = std::f64::consts::PI / 6.0 + std::f64::consts::TAU * f64::from(point + 1);
         let y = column(&found, &format!("poincare:y_{point}"))[0];
         assert!((y - (1.5 * t).cos()).abs() < 1e-6, "{point}: {y}");
@@ -86,7 +86,7 @@ fn upwards_is_another_section() {
 }
 
 #[test]
-fn another_coordinate_is_seen_once_per_forcing_period() {
+fn poincare_of_another_coordinate_samples_once_per_period() {
     let place = Place::new();
     let more = [
         "--measure",
@@ -107,7 +107,7 @@ fn another_coordinate_is_seen_once_per_forcing_period() {
 }
 
 #[test]
-fn sections_that_make_no_sense_are_refused() {
+fn invalid_sections_are_rejected() {
     let place = Place::new();
     for (more, what) in [
         (
@@ -164,7 +164,7 @@ fn sections_that_make_no_sense_are_refused() {
     }
 }
 
-/// A shaft that a motor turns with a torque that swings; PHI is its coordinate.
+/// Shaft driven by a motor with a varying torque; PHI is its coordinate.
 const SHAFT: &str = r#"
 [model]
 name = "shaft"
@@ -184,7 +184,7 @@ c = "1/2*c*dot(phi)^2"
 motor = { on = "phi", value = "T_0 + T_1*cos(omega*t)" }
 "#;
 
-/// Period and greatest value of what is seen once per forcing period.
+/// Returns the period and the largest value sampled once per forcing period.
 fn repetition(place: &Place, text: &str, vary: &str, quantity: &str) -> (f64, f64) {
     std::fs::write(place.at("model.toml"), text).expect("a specification");
     let _ = std::fs::remove_dir_all(place.at("out"));
@@ -211,14 +211,14 @@ fn repetition(place: &Place, text: &str, vary: &str, quantity: &str) -> (f64, f6
 }
 
 #[test]
-fn machines_that_turn_or_travel_repeat_with_their_forcing() {
+fn rotating_and_travelling_machines_have_period_one() {
     use std::f64::consts::PI;
     let place = Place::new();
-    // By its rate; in a range of angles by the angle itself.
+    // By its rate, and by the angle within a range of angles.
     assert_eq!(repetition(&place, SHAFT, "c=0.5:0.6:2", "phi_dot").0, 1.0);
     let (period, greatest) = repetition(&place, SHAFT, "c=0.5:0.6:2", "phi");
     assert!(period == 1.0 && greatest <= PI, "{period} {greatest}");
-    // Without a swing of the torque the speed does not change at all.
+    // With constant torque the speed is constant.
     assert_eq!(repetition(&place, SHAFT, "T_1=0:0:1", "phi_dot").0, 1.0);
     let rack = SHAFT
         .replace("phi = { unit = \"rad\" }", "phi = { unit = \"m\" }")
@@ -227,13 +227,13 @@ fn machines_that_turn_or_travel_repeat_with_their_forcing() {
         .replace("N m\"", "N\"");
     assert_eq!(repetition(&place, &rack, "c=0.5:0.6:2", "phi_dot").0, 1.0);
     assert_eq!(repetition(&place, &rack, "c=0.5:0.6:2", "phi").0, 1.0);
-    // Two wheels on a soft contact turn together.
+    // Two wheels in elastic contact turn together.
     let gear = SHAFT
         .replace("[coordinates]", "k = { value = 40, unit = \"N m\" }\n[coordinates]\npsi = { unit = \"rad\" }")
         .replace("[dissipation]", "w = \"1/2*J*dot(psi)^2\"\n[potential]\nk = \"1/2*k*(phi - 2*psi)^2\"\n[dissipation]\nd = \"1/2*c*dot(psi)^2\"");
     assert_eq!(repetition(&place, &gear, "c=0.5:0.6:2", "phi_dot").0, 1.0);
     assert_eq!(repetition(&place, &gear, "c=0.5:0.6:2", "psi").0, 1.0);
-    // A pendulum that a steady torque turns over: its equations repeat with a turn. The torque is
+    // A constant torque turns the pendulum over, so its equations repeat every turn. The torque is
     // modulated so that the motion locks to it.
     let pendulum = SHAFT
         .replace(
@@ -260,7 +260,7 @@ fn machines_that_turn_or_travel_repeat_with_their_forcing() {
     assert!(period == 1.0 && greatest <= PI, "{period} {greatest}");
 }
 
-/// A rotor that a potential slows down and speeds up; V is its potential.
+/// Rotor in a potential V that decelerates and accelerates it.
 const ROTOR: &str = r#"
 [model]
 name = "rotor"
@@ -275,7 +275,7 @@ k = "1/2*J*dot(p)^2"
 v = "V"
 "#;
 
-/// Runs a sweep of `a` with a section; the value of a column of the measure at its first value.
+/// Sweeps `a` with a section; returns a column of the measure at the first value of `a`.
 fn on_section(
     place: &Place,
     text: &str,
@@ -297,10 +297,10 @@ fn on_section(
 }
 
 #[test]
-fn a_section_by_an_angle_is_crossed_once_per_turn() {
+fn section_at_an_angle_is_crossed_once_per_turn() {
     let place = Place::new();
     let rotor = ROTOR.replace("\"V\"", "\"a*cos(p)\"");
-    // The energy is 18 + 0.1 cos(0.1), in every turn.
+    // The energy is 18 + 0.1 cos(0.1) in every turn.
     let rate = |p: f64| (36.0 + 0.2 * (0.1f64.cos() - p.cos())).sqrt();
     for section in ["p=1", "p=1 + 4*pi", "p=-1:up"] {
         let one = on_section(&place, &rotor, "poincare:p_dot", section);
@@ -314,7 +314,7 @@ fn a_section_by_an_angle_is_crossed_once_per_turn() {
             let found = one(&point.to_string());
             assert!((found - rate(at)).abs() < 1e-7, "{section}: {found}");
         }
-        // One turn takes the mean of 1/rate over the angle.
+        // The time per turn is the integral of 1/rate over the angle.
         let parts = 0..1000;
         let turn: f64 = parts
             .map(|k| 1.0 / rate(std::f64::consts::TAU * f64::from(k) / 1000.0))
@@ -325,7 +325,7 @@ fn a_section_by_an_angle_is_crossed_once_per_turn() {
     let angle = on_section(&place, &rotor, "poincare:p", "p=1");
     assert_eq!(angle("period"), 1.0);
     assert!((angle("min") - angle("max")).abs() < 1e-7);
-    // Backwards, without a potential: one step of the solver passes many turns.
+    // Backwards, without a potential: one solver step covers many turns.
     let back = ROTOR
         .replace("\"V\"", "\"0*a\"")
         .replace("rate = 6", "rate = -6");
@@ -335,9 +335,9 @@ fn a_section_by_an_angle_is_crossed_once_per_turn() {
 }
 
 #[test]
-fn a_section_by_an_angle_that_a_spring_tells_apart_is_crossed_at_its_value_only() {
+fn section_at_an_angle_with_spring_is_crossed_at_its_value_only() {
     let place = Place::new();
-    // w = 2 rad/s, and an amplitude of about 12 rad: the motion comes back once per 2 pi/w.
+    // w = 2 rad/s, with an amplitude of about 12 rad: the section is crossed once per 2 pi/w.
     let spring = ROTOR
         .replace("\"V\"", "\"1/2*40*a*p^2\"")
         .replace("initial_rate = 6", "initial_rate = 24");
