@@ -1,8 +1,10 @@
 //! Values given as `NAME=EXPR`, and inputs.
 
 use eomgen_model_spec::assignment::Assignment;
+use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_model_spec::edit::{self, Edit, EditError, PrescribeInput};
 use eomgen_model_spec::model::{Model, ParameterValue, STABILISATION_RATE};
+use eomgen_model_spec::source::Source;
 use eomgen_model_spec::suggest::did_you_mean;
 
 use crate::error::{Error, Result, warn};
@@ -77,6 +79,10 @@ pub fn with_inputs(mut model: Model, prescribed: &[String]) -> Result<Model> {
 fn not_prescribed(error: &EditError, given: &Assignment, model: &Model) -> Error {
     let found = match error {
         EditError::Invalid(found) => given.relocated(found),
+        EditError::Expression { text, diagnostic } => {
+            let source = Source::new("--input", text.as_str());
+            given.relocated(&Diagnostics::one(source, (**diagnostic).clone()))
+        }
         EditError::MissingTerm { .. } => Some(given.refuse_name(messages(error, model), None)),
         _ => None,
     };

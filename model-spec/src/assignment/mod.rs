@@ -69,14 +69,14 @@ impl Assignment {
         Diagnostics::one(self.source.clone(), wrong)
     }
 
-    /// Findings of a text that contains the value, at the same places of this option; `None` if one of them has no
-    /// place in the value.
+    /// Returns findings of a text that contains the value, at their places in this option. `None` if a finding has
+    /// no place in the value.
     pub fn relocated(&self, found: &Diagnostics) -> Option<Diagnostics> {
         let (text, value) = (&found.source().text, self.value());
         let shifted = |span: Span| {
             let mut starts = text.match_indices(value).map(|(start, _)| start);
             let start =
-                starts.find(|start| *start <= span.start && span.end <= start + value.len())?;
+                starts.find(|start| *start <= span.start && span.end <= start + value.len() + 1)?;
             Some(self.place(span.start - start, span.end - start))
         };
         let mut here = Diagnostics::new(self.source.clone());
@@ -237,5 +237,24 @@ kept = "a + d/l"
             error.contains("--set:1:1") && error.contains("did you mean `l`"),
             "{error}"
         );
+    }
+
+    #[test]
+    fn findings_of_an_edited_text_are_relocated() {
+        let given = Assignment::split("--input", "u = 2*zz + 1").expect("an assignment");
+        let text = "# 1\n[definitions]\nu = \"2*zz + 1\"\n";
+        let start = text.find("zz").expect("the name");
+        let source = Source::new("model.toml", text);
+        let found =
+            |span| Diagnostics::one(source.clone(), Diagnostic::error("unknown").at(span, ""));
+        let moved = given.relocated(&found(Span::new(start, start + 2)));
+        let moved = moved.expect("a place").render(false);
+        assert!(
+            moved.contains("--input:1:7") && moved.contains("u = 2*zz + 1"),
+            "{moved}"
+        );
+        assert!(given.relocated(&found(Span::new(0, 1))).is_none());
+        let missing = Diagnostics::one(source.clone(), Diagnostic::error("unknown"));
+        assert!(given.relocated(&missing).is_none());
     }
 }
