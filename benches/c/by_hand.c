@@ -23,7 +23,7 @@ void by_hand_rates(const by_hand *arm, double t, const double *state, double *ra
     double sums[4] = {0.0, 0.0, 0.0, 0.0};
     double force, x_c, x_pr;
     int i = 0, k;
-    /* Four sums, so that one addition need not wait for the one before. */
+    /* Four independent sums, to overlap the additions. */
     for (; i + 4 <= ORDER; i += 4) {
         for (k = 0; k < 4; ++k) {
             sums[k] += arm->bending[i + k] * q[i + k];

@@ -1,5 +1,5 @@
-/* Eq. (22) as one writes it for speed, with the modes eliminated: what emitted C is measured against.
- * The order is ORDER, at least 1. */
+/* Hand-optimised Eq. (22) with the modes eliminated, the reference for the speed of emitted C.
+ * ORDER is the order, at least 1. */
 #ifndef BY_HAND_H
 #define BY_HAND_H
 

@@ -1,5 +1,5 @@
-"""What CasADi makes of a model in C: `definitions`, a module beside this file, has its energies. Forward dynamics by
-LDL' (`ldl`), inverse dynamics by the same rows, expressions that occur more than once computed once (`cse`)."""
+"""C code of CasADi for a model. The module `definitions` in the same folder has its energies. Forward dynamics use LDL'
+(`ldl`), inverse dynamics the same rows; common subexpressions are computed once (`cse`)."""
 
 import casadi as ca
 from definitions import energies

@@ -1,6 +1,6 @@
-// Pinocchio's aba and rnea of a serial arm, for turns.c. Joints turn about z; ARM is a file with a line
-// JOINT(own, x, y, z, mass, c_x, c_y, c_z, I_x, I_y, I_z) for each: where it stands in the frame of the body before
-// it, and mass, centre and inertia of its own body, whose frame is turned about x by the angle `own`.
+// Pinocchio's aba and rnea of a serial arm, for turns.c. Joints rotate about z. ARM is a file with a line
+// JOINT(own, x, y, z, mass, c_x, c_y, c_z, I_x, I_y, I_z) for each joint: its position in the frame of the previous
+// body, and mass, centre and inertia of its own body, whose frame is rotated about x by the angle `own`.
 #include <cmath>
 #include <pinocchio/algorithm/aba.hpp>
 #include <pinocchio/algorithm/rnea.hpp>

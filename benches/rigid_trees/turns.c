@@ -1,7 +1,7 @@
-/* Forward and inverse dynamics as emitted, by CasADi and by Pinocchio, in turn over the same states. MODEL is the
- * model's name, HEADER its header, DEGREES its degrees of freedom; PEER says that Pinocchio's are linked. Prints the
- * least time of a call of each, in ns (0 where there is none), forward then inverse, and how far the others are from
- * what is emitted, relative to the largest number of a call. */
+/* Measures forward and inverse dynamics of emitted C, CasADi and Pinocchio alternately over the same states. MODEL is the
+ * name of the model, HEADER its header, DEGREES its degrees of freedom; PEER is defined if Pinocchio is linked. Prints the
+ * shortest time of a call of each, in ns (0 if missing), forward then inverse, and the difference of the others from the
+ * emitted C, relative to the largest number of a call. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -57,7 +57,7 @@ static void pinocchio_forward(int s, double *out) {
     peer_forward(states[s], inputs, out);
 }
 
-/* The inputs are forces beside those that are asked for. */
+/* Inputs are forces in addition to the computed ones. */
 static void pinocchio_inverse(int s, double *out) {
     peer_inverse(states[s], accelerations[s], out);
     for (int i = 0; i < N; ++i) {

@@ -1,8 +1,8 @@
-/* The controller of controller.rs in C, over the arm as emitted for C: the same operations in
- * the same order, so the same motion to the bit. Compile with -std=c99 or -ffp-contract=off. */
+/* The controller of controller.rs in C, with the emitted C. Operations and their order are equal, so the motion
+ * has the same bits. Compile with -std=c99 or -ffp-contract=off. */
 #include "planetary_arm_rig.h"
 #ifdef PREPARED_IN_DOUBLE
-/* The arm once more under another name and in double precision, see `run`. */
+/* The arm in double precision under another name, see `run`. */
 #include "arm_in_double.h"
 #include <stddef.h>
 #endif
@@ -11,17 +11,17 @@ typedef planetary_arm_rig_real real;
 typedef planetary_arm_rig_coefficients coefficients;
 enum { STATES = planetary_arm_rig_STATES };
 
-/* Length of a step, s. */
+/* Step size, s. */
 static const real STEP = (real)20e-6;
 
-/* Torque per state, N m per m and N m per m/s: controller.rs says where it is from. */
+/* Torque per state, N m per m and N m per m/s, see controller.rs. */
 static const real GAIN[STATES] = {
     (real)192.6589,  (real)456.0491,  (real)998.8651,   (real)-312.1875,   (real)-105.3722,
     (real)20.75653,  (real)457.063,   (real)1.629354,   (real)5.443445,    (real)23.76957,
     (real)-1.397188, (real)-0.8054563, (real)-0.8642767, (real)-0.8870597,
 };
 
-/* Declared by who calls from another language, see controller_in_c.rs. */
+/* Functions called from Rust, see controller_in_c.rs. */
 #ifdef PREPARED_IN_DOUBLE
 typedef arm_in_double_parameters parameters_in_double;
 #else

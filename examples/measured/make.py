@@ -1,11 +1,11 @@
-"""Records of a linear stage as a bench would write them, to compare and to discover with.
+"""Simulated records of a linear stage, for `eomgen compare` and `eomgen discover`.
 
     python3 examples/measured/make.py examples/measured
 
-A carriage of 4 kg on a screw is pushed by a motor. Viscous friction takes 12 N s/m, and dry
-friction, which stage.toml does not know, 2.5 N. Newton's law is integrated in steps of 25 us by the
-midpoint rule. The files are what many logging programs leave: lines about the bench, a line of names,
-one of units, semicolons and decimal commas. Nothing of eomgen is used.
+A motor drives a carriage of 4 kg on a screw. The viscous friction is 12 N s/m. The dry friction, which stage.toml lacks,
+is 2.5 N. The midpoint rule integrates Newton's law in steps of 25 us. The files have the format of many logging
+programs: lines about the test bench, a line of names, a line of units, semicolons and decimal commas. The script does
+not use eomgen.
 """
 
 import math
@@ -14,17 +14,17 @@ import random
 import sys
 
 MASS, VISCOUS, DRY = 4.0, 12.0, 2.5  # kg, N s/m, N
-STEP, PARTS, SAMPLES = 5e-3, 200, 800  # s from sample to sample, steps between them, samples
+STEP, PARTS, SAMPLES = 5e-3, 200, 800  # sample time (s), steps per sample, number of samples
 NOISE = 20e-6  # m
 
 
 def force(t, turn):
-    """What the motor does, N."""
+    """Returns the force of the motor, N."""
     return 9.0 * math.cos(2.9 * t + turn) + 6.0 * math.sin(7.3 * t * (1.0 + 0.2 * turn))
 
 
 def acceleration(pushed, v):
-    """Dry friction turns within 0.1 mm/s."""
+    """Returns the acceleration, m/s^2. Dry friction changes its sign over 0.1 mm/s."""
     return (pushed - VISCOUS * v - DRY * math.tanh(v / 1e-4)) / MASS
 
 

@@ -1,4 +1,4 @@
-"""Furuta's pendulum in CasADi's own symbols, for comparison: the Lagrangian of
+"""Furuta's pendulum in CasADi symbols, for comparison: the Lagrangian of
 `model-spec/models/furuta_pendulum.toml`, differentiated by CasADi.
 """
 
@@ -6,7 +6,7 @@ import casadi as ca
 
 
 def rates():
-    """rates(t, x, u, p) with x = (phi, theta, phi_dot, theta_dot) and p as the specification has them
+    """Returns rates(t, x, u, p) with x = (phi, theta, phi_dot, theta_dot) and the parameters p of the specification
     (J_a, L, m, l, c_a, c_p, g), SI."""
     q, dq = ca.SX.sym("q", 2), ca.SX.sym("dq", 2)
     t, u, p = ca.SX.sym("t"), ca.SX.sym("u"), ca.SX.sym("p", 7)

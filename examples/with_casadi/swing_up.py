@@ -1,13 +1,12 @@
-"""Swings Furuta's pendulum up: direct multiple shooting with IPOPT and exact Hessians.
+"""Swing-up of Furuta's pendulum: direct multiple shooting with IPOPT and exact Hessians.
 
     eomgen generate model-spec/models/furuta_pendulum.toml --target casadi --with hessians --out furuta
     cc -shared -fPIC -std=c99 -O3 furuta/furuta_pendulum_casadi.c -o furuta_pendulum.so
     python examples/with_casadi/swing_up.py furuta_pendulum.so
 
-The torque of least effort takes the pendulum from hanging at rest to standing at rest, on a shaft
-that may not turn further than it does. The guess is plain: a straight line from one rest to the other.
-The same problem is then solved with the equations in CasADi's own symbols (`furuta.py`), and both
-times are printed.
+The torque of minimum effort moves the pendulum from the lower to the upper equilibrium, with a limited rotation of the
+shaft. The initial guess is a straight line between both. The program then solves the same problem with the equations
+in CasADi symbols (`furuta.py`) and prints both times.
 """
 
 import os
@@ -21,13 +20,13 @@ import furuta
 
 DURATION = 2.0  # s
 INTERVALS = 80
-TORQUE = 0.15  # N m, the most that the motor gives
+TORQUE = 0.15  # N m, limit of the motor
 START = [0.0, 0.0, 0.0, 0.0]  # phi, theta, and their rates
 END = [0.0, np.pi, 0.0, 0.0]
 
 
 def step(rates, h):
-    """One step of the classical method of Runge and Kutta with the input held."""
+    """Returns a step of the classical Runge-Kutta method with a constant input."""
     x, u, p = (ca.MX.sym(name, rates.size1_in(i)) for i, name in enumerate("xup", 1))
     k1 = rates(0, x, u, p)
     k2 = rates(0, x + h / 2 * k1, u, p)
@@ -37,7 +36,7 @@ def step(rates, h):
 
 
 def swing_up(rates, p):
-    """The states (4, INTERVALS + 1), torques (INTERVALS,), IPOPT's statistics and seconds."""
+    """Returns states (4, INTERVALS + 1), torques (INTERVALS,), statistics of IPOPT, and the time in s."""
     move = step(rates, DURATION / INTERVALS).map(INTERVALS)
     problem = ca.Opti()
     x = problem.variable(4, INTERVALS + 1)
@@ -70,9 +69,9 @@ def main():
             f"effort {effort:.6e} N^2 m^2 s, largest torque {np.abs(u).max():.3f} N m"
         )
     (x, effort, seconds), (other, other_effort, other_seconds) = results.values()
-    print(f"time against CasADi's own symbols: {seconds / other_seconds:.2f}")
+    print(f"time relative to CasADi symbols: {seconds / other_seconds:.2f}")
     assert np.allclose(x[:, -1], END, atol=1e-6)
-    assert abs(effort - other_effort) < 1e-6 * effort, "another optimum"
+    assert abs(effort - other_effort) < 1e-6 * effort, "the optima differ"
 
 
 if __name__ == "__main__":

@@ -1,15 +1,14 @@
-"""A nonlinear model predictive controller moves the tip of two flexible links faster than they bend.
+"""Nonlinear model predictive control of the tip of two flexible links, above their first bending frequency.
 
     eomgen generate model-spec/models/two_link_arm.toml --order 1 --target casadi --with hessians --out arm1
     cc -shared -fPIC -std=c99 -O1 arm1/two_link_arm_casadi.c -o arm1.so
     python examples/with_casadi/track_tip.py arm1.so
 
-Every sample an optimal control problem over the horizon is solved by IPOPT with exact Hessians, from
-the last solution; its first torques are held until the next. The tip follows an ellipse whose
-frequency is above the first bending mode with the joints held. The machine is the model with one
-mode for each link, integrated with a finer step than the controller's. The first samples are also
-solved with the equations in CasADi's own symbols (`two_link_arm.py`), from the same states, and
-both times are printed.
+At every sample IPOPT solves an optimal control problem over the horizon with exact Hessians, starting from the previous
+solution. Its first torques are applied until the next sample. The tip follows an ellipse with a frequency above the first
+bending mode with fixed joints. The controlled machine is the model with one mode per link, integrated with smaller steps
+than in the controller. The program also solves the first samples with the equations in CasADi symbols
+(`two_link_arm.py`), from the same states, and prints both times.
 """
 
 import os
@@ -32,7 +31,7 @@ COMPARED = 10  # samples that are solved with CasADi's own symbols as well
 
 
 def tip(x, modes):
-    """Where the tip is, as the specification has it: x_tip and y_tip."""
+    """Returns the position of the tip, x_tip and y_tip of the specification."""
     ends, slopes = two_link_arm.shapes(modes, np.ones(1))[0], two_link_arm.slopes_at_end(modes)
     theta_1, theta_2, q, p = x[0], x[1], x[2 : 2 + modes], x[2 + modes : 2 + 2 * modes]
     w_e, v_t, slope = ca.dot(ends, q), ca.dot(ends, p), ca.dot(slopes, q) / LINKS
@@ -44,14 +43,14 @@ def tip(x, modes):
 
 
 def reference(t, rest):
-    """Where the tip is to be: on an ellipse about its rest, reached smoothly."""
+    """Returns the reference position of the tip: an ellipse about its rest position, with a smooth start."""
     size = SIZE * np.clip(t / 0.2, 0, 1) ** 2
     turn = 2 * np.pi * FREQUENCY * t
     return rest + size * np.array([np.cos(turn), np.sin(turn)])
 
 
 def equilibrium(rates, p, modes):
-    """State and torques at which the machine rests in its posture."""
+    """Returns state and torques of the equilibrium in the posture."""
     u, bend = ca.MX.sym("u", 2), ca.MX.sym("bend", 2 * modes)
     unknown = ca.vertcat(bend, u)
     state = ca.vertcat(ca.DM(POSTURE), bend, ca.DM.zeros(2 + 2 * modes))
@@ -62,7 +61,7 @@ def equilibrium(rates, p, modes):
 
 
 def bending_frequency(rates, p, modes):
-    """The lowest frequency with the joints held, Hz."""
+    """Returns the lowest natural frequency with fixed joints, Hz."""
     rest, u = equilibrium(rates, p, modes)
     by_state = np.array(rates.factory("by", ["t", "x", "u", "p"], ["jac:rates:x"])(0, rest, u, p))
     degrees = 2 + 2 * modes
@@ -71,7 +70,7 @@ def bending_frequency(rates, p, modes):
 
 
 def step(rates, p, h, name="step"):
-    """One step of the classical method of Runge and Kutta with the torques held."""
+    """Returns a step of the classical Runge-Kutta method with constant torques."""
     x, u = ca.MX.sym("x", rates.size1_in(1)), ca.MX.sym("u", 2)
     k1 = rates(0, x, u, p)
     k2 = rates(0, x + h / 2 * k1, u, p)
@@ -81,7 +80,7 @@ def step(rates, p, h, name="step"):
 
 
 class Controller:
-    """Optimal control over the horizon, solved anew each sample from the last solution."""
+    """Optimal control over the horizon, solved at each sample, starting from the previous solution."""
 
     def __init__(self, rates, p):
         states = rates.size1_in(1)
@@ -105,7 +104,7 @@ class Controller:
         self.seconds, self.iterations = [], []
 
     def torques(self, t, state):
-        """The torques to hold until the next sample."""
+        """Returns the torques until the next sample."""
         times = t + SAMPLE * np.arange(1, HORIZON + 1)
         wanted = np.array([reference(time, self.rest) for time in times]).T
         self.problem.set_value(self.now, state)
@@ -126,7 +125,7 @@ def main():
     rates = ca.external("rates", library)
     p = np.array(ca.external("default_parameters", library)()["p"]).ravel()
     bending = bending_frequency(rates, p, 1)
-    print(f"first bending mode with the joints held: {bending:.2f} Hz; ellipse: {FREQUENCY} Hz")
+    print(f"first bending mode with fixed joints: {bending:.2f} Hz; ellipse: {FREQUENCY} Hz")
     assert FREQUENCY > bending
     controller, other = Controller(rates, p), Controller(two_link_arm.rates(1), p)
     substeps = 10
@@ -143,18 +142,18 @@ def main():
         misses.append(np.linalg.norm(place - reference(t + SAMPLE, controller.rest)))
     late = np.array(misses[round(0.3 / SAMPLE) :])
     print(
-        f"tip beside the ellipse after 0.3 s: {1e3 * np.sqrt(np.mean(late**2)):.2f} mm (rms), "
-        f"{1e3 * late.max():.2f} mm at most; half axes {1e3 * SIZE[0]:g} and {1e3 * SIZE[1]:g} mm"
+        f"distance of the tip from the ellipse after 0.3 s: {1e3 * np.sqrt(np.mean(late**2)):.2f} mm (RMS), "
+        f"{1e3 * late.max():.2f} mm (maximum); half axes {1e3 * SIZE[0]:g} and {1e3 * SIZE[1]:g} mm"
     )
     seconds = 1e3 * np.array(controller.seconds)
     print(
-        f"per sample: {np.median(seconds):.1f} ms (median), {seconds.max():.1f} ms at most, "
+        f"per sample: {np.median(seconds):.1f} ms (median), {seconds.max():.1f} ms (maximum), "
         f"{np.median(controller.iterations):.0f} iterations"
     )
     compared, others = np.sum(controller.seconds[:COMPARED]), np.sum(other.seconds)
     print(
-        f"the first {COMPARED} samples: {compared:.2f} s, with CasADi's own symbols {others:.2f} s; "
-        f"time against CasADi's own symbols: {compared / others:.2f}"
+        f"the first {COMPARED} samples: {compared:.2f} s, with CasADi symbols {others:.2f} s; "
+        f"time relative to CasADi symbols: {compared / others:.2f}"
     )
     assert late.max() < 0.2 * SIZE.max()
 

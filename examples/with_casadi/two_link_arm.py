@@ -1,4 +1,4 @@
-"""The arm of two flexible links in CasADi's own symbols, for comparison: the Lagrangian of
+"""Arm of two flexible links in CasADi symbols, for comparison: the Lagrangian of
 `model-spec/models/two_link_arm.toml` with its integrals over the mode shapes as numbers,
 differentiated by CasADi.
 """
@@ -8,8 +8,8 @@ import numpy as np
 
 
 def shapes(count, s):
-    """Modes of a clamped and free beam at the places s of its length, and their second derivatives
-    there, one row for each mode: sin z - sinh z + xi (cos z - cosh z), z = beta s."""
+    """Returns clamped-free beam modes at the positions s of its length, and their second derivatives,
+    one row per mode: sin z - sinh z + xi (cos z - cosh z), z = beta s."""
     values, curvatures = [], []
     for mode in range(count):
         beta = np.pi * (mode + 0.5)
@@ -24,13 +24,13 @@ def shapes(count, s):
 
 
 def slopes_at_end(count):
-    """Derivatives of the modes by s at the free end: the integral of their second derivatives."""
+    """Returns the derivatives of the modes by s at the free end: integrals of their second derivatives."""
     nodes, weights = np.polynomial.legendre.leggauss(40)
     return shapes(count, (nodes + 1) / 2)[1] @ (weights / 2)
 
 
 def rates(modes):
-    """rates(t, x, u, p) with x = (theta_1, theta_2, q, p, and their rates), u = (u_1, u_2) and p the
+    """Returns rates(t, x, u, p) with x = (theta_1, theta_2, q, p, and their rates), u = (u_1, u_2) and p the
     parameters of the specification in its order, SI."""
     nodes, weights = np.polynomial.legendre.leggauss(40)
     s, weights = (nodes + 1) / 2, weights / 2

@@ -1,4 +1,4 @@
-"""One call of 100,000 states against the machine code's own time, in one run.
+"""Time of a call with 100,000 states compared with the time of the machine code.
 
     python python/benches/many_states.py [SPECIFICATION ...]
 
@@ -31,7 +31,7 @@ EXAMPLE = "rates_of_many_states"
 
 
 def example() -> str:
-    """The path of the loop in Rust."""
+    """Returns the path of the loop in Rust."""
     run = subprocess.run(
         [*BUILD, EXAMPLE, "--message-format", "json-render-diagnostics"],
         cwd=PROJECT, check=True, stdout=subprocess.PIPE, text=True,
@@ -45,7 +45,7 @@ def example() -> str:
 
 
 def measured(loop: str, path: Path) -> None:
-    """Prints both times of a specification."""
+    """Measures and prints both times of a specification."""
     m = eomgen.load(path)
     x = m.initial + 1e-4 * np.random.default_rng(1).standard_normal((STATES, len(m.states)))
     own, called = np.inf, np.inf

@@ -1,4 +1,4 @@
-"""Models that several tests share, and the shipped specifications."""
+"""Shared models and the shipped specifications."""
 
 import _thread
 import contextlib
@@ -17,10 +17,10 @@ import eomgen
 PROJECT = Path(__file__).resolve().parents[2]
 SPECIFICATIONS = PROJECT / "model-spec" / "models"
 
-# A stage whose specification says nothing of its dry friction.
+# Stage with a specification that lacks the dry friction.
 STAGE = SPECIFICATIONS / "emps.toml"
 
-# Lines that hide a friction of 12 N in the stage, smooth unlike the jump that is looked for.
+# Smooth friction of 12 N, which is added to the simulated stage.
 HIDDEN = (
     '[parameters]\nlevel = { value = 12, unit = "N" }\nspeed = { value = 2e-4, unit = "m/s" }\n',
     '[forces]\nhidden = { on = "q", value = "-level*dot(q)/sqrt(dot(q)^2 + speed^2)" }\n',
@@ -29,7 +29,7 @@ HIDDEN = (
 
 @pytest.fixture(scope="session")
 def arm():
-    """The planetary arm with its four modes."""
+    """Returns the planetary arm with four modes."""
     return eomgen.load(SPECIFICATIONS / "planetary_arm_rig.toml")
 
 
@@ -40,13 +40,13 @@ def pendulum():
 
 @pytest.fixture(scope="session")
 def cart():
-    """A cart with two arms, driven by a force: not linear."""
+    """Returns a cart with two arms, driven by a force, a nonlinear model."""
     return eomgen.load(SPECIFICATIONS / "cart_two_arms.toml")
 
 
 @pytest.fixture(scope="session")
 def program():
-    """The program of the command line, of the same version."""
+    """Returns the path of the program `eomgen` of the same version."""
     found = os.environ.get("EOMGEN_PROGRAM") or shutil.which("eomgen")
     if found is None:
         pytest.skip("no program `eomgen`: EOMGEN_PROGRAM names it")
@@ -55,7 +55,7 @@ def program():
 
 @pytest.fixture
 def states():
-    """Random states of a model: a row each."""
+    """Returns random states of a model, a row each."""
 
     def of(model, count, size=1e-3):
         return size * np.random.default_rng(1).standard_normal((count, len(model.states)))
@@ -65,7 +65,7 @@ def states():
 
 @pytest.fixture
 def interrupt():
-    """Ctrl-C while what follows runs, which must end soon after it, on a busy machine too.
+    """Sends Ctrl-C during the block, which must end soon after it, also on a busy machine.
 
     A process that was started in the background of a shell ignores it, and Python with it: hence the
     handler.
@@ -94,13 +94,13 @@ def interrupt():
 
 
 def with_hidden_friction(text):
-    """The text of the stage with its hidden friction."""
+    """Returns the specification of the stage with the hidden friction."""
     parameters, forces = HIDDEN
     return text.replace("[parameters]\n", parameters).replace("[forces]\n", forces)
 
 
 def write_record(path, turn, samples=750, step=0.002, noise=2e-6):
-    """A record of the stage with its friction; `turn` makes another one."""
+    """Simulates a record of the stage with its friction; `turn` selects the input."""
     truth = eomgen.load(with_hidden_friction(STAGE.read_text(encoding="utf-8")))
     t = np.arange(samples) * step
     force = 300 * np.cos(5 * t + turn) - 150 * np.sin(13 * t * (1 + 0.3 * turn))
@@ -138,7 +138,7 @@ length = 0.25
 
 @pytest.fixture(scope="session")
 def dataset(tmp_path_factory):
-    """The path of a dataset in which a friction is hidden."""
+    """Writes a dataset with a hidden friction. Returns its path."""
     folder = tmp_path_factory.mktemp("records")
     write_record(folder / "train.csv", 0.0)
     write_record(folder / "test.csv", 1.0)

@@ -1,4 +1,4 @@
-"""Rates, observables, energy and Jacobians: on one state and on many, against each other."""
+"""Rates, observables, energy and Jacobians of single states and of arrays."""
 
 import threading
 

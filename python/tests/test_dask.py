@@ -1,5 +1,5 @@
-"""A sweep on a Dask cluster of two workers, of which one is killed in the middle: the merged table is
-that of one machine, byte for byte."""
+"""A sweep on a Dask cluster of two workers, one of which is killed during the run. The merged table has the same bytes as
+that of one machine."""
 
 import os
 import signal
@@ -33,14 +33,14 @@ damper = "1/2*c*dot(x)^2"
 drive = { on = "x", value = "F*sin(omega*t)" }
 """
 
-# Points of some hundredths of a second, so that a kill falls between the first and the last.
+# Points take some hundredths of a second, so that the kill occurs between the first and the last.
 VARIED = ["--vary", "c=0.4:1:5", "--vary", "omega=1:3:8", "--measure", "poincare"]
 SPAN = ["--transient", "20000", "--periods", "8"]
 
 
 @pytest.fixture
 def cluster(tmp_path):
-    """A scheduler and two workers as processes of their own; the address, and the workers."""
+    """Starts a scheduler and two workers as processes. Yields the address and the workers."""
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": tmp_path}
     file = tmp_path / "scheduler.json"
     scheduler = subprocess.Popen(
@@ -95,7 +95,7 @@ def test_a_lost_worker_takes_nothing_with_it(cluster, program, tmp_path):
     assert workers[0].wait() == -signal.SIGKILL
     for name in ["sweep.json", "sweep.parquet", "map_poincare.png"]:
         assert (alone / name).read_bytes() == (spread / name).read_bytes(), name
-    # The same by the command line, on what is left of the cluster, in the folder that is there.
+    # The same sweep by the command line, on the remaining worker, into the existing folder.
     address = client.scheduler.address
     command = [program, "sweep", spec, *VARIED, *SPAN, "--out", str(spread), "--engine", "dask"]
     environment = dict(os.environ, DASK_SCHEDULER_ADDRESS=address)

@@ -1,4 +1,4 @@
-"""Discovery on a small simulated dataset, its files, and what is refused."""
+"""Discovery on a small simulated dataset: results, files, rejected arguments."""
 
 import json
 import re
@@ -12,8 +12,7 @@ import eomgen
 from conftest import STAGE
 
 
-# A friction at the arm's carrier, and the dataset of two channels in which it is hidden: a search
-# that takes long.
+# Friction at the arm's carrier and a dataset of two channels that contains it, for a long search.
 HIDDEN = {
     "[parameters]": """[parameters]
 level = { value = 0.4, unit = "N m" }
@@ -136,7 +135,7 @@ def test_ctrl_c_stops_a_search_soon(arm, tmp_path, interrupt):
             tmp_path / f"{name}.csv", table, delimiter=",", header="t,u,theta_c,tip", comments=""
         )
     (tmp_path / "dataset.toml").write_text(ARM_DATASET, encoding="utf-8")
-    # In the fit of the null model, in what it leaves, in screening and in fits.
+    # During the fit of the null model, the analysis of its residual, screening and fits.
     for after in (0.3, 1.0, 3.0, 8.0):
         with pytest.raises(KeyboardInterrupt), interrupt(after):
             eomgen.discover(arm, tmp_path / "dataset.toml")

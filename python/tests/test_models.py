@@ -1,4 +1,4 @@
-"""Loading, parameters, linearisation, and what is said of what is wrong."""
+"""Loading, parameters, linearisation, error messages."""
 
 import json
 import pickle

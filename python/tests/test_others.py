@@ -1,4 +1,4 @@
-"""The ways to other libraries, as docs/python.md writes them; each where it is installed."""
+"""Examples of docs/python.md with other libraries, if they are installed."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from conftest import PROJECT, SPECIFICATIONS
 
 
 def written(section, **names):
-    """The names that the code of a section of the page makes, given others."""
+    """Runs the code of a section of the page with given names. Returns its names."""
     page = (PROJECT / "docs" / "python.md").read_text(encoding="utf-8")
     text = page.split(f"## {section}\n", 1)[1].split("```python\n", 1)[1].split("```", 1)[0]
     exec(compile(text, f"docs/python.md, {section}", "exec"), names)

@@ -1,4 +1,4 @@
-"""Records of NumPy and MATLAB written as CSV, and what is refused."""
+"""Conversion of NumPy and MATLAB records to CSV, and rejected files."""
 
 import csv
 
@@ -12,7 +12,7 @@ ARRAYS = {"t": T, "u": np.sin(3 * T) / 7, "enc": np.column_stack([T**2, -T / 3])
 
 
 def columns(path):
-    """The names of a CSV file and its numbers."""
+    """Returns the names and the numbers of a CSV file."""
     with open(path, newline="", encoding="utf-8") as file:
         rows = list(csv.reader(file))
     return rows[0], np.array([[float(cell) if cell else np.nan for cell in row] for row in rows[1:]])

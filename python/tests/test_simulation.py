@@ -1,4 +1,4 @@
-"""Trajectories: against the command line, by name, as tables; what is refused; Ctrl-C."""
+"""Trajectories: comparison with the command line, access by name, tables, rejected arguments, Ctrl-C."""
 
 import subprocess
 import threading
@@ -55,9 +55,9 @@ def test_inputs_are_numbers_samples_or_functions(cart):
     held = of(np.sin(t))
     assert not np.array_equal(held.states, of(lambda t: np.sin(t)).states)
     assert np.allclose(of(lambda t: np.sin(t)).states, of("sin(t)").states, rtol=2e-8, atol=2e-8)
-    # Rows inside long steps are held to 20 times the tolerance, 1e-9.
+    # Rows within long steps have an error of at most 20 times the tolerance, 1e-9.
     assert np.allclose(of(0.5).states, of(np.full(101, 0.5)).states, rtol=2e-8, atol=2e-8)
-    # From sample to sample the force is what it was at the first of them.
+    # The force is constant from sample to sample.
     step = eomgen.load(cart.text).simulate(
         until=0.01, interval=0.005, state=held.states[50], inputs={name: np.sin(t[50])}
     )
@@ -181,7 +181,7 @@ motor = { on = "phi", value = "M" }
 def test_the_output_interval_does_not_change_the_motion(torque):
     axis = eomgen.load(AXIS)
     ends = [axis.simulate(1, interval=h, inputs={"M": torque})["x"][-1] for h in (0.1, 0.05, 0.001)]
-    # SciPy's Radau at 1e-12 on the model's own rates.
+    # Reference: SciPy's Radau method at 1e-12 with the rates of the model.
     assert np.allclose(ends, 0.028995, rtol=0, atol=1e-6)
     assert np.ptp(ends) < 1e-9
 
@@ -277,7 +277,7 @@ away = { on = "x", value = "k*x^2" }
 
 @pytest.fixture(scope="module")
 def endless():
-    """A model that moves for ever, and takes hours for it."""
+    """Returns a simulation that takes hours."""
     m = eomgen.load(SPECIFICATIONS / "double_pendulum.toml")
     return lambda **options: m.simulate(until=1e7, interval=1e4, solver="rk", **options)
 

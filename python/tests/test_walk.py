@@ -1,4 +1,4 @@
-"""The notebook runs from its first cell to its last, and its assertions hold."""
+"""All cells of the notebook run, and their assertions hold."""
 
 import pytest
 

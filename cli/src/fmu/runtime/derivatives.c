@@ -1,5 +1,5 @@
-/* Directional and adjoint derivatives by the emitted Jacobians: of rates and observables, by the
- * state, the inputs and the parameters. States are outputs too, and their own derivatives 1. */
+/* Directional and adjoint derivatives of rates and observables by state, inputs and parameters, from the
+ * emitted Jacobians. States are outputs as well; the derivative of a state by itself is 1. */
 
 typedef struct {
     int nonzeros;
@@ -25,7 +25,7 @@ static const jacobian jacobians[6] = {
     ),
 };
 
-/* Adds a Jacobian's product with the directions of all variables, forward or backward. */
+/* Adds the product of a Jacobian with the directions of all variables, forward or backward. */
 static int add_product(const instance *unit, const jacobian *one, int backward, const double *from, double *to) {
     const size_t room = (size_t)one->nonzeros + 1;
     double *values = malloc(room * sizeof *values);
@@ -50,7 +50,7 @@ static int add_product(const instance *unit, const jacobian *one, int backward, 
     return status;
 }
 
-/* Whether the sides that the motion is held on are those of the state, which the Jacobians are of. */
+/* Returns whether the stored sides are those of the state, which the Jacobians use. */
 static int is_on_its_sides(const instance *unit) {
     double guards[MODEL(GUARDS) + 1];
     guards_at(unit, unit->now.t, unit->now.state, guards);

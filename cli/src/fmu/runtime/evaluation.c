@@ -1,6 +1,6 @@
-/* The model's functions at a point of an instance. */
+/* Functions of the model at the current point of an instance. */
 
-/* What depends on the parameters alone. */
+/* Computes the coefficients, which depend on the parameters only. */
 static int prepare(instance *unit) {
     MODEL(parameters) parameters;
     if (unit->coefficients_known) {
@@ -25,7 +25,7 @@ static uint32_t regime_of(const instance *unit) {
     return regime;
 }
 
-/* Whether the motion rests on a surface; what switches there is then looked up at the state. */
+/* Returns whether the motion stays on a surface; the state then determines the sides. */
 static int rests(const instance *unit) {
     for (int k = 0; k < MODEL(GUARDS); ++k) {
         if (unit->now.sides[k] == 0) {
@@ -35,8 +35,8 @@ static int rests(const instance *unit) {
     return 0;
 }
 
-/* The rates at a time and a state, on the present sides of all surfaces. Coefficients and sides are
- * known. Gives whether all are numbers. */
+/* Computes the rates at a time and a state, on the stored sides of all surfaces. Coefficients and sides must be
+ * set. Returns whether all rates are finite. */
 static int rates_at(const instance *unit, double t, const double *state, double *rates) {
     MODEL(inputs) inputs;
     MODEL(inputs_from_array)(unit->now.inputs, &inputs);

@@ -1,4 +1,4 @@
-/* The functions of FMI 2.0, for model exchange and co-simulation. */
+/* Functions of FMI 2.0 for model exchange and co-simulation. */
 
 typedef void *fmi2Component;
 typedef void *fmi2ComponentEnvironment;
@@ -15,7 +15,7 @@ typedef int fmi2Type;
 typedef int fmi2StatusKind;
 
 enum { EXCHANGE_2 = 0, COSIMULATION_2 = 1 };
-/* What is asked for by fmi2GetRealStatus. */
+/* Arguments of fmi2GetRealStatus. */
 enum { LAST_SUCCESSFUL_TIME_2 = 2 };
 
 typedef void (*logger2)(fmi2ComponentEnvironment, fmi2String, fmi2Status, fmi2String, fmi2String, ...);
@@ -37,7 +37,7 @@ typedef struct {
     fmi2Real nextEventTime;
 } fmi2EventInfo;
 
-/* Where several units are linked into one program, its maker has the names begin differently. */
+/* If several units are linked into one program, each needs a prefix for its functions. */
 #ifdef FMI2_FUNCTION_PREFIX
 #define JOIN_(a, b) a##b
 #define JOIN(a, b) JOIN_(a, b)
@@ -132,7 +132,7 @@ EXPORT fmi2Status FMI(fmi2SetReal)(fmi2Component c, const fmi2ValueReference vr[
     return status != OK ? status : set_values(c, vr, count, values);
 }
 
-/* All variables are real numbers: of other types there are none. */
+/* All variables are real; there are none of other types. */
 static fmi2Status none_of_type(const instance *unit, size_t count) {
     return unit && count == 0 ? OK : refuse(unit, ERROR, "there are no variables of this type");
 }

@@ -1,4 +1,4 @@
-/* The functions of FMI 3.0, for model exchange and co-simulation. */
+/* Functions of FMI 3.0 for model exchange and co-simulation. */
 #include <stdbool.h>
 
 typedef void *fmi3Instance;
@@ -27,7 +27,7 @@ typedef int fmi3IntervalQualifier;
 
 typedef void (*logger3)(fmi3InstanceEnvironment, fmi3Status, fmi3String, fmi3String);
 
-/* Where several units are linked into one program, its maker has the names begin differently. */
+/* If several units are linked into one program, each needs a prefix for its functions. */
 #ifdef FMI3_FUNCTION_PREFIX
 #define JOIN_(a, b) a##b
 #define JOIN(a, b) JOIN_(a, b)
@@ -168,7 +168,7 @@ EXPORT fmi3Status FMI(fmi3SetFloat64)(
     return status != OK ? status : set_values(c, vr, count, values);
 }
 
-/* All variables are numbers in double precision: of other types there are none. */
+/* All variables are double-precision numbers; there are none of other types. */
 static fmi3Status none_of_type(const instance *unit, size_t count) {
     return unit && count == 0 ? OK : refuse(unit, ERROR, "there are no variables of this type");
 }

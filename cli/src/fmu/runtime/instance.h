@@ -1,6 +1,5 @@
-/* An instance of a functional mock-up unit: what it knows, and what is asked of it by both versions
- * of the interface. The model is reached by MODEL(name), its sizes by MODEL(STATES) and the like.
- * Nothing outlives an instance, so that several may be used at once. */
+/* Instance of a functional mock-up unit, for both versions of the interface. MODEL(name) is a name of the model, for
+ * example MODEL(STATES). There is no global state, so that several instances can be used at the same time. */
 #include <float.h>
 #include <limits.h>
 #include <stddef.h>
@@ -8,10 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What both versions number alike. */
+/* Status values, equal in both versions. */
 enum { OK = 0, DISCARD = 2, ERROR = 3 };
 
-/* Where an instance is in its life; bits, so that a call can name all that it is allowed in. */
+/* Modes of an instance, as bits, so that a call can list its allowed modes. */
 enum {
     INSTANTIATED = 1,
     INITIALIZATION = 2,
@@ -22,7 +21,7 @@ enum {
     ANY = 63
 };
 
-/* The places of all variables: value references are one sequence. */
+/* First value reference of each kind of variable. */
 #define FIRST_STATE 1
 #define FIRST_RATE (FIRST_STATE + MODEL(STATES))
 #define FIRST_INPUT (FIRST_RATE + MODEL(STATES))
@@ -31,29 +30,29 @@ enum {
 #define FIRST_INDICATOR (FIRST_OBSERVABLE + MODEL(OBSERVABLES))
 #define VARIABLES (FIRST_INDICATOR + MODEL(GUARDS))
 
-/* Bits that the number of a regime has; later switching surfaces are looked up at every state. */
+/* Number of bits of a regime; sides of further switching surfaces are computed at every state. */
 #define REGIME_BITS 32
 
-/* All that changes: what a saved state of the unit consists of. C has no array without elements,
- * hence one more than there are. */
+/* Variable part of an instance, the content of a saved state. C has no empty arrays, so each has one element
+ * more than needed. */
 typedef struct {
     double t;
     double state[MODEL(STATES) + 1];
     double inputs[MODEL(INPUTS) + 1];
     double parameters[MODEL(PARAMETERS) + 1];
-    /* The largest values so far, by which small is judged. */
+    /* Largest values so far, the scale of small differences. */
     double magnitudes[MODEL(STATES) + 1];
     double reaches[MODEL(GUARDS) + 1];
     double tolerance;
     double stop;
-    /* The step that the solver would try next; 0 if it has to find one. */
+    /* Next step size of the solver; 0 if unknown. */
     double step;
     int has_stop;
-    /* On which side of each switching surface the motion is: 1, -1, or 0 where it rests on it. */
+    /* Side of each switching surface: 1, -1, or 0 on the surface. */
     int sides[MODEL(GUARDS) + 1];
     int sides_known;
     int mode;
-    /* As in the instance: no other kind goes on from here. */
+    /* Kind of the instance; a saved state restores instances of this kind only. */
     int is_exchange;
 } point;
 
@@ -64,14 +63,14 @@ typedef struct {
     MODEL(coefficients) coefficients;
     char *name;
     void *environment;
-    /* The caller's logger, as the version of the interface has it. */
+    /* Logger of the caller. */
     void (*logger)(void);
 } instance;
 
-/* Tells the caller; given by the version of the interface. */
+/* Logs a message; defined by the version of the interface. */
 static void tell(const instance *unit, int status, const char *text);
 
-/* Tells the caller why, and passes the status on. */
+/* Logs a message and returns the status. */
 static int refuse(const instance *unit, int status, const char *text) {
     if (unit) {
         tell(unit, status, text);
@@ -79,14 +78,14 @@ static int refuse(const instance *unit, int status, const char *text) {
     return status;
 }
 
-/* The same of a quantity: its name, and what it was to be. */
+/* Logs a message about a quantity and its expected value. */
 static int refuse_value(const instance *unit, int status, const char *name, double value, const char *why) {
     char text[512];
     snprintf(text, sizeof text, "%.200s = %.17g: %.200s", name, value, why);
     return refuse(unit, status, text);
 }
 
-/* Whether a call is allowed now: the status to give back if it is not. */
+/* Checks whether a call is allowed in the current mode; returns the status of an error otherwise. */
 static int allowed(const instance *unit, int modes, const char *call) {
     char text[160];
     if (!unit) {
@@ -107,12 +106,12 @@ static int is_finite(double x) {
     return magnitude(x) <= DBL_MAX;
 }
 
-/* Whether numbers can be passed: some pointer, unless there are none. */
+/* Checks that the pointer is not null unless the count is 0. */
 static int is_there(const void *numbers, size_t count) {
     return count == 0 || numbers != NULL;
 }
 
-/* As at the beginning, with the specification's values. */
+/* Resets an instance to the values of the specification. */
 static void begin(instance *unit) {
     memset(&unit->now, 0, sizeof unit->now);
     for (int i = 0; i < MODEL(STATES); ++i) {

@@ -1,4 +1,4 @@
-/* From mode to mode. */
+/* Transitions between modes. */
 
 static int set_up(instance *unit, int has_tolerance, double tolerance, double start, int has_stop, double stop) {
     if (!is_finite(start) || (has_stop && !(stop > start))) {

@@ -1,10 +1,10 @@
-/* On which side of each switching surface the motion is. A side stays what it is between events, so
- * that the rates are smooth for a solver that steps past a surface and comes back to it. */
+/* Sides of the switching surfaces. They are constant between events, so that the rates are smooth for a solver that
+ * steps over a surface and then locates it. */
 
-/* How far a motion has to be beyond a surface until an indicator says so, relative to the largest
- * distance so far. An indicator is then away from 0 after its event, and does not chatter. */
+/* Distance beyond a surface at which an indicator changes its sign, relative to the largest distance so far.
+ * It keeps an indicator away from 0 after its event and prevents chatter. */
 #define BEYOND 1e-10
-/* The same where nothing is known of distances yet. */
+/* The same, absolute, before the first distance is known. */
 #define BEYOND_AT_LEAST 1e-20
 
 static double beyond(const instance *unit, int k) {
@@ -12,7 +12,7 @@ static double beyond(const instance *unit, int k) {
     return part > BEYOND_AT_LEAST ? part : BEYOND_AT_LEAST;
 }
 
-/* Notes how large what is accepted has become. */
+/* Updates the largest values. */
 static void note_magnitudes(instance *unit) {
     double guards[MODEL(GUARDS) + 1];
     guards_at(unit, unit->now.t, unit->now.state, guards);
@@ -30,8 +30,8 @@ static void note_magnitudes(instance *unit) {
     }
 }
 
-/* Whether the rates of the regime are those of the state. They are not where a half-width is negative:
- * then its two surfaces stand in the wrong order. */
+/* Returns whether the rates of the regime are those of the state. They differ if a half-width is negative,
+ * because its two surfaces are then in the wrong order. */
 static int check_half_widths(const instance *unit, const double *guards) {
     double within[MODEL(STATES) + 1], at[MODEL(STATES) + 1];
     MODEL(inputs) inputs;
@@ -46,7 +46,7 @@ static int check_half_widths(const instance *unit, const double *guards) {
     MODEL(inputs_from_array)(unit->now.inputs, &inputs);
     MODEL(rates)(unit->now.t, unit->now.state, &inputs, &unit->coefficients, at);
     for (int i = 0; i < MODEL(STATES); ++i) {
-        /* Equal but for what a compiler that contracts products makes of them. */
+        /* Equal up to the rounding of contracted products. */
         if (!(magnitude(within[i] - at[i]) <= 1e-6 * (magnitude(within[i]) + magnitude(at[i])))) {
             return refuse(unit, ERROR, "the half-width of a dead zone is negative");
         }
@@ -54,7 +54,7 @@ static int check_half_widths(const instance *unit, const double *guards) {
     return OK;
 }
 
-/* Looks where the motion is; `changed` says whether a side is another than before. */
+/* Computes the sides; `changed` reports whether a side differs from before. */
 static int update_sides(instance *unit, int *changed) {
     double guards[MODEL(GUARDS) + 1], rates[MODEL(GUARDS) + 1];
     int has_rates = 0;
@@ -89,7 +89,7 @@ static int update_sides(instance *unit, int *changed) {
     return check_half_widths(unit, guards);
 }
 
-/* Coefficients and sides, where they are not known. Before the motion begins all may still change. */
+/* Computes coefficients and sides if unknown. Before the start of the simulation all of them may change. */
 static int be_ready(instance *unit) {
     int changed;
     const int status = prepare(unit);
@@ -102,7 +102,7 @@ static int be_ready(instance *unit) {
     return unit->now.sides_known ? OK : update_sides(unit, &changed);
 }
 
-/* The event indicators: what changes its sign where a surface is crossed. */
+/* Computes the event indicators, which change their sign at a surface. */
 static void indicators_now(const instance *unit, double *indicators) {
     double guards[MODEL(GUARDS) + 1];
     guards_at(unit, unit->now.t, unit->now.state, guards);

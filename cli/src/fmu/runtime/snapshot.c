@@ -1,6 +1,5 @@
-/* Saved states of the unit, also as bytes: a mark, the unit's token, what changes, and a sum over all
- * of it by which bytes that were cut or altered are known. The bytes are for this unit on machines of
- * one kind. */
+/* Saved states of the unit, also serialised: a mark, the token of the unit, the variable part, and a checksum, which
+ * detects truncated or modified data. The bytes are valid for this unit on the same kind of machine. */
 
 static int save(const instance *unit, void **saved) {
     point *copy;

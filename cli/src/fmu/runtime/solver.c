@@ -1,11 +1,11 @@
-/* The solver of co-simulation: the embedded Runge-Kutta pair of orders 5 and 4 by Dormand and Prince,
- * with its interpolant to see a switching surface that is crossed within a step. The crossing is then
- * located with steps of their own, along the rates of the near side, which are smooth beyond it too. */
+/* Solver of co-simulation: the embedded Runge-Kutta pair of orders 5 and 4 of Dormand and Prince. Its interpolant
+ * detects crossings of switching surfaces within a step. Further steps with the rates of the near side, which are smooth
+ * beyond the surface, locate a crossing. */
 
 #define STAGES 7
-/* Where within a step surfaces are looked at, besides its end. */
+/* Fractions of a step at which surfaces are checked, in addition to its end. */
 #define LOOKS 8
-/* Events in a row, each this close to the one before, are chatter. */
+/* Limits of chatter: number of successive events, and their largest distance. */
 #define MOST_EVENTS_AT_ONCE 200
 #define AT_ONCE 1e-10
 
@@ -19,18 +19,17 @@ static const double stage_weights[STAGES][STAGES - 1] = {
     {9017. / 3168, -355. / 33, 46732. / 5247, 49. / 176, -5103. / 18656, 0},
     {35. / 384, 0, 500. / 1113, 125. / 192, -2187. / 6784, 11. / 84},
 };
-/* What the solution of order 5 has more than that of order 4. */
+/* Weights of the error estimate: order 5 minus order 4. */
 static const double error_weights[STAGES] = {
     71. / 57600, 0, -71. / 16695, 71. / 1920, -17253. / 339200, 22. / 525, -1. / 40,
 };
-/* Of the interpolant of order 4: a step's own quadratic, cubic and the rest. */
+/* Coefficients of the interpolant of order 4. */
 static const double dense_weights[STAGES] = {
     -12715105075. / 11282082432., 0, 87487479700. / 32700410799., -10690763975. / 1880347072.,
     701980252875. / 199316789632., -1453857185. / 822651844., 69997945. / 29380423.,
 };
 
-/* A step: its length, the rates of its stages, where it leads, and its error in parts of what is
- * tolerated. */
+/* Step: size, rates of the stages, final state, and error estimate relative to the tolerance. */
 typedef struct {
     double length;
     double rates[STAGES][MODEL(STATES) + 1];
@@ -38,7 +37,7 @@ typedef struct {
     double error;
 } step;
 
-/* A step from the present point, whose own rates are in `rates[0]`. Gives whether all are numbers. */
+/* Computes a step from the current point, with its rates in `rates[0]`. Returns whether all rates are finite. */
 static int try_step(const instance *unit, double length, step *tried) {
     const double *from = unit->now.state;
     double largest = 0;
@@ -71,7 +70,7 @@ static int try_step(const instance *unit, double length, step *tried) {
     return is_finite(largest);
 }
 
-/* The state at a part of a step. */
+/* Computes the state at a fraction of a step. */
 static void within(const instance *unit, const step *tried, double part, double *state) {
     const double rest = 1 - part;
     for (int i = 0; i < MODEL(STATES); ++i) {
@@ -87,8 +86,8 @@ static void within(const instance *unit, const step *tried, double part, double 
     }
 }
 
-/* How far a state is from the nearest of its surfaces, in parts of the largest distance so far;
- * negative beyond one. */
+/* Returns the distance of a state from the nearest surface, relative to the largest distance so far;
+ * negative beyond a surface. */
 static double nearest(const instance *unit, double t, const double *state) {
     double guards[MODEL(GUARDS) + 1];
     double least = 1;
@@ -104,8 +103,7 @@ static double nearest(const instance *unit, double t, const double *state) {
     return least;
 }
 
-/* The part of a step before which no surface is seen to be crossed, and that by which one is; 0 if
- * none is. */
+/* Returns fractions of a step before and after the first crossing; 0 if there is none. */
 static double look_for_crossing(const instance *unit, const step *tried, double *before) {
     double state[MODEL(STATES) + 1];
     *before = 0;
@@ -123,8 +121,8 @@ static double look_for_crossing(const instance *unit, const step *tried, double 
     return 0;
 }
 
-/* Shortens a step to one that ends just beyond the first surface. Gives 0 if it crosses none after
- * all, as where the interpolant alone touches one, and -1 if a rate is no number. */
+/* Shortens a step to end just beyond the first surface. Returns 0 if it crosses none, for example if only the
+ * interpolant touches a surface, and -1 if a rate is not finite. */
 static int locate(const instance *unit, double before, double after, step *tried) {
     double low = before, high = after, low_value, high_value;
     step trial = *tried;
@@ -175,8 +173,7 @@ static int locate(const instance *unit, double before, double after, step *tried
     return 1;
 }
 
-/* The factor of the next step by the error of the last: error^(-1/5) by Newton's method, with some
- * reserve and within bounds. */
+/* Returns the factor of the next step size: error^(-1/5) by Newton's method, with a safety factor and bounds. */
 static double next_factor(double error) {
     double root = 1;
     if (error < 1e-5) {
@@ -191,7 +188,7 @@ static double next_factor(double error) {
     return 0.9 / root > 5 ? 5 : 0.9 / root;
 }
 
-/* A first step: what the fastest state needs for a thousandth of its own size. */
+/* Returns the first step size, in which the fastest state changes by a thousandth of its scale. */
 static double first_step(const instance *unit, const double *rates, double most) {
     double length = 1e-3 * most;
     for (int i = 0; i < MODEL(STATES); ++i) {
@@ -203,7 +200,7 @@ static double first_step(const instance *unit, const double *rates, double most)
     return length;
 }
 
-/* Goes on to a time; or stops before it, says why, and leaves the last point that is right. */
+/* Integrates to a time. After a failure it logs the reason and keeps the last valid point. */
 static int advance(instance *unit, double end) {
     step *tried = malloc(sizeof *tried);
     double last_event = unit->now.t;
@@ -275,7 +272,7 @@ static int advance(instance *unit, double end) {
     return status;
 }
 
-/* One communication step, with the checks of its arguments. */
+/* Checks the arguments of a communication step and runs it. */
 static int communicate(instance *unit, double from, double length) {
     const double end = from + length;
     const double slack = 1e-9 * (magnitude(unit->now.t) + magnitude(length));

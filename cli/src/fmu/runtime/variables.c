@@ -1,4 +1,4 @@
-/* Variables by their value references. */
+/* Access to variables by value reference. */
 
 static const char *name_of(unsigned int reference) {
     const int place = (int)reference;
@@ -74,7 +74,7 @@ static int get_values(instance *unit, const unsigned int *references, size_t cou
     return OK;
 }
 
-/* Whether a variable may be set to a value now. */
+/* Checks whether a variable may be set to a value in the current mode. */
 static int check_value(const instance *unit, unsigned int reference, double value) {
     const int place = reference < VARIABLES ? (int)reference : VARIABLES;
     int modes = 0;
@@ -88,7 +88,7 @@ static int check_value(const instance *unit, unsigned int reference, double valu
     } else if (place >= FIRST_PARAMETER && place < FIRST_OBSERVABLE) {
         const double low = parameter_minima[place - FIRST_PARAMETER];
         const double high = parameter_maxima[place - FIRST_PARAMETER];
-        /* In continuous time too: callers that take the unit for a function set all of its arguments. */
+        /* Also in continuous time: callers that use the unit as a function set all arguments. */
         modes = INSTANTIATED | INITIALIZATION | EVENT | CONTINUOUS | STEP;
         if (value < low) {
             return refuse_value(unit, ERROR, name_of(reference), value, "below the smallest admissible value");
@@ -106,7 +106,7 @@ static int check_value(const instance *unit, unsigned int reference, double valu
     return OK;
 }
 
-/* Sets all of them, or none. */
+/* Sets all variables, or none if one is invalid. */
 static int set_values(instance *unit, const unsigned int *references, size_t count, const double *values) {
     if (!is_there(references, count) || !is_there(values, count)) {
         return refuse(unit, ERROR, "a null pointer in place of value references or values");
@@ -128,7 +128,7 @@ static int set_values(instance *unit, const unsigned int *references, size_t cou
         } else if (place >= FIRST_INPUT) {
             unit->now.inputs[place - FIRST_INPUT] = values[i];
         } else {
-            /* The motion is put somewhere: its sides are those found there. */
+            /* A new state: its sides are recomputed. */
             unit->now.state[place - FIRST_STATE] = values[i];
             unit->now.sides_known = 0;
         }

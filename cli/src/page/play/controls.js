@@ -1,15 +1,15 @@
-// The page: its controls, its clock and what is drawn in every frame.
+// Controls, clock and frame loop of the page.
 
-/** How long a frame may compute, in ms. */
+/** Longest computation per frame, ms. */
 const BUDGET = 11;
-/** The longest time between frames that the clock follows, in s: a page may have been hidden. */
+/** Longest time between frames that the clock follows, s; a hidden page has longer ones. */
 const LONGEST_FRAME = 0.1;
 
 const model = JSON.parse(document.getElementById("model").textContent);
 const element = (id) => document.getElementById(id);
 const [drawingCanvas, curvesCanvas] = [element("drawing"), element("curves")];
 
-/** Everything that changes while the page is open. */
+/** State of the page. */
 class Page {
   constructor(exports) {
     this.machine = new Machine(model, exports);
@@ -23,7 +23,7 @@ class Page {
     this.playing = !matchMedia("(prefers-reduced-motion: reduce)").matches;
     this.pace = 1;
     this.last = null;
-    /** Whether something other than time has changed what is to be seen. */
+    /** Whether the page must be redrawn although the time is unchanged. */
     this.stale = true;
     this.listen();
     this.remember();
@@ -59,13 +59,13 @@ class Page {
     for (const control of document.querySelectorAll("[data-kind]")) this.connect(control);
   }
 
-  /** Lets a control change the model. */
+  /** Connects a control to the model. */
   connect(control) {
     const { kind, place } = control.dataset;
     join(control, (value) => this.change(kind, Number(place), value));
   }
 
-  /** Sets a number of the model; without a value the specification's. */
+  /** Sets a number of the model; the default is the specification's value. */
   change(kind, place, value) {
     if (kind === "parameter") {
       this.machine.parameters[place] = value ?? model.parameters[place];
@@ -89,7 +89,7 @@ class Page {
     this.remember();
   }
 
-  /** Lets picture and curves know where the motion is. */
+  /** Passes the current state to drawing and curves. */
   remember() {
     this.stale = true;
     const { t, state } = this.motion;
@@ -106,7 +106,7 @@ class Page {
     requestAnimationFrame((next) => this.frame(next));
   }
 
-  /** Moves on by what has passed, or as far as the time of a frame allows. */
+  /** Advances by the elapsed time, or as far as the time of a frame allows. */
   move(passed) {
     const { motion } = this;
     const [start, end] = [motion.t, motion.t + passed * this.speed];
@@ -134,14 +134,14 @@ class Page {
     return places.map((place) => ({ ...all[place], place, mark: place }));
   }
 
-  /** Why there is no motion. */
+  /** Shows the reason for a stopped motion. */
   obstacle() {
     if (!this.machine.usable) return "With these parameters the mass matrix is not positive definite: there is no motion.";
     if (this.motion.failed) return "The motion ends here: its rates are no longer numbers, or change too fast to follow.";
     return "";
   }
 
-  /** What there is to know of the motion. */
+  /** Updates the status and the clock. */
   note() {
     if (this.playing && this.pace < 0.8) return `Slower than asked: ${shown(this.pace * this.speed, 2)} s in a second.`;
     return this.motion.switches > 0 ? `Switching surfaces crossed: ${this.motion.switches}.` : "";

@@ -1,11 +1,11 @@
-// Curves over the last seconds, a strip for each quantity that is ticked.
+// Curves over the last seconds, a strip for each selected quantity.
 
-/** How much time the strips show, in s at the speed of the clock. */
+/** Time span of the strips, s at the speed of the clock. */
 const WINDOW = 10;
-/** The most samples kept. */
+/** Maximum number of stored samples. */
 const SAMPLES = 1200;
 
-/** What is remembered of the motion. */
+/** Stored samples of the motion. */
 class Record {
   constructor() {
     this.clear();
@@ -34,7 +34,7 @@ class Record {
   }
 }
 
-/** The lower and the upper end of what is seen, rounded so that they seldom change. */
+/** Returns the limits of a strip, rounded so that they seldom change. */
 function ends(values) {
   let [low, high] = [Infinity, -Infinity];
   for (const value of values) {
@@ -45,7 +45,7 @@ function ends(values) {
   }
   if (low > high) return [-1, 1];
   const size = Math.max(Math.abs(low), Math.abs(high));
-  // What varies in its last digits alone is shown as constant.
+  // Variations of the last digits are shown as a constant.
   if (high - low <= 1e-9 * size || high === low) {
     const half = size > 0 ? 0.5 * size : 1;
     return [low - half, high + half];
@@ -54,7 +54,7 @@ function ends(values) {
   return [step * Math.floor(low / step), step * Math.ceil(high / step)];
 }
 
-/** Draws the strips. `quantities`: name, unit and place in a row of each. */
+/** Draws the strips. `quantities`: name, unit and index in a row of each. */
 function drawCurves(canvas, record, quantities, t, span) {
   const { context, width, height } = cleared(canvas);
   const colour = colours();

@@ -1,7 +1,7 @@
-// The drawing of the machine: its points and lines where the specification has a drawing, else an
-// instrument for every coordinate.
+// Drawing of the machine: points and lines if the specification has a drawing, else an instrument for every
+// coordinate.
 
-/** How long a trail is kept, in pictures. */
+/** Length of a trail, in frames. */
 const TRAIL = 400;
 
 /** Points and lines in a plane. */
@@ -21,7 +21,7 @@ class Plane {
     return [ordinate(point.x), ordinate(point.y)];
   }
 
-  /** Follows the points, so that what was once seen stays in the picture. */
+  /** Extends the visible range to the points. */
   follow(state, observables) {
     this.places = this.drawing.points.map((point) => this.place(point, state, observables));
     for (const [x, y] of this.places) {
@@ -31,7 +31,7 @@ class Plane {
     }
   }
 
-  /** Adds what a picture shows to the trails: a point for every picture, whatever the steps of the motion. */
+  /** Appends a point per frame to the trails. */
   leave() {
     for (const [index, [x, y]] of this.places.entries()) {
       const trail = this.trails[index];
@@ -46,7 +46,7 @@ class Plane {
     this.leave();
     const colour = colours();
     const [left, right, low, high] = this.bounds;
-    // Room for a swing to all sides of what has been seen.
+    // Margin on all sides of the visited range.
     const reach = Math.max(right - left, high - low, 1e-9);
     const [wide, tall] = [Math.max(right - left, 0.6 * reach), Math.max(high - low, 0.6 * reach)];
     const margin = 34;
@@ -75,7 +75,7 @@ class Plane {
     }
   }
 
-  /** Lines at round distances, and how far they are apart. */
+  /** Draws grid lines at round distances. Returns the distance. */
   grid(context, { width, height, scale, onto, colour }) {
     const step = round(70 / scale);
     const [x0, y0] = onto([0, 0]);
@@ -107,10 +107,10 @@ class Plane {
   }
 }
 
-/** At most so many instruments. */
+/** Maximum number of instruments. */
 const INSTRUMENTS = 12;
 
-/** A dial for every angle, a block on a rail for every length, a bar for what is neither. */
+/** Instruments: a dial for an angle, a block on a rail for a length, a bar for other quantities. */
 class Instruments {
   constructor(model) {
     this.all = model.state.slice(0, Math.min(model.state.length / 2, INSTRUMENTS));
@@ -130,7 +130,7 @@ class Instruments {
     const { context, width, height } = cleared(canvas);
     const colour = colours();
     const count = this.all.length;
-    // Columns that make the cells most nearly square.
+    // Number of columns with the most nearly square cells.
     const columns = Math.max(1, Math.min(count, Math.round(Math.sqrt((count * width) / Math.max(height, 1)))));
     const rows = Math.ceil(count / columns);
     const [wide, tall] = [width / columns, height / rows];
@@ -148,7 +148,7 @@ class Instruments {
     }
   }
 
-  /** An arm at an angle from hanging down. */
+  /** Draws an arm at an angle from hanging down. */
   dial(context, { x, y, wide, tall, colour }, angle, mark) {
     const radius = Math.max(4, Math.min(wide, tall) / 2 - 4);
     context.strokeStyle = colour.line;
@@ -178,7 +178,7 @@ class Instruments {
     context.fill();
   }
 
-  /** A block on a rail, at a fraction of its reach to the right. */
+  /** Draws a block on a rail, at a fraction of its range to the right. */
   rail(context, { x, y, wide, colour }, fraction, mark) {
     const reach = Math.max(4, wide / 2 - 18);
     context.strokeStyle = colour.line;
