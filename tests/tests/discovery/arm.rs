@@ -1,5 +1,5 @@
-//! Dry friction hidden on the joint of the arm: the motion is that of equations written from Newton's
-//! laws, in fixed steps, and not the program's own.
+//! Dry friction hidden in the arm's joint. The records are from equations written with Newton's
+//! laws, in fixed steps, independent of the program.
 
 use std::path::Path;
 use std::time::Duration;
@@ -14,14 +14,14 @@ use eomgen_tests::models::path;
 use eomgen_tests::program;
 use serde_json::Value;
 
-/// The dry friction of the carrier, N m.
+/// Dry friction of the carrier, N m.
 const FRICTION: f64 = 1.0;
 
-/// The longest a run may take, on a machine with much else to do.
+/// Maximum duration of a run on a busy machine.
 const LIMIT: Duration = Duration::from_secs(280);
 
-/// The arm with the friction, of as many modes as its model is given.
-fn machine() -> Machine {
+/// Returns the arm with the friction, with as many modes as its model.
+fn arm_with_friction() -> Machine {
     let mut machine = Kind::Arm.nominal();
     let Machine::Arm(arm) = &mut machine else {
         panic!("the arm is one");
@@ -35,13 +35,13 @@ fn machine() -> Machine {
     machine
 }
 
-/// The dataset file and two records of 0.6 s, of which the second is driven otherwise.
-fn records(folder: &Path) {
+/// Writes the dataset file and two records of 0.6 s; the second has another input.
+fn write_records(folder: &Path) {
     let setup = Setup {
         duration: 0.6,
         ..Kind::Arm.setup()
     };
-    let machine = machine();
+    let machine = arm_with_friction();
     let mut draw = Draw::new(16, 1);
     for (place, name) in ["train.csv", "test.csv"].iter().enumerate() {
         let drive = drive(Kind::Arm, &setup, Manner::Usual, place, &mut draw);
@@ -72,8 +72,8 @@ fn records(folder: &Path) {
     std::fs::write(folder.join("dataset.toml"), text).expect("a file");
 }
 
-/// The document that a command leaves on a specification and the records.
-fn document(command: &str, specification: &Path, folder: &Path, name: &str) -> Value {
+/// Runs a command on a specification and the records; returns its document.
+fn run_command(command: &str, specification: &Path, folder: &Path, name: &str) -> Value {
     let out = folder.join(command);
     let mut run = program::eomgen();
     let output = (run.timeout(LIMIT).arg(command).arg(specification))
@@ -89,11 +89,11 @@ fn document(command: &str, specification: &Path, folder: &Path, name: &str) -> V
 }
 
 #[test]
-fn dry_friction_of_the_joint_is_named_with_place_and_sign_and_closes_the_gap() {
+fn dry_friction_of_the_joint_is_found_with_place_and_sign() {
     let folder = tempfile::tempdir().expect("a folder");
-    records(folder.path());
+    write_records(folder.path());
     let specification = path("planetary_arm_rig");
-    let found = document("discover", &specification, folder.path(), "discovery.json");
+    let found = run_command("discover", &specification, folder.path(), "discovery.json");
     println!(
         "{}\n{}\n{}",
         found["effects"], found["gap"], found["seconds"]
@@ -114,11 +114,11 @@ fn dry_friction_of_the_joint_is_named_with_place_and_sign_and_closes_the_gap() {
         found["validation"]
     );
 
-    // What is written is the friction, and with it the records hold nothing but noise.
+    // The extended specification contains the friction and leaves only noise in the records.
     let extended = folder.path().join("discover/extended.toml");
     let text = std::fs::read_to_string(&extended).expect("a specification");
     assert!(text.contains("-T_c*sign(dot(theta_c))"), "{text}");
-    let compared = document("compare", &extended, folder.path(), "comparison.json");
+    let compared = run_command("compare", &extended, folder.path(), "comparison.json");
     assert_eq!(compared["verdict"], "no_significant_gap", "{compared:#}");
     for (name, noise) in [("theta_s", 6e-5), ("theta_c", 3e-5), ("tip", 1.5e-5)] {
         for set in ["train", "test"] {

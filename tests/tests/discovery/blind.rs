@@ -1,6 +1,5 @@
-//! A small fixed part of the blind suite: cases are made, the program is run on them, and
-//! results are scored. What is asserted of discovery is what it must never get wrong; how
-//! often it is right, the whole suite tells.
+//! A small fixed part of the blind suite: cases are generated, run and scored. The assertions are
+//! on errors that discovery must never make; the full suite measures the success rate.
 
 use std::path::Path;
 use std::time::Duration;
@@ -13,18 +12,17 @@ use eomgen_tests::models::project;
 use eomgen_tests::program;
 use serde_json::{Value, json};
 
-/// The seed of the fixed part.
 const SEED: u64 = 2026;
 
-fn made(cases: &[&Case], out: &Path) {
+fn make_cases(cases: &[&Case], out: &Path) {
     let specifications = project().join("model-spec/models");
     for case in cases {
         records::make(case, SEED, &specifications, out).expect("the case is written");
     }
 }
 
-/// The first cases on the machines of one coordinate: those are quick.
-fn quick(cases: &[Case]) -> Vec<&Case> {
+/// Returns the first cases on machines of one coordinate, which run fast.
+fn fast_cases(cases: &[Case]) -> Vec<&Case> {
     use eomgen_blind::machines::Kind;
     let of = |kind: Kind, group: Group, count: usize| {
         let fits = move |case: &&Case| case.machine == kind && case.group == group;
@@ -37,12 +35,12 @@ fn quick(cases: &[Case]) -> Vec<&Case> {
 }
 
 #[test]
-fn a_fixed_part_is_made_run_and_scored() {
+fn fixed_part_is_generated_run_and_scored() {
     let folder = tempfile::tempdir().expect("a folder");
     let cases = plan(SEED);
-    let chosen = quick(&cases);
+    let chosen = fast_cases(&cases);
     assert_eq!(chosen.len(), 6);
-    made(&chosen, folder.path());
+    make_cases(&chosen, folder.path());
     for case in &chosen {
         let limit = Duration::from_secs(60);
         run(program::path(), folder.path(), case.number, limit).expect("the program is run");
@@ -56,7 +54,7 @@ fn a_fixed_part_is_made_run_and_scored() {
 }
 
 #[test]
-fn a_case_that_was_run_is_not_run_again() {
+fn finished_case_is_not_run_again() {
     let folder = tempfile::tempdir().expect("a folder");
     let result = folder.path().join("results/007.json");
     records::write_whole(&result, "kept").expect("a file");
@@ -67,12 +65,12 @@ fn a_case_that_was_run_is_not_run_again() {
 }
 
 #[test]
-fn the_same_seed_makes_the_same_cases() {
+fn same_seed_gives_same_cases() {
     let cases = plan(SEED);
-    let chosen = [quick(&cases)[2]];
+    let chosen = [fast_cases(&cases)[2]];
     let folders = [(), ()].map(|()| tempfile::tempdir().expect("a folder"));
     for folder in &folders {
-        made(&chosen, folder.path());
+        make_cases(&chosen, folder.path());
     }
     for name in ["train0.csv", "dataset.toml", "spec.toml"] {
         let place = format!("cases/{:03}/{name}", chosen[0].number);
@@ -82,7 +80,7 @@ fn the_same_seed_makes_the_same_cases() {
     }
 }
 
-/// A label with these effects, each with one parameter that is truly 2.
+/// Returns a label with these effects; each has one parameter with the true value 2.
 fn label(group: Group, effects: &[&str]) -> Label {
     let truth = |effect: &&str| {
         json!({
@@ -99,7 +97,7 @@ fn label(group: Group, effects: &[&str]) -> Label {
     serde_json::from_value(label).expect("a label")
 }
 
-/// An answer with these effects, each with a value and an equivalent.
+/// Returns an answer with these effects, each with a value and an equivalent.
 fn answer(verdict: &str, effects: &[(&str, f64, Option<&str>)]) -> Outcome {
     let effect = |(name, value, other): &(&str, f64, Option<&str>)| {
         json!({
@@ -124,7 +122,7 @@ fn answer(verdict: &str, effects: &[(&str, f64, Option<&str>)]) -> Outcome {
 }
 
 #[test]
-fn judgements_are_what_they_should_be() {
+fn answers_are_judged_correctly() {
     use Group::{Nothing, Outside, Pair, Single, Untellable};
     let (coulomb, offset) = ("coulomb_friction", "force_offset");
     let found = "effects_found";
@@ -237,7 +235,7 @@ fn judgements_are_what_they_should_be() {
 }
 
 #[test]
-fn figures_add_up() {
+fn scores_are_summed_correctly() {
     let single = |value: f64| {
         let answer = answer("effects_found", &[("coulomb_friction", value, None)]);
         score::judge(&label(Group::Single, &["coulomb_friction"]), &answer)
@@ -248,14 +246,14 @@ fn figures_add_up() {
     );
     let alarm = answer("effects_found", &[("force_offset", 1.0, None)]);
     let alarm = score::judge(&label(Group::Nothing, &[]), &alarm);
-    // 1.645 standard deviations of 0.1 hold 2 from 2.16, not from 2.17.
+    // The interval of 1.645 standard deviations of 0.1 contains 2 from 2.16, but not from 2.17.
     let cases = vec![single(2.16), single(2.17), single(-2.0), nothing, alarm];
     let score: Score = score::summed(cases);
     assert_eq!(score.named, (3, 3));
     assert_eq!(score.false_alarms, (1, 2));
     assert_eq!(score.intervals, (1, 3));
     assert_eq!(score.wrong_signs, 1);
-    // M is truly 1.01 of 95 kg: 95.95, and 95.9 was found.
+    // The true M is 1.01 times 95 kg: 95.95. The answer is 95.9.
     assert_eq!(score.refitted, (2, 2));
     assert_eq!(
         (score.single_closure.reached, score.single_closure.of),
@@ -266,7 +264,7 @@ fn figures_add_up() {
 }
 
 #[test]
-fn answers_with_nothing_false_and_the_sizes_of_classes_are_counted() {
+fn correct_answers_and_class_sizes_are_counted() {
     use Group::{Nothing, Outside, Single};
     let (coulomb, offset) = ("coulomb_friction", "force_offset");
     let judged = |group, hidden: &[&str], effects: &[(&str, f64, Option<&str>)]| {
@@ -290,7 +288,7 @@ fn answers_with_nothing_false_and_the_sizes_of_classes_are_counted() {
         ),
         (judged(Single, &[coulomb], &[]), true, vec![]),
         (judged(Nothing, &[], &[]), true, vec![]),
-        // Another effect, the other sign, one too many, a class that does not hold it.
+        // Another effect, the opposite sign, an additional effect, a class without the effect.
         (
             judged(Single, &[coulomb], &[(offset, 2.0, None)]),
             false,
@@ -338,7 +336,7 @@ fn answers_with_nothing_false_and_the_sizes_of_classes_are_counted() {
 }
 
 #[test]
-fn a_sensor_with_a_fault_is_judged_with_what_every_sensor_is_off_by() {
+fn faulty_sensor_is_judged_including_its_ordinary_error() {
     let truth = json!({
         "hidden": {"effect": "sensor_gain", "on": "q", "order": 0.0, "sign": 1.0, "phase": 0.0, "amount": 0.05},
         "effect": "sensor_gain", "parameters": [1.05], "floors": 5.0, "alike": [],
@@ -346,13 +344,13 @@ fn a_sensor_with_a_fault_is_judged_with_what_every_sensor_is_off_by() {
     let mut faulty = label(Group::Single, &[]);
     faulty.hidden = serde_json::from_value(json!([truth])).expect("a truth");
     faulty.sensors.gain = vec![0.01];
-    // 90 % intervals of 0.1 hold 1.06 up to 1.2245, and 1.05 up to 1.2145 only.
+    // 90 % intervals of 0.1 contain 1.06 from values up to 1.2245, and 1.05 only up to 1.2145.
     let found = answer("effects_found", &[("sensor_gain", 1.22, None)]);
     assert_eq!(score::judge(&faulty, &found).intervals, (1, 1));
 }
 
 #[test]
-fn a_closure_counts_where_there_was_a_gap_or_no_answer() {
+fn closure_is_counted_with_a_gap_or_without_an_answer() {
     let answered = |closure: Value| {
         let mut answer = answer("effects_found", &[("coulomb_friction", 2.0, None)]);
         let discovery = answer.discovery.as_mut().expect("an answer");

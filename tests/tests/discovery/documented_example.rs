@@ -1,4 +1,4 @@
-//! What docs/discovery.md shows of the example's records is what the program prints.
+//! The output of the example in docs/discovery.md equals that of the program.
 
 use eomgen_tests::models::project;
 use eomgen_tests::program::eomgen;
@@ -7,7 +7,7 @@ const COMMAND: &str = "$ cargo run --release -- discover examples/measured/stage
                        examples/measured/dataset.toml --out found\n";
 
 #[test]
-fn the_example_prints_what_the_documentation_shows() {
+fn example_prints_documented_output() {
     let page = std::fs::read_to_string(project().join("docs/discovery.md")).expect("the page");
     let (_, behind) = page.split_once(COMMAND).expect("the example");
     let (shown, _) = behind.split_once("```").expect("the end of the example");

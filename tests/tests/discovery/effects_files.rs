@@ -1,11 +1,11 @@
-//! Files of a user's effects: what they say is tried, or refused with its place and the nearest that
-//! would be right.
+//! Files of user-defined effects: their effects are tested; invalid files are rejected with
+//! location and suggestion.
 
 use eomgen_tests::measured::{Measured, Moment};
 use eomgen_tests::program;
 use serde_json::Value;
 
-/// A user's effect: dry friction that grows with the distance from the middle.
+/// User-defined effect: dry friction proportional to the distance from the centre.
 const EFFECTS: &str = r#"[[effect]]
 name = "bent_rail"
 site = "axis"
@@ -15,7 +15,7 @@ parameters = [{ name = "B_r", unit = "{force}/{unit}", sign = "+", doc = "bent r
 edits = [{ add = "force", name = "rail", on = "{on}", value = "-{B_r}*abs({on})*sign(dot({on}))" }]
 "#;
 
-/// Arguments of `discover` with a file of effects.
+/// Returns the arguments of `discover` with a file of effects.
 fn arguments(measured: &Measured, effects: &str, out: &str) -> Vec<String> {
     measured.write("effects.toml", effects.as_bytes());
     let mut arguments = measured.arguments("discover", out);
@@ -24,28 +24,28 @@ fn arguments(measured: &Measured, effects: &str, out: &str) -> Vec<String> {
     arguments
 }
 
-/// Where a part of a file of effects stands, as messages say it.
-fn place(effects: &str, part: &str) -> String {
+/// Returns the location of `part` in a file of effects, in the form of messages.
+fn location(effects: &str, part: &str) -> String {
     let lines = effects.lines().enumerate();
     let mut places = lines.filter_map(|(line, text)| Some((line, text.find(part)?)));
-    let (line, column) = places.next().expect("the part is there");
+    let (line, column) = places.next().expect("the file contains the part");
     format!("effects.toml:{}:{}", line + 1, column + 1)
 }
 
-/// Each change of the file is refused at the part named, with these words.
-fn refuses(measured: &Measured, cases: &[(&str, &str, &str, &str)]) {
+/// Asserts that each change of the file is rejected at the given part with the given words.
+fn assert_rejects(measured: &Measured, cases: &[(&str, &str, &str, &str)]) {
     for (from, to, part, words) in cases {
         let effects = EFFECTS.replacen(from, to, 1);
         assert_ne!(effects, EFFECTS, "{from}");
-        let message = refused(measured, &effects);
-        let place = place(&effects, part);
+        let message = rejection(measured, &effects);
+        let place = location(&effects, part);
         assert!(message.contains(&place), "{to}: {place}: {message}");
         assert!(message.contains(words), "{to}: {words}: {message}");
     }
 }
 
-/// The message with which a file of effects is refused; nothing is written.
-fn refused(measured: &Measured, effects: &str) -> String {
+/// Returns the message of a rejected file of effects; asserts that nothing is written.
+fn rejection(measured: &Measured, effects: &str) -> String {
     let arguments = arguments(measured, effects, "refused");
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let message = program::refused(&arguments);
@@ -53,8 +53,8 @@ fn refused(measured: &Measured, effects: &str) -> String {
     message
 }
 
-/// What `discover` finds with a file of effects, and what it warned of.
-fn found(measured: &Measured, effects: &str) -> (Value, String) {
+/// Returns the result of `discover` with a file of effects, and its messages.
+fn discover(measured: &Measured, effects: &str) -> (Value, String) {
     let arguments = arguments(measured, effects, "found");
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let output = program::run(&arguments);
@@ -65,10 +65,10 @@ fn found(measured: &Measured, effects: &str) -> (Value, String) {
 }
 
 #[test]
-fn a_users_effect_is_found_where_it_is_and_named_as_the_user_names_it() {
+fn user_defined_effect_is_found_with_its_name() {
     let hidden = |at: Moment| -60.0 * at.q.abs() * (at.v / 1e-4).tanh();
     let measured = Measured::stage_with(&hidden);
-    let (result, message) = found(&measured, EFFECTS);
+    let (result, message) = discover(&measured, EFFECTS);
     let effects = result["effects"].as_array().expect("a list");
     assert_eq!(effects.len(), 1, "{message}{effects:#?}");
     assert_eq!(effects[0]["effect"], "bent_rail");
@@ -81,9 +81,9 @@ fn a_users_effect_is_found_where_it_is_and_named_as_the_user_names_it() {
 }
 
 #[test]
-fn words_and_keys_that_are_not_known_are_refused_with_the_nearest() {
+fn unknown_words_and_keys_are_rejected_with_suggestion() {
     let sign = "sign = \"+\"";
-    refuses(
+    assert_rejects(
         &Measured::stage(0.0),
         &[
             (
@@ -160,8 +160,8 @@ fn words_and_keys_that_are_not_known_are_refused_with_the_nearest() {
 }
 
 #[test]
-fn blanks_names_and_expressions_that_are_none_are_refused_with_their_place() {
-    refuses(
+fn invalid_placeholders_and_expressions_are_rejected_with_location() {
+    assert_rejects(
         &Measured::stage(0.0),
         &[
             ("abs({on})", "abs({onn})", "onn", "did you mean `on`?"),
@@ -194,7 +194,7 @@ fn blanks_names_and_expressions_that_are_none_are_refused_with_their_place() {
 }
 
 #[test]
-fn a_damper_is_replaced_beside_springs_alone_and_named_nowhere_else() {
+fn damper_can_only_be_substituted_at_springs() {
     let on_springs = EFFECTS.replace("\"axis\"", "\"spring\"");
     let on_axes = EFFECTS.replace(
         "{ add = \"force\", name = \"rail\", on = \"{on}\", ",
@@ -212,13 +212,13 @@ fn a_damper_is_replaced_beside_springs_alone_and_named_nowhere_else() {
             "`damper` is a placeholder of this site",
         ),
     ] {
-        let message = refused(&measured, &effects);
+        let message = rejection(&measured, &effects);
         assert!(message.contains(words), "{words}: {message}");
     }
 }
 
 #[test]
-fn inputs_are_replaced_at_inputs_and_loads_press_on_axes() {
+fn inputs_are_substituted_at_inputs_and_loads_at_axes() {
     let measured = Measured::stage(0.0);
     let added = "{ add = \"force\", name = \"rail\", on = \"{on}\", ";
     let replaced = "{ substitute = \"input\", find = \"{on}\", replace = \"{on}*{B_r}\" }, ";
@@ -245,13 +245,13 @@ fn inputs_are_replaced_at_inputs_and_loads_press_on_axes() {
             "has no `unit`",
         ),
     ] {
-        let message = refused(&measured, &effects);
+        let message = rejection(&measured, &effects);
         assert!(message.contains(words), "{words}: {message}");
     }
 }
 
 #[test]
-fn files_of_effects_that_are_none_are_refused() {
+fn invalid_effects_files_are_rejected() {
     let measured = Measured::stage(0.0);
     for (text, part) in [
         ("", "begin each effect with [[effect]]"),
@@ -260,7 +260,7 @@ fn files_of_effects_that_are_none_are_refused() {
         ("effect = [3]", "effects.toml:1:11"),
         ("effect = [{}]", "has no `name`"),
     ] {
-        let message = refused(&measured, text);
+        let message = rejection(&measured, text);
         assert!(message.contains(part), "{text}: {message}");
     }
     measured.write("effects.toml", &[0xff, 0xfe, 0, 0]);
@@ -280,13 +280,13 @@ fn files_of_effects_that_are_none_are_refused() {
 }
 
 #[test]
-fn an_effect_that_leaves_no_specification_is_refused() {
+fn effect_that_makes_specification_invalid_is_rejected() {
     let measured = Measured::stage(0.0);
     for (from, to, part) in [
         ("unit = \"{force}/{unit}\"", "unit = \"kg\"", "bent_rail"),
         ("abs({on})", "abs(no_such)", "no_such"),
     ] {
-        let message = refused(&measured, &EFFECTS.replacen(from, to, 1));
+        let message = rejection(&measured, &EFFECTS.replacen(from, to, 1));
         let parts = [
             "the effect `bent_rail` on `q` makes the specification invalid",
             part,
@@ -298,22 +298,22 @@ fn an_effect_that_leaves_no_specification_is_refused() {
 }
 
 #[test]
-fn an_effect_without_a_place_is_said_not_to_be_tried() {
+fn effect_without_site_is_reported_as_untested() {
     let measured = Measured::stage(0.0);
-    let (result, message) = found(&measured, &EFFECTS.replacen("axis", "angle", 1));
+    let (result, message) = discover(&measured, &EFFECTS.replacen("axis", "angle", 1));
     let note = "the effect `bent_rail` has no site in this model and is not tested";
     assert!(message.contains(note), "{message}");
     assert!(result["notes"].to_string().contains(note), "{result:#}");
 }
 
 #[test]
-fn both_effects_of_one_name_in_a_users_file_are_tried() {
+fn effects_with_the_same_name_are_all_tested() {
     let hidden = |at: Moment| -60.0 * at.q.abs() * (at.v / 1e-4).tanh();
     let measured = Measured::stage_with(&hidden);
     let other = EFFECTS
         .replacen("abs({on})*", "", 1)
         .replacen("/{unit}", "", 1);
-    let (result, message) = found(&measured, &format!("{EFFECTS}{other}"));
+    let (result, message) = discover(&measured, &format!("{EFFECTS}{other}"));
     assert_eq!(result["effects"][0]["effect"], "bent_rail", "{message}");
     let term = result["effects"][0]["term"].as_str();
     assert!(term.is_some_and(|term| term.contains("abs(q)")), "{term:?}");

@@ -1,6 +1,6 @@
-//! Every entry of the catalogue, hidden in records of a small machine that suits it, is found there:
-//! by its name, at its place, with its sign and size. Records are simulated and hold no noise; what
-//! discovery is worth against other people's equations is measured elsewhere.
+//! Each entry of the catalogue, hidden in records of a suitable small machine, is found with its
+//! name, place, sign and size. The records are simulated without noise. The blind suite measures
+//! discovery on equations from other sources.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -15,41 +15,41 @@ use eomgen_model_spec::source::Source;
 use eomgen_tests::program;
 use serde_json::Value;
 
-/// The longest a search may take, on a machine with much else to do.
+/// Maximum duration of a search on a busy machine.
 const LIMIT: Duration = Duration::from_secs(280);
 
-/// A machine and how it is measured.
+/// Machine with its measurements.
 struct Machine {
     name: &'static str,
     specification: &'static str,
-    /// Channels with their units and noises.
+    /// Channels with their units and noise.
     channels: &'static [(&'static str, &'static str, f64)],
-    /// Declared parameters.
+    /// Declared uncertain parameters.
     uncertain: &'static str,
-    /// The unit of the input `u`, and its value at a time in s, in two records.
+    /// Unit of the input `u`, and its value at a time in s for two records.
     unit: &'static str,
     input: fn(f64, bool) -> f64,
-    /// Time between samples and length of a window, s.
+    /// Time between samples and window length, s.
     sample: f64,
     window: f64,
     samples: usize,
 }
 
-/// What is hidden, and where.
+/// Hidden effect and its place.
 struct Hidden {
     effect: &'static str,
     on: &'static str,
     by: By,
 }
 
-/// How it is hidden.
+/// Implementation of a hidden effect.
 enum By {
-    /// An entry of the catalogue, by its place among those of its name, its order and its values.
+    /// Entry of the catalogue: its index among entries of the same name, its order and its values.
     Entry(usize, Option<u32>, &'static [f64]),
-    /// A parameter that is not what the specification says.
+    /// Parameter with a value other than in the specification.
     Shift(f64),
-    /// A sensor that shows something else: what is found of it and how large, and a reading made of
-    /// those so far.
+    /// Sensor fault: the parameter to be found with its value, and a function of the previous
+    /// readings that gives the faulty one.
     Sensor(&'static str, f64, fn(&[f64]) -> f64),
 }
 
@@ -58,7 +58,7 @@ const fn hidden(effect: &'static str, on: &'static str, values: &'static [f64]) 
     Hidden { effect, on, by }
 }
 
-/// A carriage that a force drives.
+/// Carriage driven by a force.
 const CARRIAGE: Machine = Machine {
     name: "carriage",
     specification: r#"
@@ -96,7 +96,7 @@ motor = { on = "x", value = "u" }
     samples: 400,
 };
 
-/// A rotor that a torque turns to and fro, and round.
+/// Rotor driven by a torque, oscillating and rotating.
 const ROTOR: Machine = Machine {
     name: "rotor",
     specification: r#"
@@ -134,7 +134,7 @@ motor = { on = "theta", value = "u" }
     samples: 600,
 };
 
-/// A hub that turns a flexible beam.
+/// Hub with a flexible beam.
 const BEAM: Machine = Machine {
     name: "beam",
     specification: r#"
@@ -191,16 +191,16 @@ tip = { value = "at(w, l)", unit = "m" }
     samples: 400,
 };
 
-/// The same in longer windows: a joint that yields has a coordinate of its own, whose initial state does
-/// in a short one what the joint does.
+/// The beam with longer windows. A compliant joint has its own coordinate; in short windows its
+/// initial state would explain the records.
 const BEAM_FOR_LONG: Machine = Machine {
     window: 1.0,
     ..BEAM
 };
 
-/// Two shafts with a pair of teeth between, `x` the deflection of these. Their play is small: in a large
-/// one teeth rattle, and a stiffness that varies is lost among their impacts. The ratio is no simple
-/// one, so that an order of one shaft is none of the other's.
+/// Two shafts connected by a pair of teeth with the mesh deflection `x`. The backlash is small:
+/// with a large one the teeth rattle, and the impacts hide a varying stiffness. The ratio is
+/// irrational enough that orders of the two shafts differ.
 const GEAR: Machine = Machine {
     name: "gear",
     specification: r#"
@@ -257,7 +257,7 @@ theta_2 = { value = "theta_2", unit = "rad" }
     samples: 700,
 };
 
-/// A mass on a spring that a force drives.
+/// Mass on a spring driven by a force.
 const OSCILLATOR: Machine = Machine {
     name: "oscillator",
     specification: super::specifications::OSCILLATOR,
@@ -274,7 +274,6 @@ const OSCILLATOR: Machine = Machine {
 };
 
 impl Machine {
-    /// The dataset file.
     fn description(&self) -> String {
         let mut text = format!(
             "[records]\ntrain = [\"train.csv\"]\ntest = [\"test.csv\"]\n\n[time]\ncolumn = \"t\"\nunit = \"s\"\n\n\
@@ -290,7 +289,7 @@ impl Machine {
         text
     }
 
-    /// Writes a record of a specification: what its channels show, for the input of this record.
+    /// Simulates `hidden` and writes the channels as one of the two records.
     fn record(&self, folder: &Path, hidden: &Hidden, again: bool) {
         let (file, record) = match again {
             false => ("train.csv", "train[0]"),
@@ -352,7 +351,7 @@ impl Machine {
         std::fs::write(folder.join(file), text).expect("a file");
     }
 
-    /// An entry of the catalogue as a candidate.
+    /// Returns an entry of the catalogue as a candidate.
     fn candidate(&self, hidden: &Hidden, entry: usize, order: Option<u32>) -> Candidate {
         let checked = eomgen_model_spec::check(Source::new(self.name, self.specification));
         let model = checked.unwrap_or_else(|found| panic!("{found}")).model;
@@ -369,13 +368,14 @@ impl Machine {
         found.find(is).expect("the effect has a place")
     }
 
-    /// The specification of what was measured, and what is to be found: values by their names.
+    /// Returns the specification that generates the records, and the expected values by name.
     fn truth(&self, hidden: &Hidden) -> (String, Vec<(String, f64)>) {
         match hidden.by {
             By::Entry(entry, order, values) => {
                 let candidate = self.candidate(hidden, entry, order);
                 let written = candidate.written(self.specification, self.name, values, "hidden");
-                // Of what shapes an effect without scaling it records say less than of its size.
+                // Records determine shape parameters less well than the size, so these are not
+                // compared.
                 let sizes = candidate.parameters.iter().zip(values);
                 let sizes = sizes.filter(|(parameter, _)| parameter.shape.is_none());
                 let sizes = sizes.map(|(parameter, value)| (parameter.name.clone(), *value));
@@ -398,7 +398,7 @@ impl Machine {
         }
     }
 
-    /// What `discover` answers to records of the machine with something hidden in it.
+    /// Returns the answer of `discover` to records with the hidden effect.
     fn answer(&self, hidden: &Hidden, truth: &str) -> Value {
         let folder = tempfile::tempdir().expect("a folder");
         let place = |name: &str| folder.path().join(name);
@@ -426,7 +426,8 @@ impl Machine {
         serde_json::from_str(&text).expect("JSON")
     }
 
-    /// The hidden effect is named first, at its place, with its sign and size, and closes the gap.
+    /// Asserts that the hidden effect is named first, with its place, sign and size, and closes the
+    /// gap.
     fn shows(&self, hidden: &Hidden) {
         let (truth, sizes) = self.truth(hidden);
         let found = self.answer(hidden, &truth);
@@ -456,7 +457,7 @@ impl Machine {
 }
 
 #[test]
-fn what_may_act_on_a_carriage_is_found_on_it() {
+fn effects_on_a_carriage_are_found() {
     for hidden in [
         hidden("coulomb_friction", "x", &[3.0]),
         hidden("viscous_friction", "x", &[6.0]),
@@ -472,7 +473,7 @@ fn what_may_act_on_a_carriage_is_found_on_it() {
 }
 
 #[test]
-fn what_repeats_with_an_angle_is_found_on_a_rotor() {
+fn effects_periodic_in_an_angle_are_found_on_a_rotor() {
     ROTOR.shows(&hidden("gravity", "theta", &[0.04, -0.06]));
     ROTOR.shows(&Hidden {
         by: By::Entry(0, Some(3), &[0.03, 0.05]),
@@ -481,7 +482,7 @@ fn what_repeats_with_an_angle_is_found_on_a_rotor() {
 }
 
 #[test]
-fn what_may_be_wrong_with_a_flexible_body_is_found_in_it() {
+fn effects_of_a_flexible_body_are_found() {
     for hidden in [
         hidden("structural_damping", "beam", &[2e-3]),
         hidden("tip_mass", "beam", &[0.02]),
@@ -497,7 +498,7 @@ fn what_may_be_wrong_with_a_flexible_body_is_found_in_it() {
 }
 
 #[test]
-fn what_may_be_wrong_with_teeth_is_found_between_them() {
+fn effects_of_a_gear_mesh_are_found() {
     GEAR.shows(&hidden("asymmetric_backlash", "x", &[1e-4]));
     GEAR.shows(&Hidden {
         by: By::Entry(0, Some(2), &[2e-4, -1e-4]),
@@ -510,7 +511,7 @@ fn what_may_be_wrong_with_teeth_is_found_between_them() {
 }
 
 #[test]
-fn what_may_be_wrong_with_a_spring_is_found_on_it() {
+fn effects_of_a_spring_are_found() {
     for (entry, hidden) in [
         (1, hidden("stiffness_nonlinearity", "spring", &[])),
         (0, hidden("backlash", "spring", &[])),
@@ -530,9 +531,9 @@ fn what_may_be_wrong_with_a_spring_is_found_on_it() {
     OSCILLATOR.shows(&hidden("load_dependent_friction", "x", &[0.1]));
 }
 
-/// A spring that hardens takes the place of stops on both sides here, and leaves a part of the gap.
+/// Here a hardening spring is equivalent to stops on both sides, and closes only a part of the gap.
 #[test]
-fn what_stands_in_for_something_else_is_said_to() {
+fn approximate_effect_is_reported_as_substitute() {
     let stops = Hidden {
         by: By::Entry(0, None, &[900.0, 0.03]),
         ..hidden("end_stop", "spring", &[])
@@ -550,7 +551,7 @@ fn what_stands_in_for_something_else_is_said_to() {
 }
 
 #[test]
-fn what_a_sensor_or_a_declared_parameter_is_off_by_is_found_there() {
+fn sensor_faults_and_parameter_shifts_are_found() {
     let late = |column: &[f64]| column[column.len().saturating_sub(5)];
     for (effect, by) in [
         ("sensor_delay", By::Sensor("delay", 4.0 * BEAM.sample, late)),
@@ -577,7 +578,7 @@ fn what_a_sensor_or_a_declared_parameter_is_off_by_is_found_there() {
 }
 
 #[test]
-fn every_entry_of_the_catalogue_is_looked_for_here() {
+fn all_catalogue_entries_are_tested_in_this_file() {
     let own = include_str!("effects_found.rs");
     let mut seen = BTreeMap::new();
     for effect in effects(None).expect("the catalogue") {

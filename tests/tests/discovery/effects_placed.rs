@@ -1,5 +1,5 @@
-//! Every entry of the catalogue, placed on every shipped specification that has room for it, leaves a
-//! specification that is checked and derived.
+//! Each entry of the catalogue, added to each shipped specification at all its sites, gives a
+//! specification that passes the checks and can be derived.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,8 +13,8 @@ use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::Source;
 use eomgen_tests::models::shipped;
 
-/// The candidates of an effect in a model, of each place and angle the first order alone.
-fn placed(model: &Model, effect: &Effect) -> Vec<Candidate> {
+/// Returns the candidates of an effect in a model: the first order per place and angle.
+fn candidates_of(model: &Model, effect: &Effect) -> Vec<Candidate> {
     let one = std::slice::from_ref(effect);
     let mut found = candidates(model, one, &sites(model), &UsualMotion::default());
     let key = |c: &Candidate| {
@@ -29,7 +29,7 @@ fn placed(model: &Model, effect: &Effect) -> Vec<Candidate> {
 }
 
 #[test]
-fn every_effect_leaves_every_shipped_specification_sound() {
+fn catalogue_effects_keep_shipped_specifications_valid() {
     let effects = effects(None).expect("the catalogue");
     let mut homes: BTreeMap<usize, BTreeSet<String>> = BTreeMap::new();
     for path in shipped() {
@@ -41,7 +41,7 @@ fn every_effect_leaves_every_shipped_specification_sound() {
         let text = std::fs::read_to_string(&path).expect("a specification");
         let model = eomgen_model_spec::load(&path).expect("a model").model;
         for (place, effect) in effects.iter().enumerate() {
-            for candidate in placed(&model, effect) {
+            for candidate in candidates_of(&model, effect) {
                 let label = format!("{} in {name}", candidate.label());
                 let values = vec![1.5; candidate.parameters.len()];
                 let written = candidate.written(&text, &name, &values, "a test");
@@ -65,7 +65,7 @@ fn every_effect_leaves_every_shipped_specification_sound() {
             effect.says
         );
     }
-    // An axis is wherever something moves.
+    // Every moving coordinate must be a site of axis effects.
     let axis = effects
         .iter()
         .position(|effect| effect.site == SiteKind::Axis);
@@ -75,7 +75,7 @@ fn every_effect_leaves_every_shipped_specification_sound() {
     assert_eq!(of_axis, shipped().len(), "{homes:?}");
 }
 
-/// A user's effect on springs.
+/// User-defined effect on springs.
 const ON_SPRINGS: &str = r#"
 [[effect]]
 name = "hardening"
@@ -107,7 +107,7 @@ spring = "1/2*k*(p - q)^2"
 stop = "1/4*k_4*p^4"
 "#;
 
-/// Springs as they are written in more than one way, and what looks like one and is none.
+/// Springs in several notations, and a force that resembles a spring.
 const SPRINGS: &str = r#"
 [model]
 name = "springs"
@@ -138,14 +138,13 @@ shaft = "0.5*k_t*(theta - phi)^2"
 other = "k_1*p*p - 1/2*k_1*p^2"
 "#;
 
-/// The model of a specification that is right.
 fn checked(text: &str) -> Model {
     let checked = eomgen_model_spec::check(Source::new("machine.toml", text));
     checked.unwrap_or_else(|found| panic!("{found}")).model
 }
 
 #[test]
-fn springs_are_found_however_they_are_written() {
+fn springs_are_recognised_in_all_notations() {
     let model = checked(SPRINGS);
     let springs = sites(&model)
         .into_iter()
@@ -162,7 +161,7 @@ fn springs_are_found_however_they_are_written() {
 }
 
 #[test]
-fn springs_have_room_for_a_users_effect() {
+fn user_defined_effect_is_placed_on_springs() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("effects.toml");
     std::fs::write(&path, ON_SPRINGS).expect("a file");
@@ -170,7 +169,7 @@ fn springs_have_room_for_a_users_effect() {
     let own = effects.last().expect("an effect");
     assert!(own.is_own);
     let model = checked(TWO_CARRIAGES);
-    let found = placed(&model, own);
+    let found = candidates_of(&model, own);
     let places: Vec<&str> = found
         .iter()
         .map(|candidate| candidate.on.as_str())
@@ -179,7 +178,7 @@ fn springs_have_room_for_a_users_effect() {
     assert_eq!(found[0].term, "1/4*k_h*(p - q)^4");
 }
 
-/// Dampers beside a spring as they are written in more than one way, and what looks like one and is none.
+/// Dampers parallel to a spring in several notations, and a force that resembles a damper.
 const DAMPERS: &str = r#"
 [model]
 name = "dampers"
@@ -222,7 +221,7 @@ other = { on = "theta", value = "-d_t*dot(slip)" }
 "#;
 
 #[test]
-fn dampers_beside_a_spring_are_found_however_they_are_written() {
+fn parallel_dampers_are_recognised_in_all_notations() {
     let model = checked(DAMPERS);
     let belt = sites(&model).into_iter().find(|site| site.name == "belt");
     let dampers = belt.expect("a spring").dampers.into_iter();
@@ -236,12 +235,12 @@ fn dampers_beside_a_spring_are_found_however_they_are_written() {
 }
 
 #[test]
-fn play_opens_the_dampers_beside_its_spring_or_none() {
+fn backlash_can_include_parallel_dampers() {
     let model = checked(DAMPERS);
     let effects = effects(None).expect("the catalogue");
     let play = effects.iter().filter(|effect| effect.name == "backlash");
     let written: Vec<String> = play
-        .flat_map(|effect| placed(&model, effect))
+        .flat_map(|effect| candidates_of(&model, effect))
         .map(|candidate| candidate.written(DAMPERS, "dampers", &[1e-3], "a test"))
         .map(|written| written.unwrap_or_else(|error| panic!("{error}")))
         .collect();
@@ -259,7 +258,7 @@ fn play_opens_the_dampers_beside_its_spring_or_none() {
     assert!(apart.contains("deadzone("), "{apart}");
 }
 
-/// A motor whose input drives a current, and acts on the shaft beside it.
+/// Motor whose input drives a current and acts on the shaft.
 const MOTOR: &str = r#"
 [model]
 name = "motor"
@@ -292,8 +291,8 @@ bearing = "1/2*R*dot(theta)^2"
 drive = { on = "theta", value = "T + 0.1*both" }
 "#;
 
-/// The example of an effect on an input, as the documentation has it.
-fn documented() -> String {
+/// Returns the example of an effect on an input from the documentation.
+fn documented_effect() -> String {
     let text = include_str!("../../../docs/discovery.md");
     let examples = text.split("```toml\n").skip(1);
     let mut blocks = examples.filter_map(|rest| rest.split_once("```").map(|(block, _)| block));
@@ -302,10 +301,10 @@ fn documented() -> String {
 }
 
 #[test]
-fn what_sits_at_an_input_acts_wherever_the_input_stands() {
+fn effect_on_an_input_applies_to_all_its_uses() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("effects.toml");
-    std::fs::write(&path, documented()).expect("a file");
+    std::fs::write(&path, documented_effect()).expect("a file");
     let effects = effects(Some(&path)).unwrap_or_else(|found| panic!("{found}"));
     let model = checked(MOTOR);
     for (name, lines) in [
@@ -326,7 +325,7 @@ fn what_sits_at_an_input_acts_wherever_the_input_stands() {
         ),
     ] {
         let mut named = effects.iter().filter(|effect| effect.name == name);
-        let found = placed(&model, named.next().expect("an effect"));
+        let found = candidates_of(&model, named.next().expect("an effect"));
         let places: Vec<&str> = found.iter().map(|c| c.on.as_str()).collect();
         assert_eq!(places, ["u", "v"]);
         let written = found[0].written(MOTOR, "motor.toml", &[0.5], "");

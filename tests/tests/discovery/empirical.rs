@@ -1,5 +1,5 @@
-//! What no catalogue holds, on a stage: a force that is a function of rate and place becomes an
-//! expression that has no name; one that is not stays unexplained.
+//! Forces outside the catalogue, on a stage: a function of rate and position becomes an unnamed
+//! expression; any other force stays unexplained.
 
 use std::f64::consts::TAU;
 
@@ -7,14 +7,14 @@ use eomgen_tests::measured::Measured;
 use eomgen_tests::program;
 use serde_json::Value;
 
-/// What is said where an expression is looked for.
-const LOOKED_FOR: &str = "searching for an expression";
+/// Message of the search for an expression.
+const SEARCH_MESSAGE: &str = "searching for an expression";
 
 fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or(f64::NAN)
 }
 
-/// The value of a parameter of a specification, as it is written there.
+/// Returns the value of a parameter in the text of a specification.
 fn parameter(text: &str, name: &str) -> f64 {
     let lines = text.lines().map(str::trim_start);
     let mut own = lines.filter(|line| line.starts_with(&format!("{name} = {{")));
@@ -25,8 +25,8 @@ fn parameter(text: &str, name: &str) -> f64 {
 }
 
 #[test]
-fn a_force_that_no_catalogue_holds_becomes_an_expression() {
-    // Guides that are the tighter the farther the carriage is out on one side, N s/m^2.
+fn force_outside_catalogue_becomes_an_expression() {
+    // Guides whose friction increases towards one side, N s/m^2.
     let tighter = 60.0;
     let measured = Measured::stage_with(&|at| -tighter * at.q * at.v);
     let (found, _) = measured.answered("discover", "found");
@@ -48,7 +48,7 @@ fn a_force_that_no_catalogue_holds_becomes_an_expression() {
     let scale = parameter(&extended, "e_rate") * parameter(&extended, "e_place");
     let (value, sd) = (number(&size["value"]) / scale, number(&size["sd"]) / scale);
     assert_eq!(size["unit"], "N");
-    // The 90 % interval is 1.645 sd; one record in fifteen thousand is outside 4.
+    // Of fifteen thousand records one is outside 4 sd.
     assert!((value + tighter).abs() < 4.0 * sd, "{value} +- {sd}");
     assert!(sd < 0.05 * tighter, "{value} +- {sd}");
 
@@ -57,7 +57,7 @@ fn a_force_that_no_catalogue_holds_becomes_an_expression() {
         number(&gap["before"]["test"]),
         number(&gap["after"]["test"]),
     );
-    // A right model leaves the floor; what is asked of every effect is half of the way there.
+    // A correct model reaches the floor; each effect must close at least half of the gap.
     assert!(
         after < 1.2 * number(&gap["floor"]) && before > 3.0 * after,
         "{gap:#}"
@@ -71,15 +71,15 @@ fn a_force_that_no_catalogue_holds_becomes_an_expression() {
     assert_eq!(steps[1]["added"][0], "empirical on q");
     assert!(number(&steps[1]["test_rms_over_noise"]) < number(&steps[0]["test_rms_over_noise"]));
 
-    // What was written is a sound model that explains both records.
+    // The extended specification must be valid and explain both records.
     assert_eq!(
         found["validation"]["passed"], true,
         "{}",
         found["validation"]
     );
     assert_eq!(steps[1]["validated"], true);
-    // Run as written it leaves the noise, within the tenth by which discovery calls that the floor:
-    // numbers that moved by less than half of their uncertainty are not written.
+    // The extended specification must reach the noise floor within ten percent. Refitted values
+    // that moved by less than half of their uncertainty are not written.
     for set in ["train_rms_over_noise", "test_rms_over_noise"] {
         let left = number(&found["validation"][set]);
         assert!(left < 1.1, "{set}: {left}");
@@ -99,8 +99,8 @@ fn a_force_that_no_catalogue_holds_becomes_an_expression() {
 }
 
 #[test]
-fn a_force_that_begins_somewhere_has_a_kink_there() {
-    // A cable that is stretched from 60 mm on, N/m: the model has no spring.
+fn force_with_threshold_becomes_expression_with_kink() {
+    // Cable that is stretched from 60 mm on, N/m; the model has no spring.
     let (from, stiffness) = (0.06, 2e3);
     let measured = Measured::stage_with(&|at| -stiffness * (at.q - from).max(0.0));
     let (found, _) = measured.answered("discover", "found");
@@ -122,12 +122,12 @@ fn a_force_that_begins_somewhere_has_a_kink_there() {
 }
 
 #[test]
-fn a_force_from_elsewhere_stays_unexplained() {
+fn external_force_stays_unexplained() {
     let measured = Measured::stage_with(&|at| 6.0 * (TAU * 17.3 * at.t).sin());
     let (found, message) = measured.answered("discover", "found");
     assert_eq!(found["verdict"], "unexplained", "{found:#}");
     assert_eq!(found["effects"], serde_json::json!([]));
-    assert!(message.contains(LOOKED_FOR), "{message}");
+    assert!(message.contains(SEARCH_MESSAGE), "{message}");
     assert!(!measured.read("found/extended.toml").contains("empirical"));
     let gap = &found["gap"]["q"];
     assert!(
@@ -137,11 +137,11 @@ fn a_force_from_elsewhere_stays_unexplained() {
 }
 
 #[test]
-fn no_expression_is_looked_for_where_nothing_is_missing_or_it_has_a_name() {
+fn no_expression_is_searched_if_nothing_is_missing_or_effect_is_named() {
     for (friction, verdict) in [(0.0, "no_significant_gap"), (3.0, "effects_found")] {
         let measured = Measured::stage(friction);
         let (found, message) = measured.answered("discover", "found");
         assert_eq!(found["verdict"], verdict, "{found:#}");
-        assert!(!message.contains(LOOKED_FOR), "{message}");
+        assert!(!message.contains(SEARCH_MESSAGE), "{message}");
     }
 }

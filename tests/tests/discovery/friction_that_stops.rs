@@ -1,5 +1,5 @@
-//! Dry friction that stops a pendulum is found by name, at its place and with its size, from records that a
-//! set-valued time stepping makes: it shares no code with the simulator.
+//! Dry friction that stops a pendulum is found with name, place and size. The records are from
+//! set-valued time stepping that shares no code with the simulator.
 
 use eomgen_tests::program;
 use serde_json::Value;
@@ -10,7 +10,7 @@ const G: f64 = 9.81;
 const C: f64 = 2e-3;
 const T_C: f64 = 0.03;
 
-/// One standard deviation of what the encoder shows, rad.
+/// Standard deviation of the encoder, rad.
 const NOISE: f64 = 1e-3;
 
 /// Time between samples, s.
@@ -70,7 +70,7 @@ c = { relative = 0.1 }
 length = 0.5
 "#;
 
-/// Normal numbers, each of twelve even ones.
+/// Approximately normal numbers, each a sum of twelve uniform ones.
 struct Noise(u64);
 
 impl Noise {
@@ -86,8 +86,8 @@ impl Noise {
     }
 }
 
-/// A record from rest at an angle, and for how long in all the pendulum stood, s: every short step's friction is
-/// the impulse within its bounds that brings the speed to zero, or as near as it can.
+/// Returns a record from rest at an angle, and the total time at rest, s. In each short step the
+/// friction impulse brings the speed as close to zero as its bounds permit.
 fn record(angle: f64, torque: impl Fn(f64) -> f64, until: f64, seed: u64) -> (String, f64) {
     let (inertia, parts) = (M * L * L, 100);
     let h = SAMPLE / f64::from(parts);
@@ -112,8 +112,8 @@ fn record(angle: f64, torque: impl Fn(f64) -> f64, until: f64, seed: u64) -> (St
     (text, stood)
 }
 
-/// What discovery finds of two records.
-fn discovered(records: [(String, f64); 2]) -> Value {
+/// Returns the result of discovery on two records.
+fn discover(records: [(String, f64); 2]) -> Value {
     let folder = tempfile::tempdir().expect("a folder");
     let place = |name: &str| folder.path().join(name);
     let write = |name: &str, text: &str| std::fs::write(place(name), text).expect("a file");
@@ -127,7 +127,7 @@ fn discovered(records: [(String, f64); 2]) -> Value {
     program::answered("discover", paths.each_ref())
 }
 
-fn is_the_friction(found: &Value) {
+fn assert_friction_found(found: &Value) {
     let effects = found["effects"].as_array().expect("effects");
     assert_eq!(effects.len(), 1, "{found:#}");
     let effect = &effects[0];
@@ -143,16 +143,16 @@ fn is_the_friction(found: &Value) {
 }
 
 #[test]
-fn that_of_a_pendulum_which_is_released_and_stops() {
+fn friction_of_released_pendulum_is_found() {
     let released = |angle, seed| record(angle, |_| 0.0, 4.0, seed);
-    is_the_friction(&discovered([released(1.0, 1), released(0.8, 2)]));
+    assert_friction_found(&discover([released(1.0, 1), released(0.8, 2)]));
 }
 
 #[test]
-fn that_of_a_pendulum_which_sticks_and_breaks_away() {
+fn friction_of_sticking_pendulum_is_found() {
     let driven = |torque: f64, period: f64, seed| {
         let turn = std::f64::consts::TAU / period;
         record(0.0, |t| torque * (turn * t).sin(), 8.0, seed)
     };
-    is_the_friction(&discovered([driven(0.06, 4.0, 3), driven(0.07, 3.0, 4)]));
+    assert_friction_found(&discover([driven(0.06, 4.0, 3), driven(0.07, 3.0, 4)]));
 }

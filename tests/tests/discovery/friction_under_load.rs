@@ -1,5 +1,5 @@
-//! Friction in proportion to what a shaft transmits, in a drive of two masses whose equations are written
-//! here: found on the shaft that rubs, and told from friction of constant size.
+//! Friction proportional to the load of a shaft, in a drive of two masses with equations written
+//! here: it is found on the shaft with friction, and distinguished from friction of constant level.
 
 use eomgen_tests::logistic_noise::LogisticNoise;
 use eomgen_tests::program;
@@ -70,8 +70,8 @@ d = { relative = 0.3 }
 length = 0.5
 "#;
 
-/// A record of the drive whose motor's bearing rubs by so much of what the shaft transmits, and by a
-/// constant, N m.
+/// Returns a record of the drive. The friction of the motor's bearing is `per_load` times the shaft
+/// torque plus `constant`, N m.
 fn record(per_load: f64, constant: f64, turn: f64) -> String {
     let (j_m, j_l, k, d) = (1e-3, 5e-3, 20.0, 0.01);
     let parts = 100;
@@ -99,8 +99,8 @@ fn record(per_load: f64, constant: f64, turn: f64) -> String {
     text
 }
 
-/// What is found in records of the drive.
-fn found(per_load: f64, constant: f64) -> Value {
+/// Returns the result of discovery on records of the drive.
+fn discover(per_load: f64, constant: f64) -> Value {
     let folder = tempfile::tempdir().expect("a folder");
     let file = |name: &str| folder.path().join(name);
     let [train, test] = [0.0, 1.0].map(|turn| record(per_load, constant, turn));
@@ -116,8 +116,8 @@ fn found(per_load: f64, constant: f64) -> Value {
     program::answered("discover", paths.each_ref())
 }
 
-/// The only effect that is found is this, on the motor's shaft, of about this size.
-fn is_only(found: &Value, effect: &str, parameter: &str, size: f64) {
+/// Asserts that the only effect is this one on the motor's shaft, with about this size.
+fn assert_only(found: &Value, effect: &str, parameter: &str, size: f64) {
     let effects = found["effects"].as_array().expect("effects");
     assert_eq!(effects.len(), 1, "{effects:#?}");
     let first = &effects[0];
@@ -130,13 +130,13 @@ fn is_only(found: &Value, effect: &str, parameter: &str, size: f64) {
 }
 
 #[test]
-fn what_grows_with_the_load_of_the_shaft_is_named() {
-    let found = found(0.15, 0.0);
-    is_only(&found, "load_dependent_friction", "mu", 0.15);
+fn load_dependent_friction_of_the_shaft_is_found() {
+    let found = discover(0.15, 0.0);
+    assert_only(&found, "load_dependent_friction", "mu", 0.15);
     assert_eq!(found["effects"][0]["load"], "shaft", "{found:#}");
 }
 
 #[test]
-fn what_does_not_is_told_from_it() {
-    is_only(&self::found(0.0, 0.05), "coulomb_friction", "T_c", 0.05);
+fn constant_friction_is_not_reported_as_load_dependent() {
+    assert_only(&discover(0.0, 0.05), "coulomb_friction", "T_c", 0.05);
 }

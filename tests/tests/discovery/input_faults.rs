@@ -1,6 +1,6 @@
-//! Inputs that act otherwise than they are recorded, on a driven pendulum: found as what they are where
-//! nobody spoke of them, refitted where the dataset says how far they may be off. Records are Newton's law
-//! in small steps.
+//! Inputs of a driven pendulum that differ from their records: they are found as effects if not
+//! declared, and refitted within declared uncertainties. The records integrate Newton's law with
+//! small steps.
 
 use eomgen_tests::program;
 use serde_json::Value;
@@ -58,7 +58,8 @@ state = "rest"
 length = 0.5
 "#;
 
-/// What acts: gain * (u + bias), N m, with u so late and behind a low-pass of so long a time, s.
+/// Drive torque gain * (u + bias), N m, with u delayed by `late` and low-pass filtered with the
+/// time constant `lag`, s.
 #[derive(Clone, Copy)]
 struct Drive {
     gain: f64,
@@ -67,7 +68,6 @@ struct Drive {
     lag: f64,
 }
 
-/// A drive that does what it is told.
 const IDEAL: Drive = Drive {
     gain: 1.0,
     bias: 0.0,
@@ -75,7 +75,7 @@ const IDEAL: Drive = Drive {
     lag: 0.0,
 };
 
-/// A record of what acts: gain * (u + bias), N m.
+/// Returns a record with the torque gain * (u + bias), N m.
 fn record(gain: f64, bias: f64, turn: f64) -> String {
     driven(
         Drive {
@@ -87,7 +87,7 @@ fn record(gain: f64, bias: f64, turn: f64) -> String {
     )
 }
 
-/// A record: t, u in mN m, theta.
+/// Returns a record of t, u in mN m, theta.
 fn driven(drive: Drive, turn: f64) -> String {
     let Drive {
         gain,
@@ -129,14 +129,15 @@ fn driven(drive: Drive, turn: f64) -> String {
     text
 }
 
-/// What is found in records of a pendulum with this gain and bias, and the specification that is left.
-fn found(dataset: &str, specification: &str, (gain, bias): (f64, f64)) -> (Value, String) {
+/// Returns the result of discovery on records with this gain and bias, and the extended
+/// specification.
+fn discover(dataset: &str, specification: &str, (gain, bias): (f64, f64)) -> (Value, String) {
     let records = [0.0, 1.0].map(|turn| record(gain, bias, turn));
-    found_in(dataset, specification, &records)
+    discover_in(dataset, specification, &records)
 }
 
-/// The same in these records.
-fn found_in(dataset: &str, specification: &str, records: &[String; 2]) -> (Value, String) {
+/// Returns the same for the given records.
+fn discover_in(dataset: &str, specification: &str, records: &[String; 2]) -> (Value, String) {
     let folder = tempfile::tempdir().expect("a folder");
     let file = |name: &str| folder.path().join(name);
     for (name, text) in [
@@ -153,8 +154,9 @@ fn found_in(dataset: &str, specification: &str, records: &[String; 2]) -> (Value
     (document, extended.expect("a file"))
 }
 
-/// The value of the only effect's parameter, and that effect with what is not told from it.
-fn only(document: &Value) -> (f64, Vec<String>) {
+/// Returns the value of the only effect's parameter, and the names of the effect and its
+/// equivalents.
+fn only_effect(document: &Value) -> (f64, Vec<String>) {
     let effects = document["effects"].as_array().expect("effects");
     assert_eq!(effects.len(), 1, "{effects:#?}");
     let named = |of: &Value| format!("{} on {}", of["effect"], of["on"]).replace('"', "");
@@ -167,30 +169,30 @@ fn only(document: &Value) -> (f64, Vec<String>) {
 }
 
 #[test]
-fn a_torque_constant_that_is_low_is_a_gain_of_the_input() {
-    let (document, extended) = found(DATASET, PENDULUM, (0.9, 0.0));
-    let (gain, names) = only(&document);
+fn low_torque_constant_is_found_as_input_gain() {
+    let (document, extended) = discover(DATASET, PENDULUM, (0.9, 0.0));
+    let (gain, names) = only_effect(&document);
     assert_eq!(names[0], "input_gain on u", "{names:?}");
     assert!((gain - 0.9).abs() < 2e-3, "{gain}");
     assert!(extended.contains("value = \"u_gain*u\""), "{extended}");
-    // What is written back explains the records.
-    let (again, _) = found(DATASET, &extended, (0.9, 0.0));
+    // The extended specification explains the records.
+    let (again, _) = discover(DATASET, &extended, (0.9, 0.0));
     assert_eq!(again["verdict"], "no_significant_gap", "{again:#}");
 }
 
 #[test]
-fn a_constant_torque_may_be_a_bias_of_the_input() {
-    let (document, _) = found(DATASET, PENDULUM, (1.0, 0.08));
-    let (bias, names) = only(&document);
+fn constant_torque_is_reported_with_input_bias() {
+    let (document, _) = discover(DATASET, PENDULUM, (1.0, 0.08));
+    let (bias, names) = only_effect(&document);
     assert!((bias.abs() - 0.08).abs() < 2e-3, "{bias}");
     assert!(names.contains(&"input_bias on u".to_owned()), "{names:?}");
 }
 
 #[test]
-fn what_a_dataset_says_of_an_input_is_fitted_within_that() {
+fn declared_input_uncertainty_is_refitted_within_prior() {
     let said = |gain: &str| DATASET.replace("unit = \"mN m\"", &format!("unit = \"mN m\"\n{gain}"));
     let declared = said("gain = { sd = 0.02 }\nbias = { mean = 50, sd = 10 }");
-    let (document, extended) = found(&declared, PENDULUM, (0.97, 0.06));
+    let (document, extended) = discover(&declared, PENDULUM, (0.97, 0.06));
     assert_eq!(document["verdict"], "no_significant_gap", "{document:#}");
     let fitted = |name: &str| {
         document["refitted"][name]["value"]
@@ -200,11 +202,11 @@ fn what_a_dataset_says_of_an_input_is_fitted_within_that() {
     assert!((fitted("u_gain") - 0.97).abs() < 2e-3, "{document:#}");
     assert!((fitted("u_bias") - 0.06).abs() < 2e-3, "{document:#}");
     assert!(extended.contains("u_gain*(u + u_bias)"), "{extended}");
-    // It begins where that ended, and nothing is put in twice.
-    let (again, extended) = found(&declared, &extended, (0.97, 0.06));
+    // The refit starts from the previous result, and nothing is added twice.
+    let (again, extended) = discover(&declared, &extended, (0.97, 0.06));
     assert_eq!(again["verdict"], "no_significant_gap", "{again:#}");
     assert_eq!(extended.matches("u_gain*").count(), 1, "{extended}");
-    // A parameter of that name that is something else is not taken for it.
+    // Another parameter with that name is not used as the gain.
     let other = PENDULUM.replace(
         "[coordinates]",
         "u_gain = { value = 5, unit = \"1\" }\n\n[coordinates]",
@@ -220,15 +222,15 @@ fn what_a_dataset_says_of_an_input_is_fitted_within_that() {
     let (model, dataset, out) = (file("other.toml"), file("dataset.toml"), file("out"));
     let message = program::refused(&["discover", &model, &dataset, "--out", &out]);
     assert!(message.contains("u_gain"), "{message}");
-    // Beyond three deviations it is an effect.
-    let (document, _) = found(&said("gain = { sd = 0.01 }"), PENDULUM, (0.9, 0.0));
-    let (gain, names) = only(&document);
+    // Beyond three standard deviations of the prior it is an effect.
+    let (document, _) = discover(&said("gain = { sd = 0.01 }"), PENDULUM, (0.9, 0.0));
+    let (gain, names) = only_effect(&document);
     assert_eq!(names[0], "input_gain on u", "{names:?}");
     assert!((gain - 0.9).abs() < 2e-3, "{gain}");
 }
 
 #[test]
-fn an_input_that_acts_late_is_one_unknown() {
+fn delayed_input_is_a_single_unknown() {
     let lever = "\n[observables]\nlever = { value = \"0.3*sin(theta)\" }\n"
         .replace(" }", ", unit = \"rad\" }");
     let specification = format!("{PENDULUM}{lever}");
@@ -238,7 +240,7 @@ fn an_input_that_acts_late_is_one_unknown() {
             .replace("[initial]", second)
             .replace("unit = \"mN m\"", &format!("unit = \"mN m\"\n{delay}"))
     };
-    // Four samples: the motor rests that long.
+    // The first four samples are at rest.
     let records = [0.0, 1.0].map(|turn| {
         let lines = driven(
             Drive {
@@ -260,29 +262,29 @@ fn an_input_that_acts_late_is_one_unknown() {
         lines.lines().map(with_lever).collect::<String>()
     });
     let declared = dataset("delay = { sd = 0.0025 }");
-    let (document, extended) = found_in(&declared, &specification, &records);
-    let (delay, names) = only(&document);
+    let (document, extended) = discover_in(&declared, &specification, &records);
+    let (delay, names) = only_effect(&document);
     assert_eq!(names[0], "input_delay on u", "{names:?}");
     assert!((delay - 0.02).abs() < 2e-4, "{delay}");
-    let (again, _) = found_in(&declared, &extended, &records);
+    let (again, _) = discover_in(&declared, &extended, &records);
     assert_eq!(again["verdict"], "no_significant_gap", "{again:#}");
     let known = dataset("delay = { mean = 0.02, sd = 0 }");
-    let (document, _) = found_in(&known, &specification, &records);
+    let (document, _) = discover_in(&known, &specification, &records);
     assert_eq!(document["verdict"], "no_significant_gap", "{document:#}");
 }
 
 #[test]
-fn a_drive_that_follows_its_command_late_is_named() {
+fn lag_of_drive_is_found() {
     let drive = Drive { lag: 0.02, ..IDEAL };
     let records = [0.0, 1.0].map(|turn| driven(drive, turn));
-    let (document, extended) = found_in(DATASET, PENDULUM, &records);
-    let (bandwidth, names) = only(&document);
+    let (document, extended) = discover_in(DATASET, PENDULUM, &records);
+    let (bandwidth, names) = only_effect(&document);
     assert_eq!(names, ["input_lag on u"], "{document:#}");
     assert!((bandwidth - 50.0).abs() < 1.0, "{bandwidth}");
     assert!(
         extended.contains("rate = \"w_b*(u - acting)\""),
         "{extended}"
     );
-    let (again, _) = found_in(DATASET, &extended, &records);
+    let (again, _) = discover_in(DATASET, &extended, &records);
     assert_eq!(again["verdict"], "no_significant_gap", "{again:#}");
 }

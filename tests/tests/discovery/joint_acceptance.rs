@@ -1,10 +1,10 @@
-//! Two effects in swings of a pendulum, of which one repeats with the angle and neither is accepted
-//! alone: both are named.
+//! Two effects in swings of a pendulum, one periodic in the angle. Neither is significant by
+//! itself; both are named.
 
 use eomgen_tests::models::path;
 use eomgen_tests::program;
 
-/// What the encoder of the angle resolves, rad.
+/// Resolution of the angle encoder, rad.
 const STEP_OF_ENCODER: f64 = 1e-3;
 
 const DESCRIPTION: &str = r#"
@@ -32,20 +32,20 @@ length = "record"
 start = "fitted"
 "#;
 
-/// The torque of the hidden effects, N m, at an angle and a rate.
+/// Returns the torque of the hidden effects, N m, at an angle and a rate.
 fn hidden(theta: f64, rate: f64) -> f64 {
     let friction = 6e-4 * (rate / 0.02).tanh();
     let ripple = 1.5e-3 * (2.0 * theta + 0.4).cos();
     ripple - friction
 }
 
-/// The rate of the rate, rad/s^2, of the arm of `pendulum.toml`.
+/// Returns the angular acceleration, rad/s^2, of the arm of `pendulum.toml`.
 fn acceleration(theta: f64, rate: f64) -> f64 {
     let (m, a, inertia, k, g) = (0.14758, 0.14775, 1.091e-4, 2.239e-4, 9.81);
     (m * g * a * theta.sin() - k * rate + hidden(theta, rate)) / (m * a * a + inertia)
 }
 
-/// A swing let go at an angle, by the midpoint rule in steps of 20 us.
+/// Returns a swing released at an angle, by the midpoint rule with steps of 20 us.
 fn swing(from: f64) -> String {
     let (samples, parts, sample) = (700, 100, 0.002);
     let h = sample / f64::from(parts);
@@ -67,7 +67,7 @@ fn swing(from: f64) -> String {
 }
 
 #[test]
-fn friction_and_a_ripple_that_are_accepted_only_together_are_both_named() {
+fn friction_and_ripple_significant_only_together_are_both_named() {
     let folder = tempfile::tempdir().expect("a folder");
     let place = |name: &str| folder.path().join(name);
     std::fs::write(place("dataset.toml"), DESCRIPTION).expect("a file");
@@ -89,7 +89,7 @@ fn friction_and_a_ripple_that_are_accepted_only_together_are_both_named() {
         2,
         "{ripple:#?}"
     );
-    // What both leave is the noise and the encoder's steps: next to nothing of the gap.
+    // Both effects together must reach the noise and the encoder's resolution.
     let closure = found["closure"]["test"].as_f64().expect("a number");
     assert!(closure > 0.95, "{closure}");
 }

@@ -1,5 +1,5 @@
-//! Every kind of channel of every kind of model: a record that the model itself makes shows nothing
-//! missing, to `compare` and to `discover`.
+//! All kinds of channels and models: `compare` and `discover` find no gap in records made by the
+//! model.
 
 use std::fs;
 use std::path::Path;
@@ -10,8 +10,8 @@ use super::machines::{
     BEAM, CYLINDER, Machine, PENDULUM, SAMPLES, STEP, Table, answered, description, mass, spread,
 };
 
-/// Both commands find that a channel shows nothing missing, and leave a small part of its noise.
-fn finds_nothing(folder: &Path, description: &str, noise: f64, shown: &str) {
+/// Asserts that both commands find no gap, and a residual far below the noise.
+fn assert_no_gap(folder: &Path, description: &str, noise: f64, shown: &str) {
     for command in ["compare", "discover"] {
         let answer = answered(folder, command, description);
         assert_eq!(
@@ -34,38 +34,38 @@ fn finds_nothing(folder: &Path, description: &str, noise: f64, shown: &str) {
     }
 }
 
-/// Every channel of a machine by itself.
-fn every_channel_shows_nothing(machine: &Machine) {
+/// Checks each channel of a machine separately.
+fn assert_no_gap_in_any_channel(machine: &Machine) {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
     let train = machine.records(folder);
     for channel in &machine.channels {
         let noise = 2e-3 * spread(&train.column(channel.1));
         let description = description(machine, channel, noise);
-        finds_nothing(folder, &description, noise, &format!("{channel:?}"));
+        assert_no_gap(folder, &description, noise, &format!("{channel:?}"));
     }
 }
 
 #[test]
-fn linear_model() {
-    every_channel_shows_nothing(&mass("1/2*k*x^2", "k*x", "u", ""));
+fn channels_of_linear_model_show_no_gap() {
+    assert_no_gap_in_any_channel(&mass("1/2*k*x^2", "k*x", "u", ""));
 }
 
 #[test]
-fn piecewise_linear_model() {
+fn channels_of_piecewise_linear_model_show_no_gap() {
     let spring = "1/2*k*deadzone(x, b)^2";
-    every_channel_shows_nothing(&mass(spring, "k*deadzone(x, b)", "u", ""));
+    assert_no_gap_in_any_channel(&mass(spring, "k*deadzone(x, b)", "u", ""));
 }
 
 #[test]
-fn model_with_dry_friction() {
+fn channels_of_model_with_dry_friction_show_no_gap() {
     let drive = "u - F*sign(dot(x))";
     let machine = mass("1/2*k*x^2", "k*x", drive, "");
-    every_channel_shows_nothing(&machine);
+    assert_no_gap_in_any_channel(&machine);
 }
 
 #[test]
-fn nonlinear_model() {
+fn channels_of_nonlinear_model_show_no_gap() {
     let channels = [
         ("x", "x", "rad"),
         ("x_dot", "x_dot", "rad/s"),
@@ -74,25 +74,25 @@ fn nonlinear_model() {
         ("o_dot", "v_o", "m/s"),
         ("o_ddot", "a_o", "m/s^2"),
     ];
-    every_channel_shows_nothing(&Machine::new(PENDULUM, ("N m", 1.5), &channels));
+    assert_no_gap_in_any_channel(&Machine::new(PENDULUM, ("N m", 1.5), &channels));
 }
 
 #[test]
-fn model_with_a_small_nonlinear_term() {
+fn channels_of_model_with_small_nonlinear_term_show_no_gap() {
     let spring = "1/2*k*x^2 + 1/4*k_3*x^4";
-    every_channel_shows_nothing(&mass(spring, "k*x + k_3*x^3", "u", ""));
+    assert_no_gap_in_any_channel(&mass(spring, "k*x + k_3*x^3", "u", ""));
 }
 
 #[test]
-fn linear_model_with_a_state() {
+fn channels_of_linear_model_with_state_show_no_gap() {
     let states = "[states]\nz = { unit = \"N\", rate = \"(u - z)/tau\" }\n";
     let mut machine = mass("1/2*k*x^2", "k*x", "z", states);
     machine.channels.push(("z", "z", "N"));
-    every_channel_shows_nothing(&machine);
+    assert_no_gap_in_any_channel(&machine);
 }
 
 #[test]
-fn nonlinear_model_with_a_state_in_pascals() {
+fn channels_of_nonlinear_model_with_state_in_pascals_show_no_gap() {
     let channels = [
         ("x", "x", "m"),
         ("x_dot", "x_dot", "m/s"),
@@ -101,22 +101,22 @@ fn nonlinear_model_with_a_state_in_pascals() {
         ("p", "p", "Pa"),
         ("place_ddot", "a_place", "m/s^2"),
     ];
-    every_channel_shows_nothing(&Machine::new(CYLINDER, ("V", 1.0), &channels));
+    assert_no_gap_in_any_channel(&Machine::new(CYLINDER, ("V", 1.0), &channels));
 }
 
 #[test]
-fn model_with_a_field() {
+fn channels_of_model_with_field_show_no_gap() {
     let channels = [
         ("x", "x", "rad"),
         ("x_dot", "x_dot", "rad/s"),
         ("o", "o", "m"),
     ];
-    every_channel_shows_nothing(&Machine::new(BEAM, ("N m", 0.5), &channels));
+    assert_no_gap_in_any_channel(&Machine::new(BEAM, ("N m", 0.5), &channels));
 }
 
-/// The acceleration of a tip is what its speed differs by a moment later.
+/// The acceleration of the tip is compared with a difference quotient of its velocity.
 #[test]
-fn acceleration_of_the_tip_of_a_beam() {
+fn tip_acceleration_of_beam_matches_difference_quotient() {
     const PARTS: usize = 100;
     let channel = ("o_ddot", "a_o", "m/s^2");
     let machine = Machine::new(BEAM, ("N m", 0.5), &[channel]);
@@ -141,12 +141,12 @@ fn acceleration_of_the_tip_of_a_beam() {
         table.write(&folder.join(format!("{name}.csv")));
     }
     let description = description(&machine, &channel, noise);
-    finds_nothing(folder, &description, noise, "o_ddot");
+    assert_no_gap(folder, &description, noise, "o_ddot");
 }
 
-/// A spring that the model lacks is found by an accelerometer on a point of the machine.
+/// An accelerometer on a point of the machine shows the missing spring.
 #[test]
-fn spring_seen_by_the_acceleration_of_a_point() {
+fn missing_spring_is_found_from_acceleration_of_a_point() {
     let channel = ("o_ddot", "a_o", "m/s^2");
     let machine = Machine::new(PENDULUM, ("N m", 1.5), &[channel]);
     let folder = tempfile::tempdir().expect("a folder");
@@ -171,9 +171,9 @@ fn spring_seen_by_the_acceleration_of_a_point() {
     assert_eq!(again["verdict"], "no_significant_gap", "{again:#}");
 }
 
-/// The force of a cylinder has a second derivative only with that of the voltage.
+/// The second derivative of the cylinder's force needs the rate of the voltage.
 #[test]
-fn acceleration_that_is_not_defined_is_refused() {
+fn undefined_acceleration_is_rejected() {
     let channel = ("o_ddot", "o", "N/s^2");
     let machine = Machine::new(CYLINDER, ("V", 1.0), &[channel]);
     let folder = tempfile::tempdir().expect("a folder");
@@ -196,16 +196,17 @@ fn acceleration_that_is_not_defined_is_refused() {
     }
 }
 
-/// The torque of a pendulum, and of a mass, along motions that are given.
+/// Torque of a pendulum and force on a mass along given motions.
 #[test]
-fn inputs_along_a_given_motion() {
+fn inputs_along_given_motion_show_no_gap() {
     let spring = mass("1/2*k*x^2", "k*x", "u", "");
     let pendulum = Machine::new(PENDULUM, ("N m", 1.5), &[("u", "u", "N m")]);
     for (machine, unit) in [(spring, "m"), (pendulum, "rad")] {
         let folder = tempfile::tempdir().expect("a folder");
         let folder = folder.path();
         let train = machine.records(folder);
-        // The curve through samples of a motion does not jump in its second rate as the held input does.
+        // The input is a held one, but the curve through the samples has no jumps in its second
+        // rate.
         let noise = 0.3 * spread(&train.column("u"));
         let channel = ("u", "u", machine.input.0);
         let description = description(&machine, &channel, noise);
@@ -213,7 +214,7 @@ fn inputs_along_a_given_motion() {
         let (_, after) = after.split_once("[channels").expect("a channel");
         let (after, _) = after.split_once("[initial]").expect("the initial state");
         let motion = format!("[motion.x]\ncolumn = \"x\"\nunit = \"{unit}\"\n");
-        finds_nothing(
+        assert_no_gap(
             folder,
             &format!("{before}{motion}[channels{after}"),
             noise,

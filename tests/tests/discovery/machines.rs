@@ -1,4 +1,4 @@
-//! Small machines of every kind, with records that a model of them makes.
+//! Small machines of all kinds, with records made by their models.
 
 use std::fmt::Write;
 use std::fs;
@@ -7,21 +7,20 @@ use std::path::Path;
 use eomgen_tests::program::accepted;
 use serde_json::Value;
 
-/// A model with one input and its channels.
+/// Model with one input, and its channels.
 #[derive(Clone)]
 pub struct Machine {
-    /// The text of its specification.
+    /// Text of the specification.
     pub specification: String,
-    /// Unit and size of the input `u`.
+    /// Unit and amplitude of the input `u`.
     pub input: (&'static str, f64),
-    /// Its channels.
     pub channels: Vec<Channel>,
 }
 
-/// The observable of a channel, its column of `simulate`, and its unit.
+/// Observable of a channel, its column of `simulate`, and its unit.
 pub type Channel = (&'static str, &'static str, &'static str);
 
-/// A mass on a spring; `SPRING` is its energy, `PULL` the same as a force, `DRIVE` the other force.
+/// Mass on a spring. `SPRING` is the spring's energy, `PULL` its force, `DRIVE` the other force.
 const MASS: &str = r#"[model]
 name = "mass"
 [parameters]
@@ -50,7 +49,7 @@ a_o = "2*a_x"
 a_x = "(DRIVE - c*dot(x) - (PULL))/m"
 "#;
 
-/// A mass on this spring, driven by this, with these states.
+/// Returns a mass with this spring, drive and states.
 pub fn mass(spring: &str, pull: &str, drive: &str, states: &str) -> Machine {
     let specification = (MASS.replace("SPRING", spring).replace("PULL", pull))
         .replace("DRIVE", drive)
@@ -69,7 +68,7 @@ pub fn mass(spring: &str, pull: &str, drive: &str, states: &str) -> Machine {
     }
 }
 
-/// A pendulum, with a nonlinear observable.
+/// Pendulum with a nonlinear observable.
 pub const PENDULUM: &str = r#"[model]
 name = "pendulum"
 [parameters]
@@ -96,7 +95,7 @@ a_o = "l*(cos(x)*a_x - sin(x)*dot(x)^2)"
 a_x = "(u - c*dot(x) - m*g*l*sin(x))/(m*l^2)"
 "#;
 
-/// A cylinder whose pressure, in Pa, is a state of first order.
+/// Cylinder with a pressure in Pa as a first-order state.
 pub const CYLINDER: &str = r#"[model]
 name = "cylinder"
 [parameters]
@@ -123,7 +122,7 @@ place = "2*x"
 a_place = "2*(A*p - c*dot(x))/m"
 "#;
 
-/// A beam on a hub.
+/// Beam on a hub.
 pub const BEAM: &str = r#"[model]
 name = "beam"
 [parameters]
@@ -161,9 +160,9 @@ o = "at(w, l) + l*x"
 v_o = "at(dot(w), l) + l*dot(x)"
 "#;
 
-/// Samples of a record.
+/// Number of samples of a record.
 pub const SAMPLES: usize = 160;
-/// Time from sample to sample, s.
+/// Time between samples, s.
 pub const STEP: f64 = 0.01;
 
 impl Machine {
@@ -175,14 +174,14 @@ impl Machine {
         }
     }
 
-    /// Writes the model and two records that it makes, `train.csv` and `test.csv`; the first.
+    /// Writes the model and its records `train.csv` and `test.csv`; returns the first.
     pub fn records(&self, folder: &Path) -> Table {
         fs::write(folder.join("model.toml"), &self.specification).expect("a file");
         self.record(folder, "test", 1.0);
         self.record(folder, "train", 0.0)
     }
 
-    /// Writes a record with the columns of `simulate`, which the model makes from its input.
+    /// Simulates and writes a record with the columns of `simulate`.
     fn record(&self, folder: &Path, name: &str, turn: f64) -> Table {
         let mut table = self.motion(folder, name, turn, STEP);
         table.add(
@@ -193,12 +192,12 @@ impl Machine {
         table
     }
 
-    /// The motion that the model makes from its input, at times so far apart, s.
+    /// Simulates the model with its input, with samples `step` s apart.
     pub fn motion(&self, folder: &Path, name: &str, turn: f64, step: f64) -> Table {
         self.motion_by("auto", folder, name, turn, step)
     }
 
-    /// The same by a solver.
+    /// Simulates with the given solver.
     pub fn motion_by(
         &self,
         solver: &str,
@@ -246,7 +245,7 @@ impl Machine {
     }
 }
 
-/// Columns with their names.
+/// Named columns.
 #[derive(Default)]
 pub struct Table {
     names: Vec<String>,
@@ -291,14 +290,14 @@ impl Table {
     }
 }
 
-/// The root mean square around the mean.
+/// Returns the standard deviation.
 pub fn spread(values: &[f64]) -> f64 {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
     (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / count).sqrt()
 }
 
-/// Runs a command on a dataset; its answer.
+/// Runs a command on a dataset; returns its document.
 pub fn answered(folder: &Path, command: &str, description: &str) -> Value {
     let paths = ["model.toml", "dataset.toml", "answer"].map(|name| folder.join(name));
     fs::write(&paths[1], description).expect("a file");
@@ -310,7 +309,7 @@ pub fn answered(folder: &Path, command: &str, description: &str) -> Value {
     serde_json::from_str(&accepted(&arguments)).expect("JSON")
 }
 
-/// A dataset of one channel, `c`.
+/// Returns a dataset file with the single channel `c`.
 pub fn description(machine: &Machine, channel: &Channel, noise: f64) -> String {
     let (unit, _) = machine.input;
     let (observable, column, channel_unit) = channel;

@@ -1,5 +1,5 @@
-//! A motor whose current is measured beside its angle: a state of first order as a channel, of windows that
-//! begin from fitted states and from states that are read.
+//! A motor with measured current and angle: a first-order state as a channel, with windows that
+//! start from fitted or from measured states.
 
 use eomgen_tests::logistic_noise::LogisticNoise;
 use eomgen_tests::program::{self, Texts};
@@ -68,7 +68,7 @@ c = { relative = 0.1 }
 length = 0.2
 "#;
 
-/// A record of the motor with this resistance, ohm, and drag, N m s^2.
+/// Returns a record of the motor with this resistance, ohm, and drag, N m s^2.
 fn record(resistance: f64, drag: f64, turn: f64) -> String {
     let (j, c, k, l) = (1e-4, 2e-4, 0.05, 4e-3);
     let parts = 100;
@@ -101,8 +101,8 @@ fn record(resistance: f64, drag: f64, turn: f64) -> String {
     text
 }
 
-/// What a command answers to records of the motor with this resistance, ohm, and drag, N m s^2.
-fn answered(command: &str, (resistance, drag): (f64, f64), dataset: &str) -> Value {
+/// Returns the document of a command on records with this resistance, ohm, and drag, N m s^2.
+fn run_on_records(command: &str, (resistance, drag): (f64, f64), dataset: &str) -> Value {
     let texts = Texts {
         specification: MOTOR,
         dataset,
@@ -113,8 +113,8 @@ fn answered(command: &str, (resistance, drag): (f64, f64), dataset: &str) -> Val
 }
 
 #[test]
-fn a_resistance_that_is_off_shows_in_a_current_that_is_measured() {
-    let found = answered("discover", (1.38, 0.0), DATASET);
+fn wrong_resistance_is_found_from_measured_current() {
+    let found = run_on_records("discover", (1.38, 0.0), DATASET);
     let effects = found["effects"].as_array().expect("a list");
     assert_eq!(effects.len(), 1, "{effects:#?}");
     assert_eq!(effects[0]["effect"], "parameter_shift", "{effects:#?}");
@@ -126,10 +126,10 @@ fn a_resistance_that_is_off_shows_in_a_current_that_is_measured() {
     );
 }
 
-/// What acts on a coordinate is looked for beside states of first order as it is without them.
+/// Effects on coordinates are found in models with first-order states.
 #[test]
-fn a_drag_on_a_shaft_is_found_by_name_beside_a_current() {
-    let found = answered("discover", (1.2, 2e-5), DATASET);
+fn drag_on_shaft_is_found_with_measured_current() {
+    let found = run_on_records("discover", (1.2, 2e-5), DATASET);
     let effects = found["effects"].as_array().expect("a list");
     assert_eq!(effects.len(), 1, "{effects:#?}");
     assert_eq!(effects[0]["effect"], "quadratic_drag", "{effects:#?}");
@@ -142,11 +142,12 @@ fn a_drag_on_a_shaft_is_found_by_name_beside_a_current() {
 }
 
 #[test]
-fn windows_begin_from_a_current_that_is_read() {
+fn windows_start_from_measured_current() {
     let smoothed = DATASET.replace("length = 0.2", "length = 0.2\nstart = \"smoothed\"");
-    let found = answered("compare", (1.2, 0.0), &smoothed);
+    let found = run_on_records("compare", (1.2, 0.0), &smoothed);
     assert_eq!(found["gap"]["i"]["unit"], "A", "{found:#}");
-    // What is read of a window's beginning is not fitted to it: it leaves more than noise, but not the whole current.
+    // Measured initial states are not fitted to the window, so the residual exceeds the noise but
+    // stays far below the current.
     let left = found["gap"]["i"]["train"].as_f64();
     assert!(
         left.is_some_and(|left| (4e-3..0.05).contains(&left)),

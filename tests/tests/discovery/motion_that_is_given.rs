@@ -1,5 +1,5 @@
-//! Records that give the motion of a machine and measure the torques that it takes, as start-stop and
-//! constant-speed runs do: an arm of two joints whose inverse dynamics are written here.
+//! Records with a given motion and measured torques, as in start-stop and constant-speed runs: an
+//! arm of two joints with inverse dynamics written here.
 
 use eomgen_tests::logistic_noise::LogisticNoise;
 use eomgen_tests::program;
@@ -79,7 +79,8 @@ m_2 = { relative = 0.05 }
 const SAMPLES: u32 = 1500;
 const STEP: f64 = 0.004;
 
-/// A polynomial of fifth degree from rest to rest in 1.5 s, with its rate and second rate.
+/// Returns a polynomial of fifth degree from rest to rest in 1.5 s, with its first and second
+/// rates.
 fn ramp(t: f64) -> [f64; 3] {
     let s = (t / 1.5).clamp(0.0, 1.0);
     [
@@ -89,7 +90,8 @@ fn ramp(t: f64) -> [f64; 3] {
     ]
 }
 
-/// A joint's angle with its rate and second rate: swings, and a way forth and back with rest between.
+/// Returns a joint's angle with its rates: oscillations plus a move forth and back with a rest in
+/// between.
 fn joint(t: f64, swing: f64, way: f64) -> [f64; 3] {
     let (w, turn) = (2.7, 0.4);
     let (forth, back) = (ramp(t - 0.5), ramp(t - 3.0));
@@ -101,7 +103,8 @@ fn joint(t: f64, swing: f64, way: f64) -> [f64; 3] {
     std::array::from_fn(|kind| swing * swings[kind] + way * (forth[kind] - back[kind]))
 }
 
-/// A record of the arm whose second joint rubs by so much, N m, with encoders of this noise, rad.
+/// Returns a record of the arm with dry friction in its second joint, N m, and encoders of this
+/// noise, rad.
 fn record(friction: f64, encoders: f64, turn: f64) -> String {
     let (m_1, m_2, l_1, l_2, g) = (2.02, 1.47, 0.4_f64, 0.3_f64, 9.81);
     let mut noise = LogisticNoise::new(1.0, 0.3 + 0.1 * turn);
@@ -109,7 +112,7 @@ fn record(friction: f64, encoders: f64, turn: f64) -> String {
     for sample in 0..SAMPLES {
         let t = STEP * f64::from(sample);
         let [p, v_p, a_p] = joint(t, 0.5 + 0.1 * turn, 0.7);
-        // The second joint swings, or goes from rest to rest.
+        // The second joint oscillates or moves from rest to rest.
         let [q, v_q, a_q] = match turn > 0.5 {
             true => joint(t, 0.9, -0.4),
             false => joint(t, 0.0, 1.3),
@@ -122,7 +125,7 @@ fn record(friction: f64, encoders: f64, turn: f64) -> String {
             - coupled * s * (2.0 * v_p * v_q + v_q * v_q)
             + (m_1 + m_2) * g * l_1 * p.cos()
             + weight_2;
-        // At rest friction holds a part of what it may.
+        // At rest the friction is a part of its level.
         let rubbing = match v_q == 0.0 {
             true => 0.4 * friction,
             false => friction * v_q.signum(),
@@ -141,8 +144,8 @@ fn record(friction: f64, encoders: f64, turn: f64) -> String {
     text
 }
 
-/// A folder with a specification, a dataset file and its two records.
-fn written(specification: &str, dataset: &str, [train, test]: [String; 2]) -> TempDir {
+/// Writes a specification, a dataset file and two records to a temporary folder.
+fn write_files(specification: &str, dataset: &str, [train, test]: [String; 2]) -> TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     for (name, text) in [
         ("spec.toml", specification),
@@ -155,14 +158,14 @@ fn written(specification: &str, dataset: &str, [train, test]: [String; 2]) -> Te
     folder
 }
 
-/// A folder with records of the arm.
-fn folder(friction: f64, encoders: f64, dataset: &str) -> TempDir {
+/// Returns a folder with records of the arm.
+fn write_arm_records(friction: f64, encoders: f64, dataset: &str) -> TempDir {
     let records = [0.0, 1.0].map(|turn| record(friction, encoders, turn));
-    written(ARM, dataset, records)
+    write_files(ARM, dataset, records)
 }
 
-/// What a command answers of a folder.
-fn answered(command: &str, folder: &TempDir) -> Value {
+/// Runs a command in a folder; returns its document.
+fn run_on_folder(command: &str, folder: &TempDir) -> Value {
     let paths = ["spec.toml", "dataset.toml", "out"].map(|name| folder.path().join(name));
     let answer = program::answered(command, paths.each_ref());
     let page = folder.path().join("out/report.html");
@@ -174,13 +177,13 @@ fn answered(command: &str, folder: &TempDir) -> Value {
     answer
 }
 
-/// What is found in records of the arm.
-fn found(friction: f64, encoders: f64, dataset: &str) -> Value {
-    answered("discover", &folder(friction, encoders, dataset))
+/// Returns the result of discovery on records of the arm.
+fn discover(friction: f64, encoders: f64, dataset: &str) -> Value {
+    run_on_folder("discover", &write_arm_records(friction, encoders, dataset))
 }
 
-/// The only effect is dry friction of the second joint of 0.6 N m.
-fn is_friction(found: &Value, within: f64) {
+/// Asserts that the only effect is dry friction of 0.6 N m in the second joint.
+fn assert_friction_found(found: &Value, within: f64) {
     let effects = found["effects"].as_array().expect("effects");
     assert_eq!(effects.len(), 1, "{found:#}");
     let first = &effects[0];
@@ -200,33 +203,33 @@ fn is_friction(found: &Value, within: f64) {
 }
 
 #[test]
-fn what_a_joint_takes_beyond_the_model_is_named() {
-    let found = found(0.6, 0.0, DATASET);
-    is_friction(&found, 0.01);
+fn friction_torque_of_a_joint_is_found() {
+    let found = discover(0.6, 0.0, DATASET);
+    assert_friction_found(&found, 0.01);
     let notes = found["notes"].to_string();
     let said = "of 1500 samples of `tau_2` are ignored: the friction force at rest";
     assert!(notes.contains(said), "{notes}");
-    // The masses are two percent off, and their gravity shows it.
+    // The masses are wrong by two percent, visible in their weight.
     let masses = found["refitted"].to_string();
     assert!(masses.contains("m_1") && masses.contains("m_2"), "{masses}");
 }
 
 #[test]
-fn encoders_may_be_noisy_where_samples_are_averaged() {
+fn noisy_encoders_are_handled_by_averaging_samples() {
     let averaged = DATASET.replace("unit = \"s\"", "unit = \"s\"\nevery = 5");
-    is_friction(&found(0.6, 2e-6, &averaged), 0.02);
-    // Not averaged, they make more of the torques than these have of their own.
+    assert_friction_found(&discover(0.6, 2e-6, &averaged), 0.02);
+    // Without averaging, noise of the motion causes more torque noise than the torque sensors.
     let said = "noise of the motion causes noise of";
     let notes = |dataset: &str| {
-        let compared = answered("compare", &folder(0.6, 2e-6, dataset));
+        let compared = run_on_folder("compare", &write_arm_records(0.6, 2e-6, dataset));
         compared["notes"].to_string()
     };
     assert!(notes(DATASET).contains(said) && !notes(&averaged).contains(said));
 }
 
 #[test]
-fn a_ripple_of_an_unusual_order_is_found_in_runs_at_constant_speed() {
-    // Fourteen per turn, of a motor with seven pairs of poles.
+fn torque_ripple_of_unusual_order_is_found_at_constant_speed() {
+    // Fourteen per revolution, from a motor with seven pole pairs.
     let rotor = |turn: f64| {
         let mut noise = LogisticNoise::new(0.01, 0.2 + 0.1 * turn);
         let mut text = "t,q,u\n".to_owned();
@@ -248,7 +251,7 @@ fn a_ripple_of_an_unusual_order_is_found_in_runs_at_constant_speed() {
     let dataset = "[records]\ntrain = [\"train.csv\"]\ntest = [\"test.csv\"]\n[time]\ncolumn = \"t\"\nunit = \"s\"\n\
         [motion.q]\ncolumn = \"q\"\nunit = \"rad\"\n[channels.tau]\ncolumn = \"u\"\nunit = \"N m\"\nnoise = 0.01\n\
         [uncertain]\nc = { relative = 0.3 }\n";
-    let folder = written(specification, dataset, [0.0, 1.0].map(rotor));
+    let folder = write_files(specification, dataset, [0.0, 1.0].map(rotor));
     let paths = ["spec.toml", "dataset.toml", "out"].map(|name| folder.path().join(name));
     let found = program::answered("discover", paths.each_ref());
     let effects = found["effects"].as_array().expect("effects");
@@ -258,7 +261,7 @@ fn a_ripple_of_an_unusual_order_is_found_in_runs_at_constant_speed() {
 }
 
 #[test]
-fn nothing_is_named_where_the_model_is_whole() {
-    let found = found(0.0, 0.0, DATASET);
+fn complete_model_gives_no_effect() {
+    let found = discover(0.0, 0.0, DATASET);
     assert_eq!(found["verdict"], "no_significant_gap", "{found:#}");
 }

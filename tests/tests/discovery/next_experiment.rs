@@ -1,5 +1,6 @@
-//! What one record cannot tell, the experiment that is proposed for it does: it is played on the true
-//! machine, by an integrator of a few lines, and its record beside the old one names the true member.
+//! Proposed experiments: a class of equivalent effects is resolved by the experiment proposed for
+//! it. A simple integrator of the true machine records it; discovery on both records names the true
+//! effect.
 
 use std::path::Path;
 
@@ -9,26 +10,26 @@ use serde_json::Value;
 
 use super::specifications::OSCILLATOR;
 
-/// A machine of one coordinate `x` that an input `u` drives, and how its records are made.
+/// Machine of one coordinate `x` driven by an input `u`, and its records.
 struct Machine<'m> {
     specification: &'m str,
     units: [&'m str; 2],
     noise: f64,
-    /// The length of a window, s.
+    /// Window length, s.
     window: f64,
     uncertain: &'m str,
     experiment: &'m str,
     mass: f64,
-    /// All forces but dry friction, at a position, a rate and an input.
+    /// Force without dry friction, as a function of position, rate and input.
     force: &'m dyn Fn(f64, f64, f64) -> f64,
-    /// Dry friction.
+    /// Level of dry friction.
     friction: f64,
-    /// How the first records begin, and their input at a time in s.
+    /// Initial state of the first records, and their input as a function of time in s.
     begin: (f64, f64),
     input: fn(f64, f64) -> f64,
 }
 
-/// Time between samples, s, and how many the first records have.
+/// Time between samples, s, and number of samples of the first records.
 const SAMPLE: f64 = 0.005;
 const SAMPLES: usize = 600;
 
@@ -53,8 +54,8 @@ motor = { on = "x", value = "u" }
 "#;
 
 impl Machine<'_> {
-    /// A record of the machine, from a state, for an input at each sample: rates by implicit steps of the
-    /// dry friction, which hold it at rest. `seed` makes another noise.
+    /// Returns a record from an initial state for an input at each sample. Steps are implicit in
+    /// the dry friction, so that it can hold the machine at rest. `seed` selects the noise.
     fn record(&self, (mut x, mut v): (f64, f64), input: &[f64], seed: f64) -> String {
         let parts = 200;
         let h = SAMPLE / f64::from(parts);
@@ -73,7 +74,7 @@ impl Machine<'_> {
         text
     }
 
-    /// The dataset file with these records.
+    /// Returns the dataset file with these records.
     fn dataset(&self, train: &str, test: &str) -> String {
         let [unit, input] = self.units;
         format!(
@@ -85,12 +86,12 @@ impl Machine<'_> {
         )
     }
 
-    /// What `discover` answers to these records.
+    /// Returns the document of `discover` on these records.
     fn answer(&self, folder: &Path, records: [&str; 2], out: &str) -> Value {
         self.document(folder, "discover", records, out)
     }
 
-    /// What a command answers to these records.
+    /// Returns the document of a command on these records.
     fn document(&self, folder: &Path, command: &str, [train, test]: [&str; 2], out: &str) -> Value {
         let place = |name: &str| folder.join(name);
         std::fs::write(place("dataset.toml"), self.dataset(train, test)).expect("a file");
@@ -98,8 +99,8 @@ impl Machine<'_> {
         program::answered(command, paths.each_ref())
     }
 
-    /// The class that the first records leave.
-    fn class(&self, folder: &Path) -> Value {
+    /// Returns the class of equivalent effects that the first records give.
+    fn first_class(&self, folder: &Path) -> Value {
         let write = |name: &str, text: &str| {
             std::fs::write(folder.join(name), text).expect("a file");
         };
@@ -115,8 +116,8 @@ impl Machine<'_> {
         class.clone()
     }
 
-    /// The input of the experiment that was proposed, if one was: a value at each sample.
-    fn played(&self, folder: &Path) -> Option<Vec<f64>> {
+    /// Returns the proposed input at each sample, if an experiment was proposed.
+    fn proposed_input(&self, folder: &Path) -> Option<Vec<f64>> {
         let played = std::fs::read_to_string(folder.join("first/experiment.csv")).ok()?;
         let mut lines = played.lines();
         assert_eq!(lines.next(), Some("t,u"));
@@ -129,10 +130,10 @@ impl Machine<'_> {
         Some(input.collect())
     }
 
-    /// One record leaves a class that holds the true effect; with the experiment, played twice, that is
-    /// the only one. The experiment as it was proposed.
-    fn is_told(&self, folder: &Path, effect: &str, on: &str) -> Value {
-        let class = &self.class(folder);
+    /// Asserts that the first records give a class with the true effect, and that two records of
+    /// the experiment leave only that effect. Returns the proposed experiment.
+    fn assert_resolved(&self, folder: &Path, effect: &str, on: &str) -> Value {
+        let class = &self.first_class(folder);
         let is_true = |of: &Value| of["effect"] == effect && of["on"] == on;
         let others = class["equivalent"].as_array().expect("a list");
         assert!(is_true(class) || others.iter().any(is_true), "{class:#}");
@@ -141,7 +142,7 @@ impl Machine<'_> {
         let separation = next["separation"].as_f64();
         assert!(separation.is_some_and(|of| of >= 3.0), "{next:#}");
 
-        let input = self.played(folder).expect("an experiment");
+        let input = self.proposed_input(folder).expect("an experiment");
         let write = |name: &str, text: &str| {
             std::fs::write(folder.join(name), text).expect("a file");
         };
@@ -158,7 +159,7 @@ impl Machine<'_> {
         let effects = second["effects"].as_array().expect("a list");
         assert_eq!(effects.len(), 1, "{effects:#?}");
         assert!(is_true(&effects[0]), "{effects:#?}");
-        // A softer spring has a joint in series for another name, which no record tells.
+        // A softer spring is always equivalent to a joint in series.
         let others = effects[0]["equivalent"].as_array().expect("a list");
         let mut others = others.iter().map(|of| of["effect"].as_str());
         assert!(
@@ -173,8 +174,8 @@ fn folder() -> tempfile::TempDir {
     tempfile::tempdir().expect("a folder")
 }
 
-/// The rotor in a bearing.
-fn in_a_bearing() -> String {
+/// Returns the specification of the rotor in a bearing.
+fn rotor_in_bearing() -> String {
     let with = ROTOR.replace(
         "[coordinates]",
         "c = { value = 0.02, unit = \"N m s\", min = 0 }\n\n[coordinates]",
@@ -185,8 +186,11 @@ fn in_a_bearing() -> String {
     )
 }
 
-/// A rotor in a bearing that a torque turns one way only.
-fn one_way<'m>(specification: &'m str, force: &'m dyn Fn(f64, f64, f64) -> f64) -> Machine<'m> {
+/// Returns a rotor in a bearing with torque in one direction only.
+fn one_way_rotor<'m>(
+    specification: &'m str,
+    force: &'m dyn Fn(f64, f64, f64) -> f64,
+) -> Machine<'m> {
     Machine {
         specification,
         units: ["rad", "N m"],
@@ -203,23 +207,23 @@ fn one_way<'m>(specification: &'m str, force: &'m dyn Fn(f64, f64, f64) -> f64) 
 }
 
 #[test]
-fn dry_friction_in_one_direction_is_told_from_a_constant_force() {
-    let specification = in_a_bearing();
+fn experiment_separates_dry_friction_from_constant_force() {
+    let specification = rotor_in_bearing();
     let machine = Machine {
         friction: 0.1,
-        ..one_way(&specification, &|_, v, u| u - 0.02 * v)
+        ..one_way_rotor(&specification, &|_, v, u| u - 0.02 * v)
     };
-    machine.is_told(folder().path(), "coulomb_friction", "x");
+    machine.assert_resolved(folder().path(), "coulomb_friction", "x");
 }
 
-/// Viscous friction and the bearing's parameter are two names of one thing, which no input tells. With
-/// that parameter free, what the wrong model leaves of the experiment is what was predicted.
+/// Viscous friction is always equivalent to the bearing's parameter. With that parameter free, the
+/// residual of the wrong model must equal the prediction.
 #[test]
-fn friction_that_differs_by_direction_is_told_from_what_does_not() {
-    let specification = in_a_bearing();
+fn experiment_separates_asymmetric_from_symmetric_friction() {
+    let specification = rotor_in_bearing();
     let force = |_: f64, v: f64, u: f64| u - 0.02 * v - 0.012 * v.abs();
-    let (machine, folder) = (one_way(&specification, &force), folder());
-    let next = machine.is_told(folder.path(), "asymmetric_friction", "x");
+    let (machine, folder) = (one_way_rotor(&specification, &force), folder());
+    let next = machine.assert_resolved(folder.path(), "asymmetric_friction", "x");
     let is_alike = |pair: &&Value| {
         [&pair["simulated"]["effect"], &pair["alternative"]["effect"]]
             .iter()
@@ -257,7 +261,7 @@ fn friction_that_differs_by_direction_is_told_from_what_does_not() {
 }
 
 #[test]
-fn a_soft_spring_in_slow_motion_is_told_from_a_gain() {
+fn experiment_separates_soft_spring_from_gain() {
     Machine {
         specification: OSCILLATOR,
         units: ["m", "N"],
@@ -271,31 +275,31 @@ fn a_soft_spring_in_slow_motion_is_told_from_a_gain() {
         begin: (0.0, 0.0),
         input: |t, turn| 12.0 * (1.0 - ((0.8 + 0.2 * turn) * t).cos()),
     }
-    .is_told(folder().path(), "parameter_shift", "k");
+    .assert_resolved(folder().path(), "parameter_shift", "k");
 }
 
 #[test]
-fn a_weight_in_small_motion_is_told_from_a_spring() {
+fn experiment_separates_weight_from_spring() {
     Machine {
         experiment: "duration = 3\ninputs.u = { range = [-0.5, 0.5] }\nlimits.x = [-1.5, 1.5]",
         begin: (0.0, 0.0),
         input: |t, turn| 0.02 * (2.1 * t + 0.7 * turn).cos() - 0.01 * (7.0 * t).sin(),
-        ..one_way(ROTOR, &|x, _, u| u - 0.3 * x.sin())
+        ..one_way_rotor(ROTOR, &|x, _, u| u - 0.3 * x.sin())
     }
-    .is_told(folder().path(), "gravity", "x");
+    .assert_resolved(folder().path(), "gravity", "x");
 }
 
-/// On the true machine, too.
+/// The bounds must also hold on the true machine.
 #[test]
-fn bounds_that_are_said_are_kept() {
-    let specification = in_a_bearing();
+fn experiment_keeps_declared_bounds() {
+    let specification = rotor_in_bearing();
     let machine = Machine {
         experiment: "duration = 3\nsample = 0.01\n\
                      inputs.u = { range = [-0.3, 0.4], rate = 0.5, band = [0.5, 1] }\nlimits.x = [-1, 8]",
-        ..one_way(&specification, &|_, v, u| u - 0.02 * v - 0.012 * v.abs())
+        ..one_way_rotor(&specification, &|_, v, u| u - 0.02 * v - 0.012 * v.abs())
     };
     let folder = folder();
-    let class = machine.class(folder.path());
+    let class = machine.first_class(folder.path());
     assert_eq!(
         class["next_experiment"]["file"], "experiment.csv",
         "{class:#}"
@@ -313,7 +317,7 @@ fn bounds_that_are_said_are_kept() {
         assert!((pair[1][0] - pair[0][0] - 0.01).abs() < 1e-9);
         assert!((pair[1][1] - pair[0][1]).abs() <= 0.005 * (1.0 + 1e-9));
     }
-    // Held over the samples of a record.
+    // The input is held over the samples of a record.
     let held = rows.iter().flat_map(|row| [row[1], row[1]]);
     let input: Vec<f64> = held.take(601).collect();
     for line in machine.record((0.0, 0.0), &input, 2.0).lines().skip(1) {
@@ -321,25 +325,25 @@ fn bounds_that_are_said_are_kept() {
     }
 }
 
-/// In the limits of the records, which turn one way only and are in no need of more, nothing is played
-/// beyond these.
+/// Without declared bounds the input must stay within the limits of the records, which rotate in
+/// one direction only.
 #[test]
-fn what_is_played_stays_within_what_was_recorded_where_nothing_is_said() {
-    let specification = in_a_bearing();
+fn experiment_without_bounds_stays_within_recorded_range() {
+    let specification = rotor_in_bearing();
     let machine = Machine {
         friction: 0.1,
         experiment: "",
-        ..one_way(&specification, &|_, v, u| u - 0.02 * v)
+        ..one_way_rotor(&specification, &|_, v, u| u - 0.02 * v)
     };
     let folder = folder();
-    let class = machine.class(folder.path());
+    let class = machine.first_class(folder.path());
     let next = &class["next_experiment"];
     let bounds = next["bounds"].as_str().expect("a sentence");
     for said in ["the range of u", "the band of u", "the limits of x"] {
         assert!(bounds.contains(said), "{bounds}");
     }
-    if let Some(input) = machine.played(folder.path()) {
-        // From 0, the drive off, to the most that was recorded.
+    if let Some(input) = machine.proposed_input(folder.path()) {
+        // From 0, the input at rest, to the largest recorded value.
         assert!(input.iter().all(|u| (0.0..=0.35 + 1e-9).contains(u)));
         let record = machine.record((0.0, 0.0), &input, 2.0);
         let shown = |text: &str| -> Vec<f64> {

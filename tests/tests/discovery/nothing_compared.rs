@@ -1,12 +1,12 @@
-//! A verdict needs something to be compared: whatever leaves nothing is refused, by `compare` and
-//! `discover` alike, with its place and what would be right.
+//! Datasets with nothing to compare: `compare` and `discover` reject them with the location and the
+//! remedy.
 
 use eomgen_tests::measured::{DESCRIPTION, Measured, record};
 use eomgen_tests::models::path;
 use eomgen_tests::program;
 
-/// Both commands refuse the dataset, and leave nothing; what they say.
-fn refused(measured: &Measured) -> String {
+/// Asserts that both commands reject the dataset and write nothing; returns the message.
+fn rejection(measured: &Measured) -> String {
     let [compare, discover] = ["compare", "discover"].map(|command| {
         let arguments = measured.arguments(command, "refused");
         let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
@@ -18,19 +18,19 @@ fn refused(measured: &Measured) -> String {
     compare
 }
 
-/// The dataset with one thing changed is refused with all of these parts.
-fn refuses(measured: &Measured, from: &str, to: &str, parts: &[&str]) {
+/// Asserts that the dataset with one change is rejected with a message that contains all `parts`.
+fn assert_rejects(measured: &Measured, from: &str, to: &str, parts: &[&str]) {
     let description = DESCRIPTION.replacen(from, to, 1);
     assert_ne!(description, DESCRIPTION, "{from}");
     measured.write("dataset.toml", description.as_bytes());
-    let message = refused(measured);
+    let message = rejection(measured);
     for part in parts {
         assert!(message.contains(part), "{to}: {part}: {message}");
     }
 }
 
-/// The record of the stage with other cells in column `column` of its lines, counted from 1.
-fn with(column: usize, cell: impl Fn(usize, &str) -> String) -> String {
+/// Returns the record of the stage with changed cells in column `column`, counted from 1.
+fn change_column(column: usize, cell: impl Fn(usize, &str) -> String) -> String {
     let text = record(0.0, 0.0);
     let line = |(place, line): (usize, &str)| {
         let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
@@ -43,13 +43,13 @@ fn with(column: usize, cell: impl Fn(usize, &str) -> String) -> String {
 }
 
 #[test]
-fn windows_longer_than_the_records_are_refused() {
+fn windows_longer_than_records_are_rejected() {
     let measured = Measured::stage(3.0);
-    // The records last 1.995 s, with what follows the last sample 2 s.
+    // The records last 1.995 s; with the interval after the last sample, 2 s.
     for length in ["5", "1e9", "2.1"] {
         let to = format!("length = {length}");
         let place = ["dataset.toml:27:10", "lasts 1.995", "\"record\""];
-        refuses(&measured, "length = 0.25", &to, &place);
+        assert_rejects(&measured, "length = 0.25", &to, &place);
     }
     for length in ["2", "1.995", "\"record\""] {
         let description = DESCRIPTION.replacen("0.25", length, 1);
@@ -60,7 +60,7 @@ fn windows_longer_than_the_records_are_refused() {
 }
 
 #[test]
-fn a_set_whose_records_are_all_shorter_than_a_window_is_refused() {
+fn set_of_records_shorter_than_a_window_is_rejected() {
     let measured = Measured::stage(0.0);
     let sound = record(0.0, 1.0);
     let lines: Vec<&str> = sound.lines().take(61).collect();
@@ -69,11 +69,11 @@ fn a_set_whose_records_are_all_shorter_than_a_window_is_refused() {
         "no test record is as long as one window of 0.5 s",
         "lasts 0.295",
     ];
-    refuses(&measured, "length = 0.25", "length = 0.5", &parts);
+    assert_rejects(&measured, "length = 0.25", "length = 0.5", &parts);
 }
 
 #[test]
-fn a_record_shorter_than_half_a_window_is_noted() {
+fn record_shorter_than_half_a_window_is_noted() {
     let measured = Measured::stage(0.0);
     let sound = record(0.0, 2.0);
     let lines: Vec<&str> = sound.lines().take(61).collect();
@@ -89,26 +89,26 @@ fn a_record_shorter_than_half_a_window_is_noted() {
 }
 
 #[test]
-fn windows_of_which_nothing_is_measured_are_refused() {
-    // Of windows of four samples the inner two are compared; these are missing everywhere.
+fn windows_without_samples_are_rejected() {
+    // In windows of four samples the inner two are compared; these are all missing.
     let measured = Measured::stage(0.0);
     let holes = |place: usize, cell: &str| match (place - 1) % 4 {
         1 | 2 => String::new(),
         _ => cell.to_owned(),
     };
-    measured.write("train.csv", with(2, holes).as_bytes());
+    measured.write("train.csv", change_column(2, holes).as_bytes());
     let parts = [
         "channel `q` has 0 samples in the windows of all training records",
         "train.csv",
     ];
-    refuses(&measured, "length = 0.25", "length = 0.02", &parts);
+    assert_rejects(&measured, "length = 0.25", "length = 0.02", &parts);
 }
 
 #[test]
-fn a_model_that_does_not_run_through_its_windows_is_refused() {
+fn model_that_diverges_in_windows_is_rejected() {
     let measured = Measured::stage(3.0);
     let sound = std::fs::read_to_string(path("emps")).expect("a specification");
-    // A spring that pushes away from the middle: the motion leaves every number behind.
+    // A spring of negative stiffness: the motion overflows.
     let unstable = sound
         .replacen(
             "[coordinates]",
@@ -133,15 +133,15 @@ fn a_model_that_does_not_run_through_its_windows_is_refused() {
 }
 
 #[test]
-fn a_noise_larger_than_every_motion_is_refused() {
+fn noise_larger_than_motion_is_rejected() {
     let measured = Measured::stage(3.0);
     let parts = ["dataset.toml:18:9", "contain only noise"];
-    refuses(&measured, "noise = 1e-6", "noise = 10", &parts);
-    refuses(&measured, "noise = 1e-6", "noise = 1e300", &parts);
+    assert_rejects(&measured, "noise = 1e-6", "noise = 10", &parts);
+    assert_rejects(&measured, "noise = 1e-6", "noise = 1e300", &parts);
 }
 
 #[test]
-fn noise_that_is_none_is_refused_with_its_place() {
+fn invalid_noise_is_rejected_with_location() {
     let measured = Measured::stage(3.0);
     for (to, part) in [
         ("noise = 0", "greater than 0"),
@@ -150,14 +150,14 @@ fn noise_that_is_none_is_refused_with_its_place() {
         ("noise = \"1e-6\"", "is not a number"),
         ("noise = []", "is not a number"),
     ] {
-        refuses(&measured, "noise = 1e-6", to, &["dataset.toml:18:", part]);
+        assert_rejects(&measured, "noise = 1e-6", to, &["dataset.toml:18:", part]);
     }
     let parts = ["dataset.toml:15:11", "`q` has no `noise`"];
-    refuses(&measured, "noise = 1e-6\n", "", &parts);
+    assert_rejects(&measured, "noise = 1e-6\n", "", &parts);
 }
 
 #[test]
-fn records_that_are_too_short_or_empty_are_refused() {
+fn short_or_empty_records_are_rejected() {
     let measured = Measured::stage(0.0);
     let sound = record(0.0, 0.0);
     for samples in [0, 1, 2, 49] {
@@ -165,7 +165,7 @@ fn records_that_are_too_short_or_empty_are_refused() {
         for file in ["train.csv", "test.csv"] {
             let measured = Measured::stage(0.0);
             measured.write(file, (lines.join("\n") + "\n").as_bytes());
-            let message = refused(&measured);
+            let message = rejection(&measured);
             let part = format!("has {samples} samples");
             assert!(
                 message.contains(file) && message.contains(&part),
@@ -173,10 +173,13 @@ fn records_that_are_too_short_or_empty_are_refused() {
             );
         }
     }
-    // What is too large for a number in SI is missing.
-    measured.write("train.csv", with(2, |_, _| "1e308".to_owned()).as_bytes());
+    // A number that overflows in SI units counts as missing.
+    measured.write(
+        "train.csv",
+        change_column(2, |_, _| "1e308".to_owned()).as_bytes(),
+    );
     let parts = ["train.csv", "400 of 400 samples are missing"];
-    refuses(
+    assert_rejects(
         &measured,
         "unit = \"m\"\nnoise = 1e-6",
         "unit = \"km\"\nnoise = 1e-9",
@@ -185,10 +188,10 @@ fn records_that_are_too_short_or_empty_are_refused() {
 }
 
 #[test]
-fn channels_and_records_that_are_not_there_are_refused_with_their_place() {
+fn missing_channels_and_records_are_rejected_with_location() {
     let measured = Measured::stage(0.0);
     let channel = "[channels.q]\ncolumn = \"q\"\nunit = \"m\"\nnoise = 1e-6\n";
-    refuses(
+    assert_rejects(
         &measured,
         channel,
         "",
@@ -232,12 +235,12 @@ fn channels_and_records_that_are_not_there_are_refused_with_their_place() {
             ["dataset.toml:4:8", "is not a list"],
         ),
     ] {
-        refuses(&measured, from, to, &parts);
+        assert_rejects(&measured, from, to, &parts);
     }
 }
 
 #[test]
-fn keys_and_words_that_are_not_known_are_refused_with_the_nearest() {
+fn unknown_keys_and_words_are_rejected_with_suggestion() {
     let measured = Measured::stage(0.0);
     for (from, to, parts) in [
         (
@@ -312,12 +315,12 @@ fn keys_and_words_that_are_not_known_are_refused_with_the_nearest() {
             ["dataset.toml:17:8", "expected m"],
         ),
     ] {
-        refuses(&measured, from, to, &parts);
+        assert_rejects(&measured, from, to, &parts);
     }
 }
 
 #[test]
-fn initial_states_that_are_none_are_refused() {
+fn invalid_initial_states_are_rejected() {
     let measured = Measured::stage(0.0);
     let rest = "state = \"rest\"";
     for (to, part) in [
@@ -334,15 +337,15 @@ fn initial_states_that_are_none_are_refused() {
         ("state = {}", "no state is given"),
         ("", "`initial` has no `state`"),
     ] {
-        refuses(&measured, rest, to, &["dataset.toml:2", part]);
+        assert_rejects(&measured, rest, to, &["dataset.toml:2", part]);
     }
 }
 
 #[test]
-fn doubts_that_are_none_are_refused() {
+fn invalid_uncertainties_are_rejected() {
     let measured = Measured::stage(0.0);
     for relative in ["0", "-0.1", "1e-300", "1e300", "inf"] {
         let to = format!("relative = {relative}");
-        refuses(&measured, "relative = 0.05", &to, &["dataset.toml:24:20"]);
+        assert_rejects(&measured, "relative = 0.05", &to, &["dataset.toml:24:20"]);
     }
 }

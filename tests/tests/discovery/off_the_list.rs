@@ -1,6 +1,5 @@
-//! What stands in no list of effects and orders, in records that a few lines of the midpoint rule make:
-//! springs that harden or meet a stop, a stiffness that nobody called uncertain, a ripple of seven
-//! per turn.
+//! Effects outside the lists of effects and orders: hardening springs, springs with a stop, an
+//! undeclared stiffness, a ripple of order seven. The records are from the midpoint rule.
 
 use eomgen_tests::logistic_noise::LogisticNoise;
 use eomgen_tests::program::{self, Texts};
@@ -8,16 +7,16 @@ use serde_json::Value;
 
 use super::specifications::OSCILLATOR;
 
-/// A machine of one coordinate: its specification, the unit of its coordinate and of its input, and
-/// the acceleration at a position, a rate and an input.
+/// Machine of one coordinate: specification, units of coordinate and input, and the acceleration as
+/// a function of position, rate and input.
 struct Machine<'m> {
     specification: &'m str,
     units: [&'m str; 2],
     noise: f64,
-    /// What the sensor shows of the coordinate.
+    /// Sensor gain.
     gain: f64,
     uncertain: &'m str,
-    /// How late the input acts, s.
+    /// Delay of the input, s.
     late: f64,
     input: fn(f64, f64) -> f64,
     acceleration: &'m dyn Fn(f64, f64, f64) -> f64,
@@ -47,12 +46,12 @@ bearing = "1/2*c*dot(x)^2"
 motor = { on = "x", value = "u" }
 "#;
 
-/// Time between samples, s, and how many there are.
+/// Time between samples, s, and number of samples.
 const SAMPLE: f64 = 0.005;
 const SAMPLES: usize = 400;
 
 impl Machine<'_> {
-    /// A record: t, u, x. `turn` makes another one.
+    /// Returns a record of t, u, x; `turn` changes the input.
     fn record(&self, turn: f64) -> String {
         let parts = 100;
         let h = SAMPLE / f64::from(parts);
@@ -75,7 +74,7 @@ impl Machine<'_> {
         text
     }
 
-    /// What `discover` answers.
+    /// Returns the document of `discover`.
     fn answer(&self) -> Value {
         let [unit, input] = self.units;
         let dataset = format!(
@@ -94,8 +93,8 @@ impl Machine<'_> {
         program::answered_to("discover", texts)
     }
 
-    /// The only effect that is found: its document, with which it must have this name and place.
-    fn only(&self, effect: &str, on: &str) -> Value {
+    /// Asserts that only this effect is found at this place; returns it.
+    fn only_effect(&self, effect: &str, on: &str) -> Value {
         let found = self.answer();
         let effects = found["effects"].as_array().expect("a list");
         assert_eq!(effects.len(), 1, "{effects:#?}");
@@ -110,7 +109,7 @@ impl Machine<'_> {
     }
 }
 
-/// An oscillator whose spring pulls back with this force, N.
+/// Returns an oscillator with this acceleration.
 fn oscillator<'m>(acceleration: &'m dyn Fn(f64, f64, f64) -> f64) -> Machine<'m> {
     Machine {
         specification: OSCILLATOR,
@@ -126,8 +125,8 @@ fn oscillator<'m>(acceleration: &'m dyn Fn(f64, f64, f64) -> f64) -> Machine<'m>
     }
 }
 
-/// A value of an effect, close to what was hidden.
-fn is_near(effect: &Value, name: &str, hidden: f64, part: f64) {
+/// Asserts that a parameter of the effect is within the fraction `part` of the hidden value.
+fn assert_near(effect: &Value, name: &str, hidden: f64, part: f64) {
     let value = effect["parameters"][name]["value"].as_f64();
     let value = value.unwrap_or_else(|| panic!("no {name}: {effect:#}"));
     assert!(
@@ -136,7 +135,7 @@ fn is_near(effect: &Value, name: &str, hidden: f64, part: f64) {
     );
 }
 
-/// What was estimated, with one standard deviation.
+/// Returns an estimate and its standard deviation.
 fn estimate(of: &Value) -> (f64, f64) {
     let number = |key: &str| {
         of[key]
@@ -147,17 +146,17 @@ fn estimate(of: &Value) -> (f64, f64) {
 }
 
 #[test]
-fn a_spring_that_hardens_is_found_by_name_on_the_spring() {
+fn hardening_spring_is_found() {
     let effect = oscillator(&|x, v, u| u - 400.0 * x - 6e4 * x.powi(3) - 4.0 * v)
-        .only("stiffness_nonlinearity", "spring");
-    is_near(&effect, "k_3", 6e4, 0.02);
+        .only_effect("stiffness_nonlinearity", "spring");
+    assert_near(&effect, "k_3", 6e4, 0.02);
     assert_eq!(effect["status"], "named", "{effect:#}");
 }
 
 #[test]
-fn what_a_gain_hides_is_known_as_well_as_the_gain() {
-    // Records show the same where a sensor shows more and all that moves is heavier and stiffer: the
-    // gain is as it was declared, and a cubic spring three times as uncertain.
+fn parameters_confounded_with_gain_are_as_uncertain_as_the_gain() {
+    // A sensor gain is equivalent to scaling inertia and stiffness. The gain is therefore as
+    // uncertain as declared, and the cubic spring three times as uncertain.
     let spring = |x: f64, v: f64, u: f64| u - 400.0 * x - 6e4 * x.powi(3) - 4.0 * v;
     let machine = Machine {
         gain: 1.01,
@@ -175,9 +174,9 @@ fn what_a_gain_hides_is_known_as_well_as_the_gain() {
     assert!((0.03..0.08).contains(&(sd / value)), "{value} +- {sd}");
 }
 
-/// A model that is nowhere linear is followed through its records by steps of one length.
+/// A model that is nonlinear everywhere is integrated with a constant step size.
 #[test]
-fn a_cubic_spring_that_is_declared_is_fitted_as_any_parameter() {
+fn declared_cubic_spring_is_refitted() {
     let specification = OSCILLATOR
         .replace(
             "[coordinates]",
@@ -199,41 +198,44 @@ fn a_cubic_spring_that_is_declared_is_fitted_as_any_parameter() {
 }
 
 #[test]
-fn a_stop_on_one_side_is_no_friction_and_no_spring() {
+fn one_sided_stop_is_found_as_stop() {
     let effect = oscillator(&|x, v, u| u - 400.0 * x - 900.0 * (x - 0.03).max(0.0) - 4.0 * v)
-        .only("end_stop", "spring");
-    is_near(&effect, "k_s", 900.0, 0.05);
-    is_near(&effect, "p_s", 0.03, 0.05);
+        .only_effect("end_stop", "spring");
+    assert_near(&effect, "k_s", 900.0, 0.05);
+    assert_near(&effect, "p_s", 0.03, 0.05);
 }
 
 #[test]
-fn a_soft_stop_on_both_sides_is_no_spring_that_hardens() {
-    // It begins over a few millimetres; a cubic spring comes close to it, and needs a second effect beside it.
+fn soft_two_sided_stop_is_not_reported_as_hardening_spring() {
+    // The stop begins over a few millimetres; a cubic spring is a close fit but needs a second
+    // effect.
     let beyond = |x: f64| {
         let past = x.abs() - 0.024;
         0.5 * (past.hypot(2e-3) + past) * x.signum()
     };
-    let effect =
-        oscillator(&|x, v, u| u - 400.0 * x - 2.0 * beyond(x) - 4.0 * v).only("end_stop", "spring");
-    is_near(&effect, "k_s", 2.0, 0.2);
-    is_near(&effect, "p_s", 0.024, 0.1);
+    let effect = oscillator(&|x, v, u| u - 400.0 * x - 2.0 * beyond(x) - 4.0 * v)
+        .only_effect("end_stop", "spring");
+    assert_near(&effect, "k_s", 2.0, 0.2);
+    assert_near(&effect, "p_s", 0.024, 0.1);
 }
 
 #[test]
-fn play_in_a_coupling_is_called_backlash() {
+fn play_in_a_coupling_is_found_as_backlash() {
     let play = |x: f64| x - x.clamp(-3e-3, 3e-3);
-    let effect = oscillator(&|x, v, u| u - 400.0 * play(x) - 4.0 * v).only("backlash", "spring");
-    is_near(&effect, "b_0", 3e-3, 0.05);
+    let effect =
+        oscillator(&|x, v, u| u - 400.0 * play(x) - 4.0 * v).only_effect("backlash", "spring");
+    assert_near(&effect, "b_0", 3e-3, 0.05);
 }
 
 #[test]
-fn a_stiffness_that_nobody_called_uncertain_is_named_before_any_pair() {
-    let effect = oscillator(&|x, v, u| u - 0.82 * 400.0 * x - 4.0 * v).only("parameter_shift", "k");
-    is_near(&effect, "k", 0.82 * 400.0, 0.01);
+fn undeclared_stiffness_is_named_before_pairs() {
+    let effect =
+        oscillator(&|x, v, u| u - 0.82 * 400.0 * x - 4.0 * v).only_effect("parameter_shift", "k");
+    assert_near(&effect, "k", 0.82 * 400.0, 0.01);
 }
 
 #[test]
-fn an_order_that_no_list_holds_is_seen_in_the_residual_force() {
+fn unlisted_order_is_found_in_residual_force() {
     let rotor = Machine {
         specification: ROTOR,
         units: ["rad", "N m"],
@@ -244,13 +246,13 @@ fn an_order_that_no_list_holds_is_seen_in_the_residual_force() {
         input: |t, turn| 0.5 * (2.1 * t + 0.7 * turn).cos() - 0.25 * (7.0 * t).sin(),
         acceleration: &|x, v, u| (u - 0.02 * v + 0.05 * (7.0 * x + 0.4).cos()) / 0.02,
     };
-    let effect = rotor.only("torque_ripple", "x");
+    let effect = rotor.only_effect("torque_ripple", "x");
     assert_eq!(effect["order"]["order"], 7, "{effect:#}");
 }
 
-/// Over several turns an unbalanced weight and a torque that repeats once per turn are one term.
+/// Over several revolutions an unbalanced weight and a torque of order one are the same term.
 #[test]
-fn a_weight_on_a_shaft_that_turns_is_told_from_no_torque_that_repeats_once_per_turn() {
+fn weight_on_rotating_shaft_is_equivalent_to_ripple_of_order_one() {
     let rotor = Machine {
         specification: ROTOR,
         units: ["rad", "N m"],
@@ -261,16 +263,17 @@ fn a_weight_on_a_shaft_that_turns_is_told_from_no_torque_that_repeats_once_per_t
         input: |t, turn| 1.2 * (2.1 * t + 0.7 * turn).cos() - 0.25 * (7.0 * t).sin(),
         acceleration: &|x, v, u| (u - 0.02 * v + 0.05 * (x + 0.4).cos()) / 0.02,
     };
-    let effect = rotor.only("gravity", "x");
+    let effect = rotor.only_effect("gravity", "x");
     assert_eq!(effect["status"], "class", "{effect:#}");
     let other = &effect["equivalent"][0];
     assert_eq!(other["effect"], "torque_ripple", "{effect:#}");
     assert_eq!(other["on"], "x", "{effect:#}");
 }
 
-/// A drive that acts late makes every sensor late: more than sensors admit is said to be that.
+/// A delayed drive delays all sensors: a delay beyond the sensors' priors is reported as a delayed
+/// input.
 #[test]
-fn an_input_that_acts_late_is_thought_of_where_all_sensors_are_late() {
+fn common_sensor_delay_is_noted_as_delayed_input() {
     let acceleration = |x: f64, v: f64, u: f64| u - 400.0 * x - 4.0 * v;
     let late = Machine {
         late: 0.01,
@@ -282,9 +285,9 @@ fn an_input_that_acts_late_is_thought_of_where_all_sensors_are_late() {
     assert!(notes.contains("[inputs.u]"), "{notes}");
 }
 
-/// A stop that only the records held out reach.
+/// A stop reached only in the held-out records.
 #[test]
-fn what_only_the_records_held_out_show_is_said_to() {
+fn effect_visible_only_in_held_out_records_is_noted() {
     let stop = |x: f64| 900.0 * (x - 0.08).max(0.0);
     let acceleration = |x: f64, v: f64, u: f64| u - 400.0 * x - stop(x) - 4.0 * v;
     let machine = Machine {

@@ -1,7 +1,7 @@
-//! Play in the shaft of a drive of two masses is named alone, whether the damper beside the shaft's spring acts in
-//! contact only or inside the play too, and no damping is called shifted for it. Play that lies to one side is told
-//! where the model has play already, and a shaft that is softer has two names. Records are made by the midpoint rule
-//! from Newton's laws.
+//! Backlash in the shaft of a drive of two masses is the only effect found, if the damper parallel
+//! to the shaft's spring acts in contact only and also if it acts inside the backlash; no damping
+//! is reported as shifted. An offset of the backlash is found if the model has backlash already,
+//! and a softer shaft has two names. The records integrate Newton's laws with the midpoint rule.
 
 use eomgen_tests::logistic_noise::LogisticNoise;
 use eomgen_tests::program;
@@ -14,17 +14,17 @@ const D: f64 = 8e-3;
 const B_M: f64 = 6e-4;
 const B_L: f64 = 5e-4;
 
-/// Half of the play, rad: sixty times what the encoders' noise is.
+/// Half of the backlash, rad: sixty times the encoders' noise.
 const PLAY: f64 = 9e-3;
 
-/// One standard deviation of what an encoder shows, rad.
+/// Standard deviation of an encoder, rad.
 const NOISE: f64 = 1.5e-4;
 
-/// Time between samples, s, and how many there are.
+/// Time between samples, s, and number of samples.
 const SAMPLE: f64 = 1e-3;
 const SAMPLES: usize = 1500;
 
-/// A specification without play, with the damper as it is written in one section or the other.
+/// Returns a specification without backlash, with `damper` in its section.
 fn specification(damper: &str) -> String {
     format!(
         r#"
@@ -64,7 +64,7 @@ drive = {{ on = "theta_m", value = "u" }}
     )
 }
 
-/// The damper as a part of the dissipation, and as a force.
+/// Damper as dissipation, and as force.
 const AS_DISSIPATION: &str = "shaft = \"1/2*d*(dot(theta_m) - dot(theta_l))^2\"\n[forces]";
 const AS_FORCE: &str = "[forces]\ndamper = { on = \"twist\", value = \"-d*dot(twist)\" }";
 
@@ -103,14 +103,14 @@ b_m = { relative = 0.1 }
 length = 0.25
 "#;
 
-/// The torque of the shaft at a deflection and a rate.
+/// Torque of the shaft as a function of deflection and rate.
 type Shaft = fn(f64, f64) -> f64;
 
 fn in_play(p: f64) -> f64 {
     p - p.clamp(-PLAY, PLAY)
 }
 
-/// A record. `turn` makes another one.
+/// Returns a record; `turn` changes the input.
 fn record(shaft: Shaft, turn: f64) -> String {
     let parts = 50;
     let h = SAMPLE / f64::from(parts);
@@ -139,12 +139,12 @@ fn record(shaft: Shaft, turn: f64) -> String {
     text
 }
 
-/// What `discover` answers, and the specification that it leaves.
+/// Returns the document of `discover`, and the extended specification.
 fn answer(specification: &str, shaft: Shaft) -> (Value, String) {
     answer_of(specification, DATASET, shaft)
 }
 
-/// The same for other labels of the records.
+/// Returns the same for another dataset file.
 fn answer_of(specification: &str, dataset: &str, shaft: Shaft) -> (Value, String) {
     let folder = tempfile::tempdir().expect("a folder");
     let place = |name: &str| folder.path().join(name);
@@ -163,8 +163,9 @@ fn answer_of(specification: &str, dataset: &str, shaft: Shaft) -> (Value, String
     (found, extended.expect("a file"))
 }
 
-/// Play is named alone, and closes the gap; the specification with it, which is given back, reproduces the fit.
-fn is_play_alone(specification: &str, shaft: Shaft) -> String {
+/// Asserts that backlash is the only effect and closes the gap, and that the extended specification
+/// reproduces the fit; returns it.
+fn assert_only_play(specification: &str, shaft: Shaft) -> String {
     let (found, extended) = answer(specification, shaft);
     let effects = found["effects"].as_array().expect("a list");
     assert_eq!(effects.len(), 1, "{effects:#?}");
@@ -191,43 +192,43 @@ fn in_contact(p: f64, rate: f64) -> f64 {
 }
 
 #[test]
-fn play_lets_go_of_the_damper_of_its_coupling() {
+fn play_with_damper_in_contact_only_is_found() {
     for damper in [AS_DISSIPATION, AS_FORCE] {
-        let extended = is_play_alone(&specification(damper), in_contact);
+        let extended = assert_only_play(&specification(damper), in_contact);
         assert!(extended.contains("*contact(twist, b_0)"), "{extended}");
     }
 }
 
 #[test]
-fn play_leaves_a_damper_that_is_mounted_apart_as_it_is() {
-    let extended = is_play_alone(&specification(AS_DISSIPATION), |p, rate| {
+fn play_with_separate_damper_is_found() {
+    let extended = assert_only_play(&specification(AS_DISSIPATION), |p, rate| {
         K * in_play(p) + D * rate
     });
     assert!(!extended.contains("contact("), "{extended}");
 }
 
 #[test]
-fn no_play_is_found_in_a_shaft_that_has_none() {
+fn shaft_without_play_gives_no_effect() {
     let (found, _) = answer(&specification(AS_DISSIPATION), |p, rate| K * p + D * rate);
     assert_eq!(found["verdict"], "no_significant_gap", "{found:#}");
     assert_eq!(found["effects"].as_array().map(Vec::len), Some(0));
 }
 
-/// The names of what an effect of a document is not told from, itself first.
-fn class(effect: &Value) -> Vec<String> {
+/// Returns the names of an effect and its equivalents.
+fn class_names(effect: &Value) -> Vec<String> {
     let name = |of: &Value| format!("{} {}", of["effect"], of["on"]).replace('"', "");
     let others = effect["equivalent"].as_array().into_iter().flatten();
     std::iter::once(effect).chain(others).map(name).collect()
 }
 
 #[test]
-fn a_softer_shaft_is_a_stiffness_that_is_off_or_a_joint_in_series() {
+fn softer_shaft_is_stiffness_shift_or_joint_compliance() {
     let (found, _) = answer(&specification(AS_DISSIPATION), |p, rate| {
         0.8 * K * p + D * rate
     });
     let effects = found["effects"].as_array().expect("a list");
     assert_eq!(effects.len(), 1, "{effects:#?}");
-    let names = class(&effects[0]);
+    let names = class_names(&effects[0]);
     assert_eq!(
         names,
         ["parameter_shift k", "joint_compliance shaft"],
@@ -235,11 +236,11 @@ fn a_softer_shaft_is_a_stiffness_that_is_off_or_a_joint_in_series() {
     );
 }
 
-/// The middle of a play that lies to one side, rad: three times its half beyond where the model has it.
+/// Centre of an offset backlash, rad: three times its half-width from the model's.
 const MIDDLE: f64 = 3.0 * PLAY;
 
 #[test]
-fn play_that_lies_far_to_one_side_is_told_between_teeth_that_turn() {
+fn offset_play_is_found_in_rotating_mesh() {
     let play = "b = { value = 9e-3, unit = \"rad\", min = 0 }\n[coordinates]";
     let damper = "damper = \"1/2*d*dot(twist)^2*contact(twist, b)\"\n[forces]";
     let of_two_angles = specification(damper)
@@ -251,7 +252,7 @@ fn play_that_lies_far_to_one_side_is_told_between_teeth_that_turn() {
         .replace("twist = \"theta_m - theta_l\"", "theta_m = \"theta_l + p\"")
         .replace("dot(twist)", "dot(p)")
         .replace("(twist, b)", "(p, b)");
-    // Encoders whose zeros are known well: else a bias is the first name.
+    // Encoders with small bias priors; otherwise a bias is named first.
     let dataset = DATASET
         .replace("[channels.theta_m]", "[channels.motor]")
         .replace("state = \"rest\"", "state = \"estimate\"")
@@ -261,8 +262,8 @@ fn play_that_lies_far_to_one_side_is_told_between_teeth_that_turn() {
             in_contact(p - MIDDLE, rate)
         });
         let effects = found["effects"].as_array().expect("a list");
-        // An encoder whose zero is off is another name of it.
-        let names = class(&effects[0]);
+        // An encoder bias is an equivalent.
+        let names = class_names(&effects[0]);
         assert_eq!(names[0], format!("asymmetric_backlash {on}"), "{found:#}");
         let mut others = names[1..].iter();
         assert!(

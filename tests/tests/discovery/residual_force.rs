@@ -1,5 +1,5 @@
-//! The residual force: a carriage that drags another by a spring, with something hidden on the
-//! second. The motion is integrated here; the model knows of nothing but springs and dampers.
+//! Residual force: a carriage pulls a second one by a spring, with a hidden force on the second.
+//! The motion is integrated here; the model has springs and dampers only.
 
 use eomgen_records::read_dataset;
 use std::fs;
@@ -75,7 +75,8 @@ length = 0.4
 start = "fitted"
 "#;
 
-/// A record with a hidden force on the second carriage, a function of its rate and place.
+/// Returns a record with a hidden force on the second carriage, a function of its rate and
+/// position.
 fn record(hidden: &dyn Fn(f64, f64) -> f64, turn: f64) -> String {
     let (m, k, c) = (1.5, 400.0, 3.0);
     let step = 0.002;
@@ -87,7 +88,7 @@ fn record(hidden: &dyn Fn(f64, f64) -> f64, turn: f64) -> String {
         let t = step * f64::from(sample);
         let force = 25.0 * (4.0 * t + turn).sin() + 12.0 * (11.0 * t * (1.0 + 0.1 * turn)).cos();
         let mut drawn = || {
-            // Twelve numbers of the logistic map on an angle: uniform, nearly normal once added.
+            // Twelve uniform numbers of the logistic map, whose sum is nearly normal.
             let sum: f64 = (0..12)
                 .map(|_| {
                     noise = (noise * 997.0 + 0.123_456_7).fract();
@@ -117,20 +118,20 @@ fn record(hidden: &dyn Fn(f64, f64) -> f64, turn: f64) -> String {
     text
 }
 
-fn found(hidden: &dyn Fn(f64, f64) -> f64) -> ResidualForce {
-    found_by(hidden, SPECIFICATION)
+fn force_from_records(hidden: &dyn Fn(f64, f64) -> f64) -> ResidualForce {
+    residual_force_with(hidden, SPECIFICATION)
 }
 
-fn found_by(hidden: &dyn Fn(f64, f64) -> f64, specification: &str) -> ResidualForce {
+fn residual_force_with(hidden: &dyn Fn(f64, f64) -> f64, specification: &str) -> ResidualForce {
     let folder = tempfile::tempdir().expect("a folder");
     let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).expect("a file");
     write("dataset.toml", DATASET);
     write("train.csv", &record(hidden, 0.0));
     write("test.csv", &record(hidden, 1.0));
-    found_in(folder.path(), specification)
+    residual_force_in(folder.path(), specification)
 }
 
-fn found_in(folder: &Path, specification: &str) -> ResidualForce {
+fn residual_force_in(folder: &Path, specification: &str) -> ResidualForce {
     let model = eomgen_model_spec::check(Source::new("two_carriages.toml", specification));
     let model = model.expect("a sound specification").model;
     let dataset = read_dataset(&folder.join("dataset.toml"), &model).expect("a sound dataset");
@@ -139,9 +140,9 @@ fn found_in(folder: &Path, specification: &str) -> ResidualForce {
     residual_force(&problem, &fit, None).expect("neighbouring motions")
 }
 
-/// Whether a profile is a function within four of its standard deviations, and by a tenth of the
-/// largest force that bends and a straight line's errors take, where it is known to a fifth.
-fn is(profile: &Profile, of: impl Fn(usize, f64) -> f64, largest: f64) -> usize {
+/// Asserts that a profile matches a function within four standard deviations plus a tenth of the
+/// largest force, due to smoothing. Returns the number of points known to a fifth.
+fn assert_matches(profile: &Profile, of: impl Fn(usize, f64) -> f64, largest: f64) -> usize {
     let mut known = 0;
     for (number, at) in profile.over.iter().enumerate() {
         let (value, sd) = (profile.values[number], profile.sd[number]);
@@ -155,9 +156,9 @@ fn is(profile: &Profile, of: impl Fn(usize, f64) -> f64, largest: f64) -> usize 
 }
 
 #[test]
-fn dry_friction_is_seen_on_its_carriage_with_its_size() {
+fn dry_friction_appears_as_residual_force_on_its_carriage() {
     let friction = |rate: f64, _: f64| -2.0 * (rate / 1e-4).tanh();
-    let force = found(&friction);
+    let force = force_from_records(&friction);
     println!("{}", described(&force));
     assert_eq!(force.equations[force.best].name, "q");
     let Some(Kind::Rate(parts)) = &force.kind else {
@@ -177,13 +178,13 @@ fn dry_friction_is_seen_on_its_carriage_with_its_size() {
     );
     let bends = force.rate.over.len() / 2;
     let side = |number: usize, _: f64| if number < bends { 2.0 } else { -2.0 };
-    assert!(is(&force.rate, side, 2.0) >= bends);
+    assert!(assert_matches(&force.rate, side, 2.0) >= bends);
 }
 
-/// A spring that is next to nothing and not linear: such a model is run by Runge-Kutta steps, and
-/// pushed by small forces beside its motion.
+/// With a weak nonlinear spring the model is integrated by Runge-Kutta steps, with small forces
+/// added to its motion.
 #[test]
-fn a_model_that_is_not_linear_shows_the_same() {
+fn nonlinear_model_gives_the_same_residual_force() {
     let stiffening = SPECIFICATION
         .replace(
             "[coordinates]",
@@ -194,11 +195,14 @@ fn a_model_that_is_not_linear_shows_the_same() {
             "stiffening = \"1/4*b*p^4\"\n\n[dissipation]",
         );
     let friction = |rate: f64, _: f64| -2.0 * (rate / 1e-4).tanh();
-    let (linear, other) = (found(&friction), found_by(&friction, &stiffening));
+    let (linear, other) = (
+        force_from_records(&friction),
+        residual_force_with(&friction, &stiffening),
+    );
     assert_eq!(other.equations[other.best].name, "q");
     let pairs = linear.rate.values.iter().zip(&other.rate.values);
     for ((a, b), sd) in pairs.zip(&linear.rate.sd) {
-        // Both are first order; what differs is how steps end at switches.
+        // Both are first-order methods; they differ in the ends of steps at switches.
         assert!(
             *sd > 0.4 || (a - b).abs() < 0.04 + 0.5 * sd,
             "{a} {b} +- {sd}"
@@ -207,8 +211,8 @@ fn a_model_that_is_not_linear_shows_the_same() {
 }
 
 #[test]
-fn a_spring_is_seen_on_its_carriage_with_its_stiffness() {
-    let force = found(&|_, place| -40.0 * place);
+fn spring_appears_as_residual_force_on_its_carriage() {
+    let force = force_from_records(&|_, place| -40.0 * place);
     println!("{}", described(&force));
     assert_eq!(force.equations[force.best].name, "q");
     let Some(Kind::Position(parts)) = &force.kind else {
@@ -230,12 +234,12 @@ fn a_spring_is_seen_on_its_carriage_with_its_stiffness() {
         .iter()
         .map(|at| 40.0 * at.abs())
         .fold(0.0, f64::max);
-    assert!(is(&force.position, |_, at| -40.0 * at, largest) >= 5);
+    assert!(assert_matches(&force.position, |_, at| -40.0 * at, largest) >= 5);
 }
 
 #[test]
-fn nothing_stands_out_where_nothing_is_hidden() {
-    let force = found(&|_, _| 0.0);
+fn complete_model_has_no_significant_residual_force() {
+    let force = force_from_records(&|_, _| 0.0);
     assert_eq!(force.kind, None, "{}", described(&force));
     assert_eq!(
         described(&force),

@@ -1,6 +1,6 @@
-//! Specifications that several of these tests have records of.
+//! Specifications common to several tests.
 
-/// A mass on a spring and a damper that a force drives.
+/// Mass on a spring and a damper, driven by a force.
 pub const OSCILLATOR: &str = r#"
 [model]
 name = "oscillator"

@@ -1,5 +1,5 @@
-//! P-values of effects that are not there, on records of a rotor in which nothing is hidden: they are
-//! spread evenly, or larger. And of one that is there.
+//! P-values of absent effects in records of a rotor: uniformly distributed or larger. And the
+//! p-value of a present effect.
 
 use std::path::Path;
 
@@ -87,7 +87,7 @@ impl Normal {
     }
 }
 
-/// A record by the midpoint rule, with a constant force besides.
+/// Returns a record by the midpoint rule, with an additional constant force.
 fn record(normal: &mut Normal, turn: f64, force: f64) -> String {
     let (sample, samples, parts) = (0.01, 200, 20);
     let h = sample / f64::from(parts);
@@ -115,7 +115,7 @@ const NAMES: [&str; 4] = [
     "elastic_restraint",
 ];
 
-/// The p-value of each of `NAMES`, where it takes anything away.
+/// Returns the p-value of each effect of `NAMES` that reduces the residual.
 fn p_values(seed: u64, force: f64) -> Vec<Option<f64>> {
     let folder = tempfile::tempdir().expect("a folder");
     let mut normal = Normal(12_345 + 7_919 * seed);
@@ -166,15 +166,15 @@ fn p_values(seed: u64, force: f64) -> Vec<Option<f64>> {
 }
 
 #[test]
-fn p_values_of_what_is_not_there_are_even_or_larger() {
+fn p_values_of_absent_effects_are_uniform_or_larger() {
     let cases = 60;
     let all: Vec<Vec<Option<f64>>> = (1..=cases).map(|seed| p_values(seed, 0.0)).collect();
     let mut smallest: Vec<f64> = Vec::new();
     for (place, name) in NAMES.iter().enumerate() {
         let own: Vec<f64> = all.iter().filter_map(|of| of[place]).collect();
         println!("{name}: {own:.3?}");
-        is_even(name, &own);
-        // What must not be negative comes out as nothing in half of the cases.
+        assert_uniform_or_larger(name, &own);
+        // A parameter that must not be negative is estimated as zero in half of the cases.
         assert!(own.len() as u64 > cases / 4, "{name}: {}", own.len());
     }
     for of in &all {
@@ -182,11 +182,12 @@ fn p_values_of_what_is_not_there_are_even_or_larger() {
         let least = of.iter().copied().fold(1.0, f64::min);
         smallest.push((least * of.len() as f64).min(1.0));
     }
-    is_even("the smallest of all, adjusted", &smallest);
+    assert_uniform_or_larger("the smallest of all, adjusted", &smallest);
 }
 
-/// No more p-values are below a level than chance allows: two and a half standard errors.
-fn is_even(name: &str, p_values: &[f64]) {
+/// Asserts that the number of p-values below each level exceeds the expectation by at most two and
+/// a half standard errors.
+fn assert_uniform_or_larger(name: &str, p_values: &[f64]) {
     let count = p_values.len() as f64;
     for level in [0.02, 0.05, 0.1, 0.2, 0.5] {
         let below = p_values.iter().filter(|p| **p <= level).count() as f64;
@@ -197,7 +198,7 @@ fn is_even(name: &str, p_values: &[f64]) {
 }
 
 #[test]
-fn the_p_value_of_what_is_there_is_small() {
+fn p_value_of_present_effect_is_small() {
     let own = p_values(1, 2e-2)[0].expect("a p-value");
     assert!(own < 1e-6, "{own}");
 }

@@ -1,11 +1,11 @@
-//! Parameters of a stage that nobody called uncertain: another name for what is found where the
-//! records cannot tell them from it, and none where they can.
+//! Undeclared parameters of a stage: they are equivalents of an effect if the records cannot
+//! separate them, and not otherwise.
 
 use eomgen_tests::measured::{DESCRIPTION, Measured, Moment};
 use serde_json::{Value, json};
 
-/// The only effect found in records of a stage of which no parameter is called uncertain.
-fn found(other: &dyn Fn(Moment) -> f64) -> Value {
+/// Returns the only effect found in records of a stage with no related uncertain parameter.
+fn only_effect(other: &dyn Fn(Moment) -> f64) -> Value {
     let measured = Measured::stage_with(other);
     let declared = "[uncertain]\nF_v = { relative = 0.05 }\n";
     let description = DESCRIPTION.replace(declared, "");
@@ -18,9 +18,9 @@ fn found(other: &dyn Fn(Moment) -> f64) -> Value {
 }
 
 #[test]
-fn friction_that_may_be_a_parameter_is_reported_with_it() {
-    // N s/m, a seventh of what the stage has.
-    let effect = found(&|at| -30.0 * at.v);
+fn viscous_friction_is_reported_with_equivalent_parameter() {
+    // In N s/m, a seventh of the stage's own friction.
+    let effect = only_effect(&|at| -30.0 * at.v);
     assert_eq!(effect["effect"], "viscous_friction", "{effect:#}");
     assert_eq!(effect["status"], "class", "{effect:#}");
     let others = effect["equivalent"].as_array().expect("a list");
@@ -29,8 +29,8 @@ fn friction_that_may_be_a_parameter_is_reported_with_it() {
 }
 
 #[test]
-fn friction_that_is_no_parameter_is_named() {
-    let effect = found(&|at| -3.0 * (at.v / 1e-4).tanh());
+fn dry_friction_is_reported_without_equivalent_parameter() {
+    let effect = only_effect(&|at| -3.0 * (at.v / 1e-4).tanh());
     assert_eq!(effect["effect"], "coulomb_friction", "{effect:#}");
     assert_eq!(effect["status"], "named", "{effect:#}");
 }

@@ -1,4 +1,4 @@
-//! The same machine and record in other units give the same answer.
+//! Results are independent of the units of machine and record.
 
 use std::fs;
 use std::path::Path;
@@ -10,13 +10,13 @@ use super::machines::{
     BEAM, CYLINDER, Channel, Machine, PENDULUM, STEP, Table, answered, description, mass, spread,
 };
 
-/// Largest relative difference between answers, due to rounding.
+/// Maximum relative difference between results, due to rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// Exponents of the powers of two by which numbers of length, mass and current are multiplied.
+/// Exponents of the powers of two that multiply length, mass and current.
 type Units = [i32; 3];
 
-/// A number of this unit in other units.
+/// Returns the factor from SI to other units for a number of this unit.
 fn factor(unit: &str, [length, mass, current]: Units) -> f64 {
     let unit = Unit::parse(unit).expect("a unit");
     let exponents = unit
@@ -27,7 +27,7 @@ fn factor(unit: &str, [length, mass, current]: Units) -> f64 {
     2f64.powi(kg * mass + m * length + a * current)
 }
 
-/// A specification with its parameters in other units.
+/// Converts the parameters of a specification to other units.
 fn in_units(specification: &str, units: Units) -> String {
     let line = |line: &str| {
         let parts = line.split_once("{ value = ").and_then(|(name, rest)| {
@@ -44,8 +44,8 @@ fn in_units(specification: &str, units: Units) -> String {
     specification.lines().map(line).collect()
 }
 
-/// Numbers of an answer that do not depend on units: gaps in noise floors, and parameters of effects in
-/// the first units.
+/// Returns numbers of a result that are independent of units: gaps in noise floors, and parameters
+/// of effects in the original units.
 fn numbers(answer: &Value, units: Units) -> Vec<(String, f64)> {
     let number = |value: &Value| value.as_f64().expect("a number");
     let mut found = Vec::new();
@@ -73,8 +73,8 @@ fn numbers(answer: &Value, units: Units) -> Vec<(String, f64)> {
     found
 }
 
-/// Difference of two numbers relative to their size. Gaps are compared with the noise floor, because
-/// rounding decides on smaller ones.
+/// Returns the relative difference of two numbers. Gaps are compared with the noise floor, because
+/// rounding dominates smaller ones.
 fn difference(name: &str, other: f64, own: f64) -> f64 {
     let size = if name.starts_with("gap ") {
         own.abs().max(1.0)
@@ -84,8 +84,9 @@ fn difference(name: &str, other: f64, own: f64) -> f64 {
     (other - own).abs() / size
 }
 
-/// Both commands answer the same in all units. `truth`: the specification that makes the records.
-fn answers_agree(truth: &str, machine: &Machine, channel: &Channel, others: &[Units]) {
+/// Asserts that both commands give the same results in all units. `truth` is the specification that
+/// generates the records.
+fn assert_same_results(truth: &str, machine: &Machine, channel: &Channel, others: &[Units]) {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
     let made = Machine {
@@ -115,14 +116,14 @@ fn answers_agree(truth: &str, machine: &Machine, channel: &Channel, others: &[Un
                 let difference = difference(name, *other, *own);
                 assert!(
                     difference < ROUNDING,
-                    "{command} {channel:?} {units:?}: {name}: {other} in place of {own}"
+                    "{command} {channel:?} {units:?}: {name}: {other}, expected {own}"
                 );
             }
         }
     }
 }
 
-/// Writes a machine and its records, which lie in the folder above, in other units.
+/// Writes a machine and the records of the parent folder in other units.
 fn write_in_units(folder: &Path, machine: &Machine, channel: &Channel, units: Units) {
     let specification = in_units(&machine.specification, units);
     fs::write(folder.join("model.toml"), specification).expect("a file");
@@ -140,8 +141,9 @@ fn write_in_units(folder: &Path, machine: &Machine, channel: &Channel, units: Un
     }
 }
 
-/// Trajectories by a solver are the same in all units. `columns`: those of `simulate` with their units.
-fn trajectories_agree(machine: &Machine, solver: &str, columns: &[(&str, &str)]) {
+/// Asserts that trajectories by a solver agree in all units. `columns` are columns of `simulate`
+/// with their units.
+fn assert_same_trajectories(machine: &Machine, solver: &str, columns: &[(&str, &str)]) {
     let motion = |units: Units| {
         let folder = tempfile::tempdir().expect("a folder");
         let (unit, size) = machine.input;
@@ -173,63 +175,63 @@ fn trajectories_agree(machine: &Machine, solver: &str, columns: &[(&str, &str)])
 }
 
 #[test]
-fn trajectories() {
+fn trajectories_are_independent_of_units() {
     let positions = [("x", "m"), ("x_dot", "m/s"), ("energy", "J")];
     let cylinder = Machine::new(CYLINDER, ("V", 1.0), &[]);
     let friction = "u - F*sign(dot(x)) - k_3*x^3";
     let stick = mass("1/2*k*x^2", "k*x", friction, "");
     let linear = mass("1/2*k*deadzone(x, b)^2", "k*deadzone(x, b)", "u", "");
     for solver in ["rk", "radau"] {
-        trajectories_agree(
+        assert_same_trajectories(
             &cylinder,
             solver,
             &[&positions[..2], &[("p", "Pa")]].concat(),
         );
-        trajectories_agree(&stick, solver, &positions);
+        assert_same_trajectories(&stick, solver, &positions);
     }
-    trajectories_agree(&linear, "adams", &positions);
-    trajectories_agree(&linear, "exact", &positions);
+    assert_same_trajectories(&linear, "adams", &positions);
+    assert_same_trajectories(&linear, "exact", &positions);
 }
 
-/// Very small, very large, and lengths and masses that go opposite ways.
+/// Very small, very large, and opposite scales of length and mass.
 const OTHERS: [Units; 3] = [[-17, -20, 0], [17, 20, 0], [-20, 20, 10]];
 
 #[test]
-fn nonlinear_model_with_a_pressure() {
+fn results_for_nonlinear_model_with_pressure_are_independent_of_units() {
     let channels = [("x", "x", "m"), ("x_ddot", "a", "m/s^2")];
     let machine = Machine::new(CYLINDER, ("V", 1.0), &channels);
     let truth = CYLINDER.replace("value = 500", "value = 510");
     for channel in &channels {
-        answers_agree(&truth, &machine, channel, &OTHERS);
+        assert_same_results(&truth, &machine, channel, &OTHERS);
     }
 }
 
 #[test]
-fn model_with_a_field() {
+fn results_for_model_with_field_are_independent_of_units() {
     let channels = [("x", "x", "rad"), ("o", "o", "m")];
     let machine = Machine::new(BEAM, ("N m", 0.5), &channels);
     for channel in &channels {
-        answers_agree(BEAM, &machine, channel, &OTHERS);
+        assert_same_results(BEAM, &machine, channel, &OTHERS);
     }
 }
 
 #[test]
-fn dry_friction_that_a_linear_model_lacks() {
+fn missing_dry_friction_is_found_in_all_units() {
     let machine = mass("1/2*k*x^2", "k*x", "u", "");
     let truth = mass("1/2*k*x^2", "k*x", "u - F*sign(dot(x))", "").specification;
-    answers_agree(&truth, &machine, &("x", "x", "m"), &OTHERS);
+    assert_same_results(&truth, &machine, &("x", "x", "m"), &OTHERS);
 }
 
 #[test]
-fn spring_that_a_nonlinear_model_lacks() {
+fn missing_spring_is_found_in_all_units() {
     let machine = Machine::new(PENDULUM, ("N m", 1.5), &[]);
     let truth = PENDULUM.replace("u - c*dot(x)", "u - c*dot(x) - m*g*l*x/10");
-    answers_agree(&truth, &machine, &("x", "x", "rad"), &OTHERS);
+    assert_same_results(&truth, &machine, &("x", "x", "rad"), &OTHERS);
 }
 
-/// The pressure of a cylinder is a number of pascals, kilopascals, megapascals and gigapascals.
+/// A pressure in pascals, kilopascals, megapascals and gigapascals.
 #[test]
-fn state_as_a_number_of_other_units() {
+fn results_are_independent_of_the_unit_of_a_state() {
     let in_unit = |unit: f64| {
         (CYLINDER.replace(
             "[coordinates]",
@@ -265,7 +267,7 @@ fn state_as_a_number_of_other_units() {
             let difference = difference(name, *other, *own);
             assert!(
                 difference < ROUNDING,
-                "{unit:e}: {name}: {other} in place of {own}"
+                "{unit:e}: {name}: {other}, expected {own}"
             );
         }
     }
