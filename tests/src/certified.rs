@@ -1,5 +1,5 @@
-//! Certificates of models given as text, without compiling what would be emitted: whether a
-//! right model passes and a wrong one fails.
+//! Certificates of models given as text, without compiling emitted code: correct models must pass
+//! and wrong ones must fail.
 
 use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_codegen::program::evaluator::Evaluator;
@@ -14,7 +14,7 @@ use eomgen_validate::variant::Variant;
 
 use crate::models::variant;
 
-/// The model of a text, which must be sound.
+/// Returns the model of a valid specification.
 pub fn checked(text: &str) -> Model {
     match eomgen_model_spec::check(Source::new("model.toml", text)) {
         Ok(checked) => checked.model,
@@ -22,12 +22,12 @@ pub fn checked(text: &str) -> Model {
     }
 }
 
-/// The certificate of `model` if its equations were those of `subject`.
+/// Certifies the equations of `subject` against `model`.
 pub fn certificate(model: &Model, subject: &Model) -> Certificate {
     certificate_with(model, subject, &[])
 }
 
-/// The same, with what is asked for of `subject`.
+/// Certifies the equations and the requested `outputs` of `subject` against `model`.
 pub fn certificate_with(model: &Model, subject: &Model, outputs: &[Output]) -> Certificate {
     let parameters = model.parameter_values().expect("values");
     let variants = |order: usize| {

@@ -1,7 +1,8 @@
-//! What the whole-path tests share: the shipped specifications with their derived
-//! variants ([`models`]), models made on the spot and their motions ([`motions`]) or their
-//! certificates ([`certified`]), right ones at random ([`smooth_models`]), the built
-//! program ([`program`]), what the pages print ([`pages`]), records as if measured ([`measured`], with [`logistic_noise`]) and the arm integrated in extended precision ([`taylor`]). The tests themselves are in `tests/`, one subject per file.
+//! Shared code of the integration tests: shipped specifications with their derived variants
+//! ([`models`]), generated models with their motions ([`motions`]) or certificates ([`certified`]),
+//! random correct models ([`smooth_models`]), the built program ([`program`]), commands printed in
+//! the docs ([`pages`]), synthetic records ([`measured`], with [`logistic_noise`]) and the arm
+//! integrated in extended precision ([`taylor`]).
 
 pub mod certified;
 pub mod logistic_noise;

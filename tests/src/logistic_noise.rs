@@ -1,20 +1,20 @@
-//! A noise that is the same everywhere: the logistic map, centred.
+//! Deterministic noise from the centred logistic map.
 
-/// Numbers of mean 0, one after the other.
+/// Generator of numbers with mean 0.
 pub struct LogisticNoise {
-    /// Where the map stands, between 0 and 1.
+    /// State of the map, between 0 and 1.
     place: f64,
-    /// One standard deviation of the numbers, nearly.
+    /// Approximate standard deviation.
     size: f64,
 }
 
 impl LogisticNoise {
-    /// Of this size, from a place between 0 and 1, which makes it another one.
+    /// Starts with this standard deviation and initial state, between 0 and 1.
     pub fn new(size: f64, place: f64) -> Self {
         Self { place, size }
     }
 
-    /// The next number.
+    /// Returns the next number.
     pub fn draw(&mut self) -> f64 {
         self.place = 4.0 * self.place * (1.0 - self.place) * 0.999_999;
         self.size * 2.8 * (self.place - 0.5)

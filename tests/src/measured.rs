@@ -1,5 +1,5 @@
-//! Records of the stage of `emps.toml` as if they had been measured: held forces, the closed
-//! form between them, and a noise that repeats. To be spoilt by tests.
+//! Synthetic records of the stage of `emps.toml`: held forces, the closed form between them, and
+//! deterministic noise. Tests modify them.
 
 use std::path::PathBuf;
 
@@ -7,19 +7,19 @@ use crate::logistic_noise::LogisticNoise;
 use crate::models::path;
 use crate::program;
 
-/// Samples of a record, and the time between them, s.
+/// Number of samples of a record, and time between samples, s.
 pub const SAMPLES: usize = 400;
 const STEP: f64 = 0.005;
 
-/// What the sensor of the position adds, m.
+/// Noise of the position sensor, m.
 const NOISE: f64 = 1e-6;
 
-/// A folder with a dataset and its records.
+/// Temporary folder with a dataset and its records.
 pub struct Measured {
     folder: tempfile::TempDir,
 }
 
-/// The dataset file.
+/// Text of the dataset file.
 pub const DESCRIPTION: &str = r#"
 [records]
 train = ["train.csv"]
@@ -49,30 +49,30 @@ F_v = { relative = 0.05 }
 length = 0.25
 "#;
 
-/// Where a stage is: time in s, position in m, velocity in m/s, and the motor's force in N.
+/// State of the stage.
 #[derive(Clone, Copy)]
 pub struct Moment {
-    /// s.
+    /// Time, s.
     pub t: f64,
-    /// m.
+    /// Position, m.
     pub q: f64,
-    /// m/s.
+    /// Velocity, m/s.
     pub v: f64,
-    /// N.
+    /// Force of the motor, N.
     pub force: f64,
 }
 
-/// A record: t, force, q. `friction`: dry friction in N; `turn` makes another record.
+/// Returns a record of t, force, q with dry friction in N; `turn` changes the input.
 pub fn record(friction: f64, turn: f64) -> String {
     record_of(&dry(friction), turn)
 }
 
-/// Dry friction that the smallest speed turns.
+/// Returns dry friction with a steep slope at zero speed.
 fn dry(friction: f64) -> impl Fn(Moment) -> f64 {
     move |at| -friction * (at.v / 1e-4).tanh()
 }
 
-/// A record of a stage on which something else acts, in N.
+/// Returns a record of a stage with an additional force, in N.
 pub fn record_of(other: &dyn Fn(Moment) -> f64, turn: f64) -> String {
     let (mass, viscous) = (95.0, 210.0);
     let (mut q, mut v): (f64, f64) = (0.0, 0.0);
@@ -82,7 +82,7 @@ pub fn record_of(other: &dyn Fn(Moment) -> f64, turn: f64) -> String {
         let t = STEP * sample as f64;
         let force = 300.0 * (5.0 * t + turn).cos() - 150.0 * (13.0 * t * (1.0 + 0.3 * turn)).sin();
         text += &format!("{t:.3},{force:.17},{:.9}\n", q + noise.draw());
-        // Small steps in each of which friction has one direction.
+        // The steps are so short that friction has one direction in each.
         let parts = 50;
         let h = STEP / f64::from(parts);
         let slope = |at: Moment| (force + other(at) - viscous * at.v) / mass;
@@ -102,12 +102,12 @@ pub fn record_of(other: &dyn Fn(Moment) -> f64, turn: f64) -> String {
 }
 
 impl Measured {
-    /// Two sound records of a stage with this dry friction, N.
+    /// Writes two valid records of a stage with this dry friction, N.
     pub fn stage(friction: f64) -> Self {
         Self::stage_with(&dry(friction))
     }
 
-    /// Two sound records of a stage on which something else acts, in N.
+    /// Writes two valid records of a stage with an additional force, in N.
     pub fn stage_with(other: &dyn Fn(Moment) -> f64) -> Self {
         let measured = Self {
             folder: tempfile::tempdir().expect("a folder"),
@@ -118,22 +118,22 @@ impl Measured {
         measured
     }
 
-    /// A file of the folder.
+    /// Returns the path of a file in the folder.
     pub fn file(&self, name: &str) -> PathBuf {
         self.folder.path().join(name)
     }
 
-    /// Writes a file of the folder.
+    /// Writes a file in the folder.
     pub fn write(&self, name: &str, bytes: &[u8]) {
         std::fs::write(self.file(name), bytes).expect("a file");
     }
 
-    /// A file of the folder as text.
+    /// Returns the text of a file in the folder.
     pub fn read(&self, name: &str) -> String {
         std::fs::read_to_string(self.file(name)).expect("a file")
     }
 
-    /// Arguments that run `command` on the dataset.
+    /// Returns the arguments that run `command` on the dataset.
     pub fn arguments(&self, command: &str, out: &str) -> Vec<String> {
         let dataset = self.file("dataset.toml");
         let out = self.file(out);
@@ -149,7 +149,7 @@ impl Measured {
         ]
     }
 
-    /// The message with which the dataset is refused; nothing is written.
+    /// Returns the message of the rejected dataset; asserts that nothing is written.
     pub fn refused(&self) -> String {
         let arguments = self.arguments("compare", "refused");
         let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
@@ -158,7 +158,7 @@ impl Measured {
         message
     }
 
-    /// The document that `command` leaves, and what it warned of.
+    /// Runs `command`; returns its document and its messages.
     pub fn answered(&self, command: &str, out: &str) -> (serde_json::Value, String) {
         let arguments = self.arguments(command, out);
         let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();

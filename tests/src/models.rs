@@ -1,4 +1,4 @@
-//! Shipped specifications, their variants and random states. Nothing is checked here.
+//! Shipped specifications, their variants and random states.
 
 use eomgen_validate::oracle::Oracle;
 use eomgen_validate::sampler::{Sample, Sampler};
@@ -9,14 +9,14 @@ use eomgen_codegen::program::evaluator::Evaluator;
 use eomgen_codegen::program::lowering::lower;
 use eomgen_model_spec::model::Model;
 
-/// The project's folder.
+/// Returns the project's folder.
 pub fn project() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
         .parent()
         .expect("the package lies in the project")
 }
 
-/// The paths of all shipped specifications, in the order of their names.
+/// Returns the paths of all shipped specifications, sorted by name.
 pub fn shipped() -> Vec<PathBuf> {
     let folder = project().join("model-spec/models");
     let entries = std::fs::read_dir(folder).expect("the folder of the shipped specifications");
@@ -29,25 +29,25 @@ pub fn shipped() -> Vec<PathBuf> {
     paths
 }
 
-/// The path of a shipped specification.
+/// Returns the path of a shipped specification.
 pub fn path(name: &str) -> PathBuf {
     project()
         .join("model-spec/models")
         .join(format!("{name}.toml"))
 }
 
-/// A shipped specification, checked.
+/// Loads a shipped specification.
 pub fn load(name: &str) -> Model {
     eomgen_model_spec::load(&path(name))
         .expect("a shipped specification loads")
         .model
 }
 
-/// A model derived with every field at one order.
+/// Model derived with every field at one order.
 pub struct Variant {
-    /// The equations.
+    /// Equations of motion.
     pub equations: Equations,
-    /// Their program, prepared with the model's parameters.
+    /// Evaluator, prepared with the model's parameters.
     pub evaluator: Evaluator,
 }
 
@@ -65,7 +65,7 @@ pub fn variant(model: &Model, order: usize) -> Variant {
     }
 }
 
-/// Random times, states and inputs of the sizes that the model's motion has, `count` in
+/// Returns random times, states and inputs with the magnitudes of the model's motion, `count` in
 /// every regime of its switching functions.
 pub fn samples(model: &Model, order: usize, seed: u64, count: usize) -> Vec<Sample> {
     let parameters = model

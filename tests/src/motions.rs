@@ -1,5 +1,5 @@
-//! Models made on the spot and their motions by the exact and by the general solver. What
-//! the two have in common ends at the derived equations. Nothing is checked here.
+//! Generated models and their motions by the exact and by the general solver. The two solvers share
+//! only the derived equations.
 
 use std::cell::RefCell;
 use std::fmt::Write;
@@ -15,14 +15,14 @@ use eomgen_sim::piecewise_linear::{ExactError, PiecewiseLinear, Propagator};
 
 use crate::models::variant;
 
-/// A specification being written, in SI.
+/// Builder of a specification, in SI units.
 #[derive(Clone, Debug, Default)]
 pub struct Spec {
     sections: [String; 7],
     count: usize,
 }
 
-/// The sections in the order they are written.
+/// Section names in their order.
 const SECTIONS: [&str; 7] = [
     "parameters",
     "coordinates",
@@ -34,7 +34,7 @@ const SECTIONS: [&str; 7] = [
 ];
 
 impl Spec {
-    /// A parameter with its value and unit.
+    /// Adds a parameter with value and unit.
     pub fn parameter(self, name: &str, value: f64, unit: &str) -> Self {
         self.entry(
             0,
@@ -42,32 +42,32 @@ impl Spec {
         )
     }
 
-    /// A coordinate in m with where it begins, m and m/s.
+    /// Adds a coordinate in m with its initial position, m, and rate, m/s.
     pub fn coordinate(self, name: &str, [place, rate]: [f64; 2]) -> Self {
         let initial = format!("initial = {place:e}, initial_rate = {rate:e}");
         self.entry(1, &format!("{name} = {{ unit = \"m\", {initial} }}"))
     }
 
-    /// A signal supplied at run time.
+    /// Adds an input.
     pub fn input(self, name: &str, unit: &str) -> Self {
         self.entry(2, &format!("{name} = {{ unit = \"{unit}\" }}"))
     }
 
-    /// A kinetic energy.
+    /// Adds a kinetic energy.
     pub fn kinetic(mut self, energy: &str) -> Self {
         self.count += 1;
         let name = self.count;
         self.entry(3, &format!("T_{name} = \"{energy}\""))
     }
 
-    /// A potential energy.
+    /// Adds a potential energy.
     pub fn potential(mut self, energy: &str) -> Self {
         self.count += 1;
         let name = self.count;
         self.entry(4, &format!("V_{name} = \"{energy}\""))
     }
 
-    /// A force on a coordinate.
+    /// Adds a force on a coordinate.
     pub fn force(mut self, on: &str, force: &str) -> Self {
         self.count += 1;
         let name = self.count;
@@ -77,7 +77,7 @@ impl Spec {
         )
     }
 
-    /// A state of first order in m.
+    /// Adds a first-order state in m.
     pub fn state(self, name: &str, rate: &str) -> Self {
         self.entry(
             6,
@@ -91,7 +91,7 @@ impl Spec {
         self
     }
 
-    /// The specification as text.
+    /// Returns the specification as text.
     pub fn text(&self) -> String {
         let mut text = "[model]\nname = \"made\"\ntitle = \"Made for a test\"\n".to_owned();
         for (name, lines) in SECTIONS.iter().zip(&self.sections) {
@@ -102,7 +102,7 @@ impl Spec {
         text
     }
 
-    /// The model.
+    /// Returns the model.
     pub fn model(&self) -> Model {
         let text = self.text();
         match check(Source::new("made.toml", text.as_str())) {
@@ -112,20 +112,20 @@ impl Spec {
     }
 }
 
-/// A model at an order with where its motion begins and what drives it.
+/// Model of one order with its initial state and inputs.
 pub struct Subject {
-    /// The model.
+    /// Model.
     pub model: Model,
-    /// The order of every field.
+    /// Order of every field.
     pub order: usize,
-    /// The state at the start.
+    /// Initial state.
     pub initial: Vec<f64>,
-    /// The inputs.
+    /// Inputs held between samples.
     pub inputs: HeldInputs,
 }
 
 impl Subject {
-    /// A model from where it says that it begins, its inputs zero.
+    /// Starts the model from its declared initial state, with zero inputs.
     pub fn new(model: Model, order: usize) -> Self {
         let orders = vec![order; model.fields.len()];
         let initial = model.initial_state(&orders).expect("an initial state");
@@ -138,39 +138,40 @@ impl Subject {
         }
     }
 
-    /// The same from another state.
+    /// Replaces the initial state.
     pub fn from(mut self, initial: &[f64]) -> Self {
         self.initial = initial.to_vec();
         self
     }
 
-    /// The exact propagator, or why there is none.
+    /// Returns the exact propagator, or the reason why there is none.
     pub fn propagator(&self) -> Result<Propagator, ExactError> {
         let orders = vec![self.order; self.model.fields.len()];
         PiecewiseLinear::of(&self.model, &orders)?.propagator(&self.model)
     }
 
-    /// The motion over a span of time, s, by the exact solver.
+    /// Simulates a time span, s, with the exact solver.
     pub fn try_exact(&self, span: (f64, f64), times: &[f64]) -> Result<Trajectory, ExactError> {
         let mut propagator = self.propagator()?;
         propagator.simulate(&self.initial, span, times, &self.inputs, &mut |_| {})
     }
 
-    /// The same; it must succeed and give every sample.
+    /// Simulates like [`try_exact`](Self::try_exact); asserts success and that every sample is
+    /// present.
     pub fn exact(&self, span: (f64, f64), times: &[f64]) -> Trajectory {
         let trajectory = self.try_exact(span, times).expect("an exact motion");
         assert_eq!(trajectory.times, times, "every sample is there");
         trajectory
     }
 
-    /// The model as the general solver takes it.
+    /// Returns the model with its inputs for the general solver.
     pub fn driven(&self) -> Driven<RefCell<Evaluator>, &HeldInputs> {
         let evaluator = variant(&self.model, self.order).evaluator;
         assert!(evaluator.pivots_are_positive());
         Driven::new(RefCell::new(evaluator), &self.inputs)
     }
 
-    /// The motion by the general solver's steps of Runge and Kutta.
+    /// Simulates with the Runge-Kutta method of the general solver.
     pub fn general(
         &self,
         span: (f64, f64),
@@ -180,7 +181,7 @@ impl Subject {
         self.general_by(Method::DormandPrince853, span, times, tolerance)
     }
 
-    /// The motion by one of the general solver's methods.
+    /// Simulates with the given method of the general solver.
     pub fn general_by(
         &self,
         method: Method,
@@ -197,7 +198,7 @@ impl Subject {
         simulate(&driven, &self.initial, span, times, &settings, &mut |_| {})
     }
 
-    /// The energies at these times and states, J.
+    /// Returns the energies at these times and states, J.
     pub fn energies(&self, times: &[f64], states: &[Vec<f64>]) -> Vec<f64> {
         let mut evaluator = variant(&self.model, self.order).evaluator;
         let mut values = vec![0.0; evaluator.program().observables.len()];
@@ -211,22 +212,22 @@ impl Subject {
     }
 }
 
-/// `count` equal steps from 0 to `until`, both included.
+/// Returns `count` equal steps from 0 to `until`, both included.
 pub fn grid(until: f64, count: usize) -> Vec<f64> {
     (0..=count)
         .map(|k| until * k as f64 / count as f64)
         .collect()
 }
 
-/// The largest difference of two motions at their samples, relative to the largest magnitude
-/// that each state has in the second one; a state that stays below `smallest` counts as that.
+/// Returns the largest difference of two motions at their samples, relative to the largest
+/// magnitude of each state in the second one, or to `smallest` if that is larger.
 pub fn difference(a: &[Vec<f64>], b: &[Vec<f64>], smallest: f64) -> f64 {
     assert_eq!(a.len(), b.len(), "samples");
     let states = b.first().map_or(0, Vec::len);
     let worst = (0..states).map(|state| {
         let size = b.iter().fold(smallest, |size, y| size.max(y[state].abs()));
         let deviations = a.iter().zip(b).map(|(a, b)| (a[state] - b[state]).abs());
-        // A state that is no number is infinitely far away.
+        // A NaN counts as an infinite difference.
         deviations.fold(0.0, |worst: f64, d| if d <= worst { worst } else { d }) / size
     });
     worst.fold(0.0, |a: f64, b| if b <= a { a } else { b })

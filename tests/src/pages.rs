@@ -1,30 +1,30 @@
-//! The commands that README.md and the pages in docs/ print, with the output they show.
+//! Commands printed in README.md and docs/, with the output shown there.
 
 use std::path::PathBuf;
 
 use crate::models::project;
 
-/// A command as a page prints it.
+/// Command printed in a page.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Printed {
-    /// The page, from the project's folder on.
+    /// Path of the page in the project's folder.
     pub page: String,
-    /// The command on one line, without what follows a `#`.
+    /// Command on one line, without a comment after `#`.
     pub command: String,
-    /// The lines shown below it.
+    /// Lines shown below the command.
     pub output: Vec<String>,
 }
 
-/// A block of output that no command stands above.
+/// Block of output without a command.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Loose {
-    /// The page, from the project's folder on.
+    /// Path of the page in the project's folder.
     pub page: String,
-    /// Its lines.
+    /// Lines of the block.
     pub lines: Vec<String>,
 }
 
-/// The pages: README.md and all of docs/.
+/// Returns the names and texts of README.md and all pages of docs/.
 pub fn pages() -> Vec<(String, String)> {
     let docs = std::fs::read_dir(project().join("docs")).expect("docs");
     let docs = docs.map(|entry| entry.expect("an entry").path());
@@ -41,7 +41,8 @@ pub fn pages() -> Vec<(String, String)> {
     paths.into_iter().map(page).collect()
 }
 
-/// All commands in console blocks, in the order of their page, and what else these hold.
+/// Returns all commands in console blocks, in the order of the page, and the blocks without a
+/// command.
 pub fn in_blocks() -> (Vec<Printed>, Vec<Loose>) {
     let (mut printed, mut loose) = (Vec::new(), Vec::new());
     for (page, text) in pages() {
@@ -60,7 +61,7 @@ pub fn in_blocks() -> (Vec<Printed>, Vec<Loose>) {
     (printed, loose)
 }
 
-/// The commands of a block, each with the lines below it.
+/// Collects the commands of a block, each with the lines below it.
 fn commands(page: &str, lines: &[String], printed: &mut Vec<Printed>) {
     let mut goes_on = false;
     for line in lines {
@@ -89,12 +90,12 @@ fn commands(page: &str, lines: &[String], printed: &mut Vec<Printed>) {
     }
 }
 
-/// All commands in running text and tables.
+/// Returns all commands in running text and tables.
 pub fn in_text() -> Vec<Printed> {
     let begins = ["cargo ", "rustc ", "EOMGEN_", "examples/bare_metal/"];
     let mut printed = Vec::new();
     for (page, text) in pages() {
-        // Odd parts between single backticks, with the blocks out of the way.
+        // Without the blocks, odd parts of the text are between single backticks.
         let prose: String = text.split("```").step_by(2).collect();
         for code in prose.split('`').skip(1).step_by(2) {
             let code = code.split_whitespace().collect::<Vec<_>>().join(" ");

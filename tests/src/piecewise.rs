@@ -1,6 +1,6 @@
-//! Random machines whose forces are piecewise functions of piecewise functions. All quantities
-//! are pure numbers, and half-widths and offsets are few, so that functions rest on whole
-//! regions, at zero and at thresholds of others. Nothing is checked here.
+//! Random machines with nested piecewise forces. All quantities are pure numbers from a small set
+//! of half-widths and offsets, so that functions are constant on whole regions, at zero and at
+//! thresholds of others.
 
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_validate::random::Random;
@@ -10,11 +10,12 @@ use crate::motions::Subject;
 /// Half-widths, offsets and factors.
 const NUMBERS: [f64; 5] = [0.0, 0.125, 0.25, 0.5, 1.0];
 
-/// What a function may be of. Rates now and then: a force that jumps with one may hold it, and
-/// only the exact solver follows that.
+/// Arguments of functions. Rates are rare: a force that jumps with a rate can hold it at zero,
+/// which only the exact solver handles.
 const LEAVES: [&str; 8] = ["x", "y", "x", "y", "(x - y)", "(x + y)", "tau*dot(x)", "u"];
 
-/// A random machine of two masses, its motion begun somewhere and its input held now and then.
+/// Returns a random machine of two masses with a random initial state and, in some cases, a held
+/// input.
 pub fn machine(random: &mut Random, deepest: usize) -> Subject {
     let mut text = HEAD.to_owned();
     let count = 1 + (2.0 * random.unit()) as usize;
@@ -22,7 +23,7 @@ pub fn machine(random: &mut Random, deepest: usize) -> Subject {
         let on = if random.unit() < 0.5 { "x" } else { "y" };
         let size = 2.0 + 6.0 * random.unit();
         let term = piecewise(random, deepest);
-        // A jump with a rate may act on the other mass, or with it, as friction does.
+        // A jump with a rate can act on the same mass, like friction, or on the other.
         text +=
             &format!("f_{index} = {{ on = \"{on}\", value = \"-{size:.3}*J/s^2*({term})\" }}\n");
     }
@@ -40,7 +41,7 @@ pub fn machine(random: &mut Random, deepest: usize) -> Subject {
     subject
 }
 
-/// A piecewise function, nested so deep at most.
+/// Returns a piecewise function of at most this nesting depth.
 pub fn piecewise(random: &mut Random, depth: usize) -> String {
     let inner = |random: &mut Random| {
         if depth <= 1 || random.unit() < 0.15 {

@@ -1,4 +1,4 @@
-//! The `eomgen` program, built as the tests are, run with a time limit.
+//! The `eomgen` program, built like the tests and run with a time limit.
 
 use std::path::{Path, PathBuf};
 use std::process::Output;
@@ -9,16 +9,16 @@ use serde_json::Value;
 
 use crate::models::project;
 
-/// The longest a run may take unless a test says otherwise.
+/// Default time limit of a run.
 const LIMIT: Duration = Duration::from_secs(60);
 
-/// The program's path. It is built first, so that no test judges an older one.
+/// Returns the path of the program, after building it.
 pub fn path() -> &'static Path {
     static BUILT: OnceLock<PathBuf> = OnceLock::new();
     BUILT.get_or_init(build)
 }
 
-/// The folder and the profile that the running test was built with.
+/// Returns the target folder and the profile of the running test.
 pub fn target() -> (PathBuf, String) {
     let test = std::env::current_exe().expect("the running test has a path");
     let profile = test.ancestors().nth(2).expect("target/PROFILE/deps/TEST");
@@ -28,7 +28,7 @@ pub fn target() -> (PathBuf, String) {
     (target.to_owned(), profile.to_owned())
 }
 
-/// Cargo in the project's folder, to be given arguments: a command that builds.
+/// Returns a `cargo` command in the project's folder that builds like the tests.
 pub fn cargo() -> std::process::Command {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = std::process::Command::new(cargo);
@@ -36,7 +36,7 @@ pub fn cargo() -> std::process::Command {
     command
 }
 
-/// Builds into the folder that the running test was built into.
+/// Builds into the target folder of the running test.
 fn build() -> PathBuf {
     let (target, profile) = target();
     let status = cargo()
@@ -51,7 +51,7 @@ fn build() -> PathBuf {
     target.join(folder).join(name)
 }
 
-/// The program, to be given arguments.
+/// Returns a command that runs the program.
 pub fn eomgen() -> assert_cmd::Command {
     let mut command = assert_cmd::Command::new(path());
     command.timeout(LIMIT);
@@ -66,7 +66,7 @@ pub fn run(arguments: &[&str]) -> Output {
         .expect("the program can be run")
 }
 
-/// Runs the program, which must refuse with exit status 2; its message.
+/// Runs the program, asserts exit status 2 and returns its message.
 pub fn refused(arguments: &[&str]) -> String {
     let output = run(arguments);
     let message = text(&output.stderr);
@@ -78,7 +78,7 @@ pub fn refused(arguments: &[&str]) -> String {
     message
 }
 
-/// Runs the program, which must succeed; its standard output.
+/// Runs the program, asserts success and returns its stdout.
 pub fn accepted(arguments: &[&str]) -> String {
     let output = run(arguments);
     let shown = arguments.join(" ");
@@ -91,8 +91,8 @@ pub fn accepted(arguments: &[&str]) -> String {
     text(&output.stdout)
 }
 
-/// What `compare` or `discover` answers to a specification and a dataset, and leaves in a folder: the
-/// command must succeed.
+/// Runs `compare` or `discover` on a specification and a dataset with output to a folder; asserts
+/// success and returns the document.
 pub fn answered(command: &str, paths: [&PathBuf; 3]) -> Value {
     let [specification, dataset, out] = paths.map(|path| path.display().to_string());
     accepted(&[command, &specification, &dataset, "--out", &out]);
@@ -104,7 +104,7 @@ pub fn answered(command: &str, paths: [&PathBuf; 3]) -> Value {
     serde_json::from_str(&document).expect("JSON")
 }
 
-/// The same to texts, in a folder of their own.
+/// Writes the texts to a temporary folder and runs [`answered`].
 pub fn answered_to(command: &str, texts: Texts<'_>) -> Value {
     let folder = tempfile::tempdir().expect("a folder");
     let place = |name: &str| folder.path().join(name);
@@ -120,19 +120,20 @@ pub fn answered_to(command: &str, texts: Texts<'_>) -> Value {
     answered(command, paths.each_ref())
 }
 
-/// What a comparison or a discovery reads; the records are `train.csv` and `test.csv` in the dataset.
+/// Input files of `compare` or `discover`; the dataset names the records `train.csv` and
+/// `test.csv`.
 pub struct Texts<'t> {
-    /// The specification.
+    /// Specification.
     pub specification: &'t str,
-    /// The dataset file.
+    /// Dataset file.
     pub dataset: &'t str,
-    /// The record to learn from.
+    /// Training record.
     pub train: &'t str,
-    /// The record held out.
+    /// Held-out record.
     pub test: &'t str,
 }
 
-/// Bytes as text.
+/// Converts bytes to text.
 pub fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }

@@ -1,36 +1,34 @@
-//! Random smooth models as text, right by construction: what a certificate must pass. Written
-//! from the specification language alone; it shares no code with the derivation, the oracle
-//! or their samplers.
+//! Random smooth models as text, correct by construction, so that their certificates must pass. The
+//! generator follows the specification language only; it shares no code with the derivation, the
+//! oracle or their samplers.
 //!
-//! Every model has up to three coordinates, angles or lengths, and energies quadratic in
-//! the rates with masses that depend on the configuration, on time or on points; terms
-//! linear in the rates; potentials from the whole catalogue of functions, some with a
-//! domain around the initial state; dissipation; forces on coordinates and points; inputs,
-//! definitions and derived parameters.
+//! Each model has up to three coordinates, angles or lengths. Energies are quadratic in the rates,
+//! with masses that depend on the configuration, on time or on points, plus terms linear in the
+//! rates. Potentials use all functions, some with a domain around the initial state. Dissipation,
+//! forces on coordinates and points, inputs, definitions and derived parameters occur as well.
 
 use std::fmt::Write;
 
-/// A model's text and the names of its terms, section by section.
+/// Text of a model and its terms.
 pub struct SmoothModel {
-    /// The specification.
+    /// Specification.
     pub text: String,
-    /// Every term as (section, name, expression).
+    /// Terms as (section, name, expression).
     pub terms: Vec<(&'static str, String, String)>,
 }
 
-/// Makes models, one after another.
+/// Generator of models.
 pub struct SmoothModels {
     state: u64,
 }
 
-/// A coordinate: its name and whether it is a length.
 struct Coordinate {
     name: String,
     is_length: bool,
 }
 
 impl Coordinate {
-    /// Itself as a pure number.
+    /// Returns the coordinate as a pure number.
     fn pure(&self) -> String {
         match self.is_length {
             true => format!("{}/L", self.name),
@@ -38,7 +36,7 @@ impl Coordinate {
         }
     }
 
-    /// Its rate as a pure number.
+    /// Returns the rate as a pure number.
     fn rate(&self) -> String {
         match self.is_length {
             true => format!("dot({})*tau/L", self.name),
@@ -46,7 +44,7 @@ impl Coordinate {
         }
     }
 
-    /// Its rate as a speed.
+    /// Returns the rate as a speed.
     fn speed(&self) -> String {
         match self.is_length {
             true => format!("dot({})", self.name),
@@ -56,14 +54,14 @@ impl Coordinate {
 }
 
 impl SmoothModels {
-    /// The models of a seed.
+    /// Starts the sequence of a seed.
     pub fn new(seed: u64) -> Self {
         Self {
             state: seed.wrapping_mul(2).wrapping_add(1),
         }
     }
 
-    /// The next model.
+    /// Returns the next model.
     pub fn model(&mut self) -> SmoothModel {
         let coordinates = self.coordinates();
         let inputs = self.below(3);
@@ -135,7 +133,7 @@ impl SmoothModels {
         kinds.into_iter().enumerate().map(coordinate).collect()
     }
 
-    /// Everything up to the definitions.
+    /// Returns all sections before the definitions.
     fn head(&mut self, coordinates: &[Coordinate], inputs: usize) -> String {
         let mut text = "[model]\nname = \"smooth\"\n\n[parameters]\n".to_owned();
         let (mass, length) = (self.between(200.0, 3000.0), self.between(300.0, 1500.0));
@@ -178,7 +176,7 @@ impl SmoothModels {
         text
     }
 
-    /// Points and pure numbers; what functions may be taken of.
+    /// Returns definitions of points, and pure numbers to be used as arguments.
     fn definitions(
         &mut self,
         coordinates: &[Coordinate],
@@ -205,7 +203,7 @@ impl SmoothModels {
         arguments
     }
 
-    /// A pure number of the motion, of the size of one.
+    /// Returns a pure number of the motion, of order one.
     fn argument(&mut self, arguments: &[String], timed: bool) -> String {
         let (first, second) = (
             self.one_of(arguments).clone(),
@@ -224,7 +222,8 @@ impl SmoothModels {
         }
     }
 
-    /// A pure smooth function; with a domain, it is one around the initial state alone.
+    /// Returns a smooth function, dimensionless; with `domain`, it may be defined only around the
+    /// initial state.
     fn function(&mut self, arguments: &[String], timed: bool, domain: bool) -> String {
         let z = self.argument(arguments, timed);
         let inner = match self.chance(0.25) {
@@ -265,7 +264,7 @@ impl SmoothModels {
         }
     }
 
-    /// A factor that is positive wherever it is a number.
+    /// Returns a factor that is positive in its domain.
     fn positive(&mut self, arguments: &[String], timed: bool) -> String {
         let z = self.argument(arguments, timed);
         let a = self.between(1.2, 2.0);
@@ -286,7 +285,8 @@ impl SmoothModels {
         for coordinate in coordinates {
             let timed = self.chance(0.2);
             let factor = match self.chance(0.12) {
-                // An inductance that falls with the way: positive around the beginning only.
+                // An inductance that decreases with the displacement: positive only near the
+                // initial state.
                 true => format!("(1.6 + {})", self.one_of(&pure)),
                 false => self.positive(&pure, timed),
             };

@@ -1,11 +1,10 @@
-//! What the compiler says of each file in `errors`, to the letter. `TRYBUILD=overwrite cargo
-//! test --release -p eomgen-macro-errors` writes the messages anew; read the difference
-//! before keeping it.
+//! Exact compiler messages for each file in `errors`. To rewrite them, run `TRYBUILD=overwrite
+//! cargo test --release -p eomgen-macro-errors` and review the difference.
 
 use std::path::{Path, PathBuf};
 
-/// The crate that trybuild makes: paths of specifications are from its root.
-fn made_crate() -> PathBuf {
+/// Returns the crate made by trybuild; paths of specifications start at its root.
+fn trybuild_crate() -> PathBuf {
     let target = Path::new(env!("CARGO_TARGET_TMPDIR"))
         .parent()
         .expect("the target folder");
@@ -14,7 +13,7 @@ fn made_crate() -> PathBuf {
 
 fn copy_specifications() -> std::io::Result<()> {
     let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("specifications");
-    let to = made_crate().join("specifications");
+    let to = trybuild_crate().join("specifications");
     std::fs::create_dir_all(&to)?;
     for entry in std::fs::read_dir(from)? {
         let entry = entry?;
@@ -24,7 +23,7 @@ fn copy_specifications() -> std::io::Result<()> {
 }
 
 #[test]
-fn each_mistake_has_its_message() {
+fn each_mistake_gives_its_message() {
     copy_specifications().expect("the specifications can be copied");
     trybuild::TestCases::new().compile_fail("errors/*.rs");
 }

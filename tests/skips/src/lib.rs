@@ -1,23 +1,23 @@
-//! What a test could not do where it ran, said where people see it: on the terminal at once,
-//! though the test passes, and in a list for who reads only the end, as `.ci/run` prints it.
+//! Reports of skipped tests: printed to the terminal at once, although the test passes, and
+//! appended to a list that `.ci/run` prints at the end.
 
 use std::fs::OpenOptions;
 use std::io::Write;
 use std::panic::Location;
 
-/// The variable that names the file which skips are added to, a line each. Without it there
-/// is no list.
+/// Environment variable with the path of the list of skips, one per line. If it is unset, no list
+/// is written.
 pub const LIST: &str = "EOMGEN_SKIPS";
 
-/// Says that the calling test, or a part of it, is not run, and why: what was not done, for
-/// want of what, and how to get that.
+/// Reports that the calling test, or a part of it, does not run. `reason` states the omitted part,
+/// the missing tool and how to install it.
 ///
 /// # Panics
-/// If the list cannot be written: a skip that nobody sees is worse than a failure.
+/// Panics if the list cannot be written: a hidden skip is worse than a failure.
 #[track_caller]
 pub fn skip(reason: &str) {
     let line = format!("SKIPPED: {}: {reason}\n", Location::caller().file());
-    // Not `eprintln`, which the test runner keeps to itself where a test passes.
+    // The test runner captures `eprintln` of passing tests.
     let written = std::io::stderr().write_all(line.as_bytes());
     written.expect("the standard error can be written to");
     if let Some(list) = std::env::var_os(LIST) {

@@ -1,4 +1,4 @@
-//! A skip is seen though the test passes, and every test says it in the one way that is.
+//! Skips of passing tests are visible, and all tests report them by `skips::skip`.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -8,11 +8,11 @@ use skips::{LIST, skip};
 #[test]
 #[ignore = "run by the test below"]
 fn skips() {
-    skip("nothing was looked at, for want of anything");
+    skip("nothing was tested: everything is missing");
 }
 
 #[test]
-fn a_skip_of_a_test_that_passes_is_seen_and_listed() {
+fn skip_of_passing_test_is_printed_and_listed() {
     let folder = tempfile::tempdir().expect("a folder");
     let list = folder.path().join("skips");
     for lines in 1..=2 {
@@ -24,14 +24,14 @@ fn a_skip_of_a_test_that_passes_is_seen_and_listed() {
         assert!(output.status.success());
         let seen = String::from_utf8_lossy(&output.stderr).into_owned();
         let name = Path::new("tests/skips/tests/seen.rs").display();
-        let line = format!("SKIPPED: {name}: nothing was looked at, for want of anything\n");
+        let line = format!("SKIPPED: {name}: nothing was tested: everything is missing\n");
         assert!(seen.contains(&line), "{seen}");
         let listed = std::fs::read_to_string(&list).expect("a list");
         assert_eq!(listed, line.repeat(lines), "run after run is added");
     }
 }
 
-/// The Rust files below a folder that belong to tests.
+/// Collects the Rust files of tests below a folder.
 fn test_files(folder: &Path, within_tests: bool, found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).expect("a folder") {
         let path = entry.expect("an entry").path();
@@ -45,7 +45,7 @@ fn test_files(folder: &Path, within_tests: bool, found: &mut Vec<PathBuf>) {
 }
 
 #[test]
-fn no_test_says_it_in_a_way_of_its_own() {
+fn all_tests_report_skips_by_skip() {
     let project = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let mut files = Vec::new();
     test_files(&project, false, &mut files);
@@ -56,8 +56,8 @@ fn no_test_says_it_in_a_way_of_its_own() {
         .filter(|file| !own.iter().any(|own| file.ends_with(own)))
     {
         let text = std::fs::read_to_string(file).expect("a file");
-        // Split, so that it is not found here.
+        // Split, so that this file does not match.
         let found = text.contains(concat!("\"SKIP", "PED"));
-        assert!(!found, "{}: skips::skip is seen", file.display());
+        assert!(!found, "{}: report skips by skips::skip", file.display());
     }
 }

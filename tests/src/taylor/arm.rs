@@ -1,14 +1,13 @@
-//! The arm on its reducer with the numbers of Table I, ready for the equations of motion.
-//! No motion here.
+//! Constants of the arm and its reducer from Table I, prepared for the equations of motion.
 //!
-//! The numbers are doubles, as a specification states them; all that follows from them is
-//! computed in the arithmetic asked for.
+//! The inputs are doubles, as in a specification; derived constants are computed in the given
+//! arithmetic.
 
 use super::modes::Mode;
 use super::scalar::Scalar;
 
-/// What is varied between runs. The rest is Table I and the values assumed for what the
-/// paper does not disclose.
+/// Parameters varied between runs. All others are from Table I or assumed, if the paper does not
+/// give them.
 #[derive(Clone, Copy, Debug)]
 pub struct Case {
     /// Number of modes, S.
@@ -19,7 +18,7 @@ pub struct Case {
     pub omega: f64,
 }
 
-/// One mode of the arm.
+/// Mode of the arm.
 #[derive(Clone, Copy, Debug)]
 pub struct ArmMode<T> {
     /// K/M, in rad^2/s^2.
@@ -32,7 +31,7 @@ pub struct ArmMode<T> {
     pub tip: T,
 }
 
-/// The constants of the equations, in SI.
+/// Constants of the equations, in SI units.
 #[derive(Clone, Debug)]
 pub struct Arm<T> {
     /// I_s/r_s^2, in kg.
@@ -41,8 +40,8 @@ pub struct Arm<T> {
     pub m_p: T,
     /// r_c cos(alpha), in m.
     pub lever: T,
-    /// I_tot less the sum of h_i^2/M_i: what the carrier feels of its own inertia and the
-    /// arm's once the modes are eliminated, in kg m^2.
+    /// Inertia at the carrier after elimination of the modes: I_tot minus the sum of h_i^2/M_i, in
+    /// kg m^2.
     pub inertia: T,
     /// Stiffness of either mesh, in N/m.
     pub k: T,
@@ -63,7 +62,7 @@ pub struct Arm<T> {
 }
 
 impl<T: Scalar> Arm<T> {
-    /// The arm in one case.
+    /// Returns the arm of a case.
     pub fn of(case: Case) -> Self {
         let number = T::exactly;
         let pressure_angle = number(24.6) * T::PI / number(180.0);
@@ -95,7 +94,6 @@ impl<T: Scalar> Arm<T> {
     }
 }
 
-/// A uniform cantilever.
 struct Beam<T> {
     /// rho A, in kg/m.
     mass: T,
@@ -106,7 +104,7 @@ struct Beam<T> {
 }
 
 impl<T: Scalar> Beam<T> {
-    /// The paper's arm, with the section assumed for it.
+    /// Returns the paper's arm with the assumed cross-section.
     fn steel() -> Self {
         Self {
             mass: T::exactly(7900.0) * T::exactly(1e-4),

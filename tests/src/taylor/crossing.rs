@@ -1,19 +1,19 @@
-//! The first instant at which a polynomial becomes positive.
+//! First time at which a polynomial becomes positive.
 //!
-//! On an interval a polynomial lies within the hull of its Bernstein coefficients, and the
-//! number of its roots there is the number of their changes of sign, less an even number
-//! (Descartes' rule; Lane and Riesenfeld, "Bounds on a polynomial", BIT 21 (1981)). No
-//! change: no root. One: one root. More: the interval is halved. So no root is
-//! overlooked, however close to another.
+//! On an interval a polynomial is within the hull of its Bernstein coefficients. The number of its
+//! roots there equals the number of their sign changes minus an even number (Descartes' rule; Lane
+//! and Riesenfeld, "Bounds on a polynomial", BIT 21 (1981)). With no sign change there is no root,
+//! with one there is one root, and with more the interval is halved. So no root is missed, however
+//! close to another.
 
 use super::scalar::Scalar;
 
-/// Halvings after which two roots closer than the arithmetic resolves count as none.
+/// Number of halvings after which two unresolved roots are ignored.
 const HALVINGS: u32 = 50;
 
-/// The first u in 0..=1 at which the polynomial with these coefficients (of the powers of
-/// u, the lowest first) passes from at most zero to above. One that begins above zero and
-/// rises, as after a step that ended on the root, passes at 0.
+/// Returns the first u in 0..=1 at which the polynomial passes from at most zero to positive;
+/// coefficients are in ascending powers. A polynomial that starts above zero and rises, as after a
+/// step that ended on the root, gives 0.
 pub fn first_rise<T: Scalar>(coefficients: &[T]) -> Option<T> {
     let zero = T::exactly(0.0);
     if stays_negative(coefficients) {
@@ -26,15 +26,15 @@ pub fn first_rise<T: Scalar>(coefficients: &[T]) -> Option<T> {
     rise_within(coefficients, bernstein(coefficients), 0.0, 1.0, HALVINGS)
 }
 
-/// Whether the first coefficient is below zero by more than all others can raise it.
+/// Returns true if the first coefficient is more negative than all others can compensate.
 fn stays_negative<T: Scalar>(coefficients: &[T]) -> bool {
     let mut doubles = coefficients.iter().map(|coefficient| coefficient.nearest());
     let start = doubles.next().unwrap_or(0.0);
-    // A sum of fifty doubles is off by 1e-14 of itself at most.
+    // The rounding of a sum of fifty doubles is below 1e-14 of it.
     start < 0.0 && doubles.map(f64::abs).sum::<f64>() < -0.999 * start
 }
 
-/// The Bernstein coefficients on 0..=1 of a polynomial in powers: Pascal's transform of
+/// Returns the Bernstein coefficients on 0..=1 of a polynomial in powers: Pascal's transform of
 /// a_k/C(n, k), by additions.
 fn bernstein<T: Scalar>(coefficients: &[T]) -> Vec<T> {
     let degree = coefficients.len() - 1;
@@ -53,8 +53,8 @@ fn bernstein<T: Scalar>(coefficients: &[T]) -> Vec<T> {
     values
 }
 
-/// The first rise within `from..=from + width`, of which `values` are the Bernstein
-/// coefficients.
+/// Returns the first rise within `from..=from + width`; `values` are the Bernstein coefficients
+/// there.
 fn rise_within<T: Scalar>(
     coefficients: &[T],
     values: Vec<T>,
@@ -85,7 +85,7 @@ fn rise_within<T: Scalar>(
         .or_else(|| rise_within(coefficients, right, from + width, width, halvings))
 }
 
-/// The Bernstein coefficients on the two halves of the interval (de Casteljau).
+/// Returns the Bernstein coefficients on both halves of the interval (de Casteljau).
 fn halved<T: Scalar>(mut values: Vec<T>) -> (Vec<T>, Vec<T>) {
     let degree = values.len() - 1;
     let mut left = Vec::with_capacity(values.len());
@@ -96,11 +96,11 @@ fn halved<T: Scalar>(mut values: Vec<T>) -> (Vec<T>, Vec<T>) {
         }
         left.push(values[0]);
     }
-    // What remains in place is the right half.
+    // The remaining values are those of the right half.
     (left, values)
 }
 
-/// The value and the derivative of a polynomial in powers, by Horner's rule.
+/// Returns the value and the derivative of a polynomial in powers, by Horner's rule.
 fn value_and_slope<T: Scalar>(coefficients: &[T], at: T) -> (T, T) {
     let zero = T::exactly(0.0);
     coefficients
@@ -111,8 +111,8 @@ fn value_and_slope<T: Scalar>(coefficients: &[T], at: T) -> (T, T) {
         })
 }
 
-/// The only root in `low..=high`, where the polynomial rises: Newton's method, bisection
-/// where that leaves the bracket.
+/// Returns the only root in `low..=high` of a rising polynomial by Newton's method, with bisection
+/// if an iterate leaves the bracket.
 fn root<T: Scalar>(coefficients: &[T], mut low: T, mut high: T) -> T {
     let mut at = (low + high).times(0.5);
     for _ in 0..200 {

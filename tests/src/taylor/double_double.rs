@@ -1,4 +1,4 @@
-//! Double-doubles: the unevaluated sum of two doubles, 106 bits. Arithmetic only; sine,
+//! Double-double numbers: unevaluated sums of two doubles with 106 bits. Only arithmetic; sine,
 //! cosine and exponential are in [`elementary`](super::elementary).
 //!
 //! Sources: Dekker, "A floating-point technique for extending the available precision",
@@ -7,18 +7,18 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// `high + low` with |low| at most half a unit in the last place of `high`, so that the
-/// order of two numbers is the order of their pairs.
+/// `high + low` with |low| at most half a unit in the last place of `high`, so that numbers are
+/// ordered like their pairs.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct DoubleDouble {
-    /// The nearest double.
+    /// Nearest double.
     pub high: f64,
-    /// What it lacks.
+    /// Remainder.
     pub low: f64,
 }
 
 impl DoubleDouble {
-    /// The number with exactly this value.
+    /// Returns the number with exactly this value.
     pub const fn exactly(value: f64) -> Self {
         Self {
             high: value,
@@ -26,21 +26,21 @@ impl DoubleDouble {
         }
     }
 
-    /// The product with a double.
+    /// Returns the product with a double.
     pub fn times(self, factor: f64) -> Self {
         let (product, error) = exact_product(self.high, factor);
         ordered_sum(product, error + self.low * factor)
     }
 }
 
-/// a + b and its rounding error, exactly (Knuth).
+/// Returns a + b and its rounding error, exactly (Knuth).
 fn exact_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     let share = sum - a;
     (sum, (a - (sum - share)) + (b - share))
 }
 
-/// The normalised a + b, for |a| at least |b| (Dekker).
+/// Returns the normalised a + b, if |a| >= |b| (Dekker).
 fn ordered_sum(a: f64, b: f64) -> DoubleDouble {
     let high = a + b;
     DoubleDouble {
@@ -49,8 +49,8 @@ fn ordered_sum(a: f64, b: f64) -> DoubleDouble {
     }
 }
 
-/// `a` in two halves of 26 bits, whose products are exact (Veltkamp). Overflows beyond
-/// 2^996, which no quantity of the arm approaches.
+/// Splits `a` into two halves of 26 bits, whose products are exact (Veltkamp). Overflows beyond
+/// 2^996, far above all quantities of the arm.
 fn halves(a: f64) -> (f64, f64) {
     const SPLITTER: f64 = 134_217_729.0; // 2^27 + 1
     let scaled = SPLITTER * a;
@@ -58,8 +58,8 @@ fn halves(a: f64) -> (f64, f64) {
     (high, a - high)
 }
 
-/// a b and its rounding error, exactly (Dekker). Plain operations, because a fused one is
-/// a call into the library on processors that may lack it.
+/// Returns a b and its rounding error, exactly (Dekker). Uses plain operations, because a fused
+/// multiply-add is a library call on processors without it.
 fn exact_product(a: f64, b: f64) -> (f64, f64) {
     let product = a * b;
     let (a_high, a_low) = halves(a);

@@ -1,7 +1,7 @@
-//! Sine, cosine and exponential of double-doubles, for arguments of some hundreds.
+//! Sine, cosine and exponential of double-double numbers, for arguments up to some hundreds.
 //!
-//! The argument is reduced by a multiple of pi/2 or ln 2, given to 106 bits: the reduced
-//! argument of x has an absolute error of about |x| 2^-107, like x itself.
+//! The argument is reduced by a multiple of pi/2 or ln 2, known to 106 bits. The reduced argument
+//! of x has an absolute error of about |x| 2^-107, like x itself.
 
 use super::double_double::DoubleDouble;
 use super::scalar::Scalar;
@@ -16,11 +16,11 @@ const LN_2: DoubleDouble = DoubleDouble {
     low: 2.319_046_813_846_3e-17,
 };
 
-/// Terms of the series: the last is below 2^-110 for arguments up to pi/4.
+/// Number of terms of the series: the last is below 2^-110 for arguments up to pi/4.
 const TERMS: u32 = 28;
 
-/// The sum of x^k/k! over k = `first`, `first` + `stride`, ..., with the sign of every
-/// other term `alternating`.
+/// Returns the sum of x^k/k! over k = `first`, `first` + `stride`, ..., with the sign of successive
+/// terms multiplied by `sign`.
 fn series(x: DoubleDouble, first: u32, stride: u32, sign: f64) -> DoubleDouble {
     let power = if stride == 2 { x * x } else { x };
     let mut term = if first == 0 {

@@ -1,5 +1,4 @@
-//! Taylor series of the motion about an instant, by the equations of motion within one
-//! regime.
+//! Taylor series of the motion around a time, from the equations of motion within one regime.
 //!
 //! With x_s = x_sp + x_pr + 2 x_c and x_p = x_pr + x_c, the balances of sun, planet,
 //! carrier and modes are
@@ -11,30 +10,30 @@
 //! M_i q_i'' + h_i th_c'' + K_i q_i = 0
 //! ```
 //!
-//! with x_c = r_c cos(alpha) th_c. The last, put into the third, leaves the inertia
+//! with x_c = r_c cos(alpha) th_c. Substituting the last equation into the third leaves the inertia
 //! I_tot - sum_i h_i^2/M_i and the load sum_i h_i K_i/M_i q_i on the carrier.
 //!
-//! Time is counted in a unit sigma, a power of two in seconds, so that the coefficients of
-//! the series are displacements of the motion's own size and a whole step is their sum.
-//! With u = (t - t_0)/sigma, the coefficients of x(u) follow from
-//! (k + 1)(k + 2) x_(k+2) = sigma^2 x''_k, and those of x' are (k + 1) x_(k+1)/sigma.
+//! Time is measured in a unit sigma, a power of two in seconds, so that the coefficients of the
+//! series have the magnitude of the displacements and a whole step is their sum. With u = (t -
+//! t_0)/sigma, the coefficients of x(u) follow from (k + 1)(k + 2) x_(k+2) = sigma^2 x''_k, and
+//! those of x' are (k + 1) x_(k+1)/sigma.
 
 use super::arm::Arm;
 use super::scalar::Scalar;
 
-/// Where one mesh is.
+/// Contact state of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// x > b.
+    /// Contact with x > b.
     Positive,
-    /// Within the play.
+    /// No contact, inside the backlash.
     Free,
-    /// x < -b.
+    /// Contact with x < -b.
     Negative,
 }
 
 impl Side {
-    /// The sign of the deflection in contact, 0 without.
+    /// Returns the sign of the deflection in contact, otherwise 0.
     pub fn sign(self) -> f64 {
         match self {
             Self::Positive => 1.0,
@@ -44,7 +43,7 @@ impl Side {
     }
 }
 
-/// Displacements and rates; in the order x_sp, x_pr, x_c, q_1, ..., q_S, in m and m/s.
+/// Displacements and rates in the order x_sp, x_pr, x_c, q_1, ..., q_S, in m and m/s.
 #[derive(Clone, Debug)]
 pub struct State<T> {
     /// Displacements.
@@ -53,8 +52,8 @@ pub struct State<T> {
     pub rates: Vec<T>,
 }
 
-/// The arm's constants in units of time sigma: what multiplies a displacement carries
-/// sigma^2, what multiplies a rate carries sigma.
+/// Constants of the arm in time units of sigma: factors of displacements contain sigma^2, factors
+/// of rates sigma.
 #[derive(Clone, Debug)]
 struct Scaled<T> {
     k: T,
@@ -67,7 +66,7 @@ struct Scaled<T> {
     loads: Vec<T>,
 }
 
-/// Makes the series of one arm; keeps what does not change from step to step.
+/// Computes the series of one arm; stores the constants of all steps.
 #[derive(Clone, Debug)]
 pub struct Expander<T> {
     arm: Arm<T>,
@@ -80,19 +79,19 @@ pub struct Expander<T> {
     inverse_inertia: T,
 }
 
-/// The series of all displacements about one instant.
+/// Series of all displacements around a time.
 #[derive(Clone, Debug)]
 pub struct Series<T> {
-    /// Unit of time, in s.
+    /// Time unit, in s.
     pub sigma: f64,
     /// Number of displacements.
     pub width: usize,
-    /// Coefficients in m: a row of displacements per power of u.
+    /// Coefficients in m: one row of displacements per power of u.
     pub coefficients: Vec<T>,
 }
 
 impl<T: Scalar> Expander<T> {
-    /// For this arm, with a unit of time in s: a power of two.
+    /// Prepares the series of an arm with a time unit in s, a power of two.
     pub fn new(arm: Arm<T>, sigma: f64) -> Self {
         let one = T::exactly(1.0);
         let inverses = (0..T::DEGREE)
@@ -124,28 +123,28 @@ impl<T: Scalar> Expander<T> {
         }
     }
 
-    /// The same arm with half the unit of time.
+    /// Returns the expander with half the time unit.
     pub fn finer(&self) -> Self {
         Self::new(self.arm.clone(), self.sigma / 2.0)
     }
 
-    /// The unit of time, in s.
+    /// Returns the time unit, in s.
     pub fn sigma(&self) -> f64 {
         self.sigma
     }
 
-    /// The arm.
+    /// Returns the arm.
     pub fn arm(&self) -> &Arm<T> {
         &self.arm
     }
 
-    /// Number of displacements.
+    /// Returns the number of displacements.
     pub fn width(&self) -> usize {
         3 + self.arm.modes.len()
     }
 
-    /// The series of the motion from `state` at `time` (in s) with the meshes sun-planet
-    /// and planet-ring on these sides.
+    /// Returns the series of the motion from `state` at `time` (in s) with these contact states of
+    /// the sun-planet and planet-ring meshes.
     pub fn expand(&self, time: T, state: &State<T>, sides: [Side; 2]) -> Series<T> {
         let width = self.width();
         let mut coefficients = Vec::with_capacity((T::DEGREE + 1) * width);
@@ -162,7 +161,7 @@ impl<T: Scalar> Expander<T> {
         }
     }
 
-    /// sigma^2 (a_m + F_w sin(omega t))/r_s as a series about `time`.
+    /// Returns sigma^2 (a_m + F_w sin(omega t))/r_s as a series around `time`.
     fn torque(&self, time: T) -> Vec<T> {
         let (sin, cos) = (self.arm.omega * time).sin_cos();
         let mut factor = self.scaled.ripple;
@@ -201,24 +200,23 @@ impl<T: Scalar> Expander<T> {
         coefficients.extend(accelerations.map(|acceleration| acceleration * self.inverses[k]));
     }
 
-    /// Coefficient `k` of sigma^2 k f_k + sigma c f_c, Eq. (6) to (9), of one mesh.
+    /// Returns coefficient `k` of sigma^2 k f_k + sigma c f_c, Eq. (6) to (9), of one mesh.
     fn force(&self, k: usize, side: Side, deflection: T, rate: T) -> T {
         if side == Side::Free {
             return T::exactly(0.0);
         }
-        // The edge of the play is a constant, which only the first coefficient has.
+        // The edge of the backlash is constant, so only the first coefficient contains it.
         let edge = if k == 0 { side.sign() } else { 0.0 };
         self.scaled.k * (deflection - self.arm.b.times(edge)) + self.scaled.c * rate
     }
 }
 
 impl<T: Scalar> Series<T> {
-    /// Row `k` of the coefficients.
     fn row(&self, k: usize) -> &[T] {
         &self.coefficients[k * self.width..(k + 1) * self.width]
     }
 
-    /// The coefficients of one displacement, in m.
+    /// Returns the coefficients of one displacement, in m.
     pub fn of(&self, displacement: usize) -> Vec<T> {
         (self.coefficients.iter())
             .skip(displacement)
@@ -227,15 +225,15 @@ impl<T: Scalar> Series<T> {
             .collect()
     }
 
-    /// The largest of the last two rows of coefficients, in m; the remainder of a whole
-    /// step is smaller.
+    /// Returns the largest of the last two rows of coefficients, in m; an upper bound of the
+    /// remainder of a whole step.
     pub fn tail(&self) -> f64 {
         (self.coefficients.iter().rev().take(2 * self.width))
             .map(|coefficient| coefficient.nearest().abs())
             .fold(0.0, f64::max)
     }
 
-    /// The state at u = `at` in 0..=1, by Horner's rule.
+    /// Returns the state at u = `at` in 0..=1, by Horner's rule.
     pub fn state(&self, at: T) -> State<T> {
         let zero = T::exactly(0.0);
         let mut positions = vec![zero; self.width];
@@ -249,7 +247,7 @@ impl<T: Scalar> Series<T> {
         self.in_seconds(positions, rates)
     }
 
-    /// The state at u = 1.
+    /// Returns the state at u = 1.
     pub fn end(&self) -> State<T> {
         let zero = T::exactly(0.0);
         let mut positions = vec![zero; self.width];

@@ -1,14 +1,14 @@
-//! The clamped-free beam's modes in the paper's normalisation, Eq. (17), over the unit span.
+//! Modes of the clamped-free beam in the paper's normalisation, Eq. (17), over the unit span.
 //!
-//! phi(s) = sin zs - sinh zs + xi (cos zs - cosh zs). It meets phi'''' = z^4 phi,
-//! phi(0) = phi'(0) = 0 and phi''(1) = phi'''(1) = 0, whence by partial integration
-//! int s phi = z^-4 [s phi''' - phi''] = phi''(0)/z^4 = -2 xi/z^2, int phi''^2 = z^4 int phi^2,
-//! and with int phi^2 = phi(1)^2/4 (Rayleigh, "The theory of sound", art. 173) and
-//! cos z cosh z = -1, phi(1) = 2 xi (-1)^r and int phi^2 = xi^2.
+//! phi(s) = sin zs - sinh zs + xi (cos zs - cosh zs). It satisfies phi'''' = z^4 phi, phi(0) =
+//! phi'(0) = 0 and phi''(1) = phi'''(1) = 0. Partial integration gives int s phi = z^-4 [s phi''' -
+//! phi''] = phi''(0)/z^4 = -2 xi/z^2 and int phi''^2 = z^4 int phi^2. With int phi^2 = phi(1)^2/4
+//! (Rayleigh, "The theory of sound", art. 173) and cos z cosh z = -1, phi(1) = 2 xi (-1)^r and int
+//! phi^2 = xi^2.
 
 use super::scalar::Scalar;
 
-/// What the equations need of one mode; dimensionless.
+/// Dimensionless constants of one mode.
 #[derive(Clone, Copy, Debug)]
 pub struct Mode<T> {
     /// beta l, the root of cos z cosh z = -1.
@@ -26,13 +26,13 @@ pub struct Mode<T> {
 }
 
 impl<T: Scalar> Mode<T> {
-    /// Mode `r`, counted from 1.
+    /// Returns mode `r`, counted from 1.
     pub fn clamped_free(r: usize) -> Self {
         let z: T = root(r);
         let (sin, cos) = z.sin_cos();
         let decay = (-z).exp();
         let one = T::exactly(1.0);
-        // Above and below multiplied by exp(-z), so that nothing overflows.
+        // Numerator and denominator are multiplied by exp(-z) to avoid overflow.
         let sines = decay * sin + (one - decay * decay).times(0.5);
         let cosines = decay * cos + (one + decay * decay).times(0.5);
         let xi = -sines / cosines;
@@ -48,8 +48,8 @@ impl<T: Scalar> Mode<T> {
     }
 }
 
-/// The r-th positive root of cos z + 1/cosh z by Newton's method from (r - 1/2) pi, which
-/// is off by 0.3 at r = 1 and by 2 exp(-z) later.
+/// Returns the r-th positive root of cos z + 1/cosh z by Newton's method from (r - 1/2) pi, whose
+/// error is 0.3 at r = 1 and 2 exp(-z) for larger r.
 fn root<T: Scalar>(r: usize) -> T {
     let one = T::exactly(1.0);
     let mut z = T::PI.times(r as f64 - 0.5);

@@ -1,44 +1,44 @@
-//! A run of the arm from rest at zero: from step to step and from switch to switch.
+//! Integration of the arm from rest at zero, from step to step and from switch to switch.
 
 use super::arm::{Arm, Case};
 use super::crossing::first_rise;
 use super::expansion::{Expander, Series, Side, State};
 use super::scalar::Scalar;
 
-/// The longest step, in s.
+/// Maximum step size, in s.
 pub const LONGEST: f64 = 1.0 / 1024.0;
 
-/// Size in m of the motions that the steps resolve to the arithmetic's rounding: a
-/// twenty-fifth of the reference's half backlash.
+/// Magnitude in m of the motions that steps resolve to the rounding of the arithmetic: 1/25 of the
+/// reference's half backlash.
 const RESOLVED: f64 = 1e-6;
 
-/// One mesh changes its side.
+/// Change of the contact state of a mesh.
 #[derive(Clone, Copy, Debug)]
 pub struct Switch<T> {
-    /// When, in s.
+    /// Time, in s.
     pub time: T,
-    /// 0 is sun-planet, 1 is planet-ring.
+    /// Mesh: 0 is sun-planet, 1 is planet-ring.
     pub mesh: usize,
-    /// The side it comes to.
+    /// New contact state.
     pub to: Side,
 }
 
 /// States at given times, and all switches up to the last of them.
 #[derive(Clone, Debug)]
 pub struct Run<T> {
-    /// A state per time asked for.
+    /// One state per requested time.
     pub states: Vec<State<T>>,
-    /// In the order of time. The side on which a mesh without play starts is none.
+    /// Switches in the order of time. The initial contact state without backlash is not a switch.
     pub switches: Vec<Switch<T>>,
-    /// Number of Taylor series summed.
+    /// Number of Taylor series.
     pub steps: usize,
-    /// phi_i(l).
+    /// phi_i(l) of each mode.
     pub tips: Vec<T>,
 }
 
 impl<T: Scalar> Run<T> {
-    /// Follows the arm from rest at zero through `times`, in s and ascending, in steps of
-    /// `longest` (in s, a power of two; [`LONGEST`] lets the motion choose) at most.
+    /// Integrates from rest at zero through `times`, in s and ascending. Steps are at most
+    /// `longest`, in s and a power of two; with [`LONGEST`] the motion determines them.
     pub fn of(case: Case, times: &[f64], longest: f64) -> Self {
         let arm = Arm::<T>::of(case);
         let tips = arm.modes.iter().map(|mode| mode.tip).collect();
@@ -56,13 +56,13 @@ impl<T: Scalar> Run<T> {
         run
     }
 
-    /// The deflection of the arm's end at the time of index `sample`, in m.
+    /// Returns the deflection of the arm's end at the time of index `sample`, in m.
     pub fn tip(&self, sample: usize) -> T {
         let positions = &self.states[sample].positions[3..];
         (self.tips.iter().zip(positions)).fold(T::exactly(0.0), |tip, (phi, q)| tip + *phi * *q)
     }
 
-    /// The number of switches of each mesh.
+    /// Returns the number of switches of each mesh.
     pub fn counts(&self) -> [usize; 2] {
         [0, 1].map(|mesh| {
             self.switches
@@ -73,7 +73,7 @@ impl<T: Scalar> Run<T> {
     }
 }
 
-/// The state of an integration.
+/// Current state of the integration.
 struct Motion<T> {
     expander: Expander<T>,
     time: T,
@@ -97,7 +97,7 @@ impl<T: Scalar> Motion<T> {
         }
     }
 
-    /// One series: to its end, or to the first switch on its way.
+    /// Advances by one series, to its end or to the first switch.
     fn step(&mut self, times: &[f64], run: &mut Run<T>) {
         let series = self.resolved();
         let sigma = self.expander.sigma();
@@ -123,8 +123,8 @@ impl<T: Scalar> Motion<T> {
         }
     }
 
-    /// The series about now, in a unit of time that leaves no remainder. The unit shrinks
-    /// as faster motions appear and does not grow again.
+    /// Returns the series around the current time, in a time unit that makes the remainder
+    /// negligible. The unit decreases as faster motions appear and does not increase again.
     fn resolved(&mut self) -> Series<T> {
         loop {
             let series = self.expander.expand(self.time, &self.state, self.sides);
@@ -135,7 +135,7 @@ impl<T: Scalar> Motion<T> {
         }
     }
 
-    /// The first switch within the series: its place, its mesh and the new side.
+    /// Returns the first switch within the series: its position, mesh and new contact state.
     fn first_switch(&self, series: &Series<T>) -> Option<(T, usize, Side)> {
         let b = self.expander.arm().b;
         let mut first: Option<(T, usize, Side)> = None;
@@ -154,7 +154,7 @@ impl<T: Scalar> Motion<T> {
     }
 }
 
-/// For every side that a mesh on `side` can go to, the series of its way beyond the edge.
+/// Returns, per contact state reachable from `side`, the series of the distance beyond the edge.
 fn edges<T: Scalar>(deflection: &[T], side: Side, b: T) -> Vec<(Vec<T>, Side)> {
     let beyond = |sign: f64, edge: T| {
         let mut outside: Vec<T> = deflection.iter().map(|x| x.times(sign)).collect();
@@ -174,9 +174,9 @@ fn edges<T: Scalar>(deflection: &[T], side: Side, b: T) -> Vec<(Vec<T>, Side)> {
     }
 }
 
-/// The sides at rest at zero. Without play it is the sign of the first derivative that
-/// does not vanish: both contacts have the same equations then, and up to that
-/// derivative the mesh carries no force.
+/// Returns the contact states at rest at zero. Without backlash it is the sign of the first nonzero
+/// derivative: both contacts have the same equations then, and up to that derivative the mesh
+/// carries no force.
 fn first_sides<T: Scalar>(expander: &Expander<T>, rest: &State<T>) -> [Side; 2] {
     let zero = T::exactly(0.0);
     if expander.arm().b > zero {

@@ -1,9 +1,9 @@
-//! The arithmetic that the integrator asks for, and doubles as its first instance.
+//! Arithmetic of the integrator, and its implementation for doubles.
 
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A real number of fixed relative precision.
+/// Real number of fixed relative precision.
 pub trait Scalar:
     Copy
     + Debug
@@ -16,32 +16,32 @@ pub trait Scalar:
     + Send
     + Sync
 {
-    /// Relative rounding error of one operation, at most.
+    /// Maximum relative rounding error of one operation.
     const EPSILON: f64;
 
-    /// Degree of the Taylor polynomials: high enough that a step of two to five radians of
-    /// the fastest mode leaves a remainder below the rounding.
+    /// Degree of the Taylor polynomials: a step of two to five radians of the fastest mode leaves a
+    /// remainder below the rounding.
     const DEGREE: usize;
 
-    /// The circle's constant.
+    /// Pi.
     const PI: Self;
 
-    /// The number with exactly this value.
+    /// Returns the number with exactly this value.
     fn exactly(value: f64) -> Self;
 
-    /// The nearest double.
+    /// Returns the nearest double.
     fn nearest(self) -> f64;
 
-    /// The product with a double, which costs less than with a number of this type.
+    /// Returns the product with a double, which is cheaper than one with a number of this type.
     fn times(self, factor: f64) -> Self;
 
-    /// Sine and cosine, in radians.
+    /// Returns sine and cosine of an angle in radians.
     fn sin_cos(self) -> (Self, Self);
 
-    /// The exponential.
+    /// Returns the exponential.
     fn exp(self) -> Self;
 
-    /// The magnitude.
+    /// Returns the magnitude.
     fn magnitude(self) -> Self {
         if self < Self::exactly(0.0) {
             -self

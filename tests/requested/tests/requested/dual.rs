@@ -1,14 +1,14 @@
-//! Numbers with one derivative, over any scalar: nested they carry second derivatives. They
-//! share nothing with the symbolic derivatives but the emitted functions they run through.
+//! Dual numbers with one derivative over any scalar; nested, they have second derivatives. They
+//! share only the emitted functions with the symbolic derivatives.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A value and its derivative.
+/// Value and derivative.
 #[derive(Clone, Copy, Debug)]
 pub struct Dual<T> {
-    /// The value.
+    /// Value.
     pub value: T,
-    /// Its derivative.
+    /// Derivative.
     pub slope: T,
 }
 
@@ -63,7 +63,7 @@ impl<T: Neg<Output = T>> Neg for Dual<T> {
     }
 }
 
-/// Makes duals a scalar of an emitted module.
+/// Implements the scalar of an emitted module for dual numbers.
 macro_rules! scalar_of {
     ($($module:ident),*) => {$(
         impl<T: $module::Scalar> $module::Scalar for $crate::dual::Dual<T> {

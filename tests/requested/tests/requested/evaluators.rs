@@ -1,4 +1,4 @@
-//! The same variants in this process: interpreted, and as machine code.
+//! The same variants in this process, interpreted and as machine code.
 
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -9,7 +9,7 @@ use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_codegen::program::evaluator::Evaluator;
 use eomgen_codegen::variant::Variant;
 
-/// A specification and the order of its fields.
+/// Path of a specification and the order of its fields.
 pub type Specification = (&'static str, usize);
 
 type Pair = Rc<RefCell<[Evaluator; 2]>>;
@@ -18,7 +18,7 @@ thread_local! {
     static KNOWN: RefCell<HashMap<Specification, Pair>> = RefCell::default();
 }
 
-/// What is done with an interpreter and with machine code of a specification.
+/// Runs `run` with the interpreter and the machine code of a specification.
 pub fn with_both<R>(
     specification: Specification,
     work: impl FnOnce(&mut [Evaluator; 2]) -> R,

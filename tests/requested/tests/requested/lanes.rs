@@ -1,5 +1,5 @@
-//! Every lane has the bits of its numbers alone, in whatever registers the machine has: all
-//! functions of the language, and a model with contacts in other regimes from lane to lane.
+//! Every lane has the bits of a scalar computation on all instruction sets: all functions of the
+//! language, and a model with contacts whose regimes differ between lanes.
 
 use eomgen_lanes::{LANES, Lanes, Registers, Task, Vector};
 use proptest::prelude::*;
@@ -14,9 +14,9 @@ mod arm {
 }
 eomgen_lanes::scalar!(arm);
 
-/// Runs something on a stack that holds the values of every function inlined into one another, which
-/// without optimisation all have places of their own.
-fn with_stack<T: Send>(run: impl FnOnce() -> T + Send) -> T {
+/// Runs on a thread with a large stack. Without optimisation, all inlined functions have separate
+/// stack slots.
+fn run_with_large_stack<T: Send>(run: impl FnOnce() -> T + Send) -> T {
     std::thread::scope(|scope| {
         let thread = std::thread::Builder::new().stack_size(1 << 28);
         let thread = thread.spawn_scoped(scope, run).expect("a thread");
@@ -46,7 +46,7 @@ macro_rules! bits {
                     }
                 }
                 let lane = |i: usize| -> [f64; LANES] {
-                    // Sizes on both sides of every limit.
+                    // Magnitudes on both sides of every limit.
                     std::array::from_fn(|k| {
                         let number = numbers[i * LANES + k];
                         $scale * number * 10_f64.powf(4.0 * number)
@@ -66,7 +66,7 @@ macro_rules! bits {
                 }
                 for registers in Registers::ALL.into_iter().filter(|r| r.are_there()) {
                     let task = all();
-                    let found = with_stack(move || eomgen_lanes::run_with(registers, task));
+                    let found = run_with_large_stack(move || eomgen_lanes::run_with(registers, task));
                     for (found, expected) in found.iter().flatten().zip(expected.iter().flatten()) {
                         let same = found.to_bits() == expected.to_bits() || (found.is_nan() && expected.is_nan());
                         prop_assert!(same, "{registers:?}: {found:e} and {expected:e}");

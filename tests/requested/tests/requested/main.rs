@@ -1,5 +1,5 @@
-//! What is emitted on request, compared with what shares nothing with its derivation: dual
-//! numbers through the emitted functions, and the equations' own identities.
+//! Requested outputs against independent computations: dual numbers through the emitted functions,
+//! and identities of the equations.
 
 #![allow(
     clippy::reversed_empty_ranges,
@@ -18,20 +18,20 @@ use eomgen_codegen::program::evaluator::Point as EvaluatorPoint;
 use proptest::prelude::*;
 use tracked::Tracked;
 
-/// Numbers of any size between 1e-5 and 1, in turn.
+/// Source of numbers with magnitudes between 1e-5 and 1.
 struct Drawn<'a> {
     numbers: &'a [f64],
     next: usize,
 }
 
 impl Drawn<'_> {
-    /// The next number from -1 to 1.
+    /// Returns the next number from -1 to 1.
     fn even(&mut self) -> f64 {
         self.next += 1;
         self.numbers[(self.next - 1) % self.numbers.len()]
     }
 
-    /// The next number, of any size.
+    /// Returns the next number of random magnitude.
     fn number(&mut self) -> f64 {
         let exponent = 2.5 * (self.even() - 1.0);
         self.even() * 10_f64.powf(exponent)
@@ -42,28 +42,26 @@ impl Drawn<'_> {
     }
 }
 
-/// More numbers than any model here needs.
+/// Returns more numbers than any model here needs.
 fn numbers() -> impl Strategy<Value = Vec<f64>> {
     prop::collection::vec(-1.0..1.0_f64, 331)
 }
 
-/// A dual number whose parts bound their rounding.
+/// Dual number with bounds of its rounding error.
 type Moving = Dual<Tracked>;
 
-/// A number that moves with this rate.
-fn dual(value: f64, slope: f64) -> Moving {
+fn dual_number(value: f64, slope: f64) -> Moving {
     Dual {
         value: Tracked::exact(value),
         slope: Tracked::exact(slope),
     }
 }
 
-/// Numbers that move along a direction.
-fn moving<const N: usize>(numbers: &[f64; N], direction: &[f64; N]) -> [Moving; N] {
-    std::array::from_fn(|i| dual(numbers[i], direction[i]))
+/// Returns dual numbers that move along a direction.
+fn dual_numbers<const N: usize>(numbers: &[f64; N], direction: &[f64; N]) -> [Moving; N] {
+    std::array::from_fn(|i| dual_number(numbers[i], direction[i]))
 }
 
-/// The unit vector of this index.
 fn unit<const N: usize>(index: usize) -> [f64; N] {
     std::array::from_fn(|i| f64::from(u8::from(i == index)))
 }
@@ -72,15 +70,15 @@ fn slopes<const N: usize>(duals: &[Moving; N]) -> [Tracked; N] {
     duals.map(|dual| dual.slope)
 }
 
-/// What is compared agrees to this.
+/// Maximum relative difference.
 const RELATIVE: f64 = 1e-12;
 
-/// Where terms cancel, rounding counts: that of the expected number is bounded, that of the
-/// other, which comes from other operations on the same quantities, is taken for no more than
-/// eight times as large.
+/// Factor of the bound of the expected number's rounding error, plus one. If terms cancel, rounding
+/// dominates; the other number, from other operations on the same quantities, may have eight times
+/// as much.
 const ROUNDING: f64 = 9.0;
 
-fn agree(what: &str, found: &[f64], expected: &[Tracked]) -> Result<(), TestCaseError> {
+fn assert_agree(what: &str, found: &[f64], expected: &[Tracked]) -> Result<(), TestCaseError> {
     prop_assert_eq!(found.len(), expected.len());
     for (i, (found, expected)) in found.iter().zip(expected).enumerate() {
         let error = (found - expected.number).abs();
@@ -92,13 +90,12 @@ fn agree(what: &str, found: &[f64], expected: &[Tracked]) -> Result<(), TestCase
     Ok(())
 }
 
-/// A column of a dense matrix.
 fn column<const R: usize, const C: usize>(matrix: &[[f64; C]; R], index: usize) -> [f64; R] {
     matrix.map(|row| row[index])
 }
 
-/// The numbers of a struct in the order of these names, from how it is printed.
-fn printed<const N: usize>(fields: &impl std::fmt::Debug, names: &[&str; N]) -> [f64; N] {
+/// Returns the numbers of a struct in the order of `names`, parsed from its debug output.
+fn parse_fields<const N: usize>(fields: &impl std::fmt::Debug, names: &[&str; N]) -> [f64; N] {
     let printed = format!("{fields:?}");
     std::array::from_fn(|i| {
         let field = format!(" {}: ", names[i]);
@@ -123,7 +120,7 @@ macro_rules! checks {
                 coefficients: model::Coefficients,
             }
 
-            /// A point at which the mass matrix is positive definite.
+            /// Returns a point with a positive definite mass matrix.
             fn point(drawn: &mut Drawn<'_>) -> Result<Point, TestCaseError> {
                 let defaults = defaults();
                 let parameters: [f64; PARAMETERS] =
@@ -140,7 +137,7 @@ macro_rules! checks {
             }
 
             fn defaults() -> [f64; PARAMETERS] {
-                printed(&model::Parameters::default(), &model::PARAMETER_NAMES)
+                parse_fields(&model::Parameters::default(), &model::PARAMETER_NAMES)
             }
 
             impl Point {
@@ -148,18 +145,18 @@ macro_rules! checks {
                     model::rates(self.t, &self.state, &self.inputs.into(), &self.coefficients)
                 }
 
-                /// The derivatives of rates and observables along a direction of states, inputs
-                /// and parameters.
+                /// Returns the derivatives of rates and observables along a direction of states,
+                /// inputs and parameters.
                 fn along(
                     &self,
                     state: &[f64; STATES],
                     inputs: &[f64; INPUTS],
                     parameters: &[f64; PARAMETERS],
                 ) -> ([Tracked; STATES], [Tracked; model::OBSERVABLES]) {
-                    let t = dual(self.t, 0.0);
-                    let state = moving(&self.state, state);
-                    let inputs = moving(&self.inputs, inputs).into();
-                    let parameters = moving(&self.parameters, parameters).into();
+                    let t = dual_number(self.t, 0.0);
+                    let state = dual_numbers(&self.state, state);
+                    let inputs = dual_numbers(&self.inputs, inputs).into();
+                    let parameters = dual_numbers(&self.parameters, parameters).into();
                     let coefficients = model::Coefficients::prepare(&parameters);
                     let rates = model::rates(t, &state, &inputs, &coefficients);
                     let observables = model::observables(t, &state, &inputs, &coefficients);
@@ -171,7 +168,7 @@ macro_rules! checks {
                 #![proptest_config(ProptestConfig::with_cases(24))]
 
                 #[test]
-                fn jacobians_are_those_of_dual_numbers(numbers in numbers()) {
+                fn jacobians_match_dual_numbers(numbers in numbers()) {
                     let p = point(&mut Drawn { numbers: &numbers, next: 0 })?;
                     let (t, x, u, c) = (p.t, &p.state, &p.inputs.into(), &p.coefficients);
                     let (still, held, fixed) = ([0.0; STATES], [0.0; INPUTS], [0.0; PARAMETERS]);
@@ -181,8 +178,8 @@ macro_rules! checks {
                         model::OBSERVABLES_BY_STATE.dense(&model::observables_by_state(t, x, u, c));
                     for i in 0..STATES {
                         let (by_rates, by_observables) = p.along(&unit(i), &held, &fixed);
-                        agree("rates by state", &column(&rates, i), &by_rates)?;
-                        agree("observables by state", &column(&observables, i), &by_observables)?;
+                        assert_agree("rates by state", &column(&rates, i), &by_rates)?;
+                        assert_agree("observables by state", &column(&observables, i), &by_observables)?;
                     }
                     let rates: [[f64; INPUTS]; STATES] =
                         model::RATES_BY_INPUTS.dense(&model::rates_by_inputs(t, x, u, c));
@@ -190,8 +187,8 @@ macro_rules! checks {
                         model::OBSERVABLES_BY_INPUTS.dense(&model::observables_by_inputs(t, x, u, c));
                     for i in 0..INPUTS {
                         let (by_rates, by_observables) = p.along(&still, &unit(i), &fixed);
-                        agree("rates by inputs", &column(&rates, i), &by_rates)?;
-                        agree("observables by inputs", &column(&observables, i), &by_observables)?;
+                        assert_agree("rates by inputs", &column(&rates, i), &by_rates)?;
+                        assert_agree("observables by inputs", &column(&observables, i), &by_observables)?;
                     }
                     let rates: [[f64; PARAMETERS]; STATES] =
                         model::RATES_BY_PARAMETERS.dense(&model::rates_by_parameters(t, x, u, c));
@@ -200,20 +197,20 @@ macro_rules! checks {
                     for i in 0..PARAMETERS {
                         let (by_rates, by_observables) = p.along(&still, &held, &unit(i));
                         let name = model::PARAMETER_NAMES[i];
-                        agree(&format!("rates by {name}"), &column(&rates, i), &by_rates)?;
-                        agree(&format!("observables by {name}"), &column(&observables, i), &by_observables)?;
+                        assert_agree(&format!("rates by {name}"), &column(&rates, i), &by_rates)?;
+                        assert_agree(&format!("observables by {name}"), &column(&observables, i), &by_observables)?;
                     }
                 }
 
                 #[test]
-                fn products_are_those_of_the_jacobian(numbers in numbers()) {
+                fn products_match_the_jacobian(numbers in numbers()) {
                     let mut drawn = Drawn { numbers: &numbers, next: 0 };
                     let p = point(&mut drawn)?;
                     let (t, x, u, c) = (p.t, &p.state, &p.inputs.into(), &p.coefficients);
                     let (dx, du): ([f64; STATES], [f64; INPUTS]) = (drawn.array(), drawn.array());
                     let product = model::jacobian_vector_product(t, x, u, c, &dx, &du.into());
                     let (expected, _) = p.along(&dx, &du, &[0.0; PARAMETERS]);
-                    agree("direction", &product, &expected)?;
+                    assert_agree("direction", &product, &expected)?;
                     // The gradient in a direction is the weighted product with it.
                     let weights: [f64; STATES] = drawn.array();
                     let (by_state, by_inputs) = model::vector_jacobian_product(t, x, u, c, &weights);
@@ -226,18 +223,18 @@ macro_rules! checks {
                     let (still, held, fixed) = ([0.0; STATES], [0.0; INPUTS], [0.0; PARAMETERS]);
                     let expected: [Tracked; STATES] =
                         std::array::from_fn(|i| weighted(&p.along(&unit(i), &held, &fixed).0));
-                    agree("weights", &by_state, &expected)?;
+                    assert_agree("weights", &by_state, &expected)?;
                     let expected: [Tracked; INPUTS] =
                         std::array::from_fn(|i| weighted(&p.along(&still, &unit(i), &fixed).0));
-                    agree("weights by inputs", &printed(&by_inputs, &model::INPUT_NAMES), &expected)?;
+                    assert_agree("weights by inputs", &parse_fields(&by_inputs, &model::INPUT_NAMES), &expected)?;
                     let by_parameters = model::vector_jacobian_product_by_parameters(t, x, u, c, &weights);
                     let expected: [Tracked; PARAMETERS] =
                         std::array::from_fn(|i| weighted(&p.along(&still, &held, &unit(i)).0));
-                    agree("weights by parameters", &by_parameters, &expected)?;
+                    assert_agree("weights by parameters", &by_parameters, &expected)?;
                 }
 
                 #[test]
-                fn inverse_dynamics_undoes_forward_dynamics(numbers in numbers()) {
+                fn inverse_dynamics_inverts_forward_dynamics(numbers in numbers()) {
                     let mut drawn = Drawn { numbers: &numbers, next: 0 };
                     let p = point(&mut drawn)?;
                     let (t, x, u, c) = (p.t, &p.state, &p.inputs.into(), &p.coefficients);
@@ -247,7 +244,7 @@ macro_rules! checks {
                     let mass = model::mass_matrix(t, x, u, c);
                     let missing = model::inverse_dynamics(t, x, u, c, &a);
                     let bias = model::bias_forces(t, x, u, c);
-                    // Other sums where they come by a sweep: equal up to rounding.
+                    // A sweep sums in another order, so results agree up to rounding.
                     let held = model::inverse_dynamics(t, x, u, c, &[0.0; DEGREES_OF_FREEDOM]);
                     for i in 0..DEGREES_OF_FREEDOM {
                         let inertia: f64 = (0..DEGREES_OF_FREEDOM).map(|j| (mass[i][j] * a[j]).abs()).sum();
@@ -269,40 +266,40 @@ macro_rules! checks {
                 }
 
                 #[test]
-                fn the_mass_matrix_is_the_hessian_of_the_energy(numbers in numbers()) {
+                fn mass_matrix_is_the_hessian_of_the_energy(numbers in numbers()) {
                     let p = point(&mut Drawn { numbers: &numbers, next: 0 })?;
                     let mass = model::mass_matrix(p.t, &p.state, &p.inputs.into(), &p.coefficients);
-                    let number = |x: f64| Dual { value: dual(x, 0.0), slope: dual(0.0, 0.0) };
+                    let number = |x: f64| Dual { value: dual_number(x, 0.0), slope: dual_number(0.0, 0.0) };
                     let parameters = p.parameters.map(number).into();
                     let (inputs, c) = (p.inputs.map(number).into(), model::Coefficients::prepare(&parameters));
                     for i in 0..DEGREES_OF_FREEDOM {
                         let row: [Tracked; DEGREES_OF_FREEDOM] = std::array::from_fn(|j| {
                             let mut state = p.state.map(number);
                             state[DEGREES_OF_FREEDOM + i].value.slope = Tracked::exact(1.0);
-                            state[DEGREES_OF_FREEDOM + j].slope = dual(1.0, 0.0);
+                            state[DEGREES_OF_FREEDOM + j].slope = dual_number(1.0, 0.0);
                             model::energy(number(p.t), &state, &inputs, &c).slope.slope
                         });
-                        agree("mass matrix", &mass[i], &row)?;
+                        assert_agree("mass matrix", &mass[i], &row)?;
                         let column = column(&mass, i);
-                        agree("its transpose", &column, &row)?;
+                        assert_agree("its transpose", &column, &row)?;
                     }
                 }
 
                 #[test]
-                fn guard_rates_are_those_along_the_motion(numbers in numbers()) {
+                fn guard_rates_match_derivative_along_the_motion(numbers in numbers()) {
                     let p = point(&mut Drawn { numbers: &numbers, next: 0 })?;
                     let found = model::guard_rates(p.t, &p.state, &p.inputs.into(), &p.coefficients);
-                    let t = dual(p.t, 1.0);
-                    let state = moving(&p.state, &p.rates());
-                    let parameters = moving(&p.parameters, &[0.0; PARAMETERS]).into();
+                    let t = dual_number(p.t, 1.0);
+                    let state = dual_numbers(&p.state, &p.rates());
+                    let parameters = dual_numbers(&p.parameters, &[0.0; PARAMETERS]).into();
                     let coefficients = model::Coefficients::prepare(&parameters);
-                    let guards = model::guards(t, &state, &moving(&p.inputs, &[0.0; INPUTS]).into(), &coefficients);
-                    agree("guards", &found, &slopes(&guards))?;
+                    let guards = model::guards(t, &state, &dual_numbers(&p.inputs, &[0.0; INPUTS]).into(), &coefficients);
+                    assert_agree("guards", &found, &slopes(&guards))?;
                 }
 
                 /// Interpreter, machine code and emitted Rust, number by number.
                 #[test]
-                fn all_ways_give_the_same_bits(numbers in numbers()) {
+                fn all_evaluations_give_same_bits(numbers in numbers()) {
                     let mut drawn = Drawn { numbers: &numbers, next: 0 };
                     let p = point(&mut drawn)?;
                     let (t, x, u, c) = (p.t, &p.state, &p.inputs.into(), &p.coefficients);
@@ -315,7 +312,7 @@ macro_rules! checks {
                         model::guard_rates(t, x, u, c).to_vec(),
                         model::jacobian_vector_product(t, x, u, c, &dx, &du.into()).to_vec(),
                         by_state.to_vec(),
-                        printed(&by_inputs, &model::INPUT_NAMES).to_vec(),
+                        parse_fields(&by_inputs, &model::INPUT_NAMES).to_vec(),
                         model::vector_jacobian_product_by_parameters(t, x, u, c, &weights).to_vec(),
                         model::rates_by_state(t, x, u, c).to_vec(),
                         model::rates_by_inputs(t, x, u, c).to_vec(),
@@ -348,7 +345,7 @@ macro_rules! checks {
                 }
 
                 #[test]
-                fn the_linearisation_predicts_small_changes(numbers in numbers()) {
+                fn linearisation_predicts_small_changes(numbers in numbers()) {
                     let mut drawn = Drawn { numbers: &numbers, next: 0 };
                     let p = point(&mut drawn)?;
                     let found = model::linearise(p.t, &p.state, &p.inputs.into(), &p.coefficients);
@@ -360,9 +357,9 @@ macro_rules! checks {
                         state + by_inputs.iter().zip(&du).map(|(a, b)| a * b).sum::<f64>()
                     };
                     let predicted: Vec<f64> = found.A.iter().zip(&found.B).map(|(a, b)| product(a, b)).collect();
-                    agree("rates", &predicted, &rates)?;
+                    assert_agree("rates", &predicted, &rates)?;
                     let predicted: Vec<f64> = found.C.iter().zip(&found.D).map(|(c, d)| product(c, d)).collect();
-                    agree("observables", &predicted, &observables)?;
+                    assert_agree("observables", &predicted, &observables)?;
                 }
             }
         }

@@ -1,4 +1,4 @@
-//! The shipped specifications with everything that can be requested, at orders of their own.
+//! The shipped specifications with all requestable outputs, each at its own order.
 
 use crate::dual::scalar_of;
 use crate::tracked::tracked_scalar_of;

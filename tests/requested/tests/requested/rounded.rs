@@ -1,14 +1,14 @@
-//! Numbers that bound their own rounding error (running error analysis: N. J. Higham,
-//! Accuracy and Stability of Numerical Algorithms, section 3.3), computed in double precision.
+//! Numbers with a bound of their rounding error (running error analysis: N. J. Higham, Accuracy and
+//! Stability of Numerical Algorithms, section 3.3), computed in double precision.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A number and a bound of the error that it has, or would have, with so many binary digits.
+/// Number with a bound of its error for arithmetic of `DIGITS` binary digits.
 #[derive(Clone, Copy, Debug)]
 pub struct Rounded<const DIGITS: u32> {
-    /// The number.
+    /// Number.
     pub number: f64,
-    /// A bound of the error that rounding left in it.
+    /// Bound of the accumulated rounding error.
     pub error: f64,
 }
 
@@ -16,7 +16,7 @@ impl<const DIGITS: u32> Rounded<DIGITS> {
     /// Half a unit in the last place of 1.
     const UNIT: f64 = 1.0 / (1_u64 << DIGITS) as f64;
 
-    /// A number without error.
+    /// Returns a number without error.
     pub fn exact(number: impl Into<f64>) -> Self {
         Self {
             number: number.into(),
@@ -24,7 +24,7 @@ impl<const DIGITS: u32> Rounded<DIGITS> {
         }
     }
 
-    /// A result whose operands left it this error.
+    /// Returns a result with the error of its operands, plus its own rounding.
     pub fn result(number: f64, error: f64) -> Self {
         Self {
             number,

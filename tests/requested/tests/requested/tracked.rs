@@ -1,12 +1,13 @@
-//! Double precision that bounds its own rounding error. Under duals it says how far a derivative
-//! can be trusted where its terms cancel.
+//! Double precision with a bound of its rounding error. In dual numbers it bounds the error of a
+//! derivative with cancelling terms.
 
 use crate::rounded::Rounded;
 
-/// A number in double precision.
+/// Double-precision number with an error bound.
 pub type Tracked = Rounded<53>;
 
-/// Makes them a scalar of an emitted module. Elementary functions are right to two units.
+/// Implements the scalar of an emitted module. Elementary functions are accurate to two units in
+/// the last place.
 macro_rules! tracked_scalar_of {
     ($($module:ident),*) => {$(
         impl $module::Scalar for $crate::tracked::Tracked {
