@@ -16,6 +16,8 @@ pub struct Magnitudes {
     largest: Vec<f64>,
     /// Smallest magnitude of each component.
     smallest: Vec<f64>,
+    /// Largest magnitude of any component so far.
+    most: f64,
     tolerance: f64,
 }
 
@@ -33,6 +35,7 @@ impl Magnitudes {
         Self {
             largest: largest.collect(),
             smallest,
+            most: y.iter().fold(0.0, |most, y| most.max(y.abs())),
             tolerance,
         }
     }
@@ -46,6 +49,7 @@ impl Magnitudes {
         Self {
             largest: largest.collect(),
             smallest: self.smallest.clone(),
+            most: self.most,
             tolerance: self.tolerance,
         }
     }
@@ -59,14 +63,15 @@ impl Magnitudes {
     pub fn raise(&mut self, y: &[f64]) {
         for (largest, y) in self.largest.iter_mut().zip(y) {
             *largest = largest.max(y.abs());
+            self.most = self.most.max(y.abs());
         }
     }
 
     /// Takes note that states are corrected onto constraints: each then has the rounding of the others, which is no
     /// error of a step.
     pub fn include_rounding_of_others(&mut self) {
-        let most = self.largest.iter().copied().fold(0.0, f64::max);
-        let rounding = ROUNDING_OF_OTHERS * f64::EPSILON / self.tolerance * most;
+        // Not of `largest`: below a tolerance of 2e-13 that would grow with every call.
+        let rounding = ROUNDING_OF_OTHERS * f64::EPSILON / self.tolerance * self.most;
         for largest in &mut self.largest {
             *largest = largest.max(rounding);
         }
@@ -81,11 +86,10 @@ impl Magnitudes {
     /// Returns true if changes of a state `y` are errors that a step may make, none larger than some times what
     /// is allowed. Where a state has not moved, rounding of the others is no error.
     pub fn allow(&self, changes: impl Iterator<Item = f64>, y: &[f64]) -> bool {
-        let most = self.largest.iter().copied().fold(0.0, f64::max);
         let sizes = self.largest.iter().zip(y);
         let allowed = sizes.map(|(largest, y)| self.tolerance * (largest + y.abs()));
         changes.zip(allowed).all(|(change, allowed)| {
-            change.abs() <= MOST_STRAYED * allowed + ROUNDING_OF_OTHERS * f64::EPSILON * most
+            change.abs() <= MOST_STRAYED * allowed + ROUNDING_OF_OTHERS * f64::EPSILON * self.most
         })
     }
 
@@ -99,5 +103,24 @@ impl Magnitudes {
             relative * relative
         });
         (squares.sum::<f64>() / y.len() as f64).sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rounding_of_others_does_not_grow_from_step_to_step() {
+        for tolerance in [1e-9, 1e-13, 1e-14] {
+            let mut magnitudes = Magnitudes::of(&[100.0, 1e-3], &[1.0, 1.0], tolerance);
+            let mut floors = Vec::new();
+            for _ in 0..50 {
+                magnitudes.raise(&[100.0, 1e-3]);
+                magnitudes.include_rounding_of_others();
+                floors.push(magnitudes.floors());
+            }
+            assert_eq!(floors[0], floors[49], "{tolerance:e}");
+        }
     }
 }
