@@ -155,7 +155,7 @@ impl Instance<'_> {
         let choice = is_free.then_some(Choice::PiecewiseLinear);
         let t = error.time();
         let so_far = motion(trajectory, request, Solver::Exact, (choice, audit));
-        let cause = self.cause_of_exact(&error);
+        let cause = self.cause_of_exact(&error, &surfaces);
         stopped(so_far, Stopped { t, reason, cause })
     }
 
@@ -237,7 +237,7 @@ impl Instance<'_> {
             Ok(()) => Ok(so_far),
             Err(error) => {
                 let (t, surfaces) = (SolveError::time(&error), system.surfaces());
-                let cause = self.cause(&error);
+                let cause = self.cause(&error, &surfaces);
                 let ended_at = t.unwrap_or(request.span().0);
                 let may_be = matches!(cause, Cause::NotFinite | Cause::Limit);
                 let passed = system.projection().filter(|_| may_be);
@@ -277,7 +277,7 @@ impl Instance<'_> {
         Auditor::new(tolerance, self.model().typical_sizes(), driven)
     }
 
-    fn cause(&self, error: &SolveError) -> Cause {
+    fn cause(&self, error: &SolveError, surfaces: &[Surface]) -> Cause {
         match error {
             SolveError::NotFinite { .. } | SolveError::NotPositiveDefinite { .. } => {
                 Cause::NotFinite
@@ -289,15 +289,21 @@ impl Instance<'_> {
                     "the model is stiff: `{state}` settles within {within:.1e} s"
                 ))
             }
+            SolveError::StiffAtSurface { guard, .. } => Cause::Stiff(match surfaces.get(*guard) {
+                Some(surface) => {
+                    format!("stiff near the place where `{}` is zero", surface.formula)
+                }
+                None => "stiff near a switching surface".to_owned(),
+            }),
             SolveError::Request { .. }
             | SolveError::StepTooSmall { .. }
             | SolveError::TooManySteps { .. } => Cause::Limit,
         }
     }
 
-    fn cause_of_exact(&self, error: &ExactError) -> Cause {
+    fn cause_of_exact(&self, error: &ExactError, surfaces: &[Surface]) -> Cause {
         match error {
-            ExactError::Stopped(error) => self.cause(error),
+            ExactError::Stopped(error) => self.cause(error, surfaces),
             ExactError::Held { .. } => Cause::Switching,
             ExactError::NotFinite | ExactError::NotPositiveDefinite => Cause::NotFinite,
             _ => Cause::Limit,

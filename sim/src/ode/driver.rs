@@ -6,6 +6,7 @@ use super::adams::Adams;
 use super::dormand_prince::DormandPrince853;
 use super::error::SolveError;
 use super::grazing::passed_over;
+use super::limits::Approach;
 use super::magnitudes::Magnitudes;
 use super::radau::Radau;
 use super::request;
@@ -103,6 +104,7 @@ fn run<S: System + ?Sized, M: Stepper>(
         end: span.1,
         recent: VecDeque::new(),
         pace: Pace::new(span.0),
+        approaches: VecDeque::new(),
         resolution: Resolution::new(settings.tolerance),
         projected: None,
         trajectory,
@@ -133,6 +135,8 @@ pub(super) struct Driver<'a, S: System + ?Sized, M: Stepper> {
     /// The last switches: when, s, and of which function.
     pub(super) recent: VecDeque<(f64, usize)>,
     pub(super) pace: Pace,
+    /// The last approaches to switching surfaces.
+    pub(super) approaches: VecDeque<Approach>,
     resolution: Resolution,
     /// The state here brought back onto what the motion keeps, if that moves it.
     projected: Option<Vec<f64>>,

@@ -51,6 +51,18 @@ pub enum SolveError {
         /// Estimated number of further steps.
         steps: f64,
     },
+    /// The system is stiff beside a switching surface: trial states of an explicit method overshoot it
+    /// unless steps are so short that there would be no end within the limit on steps.
+    StiffAtSurface {
+        /// Where the solver stands.
+        t: f64,
+        /// The index of the switching function.
+        guard: usize,
+        /// Average step between two approaches to the surface, s.
+        within: f64,
+        /// How many more steps there would be.
+        steps: f64,
+    },
     /// The limit on steps is reached.
     TooManySteps {
         /// Time reached, s.
@@ -87,6 +99,7 @@ impl SolveError {
             | Self::NotPositiveDefinite { t, .. }
             | Self::StepTooSmall { t, .. }
             | Self::Stiff { t, .. }
+            | Self::StiffAtSurface { t, .. }
             | Self::TooManySteps { t, .. }
             | Self::Caught { t, .. }
             | Self::TooManySwitches { t, .. } => Some(t),
@@ -127,6 +140,18 @@ impl SolveError {
                  radau, or soften the cause (a stiff spring or damper, or a smooth friction law \
                  that is too steep)",
                 names.state(*state)
+            ),
+            Self::StiffAtSurface {
+                t,
+                guard,
+                within,
+                steps,
+            } => format!(
+                "stopped at t = {t:?} s: the model is stiff near the place where {}, as the flow \
+                 sqrt(abs(p)) of an orifice is near p = 0. An explicit solver has to take steps of \
+                 {within:.1e} s there, {steps:.1e} more of them; take the solver radau, which is \
+                 implicit, or make the flow linear near zero",
+                names.surface(*guard)
             ),
             Self::TooManySteps { t, steps, state } => format!(
                 "stopped at t = {t:?} s after {steps} steps: {} moves too fast for such a \

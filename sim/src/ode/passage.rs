@@ -19,6 +19,7 @@ const SHORTEST_WINDOW: f64 = 16.0;
 impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     /// Goes to the surface that may lie within `length` of here, and over it.
     pub(super) fn cross(&mut self, length: f64) -> Result<(), SolveError> {
+        let guard = self.watched.crossed();
         let mut window = length;
         let mut beyond = Vec::new();
         while window > over(length) {
@@ -62,12 +63,13 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
                 self.accept(begin)?;
             }
         }
-        self.step_over(window.max(over(length)), length)
+        let has_crossed = self.step_over(window.max(over(length)), length)?;
+        self.check_approaches(guard, has_crossed)
     }
 
     /// Steps over the surface `window` ahead, wider where rounding hides it and as long as the step is
-    /// resolved, and goes on with steps of `length`.
-    fn step_over(&mut self, mut window: f64, length: f64) -> Result<(), SolveError> {
+    /// resolved, and goes on with steps of `length`. Returns false if the motion did not cross the surface.
+    fn step_over(&mut self, mut window: f64, length: f64) -> Result<bool, SolveError> {
         let start = self.stepper.here().clone();
         let mut last = 0.0;
         while last < length {
@@ -81,7 +83,8 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
                     .cross((start.t, &start.y), point.t, &mut point.y);
                 self.stepper.restart(point, length);
                 self.project();
-                return self.accept(start.t);
+                self.accept(start.t)?;
+                return Ok(true);
             }
             // In a step that does not move the time there is nothing to leap over.
             if window > SHORTEST_CONTACT * length && point.t > start.t {
@@ -90,7 +93,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
                 if let Some(ahead) = leapt_over(self.watched, &self.stepper, step, trials) {
                     // Too short for this step: let shorter ones find it.
                     self.stepper.restart(start, 0.25 * ahead);
-                    return Ok(());
+                    return Ok(false);
                 }
             }
             last = window;
@@ -99,7 +102,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         // The surface was touched, by a trial state or by the motion, and not crossed by a step that
         // meets the tolerance.
         self.stepper.restart(start, 0.25 * length);
-        Ok(())
+        Ok(false)
     }
 
     /// The point that a step of `window` s leads to from `start`, if the step meets the tolerance. The error

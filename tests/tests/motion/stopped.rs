@@ -81,6 +81,30 @@ gravity = "-T_g*cos(theta)"
 friction = { on = "theta", value = "-T_c*tanh(dot(theta)/v_0)" }
 "#;
 
+/// Two chambers joined by an orifice, in which a piston comes to rest: the flow is infinitely stiff where
+/// the pressures agree.
+const ORIFICE: &str = r#"
+[model]
+name = "orifice"
+[parameters]
+m = { value = 5, unit = "kg" }
+k = { value = 2e4, unit = "N/m" }
+A = { value = 1e-3, unit = "m^2" }
+Q = { value = 2e-7, unit = "m^3/(s Pa^(1/2))" }
+C = { value = 1e-12, unit = "m^3/Pa" }
+[coordinates]
+x = { unit = "m", initial = 0.02 }
+[states]
+p1 = { unit = "Pa", rate = "(A*dot(x) - Q*sign(p1 - p2)*sqrt(abs(p1 - p2)))/C", initial = 3e5 }
+p2 = { unit = "Pa", rate = "(-A*dot(x) + Q*sign(p1 - p2)*sqrt(abs(p1 - p2)))/C", initial = 1e5 }
+[kinetic]
+T = "1/2*m*dot(x)^2"
+[potential]
+V = "1/2*k*x^2"
+[forces]
+p = { on = "x", value = "-(p1 - p2)*A" }
+"#;
+
 /// Turntable whose inertia vanishes at some position of a slider.
 const INDEFINITE: &str = r#"
 [model]
@@ -348,6 +372,34 @@ fn auto_solves_stiff_friction_with_radau() {
         "{document}"
     );
     assert!(begun.elapsed() < Duration::from_secs(20));
+}
+
+/// Document that `simulate --json` prints for the orifice, and the messages.
+fn orifice_by(solver: &str) -> (serde_json::Value, String) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let spec = written(folder.path(), ORIFICE);
+    let out = folder.path().join("a.csv").display().to_string();
+    let output = run(&[
+        "simulate", &spec, "--until", "1", "--solver", solver, "--json", "--out", &out,
+    ]);
+    let document = serde_json::from_slice(&output.stdout).expect("one JSON document");
+    (document, text(&output.stderr))
+}
+
+#[test]
+fn rk_stops_where_an_orifice_is_stiff_and_auto_takes_radau() {
+    let evaluations = |document: &serde_json::Value| document["evaluations"].as_u64();
+    let (radau, _) = orifice_by("radau");
+    let (auto, note) = orifice_by("auto");
+    assert_eq!(auto["solver"], "radau");
+    assert!(
+        note.contains("stiff near the place where `p1 - p2`"),
+        "{note}"
+    );
+    assert_eq!(evaluations(&auto), evaluations(&radau));
+    let (rk, message) = orifice_by("rk");
+    assert!(message.contains("take the solver radau"), "{message}");
+    assert!(evaluations(&rk).expect("a number") < 300_000, "{rk}");
 }
 
 #[test]
