@@ -1,67 +1,67 @@
-//! Forces that may be hidden on an axis. Dry friction is not the jump of a sign: it is that of
-//! bristles (LuGre), which bend before they slide, or a steep hyperbolic tangent.
+//! Hidden forces on an axis. Dry friction is a bristle model (LuGre) or a steep hyperbolic tangent,
+//! instead of the sign function.
 
-/// How dry friction is written.
+/// Law of dry friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Dry {
-    /// Bristles that bend this far (axis units) before they slide at the whole friction; the
-    /// inertia (force unit s^2 per axis unit) that swings on them sets their damping.
+    /// Bristles that bend before they slide with the full friction. Their damping follows from the
+    /// inertia of the axis (force unit s^2 per axis unit).
     Bristles {
-        /// Deflection at which they slide.
+        /// Deflection at which they slide, in axis units.
         reach: f64,
         /// Inertia of the axis.
         inertia: f64,
     },
-    /// A hyperbolic tangent of the speed over this one, axis units per second.
+    /// Hyperbolic tangent of the speed.
     Steep {
-        /// Speed at which three quarters are reached.
+        /// Speed at which three quarters are reached, axis units per second.
         speed: f64,
     },
 }
 
-/// Everything that may act on an axis, in its unit of force and of angle or length. All zero
-/// is nothing.
+/// Forces on an axis, in its units of force and of angle or length. All are zero if nothing is
+/// hidden.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AxisForces {
-    /// How dry friction is written.
+    /// Law of dry friction.
     pub dry: Dry,
-    /// Dry friction in motion.
+    /// Sliding friction.
     pub coulomb: f64,
-    /// Dry friction near rest beyond that in motion, and the speed of its fall.
+    /// Excess of static over sliding friction, and the Stribeck speed.
     pub stribeck: (f64, f64),
-    /// Per speed.
+    /// Viscous friction, per speed.
     pub viscous: f64,
-    /// Per amount of speed.
+    /// Asymmetric friction, per absolute speed.
     pub asymmetric: f64,
-    /// Per square of the speed.
+    /// Quadratic drag, per square of the speed.
     pub drag: f64,
-    /// Constant.
+    /// Constant force.
     pub offset: f64,
-    /// Per displacement from zero.
+    /// Stiffness to zero displacement.
     pub restraint: f64,
-    /// An unbalanced weight: cosine and sine of its potential, see [`AxisForces::force`].
+    /// Unbalanced weight: cosine and sine of its potential, see [`AxisForces::force`].
     pub gravity: (f64, f64),
-    /// Per turn, and its cosine and sine.
+    /// Ripple: periods per revolution, cosine and sine.
     pub ripple: (f64, f64, f64),
-    /// Something that no catalogue holds.
+    /// Force outside the catalogue.
     pub strange: Strange,
 }
 
-/// What no catalogue holds.
+/// Force outside the catalogue.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Strange {
-    /// Nothing.
+    /// No such force.
     None,
-    /// A friction that grows with the square of the displacement: -size x^2 x'.
+    /// Friction that increases with the square of the displacement: -size x^2 x'.
     Worn(f64),
-    /// A force that comes from elsewhere: size sin(2 pi f t), with f in Hz.
+    /// External force: size sin(2 pi f t), with f in Hz.
     Hum(f64, f64),
-    /// A drive that weakens with the displacement: -size x u.
+    /// Drive that weakens with the displacement: -size x u.
     Weakening(f64),
 }
 
 impl AxisForces {
-    /// Nothing hidden.
+    /// Returns forces with nothing hidden.
     pub fn none(dry: Dry) -> Self {
         Self {
             dry,
@@ -78,8 +78,8 @@ impl AxisForces {
         }
     }
 
-    /// The force along the axis at displacement `x`, rate `v`, bristles bent by `z`; with it
-    /// the rate of `z`.
+    /// Returns the force along the axis at displacement `x`, rate `v` and bristle deflection `z`,
+    /// and the rate of `z`.
     pub fn force(&self, t: f64, x: f64, v: f64, z: f64, input: f64) -> (f64, f64) {
         let (dry, bending) = self.dry_friction(v, z);
         let per_turn = self.ripple.0 * x;
@@ -107,15 +107,14 @@ impl AxisForces {
         let level = self.coulomb + near_rest * (-(v / fall) * (v / fall)).exp();
         match self.dry {
             Dry::Steep { speed } => (level * (v / speed).tanh(), 0.0),
-            // Bristles whose friction falls by much at speed would have to turn faster than steps are
-            // short.
+            // Bristles with a large Stribeck excess would need shorter integration steps.
             Dry::Bristles { .. } if self.coulomb < near_rest => {
                 (level * (v / (0.01 * fall)).tanh(), 0.0)
             }
             Dry::Bristles { reach, inertia } => {
                 let stiffness = (self.coulomb + near_rest) / reach;
                 let bending = v - stiffness * v.abs() * z / level;
-                // Damping of half the critical one, gone once the bristles slide.
+                // Damping ratio of one half, vanishing as the bristles slide.
                 let damping = (stiffness * inertia).sqrt();
                 let pace = v / (reach * (stiffness / inertia).sqrt());
                 let damped = damping * bending * (-pace * pace).exp();
@@ -125,7 +124,7 @@ impl AxisForces {
     }
 }
 
-/// A cosine and a sine together; most axes have none, and sines are dear.
+/// Returns a sum of a cosine and a sine. Most axes have none, and sines are expensive.
 fn wave((cosine, sine): (f64, f64), angle: f64) -> f64 {
     if cosine == 0.0 && sine == 0.0 {
         return 0.0;
@@ -138,8 +137,8 @@ fn wave((cosine, sine): (f64, f64), angle: f64) -> f64 {
 mod tests {
     use super::{AxisForces, Dry};
 
-    /// Slides at a constant speed for long: bristles are bent as far as they go.
-    fn sliding(forces: &AxisForces, v: f64) -> f64 {
+    /// Returns the force after long sliding at constant speed, with fully bent bristles.
+    fn sliding_force(forces: &AxisForces, v: f64) -> f64 {
         let mut z = 0.0;
         for _ in 0..100_000 {
             z += 1e-6 * forces.force(0.0, 0.0, v, z, 0.0).1;
@@ -148,13 +147,13 @@ mod tests {
     }
 
     #[test]
-    fn both_ways_of_writing_friction_slide_alike() {
+    fn both_friction_laws_have_the_same_sliding_force() {
         for v in [-0.3, 0.05, 0.5] {
             let of = |dry| {
                 let mut forces = AxisForces::none(dry);
                 forces.coulomb = 4.0;
                 forces.stribeck = (2.0, 0.1);
-                sliding(&forces, v)
+                sliding_force(&forces, v)
             };
             let expected = -v.signum() * (4.0 + 2.0 * (-(v / 0.1) * (v / 0.1)).exp());
             let bristles = of(Dry::Bristles {
@@ -168,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn friction_that_falls_by_much_is_not_that_of_bristles() {
+    fn large_stribeck_excess_does_not_use_bristles() {
         let force = |dry| {
             let mut forces = AxisForces::none(dry);
             forces.coulomb = 2.0;
@@ -183,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn forces_have_the_sign_of_what_they_are() {
+    fn forces_have_the_correct_sign() {
         let mut forces = AxisForces::none(Dry::Steep { speed: 1e-4 });
         forces.viscous = 2.0;
         forces.drag = 3.0;

@@ -1,5 +1,5 @@
-//! What may be hidden: the effects by the names of `discovery.json`, and how each changes a
-//! machine or its sensors.
+//! Effects that can be hidden, by the names of `discovery.json`, and their action on a machine or
+//! its sensors.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,7 +7,7 @@ use crate::friction::Strange;
 use crate::machines::two_bodies::Form;
 use crate::machines::{Machine, Setup};
 
-/// An effect.
+/// Effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[allow(missing_docs)]
@@ -33,52 +33,51 @@ pub enum Effect {
     SensorBias,
     ParameterShift,
     Backlash,
-    /// On one side, by the sign.
+    /// Stop on one side, selected by the sign.
     EndStop,
-    /// The same stop on both sides.
+    /// Equal stops on both sides.
     EndStops,
     InputGain,
     InputBias,
-    /// Outside the catalogue: friction that grows with the displacement.
+    /// Outside the catalogue: friction that increases with the displacement.
     WornFriction,
-    /// Outside the catalogue: a force that comes from elsewhere.
+    /// Outside the catalogue: external force.
     ForeignHum,
-    /// Outside the catalogue: a drive that weakens with the displacement.
+    /// Outside the catalogue: drive that weakens with the displacement.
     WeakeningDrive,
 }
 
-/// An effect at its place, with its size.
+/// Effect with place and size.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Hidden {
-    /// The effect.
+    /// Effect.
     pub effect: Effect,
-    /// Where: an axis, mesh, channel or parameter, or `arm`.
+    /// Place: an axis, mesh, channel or parameter, or `arm`.
     pub on: String,
-    /// Per turn, for what repeats with an angle; the frequency in Hz of a hum; the deflection at which
-    /// a stop is met.
+    /// Periods per revolution of an effect periodic in an angle; frequency in Hz of a hum;
+    /// deflection at which a stop is reached.
     pub order: f64,
-    /// -1 or 1, where both make sense.
+    /// Sign, if both are possible: -1 or 1.
     pub sign: f64,
-    /// Between cosine and sine, rad.
+    /// Phase between cosine and sine, rad.
     pub phase: f64,
-    /// How large, in the unit of the effect's first parameter; rad per N m for a joint.
+    /// Size in the unit of the effect's first parameter; rad per N m for a joint.
     pub amount: f64,
 }
 
-/// Deviations of the sensors from what they should be, per channel: gain - 1, bias in SI and
-/// delay in s.
+/// Errors of the sensors, per channel.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sensors {
-    /// Gain less 1.
+    /// Gain minus 1.
     pub gain: Vec<f64>,
-    /// SI.
+    /// Bias, SI.
     pub bias: Vec<f64>,
-    /// s.
+    /// Delay, s.
     pub delay: Vec<f64>,
 }
 
 impl Sensors {
-    /// As they should be.
+    /// Returns sensors without errors.
     pub fn right(channels: usize) -> Self {
         Self {
             gain: vec![0.0; channels],
@@ -87,10 +86,11 @@ impl Sensors {
         }
     }
 
-    /// What is unknown of each channel, in this order.
+    /// Effects of the sensor errors of a channel, in order.
     pub const UNKNOWNS: [Effect; 3] = [Effect::SensorGain, Effect::SensorBias, Effect::SensorDelay];
 
-    /// Off by these, per channel gain, bias and delay, in standard deviations of their priors.
+    /// Returns sensors with these errors of gain, bias and delay per channel, in standard
+    /// deviations of their priors.
     pub fn within_priors(setup: &Setup, deviations: &[f64]) -> Self {
         let mut sensors = Self::right(setup.channels.len());
         for (place, channel) in setup.channels.iter().enumerate() {
@@ -103,13 +103,12 @@ impl Sensors {
     }
 }
 
-/// Standard deviations of the priors of every sensor: of its gain, of its bias in noises, of
-/// its delay in samples.
+/// Standard deviations of the sensors' priors: gain, bias relative to the noise, delay in samples.
 const GAIN_PRIOR: f64 = 0.01;
 const BIAS_PRIOR: f64 = 10.0;
 const DELAY_PRIOR: f64 = 0.5;
 
-/// Fall of the Stribeck friction, as a part of the axis' usual speed.
+/// Returns the Stribeck speed, as a fraction of the usual speed of the axis.
 fn stribeck_speed(machine: &Machine) -> f64 {
     match machine {
         Machine::Arm(_) => 1.0,
@@ -123,7 +122,7 @@ fn stribeck_speed(machine: &Machine) -> f64 {
 }
 
 impl Hidden {
-    /// Hides it in a machine or its sensors.
+    /// Applies the effect to a machine or its sensors.
     pub fn hide(&self, machine: &mut Machine, setup: &Setup, sensors: &mut Sensors) {
         let amount = self.amount * self.sign;
         let (sine, cosine) = self.phase.sin_cos();
@@ -204,7 +203,7 @@ impl Hidden {
         }
     }
 
-    /// The true values of the effect's parameters, SI, in the order of the parameters' names.
+    /// Returns the true values of the effect's parameters, SI, sorted by parameter name.
     pub fn parameters(&self, machine: &Machine) -> Vec<f64> {
         let amount = self.amount * self.sign;
         let (sine, cosine) = self.phase.sin_cos();
@@ -218,13 +217,13 @@ impl Hidden {
             Effect::SensorGain | Effect::InputGain => vec![1.0 + amount],
             Effect::EndStop | Effect::EndStops => vec![self.amount, self.order],
             Effect::ParameterShift => Vec::new(),
-            // By another law than the catalogue's.
+            // The law differs from the catalogue's, so its parameters cannot be compared.
             Effect::StiffnessNonlinearity if self.on != "arm" => Vec::new(),
             _ => vec![amount],
         }
     }
 
-    /// Whether it is outside the catalogue.
+    /// Returns true if the effect is outside the catalogue.
     pub fn is_strange(&self) -> bool {
         matches!(
             self.effect,
@@ -232,8 +231,8 @@ impl Hidden {
         )
     }
 
-    /// The part of the null model that would take it up, were it not so large: a sensor's
-    /// fault or a declared parameter. One standard deviation of its prior there.
+    /// Returns one standard deviation of the prior if the null model includes the effect at small
+    /// sizes, as for sensor errors and declared parameters.
     pub fn prior(&self, setup: &Setup) -> Option<f64> {
         let channel = || setup.channels.iter().find(|c| c.name == self.on);
         match self.effect {
@@ -248,7 +247,7 @@ impl Hidden {
         }
     }
 
-    /// The name of the effect as results have it.
+    /// Returns the name of the effect in results.
     pub fn name(&self) -> String {
         if self.effect == Effect::EndStops {
             return "end_stop".to_owned();

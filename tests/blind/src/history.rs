@@ -1,29 +1,28 @@
-//! The figures of runs as lines of a table that is kept with the source: how often discovery was
-//! right, by the day and the command. Measuring is not here.
+//! Success rates of runs as lines of a table in the repository, by day and command.
 
 use crate::score::Score;
 
-/// Which run a line is of.
+/// Identification of a run.
 #[derive(Clone, Debug)]
 pub struct Run {
-    /// The day of the commit.
+    /// Day of the commit.
     pub date: String,
-    /// The commit.
+    /// Commit.
     pub commit: String,
-    /// What `blind` was asked for.
+    /// Command line of `blind`.
     pub command: String,
 }
 
-/// The first line of the table.
+/// Returns the header of the table.
 pub fn heading() -> String {
     let columns = figures(&[]).map(|(name, _)| name);
     format!("date,commit,command,{}\n", columns.join(","))
 }
 
-/// A table with the figures of one run more.
+/// Appends a run to the table.
 ///
 /// # Errors
-/// A table of other columns.
+/// Returns an error if the table has other columns.
 pub fn with(table: &str, run: &Run, score: &Score) -> Result<String, String> {
     let heading = heading();
     if !table.starts_with(&heading) {
@@ -41,7 +40,7 @@ pub fn with(table: &str, run: &Run, score: &Score) -> Result<String, String> {
     Ok(table.to_owned() + &line)
 }
 
-/// The columns, and their values where there is a score.
+/// Returns the columns, with values if there is a score.
 fn figures(score: &[&Score]) -> [(&'static str, String); 21] {
     let part = |of: fn(&Score) -> (usize, usize)| {
         let parts = score.iter().map(|score| of(score));
@@ -88,7 +87,6 @@ mod tests {
     use super::{Run, heading, with};
     use crate::score::summed;
 
-    /// The table that is kept.
     const KEPT: &str = include_str!("../history.csv");
 
     fn run() -> Run {
@@ -100,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_has_the_columns_of_the_heading() {
+    fn line_has_the_columns_of_the_header() {
         let table = with(&heading(), &run(), &summed(Vec::new())).expect("a table");
         let counts: Vec<usize> = table.lines().map(|line| line.split(',').count()).collect();
         assert_eq!(counts, [24, 24], "{table}");
@@ -108,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn the_table_that_is_kept_can_be_added_to() {
+    fn checked_in_table_can_be_extended() {
         assert!(with(KEPT, &run(), &summed(Vec::new())).is_ok());
         assert!(with("date,other\n", &run(), &summed(Vec::new())).is_err());
     }

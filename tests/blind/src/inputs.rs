@@ -1,42 +1,42 @@
-//! What drives the machines: slow sines that reverse the motion, a sweep, and steps; and where
-//! the motions begin. Inputs are held from sample to sample.
+//! Inputs of the machines: slow sines that reverse the motion, a sweep, and steps; and initial
+//! states. Inputs are held from sample to sample.
 
 use crate::machines::two_bodies::Form;
 use crate::machines::{Kind, Machine, Setup};
 use crate::random::Draw;
 
-/// How a machine is driven.
+/// Kind of excitation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Manner {
     /// Reversals, a sweep and steps.
     Usual,
-    /// Always in the same direction.
+    /// Constant direction.
     OneWay,
-    /// To and fro through a small angle.
+    /// Oscillation with a small amplitude.
     Gentle,
 }
 
-/// One record's drive.
+/// Excitation of one record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drive {
-    /// One number per sample, SI.
+    /// Input, one number per sample, SI.
     pub input: Vec<f64>,
-    /// The first state.
+    /// Initial state.
     pub start: Vec<f64>,
 }
 
-/// Sizes of what an input is made of.
+/// Frequencies and amplitudes of the components of an input.
 struct Ingredients {
     /// Frequencies (Hz) and amplitudes of the slow sines.
     slow: ((f64, f64), (f64, f64)),
-    /// From, to (Hz) and amplitude of the sweep.
+    /// Start and end frequency (Hz) and amplitude of the sweep.
     sweep: (f64, f64, f64),
-    /// Height of the steps and how long they last (s).
+    /// Height of the steps and their duration (s).
     steps: (f64, (f64, f64)),
 }
 
-/// Draws the drive of record number `place`, the test records after the others.
+/// Draws the excitation of record `place`; test records follow the training records.
 pub fn drive(kind: Kind, setup: &Setup, manner: Manner, place: usize, draw: &mut Draw) -> Drive {
     let samples = (setup.duration / setup.sample).round() as usize + 1;
     let test = place >= setup.records.0;
@@ -51,7 +51,7 @@ pub fn drive(kind: Kind, setup: &Setup, manner: Manner, place: usize, draw: &mut
             vec![0.0; samples]
         }
         (Kind::Stage, Manner::OneWay) => {
-            // Speeds that change by half, so that viscous friction is known.
+            // The speed varies by half, so that the viscous friction is observable.
             start[1] = draw.between(0.3, 0.4);
             let lasting = viscous(&machine) * start[1];
             let slow = sines(setup, samples, ((0.7, 1.5), (15.0, 30.0)), draw);
@@ -63,15 +63,15 @@ pub fn drive(kind: Kind, setup: &Setup, manner: Manner, place: usize, draw: &mut
             let Machine::TwoBodies(bodies) = &machine else {
                 unreachable!("two bodies are two bodies");
             };
-            made(
+            combine_components(
                 setup,
                 samples,
-                &of_two_bodies(form, bodies.usual_input()),
+                &two_body_components(form, bodies.usual_input()),
                 draw,
             )
         }
         (Kind::Arm, Manner::Gentle) => sines(setup, samples, ((2.5, 6.0), (0.4, 0.9)), draw),
-        (Kind::Stage, _) => made(
+        (Kind::Stage, _) => combine_components(
             setup,
             samples,
             &Ingredients {
@@ -81,11 +81,12 @@ pub fn drive(kind: Kind, setup: &Setup, manner: Manner, place: usize, draw: &mut
             },
             draw,
         ),
-        (Kind::Arm, _) => made(
+        (Kind::Arm, _) => combine_components(
             setup,
             samples,
             &Ingredients {
-                // Jumps and fast sweeps would let the teeth rattle, which no two rigs do alike.
+                // With jumps and fast sweeps the teeth would rattle, which is not reproducible on
+                // real rigs.
                 slow: ((0.8, 4.0), (1.0, 2.5)),
                 sweep: (5.0, 16.0, 0.4),
                 steps: (0.0, (0.1, 0.1)),
@@ -103,11 +104,11 @@ pub fn drive(kind: Kind, setup: &Setup, manner: Manner, place: usize, draw: &mut
     }
 }
 
-/// Sizes in the input that moves two bodies as they are meant to be moved.
-fn of_two_bodies(form: Form, usual: f64) -> Ingredients {
+/// Returns the components for a machine of two bodies, with the given usual input.
+fn two_body_components(form: Form, usual: f64) -> Ingredients {
     let (slow, sweep, lasting) = match form {
         Form::TwoMass => ((0.5, 2.0), (3.0, 20.0), (0.05, 0.2)),
-        // Through the swing of the load.
+        // Across the resonance of the load.
         Form::Crane => ((0.3, 1.0), (0.5, 4.0), (0.2, 0.5)),
         Form::QuarterCar => ((0.5, 3.0), (3.0, 20.0), (0.05, 0.2)),
     };
@@ -118,7 +119,7 @@ fn of_two_bodies(form: Form, usual: f64) -> Ingredients {
     }
 }
 
-/// As the record holds it: the machine is driven by what is written.
+/// Rounds to the digits in the record, so that machine and record have the same input.
 fn rounded(value: f64) -> f64 {
     format!("{value:.8e}").parse().unwrap_or(value)
 }
@@ -130,7 +131,7 @@ fn viscous(machine: &Machine) -> f64 {
     }
 }
 
-/// Sines that begin at their crests: the motion they cause from rest goes to and fro.
+/// Returns sines that start at their maxima, so that the motion from rest oscillates around zero.
 fn sines(
     setup: &Setup,
     samples: usize,
@@ -153,7 +154,12 @@ fn sines(
     (0..samples).map(at).collect()
 }
 
-fn made(setup: &Setup, samples: usize, of: &Ingredients, draw: &mut Draw) -> Vec<f64> {
+fn combine_components(
+    setup: &Setup,
+    samples: usize,
+    of: &Ingredients,
+    draw: &mut Draw,
+) -> Vec<f64> {
     let mut values = sines(setup, samples, of.slow, draw);
     let (from, to, amplitude) = of.sweep;
     let turn = draw.between(0.0, 2.0 * std::f64::consts::PI);

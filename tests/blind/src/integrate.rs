@@ -1,20 +1,20 @@
-//! The classical Runge-Kutta method with a fixed step. Switches inside a step cost accuracy of
-//! the step's second order, so steps are chosen far shorter than anything that moves.
+//! Classical Runge-Kutta method with a fixed step size. A switch inside a step reduces its accuracy
+//! to second order, so the steps are much shorter than the fastest motion.
 
 /// Right-hand side of equations of motion.
 pub trait Motion {
-    /// The rates of a state at a time (s) under an input.
+    /// Computes the rates of a state at a time (s) under an input.
     fn rates(&self, t: f64, state: &[f64], input: f64, rates: &mut [f64]);
 }
 
-/// Scratch for steps of one size of state.
+/// Work arrays for states of one size.
 pub struct Stepper {
     slopes: [Vec<f64>; 4],
     between: Vec<f64>,
 }
 
 impl Stepper {
-    /// For states of this many numbers.
+    /// Allocates for states of `size` numbers.
     pub fn new(size: usize) -> Self {
         Self {
             slopes: std::array::from_fn(|_| vec![0.0; size]),
@@ -72,14 +72,14 @@ mod tests {
     }
 
     #[test]
-    fn the_error_falls_with_the_fourth_power_of_the_step() {
+    fn error_decreases_with_fourth_power_of_step_size() {
         let error = |count: usize| {
             let mut state = [0.0, 0.0];
             Stepper::new(2).advance(&Oscillator, 0.0, 2.0, count, 1.0, &mut state);
             (state[0] - (1.0 - 2.0f64.cos())).abs()
         };
         let ratio = error(20) / error(40);
-        // 16 but for terms of higher order, a fifth of it at these steps.
+        // 16, apart from higher-order terms, a fifth of it at these steps.
         assert!((13.0..19.0).contains(&ratio), "{ratio}");
     }
 }

@@ -1,19 +1,19 @@
-//! A blind suite for discovery: machines with something hidden in them, records of their
-//! motion, and a count of how often the program finds what was hidden.
+//! Blind suite for discovery: machines with hidden effects, records of their motion, and a count of
+//! found effects.
 //!
 //! ```text
-//! plan      which cases a seed makes: machine, what is hidden, how large
-//! machines  equations of motion by hand, with everything that may be hidden; fixed steps
-//! size      how large a hidden effect must be to stand this far above the floor
-//! records   inputs, sensors, and the files that the program is given; labels apart
-//! run       the program on a case, as a user runs it, with a time limit
-//! score     results against labels
-//! history   the figures of runs, kept over time
+//! plan      cases of a seed: machine, hidden effects, sizes
+//! machines  hand-written equations of motion with all effects; fixed steps
+//! size      size of a hidden effect for a given ratio to the noise floor
+//! records   inputs, sensors, and the input files of the program; labels in another folder
+//! run       the program on a case, with a time limit
+//! score     comparison of results with labels
+//! history   success rates of earlier runs
 //! ```
 //!
-//! Nothing here is shared with the simulator, the derivation or the catalogue: the equations
-//! are written down by hand from Newton's laws, friction is that of bristles or a steep
-//! smooth curve, and the arm has more modes than the model is given.
+//! The suite shares no code with the simulator, the derivation or the catalogue. The equations are
+//! written by hand from Newton's laws, friction uses bristles or a steep smooth curve, and the arm
+//! has more modes than its model.
 
 pub mod friction;
 pub mod hidden;

@@ -1,5 +1,4 @@
-//! `blind`: makes the cases of a seed, runs the program on them and counts how often it is
-//! right.
+//! `blind` generates the cases of a seed, runs the program on them and counts correct results.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -13,29 +12,29 @@ use eomgen_blind::plan::{Case, Group, plan};
 use eomgen_blind::score::{self, Score};
 use eomgen_blind::{records, run};
 
-/// The longest a case may take unless something else is asked for, s.
+/// Default time limit of a case, s.
 const LIMIT: f64 = 240.0;
 
-/// Hides effects in records, lets `eomgen discover` look for them, and scores it.
+/// Hides effects in records, runs `eomgen discover` on them, and scores the results.
 #[derive(Parser)]
 #[command(after_help = "Example:\n  blind --seed 1 --out blind-1 --only single")]
 struct Options {
-    /// The seed of all cases
+    /// Seed of all cases
     #[arg(long)]
     seed: u64,
-    /// The folder for cases, labels, results and the score; what is there is kept
+    /// Folder for cases, labels, results and the score; existing results are reused
     #[arg(long)]
     out: PathBuf,
-    /// Only these cases, as first..end
+    /// Runs only these cases, as first..end
     #[arg(long, value_parser = range)]
     cases: Option<Range<usize>>,
-    /// Only cases of this kind: single, nothing, pair, outside or untellable
+    /// Runs only cases of this group: single, nothing, pair, outside or untellable
     #[arg(long, value_parser = group)]
     only: Option<Group>,
-    /// The longest a case may take on its core, s; a record may take half of that on two
+    /// Time limit of a case on one core, s; a record may take half of it on two cores
     #[arg(long, default_value_t = LIMIT)]
     limit: f64,
-    /// Appends the figures to tests/blind/history.csv
+    /// Appends the success rates to tests/blind/history.csv
     #[arg(long)]
     keep: bool,
 }
@@ -54,7 +53,7 @@ fn group(text: &str) -> Result<Group, String> {
 }
 
 fn main() -> ExitCode {
-    match suite(&Options::parse()) {
+    match run_suite(&Options::parse()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(message) => {
             eprintln!("error: {message}");
@@ -63,9 +62,9 @@ fn main() -> ExitCode {
     }
 }
 
-fn suite(options: &Options) -> Result<(), String> {
+fn run_suite(options: &Options) -> Result<(), String> {
     let program = program()?;
-    same_seed(&options.out, options.seed)?;
+    check_seed(&options.out, options.seed)?;
     let wanted = |case: &Case| {
         options
             .cases
@@ -111,7 +110,7 @@ fn suite(options: &Options) -> Result<(), String> {
     }
 }
 
-/// Appends the figures to the history that is kept with the source.
+/// Appends the success rates to the history in the repository.
 fn keep(options: &Options, score: &Score) -> Result<(), String> {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/history.csv"));
     let kept = match std::fs::read_to_string(path) {
@@ -128,7 +127,7 @@ fn keep(options: &Options, score: &Score) -> Result<(), String> {
     records::write_whole(path, &kept).map_err(|error| error.to_string())
 }
 
-/// What was asked for, as it is asked for again.
+/// Returns the command line that repeats the run.
 fn command(options: &Options) -> String {
     let mut command = format!("--seed {}", options.seed);
     if let Some(cases) = &options.cases {
@@ -143,7 +142,7 @@ fn command(options: &Options) -> String {
     command
 }
 
-/// What git says, empty without it.
+/// Returns the stdout of git; empty without git.
 fn git(arguments: &[&str]) -> String {
     let output = std::process::Command::new("git").args(arguments).output();
     output.map_or_else(
@@ -152,7 +151,7 @@ fn git(arguments: &[&str]) -> String {
     )
 }
 
-/// The shipped specifications.
+/// Returns the folder of the shipped specifications.
 fn specifications() -> &'static Path {
     Path::new(concat!(
         env!("CARGO_MANIFEST_DIR"),
@@ -160,7 +159,7 @@ fn specifications() -> &'static Path {
     ))
 }
 
-/// The program beside this one.
+/// Returns the path of the program in the folder of this one.
 fn program() -> Result<PathBuf, String> {
     let own = std::env::current_exe().map_err(|error| error.to_string())?;
     let program = own.with_file_name(format!("eomgen{}", std::env::consts::EXE_SUFFIX));
@@ -174,8 +173,8 @@ fn program() -> Result<PathBuf, String> {
     }
 }
 
-/// A folder holds the cases of one seed.
-fn same_seed(out: &Path, seed: u64) -> Result<(), String> {
+/// Checks that the folder contains cases of this seed only.
+fn check_seed(out: &Path, seed: u64) -> Result<(), String> {
     let path = out.join("seed.txt");
     match std::fs::read_to_string(&path) {
         Ok(text) if text.trim() == seed.to_string() => Ok(()),

@@ -1,33 +1,33 @@
-//! Numbers drawn from a seed, the same on every machine.
+//! Random numbers of a seed, equal on every machine.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 
-/// Draws numbers.
+/// Random number generator.
 #[derive(Clone, Debug)]
 pub struct Draw(ChaCha8Rng);
 
 impl Draw {
-    /// A stream of numbers; those of different streams have nothing to do with each other.
+    /// Starts a stream of numbers, independent of other streams.
     pub fn new(seed: u64, stream: u64) -> Self {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         generator.set_stream(stream);
         Self(generator)
     }
 
-    /// Between two numbers, all alike.
+    /// Draws a uniform number.
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
         let unit = (self.0.next_u64() >> 11) as f64 / (1u64 << 53) as f64;
         low + (high - low) * unit
     }
 
-    /// Normal, of mean 0 and standard deviation 1.
+    /// Draws a normal number of mean 0 and standard deviation 1.
     pub fn normal(&mut self) -> f64 {
         StandardNormal.sample(&mut self.0)
     }
 
-    /// Normal, none beyond two standard deviations.
+    /// Draws a normal number within two standard deviations.
     pub fn normal_within_two(&mut self) -> f64 {
         loop {
             let value = self.normal();
@@ -37,7 +37,7 @@ impl Draw {
         }
     }
 
-    /// -1 or 1.
+    /// Draws -1 or 1.
     pub fn sign(&mut self) -> f64 {
         if self.between(0.0, 1.0) < 0.5 {
             -1.0
@@ -46,12 +46,12 @@ impl Draw {
         }
     }
 
-    /// One of a list that is not empty.
+    /// Draws an element of a nonempty list.
     pub fn one_of<T: Clone>(&mut self, list: &[T]) -> T {
         list[(self.between(0.0, list.len() as f64) as usize).min(list.len() - 1)].clone()
     }
 
-    /// Puts a list into any order.
+    /// Shuffles a list.
     pub fn shuffle<T>(&mut self, list: &mut [T]) {
         for last in (1..list.len()).rev() {
             let place = self.between(0.0, (last + 1) as f64) as usize;
@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn a_shuffle_keeps_every_element() {
+    fn shuffle_keeps_every_element() {
         let mut list: Vec<usize> = (0..50).collect();
         Draw::new(3, 0).shuffle(&mut list);
         assert!(list.windows(2).any(|pair| pair[0] > pair[1]));

@@ -1,5 +1,5 @@
-//! From a case to what the program is given: motions, sensors that are noisy and round, and
-//! the files. Labels are written into a folder of their own.
+//! Input files of the program for a case: motions, noisy and quantised sensors, and the files.
+//! Labels are in a separate folder.
 
 use std::path::Path;
 
@@ -13,42 +13,42 @@ use crate::plan::{Case, Group, Nuisances};
 use crate::random::Draw;
 use crate::size;
 
-/// What is true of a case: for the scoring alone.
+/// True values of a case, for scoring only.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Label {
-    /// Its number.
+    /// Number of the case.
     pub case: usize,
-    /// What kind of case it is.
+    /// Group.
     pub group: Group,
-    /// The machine.
+    /// Machine.
     pub machine: crate::machines::Kind,
-    /// What is hidden.
+    /// Hidden effects.
     pub hidden: Vec<Truth>,
-    /// Whether parameters and sensors are off as their priors say, all of them.
+    /// Whether all parameters and sensors deviate according to their priors.
     pub full_priors: bool,
     /// True values of the declared parameters, SI.
     pub declared: Vec<(String, f64)>,
-    /// True deviations of the sensors without what is hidden.
+    /// True errors of the sensors, without hidden ones.
     pub sensors: Sensors,
 }
 
-/// Something hidden, with what can be checked of it.
+/// Hidden effect with the values to be checked.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Truth {
-    /// What is hidden.
+    /// Effect with place and size.
     pub hidden: Hidden,
-    /// Its name in results.
+    /// Name in results.
     pub effect: String,
-    /// True values of its parameters, SI, in the order of their names.
+    /// True values of its parameters, SI, sorted by name.
     pub parameters: Vec<f64>,
-    /// Root mean square of what is left of it in the outputs, in noises, once initial states and
-    /// nuisances are fitted.
+    /// RMS residual of the effect in the outputs after fitting initial states and nuisances,
+    /// relative to the noise.
     pub floors: f64,
-    /// What the record cannot tell from it: effects and places.
+    /// Effects that the record cannot distinguish from it, with their places.
     pub alike: Vec<(String, String)>,
 }
 
-/// Sensor readings of a motion: one column per channel, SI.
+/// Returns the sensor readings of a motion: one column per channel, SI.
 pub fn seen(
     machine: &Machine,
     setup: &Setup,
@@ -70,7 +70,7 @@ pub fn seen(
         for (place, channel) in setup.channels.iter().enumerate() {
             let then = (sample * setup.steps).saturating_sub(late[place]);
             let value = (1.0 + sensors.gain[place]) * history[then][place] + sensors.bias[place];
-            // Rounding is noise of a twelfth of the step's square.
+            // Rounding adds a variance of step^2/12.
             let white = (channel.noise.powi(2) - channel.step.powi(2) / 12.0).sqrt();
             let noisy = value + white * draw.normal();
             columns[place].push((noisy / channel.step).round() * channel.step);
@@ -84,10 +84,10 @@ pub fn seen(
     columns
 }
 
-/// Makes a case's folder and its label, sizes found on the way.
+/// Writes a case's folder and its label, with the sizes of its effects.
 ///
 /// # Errors
-/// A file that cannot be written.
+/// Returns an error if a file cannot be written.
 pub fn make(case: &Case, seed: u64, specifications: &Path, out: &Path) -> std::io::Result<()> {
     let label_file = out.join("labels").join(format!("{:03}.json", case.number));
     if label_file.exists() {
@@ -229,10 +229,10 @@ fn description(setup: &Setup, case: &Case, names: &[String]) -> String {
     text + &format!("\n[windows]\nlength = {length}\nstart = \"fitted\"\n")
 }
 
-/// Writes a file beside its place and moves it there.
+/// Writes a temporary file and renames it.
 ///
 /// # Errors
-/// A folder or file that cannot be made.
+/// Returns an error if a folder or file cannot be created.
 pub fn write_whole(path: &Path, text: &str) -> std::io::Result<()> {
     let folder = path.parent().unwrap_or(Path::new("."));
     std::fs::create_dir_all(folder)?;

@@ -1,5 +1,5 @@
-//! The program on a case, as a user runs it: a specification, a dataset, an order. Labels are
-//! not read here. A case whose result is there is not run again.
+//! Runs the program on a case with a specification, a dataset and an order, without its label. A
+//! case with a result is not run again.
 
 use std::fs::File;
 use std::path::Path;
@@ -11,37 +11,37 @@ use serde_json::Value;
 
 use crate::records::write_whole;
 
-/// How a run ended.
+/// End of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Ending {
-    /// With an answer.
+    /// Regular end with an answer.
     Answered,
-    /// It took longer than it may.
+    /// Time limit exceeded.
     Timeout,
-    /// Without an answer: an error or a crash.
+    /// Error or crash without an answer.
     Failed,
 }
 
-/// What came of a case.
+/// Result of a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Outcome {
-    /// Its number.
+    /// Number of the case.
     pub case: usize,
-    /// How the run ended.
+    /// End of the run.
     pub ending: Ending,
-    /// How long it took, s.
+    /// Duration, s.
     pub seconds: f64,
-    /// The end of what it said on its standard error.
+    /// Last lines of stderr.
     pub said: String,
-    /// Its `discovery.json`.
+    /// Contents of `discovery.json`.
     pub discovery: Option<Value>,
 }
 
-/// Runs the program on a case of the folder `out`, at most `limit` long.
+/// Runs the program on a case of the folder `out` with the time limit `limit`.
 ///
 /// # Errors
-/// A file that cannot be read or written, a program that cannot be started.
+/// Returns an error if a file cannot be read or written, or the program cannot be started.
 pub fn run(program: &Path, out: &Path, case: usize, limit: Duration) -> std::io::Result<()> {
     let place = |folder: &str| out.join(folder).join(format!("{case:03}"));
     let result = place("results").with_extension("json");
@@ -59,7 +59,7 @@ pub fn run(program: &Path, out: &Path, case: usize, limit: Duration) -> std::io:
         .arg(given.join("dataset.toml"))
         .arg("--out")
         .arg(&found)
-        // Cases run side by side, one on each core.
+        // Cases run in parallel, one per core.
         .env("RAYON_NUM_THREADS", "1")
         .stdin(Stdio::null())
         .stdout(Stdio::null())

@@ -1,7 +1,6 @@
-//! The flexible arm on its planetary reducer, from Newton's laws for the sun, the planets, the
-//! carrier and the arm, with four clamped-free modes (or fewer). Displacements along the line
-//! of action: x_s of the sun, x_p of a planet; angles th_c of the carrier and th_c + psi of
-//! the arm's root.
+//! Flexible arm on its planetary reducer, from Newton's laws for the sun, the planets, the carrier
+//! and the arm, with up to four clamped-free modes. Displacements along the line of action: x_s of
+//! the sun, x_p of a planet. Angles: th_c of the carrier and th_c + psi of the arm's root.
 //!
 //! ```text
 //! F = k dead(d, b) + c contact(d, b) d'          d_sp = x_s - x_p - x_c,  d_pr = x_p - x_c
@@ -11,22 +10,22 @@
 //! sum over the arm: I_a th_a'' + sum h_i q_i'' = -M_root
 //!                   M_i q_i'' + h_i th_a'' = -K_i (q_i + eta q_i') - k_3 w(l)^3 phi_i(l)
 //! ```
-//! M_root is what holds the arm to the carrier, k_j psi where the joint yields.
+//! M_root is the torque between carrier and arm; it equals k_j psi if the joint is compliant.
 
 use nalgebra::DMatrix;
 
 use crate::friction::{AxisForces, Dry};
 use crate::integrate::Motion;
 
-/// The most modes.
+/// Maximum number of modes.
 pub const MODES: usize = 4;
 
-/// Numbers in a state: x_s, x_p, th_c, psi, four modes; their rates; two bent bristles.
+/// Number of states: x_s, x_p, th_c, psi, four modes; their rates; two bristle deflections.
 pub const STATE: usize = 2 * COORDINATES + 2;
 
 const COORDINATES: usize = 4 + MODES;
 
-/// The roots of cos(z) cosh(z) = -1.
+/// Roots of cos(z) cosh(z) = -1.
 const ROOTS: [f64; MODES] = [
     1.875_104_068_711_961_1,
     4.694_091_132_974_175,
@@ -34,7 +33,7 @@ const ROOTS: [f64; MODES] = [
     10.995_540_734_875_467,
 ];
 
-/// A mesh and what may be hidden in it.
+/// Mesh with its hidden effects.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
     /// Stiffness, N/m.
@@ -43,50 +42,50 @@ pub struct Mesh {
     pub damping: f64,
     /// Half the play, m.
     pub play: f64,
-    /// Middle of the play, m.
+    /// Centre of the play, m.
     pub middle: f64,
-    /// Transmission error: per turn of the sun, cosine and sine, m.
+    /// Transmission error: periods per revolution of the sun, cosine and sine, m.
     pub error: (f64, f64, f64),
-    /// Variation of the stiffness: per turn of the sun, cosine and sine, parts of it.
+    /// Variation of the stiffness: periods per revolution of the sun, relative cosine and sine.
     pub variation: (f64, f64, f64),
 }
 
-/// The arm on its reducer. SI units.
+/// Arm on its reducer. SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Arm {
-    /// Fall of the motor's torque with speed, N m s.
+    /// Decrease of the motor's torque with speed, N m s.
     pub b_m: f64,
     /// I_s/r_s^2, kg.
     pub sun_mass: f64,
-    /// I_c/r_c^2 of the carrier alone, kg.
+    /// I_c/r_c^2 of the carrier without the arm, kg.
     pub carrier_mass: f64,
     /// Young's modulus, Pa.
     pub modulus: f64,
     /// Number of modes.
     pub modes: usize,
-    /// Sun and planet, planet and ring.
+    /// Meshes sun-planet and planet-ring.
     pub meshes: [Mesh; 2],
-    /// What may be hidden on the sun.
+    /// Hidden forces on the sun.
     pub on_sun: AxisForces,
-    /// What may be hidden on the carrier.
+    /// Hidden forces on the carrier.
     pub on_carrier: AxisForces,
-    /// Loss of bending, s.
+    /// Structural damping, s.
     pub loss: f64,
-    /// Mass at the end, kg.
+    /// Tip mass, kg.
     pub tip_mass: f64,
-    /// Cubic stiffness at the end, N/m^3.
+    /// Cubic stiffness at the tip, N/m^3.
     pub cubic: f64,
     /// Compliance of the joint, rad per N m.
     pub compliance: f64,
-    /// Weight per length where the arm turns in an upright plane: the parts across it at the angle 0
-    /// (sine) and along it (cosine), N/m.
+    /// Weight per length if the arm rotates in a vertical plane, N/m: components across it at the
+    /// angle 0 (sine) and along it (cosine).
     pub weight: (f64, f64),
     inverse: [[f64; MODES + 2]; MODES + 2],
     /// Stiffness of each mode, N/m.
     bending: [f64; MODES],
 }
 
-/// What does not change between cases.
+/// Constants of all cases.
 mod given {
     pub const MODULE: f64 = 3e-3;
     pub const TEETH: (f64, f64) = (27.0, 36.0);
@@ -98,7 +97,7 @@ mod given {
     pub const SECTION: f64 = 8.333e-10;
 }
 
-/// r_s and r_c, m.
+/// Returns r_s and r_c, m.
 fn radii() -> (f64, f64) {
     let (sun, planet) = given::TEETH;
     let cosine = given::PRESSURE_ANGLE.cos();
@@ -109,7 +108,7 @@ fn radii() -> (f64, f64) {
 }
 
 impl Arm {
-    /// The rig's arm with nothing hidden.
+    /// Returns the rig's arm with nothing hidden.
     pub fn nominal() -> Self {
         let mesh = Mesh {
             stiffness: 1e8,
@@ -140,7 +139,7 @@ impl Arm {
         arm
     }
 
-    /// To be called after masses, the modulus or the number of modes have changed.
+    /// Updates the matrices; call it after changes of masses, the modulus or the number of modes.
     pub fn prepare(&mut self) {
         let (_, r_c) = radii();
         let length = given::LENGTH;
@@ -149,7 +148,7 @@ impl Arm {
         let mut of_arm = DMatrix::zeros(size, size);
         of_arm[(0, 0)] = mass * length * length / 3.0 + self.tip_mass * length * length;
         for i in 0..self.modes {
-            // int x phi = 2 l^2/z^2 and int phi^2 = l of the modes in cosh - cos - ...
+            // int x phi = 2 l^2/z^2 and int phi^2 = l for the modes in the form cosh - cos - ...
             let at_end = end_value(i);
             let turning = 2.0 * mass * length / (ROOTS[i] * ROOTS[i]);
             of_arm[(0, i + 1)] = turning + self.tip_mass * length * at_end;
@@ -161,7 +160,7 @@ impl Arm {
         }
         let carrier = (self.carrier_mass + 3.0 * given::PLANET_OWN_MASS) * r_c * r_c;
         let whole = if self.compliance > 0.0 {
-            // Carrier and arm apart.
+            // Separate coordinates of carrier and arm.
             let mut whole = DMatrix::zeros(size + 1, size + 1);
             whole[(0, 0)] = carrier;
             whole.view_mut((1, 1), (size, size)).copy_from(&of_arm);
@@ -184,7 +183,7 @@ impl Arm {
             ROOTS.map(|root| self.modulus * given::SECTION * root.powi(4) / length_cubed);
     }
 
-    /// Kinetic and potential energy, J, where nothing repeats with an angle.
+    /// Returns the kinetic and potential energy, J, without effects periodic in an angle.
     pub fn energy(&self, state: &[f64]) -> f64 {
         let (r_s, r_c) = radii();
         let rates = &state[COORDINATES..];
@@ -228,7 +227,7 @@ impl Arm {
         (0..self.modes).map(|i| end_value(i) * state[4 + i]).sum()
     }
 
-    /// The integral of the deflection over the length.
+    /// Returns the integral of the deflection over the length.
     fn area(&self, state: &[f64]) -> f64 {
         (0..self.modes).map(|i| area_value(i) * state[4 + i]).sum()
     }
@@ -238,12 +237,12 @@ impl Arm {
         [of[0] - of[1] - carrier, of[1] - carrier]
     }
 
-    /// Angles of sun and carrier, deflection of the end.
+    /// Returns the angles of sun and carrier, and the tip deflection.
     pub fn outputs(&self, state: &[f64]) -> [f64; 3] {
         [state[0] / radii().0, state[2], self.tip(state)]
     }
 
-    /// A state of a machine without a joint that yields.
+    /// Returns the state of a machine with a rigid joint.
     pub fn without_joint(state: &[f64]) -> Vec<f64> {
         let mut state = state.to_vec();
         state[3] = 0.0;
@@ -251,9 +250,9 @@ impl Arm {
         state
     }
 
-    /// Directions in which initial states of a model with this many modes can be moved: first
-    /// everything turning together, then what deflects the meshes. Derivatives of the latter are
-    /// huge, and would drown the former if coordinates were moved one by one.
+    /// Returns directions of initial states of a model with this many modes: first the joint
+    /// rotation of all bodies, then mesh deflections. The derivatives along mesh deflections are
+    /// very large, so single coordinates would be ill-conditioned.
     pub fn directions(modes: usize) -> Vec<Vec<f64>> {
         let lever = radii().1 * given::PRESSURE_ANGLE.cos();
         let of = |parts: &[(usize, f64)]| {
@@ -273,7 +272,7 @@ impl Arm {
         directions
     }
 
-    /// Places of the states that a model with this many modes has, without bristles.
+    /// Returns the indices of the states of a model with this many modes, without bristles.
     pub fn states_of_model(modes: usize) -> Vec<usize> {
         let coordinates: Vec<usize> = [0, 1, 2].into_iter().chain(4..4 + modes).collect();
         let rates = coordinates.iter().map(|place| place + COORDINATES);
@@ -281,12 +280,12 @@ impl Arm {
     }
 }
 
-/// phi_i(l) = 2 (-1)^(i+1), counted from 1.
+/// Returns phi_i(l) = 2 (-1)^(i+1), counted from 1.
 fn end_value(mode: usize) -> f64 {
     if mode.is_multiple_of(2) { 2.0 } else { -2.0 }
 }
 
-/// The integral of phi_i over the length: 2 sigma_i l/z_i.
+/// Returns the integral of phi_i over the length: 2 sigma_i l/z_i.
 fn area_value(mode: usize) -> f64 {
     let z = ROOTS[mode];
     let sigma = (z.sinh() - z.sin()) / (z.cosh() + z.cos());
@@ -304,7 +303,7 @@ fn dead(deflection: f64, play: f64) -> f64 {
 }
 
 impl Mesh {
-    /// A part that repeats with the sun's angle, and its slope.
+    /// Returns an effect periodic in the sun's angle, and its derivative.
     fn at(&self, part: (f64, f64, f64), angle: f64) -> (f64, f64) {
         let (order, cosine, sine) = part;
         if cosine == 0.0 && sine == 0.0 {
@@ -314,8 +313,8 @@ impl Mesh {
         (cosine * c + sine * s, order * (sine * c - cosine * s))
     }
 
-    /// Force on the line of action, N, and torque on the sun, N m, by which what repeats with
-    /// its angle acts back on it (both of one of three planets).
+    /// Returns the force along the line of action, N, and the reaction torque on the sun, N m, of
+    /// periodic effects, both for one of three planets.
     fn forces(&self, deflection: f64, speed: f64, angle: f64, turning: f64) -> (f64, f64) {
         let (error, error_slope) = self.at(self.error, angle);
         let (variation, variation_slope) = self.at(self.variation, angle);
@@ -377,7 +376,7 @@ impl Motion for Arm {
             forces[1 + yields + i] =
                 -self.bending[i] * bent - cubic * end_value(i) - pressed * area_value(i);
         }
-        // Rows and columns that there are not are zero.
+        // Missing rows and columns are zero.
         let acceleration = |row: usize| -> f64 {
             let row = self.inverse[row].iter().zip(&forces);
             row.map(|(a, b)| a * b).sum()

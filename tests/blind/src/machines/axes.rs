@@ -1,22 +1,22 @@
-//! Machines of one coordinate: a stage driven by a force, and a pendulum that swings freely.
-//! States: displacement, rate, bent bristles.
+//! Machines of one coordinate: a stage driven by a force, and a free pendulum. States:
+//! displacement, rate, bristle deflection.
 
 use crate::friction::{AxisForces, Dry};
 use crate::integrate::Motion;
 
-/// A stage: M q'' = F - F_v q' + what is hidden. SI units.
+/// Stage: M q'' = F - F_v q' + hidden forces. SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stage {
     /// Moved mass, kg.
     pub mass: f64,
     /// Viscous friction, N s/m.
     pub viscous: f64,
-    /// What may be hidden.
+    /// Hidden forces.
     pub hidden: AxisForces,
 }
 
 impl Stage {
-    /// With nothing hidden.
+    /// Returns the stage with nothing hidden.
     pub fn nominal() -> Self {
         Self {
             mass: 95.0,
@@ -35,13 +35,13 @@ impl Motion for Stage {
     }
 }
 
-/// A pendulum, its angle from upright: (m a^2 + I) th'' = m g a sin(th) - k th' + what is
-/// hidden. SI units.
+/// Pendulum, its angle measured from upright: (m a^2 + I) th'' = m g a sin(th) - k th' + hidden
+/// torques. SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pendulum {
     /// Mass, kg.
     pub mass: f64,
-    /// From pivot to centre of mass, m.
+    /// Distance from the pivot to the centre of mass, m.
     pub distance: f64,
     /// Inertia about the centre of mass, kg m^2.
     pub inertia: f64,
@@ -49,12 +49,12 @@ pub struct Pendulum {
     pub viscous: f64,
     /// Gravity, m/s^2.
     pub gravity: f64,
-    /// What may be hidden.
+    /// Hidden torques.
     pub hidden: AxisForces,
 }
 
 impl Pendulum {
-    /// With nothing hidden.
+    /// Returns the pendulum with nothing hidden.
     pub fn nominal() -> Self {
         Self {
             mass: 0.14758,
@@ -70,7 +70,7 @@ impl Pendulum {
         self.mass * self.distance * self.distance + self.inertia
     }
 
-    /// Kinetic and potential energy, J, without what is hidden.
+    /// Returns the kinetic and potential energy, J, without hidden effects.
     pub fn energy(&self, state: &[f64]) -> f64 {
         0.5 * self.turned() * state[1] * state[1]
             + self.mass * self.gravity * self.distance * state[0].cos()

@@ -1,4 +1,4 @@
-//! The machines with everything that may be hidden in them, and how each is measured.
+//! Machines with all effects that can be hidden in them, and their measurement.
 
 pub mod arm;
 pub mod axes;
@@ -15,40 +15,40 @@ pub use setup::{Channel, Setup, Specification};
 use spring::Spring;
 use two_bodies::{Form, TwoBodies};
 
-/// A machine with its true parameters and what is hidden in it.
+/// Machine with its true parameters and hidden effects.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Machine {
-    /// The flexible arm on its reducer.
+    /// Flexible arm on its reducer.
     Arm(Box<Arm>),
-    /// A stage driven by a force.
+    /// Stage driven by a force.
     Stage(Stage),
-    /// A pendulum that swings freely.
+    /// Free pendulum.
     Pendulum(Pendulum),
-    /// Two bodies, drawn from a family.
+    /// Two bodies from a random family.
     TwoBodies(Box<TwoBodies>),
 }
 
-/// Which machine.
+/// Kind of machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {
-    /// The flexible arm on its reducer.
+    /// Flexible arm on its reducer.
     Arm,
-    /// A stage driven by a force.
+    /// Stage driven by a force.
     Stage,
-    /// A pendulum that swings freely.
+    /// Free pendulum.
     Pendulum,
-    /// Two bodies, drawn by a seed.
+    /// Two bodies with random parameters.
     TwoBodies {
-        /// Which machine.
+        /// Machine of the family.
         form: Form,
-        /// What its parameters are drawn by.
+        /// Seed of its parameters.
         seed: u64,
     },
 }
 
 impl Kind {
-    /// The machine with nothing hidden, its parameters as the specification has them.
+    /// Returns the machine with nothing hidden and the parameters of the specification.
     pub fn nominal(self) -> Machine {
         match self {
             Kind::Arm => Machine::Arm(Box::new(Arm::nominal())),
@@ -60,7 +60,7 @@ impl Kind {
         }
     }
 
-    /// How it is measured.
+    /// Returns the measurement setup.
     pub fn setup(self) -> Setup {
         let channel = |name, unit, scale, noise, step| Channel {
             name,
@@ -116,7 +116,7 @@ impl Kind {
 }
 
 impl Machine {
-    /// Numbers in a state.
+    /// Returns the number of states.
     pub fn state_size(&self) -> usize {
         match self {
             Machine::Arm(_) => arm::STATE,
@@ -125,7 +125,7 @@ impl Machine {
         }
     }
 
-    /// What the channels see, SI.
+    /// Returns the values of the channels, SI.
     pub fn outputs(&self, state: &[f64]) -> Vec<f64> {
         match self {
             Machine::Arm(arm) => arm.outputs(state).to_vec(),
@@ -134,7 +134,7 @@ impl Machine {
         }
     }
 
-    /// Places of the states that the model of the machine has.
+    /// Returns the indices of the states in the machine's model.
     pub fn states_of_model(&self) -> Vec<usize> {
         match self {
             Machine::Arm(_) => Arm::states_of_model(2),
@@ -143,8 +143,8 @@ impl Machine {
         }
     }
 
-    /// Directions in which the initial states of the model can be moved: they span
-    /// [`Machine::states_of_model`], what moves together first.
+    /// Returns directions that span the initial states of the model, see
+    /// [`Machine::states_of_model`]; joint motions first.
     pub fn directions(&self) -> Vec<Vec<f64>> {
         match self {
             Machine::Arm(_) => Arm::directions(2),
@@ -155,7 +155,7 @@ impl Machine {
         }
     }
 
-    /// A state as a machine with nothing hidden has it.
+    /// Returns the corresponding state of a machine with nothing hidden.
     pub fn plain_state(&self, state: &[f64]) -> Vec<f64> {
         match self {
             Machine::Arm(_) => Arm::without_joint(state),
@@ -163,7 +163,7 @@ impl Machine {
         }
     }
 
-    /// The axis of this name.
+    /// Returns the axis of this name.
     pub fn axis(&mut self, name: &str) -> Option<&mut AxisForces> {
         match (self, name) {
             (Machine::Arm(arm), "theta_s") => Some(&mut arm.on_sun),
@@ -178,7 +178,7 @@ impl Machine {
         }
     }
 
-    /// The mesh of this name.
+    /// Returns the mesh of this name.
     pub fn mesh(&mut self, name: &str) -> Option<&mut Mesh> {
         match (self, name) {
             (Machine::Arm(arm), "x_sp") => Some(&mut arm.meshes[0]),
@@ -187,7 +187,7 @@ impl Machine {
         }
     }
 
-    /// The spring of this name.
+    /// Returns the spring of this name.
     pub fn spring(&mut self, name: &str) -> Option<&mut Spring> {
         match self {
             Machine::TwoBodies(bodies) if bodies.spring_name() == Some(name) => {
@@ -197,7 +197,7 @@ impl Machine {
         }
     }
 
-    /// Multiplies a parameter; whether there is one of this name.
+    /// Multiplies a parameter; returns false if it does not exist.
     pub fn scale(&mut self, parameter: &str, factor: f64) -> bool {
         let value = match (self, parameter) {
             (Machine::Arm(arm), "b_m") => &mut arm.b_m,
@@ -225,7 +225,7 @@ impl Machine {
         true
     }
 
-    /// Chooses how dry friction is written on every axis.
+    /// Chooses the law of dry friction on every axis.
     pub fn choose_dry(&mut self, draw: &mut Draw) {
         let bristles = draw.between(0.0, 1.0) < 0.5;
         let choose = |forces: &mut AxisForces, reach: f64, inertia: f64| {

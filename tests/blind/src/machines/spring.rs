@@ -1,31 +1,31 @@
-//! A spring between two bodies with what may be wrong in it. Its laws are not written as a catalogue
-//! writes them: plays and stops begin smoothly, a spring that hardens does so by a hyperbolic sine.
+//! Spring between two bodies with its hidden effects. Its laws differ from the catalogue's:
+//! backlash and stops begin smoothly, and hardening is a hyperbolic sine.
 
-/// A spring: stiffness and damping as declared, and what may be hidden. Zero is nothing.
+/// Spring with declared stiffness and damping, and hidden effects; zero means none.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spring {
     /// Force per deflection.
     pub stiffness: f64,
     /// Force per rate of the deflection.
     pub damping: f64,
-    /// Half of a play.
+    /// Half of the backlash.
     pub play: f64,
-    /// How much it hardens: force per cube of the deflection, at small ones.
+    /// Hardening: force per cube of the deflection, at small deflections.
     pub hardening: f64,
-    /// Stop on the positive side: stiffness, and the deflection at which it is met.
+    /// Stop on the positive side: stiffness, and deflection at contact.
     pub upper: (f64, f64),
-    /// The same on the negative side.
+    /// Stop on the negative side.
     pub lower: (f64, f64),
 }
 
-/// Part of a play or of a way to a stop over which contact is made.
+/// Width of the smooth transition to contact, relative to the backlash or the distance of the stop.
 const ROUNDED: f64 = 1.0 / 30.0;
 
-/// Damping of a stop, s of its stiffness.
+/// Damping of a stop divided by its stiffness, s.
 const STOP_LOSS: f64 = 2e-3;
 
 impl Spring {
-    /// With nothing hidden.
+    /// Returns the spring with nothing hidden.
     pub fn declared(stiffness: f64, damping: f64) -> Self {
         Self {
             stiffness,
@@ -37,7 +37,7 @@ impl Spring {
         }
     }
 
-    /// The force that pulls the deflection `p`, with the rate `v`, back.
+    /// Returns the restoring force at the deflection `p` with the rate `v`.
     pub fn force(&self, p: f64, v: f64) -> f64 {
         let (p_held, v_held) = match self.play > 0.0 {
             true => {
@@ -57,7 +57,7 @@ impl Spring {
     }
 }
 
-/// The force of a stop on a deflection that grows towards it; it does not pull.
+/// Returns the force of a stop on a deflection towards it; never attractive.
 fn stop((stiffness, at): (f64, f64), p: f64, v: f64) -> f64 {
     if stiffness == 0.0 {
         return 0.0;
@@ -66,7 +66,7 @@ fn stop((stiffness, at): (f64, f64), p: f64, v: f64) -> f64 {
     (stiffness * (depth + STOP_LOSS * meets * v)).max(0.0)
 }
 
-/// By how much a deflection is beyond a limit, rounded, and the derivative of this.
+/// Returns the smoothed excess of a deflection over a limit, and its derivative.
 fn beyond(p: f64, limit: f64) -> (f64, f64) {
     let excess = p - limit;
     let root = excess.hypot(ROUNDED * limit);
@@ -78,7 +78,7 @@ mod tests {
     use super::Spring;
 
     #[test]
-    fn a_play_lets_small_deflections_through_and_takes_its_half_from_large_ones() {
+    fn backlash_is_subtracted_from_large_deflections_only() {
         let mut spring = Spring::declared(100.0, 0.5);
         spring.play = 0.02;
         assert!(spring.force(0.005, 0.0).abs() < 0.005 * 100.0 * 0.01);
@@ -87,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn a_spring_hardens_by_the_cube_and_a_stop_only_pushes() {
+    fn spring_hardens_cubically_and_stop_only_pushes() {
         let mut spring = Spring::declared(100.0, 0.0);
         spring.hardening = 500.0;
         let cubic = |p: f64| 100.0 * p + 500.0 * p.powi(3);

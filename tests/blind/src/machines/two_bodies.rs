@@ -1,6 +1,6 @@
-//! Machines of two coordinates, drawn from a family: a drive of two masses on an elastic shaft, a
-//! crane, a quarter of a car on its actuator. States: two displacements, their rates, bent
-//! bristles of both axes. SI units.
+//! Machines of two coordinates with random parameters: a drive of two masses on an elastic shaft, a
+//! crane, and a quarter car on its actuator. States: two displacements, their rates, bristle
+//! deflections of both axes. SI units.
 
 use super::setup::{Channel, Setup, Specification};
 use super::spring::Spring;
@@ -8,55 +8,54 @@ use crate::friction::{AxisForces, Dry};
 use crate::integrate::Motion;
 use crate::random::Draw;
 
-/// Numbers in a state.
+/// Number of states.
 pub const STATE: usize = 6;
 
-/// Standard gravity, m/s^2.
 const GRAVITY: f64 = 9.81;
 
-/// Which machine of the family.
+/// Machine of the family.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Form {
     /// Motor and load on an elastic shaft, driven by the motor's torque.
     TwoMass,
-    /// A load on a rod below a trolley that is driven by a force.
+    /// Load on a rod below a trolley that is driven by a force.
     Crane,
-    /// Body and wheel of a car, a spring, a damper and an actuator between them.
+    /// Body and wheel of a car with a spring, a damper and an actuator between them.
     QuarterCar,
 }
 
-/// Two bodies with their true parameters and what is hidden in them.
+/// Two bodies with their true parameters and hidden effects.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TwoBodies {
-    /// Which machine.
+    /// Machine of the family.
     pub form: Form,
     /// Inertias of motor and load, masses of trolley and load, of body and wheel.
     pub inertia: [f64; 2],
-    /// Friction of motor and load, of trolley and rod.
+    /// Friction of motor and load, or of trolley and rod.
     pub viscous: [f64; 2],
-    /// Shaft or suspension.
+    /// Spring of the shaft or suspension.
     pub spring: Spring,
     /// Stiffness of the tyre, N/m.
     pub tyre: f64,
     /// Length of the rod, m.
     pub length: f64,
-    /// What may be hidden: on motor and load, on trolley and rod, on the suspension's travel and
-    /// on the body.
+    /// Hidden forces: on motor and load, on trolley and rod, or on the suspension's travel and the
+    /// body.
     pub hidden: [AxisForces; 2],
-    /// How much stronger the drive is than the record says, and what it adds.
+    /// Gain and bias of the drive relative to the record.
     pub actuator: (f64, f64),
 }
 
-/// A part of a number that is drawn, as a specification writes it: four digits.
+/// Rounds to four digits, as in the specification.
 fn rounded(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
 }
 
 impl TwoBodies {
-    /// One of the family, with nothing hidden.
+    /// Returns a machine with random parameters and nothing hidden.
     pub fn drawn(form: Form, seed: u64) -> Self {
-        // Cases have streams 1, 2, ...: machines come from the other end.
+        // Cases use the streams 1, 2, ...; machines count from the other end.
         let mut draw = Draw::new(seed, u64::MAX - form as u64);
         let mut between = |low: f64, high: f64| rounded(draw.between(low, high));
         let friction = |speed: f64| AxisForces::none(Dry::Steep { speed });
@@ -113,7 +112,7 @@ impl TwoBodies {
         }
     }
 
-    /// The axes' names, in the order of [`TwoBodies::hidden`].
+    /// Returns the names of the axes, in the order of [`TwoBodies::hidden`].
     pub fn axes(&self) -> [&'static str; 2] {
         match self.form {
             Form::TwoMass => ["theta_m", "theta_l"],
@@ -122,7 +121,7 @@ impl TwoBodies {
         }
     }
 
-    /// The spring's name, where there is one.
+    /// Returns the name of the spring, if there is one.
     pub fn spring_name(&self) -> Option<&'static str> {
         match self.form {
             Form::TwoMass => Some("shaft"),
@@ -131,7 +130,7 @@ impl TwoBodies {
         }
     }
 
-    /// A parameter by its name in the specification.
+    /// Returns a parameter by its name in the specification.
     pub fn parameter(&mut self, name: &str) -> Option<&mut f64> {
         Some(match (self.form, name) {
             (Form::TwoMass, "J_m") | (Form::Crane, "M") | (Form::QuarterCar, "m_b") => {
@@ -150,7 +149,7 @@ impl TwoBodies {
         })
     }
 
-    /// A force, torque or both of the size that moves the machine as it is meant to be moved.
+    /// Returns the usual magnitude of the input force or torque.
     pub fn usual_input(&self) -> f64 {
         match self.form {
             Form::TwoMass => 10.0 * (self.inertia[0] + self.inertia[1]),
@@ -159,13 +158,14 @@ impl TwoBodies {
         }
     }
 
-    /// The spring's deflection.
+    /// Returns the deflection of the spring.
     pub fn deflection(state: &[f64]) -> f64 {
         state[0] - state[1]
     }
 
-    /// How far bristles of both axes bend, and the inertia that swings with them. They turn within
-    /// a part of a sample at usual speeds: slower ones were a lag that no friction of a catalogue has.
+    /// Returns the deflection at which the bristles slide and their inertia, for both axes. They
+    /// respond within a fraction of a sample at usual speeds: slower ones would act like a lag,
+    /// unlike all friction of the catalogue.
     pub fn bristles(&self) -> [(f64, f64); 2] {
         match self.form {
             Form::TwoMass => [(1e-4, self.inertia[0]), (1e-4, self.inertia[1])],
@@ -177,7 +177,7 @@ impl TwoBodies {
         }
     }
 
-    /// Directions in which initial states can be moved, what moves together first.
+    /// Returns directions of initial states, joint motions first.
     pub fn directions(&self) -> Vec<Vec<f64>> {
         let together = match self.form {
             Form::TwoMass | Form::QuarterCar => 1.0,
@@ -191,7 +191,7 @@ impl TwoBodies {
         ]
     }
 
-    /// Kinetic and potential energy, J, without what is hidden.
+    /// Returns the kinetic and potential energy, J, without hidden effects.
     pub fn energy(&self, state: &[f64]) -> f64 {
         let [a, b] = self.inertia;
         let (v, w) = (state[2], state[3]);
@@ -213,7 +213,7 @@ impl TwoBodies {
         }
     }
 
-    /// How it is measured, with the specification that it is declared by.
+    /// Returns the measurement setup with the specification.
     pub fn setup(&self) -> Setup {
         let channel = |name, unit, noise, step| Channel {
             name,
@@ -380,8 +380,8 @@ impl Motion for TwoBodies {
                 )
             }
             Form::Crane => {
-                // Newton's law for trolley and load, and the moment about the trolley:
-                // (a + b) x'' + b l cos(th) th'' = across, cos(th) x'' + l th'' = along / (b l).
+                // Newton's law for trolley and load, and the moment around the trolley: (a + b) x''
+                // + b l cos(th) th'' = across, cos(th) x'' + l th'' = along / (b l).
                 let (sine, cosine) = y.sin_cos();
                 let l = self.length;
                 let across = drive - self.viscous[0] * v + b * l * w * w * sine + first;

@@ -1,4 +1,4 @@
-//! What is hidden where: the lists from which cases are made.
+//! Lists of effects and places for the cases.
 
 use std::f64::consts::PI;
 
@@ -9,7 +9,7 @@ use crate::machines::Kind;
 use crate::machines::two_bodies::Form;
 use crate::random::Draw;
 
-/// Everything as declared but the parameters.
+/// True parameters vary with their priors, biases with a fifth of theirs; no other sensor errors.
 const USUAL: Nuisances = Nuisances {
     declared: 1.0,
     bias: 0.2,
@@ -17,8 +17,8 @@ const USUAL: Nuisances = Nuisances {
     delay: 0.0,
 };
 
-/// How many floors single effects stand high: one that is hard to see, the least that must be
-/// found, and some that are plain.
+/// Sizes of single effects in noise floors: one that is hard to detect, the smallest that must be
+/// found, and three clear ones.
 const LEVELS: [f64; 5] = [1.5, 3.0, 6.0, 15.0, 60.0];
 
 fn case(group: Group, machine: Kind, manner: Manner, hidden: Vec<Planned>) -> Case {
@@ -61,7 +61,7 @@ fn planned(effect: Effect, on: &str, level: f64, draw: &mut Draw) -> Planned {
     };
     let drawn = if either { draw.sign() } else { 1.0 };
     let sign = match (effect, on) {
-        // A spring hardens by a law of its own, and by that only hardens.
+        // The spring's law can only harden.
         (StiffnessNonlinearity, on) if on != "arm" => 1.0,
         _ => drawn,
     };
@@ -80,25 +80,25 @@ fn planned(effect: Effect, on: &str, level: f64, draw: &mut Draw) -> Planned {
     }
 }
 
-/// What no record of these can tell from it.
+/// Returns the effects that its records cannot distinguish from it.
 fn alike(effect: Effect, on: &str, order: f64) -> Vec<(String, String)> {
     if effect == Effect::TorqueRipple && order == 1.0 {
-        // An unbalanced weight, whatever turns.
+        // An unbalanced weight, on any rotating body.
         return vec![("gravity".to_owned(), on.to_owned())];
     }
     let list: &[(&str, &str)] = match (effect, on) {
-        // A torque that repeats once per turn.
+        // A torque ripple of order one.
         (Effect::Gravity, "theta_c") => &[("torque_ripple", "theta_c")],
-        // Only the sum of the plays' middles moves what is measured.
+        // Only the sum of the offsets of both plays is observable.
         (Effect::AsymmetricBacklash, "x_sp") => &[("asymmetric_backlash", "x_pr")],
-        // E and I stand together everywhere.
+        // Only the product E I occurs.
         (Effect::ParameterShift, "E") => &[("parameter_shift", "I")],
         (Effect::ParameterShift, "m_c") => &[("parameter_shift", "m_p")],
         (Effect::ParameterShift, "a") => &[("parameter_shift", "g"), ("gravity", "theta")],
-        // Far from upright a spring to upright is little but a constant.
+        // Far from upright, a spring towards upright is nearly constant.
         (Effect::ForceOffset, "theta") => &[("elastic_restraint", "theta")],
         (Effect::ElasticRestraint, "theta") => &[("force_offset", "theta")],
-        // An encoder that is turned, or gravity that is.
+        // A bias of the encoder is equivalent to a rotated direction of gravity.
         (Effect::SensorBias, "theta") => &[("gravity", "theta")],
         _ => &[],
     };
@@ -106,12 +106,13 @@ fn alike(effect: Effect, on: &str, order: f64) -> Vec<(String, String)> {
     owned.collect()
 }
 
-/// The machines of two bodies that a seed draws.
+/// Returns the machines of two bodies of a seed.
 fn two_bodies(seed: u64) -> [Kind; 3] {
     [Form::TwoMass, Form::Crane, Form::QuarterCar].map(|form| Kind::TwoBodies { form, seed })
 }
 
-/// Every effect of the catalogue alone; every other one with nuisances at full priors.
+/// Returns cases of every effect of the catalogue by itself; every second one with nuisances at
+/// full priors.
 pub fn singles(seed: u64, draw: &mut Draw) -> Vec<Case> {
     use Effect::{
         AsymmetricBacklash, AsymmetricFriction, Backlash, CoulombFriction, ElasticRestraint,
@@ -126,7 +127,7 @@ pub fn singles(seed: u64, draw: &mut Draw) -> Vec<Case> {
     let (stage, pendulum) = ((Stage, "q"), (Pendulum, "theta"));
     let arm = (Arm, "arm");
     let mesh = (Arm, "x_sp");
-    // Two places each, some twice.
+    // Two places per effect, some twice.
     let either = |one, other, draw: &mut Draw| draw.one_of(&[one, other]);
     let list: [(Effect, [(Kind, &str); 2]); 20] = [
         (
@@ -157,7 +158,7 @@ pub fn singles(seed: u64, draw: &mut Draw) -> Vec<Case> {
         ),
     ];
     let [drive, crane, car] = two_bodies(seed);
-    // Parameters that nobody declared, the drive's strength, springs, other machines.
+    // Undeclared parameters, gain of the drive, springs, other machines.
     let further: [(Effect, Kind, &str); 20] = [
         (CoulombFriction, drive, "theta_m"),
         (CoulombFriction, drive, "theta_l"),
@@ -192,7 +193,7 @@ pub fn singles(seed: u64, draw: &mut Draw) -> Vec<Case> {
     }
     let single = |(number, (effect, machine, on, level)): (usize, (Effect, Kind, &str, f64))| {
         let mut hidden = planned(effect, on, level, draw);
-        // More of it would be a viscous friction beside it.
+        // A larger value would be equivalent to viscous friction.
         if on == "F_v" {
             hidden.hidden.sign = -1.0;
         }
@@ -205,7 +206,7 @@ pub fn singles(seed: u64, draw: &mut Draw) -> Vec<Case> {
     wanted.into_iter().enumerate().map(single).collect()
 }
 
-/// Nothing hidden, with everything off that may be off.
+/// Returns cases with nothing hidden, with all nuisances.
 pub fn nothings(seed: u64) -> Vec<Case> {
     let none = Nuisances {
         declared: 0.0,
@@ -235,10 +236,10 @@ pub fn nothings(seed: u64) -> Vec<Case> {
     cases
 }
 
-/// An effect and where it is.
+/// Effect and place.
 type Placed<'a> = (Effect, &'a str);
 
-/// Two effects, both plain.
+/// Returns cases with two clear effects.
 pub fn pairs(seed: u64, draw: &mut Draw) -> Vec<Case> {
     use Effect::{
         AsymmetricFriction, Backlash, CoulombFriction, ElasticRestraint, EndStop, ForceOffset,
@@ -300,7 +301,7 @@ pub fn pairs(seed: u64, draw: &mut Draw) -> Vec<Case> {
     list.into_iter().enumerate().map(pair).collect()
 }
 
-/// Effects of no catalogue.
+/// Returns cases with effects outside the catalogue.
 pub fn outside(seed: u64, draw: &mut Draw) -> Vec<Case> {
     use Effect::{ForeignHum, WeakeningDrive, WornFriction};
     use Kind::{Arm, Pendulum, Stage};
@@ -322,7 +323,7 @@ pub fn outside(seed: u64, draw: &mut Draw) -> Vec<Case> {
     list.map(strange).into()
 }
 
-/// Effects that their records cannot tell from another.
+/// Returns cases with effects that their records cannot distinguish from others.
 pub fn untellable(draw: &mut Draw) -> Vec<Case> {
     use Effect::{CoulombFriction, ElasticRestraint, ForceOffset, ParameterShift};
     use Kind::{Arm, Pendulum, Stage};
@@ -380,7 +381,7 @@ pub fn untellable(draw: &mut Draw) -> Vec<Case> {
     let unclear =
         |(machine, manner, effect, on, other): (Kind, Manner, Effect, &str, (&str, &str))| {
             let mut hidden = planned(effect, on, 10.0, draw);
-            // Dry friction can only take the part of an offset that opposes the motion.
+            // Dry friction can only represent the part of an offset that opposes the motion.
             if effect == ForceOffset {
                 hidden.hidden.sign = -1.0;
             }

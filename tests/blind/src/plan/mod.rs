@@ -1,7 +1,6 @@
-//! Which cases a seed makes: 60 with one effect, half of them with everything else off as the priors
-//! say, 30 with nothing hidden, 15 with two and 15 with something outside the catalogue or that the
-//! record cannot tell. Their order says
-//! nothing of what they are.
+//! Cases of a seed: 60 with one effect, half of them with all nuisances, 30 with nothing hidden, 15
+//! with two effects, and 15 with effects outside the catalogue or indistinguishable ones. Their
+//! order is random.
 
 mod lists;
 
@@ -12,52 +11,52 @@ use crate::inputs::Manner;
 use crate::machines::{Kind, Machine, Setup};
 use crate::random::Draw;
 
-/// What kind of case it is.
+/// Group of a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Group {
     /// One effect of the catalogue.
     Single,
-    /// Nothing.
+    /// Nothing hidden.
     Nothing,
     /// Two effects of the catalogue.
     Pair,
-    /// Something that no catalogue holds.
+    /// Effect outside the catalogue.
     Outside,
-    /// An effect that the record cannot tell from another.
+    /// Effect that the record cannot distinguish from another.
     Untellable,
 }
 
-/// An effect to hide.
+/// Effect to hide.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Planned {
-    /// The effect; its size is found later.
+    /// Effect; its size is determined later.
     pub hidden: Hidden,
-    /// How many floors high it shall stand.
+    /// Size in noise floors.
     pub level: f64,
-    /// What the record cannot tell from it.
+    /// Effects that the record cannot distinguish from it, with their places.
     pub alike: Vec<(String, String)>,
 }
 
-/// A case.
+/// Machine with its excitation and hidden effects.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Case {
-    /// Its number, from 0.
+    /// Number, from 0.
     pub number: usize,
-    /// What kind of case it is.
+    /// Group.
     pub group: Group,
-    /// The machine.
+    /// Machine.
     pub machine: Kind,
-    /// How it is driven.
+    /// Excitation.
     pub manner: Manner,
-    /// What is hidden.
+    /// Hidden effects.
     pub hidden: Vec<Planned>,
-    /// What is off without being an effect.
+    /// Deviations that are not effects.
     pub nuisances: Nuisances,
 }
 
-/// What is off without being an effect: how many standard deviations of its prior each
-/// declared parameter, bias, gain and delay may be.
+/// Deviations that are not effects: scale, in standard deviations of the priors, of the deviations
+/// of declared parameters, biases, gains and delays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nuisances {
     declared: f64,
@@ -67,7 +66,7 @@ pub struct Nuisances {
 }
 
 impl Nuisances {
-    /// Everything as the priors say.
+    /// All deviations at the full priors.
     pub const FULL: Self = Self {
         declared: 1.0,
         bias: 1.0,
@@ -75,7 +74,7 @@ impl Nuisances {
         delay: 1.0,
     };
 
-    /// Draws them, within two standard deviations; returns the true declared parameters.
+    /// Draws the deviations, within two standard deviations; returns the true declared parameters.
     pub fn draw(
         &self,
         setup: &Setup,
@@ -89,7 +88,7 @@ impl Nuisances {
             machine.scale(name, factor);
             declared.push(((*name).to_owned(), factor));
         }
-        // A motion that begins before the record cannot be seen late.
+        // Without an input, a delay is equivalent to an earlier initial state.
         let late = if setup.input.is_some() {
             self.delay
         } else {
@@ -106,13 +105,13 @@ impl Nuisances {
 }
 
 impl Case {
-    /// Whether its motions begin at rest.
+    /// Returns true if the motions start at rest.
     pub fn starts_at_rest(&self) -> bool {
         self.machine != Kind::Pendulum && self.manner != Manner::OneWay
     }
 }
 
-/// The cases of a seed.
+/// Returns the cases of a seed.
 pub fn plan(seed: u64) -> Vec<Case> {
     let mut draw = Draw::new(seed, 0);
     let mut cases = lists::singles(seed, &mut draw);
@@ -133,7 +132,7 @@ mod tests {
     use crate::machines::Kind;
 
     #[test]
-    fn a_seed_makes_the_numbers_of_cases_that_are_promised() {
+    fn plan_has_the_documented_numbers_of_cases() {
         let cases = plan(7);
         let of = |group| cases.iter().filter(|case| case.group == group).count();
         assert_eq!(of(Group::Single), 60);
@@ -153,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn half_of_the_singles_have_nuisances_at_full_priors() {
+    fn half_of_single_cases_have_full_nuisances() {
         let cases = plan(7);
         let singles = cases.iter().filter(|case| case.group == Group::Single);
         let full = singles.filter(|case| case.nuisances == Nuisances::FULL);

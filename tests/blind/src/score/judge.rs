@@ -1,4 +1,4 @@
-//! One case: what was found against what is hidden.
+//! Comparison of the found and hidden effects of one case.
 
 use serde_json::Value;
 
@@ -8,8 +8,8 @@ use crate::plan::Group;
 use crate::records::{Label, Truth};
 use crate::run::{Ending, Outcome};
 
-/// Half of a 90 % interval, in standard deviations.
-const NINETY: f64 = 1.645;
+/// Half-width of a 90 % interval, in standard deviations.
+const HALF_WIDTH_90: f64 = 1.645;
 
 /// Judges one case.
 pub fn judge(label: &Label, outcome: &Outcome) -> Judged {
@@ -41,15 +41,16 @@ pub fn judge(label: &Label, outcome: &Outcome) -> Judged {
         match label
             .hidden
             .iter()
-            .find(|truth| is(found, truth) == Match::Named)
+            .find(|truth| match_effect(found, truth) == Match::Named)
         {
-            Some(truth) => check(truth, usual(label, truth), found, &mut judged),
+            Some(truth) => {
+                check_parameters(truth, ordinary_error(label, truth), found, &mut judged)
+            }
             None if label
                 .hidden
                 .iter()
-                .any(|truth| is(found, truth) == Match::Class) => {}
-            // A force without a name says nothing of what is hidden; it is false where that is in
-            // the catalogue.
+                .any(|truth| match_effect(found, truth) == Match::Class) => {}
+            // An empirical force is wrong only if the hidden effect is in the catalogue.
             None if label.group == Group::Outside && is_empirical(found) => {}
             None => judged.extra += 1,
         }
@@ -60,7 +61,7 @@ pub fn judge(label: &Label, outcome: &Outcome) -> Judged {
     judged
 }
 
-/// Closure on held-out records; nothing is closed where there is no answer.
+/// Returns the closure on held-out records; zero if there is no answer.
 fn closure(outcome: &Outcome) -> Option<f64> {
     match (outcome.ending, &outcome.discovery) {
         (Ending::Answered, Some(discovery)) => discovery["closure"]["test"].as_f64(),
@@ -97,7 +98,10 @@ fn judgement(label: &Label, outcome: &Outcome, effects: &[Value]) -> Judgement {
     let count = label.hidden.len();
     let matches: Vec<Match> = (label.hidden.iter())
         .map(|truth| {
-            let first = effects.iter().take(count).map(|found| is(found, truth));
+            let first = effects
+                .iter()
+                .take(count)
+                .map(|found| match_effect(found, truth));
             first.max().unwrap_or(Match::None)
         })
         .collect();
@@ -124,16 +128,16 @@ fn judgement(label: &Label, outcome: &Outcome, effects: &[Value]) -> Judgement {
     }
 }
 
-/// How an accepted effect agrees with a hidden one.
+/// Agreement of an accepted effect with a hidden one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Match {
     None,
-    /// A class that holds it.
+    /// Class that contains it.
     Class,
     Named,
 }
 
-fn is(found: &Value, truth: &Truth) -> Match {
+fn match_effect(found: &Value, truth: &Truth) -> Match {
     let same = |entry: &Value| {
         word(entry, "effect") == truth.effect && word(entry, "on") == truth.hidden.on
     };
@@ -148,19 +152,18 @@ fn is(found: &Value, truth: &Truth) -> Match {
     }
 }
 
-/// An expression without a name.
 fn is_empirical(found: &Value) -> bool {
     word(found, "status") == "empirical"
 }
 
-/// How many effects a class holds; none where one is named.
+/// Returns the number of effects in a class; `None` for a named effect.
 fn class_size(found: &Value) -> Option<usize> {
     let others = found["equivalent"].as_array()?.len();
     (word(found, "status") == "class").then_some(1 + others)
 }
 
-/// What a faulty sensor is off by beside the fault, as every sensor is.
-fn usual(label: &Label, truth: &Truth) -> f64 {
+/// Returns the ordinary error of a faulty sensor in addition to its fault.
+fn ordinary_error(label: &Label, truth: &Truth) -> f64 {
     let of = match truth.hidden.effect {
         Effect::SensorBias => &label.sensors.bias,
         Effect::SensorGain => &label.sensors.gain,
@@ -172,8 +175,8 @@ fn usual(label: &Label, truth: &Truth) -> f64 {
     place.map_or(0.0, |place| of[place])
 }
 
-/// Signs and intervals of a right effect's parameters, which stand in the order of names.
-fn check(truth: &Truth, usual: f64, found: &Value, judged: &mut Judged) {
+/// Checks signs and intervals of the parameters of a correct effect, sorted by name.
+fn check_parameters(truth: &Truth, usual: f64, found: &Value, judged: &mut Judged) {
     let Some(parameters) = found["parameters"].as_object() else {
         return;
     };
@@ -185,15 +188,16 @@ fn check(truth: &Truth, usual: f64, found: &Value, judged: &mut Judged) {
         let (Some(value), Some(sd)) = (entry["value"].as_f64(), entry["sd"].as_f64()) else {
             continue;
         };
-        // A cosine or sine that happens to be small may well come out on the other side.
-        let clear = expected.abs() > NINETY * 2.0 * sd;
+        // A small cosine or sine can have the wrong sign by chance.
+        let clear = expected.abs() > HALF_WIDTH_90 * 2.0 * sd;
         judged.wrong_signs += usize::from(clear && value * expected < 0.0);
-        judged.intervals.0 += usize::from((value - expected).abs() <= NINETY * sd);
+        judged.intervals.0 += usize::from((value - expected).abs() <= HALF_WIDTH_90 * sd);
         judged.intervals.1 += 1;
     }
 }
 
-/// Intervals of the declared parameters where everything hidden was found.
+/// Counts the intervals of the declared parameters that contain the true value, if all hidden
+/// effects were found.
 fn refitted(label: &Label, discovery: &Value) -> (usize, usize) {
     let mut counts = (0, 0);
     let shifted = |name: &str| {
@@ -209,14 +213,14 @@ fn refitted(label: &Label, discovery: &Value) -> (usize, usize) {
             continue;
         };
         if !shifted(name) && label.hidden.is_empty() {
-            counts.0 += usize::from((value - factor * nominal).abs() <= NINETY * sd);
+            counts.0 += usize::from((value - factor * nominal).abs() <= HALF_WIDTH_90 * sd);
             counts.1 += 1;
         }
     }
     counts
 }
 
-/// What a specification says of a declared parameter, in its unit.
+/// Returns the declared value of a parameter, in its unit.
 fn nominal(label: &Label, name: &str) -> Option<f64> {
     use crate::machines::Machine;
     match (label.machine.nominal(), name) {

@@ -1,5 +1,5 @@
-//! Results against labels: which verdict every effect got, and the figures that count - right
-//! effects at the right place, false alarms, wrong signs, intervals, closures, classes.
+//! Comparison of results with labels: the judgement of every case and the success rates - correct
+//! effects at the correct place, false alarms, wrong signs, intervals, closures, classes.
 
 mod judge;
 mod table;
@@ -13,50 +13,52 @@ use crate::plan::Group;
 pub use judge::judge;
 pub use table::table;
 
-/// Effects below so many floors need not be found: three, as near as sizes are sought.
+/// Minimum size, in noise floors, of effects that must be found: three, minus the accuracy of the
+/// sizes.
 pub const FLOORS: f64 = 2.85;
 
-/// How a case was judged.
+/// Judgement of a case.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Judged {
-    /// Its number.
+    /// Number of the case.
     pub case: usize,
-    /// What kind of case it is.
+    /// Group.
     pub group: Group,
-    /// What is hidden: effects, places and floors.
+    /// Hidden effects with places and sizes in noise floors.
     pub hidden: Vec<(String, String, f64)>,
-    /// What was found: effects, places and how sure.
+    /// Found effects with places and status.
     pub found: Vec<(String, String, String)>,
-    /// In a word.
+    /// Judgement.
     pub judgement: Judgement,
-    /// Whether everything else is off as the priors say.
+    /// Whether all nuisances are at full priors.
     pub full_priors: bool,
-    /// How many effects each class that was found holds.
+    /// Number of effects in each found class.
     pub classes: Vec<usize>,
-    /// How many accepted effects are none of those hidden.
+    /// Number of accepted effects that are not hidden.
     pub extra: usize,
-    /// How many parameters of right effects have the other sign.
+    /// Number of parameters of correct effects with the wrong sign.
     pub wrong_signs: usize,
-    /// Intervals of right effects' parameters that hold the true value, and all of them.
+    /// Number of intervals of correct effects' parameters with the true value, and their total.
     pub intervals: (usize, usize),
     /// The same for refitted parameters.
     pub refitted: (usize, usize),
-    /// Closure on held-out records: none where an answer says that there was no gap to close,
-    /// nothing where there is no answer.
+    /// Closure on held-out records: `None` if the answer reports no gap, zero if there is no
+    /// answer.
     pub closure: Option<f64>,
-    /// How long it took, s.
+    /// Duration, s.
     pub seconds: f64,
 }
 
 impl Judged {
-    /// Whether there is an answer, and every effect in it is one that is hidden, or a class that holds
-    /// one, with the right sign; an answer that names nothing too.
+    /// Returns true if there is an answer without a false effect: every effect, if any, is hidden
+    /// or is a class with a hidden one, with the correct sign.
     pub fn says_nothing_false(&self) -> bool {
         let is_answer = !matches!(self.judgement, Judgement::Timeout | Judgement::Failed);
         is_answer && self.extra == 0 && self.wrong_signs == 0
     }
 
-    /// Whether what is hidden stands first in the answer, alone or before what is not told from it.
+    /// Returns true if the hidden effect is first in the answer, by itself or as the first of its
+    /// class.
     fn is_first(&self) -> bool {
         let is_right = matches!(self.judgement, Judgement::Right | Judgement::Class);
         let mut pairs = self.hidden.iter().zip(&self.found);
@@ -67,88 +69,87 @@ impl Judged {
     }
 }
 
-/// A case in a word.
+/// Judgement of a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Judgement {
-    /// Everything hidden was named, first of all; nothing where there is nothing; a class
-    /// where nothing better can be said.
+    /// All hidden effects are named first; nothing, if nothing is hidden; or a class, if the record
+    /// cannot distinguish its members.
     Right,
-    /// A class that holds what was hidden, though it could be told.
+    /// A class with the hidden effect, although it could be distinguished.
     Class,
-    /// A part of what was hidden.
+    /// A part of the hidden effects.
     Part,
-    /// Something else.
+    /// Other effects.
     Wrong,
-    /// No gap was seen.
+    /// No gap was found.
     Missed,
-    /// A gap was seen, not named.
+    /// A gap was found, but no effect.
     Unexplained,
-    /// It took too long.
+    /// Time limit exceeded.
     Timeout,
     /// No answer.
     Failed,
 }
 
-/// The figures of a suite.
+/// Success rates of a suite.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Score {
-    /// Single effects of 3 floors or more: named first at their place, and all of them.
+    /// Single effects of 3 floors or more: named first at their place, and their total.
     pub named: (usize, usize),
-    /// The same, where the first of a class is enough.
+    /// The same, counting the first effect of a class.
     pub named_or_first_of_class: (usize, usize),
-    /// The same, where a class that holds the effect is enough.
+    /// The same, counting any class that contains the effect.
     pub named_or_class: (usize, usize),
-    /// Those of the first with everything else off as the priors say.
+    /// The same as `named`, only with nuisances at full priors.
     pub named_at_full_priors: (usize, usize),
-    /// Answers with nothing false in them, and all cases.
+    /// Answers without a false effect, and the number of cases.
     pub nothing_false: (usize, usize),
-    /// Classes that were found: how many, how many effects they hold in all, and the largest.
+    /// Found classes: their number, the sum of their sizes, and the largest.
     pub class_sizes: (usize, usize, usize),
-    /// Cases with nothing hidden in which an effect was reported, and all of them.
+    /// Cases with nothing hidden and a reported effect, and their total.
     pub false_alarms: (usize, usize),
-    /// Parameters of right effects with the wrong sign.
+    /// Parameters of correct effects with the wrong sign.
     pub wrong_signs: usize,
-    /// Intervals that hold the true value, and all of them.
+    /// Intervals that contain the true value, and their total.
     pub intervals: (usize, usize),
     /// Intervals of refitted parameters.
     pub refitted: (usize, usize),
-    /// Single effects of 3 floors or more: mean closure, those of 0.8 or more, all that had a
-    /// gap, and those that had none.
+    /// Single effects of 3 floors or more: closures, with a threshold of 0.8.
     pub single_closure: Closure,
-    /// Pairs: the same with 0.6.
+    /// Pairs: closures, with a threshold of 0.6.
     pub pair_closure: Closure,
-    /// Pairs of which both were found, and all of them.
+    /// Pairs of which both effects were found, and their total.
     pub pairs: (usize, usize),
-    /// Untellable cases reported as a class that holds the effect, and all of them.
+    /// Indistinguishable cases reported as a class with the effect, and their total.
     pub classes: (usize, usize),
-    /// Effects outside the catalogue that got no name of it, and all of them.
+    /// Effects outside the catalogue that were not named as one of it, and their total.
     pub outside: (usize, usize),
-    /// Cases that took too long, and those without an answer.
+    /// Cases beyond the time limit, and cases without an answer.
     pub without_answer: (usize, usize),
-    /// Seconds: in all, and the longest.
+    /// Total and maximum duration, s.
     pub seconds: (f64, f64),
-    /// Every case.
+    /// Judgements of all cases.
     pub cases: Vec<Judged>,
 }
 
 /// Closures of a group.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Closure {
-    /// Their mean where there is one.
+    /// Mean of the closures.
     pub mean: f64,
-    /// How many reach what they should.
+    /// Number of closures above the threshold.
     pub reached: usize,
-    /// Of how many that have one.
+    /// Number of closures.
     pub of: usize,
-    /// How many have none: there was no gap to close.
+    /// Number of cases without a gap to close.
     pub without_gap: usize,
 }
 
 /// Scores the cases of a folder.
 ///
 /// # Errors
-/// A label or result that cannot be read.
+/// Returns an error if a label or result cannot be read.
 pub fn score(out: &Path, cases: &[usize]) -> std::io::Result<Score> {
     let mut judged = Vec::new();
     for case in cases {
@@ -163,7 +164,7 @@ pub fn score(out: &Path, cases: &[usize]) -> std::io::Result<Score> {
     Ok(summed(judged))
 }
 
-/// Sums up judged cases.
+/// Sums the judgements of cases.
 pub fn summed(cases: Vec<Judged>) -> Score {
     let large = |judged: &&Judged| {
         judged.group == Group::Single && judged.hidden.iter().all(|(_, _, f)| *f >= FLOORS)

@@ -1,11 +1,11 @@
-//! The figures and the confusion table as text.
+//! Success rates and confusion table as text.
 
 use std::collections::BTreeMap;
 
 use super::{Closure, FLOORS, Judged, Judgement, Score};
 use crate::plan::Group;
 
-/// The figures and the confusion table as text.
+/// Formats the success rates and the confusion table.
 pub fn table(score: &Score) -> String {
     let mut rows: BTreeMap<String, BTreeMap<String, usize>> = BTreeMap::new();
     for judged in &score.cases {
@@ -68,7 +68,7 @@ pub fn table(score: &Score) -> String {
     text
 }
 
-/// How many classes, the mean of their sizes, and the largest.
+/// Formats the number of classes, their mean size and the largest.
 fn sizes((count, sum, largest): (usize, usize, usize)) -> String {
     match count {
         0 => "0".to_owned(),
@@ -76,7 +76,7 @@ fn sizes((count, sum, largest): (usize, usize, usize)) -> String {
     }
 }
 
-/// The row and column of a case in the table.
+/// Returns the row and column of a case in the table.
 fn place(judged: &Judged) -> (String, String) {
     let group = format!("{:?}", judged.group).to_lowercase();
     let row = match (&judged.hidden[..], judged.group) {

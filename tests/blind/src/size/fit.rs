@@ -1,6 +1,7 @@
-//! The measure that counts: what a fit of the machine without the effect leaves. Initial states
-//! of all windows are free, declared parameters and sensors have priors and a reach (see
-//! `linear`). Impacts give a window many minima, so fits begin with the beginnings of windows.
+//! Exact measure of size: the residual after a fit of the machine without the effect. Initial
+//! states of all windows are free; declared parameters and sensors have priors and bounds (see
+//! `linear`). Impacts cause many local minima, so a fit starts with short initial segments of the
+//! windows.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -10,46 +11,46 @@ use crate::hidden::{Hidden, Sensors};
 use crate::inputs::Drive;
 use crate::machines::{Machine, Setup};
 
-/// Parts of the windows that are fitted one after the other.
+/// Fractions of the windows that are fitted in sequence.
 const GROWING: [f64; 3] = [0.1, 0.3, 1.0];
 
-/// The most steps for each of them.
+/// Maximum number of steps for each of them.
 const MOST_STEPS: usize = 6;
 
-/// Steps end where the cost falls by less than this part.
+/// Relative decrease of the cost at which the steps end.
 const ENOUGH: f64 = 0.05;
 
-/// The parts of a step that are tried until one lowers the cost.
+/// Step fractions that are tried until one decreases the cost.
 const PARTS: [f64; 4] = [1.0, 0.5, 0.25, 0.125];
 
-/// Parts of these parts for a window that is better off with less.
+/// Further reductions for a window that improves with less.
 const LESS: [f64; 3] = [0.5, 0.2, 0.0];
 
-/// A fit of the machine without the effect.
+/// Fit of the machine without the effect.
 pub struct Fit<'a> {
     plain: &'a Machine,
     pub(super) setup: &'a Setup,
     pub(super) drives: &'a [Drive],
-    /// True values of the declared parameters, in standard deviations from what is declared.
+    /// True values of the declared parameters, as deviations in standard deviations.
     truth: DVector<f64>,
 }
 
-/// Records of a machine with an effect, window by window.
+/// Records of a machine with an effect, by window.
 pub struct Records {
     pub(super) windows: Vec<Window>,
-    /// How far the states go along each of [`Machine::directions`].
+    /// Range of the states along each of [`Machine::directions`].
     pub(super) ranges: Vec<f64>,
 }
 
-/// A window of the records.
+/// Window of the records.
 pub struct Window {
     pub(super) span: Span,
     start: Vec<f64>,
-    /// In noises.
+    /// Readings relative to the noise.
     pub(super) seen: DVector<f64>,
 }
 
-/// What was fitted.
+/// Estimate of all unknowns.
 #[derive(Clone)]
 pub struct Estimate {
     /// Declared parameters, then gain, bias and delay of each sensor, in standard deviations.
@@ -57,7 +58,7 @@ pub struct Estimate {
     pub(super) windows: Vec<Fitted>,
 }
 
-/// An initial state and what it leaves, in noises.
+/// Initial state and residual, relative to the noise.
 #[derive(Clone)]
 pub struct Fitted {
     pub(super) start: Vec<f64>,
@@ -93,7 +94,7 @@ impl Fitted {
 }
 
 impl Estimate {
-    /// Root mean square of what is left, in noises.
+    /// Returns the RMS residual relative to the noise.
     pub fn floors(&self) -> f64 {
         let count: usize = self.windows.iter().map(|w| w.residual.len()).sum();
         (self.squares() / count as f64).sqrt()
@@ -109,7 +110,7 @@ impl Estimate {
 }
 
 impl<'a> Fit<'a> {
-    /// Of a machine whose declared parameters are these factors of what is declared.
+    /// Prepares the fit of a machine with these factors on its declared parameters.
     pub fn new(
         plain: &'a Machine,
         setup: &'a Setup,
@@ -129,9 +130,10 @@ impl<'a> Fit<'a> {
         }
     }
 
-    /// What a fit leaves of an effect, in floors, or not a number where the records are none.
-    /// The better one of a fit of whole windows by slopes, which is right where motion is smooth,
-    /// and of a fit by secants that begins with beginnings of windows, where there are impacts.
+    /// Returns the residual of an effect after the fit, in noise floors; NaN if the simulation
+    /// fails. Two fits are made and the better one counts: a fit of whole windows with derivatives,
+    /// which is accurate for smooth motion, and a fit with secants that starts with initial
+    /// segments, for motion with impacts.
     pub fn floors(&self, hidden: &Hidden) -> f64 {
         let records = self.records(hidden);
         let begin = self.begin(&records);
@@ -143,7 +145,7 @@ impl<'a> Fit<'a> {
         whole.floors().min(grown.floors())
     }
 
-    /// Fits longer and longer beginnings of windows.
+    /// Fits longer and longer initial segments of the windows.
     fn grown(&self, records: &Records, mut estimate: Estimate, nudges: Nudges) -> Estimate {
         for part in GROWING {
             let beginnings = records.beginnings(part);
@@ -152,7 +154,7 @@ impl<'a> Fit<'a> {
         estimate
     }
 
-    /// The records of the machine with an effect.
+    /// Returns the records of the machine with an effect.
     fn records(&self, hidden: &Hidden) -> Records {
         let mut machine = self.plain.clone();
         let mut sensors = Sensors::right(self.setup.channels.len());
@@ -194,7 +196,7 @@ impl<'a> Fit<'a> {
         ends.into_iter().map(|(low, high)| high - low).collect()
     }
 
-    /// Before any step: parameters and initial states are the true ones.
+    /// Returns the estimate with the true parameters and initial states.
     fn begin(&self, records: &Records) -> Estimate {
         let unknowns = self.truth.len() + 3 * self.setup.channels.len();
         let begin = |window: &Window| Fitted {
@@ -208,7 +210,7 @@ impl<'a> Fit<'a> {
         self.continued(records, estimate)
     }
 
-    /// An estimate with what it leaves of other parts of the windows.
+    /// Returns the estimate with its residuals in other segments of the windows.
     fn continued(&self, records: &Records, mut estimate: Estimate) -> Estimate {
         let (machine, sensors) = self.with(&estimate.shared);
         for (window, fitted) in records.windows.iter().zip(&mut estimate.windows) {
@@ -217,7 +219,7 @@ impl<'a> Fit<'a> {
         estimate
     }
 
-    /// Takes steps until they do not help any more.
+    /// Takes steps until the cost no longer decreases.
     fn fitted(&self, records: &Records, mut estimate: Estimate, nudges: Nudges) -> Estimate {
         for _ in 0..MOST_STEPS {
             let before = estimate.cost();
@@ -242,7 +244,7 @@ impl<'a> Fit<'a> {
         estimate
     }
 
-    /// The machine and sensors at values of the shared unknowns.
+    /// Returns the machine and sensors at values of the shared unknowns.
     pub(super) fn with(&self, shared: &DVector<f64>) -> (Machine, Sensors) {
         let mut machine = self.plain.clone();
         for (place, (name, relative)) in self.setup.uncertain.iter().enumerate() {
@@ -253,12 +255,12 @@ impl<'a> Fit<'a> {
         (machine, Sensors::within_priors(self.setup, of_sensors))
     }
 
-    /// How many of the shared unknowns are parameters.
+    /// Returns the number of parameters among the shared unknowns.
     pub(super) fn parameters(&self) -> usize {
         self.truth.len()
     }
 
-    /// What a machine leaves of a window, in noises.
+    /// Returns the residual of a machine in a window, relative to the noise.
     pub(super) fn residual(
         &self,
         machine: &Machine,
@@ -270,8 +272,8 @@ impl<'a> Fit<'a> {
         &window.seen - deviated(&run, self.setup, sensors)
     }
 
-    /// An estimate moved by a part of a step; a window that is better off with less of it has
-    /// less.
+    /// Returns the estimate after a fraction of a step. Windows that improve with a smaller
+    /// fraction get one.
     fn moved(&self, records: &Records, from: &Estimate, step: &Step, part: f64) -> Estimate {
         let shared = &from.shared + part * &step.shared;
         let (machine, sensors) = self.with(&shared);

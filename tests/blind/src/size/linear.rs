@@ -1,5 +1,5 @@
-//! Steps of Gauss and Newton: windows to first order around an estimate, initial states
-//! eliminated window by window, and the shared unknowns within their reach.
+//! Gauss-Newton steps: windows linearised around an estimate, initial states eliminated per window,
+//! and shared unknowns within bounds.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -8,54 +8,55 @@ use super::windows::{deviated, run};
 use crate::hidden::Sensors;
 use crate::machines::Machine;
 
-/// Unknowns with priors stay within so many standard deviations: beyond is an effect.
+/// Bound of unknowns with priors, in standard deviations; beyond it they are effects.
 const REACH: f64 = 3.0;
 
-/// How far a step takes an initial state that the window does not show, in ranges of its motion.
+/// Step of an initial state that the window does not determine, in ranges of its motion.
 const UNSEEN: f64 = 0.02;
 
-/// How far unknowns are nudged to see what they do.
+/// Perturbations of the unknowns for finite differences.
 #[derive(Clone, Copy)]
 pub struct Nudges {
-    /// Initial states, in ranges of their motion.
+    /// For initial states, in ranges of their motion.
     start: f64,
-    /// Shared unknowns, standard deviations.
+    /// For shared unknowns, in standard deviations.
     shared: f64,
 }
 
-/// For slopes.
+/// Perturbations for derivatives.
 pub const SLOPES: Nudges = Nudges {
     start: 1e-6,
     shared: 1e-4,
 };
 
-/// For secants over about a step: where there are impacts, slopes say nothing of a whole step.
+/// Perturbations for secants over about a step: with impacts, derivatives do not predict a whole
+/// step.
 pub const SECANTS: Nudges = Nudges {
     start: 1e-2,
     shared: 0.3,
 };
 
-/// A step of all unknowns.
+/// Step of all unknowns.
 pub struct Step {
-    /// Standard deviations.
+    /// Shared unknowns, in standard deviations.
     pub shared: DVector<f64>,
-    /// Of each window, along [`crate::machines::Machine::directions`].
+    /// Initial states of each window, along [`crate::machines::Machine::directions`].
     pub starts: Vec<DVector<f64>>,
 }
 
-/// A window to first order, with what its initial state can do taken out.
+/// Linearised window with its initial state eliminated.
 struct Linear {
     residual: DVector<f64>,
     shared: DMatrix<f64>,
-    /// The step of the initial state: this much, less this much per shared unknown.
+    /// Step of the initial state: constant part, and the part to subtract per shared unknown.
     start: (DVector<f64>, DMatrix<f64>),
 }
 
-/// The step from an estimate to where a straight line has the least cost.
+/// Returns the step from an estimate to the minimum of the linearised cost.
 pub fn step(fit: &Fit<'_>, records: &Records, at: &Estimate, nudges: Nudges) -> Step {
     let unknowns = at.shared.len();
     let around = Around::new(fit, records, &at.shared, nudges);
-    // One for each unknown is its prior.
+    // The identity is the prior of the unknowns.
     let mut normal = DMatrix::identity(unknowns, unknowns);
     let mut right = -&at.shared;
     let mut parts = Vec::new();
@@ -65,7 +66,7 @@ pub fn step(fit: &Fit<'_>, records: &Records, at: &Estimate, nudges: Nudges) -> 
         right += part.shared.transpose() * &part.residual;
         parts.push(part);
     }
-    let shared = within(&normal, &right, &at.shared);
+    let shared = solve_bounded(&normal, &right, &at.shared);
     let start = |part: &Linear| &part.start.0 - &part.start.1 * &shared;
     Step {
         starts: parts.iter().map(start).collect(),
@@ -73,13 +74,13 @@ pub fn step(fit: &Fit<'_>, records: &Records, at: &Estimate, nudges: Nudges) -> 
     }
 }
 
-/// Machines and sensors around shared unknowns, which serve all windows.
+/// Perturbed machines and sensors, common to all windows.
 struct Around<'a> {
     fit: &'a Fit<'a>,
     ranges: &'a [f64],
     nudges: Nudges,
     here: (Machine, Sensors),
-    /// With one shared unknown nudged each.
+    /// With one perturbed shared unknown each.
     nudged: Vec<(Machine, Sensors)>,
 }
 
@@ -111,7 +112,7 @@ impl<'a> Around<'a> {
         let taken = (q.transpose() * &residual, q.transpose() * &directions);
         let residual = residual - &q * &taken.0;
         let directions = directions - &q * &taken.1;
-        // The rows of ones keep the triangle from being singular.
+        // The rows of the identity keep the triangular factor regular.
         let inverse = r
             .try_inverse()
             .unwrap_or_else(|| DMatrix::zeros(size, size));
@@ -124,8 +125,8 @@ impl<'a> Around<'a> {
         }
     }
 
-    /// What a step of the initial state takes from a residual, and below it a row for each
-    /// direction that holds it where the window does not show it.
+    /// Returns the effect of the initial state on a residual, followed by one row per direction
+    /// that bounds it if the window does not determine it.
     fn of_start(&self, window: &Window, at: &Fitted) -> DMatrix<f64> {
         let (machine, sensors) = &self.here;
         let directions = machine.directions();
@@ -144,7 +145,7 @@ impl<'a> Around<'a> {
         starts
     }
 
-    /// What a standard deviation of each shared unknown takes from a residual.
+    /// Returns the effect of one standard deviation of each shared unknown on a residual.
     fn of_shared(&self, window: &Window, at: &Fitted) -> Vec<DVector<f64>> {
         let fit = self.fit;
         let base = run(&self.here.0, fit.setup, fit.drives, &at.start, window.span);
@@ -160,8 +161,8 @@ impl<'a> Around<'a> {
     }
 }
 
-/// The step that solves normal equations, with what would leave the reach held at its end.
-fn within(normal: &DMatrix<f64>, right: &DVector<f64>, at: &DVector<f64>) -> DVector<f64> {
+/// Solves the normal equations with unknowns beyond the bound held at it.
+fn solve_bounded(normal: &DMatrix<f64>, right: &DVector<f64>, at: &DVector<f64>) -> DVector<f64> {
     let mut step = DVector::zeros(at.len());
     let mut free: Vec<usize> = (0..at.len()).collect();
     loop {
@@ -188,7 +189,7 @@ fn within(normal: &DMatrix<f64>, right: &DVector<f64>, at: &DVector<f64>) -> DVe
     }
 }
 
-/// A state moved along a direction.
+/// Moves a state along a direction.
 pub fn along(state: &[f64], direction: &[f64], by: f64) -> Vec<f64> {
     let moved = state.iter().zip(direction);
     moved.map(|(value, part)| value + by * part).collect()
@@ -198,16 +199,16 @@ pub fn along(state: &[f64], direction: &[f64], by: f64) -> Vec<f64> {
 mod tests {
     use nalgebra::{DMatrix, DVector};
 
-    use super::within;
+    use super::solve_bounded;
 
     #[test]
-    fn a_step_ends_at_the_reach_and_the_rest_makes_the_best_of_it() {
+    fn step_ends_at_the_bound_and_the_rest_is_optimal() {
         let normal = DMatrix::from_row_slice(2, 2, &[2.0, 1.0, 1.0, 2.0]);
         let at = DVector::from_vec(vec![1.0, 0.0]);
-        let free = within(&normal, &DVector::from_vec(vec![1.0, 2.0]), &at);
+        let free = solve_bounded(&normal, &DVector::from_vec(vec![1.0, 2.0]), &at);
         assert!((free - DVector::from_vec(vec![0.0, 1.0])).norm() < 1e-12);
-        // Free it would go to 5; held at 3 it has gone by 2, and 2 x + 2 = 1 is left.
-        let held = within(&normal, &DVector::from_vec(vec![7.75, 1.0]), &at);
+        // Unbounded it would be 5. Held at 3, the step is 2, and 2 x + 2 = 1 remains.
+        let held = solve_bounded(&normal, &DVector::from_vec(vec![7.75, 1.0]), &at);
         assert!((held - DVector::from_vec(vec![2.0, -0.5])).norm() < 1e-12);
     }
 }

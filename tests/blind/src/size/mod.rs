@@ -1,8 +1,8 @@
-//! How large a hidden effect is: the root mean square over the windows of what is left of it, in
-//! noises, once the machine without it has been fitted to the outputs - initial states freely,
-//! declared parameters and sensors within three standard deviations of their priors. Sizes are
-//! sought so that this is a given number of floors: first with one linear projection (see
-//! `projection`), which is quick, then with fits (`fit`), which count.
+//! Size of a hidden effect: the RMS residual over the windows, relative to the noise, after a fit
+//! of the machine without it. Initial states are free; declared parameters and sensors are within
+//! three standard deviations of their priors. The size is adjusted until this is a given number of
+//! noise floors, first with a fast linear projection (see `projection`), then with full fits
+//! (`fit`).
 
 mod fit;
 mod linear;
@@ -21,33 +21,33 @@ use search::Search;
 pub use projection::floors_of_missing_modes;
 pub use windows::window;
 
-/// Sizes by projection are right to this part.
+/// Relative accuracy of sizes by projection.
 const RIGHT: f64 = 0.02;
 
-/// The most looks at a size by projection.
+/// Maximum number of projections for a size.
 const MOST_LOOKS: usize = 13;
 
-/// Sizes by fits are right to this part.
+/// Relative accuracy of sizes by fits.
 const NEAR: f64 = 0.05;
 
-/// The most fits for a size.
+/// Maximum number of fits for a size.
 const MOST_FITS: usize = 3;
 
-/// Parts of the steps that do for fits; later ones where steps so long are not stable.
+/// Fractions of the integration steps for fits; later ones if such long steps are unstable.
 const COARSENESS: [usize; 3] = [8, 4, 2];
 
-/// An effect with its size found.
+/// Effect with its size.
 pub struct Sized {
-    /// The effect.
+    /// Effect.
     pub hidden: Hidden,
-    /// What was reached, in floors.
+    /// Residual of the effect, in noise floors.
     pub floors: f64,
 }
 
-/// Finds the size at which an effect stands `level` times above the floor; for a sensor's
-/// fault or a declared parameter, the size is `level + 2` standard deviations of its prior
-/// (beyond three it is an effect) and the floors are what that comes to. `declared`: true
-/// values of the declared parameters, as factors.
+/// Determines the size at which the residual of an effect is `level` noise floors. For a sensor's
+/// fault or a declared parameter, the size is `level + 2` standard deviations of its prior (beyond
+/// three it is an effect), and the noise floors follow. `declared` contains the true declared
+/// parameters as factors.
 pub fn sized(
     machine: &Machine,
     setup: &Setup,
@@ -63,7 +63,7 @@ pub fn sized(
         steps: setup.steps / part,
         ..setup.clone()
     };
-    // Fits have the records of the same steps, or what longer steps do wrong would be left.
+    // Records and fit have the same step size, so that its errors cancel.
     let left = |hidden: &Hidden| {
         let of = |part: &usize| Fit::new(machine, &coarse(*part), drives, declared).floors(hidden);
         let mut all = COARSENESS.iter().map(of);
@@ -88,7 +88,7 @@ pub fn sized(
     Sized { hidden, floors }
 }
 
-/// How far the spring between two bodies deflects to one side.
+/// Returns the largest deflection of the spring between two bodies to one side.
 fn furthest(machine: &Machine, setup: &Setup, drives: &[Drive], side: f64) -> f64 {
     let motions = drives
         .iter()
@@ -98,7 +98,7 @@ fn furthest(machine: &Machine, setup: &Setup, drives: &[Drive], side: f64) -> f6
         .fold(0.0, f64::max)
 }
 
-/// A size to begin with, and the largest that makes sense, SI.
+/// Returns an initial and a maximum size, SI.
 fn range(hidden: &Hidden, machine: &Machine, drives: &[Drive]) -> (f64, f64) {
     let free = f64::INFINITY;
     let inputs = drives.iter().flat_map(|drive| &drive.input);
@@ -128,7 +128,7 @@ fn range(hidden: &Hidden, machine: &Machine, drives: &[Drive]) -> (f64, f64) {
         // Half of the critical damping of the first mode.
         Effect::StructuralDamping => (1e-4, 5e-3),
         Effect::TipMass => (0.01, 1.0),
-        // A softening that leaves a stiffness at the largest deflections.
+        // The stiffness must stay positive at the largest deflections.
         Effect::StiffnessNonlinearity if hidden.sign < 0.0 => (3e7, 1e8),
         Effect::StiffnessNonlinearity => (1e8, 1e11),
         Effect::JointCompliance => (1e-4, 0.01),
@@ -136,7 +136,7 @@ fn range(hidden: &Hidden, machine: &Machine, drives: &[Drive]) -> (f64, f64) {
         Effect::StiffnessVariation => (0.2, 0.6),
         Effect::AsymmetricBacklash => (1e-5, 2e-5),
         Effect::ParameterShift => (0.02, 0.5),
-        // What the drive cannot move stands still whatever the friction.
+        // The drive must overcome the friction.
         Effect::CoulombFriction | Effect::StribeckFriction
             if matches!(machine, Machine::Stage(_) | Machine::TwoBodies(_)) =>
         {
@@ -179,11 +179,11 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_left_of_what_a_declared_parameter_does_however_far_from_a_straight_line() {
+    fn declared_parameter_is_fitted_in_the_nonlinear_range() {
         let (setup, drives) = pendulum();
         let machine = Kind::Pendulum.nominal();
         let fit = Fit::new(&machine, &setup, &drives, &[]);
-        // 0.6 of the declared friction: two standard deviations.
+        // 0.6 of the declared friction is two standard deviations.
         let friction = hidden(Effect::ViscousFriction, 0.6 * 2.239e-4);
         let projected = Basis::new(&machine, &setup, &drives, &friction)
             .floors(&machine, &setup, &drives, &friction);
@@ -191,7 +191,7 @@ mod tests {
         println!("projected {projected}, fitted {fitted}");
         assert!(projected > 1.0, "{projected}");
         assert!(fitted < 0.02, "{fitted}");
-        // Four standard deviations: the fourth cannot be fitted.
+        // Four standard deviations: one more than the bound.
         let beyond = hidden(Effect::ViscousFriction, 1.2 * 2.239e-4);
         let fitted = fit.floors(&beyond);
         println!("beyond {fitted}");
@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn an_effect_is_left_as_high_as_it_should_stand() {
+    fn effect_has_the_requested_size() {
         let (setup, drives) = pendulum();
         let machine = Kind::Pendulum.nominal();
         let found = sized(
@@ -211,7 +211,7 @@ mod tests {
             6.0,
         );
         let fit = Fit::new(&machine, &setup, &drives, &[]);
-        // Steps half as long change next to nothing.
+        // Halving the step size changes little.
         let floors = fit.floors(&found.hidden);
         println!("{} {floors}", found.floors);
         assert!(

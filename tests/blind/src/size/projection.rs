@@ -1,6 +1,6 @@
-//! The quick measure: what an effect does to the outputs less what initial states (freely),
-//! declared parameters and sensors (within their priors) do to first order along the motion of
-//! the machine without it.
+//! Fast measure of size: the change of the outputs due to an effect, minus the linearised changes
+//! due to initial states (free), declared parameters and sensors (within their priors), around the
+//! motion of the machine without it.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -9,13 +9,13 @@ use crate::hidden::{Effect, Hidden, Sensors};
 use crate::inputs::Drive;
 use crate::machines::{Machine, Setup};
 
-/// What the null model may fit, as directions of the outputs, in noises.
+/// Directions of the outputs that the null model can fit, relative to the noise.
 pub struct Basis {
     windows: Vec<Part>,
 }
 
-/// Of one window: orthonormal directions of initial states, and the directions of the declared
-/// unknowns with those taken out.
+/// Directions of one window: orthonormal ones of initial states, and those of the declared
+/// unknowns, orthogonalised.
 struct Part {
     span: Span,
     starts: DMatrix<f64>,
@@ -23,7 +23,8 @@ struct Part {
 }
 
 impl Basis {
-    /// Along the motion of a machine; what the effect itself would be is no direction.
+    /// Computes the directions along the motion of a machine. The direction of the effect itself is
+    /// excluded.
     pub fn new(machine: &Machine, setup: &Setup, drives: &[Drive], hidden: &Hidden) -> Self {
         let all: Vec<_> = drives
             .iter()
@@ -37,7 +38,7 @@ impl Basis {
         Self { windows }
     }
 
-    /// Root mean square of what the effect does, in noises.
+    /// Returns the RMS residual of the effect, relative to the noise.
     pub fn floors(&self, plain: &Machine, setup: &Setup, drives: &[Drive], hidden: &Hidden) -> f64 {
         let mut machine = plain.clone();
         let mut sensors = Sensors::right(setup.channels.len());
@@ -55,13 +56,13 @@ impl Basis {
             let deviating = deviated(&outputs(&machine, setup, with), setup, &sensors);
             differences.push(deviating - without);
         }
-        self.left(differences)
+        self.projected_rms(differences)
     }
 
-    /// Root mean square of what is left of differences in all windows.
-    fn left(&self, mut differences: Vec<DVector<f64>>) -> f64 {
+    /// Returns the RMS of the projected differences in all windows.
+    fn projected_rms(&self, mut differences: Vec<DVector<f64>>) -> f64 {
         let unknowns = self.windows.first().map_or(0, |part| part.declared.ncols());
-        // One for each unknown is its prior: unknowns count in standard deviations.
+        // The identity is the prior of the unknowns, which are in standard deviations.
         let mut normal = DMatrix::identity(unknowns, unknowns);
         let mut right = DVector::zeros(unknowns);
         for (part, difference) in self.windows.iter().zip(&mut differences) {
@@ -118,7 +119,7 @@ fn part(
         other.scale(name, 1.0 + 1e-2 * relative);
         declared.push((run(&other, setup, drives, start, span) - &seen) / 1e-2);
     }
-    declared.extend(of_sensors(&seen, setup, hidden));
+    declared.extend(sensor_directions(&seen, setup, hidden));
     let declared = DMatrix::from_columns(&declared);
     let inside = &starts * (starts.transpose() * &declared);
     Part {
@@ -128,8 +129,9 @@ fn part(
     }
 }
 
-/// One standard deviation of each sensor's gain, bias and delay, except the hidden one's own.
-fn of_sensors(seen: &DVector<f64>, setup: &Setup, hidden: &Hidden) -> Vec<DVector<f64>> {
+/// Returns the effects of one standard deviation of each sensor's gain, bias and delay, except the
+/// hidden one.
+fn sensor_directions(seen: &DVector<f64>, setup: &Setup, hidden: &Hidden) -> Vec<DVector<f64>> {
     let channels = setup.channels.len();
     let mut columns = Vec::new();
     for unknown in 0..3 * channels {
@@ -145,8 +147,8 @@ fn of_sensors(seen: &DVector<f64>, setup: &Setup, hidden: &Hidden) -> Vec<DVecto
     columns
 }
 
-/// What a model with as many modes as it is given leaves of the arm's motion, in floors: what
-/// the truth has beyond it.
+/// Returns the RMS residual, in noise floors, of the true arm's motion for a model with fewer
+/// modes.
 pub fn floors_of_missing_modes(machine: &Machine, setup: &Setup, drives: &[Drive]) -> f64 {
     let Machine::Arm(arm) = machine else {
         return 0.0;
@@ -173,5 +175,5 @@ pub fn floors_of_missing_modes(machine: &Machine, setup: &Setup, drives: &[Drive
         let truth = &all[span.record][span.first..span.first + span.count];
         outputs(machine, setup, truth) - run(&model, setup, drives, &truth[0], span)
     });
-    basis.left(differences.collect())
+    basis.projected_rms(differences.collect())
 }

@@ -1,21 +1,20 @@
-//! The search for the amount at which an effect stands a given number of floors high.
+//! Search for the size of an effect with a given number of noise floors.
 
 use crate::hidden::Hidden;
 
-/// A search by proportion until the level lies between two amounts, then by proportion of
-/// logarithms between these.
+/// Proportional search until two sizes bracket the level, then interpolation of logarithms.
 pub struct Search {
     level: f64,
-    /// How near is near enough, a part of the level.
+    /// Required relative accuracy of the level.
     right: f64,
     below: Option<(f64, f64)>,
     above: Option<(f64, f64)>,
-    /// The amount that comes nearest and its floors.
+    /// Best size so far, and its noise floors.
     best: (f64, f64),
 }
 
 impl Search {
-    /// For a level, to be reached to this part of it.
+    /// Starts a search for a level with this relative accuracy.
     pub fn new(level: f64, right: f64) -> Self {
         Self {
             level,
@@ -26,8 +25,8 @@ impl Search {
         }
     }
 
-    /// Looks at an effect's amount and then at others, none larger than the largest: the one that
-    /// comes nearest and its floors.
+    /// Evaluates sizes from the initial one, at most the largest; returns the best size and its
+    /// noise floors.
     pub fn run(
         mut self,
         mut hidden: Hidden,
@@ -55,7 +54,7 @@ impl Search {
         self.distance(self.best.1) < self.right
     }
 
-    /// What an amount came to; not a number where the machine could not stand it.
+    /// Records the result of a size; NaN if the simulation failed.
     fn look(&mut self, amount: f64, floors: f64) {
         let nearer = self.distance(floors) < self.distance(self.best.1);
         if floors.is_finite() && (nearer || self.best.1.is_infinite()) {
@@ -74,7 +73,7 @@ impl Search {
         match (self.below, self.above) {
             (Some(below), Some(above)) => {
                 let part = (self.level / below.1).ln() / (above.1 / below.1).ln();
-                // Never too near an end, where a bend would hold it.
+                // Stays away from the ends, where curvature would stall the search.
                 let part = if part.is_finite() {
                     part.clamp(0.1, 0.9)
                 } else {
@@ -102,7 +101,7 @@ mod tests {
     use super::Search;
 
     #[test]
-    fn an_amount_is_found_where_floors_bend() {
+    fn search_converges_for_curved_functions() {
         for floors in [
             |a: f64| 3.0 * a,
             |a: f64| 1e4 * a * a,

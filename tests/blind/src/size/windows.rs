@@ -1,5 +1,5 @@
-//! Windows of the records: which there are, what a machine does in one of them, and what
-//! sensors make of it. Outputs are in noises, channel by channel within each sample.
+//! Windows of the records, the motion of a machine in a window, and sensor readings. Outputs are
+//! relative to the noise, by channel within each sample.
 
 use nalgebra::DVector;
 
@@ -8,18 +8,18 @@ use crate::inputs::Drive;
 use crate::integrate::Stepper;
 use crate::machines::{Machine, Setup};
 
-/// Where a window lies.
+/// Position of a window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Span {
-    /// The record.
+    /// Index of the record.
     pub record: usize,
-    /// The first sample.
+    /// Index of the first sample.
     pub first: usize,
-    /// How many samples.
+    /// Number of samples.
     pub count: usize,
 }
 
-/// The windows of all records; a rest shorter than half a window is left out.
+/// Returns the windows of all records; a rest shorter than half a window is omitted.
 pub fn spans(setup: &Setup, drives: &[Drive]) -> Vec<Span> {
     let mut spans = Vec::new();
     for (record, drive) in drives.iter().enumerate() {
@@ -41,12 +41,12 @@ pub fn spans(setup: &Setup, drives: &[Drive]) -> Vec<Span> {
     spans
 }
 
-/// The states at all samples of a record.
+/// Returns the states at all samples of a record.
 pub fn states(machine: &Machine, setup: &Setup, drive: &Drive) -> Vec<Vec<f64>> {
     window(machine, setup, drive, &drive.start, 0, drive.input.len())
 }
 
-/// The states at `count` samples from the first on.
+/// Returns the states at `count` samples from the first on.
 pub fn window(
     machine: &Machine,
     setup: &Setup,
@@ -73,7 +73,7 @@ pub fn window(
     states
 }
 
-/// What sensors that are right see of a window from a start.
+/// Returns the readings of ideal sensors in a window from an initial state.
 pub fn run(
     machine: &Machine,
     setup: &Setup,
@@ -86,7 +86,7 @@ pub fn run(
     outputs(machine, setup, &states)
 }
 
-/// Outputs of states.
+/// Returns the outputs of states.
 pub fn outputs(machine: &Machine, setup: &Setup, states: &[Vec<f64>]) -> DVector<f64> {
     let values = states.iter().flat_map(|state| {
         let of = machine.outputs(state);
@@ -98,7 +98,7 @@ pub fn outputs(machine: &Machine, setup: &Setup, states: &[Vec<f64>]) -> DVector
     DVector::from_iterator(states.len() * setup.channels.len(), values)
 }
 
-/// Outputs as these sensors see them, a delay to first order in its length.
+/// Returns outputs with these sensor errors; a delay is linearised.
 pub fn deviated(seen: &DVector<f64>, setup: &Setup, sensors: &Sensors) -> DVector<f64> {
     let channels = setup.channels.len();
     let samples = seen.len() / channels;
