@@ -295,7 +295,7 @@ impl Instance<'_> {
         let inputs = self.model().model().inputs.iter();
         let inputs = inputs.map(|input| input.name.clone()).zip(point.inputs);
         let mut all = states.chain(inputs);
-        let (name, value) = all.find(|(_, value)| !(value.abs() <= LARGEST_VALUE))?;
+        let (name, value) = all.find(|(_, value)| value.abs() > LARGEST_VALUE)?;
         Some(format!(
             "{name} = {value:e} (SI) is out of range: its powers exceed the largest number of a computer, about \
              1e308; give a value that the machine can reach"

@@ -11,6 +11,7 @@ use crate::program::{
 };
 use crate::symbolic::association::Association;
 use crate::symbolic::graph::{Assembly, Graph, NodeId, Operation, Shape, Variable};
+use crate::symbolic::node_map::NodeMap;
 
 /// Operation and extent of a value, as a key; constants are compared by their bits.
 struct Computation {
@@ -53,8 +54,8 @@ pub(super) struct Lowering<'g> {
     independent: Vec<usize>,
     parameter_names: Vec<String>,
     pub(super) values: Vec<Value>,
-    known: HashMap<Computation, ValueId>,
-    lowered: HashMap<NodeId, ValueId>,
+    known: NodeMap<Computation, ValueId>,
+    lowered: NodeMap<NodeId, ValueId>,
     pub(super) tables: Vec<ProgramTable>,
     table_places: HashMap<usize, usize>,
     /// Number of uses of each node by the accelerations, while these are lowered.
@@ -81,8 +82,8 @@ impl<'g> Lowering<'g> {
             independent,
             parameter_names: names.to_vec(),
             values: Vec::new(),
-            known: HashMap::new(),
-            lowered: HashMap::new(),
+            known: NodeMap::default(),
+            lowered: NodeMap::default(),
             tables: Vec::new(),
             table_places: HashMap::new(),
             uses: HashMap::new(),
