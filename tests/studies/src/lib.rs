@@ -1,5 +1,5 @@
-//! Studies of the program over many random machines and records. `.ci/run` holds a fixed sample
-//! of each.
+//! Studies of the program on many random machines and records. `.ci/run` runs a fixed sample of
+//! each.
 
 pub mod coverage;
 pub mod grazing;

@@ -1,5 +1,5 @@
-//! `studies`: runs one study over many random machines or records and prints a line for each
-//! failure and a summary. The exit status is 1 if a run fails.
+//! `studies` runs one study on many random machines or records and prints a line for each failure
+//! and a summary. The exit status is 1 if a run fails.
 
 use std::process::ExitCode;
 
@@ -7,7 +7,7 @@ use clap::{Parser, Subcommand};
 use eomgen_studies::sample::Sample;
 use eomgen_studies::{coverage, grazing, solvers};
 
-/// Studies of the program over many random machines and records.
+/// Studies of the program on many random machines and records.
 #[derive(Parser)]
 #[command(after_help = "Example:\n  studies grazing --count 200 --seed 1")]
 struct Options {
@@ -15,7 +15,6 @@ struct Options {
     study: Study,
 }
 
-/// One study.
 #[derive(Subcommand)]
 enum Study {
     /// Energy and agreement of the solvers for passive machines that graze their stops

@@ -1,8 +1,8 @@
-//! Options that all studies share.
+//! Options common to all studies.
 
 use clap::Args;
 
-/// Number of runs of a study and the seed that they are drawn from.
+/// Number of runs of a study and their seed.
 #[derive(Args, Clone, Debug)]
 pub struct Sample {
     /// Number of runs

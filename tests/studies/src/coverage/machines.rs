@@ -1,30 +1,30 @@
-//! Machines of different kinds: dry friction, a nonlinear motion, a flexible beam, play.
+//! Machines of different kinds: dry friction, nonlinear motion, a flexible beam, backlash.
 
-/// A machine with its priors and its records. All figures are SI.
+/// Machine with its priors and records. All numbers are in SI units.
 pub struct Machine {
     pub name: &'static str,
-    /// The specification; its uncertain parameters are in SI units.
+    /// Specification; its uncertain parameters are in SI units.
     pub text: &'static str,
-    /// Uncertain parameters with their standard deviations as parts of their values.
+    /// Uncertain parameters with their relative standard deviations.
     pub uncertain: &'static [(&'static str, f64)],
-    /// The input, by name and unit.
+    /// Name and unit of the input.
     pub input: (&'static str, &'static str),
-    /// Sines that the input is the sum of: amplitude and frequency, Hz. Each record has phases of its own.
+    /// Sines whose sum is the input: amplitude and frequency, Hz. The phases differ between
+    /// records.
     pub waves: &'static [(f64, f64)],
     pub channels: &'static [Channel],
     /// Time between samples, s.
     pub sample: f64,
-    /// Samples of the record that is fitted; the one held out has half as many.
+    /// Number of samples of the fitted record; the held-out record has half as many.
     pub samples: usize,
-    /// Length of a window, s.
+    /// Window length, s.
     pub window: f64,
 }
 
-/// A measured quantity.
 pub struct Channel {
     pub name: &'static str,
     pub unit: &'static str,
-    /// One standard deviation of its noise.
+    /// Standard deviation of the noise.
     pub noise: f64,
 }
 

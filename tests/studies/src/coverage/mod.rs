@@ -1,9 +1,10 @@
-//! Study `coverage`: how often the 90 % interval of a fitted parameter holds the true value.
+//! Study `coverage`: frequency at which the 90 % interval of a fitted parameter contains the true
+//! value.
 //!
-//! Records are simulated by the program itself. In every run the true parameters and the true sensors
-//! are drawn from the priors that the dataset declares, so an interval of the posterior holds the truth
-//! in 90 % of all runs; at a fixed truth an informative prior would make that more, or less. The records
-//! go through files and the reader of datasets, and the model is fitted as by `compare`.
+//! The program itself simulates the records. Each run draws the true parameters and sensors from
+//! the priors declared in the dataset, so that the posterior interval contains the true value in 90
+//! % of all runs. With fixed true values, an informative prior would change this. The records are
+//! written to files, read as a dataset, and fitted as by `compare`.
 
 mod binomial;
 mod machines;
@@ -22,27 +23,27 @@ use crate::sample::Sample;
 use binomial::{at_least, at_most};
 use machines::{MACHINES, Machine};
 
-/// Half of the width of a 90 % interval, in standard deviations.
+/// Half-width of a 90 % interval, in standard deviations.
 const HALF_WIDTH: f64 = 1.645;
 
-/// The coverage that is accepted.
+/// Accepted range of the coverage.
 const ACCEPTED: [f64; 2] = [0.85, 0.95];
 
-/// The bias that is accepted, in standard deviations.
+/// Maximum accepted bias, in standard deviations.
 const ACCEPTED_BIAS: f64 = 0.15;
 
 /// A figure fails if it is beyond what is accepted by more than chance: in a machine whose figure is
 /// just accepted, chance leads as far with this probability.
 const CHANCE: f64 = 1e-3;
 
-/// Standard errors beyond which a mean lies with the probability [`CHANCE`].
+/// Quantile of the normal distribution, in standard errors, for the probability [`CHANCE`].
 const STANDARD_ERRORS: f64 = 3.09;
 
 /// Runs the study and returns its summary.
 ///
 /// # Errors
 ///
-/// A report of every run that failed, and of figures beyond what is accepted.
+/// Returns a report of all failed runs and of values outside the accepted range.
 pub fn run(sample: &Sample) -> Result<String, String> {
     let mut summary = String::new();
     let mut failures = String::new();
@@ -60,8 +61,8 @@ pub fn run(sample: &Sample) -> Result<String, String> {
     }
 }
 
-/// Returns for each run how far the estimate of each parameter is from the truth, in its own standard
-/// deviations.
+/// Returns, for each run, the deviation of each estimated parameter from its true value, in
+/// standard deviations of the estimate.
 fn deviations(machine: &Machine, number: usize, sample: &Sample) -> Result<Vec<Vec<f64>>, String> {
     let model = CompiledModel::of_text(machine.name, machine.text, Orders::Declared)
         .map_err(|error| format!("{}: {error}", machine.name))?;
@@ -75,7 +76,7 @@ fn deviations(machine: &Machine, number: usize, sample: &Sample) -> Result<Vec<V
     runs.into_iter().collect()
 }
 
-/// Draws a truth and its records, fits them, and compares.
+/// Draws true values and records, fits them, and returns the deviations.
 fn deviations_of_run(
     machine: &Machine,
     model: &CompiledModel,
@@ -99,7 +100,7 @@ fn deviations_of_run(
     machine.uncertain.iter().zip(truth).map(of).collect()
 }
 
-/// Returns a machine's line and what of it is beyond what is accepted.
+/// Returns a machine's line in the summary, and its values outside the accepted range.
 fn figures(machine: &Machine, deviations: &[Vec<f64>]) -> (String, Vec<String>) {
     let count = deviations.len();
     let mut line = format!("{}, {count} runs:", machine.name);

@@ -14,23 +14,22 @@ use rand_distr::{Distribution, StandardNormal};
 use super::machines::Machine;
 use eomgen_discover::thresholds::SHIFTED;
 
-/// Usual priors of a sensor: standard deviations of its gain, of its bias in standard deviations of its
-/// noise, and of its delay in samples.
+/// Default priors of a sensor: standard deviations of its gain, of its bias relative to the noise,
+/// and of its delay in samples.
 const SENSOR: [f64; 3] = [0.01, 10.0, 0.5];
 
-/// A sensor: gain, bias in the channel's unit and delay in s.
 struct Sensor {
     gain: f64,
     bias: f64,
     delay: f64,
 }
 
-/// Writes a dataset, a record to fit and one held out, into a folder; returns the true values of the
+/// Writes a dataset with a fitted and a held-out record to a folder; returns the true values of the
 /// uncertain parameters.
 ///
 /// # Errors
 ///
-/// A motion that cannot be simulated, or a file that cannot be written.
+/// Returns an error if a motion cannot be simulated or a file cannot be written.
 pub fn write(
     machine: &Machine,
     model: &CompiledModel,
@@ -43,16 +42,16 @@ pub fn write(
     let mut truth = Vec::new();
     for (name, relative) in machine.uncertain {
         let value = declared.value(name).ok_or("an unknown parameter")?;
-        truth.push(value * (1.0 + relative * expected(&mut draw)));
+        truth.push(value * (1.0 + relative * truncated_normal(&mut draw)));
     }
     let names = machine.uncertain.iter().map(|(name, _)| *name);
     let settings: Vec<(&str, f64)> = names.zip(truth.iter().copied()).collect();
     let instance = model.with(&settings).map_err(|error| error.to_string())?;
     let sensors: Vec<Sensor> = (machine.channels.iter())
         .map(|channel| Sensor {
-            gain: 1.0 + SENSOR[0] * expected(&mut draw),
-            bias: SENSOR[1] * channel.noise * expected(&mut draw),
-            delay: SENSOR[2] * machine.sample * expected(&mut draw),
+            gain: 1.0 + SENSOR[0] * truncated_normal(&mut draw),
+            bias: SENSOR[1] * channel.noise * truncated_normal(&mut draw),
+            delay: SENSOR[2] * machine.sample * truncated_normal(&mut draw),
         })
         .collect();
     for (file, samples) in [
@@ -66,7 +65,7 @@ pub fn write(
     Ok(truth)
 }
 
-/// Returns the text of a record: times, the input and the channels, with noise.
+/// Returns the text of a record: times, input and channels, with noise.
 fn record(
     machine: &Machine,
     instance: &Instance<'_>,
@@ -105,7 +104,7 @@ fn record(
     Ok(text + "\n")
 }
 
-/// Returns a coordinate or an observable of the motion from rest, a delay before each of the times.
+/// Returns a coordinate or observable of the motion from rest at the times minus a delay.
 fn quantity(
     instance: &Instance<'_>,
     name: &str,
@@ -161,9 +160,9 @@ fn normal(draw: &mut ChaCha8Rng) -> f64 {
     StandardNormal.sample(draw)
 }
 
-/// Draws what a prior of mean 0 and standard deviation 1 expects. A fit keeps parameters and sensors within
-/// [`SHIFTED`] standard deviations: beyond, they are an effect.
-fn expected(draw: &mut ChaCha8Rng) -> f64 {
+/// Draws a normal number truncated to [`SHIFTED`] standard deviations. Fits keep parameters and
+/// sensors within these bounds; larger deviations are effects.
+fn truncated_normal(draw: &mut ChaCha8Rng) -> f64 {
     loop {
         let value = normal(draw);
         if value.abs() < SHIFTED {

@@ -1,53 +1,54 @@
-//! Checks of the motions of one machine: they gain no energy, and they agree.
+//! Checks of the motions of one machine: energy conservation and agreement.
 
 use eomgen_compiled_model::{CompiledModel, Instance, Orders, Request, Solver};
 
 use super::machine::Machine;
 use super::turning_point::place_of_stop;
 
-/// Samples of a motion.
+/// Number of samples of a motion.
 const SAMPLES: usize = 200;
 
-/// The default tolerance and a tighter one.
 const TOLERANCES: [f64; 2] = [1e-9, 1e-11];
 
-/// Tolerance of the reference and of the motions beside it.
+/// Tolerance of the reference and of its neighbouring motions.
 const REFERENCE: f64 = 1e-12;
 
-/// Motions beside the reference start so many tolerances away, relative to the sizes of the states.
-const APART: f64 = 100.0;
+/// Initial distance of neighbouring motions from the reference, in tolerances relative to the
+/// magnitudes of the states.
+const NEIGHBOUR_DISTANCE: f64 = 100.0;
 
-/// Pairs of motions that start to either side of the reference.
+/// Number of pairs of neighbouring motions, on either side of the reference.
 const PAIRS: usize = 2;
 
-/// A motion may differ from the reference by so many tolerances more than motions beside it do.
-const MOST_DIFFERENCE: f64 = 100.0;
+/// Maximum difference of a motion from the reference, in tolerances beyond that of neighbouring
+/// motions.
+const MAX_DIFFERENCE: f64 = 100.0;
 
-/// Motions that part by as much of their size cannot be compared any more.
-const PARTED: f64 = 0.05;
+/// Relative distance at which neighbouring motions have diverged and are no longer compared.
+const DIVERGED: f64 = 0.05;
 
 /// The energy may rise by so many tolerances, times the root of the stop's stiffness ratio: an error
 /// of the deflection by a tolerance weighs as much in the energy of the stop.
-const MOST_RISE: f64 = 10.0;
+const MAX_RISE: f64 = 10.0;
 
-/// The result for one machine.
+/// Result for one machine.
 pub struct Verdict {
-    /// A line for each failure.
+    /// One line per failure.
     pub failures: Vec<String>,
     /// Number of runs.
     pub runs: usize,
-    /// True if the exact solver took the machine.
+    /// Whether the exact solver accepted the machine.
     pub is_exact: bool,
-    /// Switches of the reference.
+    /// Number of switches of the reference.
     pub switches: usize,
-    /// Largest rise of the energy, as a part of the allowed one.
+    /// Largest rise of the energy relative to the allowed one.
     pub rise: f64,
-    /// Largest difference from the reference, as a part of the allowed one.
+    /// Largest difference from the reference relative to the allowed one.
     pub difference: f64,
 }
 
 impl Verdict {
-    /// A machine that could not be judged.
+    /// Returns the verdict for a machine that could not be judged.
     pub fn failed(problem: String) -> Self {
         Self {
             failures: vec![problem],
@@ -60,7 +61,6 @@ impl Verdict {
     }
 }
 
-/// States and energies of a motion at the samples.
 struct Sampled {
     states: Vec<Vec<f64>>,
     energies: Vec<f64>,
@@ -71,7 +71,7 @@ struct Sampled {
 ///
 /// # Errors
 ///
-/// A machine without a reference.
+/// Returns an error if the machine has no reference.
 pub fn judge(machine: &Machine) -> Result<Verdict, String> {
     let text = machine.specification(place_of_stop(machine)?);
     let model = CompiledModel::of_text("grazing.toml", &text, Orders::Declared)
@@ -121,7 +121,7 @@ pub fn judge(machine: &Machine) -> Result<Verdict, String> {
     Ok(verdict)
 }
 
-/// The motion from an initial state with its energies.
+/// Simulates from an initial state; returns the samples with their energies.
 fn sample(
     run: &Instance<'_>,
     (initial, times): (&[f64], &[f64]),
@@ -154,7 +154,7 @@ fn sample(
     })
 }
 
-/// The largest that each state has been.
+/// Returns the largest magnitude of each state.
 fn sizes_of(states: &[Vec<f64>]) -> Vec<f64> {
     (0..states[0].len())
         .map(|index| {
@@ -166,8 +166,8 @@ fn sizes_of(states: &[Vec<f64>]) -> Vec<f64> {
         .collect()
 }
 
-/// The largest rise of the energy above its lowest value before, or above and below its first one if
-/// nothing may take any, as a part of what is allowed.
+/// Returns the largest rise of the energy above its previous minimum, relative to the allowed one.
+/// For a conservative machine, returns the largest deviation from the initial energy instead.
 fn rise_of(machine: &Machine, energies: &[f64], tolerance: f64) -> f64 {
     let first = energies[0];
     let mut lowest = first;
@@ -182,10 +182,10 @@ fn rise_of(machine: &Machine, energies: &[f64], tolerance: f64) -> f64 {
             return f64::INFINITY;
         }
     }
-    rise / (MOST_RISE * tolerance * machine.stiffness_ratio.sqrt() * first)
+    rise / (MAX_RISE * tolerance * machine.stiffness_ratio.sqrt() * first)
 }
 
-/// By how much motions part from the reference up to each sample that start some tolerances beside it.
+/// Returns the largest distance of the neighbouring motions from the reference up to each sample.
 fn parting(
     machine: &Machine,
     reference: &Sampled,
@@ -197,15 +197,15 @@ fn parting(
     for pair in 0..PAIRS {
         for sign in [1.0, -1.0] {
             let beside = machine.initial.iter().zip(sizes).enumerate();
-            // Directions along no axis, and no multiple of each other.
+            // Directions that are not parallel to an axis or to each other.
             let beside: Vec<f64> = beside
                 .map(|(index, (y, size))| {
                     let direction = (1.0 + 2.0 * index as f64 + 1.7 * pair as f64).sin();
-                    y + sign * direction * APART * tolerance * size
+                    y + sign * direction * NEIGHBOUR_DISTANCE * tolerance * size
                 })
                 .collect();
             let motion = sampled(&beside, Solver::Rk, REFERENCE)
-                .map_err(|error| format!("beside the reference: {error}"))?;
+                .map_err(|error| format!("neighbouring motion: {error}"))?;
             let mut so_far = 0.0_f64;
             for (place, parted) in parted.iter_mut().enumerate() {
                 let states = (&motion.states[place], &reference.states[place]);
@@ -217,8 +217,8 @@ fn parting(
     Ok(parted)
 }
 
-/// The largest difference from the reference, as a part of what is allowed, as long as motions beside
-/// it have not parted.
+/// Returns the largest difference from the reference relative to the allowed one, until the
+/// neighbouring motions have diverged.
 fn difference_of(
     motion: &Sampled,
     (reference, sizes): (&Sampled, &[f64]),
@@ -227,12 +227,12 @@ fn difference_of(
 ) -> f64 {
     let pairs = motion.states.iter().zip(&reference.states).zip(parting);
     pairs
-        .take_while(|(_, parted)| **parted < PARTED)
-        .map(|(states, parted)| distance(states, sizes) / (MOST_DIFFERENCE * tolerance + parted))
+        .take_while(|(_, parted)| **parted < DIVERGED)
+        .map(|(states, parted)| distance(states, sizes) / (MAX_DIFFERENCE * tolerance + parted))
         .fold(0.0, f64::max)
 }
 
-/// The largest difference of a state, relative to its size.
+/// Returns the largest difference of a state, relative to its magnitude.
 fn distance((a, b): (&Vec<f64>, &Vec<f64>), sizes: &[f64]) -> f64 {
     let differences = a.iter().zip(b).zip(sizes);
     differences

@@ -1,4 +1,4 @@
-//! Random passive machines: a chain of one to three masses on springs, one of which meets a stop.
+//! Random passive machines: a chain of one to three masses on springs, one of which hits a stop.
 
 use std::f64::consts::TAU;
 use std::fmt;
@@ -7,54 +7,53 @@ use std::fmt::Write as _;
 use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
-/// The law of a stop.
+/// Law of a stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stop {
-    /// A spring beyond a play to both sides.
+    /// Spring beyond a backlash on both sides.
     Play,
-    /// The same with a damper that acts in contact.
+    /// Spring beyond a backlash with a damper that acts in contact.
     DampedPlay,
-    /// A spring to one side.
+    /// One-sided spring.
     OneSided,
-    /// A spring to one side with the exponent of Hertz.
+    /// One-sided spring with the exponent of Hertz.
     Hertz,
-    /// An impact with restitution.
+    /// Impact with restitution.
     Impact,
 }
 
-/// A machine and the motion that is asked of it. The stop's place follows from a motion without it.
+/// Machine and its motion. The place of the stop follows from a motion without it.
 #[derive(Clone, Debug)]
 pub struct Machine {
     name: String,
     masses: Vec<f64>,
-    /// Spring constants, the first to ground, N/m.
+    /// Spring constants, N/m; the first spring is connected to ground.
     springs: Vec<f64>,
     /// Cubic stiffness of the first spring, N/m^3.
     hardening: f64,
     /// Law of the stop.
     pub stop: Stop,
-    /// Stiffness of the stop, in units of the first spring's.
+    /// Stiffness of the stop relative to the first spring.
     pub stiffness_ratio: f64,
-    /// Index of the mass that meets the stop.
+    /// Index of the mass that hits the stop.
     pub at: usize,
     /// Coulomb friction of the last mass, N.
     friction: f64,
     restitution: f64,
-    /// The coordinates, then the rates, m and m/s.
+    /// Initial coordinates, then rates, m and m/s.
     pub initial: Vec<f64>,
-    /// The turning point less the stop's place, as a part of the amplitude.
+    /// Distance of the turning point beyond the stop, relative to the amplitude.
     pub depth: f64,
-    /// A number from 0 to 1 that chooses among the turning points.
+    /// Number from 0 to 1 that selects one of the turning points.
     pub choice: f64,
     /// Duration of the motion, s.
     pub duration: f64,
 }
 
-/// Random numbers of one machine.
 struct Numbers(SplitMix64);
 
 impl Numbers {
-    /// Uniform in [0, 1).
+    /// Draws a uniform number in [0, 1).
     fn unit(&mut self) -> f64 {
         (self.0.next_u64() >> 11) as f64 * 0.5_f64.powi(53)
     }
@@ -63,7 +62,7 @@ impl Numbers {
         low + (high - low) * self.unit()
     }
 
-    /// Uniform in its logarithm.
+    /// Draws a number with a uniform logarithm.
     fn scale(&mut self, low: f64, high: f64) -> f64 {
         low * (high / low).powf(self.unit())
     }
@@ -78,7 +77,7 @@ impl Numbers {
 }
 
 impl Machine {
-    /// The machine of this place in the sequence of a seed.
+    /// Draws the machine number `place` of a seed.
     pub fn draw(seed: u64, place: usize) -> Self {
         let mut mixed = SplitMix64::seed_from_u64(seed);
         let first = mixed.next_u64();
@@ -99,7 +98,7 @@ impl Machine {
             true => springs[0] / (size * size) * numbers.between(0.1, 2.0),
             false => 0.0,
         };
-        // Beside impacts a motion that friction holds is not followed.
+        // Solvers do not support friction that holds the mass together with impacts.
         let friction = match numbers.happens(0.3) && stop != Stop::Impact {
             true => springs[0] * size * numbers.scale(1e-3, 5e-2),
             false => 0.0,
@@ -135,22 +134,22 @@ impl Machine {
         }
     }
 
-    /// Number of masses.
+    /// Returns the number of masses.
     pub fn count(&self) -> usize {
         self.masses.len()
     }
 
-    /// Returns true if no law of the machine takes energy out of it.
+    /// Returns true if the machine conserves energy.
     pub fn is_conservative(&self) -> bool {
         self.friction == 0.0 && !matches!(self.stop, Stop::DampedPlay | Stop::Impact)
     }
 
-    /// Returns true if the stop acts to both sides.
+    /// Returns true if the stop is two-sided.
     pub fn is_two_sided(&self) -> bool {
         matches!(self.stop, Stop::Play | Stop::DampedPlay)
     }
 
-    /// The specification, with the stop at `place` (m).
+    /// Returns the specification with the stop at `place` (m).
     pub fn specification(&self, place: f64) -> String {
         let mut text = "[model]\nname = \"grazing\"\n[parameters]\n".to_owned();
         let _ = writeln!(text, "b = {{ value = {place:e}, unit = \"m\" }}");
@@ -164,7 +163,7 @@ impl Machine {
         let _ = writeln!(text, "h = {{ value = {hardening:e}, unit = \"N/m^3\" }}");
         let stiffness = self.stiffness_ratio * self.springs[0];
         let _ = writeln!(text, "K = {{ value = {stiffness:e}, unit = \"N/m\" }}");
-        // Critical damping of the contact over ten.
+        // A tenth of the critical damping of the contact.
         let damping = 0.2 * (stiffness * self.masses[self.at]).sqrt();
         let _ = writeln!(text, "c = {{ value = {damping:e}, unit = \"N s/m\" }}");
         let hertz = stiffness / self.amplitude().sqrt();
@@ -221,7 +220,7 @@ impl Machine {
         }
     }
 
-    /// Size of the deflections at the start, m.
+    /// Returns the magnitude of the initial deflections, m.
     fn amplitude(&self) -> f64 {
         let count = self.count();
         let frequency = (self.springs[0] / self.masses.iter().sum::<f64>()).sqrt();

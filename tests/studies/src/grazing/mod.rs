@@ -1,8 +1,8 @@
 //! Study `grazing`: random passive oscillators whose turning point grazes a stop.
 //!
-//! Each machine runs by `rk`, by `radau` and, if it is piecewise linear, by `exact`, at the default
-//! tolerance and at a tighter one. No energy may come from nothing, and all runs must agree with a
-//! reference as well as motions agree that start a few tolerances apart.
+//! Each machine runs with `rk`, `radau` and, if it is piecewise linear, `exact`, at the default
+//! tolerance and at a tighter one. The energy must not rise, and the difference of all runs from a
+//! reference must not exceed that of motions that start a few tolerances apart.
 
 mod judge;
 mod machine;
@@ -18,7 +18,7 @@ use machine::Machine;
 ///
 /// # Errors
 ///
-/// A report of every run that failed.
+/// Returns a report of all failed runs.
 pub fn run(sample: &Sample) -> Result<String, String> {
     let verdicts: Vec<Verdict> = (0..sample.count)
         .into_par_iter()

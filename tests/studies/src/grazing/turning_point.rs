@@ -1,4 +1,4 @@
-//! The place of the stop: at a turning point of the motion without it.
+//! Place of the stop: at a turning point of the motion without it.
 
 use eomgen_compiled_model::{CompiledModel, Instance, Orders, Request, Solver};
 
@@ -7,14 +7,15 @@ use super::machine::Machine;
 /// Tolerance of the motion without a stop.
 const TOLERANCE: f64 = 1e-13;
 
-/// Samples of that motion, and of each finer look at a turning point.
+/// Number of samples of that motion, and of each refinement of a turning point.
 const SAMPLES: usize = 2000;
 
-/// Places the stop so that a turning point lies beyond it by the machine's depth, m.
+/// Returns the position of the stop, m, such that a turning point is beyond it by the machine's
+/// depth.
 ///
 /// # Errors
 ///
-/// A motion without the stop that stops early.
+/// Returns an error if the motion without the stop ends early.
 pub fn place_of_stop(machine: &Machine) -> Result<f64, String> {
     let far = 1e6
         * machine
@@ -26,7 +27,7 @@ pub fn place_of_stop(machine: &Machine) -> Result<f64, String> {
     let run = model.with(&[]).map_err(|error| error.to_string())?;
     let step = machine.duration / SAMPLES as f64;
     let free = deflections(machine, &run, (0.0, machine.duration))?;
-    let peaks = records(&free);
+    let peaks = record_maxima(&free);
     let chosen = ((machine.choice * peaks.len() as f64) as usize).min(peaks.len() - 1);
     let mut peak = free[peaks[chosen]];
     let mut near = (
@@ -44,7 +45,7 @@ pub fn place_of_stop(machine: &Machine) -> Result<f64, String> {
     Ok(peak * (1.0 - machine.depth))
 }
 
-/// How far out the mass is that meets the stop, at evenly spaced times of a span (s).
+/// Returns the deflection of the mass that hits the stop, at evenly spaced times of a span (s).
 fn deflections(
     machine: &Machine,
     run: &Instance<'_>,
@@ -80,8 +81,8 @@ fn deflections(
     Ok(states.map(|state| outward(state[machine.at])).collect())
 }
 
-/// The places of local maxima above zero that are higher than all before; at least one place.
-fn records(values: &[f64]) -> Vec<usize> {
+/// Returns the indices of local maxima above zero and above all previous ones; at least one index.
+fn record_maxima(values: &[f64]) -> Vec<usize> {
     let mut highest = values[0].max(0.0);
     let mut found = Vec::new();
     for place in 1..values.len() - 1 {

@@ -1,5 +1,5 @@
-//! Growth of small differences along a motion: the norm of the tangent map from several times of
-//! the motion to all later samples, by finite differences of motions.
+//! Growth of small differences along a motion: the norm of the tangent map from several times to
+//! all later samples, by finite differences.
 
 use eomgen_compiled_model::{Error, Instance, Request};
 use eomgen_validate::random::Random;
@@ -7,14 +7,14 @@ use eomgen_validate::random::Random;
 /// Size of a disturbance relative to the magnitude of each state.
 const DISTURBANCE: f64 = 1e-6;
 
-/// Disturbances at each of the start times.
+/// Number of disturbances at each start time.
 const DIRECTIONS: usize = 2;
 
-/// Start times of disturbances as parts of the samples.
+/// Start times of disturbances as fractions of the samples.
 const STARTS: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
 
-/// Largest magnitude of every state over a motion. States of one unit share their magnitude, so
-/// that a state that hardly moves is judged by its neighbours.
+/// Returns the largest magnitude of every state over a motion. States of one unit share their
+/// magnitude, so that a nearly constant state is compared with the others.
 pub fn magnitudes(states: &[Vec<f64>], units: &[String]) -> Vec<f64> {
     let largest = |state: usize| states.iter().fold(0.0_f64, |m, y| m.max(y[state].abs()));
     let own: Vec<f64> = (0..units.len()).map(largest).collect();
@@ -28,7 +28,8 @@ pub fn magnitudes(states: &[Vec<f64>], units: &[String]) -> Vec<f64> {
         .collect()
 }
 
-/// Largest difference of two motions at their common samples, relative to the magnitudes.
+/// Returns the largest difference of two motions at their common samples, relative to the
+/// magnitudes.
 pub fn difference(a: &[Vec<f64>], b: &[Vec<f64>], magnitudes: &[f64]) -> f64 {
     let rows = a.iter().zip(b);
     rows.map(|(a, b)| relative(a, b, magnitudes))
@@ -50,11 +51,12 @@ fn relative(a: &[f64], b: &[f64], magnitudes: &[f64]) -> f64 {
         })
 }
 
-/// Largest growth of a disturbance along the motion `states` at `request.times`; at least 1.
+/// Returns the largest growth, at least 1, of a disturbance along the motion `states` at
+/// `request.times`.
 ///
 /// # Errors
 ///
-/// A disturbed motion that cannot be followed.
+/// Returns an error if a disturbed motion cannot be simulated.
 pub fn growth(
     instance: &Instance<'_>,
     request: &Request<'_>,

@@ -1,13 +1,12 @@
-//! Random machines as text: masses in a chain on springs, and features drawn for each. Lengths,
-//! masses and times are drawn over several decades. The equations are written from the
-//! specification language alone.
+//! Random machines as text: a chain of masses on springs with random features. Lengths, masses and
+//! times vary over several decades. The equations use only the specification language.
 
 use std::fmt::Write;
 
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_validate::random::Random;
 
-/// A feature of a machine.
+/// Feature of a machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Feature {
     /// Linear dampers between the masses.
@@ -20,17 +19,17 @@ pub enum Feature {
     Drag,
     /// Dry friction on the first mass.
     DryFriction,
-    /// Play in the first spring between two masses.
+    /// Backlash in the first spring between two masses.
     Play,
     /// An elastic stop of the last mass.
     ElasticStop,
     /// A rigid stop of the first mass with restitution.
     RigidStop,
-    /// A force on the first mass that lags behind the position of the last.
+    /// Force on the first mass with a lag behind the position of the last.
     Lag,
     /// An input force on the last mass, held between samples.
     Input,
-    /// A bead on a circle beside the first mass: two coordinates and one constraint.
+    /// Bead on a circle around the first mass: two coordinates and one constraint.
     Constraint,
     /// A clamped beam on the last mass.
     Beam,
@@ -52,18 +51,18 @@ impl Feature {
         Self::Beam,
     ];
 
-    /// Whether the energy of the specification can rise by this feature.
+    /// Returns true if the feature can increase the energy of the specification.
     fn can_supply_energy(self) -> bool {
         matches!(self, Self::Lag | Self::Input)
     }
 }
 
-/// A machine and its inputs.
+/// Machine and its inputs.
 #[derive(Clone, Debug)]
 pub struct Machine {
-    /// The specification.
+    /// Specification.
     pub text: String,
-    /// Features drawn.
+    /// Features.
     pub features: Vec<Feature>,
     /// Inputs over time.
     pub inputs: HeldInputs,
@@ -72,7 +71,7 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// Whether the energy can only fall.
+    /// Returns true if the energy cannot rise.
     pub fn is_passive(&self) -> bool {
         !self
             .features
@@ -81,16 +80,15 @@ impl Machine {
     }
 }
 
-/// Probability that a machine has a given feature.
 const FEATURE_PROBABILITY: f64 = 0.25;
 
-/// Duration of a motion in units of the machine's time.
+/// Duration of a motion in time units of the machine.
 const DURATION: f64 = 8.0;
 
-/// Times at which the input changes, in units of the duration.
+/// Times at which the input changes, relative to the duration.
 const INPUT_TIMES: [f64; 4] = [0.0, 0.21, 0.48, 0.77];
 
-/// Sections of a specification in the order of the text.
+/// Sections of a specification in their order.
 const SECTIONS: [&str; 10] = [
     "parameters",
     "coordinates",
@@ -121,7 +119,7 @@ impl Units {
         }
     }
 
-    /// A value in SI of the unit `name`, given in the machine's units.
+    /// Converts a value in the unit `name` from the machine's units to SI.
     fn si(&self, name: &str, value: f64) -> f64 {
         let Self { length, mass, time } = self;
         value
@@ -143,7 +141,7 @@ impl Units {
     }
 }
 
-/// A machine being written.
+/// Specification under construction.
 struct Writer<'r> {
     random: &'r mut Random,
     units: Units,
@@ -158,7 +156,7 @@ impl Writer<'_> {
         }
     }
 
-    /// Writes a parameter with a value drawn between two bounds in the machine's units.
+    /// Writes a parameter with a random value between two bounds in the machine's units.
     fn parameter(&mut self, name: &str, unit: &str, (low, high): (f64, f64)) {
         let value = self.units.si(unit, low + (high - low) * self.random.unit());
         let line = format!("{name} = {{ value = {value:e}, unit = \"{unit}\" }}");
@@ -358,7 +356,7 @@ pub fn draw(random: &mut Random) -> Machine {
             is_drawn && (count > 1 || *feature != Feature::Play)
         })
         .collect();
-    // Dry friction together with impacts is refused.
+    // Solvers reject dry friction together with impacts.
     let is_dry = features.contains(&Feature::DryFriction);
     features.retain(|feature| !is_dry || *feature != Feature::RigidStop);
     let until = DURATION * units.time;
@@ -378,7 +376,7 @@ pub fn draw(random: &mut Random) -> Machine {
     }
     let text = writer.text();
     let inputs = match features.contains(&Feature::Input) {
-        true => held(random, until, force),
+        true => draw_inputs(random, until, force),
         false => HeldInputs::zero(0),
     };
     Machine {
@@ -389,8 +387,8 @@ pub fn draw(random: &mut Random) -> Machine {
     }
 }
 
-/// Input forces of up to `force` (N) held over parts of the duration.
-fn held(random: &mut Random, until: f64, force: f64) -> HeldInputs {
+/// Returns random input forces up to `force` (N), held over parts of the duration.
+fn draw_inputs(random: &mut Random, until: f64, force: f64) -> HeldInputs {
     let times = INPUT_TIMES.map(|part| part * until).to_vec();
     let values = times.iter().map(|_| force * random.symmetric()).collect();
     HeldInputs::new(times, values, 1).unwrap_or_else(|| HeldInputs::zero(1))

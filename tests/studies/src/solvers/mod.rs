@@ -1,6 +1,6 @@
-//! Study `solvers`: random machines by every solver. The motions of two solvers may differ by ten
-//! tolerances times the growth of a small difference along the motion, at each of several
-//! tolerances; the energy of a passive machine may not rise.
+//! Study `solvers`: random machines with all solvers. At each of several tolerances, the motions of
+//! two solvers may differ by ten tolerances times the growth of a small difference along the
+//! motion. The energy of a passive machine must not rise.
 
 mod growth;
 mod machine;
@@ -14,29 +14,27 @@ use crate::sample::Sample;
 use growth::{difference, growth, magnitudes};
 use machine::{Machine, draw};
 
-/// Tolerances of the solvers.
 const TOLERANCES: [f64; 3] = [1e-6, 1e-8, 1e-10];
 
 /// Tolerance of the motions that measure the growth.
 const GROWTH_TOLERANCE: f64 = 1e-11;
 
-/// Allowed difference of two solvers in tolerances times the growth.
+/// Maximum difference of two solvers, in tolerances times the growth.
 const ALLOWED_TOLERANCES: f64 = 10.0;
 
 /// Relative change of an energy over that of the states between two samples: energies have up to
 /// the fourth power of a coordinate, and each of the two samples has an error.
 const ENERGY_SENSITIVITY: f64 = 8.0;
 
-/// Samples of a motion.
+/// Number of samples of a motion.
 const SAMPLES: usize = 61;
 
-/// Outcome of one machine.
 struct Outcome {
-    /// Largest difference of two solvers over what is allowed.
+    /// Largest difference of two solvers relative to the allowed one.
     worst: f64,
-    /// Whether the exact solver took the machine.
+    /// Whether the exact solver accepted the machine.
     is_exact: bool,
-    /// Whether the machine is passive, so that its energy was judged.
+    /// Whether the machine is passive, so that its energy was checked.
     is_passive: bool,
 }
 
@@ -44,7 +42,7 @@ struct Outcome {
 ///
 /// # Errors
 ///
-/// A report of every machine whose solvers disagree, stop or panic, or whose energy rises.
+/// Returns a report of all machines whose solvers disagree, stop or panic, or whose energy rises.
 pub fn run(sample: &Sample) -> Result<String, String> {
     let mut outcomes = Vec::new();
     let mut failures = String::new();
@@ -145,7 +143,7 @@ fn judge(machine: &Machine, random: &mut Random) -> Result<Outcome, String> {
     })
 }
 
-/// A motion to the end of its times.
+/// Simulates to the last requested time; returns an error if the motion stops early.
 fn complete(instance: &Instance<'_>, request: &Request<'_>) -> Result<Motion, String> {
     let solver = request.solver.name();
     let motion = instance.follow(request, &mut |_| {});
@@ -154,7 +152,7 @@ fn complete(instance: &Instance<'_>, request: &Request<'_>) -> Result<Motion, St
         .map_err(|error| format!("{solver} at {:.0e}: {error}", request.tolerance))
 }
 
-/// The motion by the exact solver; none if it does not take the model.
+/// Simulates with the exact solver; `None` if it does not support the model.
 fn exact_motion(instance: &Instance<'_>, request: &Request<'_>) -> Result<Option<Motion>, String> {
     if instance.model().piecewise_linear().is_err() || !instance.model().model().impacts.is_empty()
     {
@@ -163,8 +161,8 @@ fn exact_motion(instance: &Instance<'_>, request: &Request<'_>) -> Result<Option
     complete(instance, request).map(Some)
 }
 
-/// Checks that the energy of a passive machine never rises by more than the `allowed` part of its
-/// largest magnitude from one sample to a later one.
+/// Checks that the energy of a passive machine never rises from one sample to a later one by more
+/// than the fraction `allowed` of its largest magnitude.
 fn check_energy(
     machine: &Machine,
     instance: &Instance<'_>,
