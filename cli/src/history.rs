@@ -1,4 +1,4 @@
-//! Figure (SVG) of a motion over time: coordinates, states of first order and observables, a panel for each unit.
+//! Figure (SVG) of a motion over time: coordinates, first-order states and observables, a panel for each unit.
 
 use eomgen_compiled_model::CompiledModel;
 use eomgen_plot::{Panel, Series, TimeHistory, time_history};
@@ -18,7 +18,7 @@ pub fn figure(compiled: &CompiledModel, table: &Table) -> Result<String> {
     let mut panels: Vec<Panel<'_>> = Vec::new();
     for (names, what) in [
         (coordinates(compiled), "Coordinates"),
-        (first_order(compiled), "States of first order"),
+        (first_order(compiled), "First-order states"),
         (observables(compiled), "Observables"),
     ] {
         let first = panels.len();

@@ -1,4 +1,4 @@
-//! Figure of natural modes: shapes of fields over their length, coordinates and states of first order as bars, and
+//! Figure of natural modes: shapes of fields over their length, coordinates and first-order states as bars, and
 //! the regime of a piecewise model.
 
 use eomgen_analysis::natural_modes::NaturalMode;
@@ -161,7 +161,7 @@ impl Named {
     }
 }
 
-/// Returns coordinates and states of first order; if there are too many, those with the largest amplitudes.
+/// Returns coordinates and first-order states; if there are too many, those with the largest amplitudes.
 fn bars(compiled: &CompiledModel, found: &[NaturalMode]) -> Vec<Named> {
     let degrees = compiled.program().degrees_of_freedom();
     let coordinates = compiled.model().coordinates.len();

@@ -102,22 +102,22 @@ pub fn is_equilibrium(run: &Instance<'_>, at: &OperatingPoint) -> Result<bool> {
         warn(&format!(
             "warning: this state is no equilibrium: {}; the linearisation holds for a short time only; \
              give another state with --state NAME=EXPR, or --state trim",
-            described(&found)
+            describe(&found)
         ));
     }
     Ok(found.is_none())
 }
 
 /// Names the quantities that change at a state that is no equilibrium.
-fn described(found: &Departure) -> String {
+fn describe(found: &Departure) -> String {
     let parts = [
-        ("the machine moves there", &found.moving, "is not 0"),
+        ("the machine moves", &found.moving, "is not 0"),
         (
-            "the machine accelerates there",
+            "the machine accelerates",
             &found.accelerating,
             "changes",
         ),
-        ("a state changes there", &found.changing, "changes"),
+        ("a first-order state changes", &found.changing, "changes"),
     ];
     let parts = parts.iter().filter(|(_, names, _)| !names.is_empty());
     let parts: Vec<String> = parts
@@ -190,7 +190,7 @@ pub fn inputs(compiled: &CompiledModel) -> (Vec<&str>, Vec<String>) {
         .unzip()
 }
 
-/// Returns the names of the amplitudes of a mode shape: coordinates, then states of first order.
+/// Returns the names of the amplitudes of a mode shape: coordinates, then first-order states.
 pub fn shape_names(compiled: &CompiledModel) -> Vec<String> {
     let (mut names, degrees) = (
         compiled.state_names(),

@@ -111,7 +111,7 @@ pub fn unit_definitions(xml: &mut Xml, unit: &Unit) -> Written {
 
 pub fn log_categories(xml: &mut Xml) -> Written {
     element(xml, "LogCategories", &[], |xml| {
-        let doc = "Why a call was refused".to_owned();
+        let doc = "Reason for a rejected call".to_owned();
         let attributes = [("name", "logStatusError".to_owned()), ("description", doc)];
         empty(xml, "Category", &attributes)
     })

@@ -148,7 +148,7 @@ fn record(truth: &str, turn: f64) -> Result<Table> {
 
 fn description() -> String {
     format!(
-        "title = \"A simulated stage in which a friction is hidden\"\n\n\
+        "title = \"Simulated stage with a hidden friction\"\n\n\
          [records]\ntrain = [\"train.csv\"]\ntest = [\"test.csv\"]\n\n\
          [time]\ncolumn = \"t\"\nunit = \"s\"\n\n\
          [inputs.force]\ncolumn = \"force\"\nunit = \"N\"\nhold = \"zero-order\"\n\n\

@@ -54,7 +54,7 @@ class Model:
     """Compiled model at one set of parameter values, created by `load`. It is immutable; threads may share it.
 
     All numbers are in SI units, except `parameters`, which are in their declared units. The state consists of
-    the coordinates, the modes, the rates of both, and states of first order, in the order of `states`.
+    the coordinates, the modes, the rates of both, and first-order states, in the order of `states`.
     """
 
     def __init__(self, native: _native.Model):

@@ -109,7 +109,7 @@ fn movable_places(model: &Model, orders: &[usize]) -> Vec<usize> {
     places
 }
 
-/// Returns sliders of coordinates and modes, their rates, and states of first order.
+/// Returns sliders of coordinates and modes, their rates, and first-order states.
 fn initial_state<'m>(
     compiled: &'m CompiledModel,
     units: &[String],
