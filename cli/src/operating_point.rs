@@ -112,11 +112,7 @@ pub fn is_equilibrium(run: &Instance<'_>, at: &OperatingPoint) -> Result<bool> {
 fn describe(found: &Departure) -> String {
     let parts = [
         ("the machine moves", &found.moving, "is not 0"),
-        (
-            "the machine accelerates",
-            &found.accelerating,
-            "changes",
-        ),
+        ("the machine accelerates", &found.accelerating, "changes"),
         ("a first-order state changes", &found.changing, "changes"),
     ];
     let parts = parts.iter().filter(|(_, names, _)| !names.is_empty());

@@ -374,10 +374,10 @@ fn auto_solves_stiff_friction_with_radau() {
     assert!(begun.elapsed() < Duration::from_secs(20));
 }
 
-/// Document that `simulate --json` prints for the orifice, and the messages.
+/// Returns the document of `simulate --json` on the orifice, and the messages.
 fn orifice_by(solver: &str) -> (serde_json::Value, String) {
     let folder = tempfile::tempdir().expect("a folder");
-    let spec = written(folder.path(), ORIFICE);
+    let spec = write_spec(folder.path(), ORIFICE);
     let out = folder.path().join("a.csv").display().to_string();
     let output = run(&[
         "simulate", &spec, "--until", "1", "--solver", solver, "--json", "--out", &out,
@@ -387,7 +387,7 @@ fn orifice_by(solver: &str) -> (serde_json::Value, String) {
 }
 
 #[test]
-fn rk_stops_where_an_orifice_is_stiff_and_auto_takes_radau() {
+fn rk_stops_at_stiff_orifice_and_auto_uses_radau() {
     let evaluations = |document: &serde_json::Value| document["evaluations"].as_u64();
     let (radau, _) = orifice_by("radau");
     let (auto, note) = orifice_by("auto");

@@ -32,8 +32,8 @@ const ACCEPTED: [f64; 2] = [0.85, 0.95];
 /// Maximum accepted bias, in standard deviations.
 const ACCEPTED_BIAS: f64 = 0.15;
 
-/// A figure fails if it is beyond what is accepted by more than chance: in a machine whose figure is
-/// just accepted, chance leads as far with this probability.
+/// Significance level of failures: probability that a machine with a barely accepted value fails by
+/// chance.
 const CHANCE: f64 = 1e-3;
 
 /// Quantile of the normal distribution, in standard errors, for the probability [`CHANCE`].

@@ -25,10 +25,10 @@ const PAIRS: usize = 2;
 const MAX_DIFFERENCE: f64 = 100.0;
 
 /// Relative distance at which neighbouring motions have diverged and are no longer compared.
-const DIVERGED: f64 = 0.05;
+const DIVERGED_DISTANCE: f64 = 0.05;
 
-/// The energy may rise by so many tolerances, times the root of the stop's stiffness ratio: an error
-/// of the deflection by a tolerance weighs as much in the energy of the stop.
+/// Maximum rise of the energy in tolerances, times the square root of the stop's stiffness ratio: an
+/// error of the deflection has this weight in the energy of the stop.
 const MAX_RISE: f64 = 10.0;
 
 /// Result for one machine.
@@ -227,7 +227,7 @@ fn difference_of(
 ) -> f64 {
     let pairs = motion.states.iter().zip(&reference.states).zip(parting);
     pairs
-        .take_while(|(_, parted)| **parted < DIVERGED)
+        .take_while(|(_, parted)| **parted < DIVERGED_DISTANCE)
         .map(|(states, parted)| distance(states, sizes) / (MAX_DIFFERENCE * tolerance + parted))
         .fold(0.0, f64::max)
 }

@@ -22,8 +22,8 @@ const GROWTH_TOLERANCE: f64 = 1e-11;
 /// Maximum difference of two solvers, in tolerances times the growth.
 const ALLOWED_TOLERANCES: f64 = 10.0;
 
-/// Relative change of an energy over that of the states between two samples: energies have up to
-/// the fourth power of a coordinate, and each of the two samples has an error.
+/// Ratio of the relative change of the energy to that of the states between two samples: energies
+/// contain up to the fourth power of a coordinate, and both samples have an error.
 const ENERGY_SENSITIVITY: f64 = 8.0;
 
 /// Number of samples of a motion.
