@@ -71,18 +71,18 @@ pub fn samples(model: &Model, order: usize, seed: u64, count: usize) -> Vec<Samp
     let parameters = model
         .parameter_values()
         .expect("the parameters have values");
-    let oracle = Oracle::new(model, order, &parameters).expect("the oracle knows the model");
+    let oracle = Oracle::new(model, order, &parameters).expect("the oracle supports the model");
     let mut sampler = Sampler::new(&oracle, seed).expect("states can be drawn");
     let mut samples = Vec::new();
     for regime in sampler
         .regimes()
-        .expect("the oracle knows the model")
+        .expect("the oracle supports the model")
         .visited
     {
         for _ in 0..count {
             let drawn = sampler
                 .draw_in(&regime)
-                .expect("the oracle knows the model");
+                .expect("the oracle supports the model");
             samples.push(drawn.expect("every regime can be reached").sample);
         }
     }

@@ -96,7 +96,7 @@ impl SmoothModels {
         SmoothModel { text, terms: all }
     }
 
-    /// Knuth's multiplicative generator with a shifted output.
+    /// Draws from [0, 1) by Knuth's multiplicative generator with a shifted output.
     fn unit(&mut self) -> f64 {
         self.state = self
             .state

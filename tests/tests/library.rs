@@ -5,7 +5,7 @@ use eomgen_tests::models::project;
 include!("../../examples/with_library/main.rs");
 
 #[test]
-fn the_example_runs() {
+fn library_example_runs() {
     std::env::set_current_dir(project()).expect("the project's folder");
     main().expect("three motions");
 }

@@ -94,8 +94,8 @@ impl AxisForces {
             - self.asymmetric * v.abs()
             - self.drag * v * v.abs()
             - self.restraint * x
-            - wave((self.gravity.1, self.gravity.0), x)
-            + wave((self.ripple.1, self.ripple.2), per_turn);
+            - sinusoid((self.gravity.1, self.gravity.0), x)
+            + sinusoid((self.ripple.1, self.ripple.2), per_turn);
         (smooth + strange - dry, bending)
     }
 
@@ -125,7 +125,7 @@ impl AxisForces {
 }
 
 /// Returns a sum of a cosine and a sine. Most axes have none, and sines are expensive.
-fn wave((cosine, sine): (f64, f64), angle: f64) -> f64 {
+fn sinusoid((cosine, sine): (f64, f64), angle: f64) -> f64 {
     if cosine == 0.0 && sine == 0.0 {
         return 0.0;
     }

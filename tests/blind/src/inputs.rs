@@ -98,7 +98,7 @@ pub fn drive(kind: Kind, setup: &Setup, manner: Manner, place: usize, draw: &mut
     Drive {
         input: input
             .into_iter()
-            .map(|value| rounded(part * value))
+            .map(|value| round_as_recorded(part * value))
             .collect(),
         start,
     }
@@ -120,7 +120,7 @@ fn two_body_components(form: Form, usual: f64) -> Ingredients {
 }
 
 /// Rounds to the digits in the record, so that machine and record have the same input.
-fn rounded(value: f64) -> f64 {
+fn round_as_recorded(value: f64) -> f64 {
     format!("{value:.8e}").parse().unwrap_or(value)
 }
 

@@ -156,8 +156,8 @@ fn step_error(machine: &Machine, setup: &Setup, drive: &Drive) -> f64 {
     f64::sqrt(sum / f64::from(count))
 }
 
-/// A fifth of the noise adds 2 % to the RMS of noise. Impacts amplify step errors, mainly on the
-/// arm.
+/// Maximum step error relative to the noise; it adds 2 % to the RMS of noise. Impacts amplify step
+/// errors, mainly on the arm.
 const MAX_STEP_ERROR: f64 = 0.2;
 
 #[test]

@@ -113,12 +113,12 @@ impl<T: Scalar> Beam<T> {
         }
     }
 
-    /// rho A l^3/3, in kg m^2.
+    /// Returns rho A l^3/3, in kg m^2.
     fn inertia(&self) -> T {
         self.mass * self.length * self.length * self.length / T::exactly(3.0)
     }
 
-    /// Mode `r` with h = rho A int x phi, M = rho A int phi^2, K = E I int phi''^2.
+    /// Returns mode `r` with h = rho A int x phi, M = rho A int phi^2, K = E I int phi''^2.
     fn mode(&self, r: usize) -> ArmMode<T> {
         let mode = Mode::<T>::clamped_free(r);
         let l = self.length;

@@ -79,14 +79,14 @@ fn rise_within<T: Scalar>(
         ));
     }
     let halvings = halvings.checked_sub(1)?;
-    let (left, right) = halved(values);
+    let (left, right) = halve(values);
     let width = width / 2.0;
     rise_within(coefficients, left, from, width, halvings)
         .or_else(|| rise_within(coefficients, right, from + width, width, halvings))
 }
 
 /// Returns the Bernstein coefficients on both halves of the interval (de Casteljau).
-fn halved<T: Scalar>(mut values: Vec<T>) -> (Vec<T>, Vec<T>) {
+fn halve<T: Scalar>(mut values: Vec<T>) -> (Vec<T>, Vec<T>) {
     let degree = values.len() - 1;
     let mut left = Vec::with_capacity(values.len());
     left.push(values[0]);

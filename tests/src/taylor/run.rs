@@ -10,7 +10,7 @@ pub const LONGEST: f64 = 1.0 / 1024.0;
 
 /// Magnitude in m of the motions that steps resolve to the rounding of the arithmetic: 1/25 of the
 /// reference's half backlash.
-const RESOLVED: f64 = 1e-6;
+const RESOLUTION_M: f64 = 1e-6;
 
 /// Change of the contact state of a mesh.
 #[derive(Clone, Copy, Debug)]
@@ -88,7 +88,7 @@ impl<T: Scalar> Motion<T> {
             positions: rest.clone(),
             rates: rest,
         };
-        let sides = first_sides(&expander, &state);
+        let sides = initial_sides(&expander, &state);
         Self {
             expander,
             time: T::exactly(0.0),
@@ -99,7 +99,7 @@ impl<T: Scalar> Motion<T> {
 
     /// Advances by one series, to its end or to the first switch.
     fn step(&mut self, times: &[f64], run: &mut Run<T>) {
-        let series = self.resolved();
+        let series = self.resolved_series();
         let sigma = self.expander.sigma();
         let switch = self.first_switch(&series);
         let until = switch.map_or(T::exactly(1.0), |(at, ..)| at);
@@ -125,10 +125,10 @@ impl<T: Scalar> Motion<T> {
 
     /// Returns the series around the current time, in a time unit that makes the remainder
     /// negligible. The unit decreases as faster motions appear and does not increase again.
-    fn resolved(&mut self) -> Series<T> {
+    fn resolved_series(&mut self) -> Series<T> {
         loop {
             let series = self.expander.expand(self.time, &self.state, self.sides);
-            if series.tail() <= T::EPSILON * RESOLVED {
+            if series.tail() <= T::EPSILON * RESOLUTION_M {
                 return series;
             }
             self.expander = self.expander.finer();
@@ -141,7 +141,7 @@ impl<T: Scalar> Motion<T> {
         let mut first: Option<(T, usize, Side)> = None;
         for (mesh, side) in self.sides.into_iter().enumerate() {
             let deflection = series.of(mesh);
-            for (outside, to) in edges(&deflection, side, b) {
+            for (outside, to) in distances_beyond_edges(&deflection, side, b) {
                 let Some(at) = first_rise(&outside) else {
                     continue;
                 };
@@ -155,7 +155,7 @@ impl<T: Scalar> Motion<T> {
 }
 
 /// Returns, per contact state reachable from `side`, the series of the distance beyond the edge.
-fn edges<T: Scalar>(deflection: &[T], side: Side, b: T) -> Vec<(Vec<T>, Side)> {
+fn distances_beyond_edges<T: Scalar>(deflection: &[T], side: Side, b: T) -> Vec<(Vec<T>, Side)> {
     let beyond = |sign: f64, edge: T| {
         let mut outside: Vec<T> = deflection.iter().map(|x| x.times(sign)).collect();
         outside[0] = outside[0] - edge;
@@ -177,7 +177,7 @@ fn edges<T: Scalar>(deflection: &[T], side: Side, b: T) -> Vec<(Vec<T>, Side)> {
 /// Returns the contact states at rest at zero. Without backlash it is the sign of the first nonzero
 /// derivative: both contacts have the same equations then, and up to that derivative the mesh
 /// carries no force.
-fn first_sides<T: Scalar>(expander: &Expander<T>, rest: &State<T>) -> [Side; 2] {
+fn initial_sides<T: Scalar>(expander: &Expander<T>, rest: &State<T>) -> [Side; 2] {
     let zero = T::exactly(0.0);
     if expander.arm().b > zero {
         return [Side::Free; 2];

@@ -39,11 +39,11 @@ struct Machine {
 struct Hidden {
     effect: &'static str,
     on: &'static str,
-    by: By,
+    by: Change,
 }
 
 /// Implementation of a hidden effect.
-enum By {
+enum Change {
     /// Entry of the catalogue: its index among entries of the same name, its order and its values.
     Entry(usize, Option<u32>, &'static [f64]),
     /// Parameter with a value other than in the specification.
@@ -54,7 +54,7 @@ enum By {
 }
 
 const fn hidden(effect: &'static str, on: &'static str, values: &'static [f64]) -> Hidden {
-    let by = By::Entry(0, None, values);
+    let by = Change::Entry(0, None, values);
     Hidden { effect, on, by }
 }
 
@@ -341,7 +341,9 @@ impl Machine {
             text += &format!("{t},{u}");
             for ((name, ..), column) in self.channels.iter().zip(&seen) {
                 let value = match hidden.by {
-                    By::Sensor(_, _, reading) if *name == hidden.on => reading(&column[..=sample]),
+                    Change::Sensor(_, _, reading) if *name == hidden.on => {
+                        reading(&column[..=sample])
+                    }
                     _ => column[sample],
                 };
                 text += &format!(",{value:.15e}");
@@ -371,7 +373,7 @@ impl Machine {
     /// Returns the specification that generates the records, and the expected values by name.
     fn truth(&self, hidden: &Hidden) -> (String, Vec<(String, f64)>) {
         match hidden.by {
-            By::Entry(entry, order, values) => {
+            Change::Entry(entry, order, values) => {
                 let candidate = self.candidate(hidden, entry, order);
                 let written = candidate.written(self.specification, self.name, values, "hidden");
                 // Records determine shape parameters less well than the size, so these are not
@@ -381,7 +383,7 @@ impl Machine {
                 let sizes = sizes.map(|(parameter, value)| (parameter.name.clone(), *value));
                 (written.expect("a specification"), sizes.collect())
             }
-            By::Shift(value) => {
+            Change::Shift(value) => {
                 let set = Edit::SetParameter(SetParameter {
                     name: hidden.on.to_owned(),
                     value,
@@ -391,7 +393,7 @@ impl Machine {
                 let size = (hidden.on.to_owned(), value);
                 (written.expect("a specification"), vec![size])
             }
-            By::Sensor(name, value, _) => (
+            Change::Sensor(name, value, _) => (
                 self.specification.to_owned(),
                 vec![(name.to_owned(), value)],
             ),
@@ -428,7 +430,7 @@ impl Machine {
 
     /// Asserts that the hidden effect is named first, with its place, sign and size, and closes the
     /// gap.
-    fn shows(&self, hidden: &Hidden) {
+    fn assert_found(&self, hidden: &Hidden) {
         let (truth, sizes) = self.truth(hidden);
         let found = self.answer(hidden, &truth);
         let shown = format!("{} on {}: {:#}", hidden.effect, hidden.on, found["effects"]);
@@ -437,7 +439,7 @@ impl Machine {
         let first = &found["effects"][0];
         assert_eq!(first["effect"], hidden.effect, "{shown}");
         assert_eq!(first["on"], hidden.on, "{shown}");
-        if let By::Entry(_, Some(order), _) = hidden.by {
+        if let Change::Entry(_, Some(order), _) = hidden.by {
             assert_eq!(first["order"]["order"], order, "{shown}");
         }
         let closure = found["closure"]["test"].as_f64();
@@ -468,15 +470,15 @@ fn effects_on_a_carriage_are_found() {
         hidden("elastic_restraint", "x", &[30.0]),
         hidden("input_lag", "u", &[60.0]),
     ] {
-        CARRIAGE.shows(&hidden);
+        CARRIAGE.assert_found(&hidden);
     }
 }
 
 #[test]
 fn effects_periodic_in_an_angle_are_found_on_a_rotor() {
-    ROTOR.shows(&hidden("gravity", "theta", &[0.04, -0.06]));
-    ROTOR.shows(&Hidden {
-        by: By::Entry(0, Some(3), &[0.03, 0.05]),
+    ROTOR.assert_found(&hidden("gravity", "theta", &[0.04, -0.06]));
+    ROTOR.assert_found(&Hidden {
+        by: Change::Entry(0, Some(3), &[0.03, 0.05]),
         ..hidden("torque_ripple", "theta", &[])
     });
 }
@@ -488,24 +490,24 @@ fn effects_of_a_flexible_body_are_found() {
         hidden("tip_mass", "beam", &[0.02]),
         hidden("stiffness_nonlinearity", "beam", &[2e4]),
     ] {
-        BEAM.shows(&hidden);
+        BEAM.assert_found(&hidden);
     }
-    BEAM_FOR_LONG.shows(&hidden("joint_compliance", "beam", &[60.0]));
-    BEAM_FOR_LONG.shows(&Hidden {
-        by: By::Entry(1, None, &[60.0]),
+    BEAM_FOR_LONG.assert_found(&hidden("joint_compliance", "beam", &[60.0]));
+    BEAM_FOR_LONG.assert_found(&Hidden {
+        by: Change::Entry(1, None, &[60.0]),
         ..hidden("joint_compliance", "beam", &[])
     });
 }
 
 #[test]
 fn effects_of_a_gear_mesh_are_found() {
-    GEAR.shows(&hidden("asymmetric_backlash", "x", &[1e-4]));
-    GEAR.shows(&Hidden {
-        by: By::Entry(0, Some(2), &[2e-4, -1e-4]),
+    GEAR.assert_found(&hidden("asymmetric_backlash", "x", &[1e-4]));
+    GEAR.assert_found(&Hidden {
+        by: Change::Entry(0, Some(2), &[2e-4, -1e-4]),
         ..hidden("transmission_error", "x", &[])
     });
-    GEAR.shows(&Hidden {
-        by: By::Entry(0, Some(2), &[0.2, -0.15]),
+    GEAR.assert_found(&Hidden {
+        by: Change::Entry(0, Some(2), &[0.2, -0.15]),
         ..hidden("stiffness_variation", "x", &[])
     });
 }
@@ -520,22 +522,22 @@ fn effects_of_a_spring_are_found() {
         (0, hidden("spring_saturation", "spring", &[])),
     ] {
         let by = match hidden.effect {
-            "stiffness_nonlinearity" => By::Entry(entry, None, &[6e4]),
-            "backlash" if entry == 0 => By::Entry(0, None, &[3e-3]),
-            "backlash" => By::Entry(1, None, &[3e-3]),
-            "end_stop" => By::Entry(2, None, &[900.0, 0.03]),
-            _ => By::Entry(entry, None, &[250.0, 0.03]),
+            "stiffness_nonlinearity" => Change::Entry(entry, None, &[6e4]),
+            "backlash" if entry == 0 => Change::Entry(0, None, &[3e-3]),
+            "backlash" => Change::Entry(1, None, &[3e-3]),
+            "end_stop" => Change::Entry(2, None, &[900.0, 0.03]),
+            _ => Change::Entry(entry, None, &[250.0, 0.03]),
         };
-        OSCILLATOR.shows(&Hidden { by, ..hidden });
+        OSCILLATOR.assert_found(&Hidden { by, ..hidden });
     }
-    OSCILLATOR.shows(&hidden("load_dependent_friction", "x", &[0.1]));
+    OSCILLATOR.assert_found(&hidden("load_dependent_friction", "x", &[0.1]));
 }
 
 /// Here a hardening spring is equivalent to stops on both sides, and closes only a part of the gap.
 #[test]
 fn approximate_effect_is_reported_as_substitute() {
     let stops = Hidden {
-        by: By::Entry(0, None, &[900.0, 0.03]),
+        by: Change::Entry(0, None, &[900.0, 0.03]),
         ..hidden("end_stop", "spring", &[])
     };
     let (truth, _) = OSCILLATOR.truth(&stops);
@@ -554,26 +556,29 @@ fn approximate_effect_is_reported_as_substitute() {
 fn sensor_faults_and_parameter_shifts_are_found() {
     let late = |column: &[f64]| column[column.len().saturating_sub(5)];
     for (effect, by) in [
-        ("sensor_delay", By::Sensor("delay", 4.0 * BEAM.sample, late)),
+        (
+            "sensor_delay",
+            Change::Sensor("delay", 4.0 * BEAM.sample, late),
+        ),
         (
             "sensor_gain",
-            By::Sensor("gain", 1.1, |column| 1.1 * column[column.len() - 1]),
+            Change::Sensor("gain", 1.1, |column| 1.1 * column[column.len() - 1]),
         ),
         (
             "sensor_bias",
-            By::Sensor("bias", 2e-3, |column| column[column.len() - 1] + 2e-3),
+            Change::Sensor("bias", 2e-3, |column| column[column.len() - 1] + 2e-3),
         ),
     ] {
-        BEAM.shows(&Hidden {
+        BEAM.assert_found(&Hidden {
             effect,
             on: "tip",
             by,
         });
     }
-    CARRIAGE.shows(&Hidden {
+    CARRIAGE.assert_found(&Hidden {
         effect: "parameter_shift",
         on: "m",
-        by: By::Shift(12.0),
+        by: Change::Shift(12.0),
     });
 }
 
@@ -586,7 +591,7 @@ fn all_catalogue_entries_are_tested_in_this_file() {
         let (name, number) = (&effect.name, *entry);
         assert!(own.contains(&format!("hidden(\"{name}\"")), "{name}");
         assert!(
-            number == 0 || own.contains(&format!("By::Entry({number},")),
+            number == 0 || own.contains(&format!("Change::Entry({number},")),
             "{name}"
         );
         *entry += 1;

@@ -138,14 +138,14 @@ shaft = "0.5*k_t*(theta - phi)^2"
 other = "k_1*p*p - 1/2*k_1*p^2"
 "#;
 
-fn checked(text: &str) -> Model {
+fn check_model(text: &str) -> Model {
     let checked = eomgen_model_spec::check(Source::new("machine.toml", text));
     checked.unwrap_or_else(|found| panic!("{found}")).model
 }
 
 #[test]
 fn springs_are_recognised_in_all_notations() {
-    let model = checked(SPRINGS);
+    let model = check_model(SPRINGS);
     let springs = sites(&model)
         .into_iter()
         .filter(|site| site.kind == SiteKind::Spring);
@@ -168,7 +168,7 @@ fn user_defined_effect_is_placed_on_springs() {
     let effects = effects(Some(&path)).unwrap_or_else(|found| panic!("{found}"));
     let own = effects.last().expect("an effect");
     assert!(own.is_own);
-    let model = checked(TWO_CARRIAGES);
+    let model = check_model(TWO_CARRIAGES);
     let found = candidates_of(&model, own);
     let places: Vec<&str> = found
         .iter()
@@ -222,7 +222,7 @@ other = { on = "theta", value = "-d_t*dot(slip)" }
 
 #[test]
 fn parallel_dampers_are_recognised_in_all_notations() {
-    let model = checked(DAMPERS);
+    let model = check_model(DAMPERS);
     let belt = sites(&model).into_iter().find(|site| site.name == "belt");
     let dampers = belt.expect("a spring").dampers.into_iter();
     let dampers: Vec<[String; 2]> = dampers.map(|damper| [damper.term, damper.part]).collect();
@@ -236,7 +236,7 @@ fn parallel_dampers_are_recognised_in_all_notations() {
 
 #[test]
 fn backlash_can_include_parallel_dampers() {
-    let model = checked(DAMPERS);
+    let model = check_model(DAMPERS);
     let effects = effects(None).expect("the catalogue");
     let play = effects.iter().filter(|effect| effect.name == "backlash");
     let written: Vec<String> = play
@@ -306,7 +306,7 @@ fn effect_on_an_input_applies_to_all_its_uses() {
     let path = folder.path().join("effects.toml");
     std::fs::write(&path, documented_effect()).expect("a file");
     let effects = effects(Some(&path)).unwrap_or_else(|found| panic!("{found}"));
-    let model = checked(MOTOR);
+    let model = check_model(MOTOR);
     for (name, lines) in [
         (
             "valve_overlap",

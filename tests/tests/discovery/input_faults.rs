@@ -77,7 +77,7 @@ const IDEAL: Drive = Drive {
 
 /// Returns a record with the torque gain * (u + bias), N m.
 fn record(gain: f64, bias: f64, turn: f64) -> String {
-    driven(
+    driven_record(
         Drive {
             gain,
             bias,
@@ -88,7 +88,7 @@ fn record(gain: f64, bias: f64, turn: f64) -> String {
 }
 
 /// Returns a record of t, u in mN m, theta.
-fn driven(drive: Drive, turn: f64) -> String {
+fn driven_record(drive: Drive, turn: f64) -> String {
     let Drive {
         gain,
         bias,
@@ -242,7 +242,7 @@ fn delayed_input_is_a_single_unknown() {
     };
     // The first four samples are at rest.
     let records = [0.0, 1.0].map(|turn| {
-        let lines = driven(
+        let lines = driven_record(
             Drive {
                 delay: 0.02,
                 ..IDEAL
@@ -276,7 +276,7 @@ fn delayed_input_is_a_single_unknown() {
 #[test]
 fn lag_of_drive_is_found() {
     let drive = Drive { lag: 0.02, ..IDEAL };
-    let records = [0.0, 1.0].map(|turn| driven(drive, turn));
+    let records = [0.0, 1.0].map(|turn| driven_record(drive, turn));
     let (document, extended) = discover_in(DATASET, PENDULUM, &records);
     let (bandwidth, names) = only_effect(&document);
     assert_eq!(names, ["input_lag on u"], "{document:#}");

@@ -33,7 +33,7 @@ start = "fitted"
 "#;
 
 /// Returns the torque of the hidden effects, N m, at an angle and a rate.
-fn hidden(theta: f64, rate: f64) -> f64 {
+fn hidden_torque(theta: f64, rate: f64) -> f64 {
     let friction = 6e-4 * (rate / 0.02).tanh();
     let ripple = 1.5e-3 * (2.0 * theta + 0.4).cos();
     ripple - friction
@@ -42,7 +42,7 @@ fn hidden(theta: f64, rate: f64) -> f64 {
 /// Returns the angular acceleration, rad/s^2, of the arm of `pendulum.toml`.
 fn acceleration(theta: f64, rate: f64) -> f64 {
     let (m, a, inertia, k, g) = (0.14758, 0.14775, 1.091e-4, 2.239e-4, 9.81);
-    (m * g * a * theta.sin() - k * rate + hidden(theta, rate)) / (m * a * a + inertia)
+    (m * g * a * theta.sin() - k * rate + hidden_torque(theta, rate)) / (m * a * a + inertia)
 }
 
 /// Returns a swing released at an angle, by the midpoint rule with steps of 20 us.

@@ -106,7 +106,7 @@ length = 0.25
 /// Torque of the shaft as a function of deflection and rate.
 type Shaft = fn(f64, f64) -> f64;
 
-fn in_play(p: f64) -> f64 {
+fn deadzone(p: f64) -> f64 {
     p - p.clamp(-PLAY, PLAY)
 }
 
@@ -186,15 +186,15 @@ fn assert_only_play(specification: &str, shaft: Shaft) -> String {
     extended
 }
 
-fn in_contact(p: f64, rate: f64) -> f64 {
-    let damping = if in_play(p) == 0.0 { 0.0 } else { D * rate };
-    K * in_play(p) + damping
+fn contact_torque(p: f64, rate: f64) -> f64 {
+    let damping = if deadzone(p) == 0.0 { 0.0 } else { D * rate };
+    K * deadzone(p) + damping
 }
 
 #[test]
 fn play_with_damper_in_contact_only_is_found() {
     for damper in [AS_DISSIPATION, AS_FORCE] {
-        let extended = assert_only_play(&specification(damper), in_contact);
+        let extended = assert_only_play(&specification(damper), contact_torque);
         assert!(extended.contains("*contact(twist, b_0)"), "{extended}");
     }
 }
@@ -202,7 +202,7 @@ fn play_with_damper_in_contact_only_is_found() {
 #[test]
 fn play_with_separate_damper_is_found() {
     let extended = assert_only_play(&specification(AS_DISSIPATION), |p, rate| {
-        K * in_play(p) + D * rate
+        K * deadzone(p) + D * rate
     });
     assert!(!extended.contains("contact("), "{extended}");
 }
@@ -237,7 +237,7 @@ fn softer_shaft_is_stiffness_shift_or_joint_compliance() {
 }
 
 /// Centre of an offset backlash, rad: three times its half-width from the model's.
-const MIDDLE: f64 = 3.0 * PLAY;
+const CENTRE: f64 = 3.0 * PLAY;
 
 #[test]
 fn offset_play_is_found_in_rotating_mesh() {
@@ -259,7 +259,7 @@ fn offset_play_is_found_in_rotating_mesh() {
         .replace("noise = 1.5e-4", "noise = 1.5e-4\nbias = { sd = 3e-4 }");
     for (specification, on) in [(of_a_deflection, "p"), (of_two_angles, "twist")] {
         let (found, _) = answer_of(&specification, &dataset, |p, rate| {
-            in_contact(p - MIDDLE, rate)
+            contact_torque(p - CENTRE, rate)
         });
         let effects = found["effects"].as_array().expect("a list");
         // An encoder bias is an equivalent.
@@ -271,7 +271,7 @@ fn offset_play_is_found_in_rotating_mesh() {
             "{names:?}"
         );
         let middle = &effects[0]["parameters"]["d_b"];
-        let off = middle["value"].as_f64().map(|value| (value - MIDDLE).abs());
+        let off = middle["value"].as_f64().map(|value| (value - CENTRE).abs());
         assert!(off.is_some_and(|off| off < 2e-3), "{middle:#}");
     }
 }

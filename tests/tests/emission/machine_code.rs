@@ -116,7 +116,7 @@ struct Pair {
 }
 
 /// Time, state and inputs of a random point.
-struct Drawn {
+struct RandomPoint {
     t: f64,
     state: Vec<f64>,
     inputs: Vec<f64>,
@@ -132,13 +132,13 @@ impl Pair {
         }
     }
 
-    fn both(&mut self) -> [&mut Evaluator; 2] {
+    fn evaluators(&mut self) -> [&mut Evaluator; 2] {
         [&mut self.interpreted, &mut self.compiled]
     }
 
     /// Prepares both evaluators and compares the prepared numbers and the results.
     fn compare(&mut self, parameters: &[f64], random: &mut Random) {
-        let [prepared, found]: [Vec<f64>; 2] = self.both().map(|evaluator| {
+        let [prepared, found]: [Vec<f64>; 2] = self.evaluators().map(|evaluator| {
             evaluator.prepare(parameters);
             let program = evaluator.program();
             let ids = program.ids().filter(|id| program.value(*id).parameter_only);
@@ -152,7 +152,9 @@ impl Pair {
                 state: &drawn.state,
                 inputs: &drawn.inputs,
             };
-            let [expected, found] = self.both().map(|evaluator| compute_all(evaluator, point));
+            let [expected, found] = self
+                .evaluators()
+                .map(|evaluator| compute_all(evaluator, point));
             for ((what, expected), (_, found)) in expected.iter().zip(&found) {
                 self.assert_same(what, expected, found, &drawn.state);
             }
@@ -172,14 +174,14 @@ impl Pair {
         );
     }
 
-    fn draw(&self, random: &mut Random, special: bool) -> Drawn {
+    fn draw(&self, random: &mut Random, special: bool) -> RandomPoint {
         let program = self.interpreted.program();
         let scale = 10_f64.powi((random.symmetric() * 6.0) as i32);
         let mut number = || match random.pick(&SPECIAL) {
             Some(number) if special => *number,
             _ => scale * random.symmetric(),
         };
-        Drawn {
+        RandomPoint {
             t: number(),
             state: (0..program.states()).map(|_| number()).collect(),
             inputs: program.inputs.iter().map(|_| number()).collect(),
@@ -315,7 +317,7 @@ fn general_solver_takes_same_steps_with_machine_code() {
 
 /// Returns a model with a sum over modes of an integral that needs quadrature. No other
 /// specification has one.
-fn tapered_by_sum() -> Model {
+fn tapered_sum_model() -> Model {
     let path = project().join("tests/features/exponential_taper.toml");
     let text = std::fs::read_to_string(path).expect("the feature");
     let (integral, sum) = (
@@ -333,7 +335,7 @@ fn tapered_by_sum() -> Model {
 #[test]
 fn sum_of_integrals_gives_same_bits() {
     for order in [1, 4, 9] {
-        compare("tapered by sum", &tapered_by_sum(), order);
+        compare("tapered by sum", &tapered_sum_model(), order);
     }
 }
 
@@ -349,7 +351,7 @@ fn test_programs_contain_every_operation_and_function() {
                 .model
         })
         .collect();
-    models.push(tapered_by_sum());
+    models.push(tapered_sum_model());
     let (mut operations, mut functions) = (BTreeSet::new(), BTreeSet::new());
     for model in &models {
         for value in program(model, 3).expect("a model of order 3").values {

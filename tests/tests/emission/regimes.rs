@@ -38,7 +38,7 @@ mod switches {
     }
 }
 
-/// A random coordinate relative to the half-width: inside, just outside or far outside.
+/// Draws a coordinate relative to the half-width: inside, just outside or far outside.
 fn deflection() -> impl Strategy<Value = f64> {
     let size = prop_oneof![0.0..0.9_f64, 1.1..1.2_f64, 2.0..50.0_f64];
     (size, any::<bool>()).prop_map(|(size, turned)| if turned { -size } else { size })
@@ -106,9 +106,9 @@ macro_rules! arms {
 }
 
 arms!(
-    arm_rigid a_rigid_arm_within_its_regime a_rigid_arm_beyond_its_regime,
-    arm an_arm_within_its_regime an_arm_beyond_its_regime,
-    arm_of_nine_modes nine_modes_within_their_regime nine_modes_beyond_their_regime
+    arm_rigid rigid_arm_kernels_match_rates_within_regime rigid_arm_kernels_extend_beyond_regime,
+    arm arm_kernels_match_rates_within_regime arm_kernels_extend_beyond_regime,
+    arm_of_nine_modes nine_mode_kernels_match_rates_within_regime nine_mode_kernels_extend_beyond_regime
 );
 
 proptest! {

@@ -80,7 +80,7 @@ macro_rules! agrees {
     )*};
 }
 
-/// Random deflection of a mesh in m; the backlash is 25e-6 m.
+/// Draws a deflection of a mesh in m; the backlash is 25e-6 m.
 fn deflection() -> impl Strategy<Value = f32> {
     (prop_oneof![0.0..2e-5_f32, 3e-5..1e-3_f32], any::<bool>())
         .prop_map(|(size, turned)| if turned { -size } else { size })
@@ -108,9 +108,9 @@ fn assert_bounds_are_sharp(rates: &[Single]) -> Result<(), TestCaseError> {
 }
 
 agrees! {
-    rigid 0 a_rigid_arm
-    one 1 one_mode
-    four 4 four_modes
-    sixty_four 64 sixty_four_modes
-    many 128 as_many_modes_as_there_can_be
+    rigid 0 rigid_arm_is_within_rounding_bounds
+    one 1 arm_with_one_mode_is_within_rounding_bounds
+    four 4 arm_with_four_modes_is_within_rounding_bounds
+    sixty_four 64 arm_with_64_modes_is_within_rounding_bounds
+    many 128 arm_with_128_modes_is_within_rounding_bounds
 }

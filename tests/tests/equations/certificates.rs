@@ -13,7 +13,12 @@ use eomgen_validate::certificate::Certificate;
 use eomgen_validate::of_model::certificate;
 
 /// Certifies `source` and compares the model with its hand-written equations.
-fn with_references(model: &Model, order: usize, outputs: &[Output], source: String) -> Certificate {
+fn certify_with_references(
+    model: &Model,
+    order: usize,
+    outputs: &[Output],
+    source: String,
+) -> Certificate {
     let values = model
         .parameter_values()
         .expect("the parameters have values");
@@ -31,7 +36,7 @@ fn certify_shipped(name: &str, order: usize) -> Certificate {
         .expect("the parameters have values");
     let program = lower(&model, &derived.equations, &values);
     let source = emit(&program, Packaging::Crate).expect("the program can be emitted");
-    with_references(&model, order, &[], source)
+    certify_with_references(&model, order, &[], source)
 }
 
 /// Asserts that the certificate passes and that only the checks in `may_skip` were skipped.
@@ -56,7 +61,7 @@ fn assert_passes(certificate: &Certificate, may_skip: &[&str]) {
     }
 }
 
-fn count(certificate: &Certificate, beginning: &str) -> usize {
+fn count_checks(certificate: &Certificate, beginning: &str) -> usize {
     certificate
         .checks
         .iter()
@@ -70,17 +75,17 @@ fn certify_arm(order: usize) {
     let may_skip: &[&str] = if order == 0 { &["rigid_limit"] } else { &[] };
     assert_passes(&certificate, may_skip);
     assert_eq!(
-        count(&certificate, "accelerations"),
+        count_checks(&certificate, "accelerations"),
         9,
         "each mesh +, free and -"
     );
     assert_eq!(
-        count(&certificate, "reference"),
+        count_checks(&certificate, "reference"),
         2,
         "Eq. (10) and (12), or Eq. (22) in SI and dimensionless"
     );
     for name in ["emitted_rust", "regime_kernels", "exact_derivative"] {
-        assert_eq!(count(&certificate, name), 1, "{name}");
+        assert_eq!(count_checks(&certificate, name), 1, "{name}");
     }
     if order <= 8 {
         assert_checked_in(&certificate);
@@ -159,7 +164,7 @@ fn shipped_specifications_pass_at_declared_order() {
         }
         let certificate = certify_shipped(&name, order);
         assert_passes(&certificate, &may_skip);
-        let reference_equations = count(&certificate, "reference");
+        let reference_equations = count_checks(&certificate, "reference");
         assert!(
             reference_equations > 0,
             "{name}: no `reference` check, not even a skipped one"
@@ -185,7 +190,7 @@ fn two_link_arm_passes_rigid_and_flexible() {
         "rigid_limit",
     ];
     assert_passes(&rigid, &may_skip);
-    assert_eq!(count(&rigid, "reference"), 1);
+    assert_eq!(count_checks(&rigid, "reference"), 1);
     // Order 16 takes half a minute and has the loops of order 8.
     for order in [1, 4, 8] {
         let may_skip = ["guards", "regime_kernels", "exact_derivative", "reference"];
@@ -225,7 +230,7 @@ fn each_fault_in_requested_output_fails_its_own_check() {
         panic!("the arm can be derived");
     };
     let source = emit(&variant.program, Packaging::Crate).expect("the program can be emitted");
-    let certify_source = |source: String| with_references(&model, 1, &outputs, source);
+    let certify_source = |source: String| certify_with_references(&model, 1, &outputs, source);
     let right = certify_source(source.clone());
     assert_passes(&right, &["rates_by_inputs", "observables_by_inputs"]);
     for (text, fault, check) in FAULTS {
@@ -248,7 +253,7 @@ fn falsified_source_fails_emitted_rust_check() {
     };
     let falsified = source(1).replacen("(2.0) * x_c_dot", "(3.0) * x_c_dot", 1);
     assert_ne!(falsified, source(1));
-    let found = with_references(&model, 1, &[], falsified);
+    let found = certify_with_references(&model, 1, &[], falsified);
     let failed: Vec<&str> = found.failures().map(|check| check.name.as_str()).collect();
     assert_eq!(failed, ["emitted_rust"]);
 }

@@ -14,12 +14,12 @@ const TOLERANCE: f64 = 1e-12;
 const ORDERS: [usize; 3] = [1, 4, 16];
 
 /// Derived variant whose observables are the named coefficients.
-struct Named {
+struct NamedCoefficients {
     names: Vec<String>,
     evaluator: Evaluator,
 }
 
-impl Named {
+impl NamedCoefficients {
     fn at_order(order: usize) -> Self {
         let derived = variant(&load("planetary_arm"), order);
         let mut program = derived.evaluator.program().clone();
@@ -36,7 +36,7 @@ impl Named {
     }
 
     /// Returns the coefficients at a sample by name: one number, one per mode, or modes by modes.
-    fn at(&mut self, sample: &Sample) -> impl Fn(&str) -> Vec<f64> + use<> {
+    fn coefficients_at(&mut self, sample: &Sample) -> impl Fn(&str) -> Vec<f64> + use<> {
         let point = Point {
             t: sample.time,
             state: &sample.state,
@@ -98,10 +98,10 @@ fn hand_written(coefficients: &Coefficients, name: &str, t: f64) -> Option<Vec<f
 #[test]
 fn named_coefficients_match_equation_22() {
     for order in ORDERS {
-        let mut named = Named::at_order(order);
+        let mut named = NamedCoefficients::at_order(order);
         let coefficients = Coefficients::new(&PlanetaryArmParameters::default(), order);
         let sample = &samples(&load("planetary_arm"), order, 1, 1)[0];
-        let derived = named.at(sample);
+        let derived = named.coefficients_at(sample);
         for name in &named.names {
             let expected = hand_written(&coefficients, name, sample.time)
                 .unwrap_or_else(|| panic!("{name} is not compared"));
@@ -125,7 +125,7 @@ struct Quantities {
 }
 
 impl Quantities {
-    fn of(sample: &Sample, order: usize) -> Self {
+    fn from_sample(sample: &Sample, order: usize) -> Self {
         let PlanetaryArmParameters { b_sp, b_pr, .. } = PlanetaryArmParameters::default();
         let (positions, rates) = sample.state.split_at(3 + order);
         let spring = |p: f64, b: f64| if p.abs() > b { p - b * p.signum() } else { 0.0 };
@@ -142,7 +142,7 @@ impl Quantities {
     }
 
     /// Returns the four mesh terms of a row; `names` are their coefficients.
-    fn mesh(&self, a: &impl Fn(&str) -> Vec<f64>, names: [&str; 4], mode: usize) -> Vec<f64> {
+    fn mesh_terms(&self, a: &impl Fn(&str) -> Vec<f64>, names: [&str; 4], mode: usize) -> Vec<f64> {
         let quantities = [
             self.springs[0],
             self.dampers[0],
@@ -156,7 +156,7 @@ impl Quantities {
             .collect()
     }
 
-    fn on_modes(&self, factors: &[f64]) -> Vec<f64> {
+    fn mode_terms(&self, factors: &[f64]) -> Vec<f64> {
         factors
             .iter()
             .zip(&self.modes)
@@ -178,19 +178,19 @@ fn rows(a: &impl Fn(&str) -> Vec<f64>, by: &Quantities) -> Vec<Vec<f64>> {
     let mut rows = vec![
         [
             motor,
-            by.mesh(a, ["a_14", "a_15", "a_16", "a_17"], 0),
-            by.on_modes(&a("a_1q")),
+            by.mesh_terms(a, ["a_14", "a_15", "a_16", "a_17"], 0),
+            by.mode_terms(&a("a_1q")),
         ]
         .concat(),
         [
-            by.mesh(a, ["a_21", "a_22", "a_23", "a_24"], 0),
-            by.on_modes(&a("a_2q")),
+            by.mesh_terms(a, ["a_21", "a_22", "a_23", "a_24"], 0),
+            by.mode_terms(&a("a_2q")),
         ]
         .concat(),
     ];
     let carrier = [
-        by.mesh(a, ["a_35", "a_36", "a_37", "a_38"], 0),
-        by.on_modes(&a("a_3q")),
+        by.mesh_terms(a, ["a_35", "a_36", "a_37", "a_38"], 0),
+        by.mode_terms(&a("a_3q")),
     ]
     .concat();
     rows.push(carrier.iter().map(|term| term / one("a_30")).collect());
@@ -198,8 +198,8 @@ fn rows(a: &impl Fn(&str) -> Vec<f64>, by: &Quantities) -> Vec<Vec<f64>> {
     for (mode, inertia) in inertias.iter().enumerate() {
         let own = &matrix[mode * inertias.len()..(mode + 1) * inertias.len()];
         let row = [
-            by.mesh(a, ["a_q5", "a_q6", "a_q7", "a_q8"], mode),
-            by.on_modes(own),
+            by.mesh_terms(a, ["a_q5", "a_q6", "a_q7", "a_q8"], mode),
+            by.mode_terms(own),
         ]
         .concat();
         rows.push(row.iter().map(|term| term / inertia).collect());
@@ -211,7 +211,7 @@ fn rows(a: &impl Fn(&str) -> Vec<f64>, by: &Quantities) -> Vec<Vec<f64>> {
 fn named_coefficients_assemble_the_equations() {
     let model = load("planetary_arm");
     for order in ORDERS {
-        let mut named = Named::at_order(order);
+        let mut named = NamedCoefficients::at_order(order);
         let mut evaluator = variant(&model, order).evaluator;
         for sample in samples(&model, order, 7, 10) {
             let mut rates = vec![f64::NAN; sample.state.len()];
@@ -221,7 +221,10 @@ fn named_coefficients_assemble_the_equations() {
                 inputs: &sample.inputs,
             };
             evaluator.rates(point, &mut rates);
-            let rows = rows(&named.at(&sample), &Quantities::of(&sample, order));
+            let rows = rows(
+                &named.coefficients_at(&sample),
+                &Quantities::from_sample(&sample, order),
+            );
             assert_eq!(rows.len(), 3 + order);
             for (row, acceleration) in rows.iter().zip(&rates[3 + order..]) {
                 let sum: f64 = row.iter().sum();

@@ -21,7 +21,7 @@ const STATES: usize = 5;
 const COORDINATES: usize = 5;
 const TREES: usize = 30;
 
-fn checked(text: &str) -> Model {
+fn check_model(text: &str) -> Model {
     match eomgen_model_spec::check(Source::new("rigid_tree.toml", text)) {
         Ok(checked) => checked.model,
         Err(found) => panic!("{}{text}", found.render(false)),
@@ -199,7 +199,7 @@ fn inverse_dynamics_of_random_trees_matches_oracle() {
     let mut random = Random::new(20);
     let (mut all_rates, mut all_inverse) = (0, 0);
     for _ in 0..TREES {
-        let (rates, inverse) = compare_with_oracle(&checked(&tree(&mut random)));
+        let (rates, inverse) = compare_with_oracle(&check_model(&tree(&mut random)));
         all_rates += rates;
         all_inverse += inverse;
     }

@@ -34,12 +34,12 @@ weight = "m*g*y"
 rod = { zero = "x^2 + y^2 - l^2" }
 "#;
 
-fn compiled(text: &str) -> CompiledModel {
+fn compile(text: &str) -> CompiledModel {
     CompiledModel::of_text("constrained.toml", text, Orders::Declared)
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn feature(name: &str, orders: Orders<'_>) -> CompiledModel {
+fn compile_feature(name: &str, orders: Orders<'_>) -> CompiledModel {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/constrained");
     CompiledModel::load(folder.join(format!("{name}.toml")), orders)
         .unwrap_or_else(|error| panic!("{error}"))
@@ -48,7 +48,7 @@ fn feature(name: &str, orders: Orders<'_>) -> CompiledModel {
 /// Returns the rod's model with `line` replaced by `by`.
 fn compile_changed(line: &str, by: &str) -> CompiledModel {
     assert!(ROD.contains(line));
-    compiled(&ROD.replace(line, by))
+    compile(&ROD.replace(line, by))
 }
 
 fn simulation_error(model: &CompiledModel) -> String {
@@ -63,7 +63,7 @@ fn simulation_error(model: &CompiledModel) -> String {
 /// Seven bodies in three loops. The end state is published in the Test Set for IVP Solvers.
 #[test]
 fn squeezing_mechanism_reaches_published_end_state() {
-    let model = feature("squeezing_mechanism", Orders::Declared);
+    let model = compile_feature("squeezing_mechanism", Orders::Declared);
     let run = model.at_declared().unwrap();
     let published = [
         15.81077119629904,
@@ -87,8 +87,8 @@ fn squeezing_mechanism_reaches_published_end_state() {
 
 #[test]
 fn constrained_rod_matches_angle_and_does_not_drift() {
-    let rod = compiled(ROD);
-    let angle = compiled(
+    let rod = compile(ROD);
+    let angle = compile(
         &ROD.replace(
             "x = { unit = \"m\", initial = \"l\" }",
             "theta = { unit = \"rad\" }",
@@ -262,7 +262,7 @@ fn folding_linkage_stops_and_names_constraints() {
         (0.0, "the constraint `across` has no effect"),
         (0.6, "the constraints `across`, `up` depend on each other"),
     ] {
-        let model = compiled(&parallelogram(angle));
+        let model = compile(&parallelogram(angle));
         let run = model.at_declared().expect("an instance");
         let times: Vec<f64> = (0..=100).map(|k| f64::from(k) * 0.01).collect();
         for solver in [Solver::Rk, Solver::Radau] {
@@ -314,7 +314,7 @@ fn fold_stops_motion_for_any_sampling_and_solver() {
             1 => one.clone(),
             _ => duplicate_linkage(&one),
         };
-        let model = compiled(&text);
+        let model = compile(&text);
         let run = model.at_declared().expect("an instance");
         for sample in [0.007, 0.05, 0.07, 0.1, 0.3] {
             for (solver, tolerance) in [
@@ -408,7 +408,7 @@ up = { zero = "a*sin(phi) + b*sin(beta) - a*sin(psi)" }
 fn time_of_fold_is_independent_of_sampling_and_solver() {
     let tilted = parallelogram(0.6);
     for text in [&tilted, SLIDER, KITE] {
-        let model = compiled(text);
+        let model = compile(text);
         let run = model.at_declared().expect("an instance");
         let mut times = Vec::new();
         for sample in [0.01, 0.07] {
@@ -496,7 +496,7 @@ fn rotating_rod_is_not_stopped() {
 
 #[test]
 fn constraint_residual_decays_at_given_rate() {
-    let model = compiled(ROD);
+    let model = compile(ROD);
     let run = model.with(&[("stabilisation_rate", 20.0)]).unwrap();
     let evaluator = RefCell::new(run.evaluator().unwrap());
     let inputs = run.no_inputs();
@@ -532,7 +532,7 @@ fn equilibrium_satisfies_constraints() {
 
 #[test]
 fn rolling_disc_conserves_energy_and_sleigh_straightens() {
-    let model = feature("rolling_disc", Orders::Declared);
+    let model = compile_feature("rolling_disc", Orders::Declared);
     let run = model.at_declared().unwrap();
     let times: Vec<f64> = (0..=50).map(f64::from).collect();
     let motion = run
@@ -547,7 +547,7 @@ fn rolling_disc_conserves_energy_and_sleigh_straightens() {
             energies[0]
         );
     }
-    let sleigh = compiled(eomgen_model_spec::models::CHAPLYGIN_SLEIGH.text);
+    let sleigh = compile(eomgen_model_spec::models::CHAPLYGIN_SLEIGH.text);
     let run = sleigh.at_declared().unwrap();
     let motion = run
         .simulate(run.initial(), &[0.0, 60.0], &run.no_inputs(), Solver::Auto)
@@ -593,7 +593,7 @@ fn feature_text(name: &str) -> String {
 /// inertia.
 #[test]
 fn multipliers_equal_joint_forces() {
-    let model = feature("flexible_coupler", Orders::Declared);
+    let model = compile_feature("flexible_coupler", Orders::Declared);
     let run = model.at_declared().unwrap();
     let inputs = run.no_inputs();
     let (state, _) = run.consistent(run.initial(), 0.0, &inputs).unwrap();
@@ -633,7 +633,7 @@ fn constraint_nonlinear_in_rates_is_rejected_with_location() {
 /// Meijaard, Papadopoulos, Ruina and Schwab 2007, Table 2: weave, capsize and castering by speed.
 #[test]
 fn bicycle_has_published_eigenvalues() {
-    let model = feature("bicycle", Orders::Declared);
+    let model = compile_feature("bicycle", Orders::Declared);
     let published: [(f64, [(f64, f64); 3]); 2] = [
         (
             5.0,
@@ -739,7 +739,7 @@ fn random_chains_match_in_cartesian_coordinates_and_angles() {
         let (angles, turns) = (some(-3.0, 3.0), some(-4.0, 4.0));
         let [places, in_angles] = chain(&lengths, &masses);
         let rates = |text: &str, state: &[f64]| {
-            let model = compiled(text);
+            let model = compile(text);
             let mut evaluator = model.at_declared().unwrap().evaluator().unwrap();
             let mut rates = vec![0.0; state.len()];
             let point = Point {

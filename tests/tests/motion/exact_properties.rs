@@ -65,12 +65,12 @@ fn compare_solvers(subject: &Subject, until: f64, smallest: f64) -> Result<(), T
     Ok(())
 }
 
-fn decades(low: f64, high: f64) -> impl Strategy<Value = f64> + Clone {
+fn log_uniform(low: f64, high: f64) -> impl Strategy<Value = f64> + Clone {
     (low.log10()..high.log10()).prop_map(|power| 10.0_f64.powf(power))
 }
 
 /// Returns zero in one of five cases.
-fn or_zero(of: impl Strategy<Value = f64>) -> impl Strategy<Value = f64> {
+fn sometimes_zero(of: impl Strategy<Value = f64>) -> impl Strategy<Value = f64> {
     (of, 0..5_u32).prop_map(|(value, die)| if die == 0 { 0.0 } else { value })
 }
 
@@ -79,12 +79,12 @@ proptest! {
 
     #[test]
     fn exact_matches_general_solver_for_random_arms(
-        stiffness in [decades(1e5, 1e9), decades(1e5, 1e9)],
-        damping in [or_zero(decades(1.0, 3e3)), or_zero(decades(1.0, 3e3))],
-        play in [or_zero(decades(1e-9, 1e-3)), or_zero(decades(1e-9, 1e-3))],
-        masses in [decades(0.04, 4.0), decades(0.06, 6.0)],
-        motor in (or_zero(decades(0.01, 100.0)), or_zero(decades(0.01, 100.0)), or_zero(decades(1e-12, 1.0))),
-        omega in or_zero(decades(0.1, 1e5)),
+        stiffness in [log_uniform(1e5, 1e9), log_uniform(1e5, 1e9)],
+        damping in [sometimes_zero(log_uniform(1.0, 3e3)), sometimes_zero(log_uniform(1.0, 3e3))],
+        play in [sometimes_zero(log_uniform(1e-9, 1e-3)), sometimes_zero(log_uniform(1e-9, 1e-3))],
+        masses in [log_uniform(0.04, 4.0), log_uniform(0.06, 6.0)],
+        motor in (sometimes_zero(log_uniform(0.01, 100.0)), sometimes_zero(log_uniform(0.01, 100.0)), sometimes_zero(log_uniform(1e-12, 1.0))),
+        omega in sometimes_zero(log_uniform(0.1, 1e5)),
         order in 0..7_usize,
         deflections in [-2.0..2.0_f64, -2.0..2.0_f64],
         rates in [-0.3..0.3_f64, -0.3..0.3_f64],
@@ -148,26 +148,26 @@ enum Term {
 
 fn term() -> impl Strategy<Value = Term> {
     prop_oneof![
-        decades(1.0, 1e4).prop_map(Term::Spring),
-        decades(0.01, 10.0).prop_map(Term::Damper),
+        log_uniform(1.0, 1e4).prop_map(Term::Spring),
+        log_uniform(0.01, 10.0).prop_map(Term::Damper),
         (
-            decades(100.0, 1e6),
-            or_zero(decades(0.1, 30.0)),
-            or_zero(decades(1e-6, 1e-1))
+            log_uniform(100.0, 1e6),
+            sometimes_zero(log_uniform(0.1, 30.0)),
+            sometimes_zero(log_uniform(1e-6, 1e-1))
         )
             .prop_map(|(k, c, b)| Term::Stop(k, c, b)),
-        (decades(100.0, 1e6), -0.1..0.1_f64).prop_map(|(k, b)| Term::OneSided(k, b)),
-        decades(0.01, 10.0).prop_map(Term::Dry),
+        (log_uniform(100.0, 1e6), -0.1..0.1_f64).prop_map(|(k, b)| Term::OneSided(k, b)),
+        log_uniform(0.01, 10.0).prop_map(Term::Dry),
         (
-            decades(0.1, 100.0),
-            or_zero(decades(0.1, 1e3)),
+            log_uniform(0.1, 100.0),
+            sometimes_zero(log_uniform(0.1, 1e3)),
             -3.0..3.0_f64
         )
             .prop_map(|(force, omega, phi)| Term::Push(force, omega, phi)),
         (
-            decades(1.0, 1e3),
-            decades(1e-3, 1.0),
-            or_zero(decades(1e-4, 1e-2))
+            log_uniform(1.0, 1e3),
+            log_uniform(1e-3, 1.0),
+            sometimes_zero(log_uniform(1e-4, 1e-2))
         )
             .prop_map(|(k, tau, b)| Term::Late(k, tau, b)),
     ]
@@ -239,7 +239,7 @@ proptest! {
 
     #[test]
     fn exact_matches_general_solver_for_random_machines(
-        masses in proptest::collection::vec(decades(0.1, 10.0), 1..=3),
+        masses in proptest::collection::vec(log_uniform(0.1, 10.0), 1..=3),
         starts in [[-0.1..0.1_f64, -1.0..1.0_f64], [-0.1..0.1_f64, -1.0..1.0_f64], [-0.1..0.1_f64, -1.0..1.0_f64]],
         terms in proptest::collection::vec((term(), 0..3_usize, 0..3_usize), 1..=6),
     ) {

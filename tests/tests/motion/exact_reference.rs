@@ -35,11 +35,11 @@ struct Deviation {
 }
 
 impl Deviation {
-    fn within(self, bound: f64) -> bool {
+    fn is_within(self, bound: f64) -> bool {
         self.x_sp < bound && self.tip < bound
     }
 
-    fn larger(self, other: Self) -> Self {
+    fn max(self, other: Self) -> Self {
         Self {
             x_sp: self.x_sp.max(other.x_sp),
             tip: self.tip.max(other.tip),
@@ -96,7 +96,7 @@ impl Reference {
             let deviation = self.deviation(sample, state[0], tip);
             for (growth, part) in growth.iter_mut().zip(PARTS) {
                 if sample as f64 <= part * end {
-                    *growth = growth.larger(deviation);
+                    *growth = growth.max(deviation);
                 }
             }
         }
@@ -111,7 +111,7 @@ impl Reference {
             assert_eq!(run.counts(), self.run.counts(), "switches");
             let growth = self.growth(run.states.iter().map(|state| &state.positions[..]));
             for (largest, growth) in rounding.iter_mut().zip(growth) {
-                *largest = largest.larger(growth);
+                *largest = largest.max(growth);
             }
         }
         rounding
@@ -171,16 +171,16 @@ const AFTER_START_S: f64 = 1e-6;
 
 /// Bounds for the exact solver.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Asked {
+enum Bounds {
     /// [`MAX_DEVIATION_M`] and [`MAX_ROUNDING_RATIO`].
-    Both,
+    DeviationAndRatio,
     /// Only [`MAX_DEVIATION_M`].
-    Largest,
+    DeviationOnly,
 }
 
 /// Asserts that doubles and the exact solver match the reference over two seconds, with these
 /// switch counts.
-fn assert_both_match_reference(order: usize, b: f64, switches: [usize; 2], asked: Asked) {
+fn assert_both_match_reference(order: usize, b: f64, switches: [usize; 2], bounds: Bounds) {
     let until = 2.0;
     let compared = compare(order, b, until);
     let both = compared.rounding.into_iter().zip(compared.exact);
@@ -192,11 +192,14 @@ fn assert_both_match_reference(order: usize, b: f64, switches: [usize; 2], asked
             ratios[0],
             ratios[1]
         );
-        assert!(rounding.within(0.1 * MAX_DEVIATION_M), "double: {rounding}");
-        assert!(exact.within(MAX_DEVIATION_M), "exact: {exact}");
+        assert!(
+            rounding.is_within(0.1 * MAX_DEVIATION_M),
+            "double: {rounding}"
+        );
+        assert!(exact.is_within(MAX_DEVIATION_M), "exact: {exact}");
         // The ratio is checked over the whole run only: over parts, single samples deviate by 1e-14
         // m more.
-        if asked == Asked::Both && part == 1.0 {
+        if bounds == Bounds::DeviationAndRatio && part == 1.0 {
             let within = exact.x_sp <= MAX_ROUNDING_RATIO * rounding.x_sp
                 && exact.tip <= MAX_ROUNDING_RATIO * rounding.tip;
             assert!(within, "{ratios:?}");
@@ -210,34 +213,34 @@ fn assert_both_match_reference(order: usize, b: f64, switches: [usize; 2], asked
 
 #[test]
 fn exact_matches_reference_for_rigid_arm() {
-    assert_both_match_reference(0, 0.0, [20, 20], Asked::Both);
-    assert_both_match_reference(0, 1e-6, [163, 331], Asked::Both);
-    assert_both_match_reference(0, 25e-6, [409, 560], Asked::Both);
-    assert_both_match_reference(0, 100e-6, [518, 678], Asked::Both);
+    assert_both_match_reference(0, 0.0, [20, 20], Bounds::DeviationAndRatio);
+    assert_both_match_reference(0, 1e-6, [163, 331], Bounds::DeviationAndRatio);
+    assert_both_match_reference(0, 25e-6, [409, 560], Bounds::DeviationAndRatio);
+    assert_both_match_reference(0, 100e-6, [518, 678], Bounds::DeviationAndRatio);
 }
 
 #[test]
 fn exact_matches_reference_without_backlash() {
-    assert_both_match_reference(4, 0.0, [20, 20], Asked::Both);
-    assert_both_match_reference(4, 1e-6, [207, 317], Asked::Both);
+    assert_both_match_reference(4, 0.0, [20, 20], Bounds::DeviationAndRatio);
+    assert_both_match_reference(4, 1e-6, [207, 317], Bounds::DeviationAndRatio);
 }
 
 #[test]
 fn exact_matches_reference_with_backlash() {
-    assert_both_match_reference(4, 25e-6, [381, 584], Asked::Largest);
-    assert_both_match_reference(4, 100e-6, [498, 700], Asked::Both);
+    assert_both_match_reference(4, 25e-6, [381, 584], Bounds::DeviationOnly);
+    assert_both_match_reference(4, 100e-6, [498, 700], Bounds::DeviationAndRatio);
 }
 
 #[test]
 fn exact_matches_reference_for_sixteen_modes_without_backlash() {
-    assert_both_match_reference(16, 0.0, [20, 20], Asked::Both);
-    assert_both_match_reference(16, 1e-6, [207, 315], Asked::Both);
+    assert_both_match_reference(16, 0.0, [20, 20], Bounds::DeviationAndRatio);
+    assert_both_match_reference(16, 1e-6, [207, 315], Bounds::DeviationAndRatio);
 }
 
 #[test]
 fn exact_matches_reference_for_sixteen_modes_with_backlash() {
-    assert_both_match_reference(16, 25e-6, [377, 590], Asked::Largest);
-    assert_both_match_reference(16, 100e-6, [518, 720], Asked::Both);
+    assert_both_match_reference(16, 25e-6, [377, 590], Bounds::DeviationOnly);
+    assert_both_match_reference(16, 100e-6, [518, 720], Bounds::DeviationAndRatio);
 }
 
 /// Returns the shipped arm with the parameters of the case.

@@ -19,14 +19,14 @@ impl Numbers {
     }
 }
 
-fn example(name: &str, orders: Orders<'_>) -> CompiledModel {
+fn compile_example(name: &str, orders: Orders<'_>) -> CompiledModel {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/impacts");
     CompiledModel::load(folder.join(format!("{name}.toml")), orders)
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Compiles a shipped model with additional `impacts`.
-fn with_impacts(name: &str, impacts: &str, order: usize) -> CompiledModel {
+fn compile_with_impacts(name: &str, impacts: &str, order: usize) -> CompiledModel {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../model-spec/models");
     let text = std::fs::read_to_string(folder.join(format!("{name}.toml"))).expect("a model");
     let orders = match order {
@@ -64,7 +64,7 @@ fn height_after_drop(g: f64, e: f64, t: f64) -> f64 {
 
 #[test]
 fn bouncing_ball_matches_closed_form_and_comes_to_rest() {
-    let model = example("bouncing_ball", Orders::Declared);
+    let model = compile_example("bouncing_ball", Orders::Declared);
     let g = 9.81;
     for e in [0.0, 0.2, 0.5, 0.8, 0.9, 0.97, 1.0] {
         let times: Vec<f64> = (0..=40).map(|step| f64::from(step) * 0.1).collect();
@@ -81,7 +81,7 @@ fn bouncing_ball_matches_closed_form_and_comes_to_rest() {
 }
 
 /// Returns the motions from `initial` by each solver that supports impacts.
-fn motions(model: &CompiledModel, initial: &[f64], times: &[f64]) -> Vec<Motion> {
+fn simulate_with_all_solvers(model: &CompiledModel, initial: &[f64], times: &[f64]) -> Vec<Motion> {
     let run = model.at_declared().unwrap();
     let solvers = [Solver::Rk, Solver::Radau].into_iter();
     let motions = solvers.map(|solver| {
@@ -96,13 +96,13 @@ fn motions(model: &CompiledModel, initial: &[f64], times: &[f64]) -> Vec<Motion>
 
 #[test]
 fn ball_starting_on_floor_rests_or_bounces() {
-    let model = example("bouncing_ball", Orders::Declared);
+    let model = compile_example("bouncing_ball", Orders::Declared);
     let (g, e) = (9.81, 0.8);
     for begin in [0.0, 5.0] {
         for speed in [0.0, 1.0, -1.0] {
             let times: Vec<f64> = (0..=20).map(|step| begin + f64::from(step) * 0.1).collect();
             let first = if speed < 0.0 { -e * speed } else { speed };
-            for motion in motions(&model, &[0.0, speed], &times) {
+            for motion in simulate_with_all_solvers(&model, &[0.0, speed], &times) {
                 for (t, state) in times.iter().zip(&motion.trajectory.states) {
                     let height = height_after_launch(g, e, t - begin, first);
                     assert!(
@@ -160,7 +160,7 @@ p = "{potential}"
                 .unwrap();
         for begin in [0.0, 3.0] {
             let times: Vec<f64> = (0..=10).map(|step| begin + f64::from(step) * 0.1).collect();
-            for motion in motions(&model, &[0.0; 4], &times) {
+            for motion in simulate_with_all_solvers(&model, &[0.0; 4], &times) {
                 for state in &motion.trajectory.states {
                     let most = state
                         .iter()
@@ -175,7 +175,7 @@ p = "{potential}"
 #[test]
 fn ball_leaves_table_that_falls_faster() {
     // With e = 0, the ball stays on the table until a omega^2 sin(omega t) = g.
-    let model = example("bouncing_ball", Orders::Declared);
+    let model = compile_example("bouncing_ball", Orders::Declared);
     let (a, omega, g) = (0.03, 20.0_f64, 9.81);
     let run = model.with(&[("a", a), ("e", 0.0)]).unwrap();
     let mut initial = run.initial().to_vec();
@@ -244,7 +244,7 @@ bumper = {{ when = "z - x", restitution = "e" }}
 }
 
 /// Compiles two balls above each other and the floor below them.
-fn stacked(between: f64) -> CompiledModel {
+fn compile_stack(between: f64) -> CompiledModel {
     let text = format!(
         r#"
 [model]
@@ -273,7 +273,7 @@ balls = {{ when = "z - y", restitution = 0.8 }}
 fn touching_balls_bounce_like_one_ball() {
     // Moreau's law: balls that touch as they fall have no relative speed to restore, so they move
     // together like a single ball.
-    let model = stacked(1.0);
+    let model = compile_stack(1.0);
     for (light, e) in [
         (100.0, 0.9),
         (1.0, 0.5),
@@ -358,7 +358,7 @@ fn light_ball_on_heavy_ball_rebounds_by_textbook_formula() {
     // With a small gap, the heavy ball has rebounded before they meet; then the textbook collision
     // of two bodies applies.
     let (e, apart, g) = (0.9, 1e-6, 9.81);
-    let motion = simulate_with(&stacked(1.0 + apart), &[], &[0.0, 0.46]);
+    let motion = simulate_with(&compile_stack(1.0 + apart), &[], &[0.0, 0.46]);
     let v = (2.0_f64 * g).sqrt();
     let meets = (1.0 + 0.8) * 100.0 / 101.0;
     let after = -v + meets * (v + e * v) - g * (0.46 - v / g);
@@ -368,7 +368,7 @@ fn light_ball_on_heavy_ball_rebounds_by_textbook_formula() {
 
 #[test]
 fn dropped_box_hits_with_both_edges_or_one() {
-    let model = example("dropped_box", Orders::Declared);
+    let model = compile_example("dropped_box", Orders::Declared);
     let (m, inertia, b, h, g, e) = (2.0, 0.0867, 0.3, 0.2, 9.81, 0.3);
     let run = model.at_declared().unwrap();
     let flat = run.simulate(
@@ -409,7 +409,7 @@ fn dropped_box_hits_with_both_edges_or_one() {
 
 #[test]
 fn box_comes_to_rest_for_all_restitutions_and_widths() {
-    let model = example("dropped_box", Orders::Declared);
+    let model = compile_example("dropped_box", Orders::Declared);
     let mut numbers = Numbers(0x1234_5678_9abc_def1);
     for _ in 0..60 {
         let (b, e) = (0.25 + 0.2 * numbers.next(), 0.35 + 0.3 * numbers.next());
@@ -531,15 +531,23 @@ fn assert_matches_dense_algebra(model: &CompiledModel, settings: &[(&str, f64)],
 fn jumps_match_dense_algebra_for_rigid_and_flexible_machines() {
     let walls = "\n[impacts]\nwall = { when = \"l_1 - l_1*sin(theta_1) - l_2*sin(theta_2)\", restitution = 0.5 }\n\
                  knee = { when = \"2 + theta_2 - theta_1\", restitution = 0 }\n";
-    assert_matches_dense_algebra(&with_impacts("double_pendulum", walls, 0), &[], 3);
+    assert_matches_dense_algebra(&compile_with_impacts("double_pendulum", walls, 0), &[], 3);
     let stops = "\n[impacts]\ntip = { when = \"l + at(w, l) + l*theta\", restitution = 0.5 }\n\
                  middle = { when = \"l - at(w, l/2) - cos(theta)*at(w, l)\", restitution = 1 }\n";
     for order in [1, 3, 12] {
-        assert_matches_dense_algebra(&with_impacts("hub_beam_tip_mass", stops, order), &[], 5);
+        assert_matches_dense_algebra(
+            &compile_with_impacts("hub_beam_tip_mass", stops, order),
+            &[],
+            5,
+        );
     }
-    assert_matches_dense_algebra(&example("dropped_box", Orders::Declared), &[], 7);
+    assert_matches_dense_algebra(&compile_example("dropped_box", Orders::Declared), &[], 7);
     let shaken = [("a", 0.05)];
-    assert_matches_dense_algebra(&example("bouncing_ball", Orders::Declared), &shaken, 9);
+    assert_matches_dense_algebra(
+        &compile_example("bouncing_ball", Orders::Declared),
+        &shaken,
+        9,
+    );
 }
 
 #[test]
@@ -586,7 +594,7 @@ wall = { when = "x", restitution = 0.5 }
 #[test]
 fn stiff_contact_spring_converges_to_impact() {
     // With e = 1 the motion of a stiff contact spring converges to that of the impact.
-    let hitting = example("beam_stop", Orders::All(2));
+    let hitting = compile_example("beam_stop", Orders::All(2));
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/impacts");
     let text = std::fs::read_to_string(folder.join("beam_stop.toml")).expect("an example");
     let (before, after) = text.split_once("[impacts]").expect("impacts");
@@ -613,7 +621,7 @@ fn stiff_contact_spring_converges_to_impact() {
 
 #[test]
 fn initial_penetration_by_rounding_starts_on_contact() {
-    let model = example("bouncing_ball", Orders::Declared);
+    let model = compile_example("bouncing_ball", Orders::Declared);
     let run = model.at_declared().unwrap();
     let times = [0.0, 0.3, 1.0];
     let from = |initial: &[f64]| run.simulate(initial, &times, &run.no_inputs(), Solver::Rk);
@@ -632,7 +640,7 @@ fn initial_penetration_by_rounding_starts_on_contact() {
 
 #[test]
 fn invalid_impacts_are_rejected_with_reason() {
-    let model = example("bouncing_ball", Orders::Declared);
+    let model = compile_example("bouncing_ball", Orders::Declared);
     let run = model.at_declared().unwrap();
     let at = |initial: &[f64], solver| run.simulate(initial, &[0.0, 1.0], &run.no_inputs(), solver);
     for (found, what) in [

@@ -62,7 +62,7 @@ pad = {{ on = "y", value = "{pad}" }}
 }
 
 /// Returns a driven mass with this force; m, N and kg are of order one.
-fn driven(force: &str) -> Subject {
+fn driven_mass(force: &str) -> Subject {
     subject(&format!(
         r#"
 [model]
@@ -119,7 +119,7 @@ fn preloaded_springs_and_one_sided_stops_hold_at_rest() {
         "-k*y - F0*contact(contact(y, b) + above(y), 1)",
         "-k*y - F0*above(y) - c*above(-y)*dot(y)",
     ] {
-        let motion = compare_and_simulate(&driven(force), 3.0);
+        let motion = compare_and_simulate(&driven_mass(force), 3.0);
         assert!(motion.switches.len() > 1, "{force}");
     }
 }
@@ -130,8 +130,8 @@ fn preloaded_springs_and_one_sided_stops_hold_at_rest() {
 fn friction_that_starts_at_a_speed_holds_the_mass_at_it() {
     let times = grid(4.0, 40);
     let force = |friction: &str| format!("-{friction} - 0.3*k*y");
-    let sudden = driven(&force("F0*sign(deadzone(dot(y), v))"));
-    let steep = driven(&force("F0*min(max(deadzone(dot(y), v)/(1e-6*v), -1), 1)"));
+    let sudden = driven_mass(&force("F0*sign(deadzone(dot(y), v))"));
+    let steep = driven_mass(&force("F0*min(max(deadzone(dot(y), v)/(1e-6*v), -1), 1)"));
     let exact = sudden.exact((0.0, 4.0), &times);
     let near = steep.exact((0.0, 4.0), &times);
     let apart = difference(&exact.states, &near.states, 1e-3);
@@ -230,7 +230,7 @@ fn random_machines_agree_between_solvers_rates_and_kernels() {
         };
         compare_rates(&subject, &samples, &place, &mut tally);
         compare_motions(&subject, &place, &mut tally);
-        emitted.push((kernel(&subject), samples, place));
+        emitted.push((emit_kernels(&subject), samples, place));
     }
     for batch in emitted.chunks(25) {
         compare_kernels(batch, &mut tally);
@@ -333,7 +333,7 @@ fn compare_motions(subject: &Subject, place: &str, tally: &mut Tally) {
 }
 
 /// Returns the emitted source of a machine with kernels of regimes.
-fn kernel(subject: &Subject) -> String {
+fn emit_kernels(subject: &Subject) -> String {
     let derived = Variant::derive_with(&subject.model, &[], &[Output::Regimes]);
     let program = derived.expect("a model that can be derived").program;
     emit(&program, Packaging::Module).expect("names valid in Rust")

@@ -162,7 +162,7 @@ fn write_spec(folder: &Path, specification: &str) -> String {
 }
 
 /// Runs a simulation that must stop.
-fn stopped(specification: &str, until: &str, more: &[&str]) -> Stopped {
+fn run_until_stop(specification: &str, until: &str, more: &[&str]) -> Stopped {
     let folder = tempfile::tempdir().expect("a folder");
     let (spec, out) = (
         write_spec(folder.path(), specification),
@@ -190,7 +190,7 @@ fn stopped(specification: &str, until: &str, more: &[&str]) -> Stopped {
 
 #[test]
 fn sticking_with_adams_keeps_the_rows_so_far() {
-    let found = stopped(BELT, "2", &["--solver", "adams", "--interval", "0.001"]);
+    let found = run_until_stop(BELT, "2", &["--solver", "adams", "--interval", "0.001"]);
     // The belt's friction accelerates the mass to the belt's speed within 0.02 s.
     assert!(
         (0.015..0.025).contains(&found.last_time()),
@@ -260,7 +260,7 @@ fn stopped_run_keeps_parquet_rows_and_gives_reason_in_json() {
 fn chattering_forces_are_not_reported_as_friction() {
     // The times between switches become shorter and shorter.
     let law = between_forces("-F*sign(x) - D*sign(dot(x))");
-    let found = stopped(&law, "60", &["--solver", "rk"]);
+    let found = run_until_stop(&law, "60", &["--solver", "rk"]);
     found.assert_says(&["at t = ", "`x` is zero", "chatters"]);
     found.assert_omits(&["sticks", "friction", "tanh"]);
     assert!(found.rows.len() > 10 && found.last_time() > 5.0);
@@ -301,7 +301,7 @@ fn relay_with_lead_slides() {
 #[test]
 fn stopped_exact_solver_keeps_the_rows_so_far() {
     let law = between_forces("-F*sign(x) - D*sign(dot(x))");
-    let of = |solver| stopped(&law, "60", &["--solver", solver, "--interval", "0.01"]);
+    let of = |solver| run_until_stop(&law, "60", &["--solver", solver, "--interval", "0.01"]);
     let (exact, general) = (of("exact"), of("rk"));
     exact.assert_says(&["error: at t = 6.3"]);
     assert_eq!((exact.rows.len(), general.rows.len()), (631, 631));
@@ -313,7 +313,7 @@ fn stopped_exact_solver_keeps_the_rows_so_far() {
 #[test]
 fn diverging_motion_is_not_reported_as_friction() {
     for solver in ["auto", "rk", "adams", "radau"] {
-        let found = stopped(BLOW_UP, "20", &["--solver", solver, "--interval", "0.01"]);
+        let found = run_until_stop(BLOW_UP, "20", &["--solver", solver, "--interval", "0.01"]);
         found.assert_says(&["at t = ", "`x"]);
         found.assert_omits(&["sticks", "friction", "tanh"]);
         // x'' = 2 x^3 from rest at 1 diverges at 1.31 s.
@@ -328,7 +328,7 @@ fn diverging_motion_is_not_reported_as_friction() {
 #[test]
 fn explicit_solvers_report_stiffness_within_seconds() {
     for solver in ["rk", "adams"] {
-        let found = stopped(STIFF, "100", &["--solver", solver]);
+        let found = run_until_stop(STIFF, "100", &["--solver", solver]);
         found.assert_says(&["stiff", "`theta_dot`", "stopped at t = "]);
         found.assert_omits(&["sticks"]);
         assert!(!found.rows.is_empty());
@@ -375,7 +375,7 @@ fn auto_solves_stiff_friction_with_radau() {
 }
 
 /// Returns the document of `simulate --json` on the orifice, and the messages.
-fn orifice_by(solver: &str) -> (serde_json::Value, String) {
+fn simulate_orifice(solver: &str) -> (serde_json::Value, String) {
     let folder = tempfile::tempdir().expect("a folder");
     let spec = write_spec(folder.path(), ORIFICE);
     let out = folder.path().join("a.csv").display().to_string();
@@ -389,15 +389,15 @@ fn orifice_by(solver: &str) -> (serde_json::Value, String) {
 #[test]
 fn rk_stops_at_stiff_orifice_and_auto_uses_radau() {
     let evaluations = |document: &serde_json::Value| document["evaluations"].as_u64();
-    let (radau, _) = orifice_by("radau");
-    let (auto, note) = orifice_by("auto");
+    let (radau, _) = simulate_orifice("radau");
+    let (auto, note) = simulate_orifice("auto");
     assert_eq!(auto["solver"], "radau");
     assert!(
         note.contains("stiff near the place where `p1 - p2`"),
         "{note}"
     );
     assert_eq!(evaluations(&auto), evaluations(&radau));
-    let (rk, message) = orifice_by("rk");
+    let (rk, message) = simulate_orifice("rk");
     assert!(message.contains("take the solver radau"), "{message}");
     assert!(evaluations(&rk).expect("a number") < 300_000, "{rk}");
 }
@@ -405,7 +405,7 @@ fn rk_stops_at_stiff_orifice_and_auto_uses_radau() {
 #[test]
 fn loss_of_positive_definiteness_is_reported() {
     for solver in ["auto", "rk", "adams", "radau"] {
-        let found = stopped(INDEFINITE, "2", &["--solver", solver, "--interval", "0.01"]);
+        let found = run_until_stop(INDEFINITE, "2", &["--solver", solver, "--interval", "0.01"]);
         found.assert_says(&["at t = 0.", "not positive definite", "`phi`"]);
         assert!(
             (0.4..=0.5).contains(&found.last_time()),

@@ -129,7 +129,7 @@ fn first_rise_is_found_however_short() {
     assert!(first_rise(&start(-1.0)).is_none());
 }
 
-/// The paper's excitation frequency, 10 pi rad/s.
+/// Returns a case with the paper's excitation frequency, 10 pi rad/s.
 fn case(order: usize, b: f64) -> Case {
     Case {
         order,

@@ -11,7 +11,7 @@ use eomgen_tests::models::{load, variant};
 /// Returns the model with the parameters of the hand-written equations.
 fn with_parameters(model: &Model, parameters: &PlanetaryArmParameters) -> Model {
     let mut changed = model.clone();
-    for (name, value) in by_name(parameters) {
+    for (name, value) in fields_by_name(parameters) {
         let known = model
             .parameters
             .iter()
@@ -26,7 +26,7 @@ fn with_parameters(model: &Model, parameters: &PlanetaryArmParameters) -> Model 
 
 /// Returns every field with its name; a missing field does not compile.
 #[allow(non_snake_case, reason = "names as in the paper's nomenclature")]
-fn by_name(parameters: &PlanetaryArmParameters) -> Vec<(&'static str, f64)> {
+fn fields_by_name(parameters: &PlanetaryArmParameters) -> Vec<(&'static str, f64)> {
     macro_rules! fields {
         ($($field:ident)*) => {{
             let PlanetaryArmParameters { $($field),* } = *parameters;

@@ -82,7 +82,7 @@ fn study_writes_all_files_of_its_document() {
     );
 }
 
-/// With closed meshes the arm turns with the whole drive. Its first frequency exceeds that of the
+/// Checks the first frequency. With closed meshes the arm turns with the whole drive. Its frequency exceeds that of the
 /// clamped arm by the part of its inertia that turns the drive, h^2/m.
 fn check_frequencies(case: &Value) {
     let first = number(&case["natural_frequencies"][0]);
@@ -123,7 +123,7 @@ fn check_numbers(case: &Value) {
     assert!(verdict.starts_with(motion), "{case}");
 }
 
-/// Without backlash, a forced motion far below every natural frequency is that of a rigid machine:
+/// Checks the closed form. Without backlash, a forced motion far below every natural frequency is that of a rigid machine:
 /// the meshes transmit the ripple's torque minus the torque that accelerates the sun.
 fn check_closed_form(case: &Value) {
     assert_eq!(number(&case["b"]), 0.0);

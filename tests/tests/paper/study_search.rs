@@ -11,16 +11,18 @@ use eomgen_tests::program::{self, accepted, eomgen, refused, text};
 use serde_json::Value;
 
 /// One set of a well-damped machine, so that a search takes seconds.
-const FEW: [&str; 4] = ["--sets", "1", "--seed", "166"];
+const SMALL_SEARCH: [&str; 4] = ["--sets", "1", "--seed", "166"];
 
 /// Maximum duration of a search.
 const LIMIT: Duration = Duration::from_secs(300);
 
 /// Runs a search to the end; returns the printed document.
-fn search(out: &Path) -> Value {
+fn run_search(out: &Path) -> Value {
     let mut command = eomgen();
     command.timeout(LIMIT);
-    command.args(["paper", "claims", "--json"]).args(FEW);
+    command
+        .args(["paper", "claims", "--json"])
+        .args(SMALL_SEARCH);
     let output = command.arg("--out").arg(out).output();
     let output = output.expect("the program can be run");
     assert!(output.status.success(), "{}", text(&output.stderr));
@@ -31,7 +33,7 @@ fn search(out: &Path) -> Value {
 fn start_and_kill(out: &Path) {
     let mut child = Command::new(program::path())
         .args(["paper", "claims"])
-        .args(FEW)
+        .args(SMALL_SEARCH)
         .arg("--out")
         .arg(out)
         .stdout(Stdio::null())
@@ -79,14 +81,14 @@ fn killed_search_resumes_to_same_bytes() {
     let written = screened.and_then(|part| part.modified()).expect("a time");
     // A kill during a write leaves such a file.
     fs::write(killed.join("parts/confirmed_00000.unfinished"), "0,1").expect("written");
-    let found = search(&killed);
+    let found = run_search(&killed);
     let screened = fs::metadata(killed.join("parts/screened_00000.csv"));
     let again = screened.and_then(|part| part.modified()).expect("a time");
     assert_eq!(
         written, again,
         "a resumed search does not repeat the screening"
     );
-    assert_eq!(search(&whole), found);
+    assert_eq!(run_search(&whole), found);
     assert_eq!(files(&killed), files(&whole));
     assert_eq!(files(&killed.join("parts")), files(&whole.join("parts")));
 

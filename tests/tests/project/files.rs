@@ -12,7 +12,7 @@ fn spec(name: &str) -> String {
     path(name).display().to_string()
 }
 
-fn shown(path: &Path) -> String {
+fn path_text(path: &Path) -> String {
     path.display().to_string()
 }
 
@@ -22,10 +22,10 @@ fn same_input_gives_same_bytes() {
     let made = |run: &str| {
         let out = folder.path().join(run);
         let arm = spec("planetary_arm");
-        let table = shown(&out.join("a.csv"));
+        let table = path_text(&out.join("a.csv"));
         accepted(&["simulate", &arm, "--until", "0.02", "--out", &table]);
-        accepted(&["generate", &arm, "--order", "3", "--out", &shown(&out)]);
-        let certificate = shown(&out.join("certificate.json"));
+        accepted(&["generate", &arm, "--order", "3", "--out", &path_text(&out)]);
+        let certificate = path_text(&out.join("certificate.json"));
         accepted(&["validate", &spec("emps"), "--out", &certificate]);
         let mut contents: Vec<Vec<u8>> = ["a.csv", "lib.rs", "certificate.json"]
             .iter()
@@ -48,8 +48,8 @@ fn output_in_place_of_a_non_file_is_rejected() {
     std::fs::write(&file, "kept").expect("a file");
     let pendulum = spec("pendulum");
     for out in [
-        shown(folder.path()),
-        shown(&file.join("a.csv")),
+        path_text(folder.path()),
+        path_text(&file.join("a.csv")),
         "/".to_owned(),
     ] {
         let message = refused(&["simulate", &pendulum, "--until", "1", "--out", &out]);
@@ -57,7 +57,7 @@ fn output_in_place_of_a_non_file_is_rejected() {
         let message = refused(&["validate", &pendulum, "--out", &out]);
         assert!(message.contains("cannot write"), "{message}");
     }
-    let message = refused(&["generate", &pendulum, "--out", &shown(&file)]);
+    let message = refused(&["generate", &pendulum, "--out", &path_text(&file)]);
     assert!(message.contains("is not a folder"), "{message}");
     assert_eq!(std::fs::read(&file).expect("the file"), b"kept");
 }
@@ -79,7 +79,7 @@ fn devices_pipes_and_links_are_preserved() {
     std::fs::write(&target, "old").expect("a file");
     std::os::unix::fs::symlink("target", &link).expect("a link");
     let simulate = |out: &Path| {
-        let out = shown(out);
+        let out = path_text(out);
         program::run(&["simulate", &spec("pendulum"), "--until", "1", "--out", &out])
     };
     let refused = simulate(&pipe);
@@ -111,7 +111,7 @@ fn output_can_go_to_stdout_or_a_device() {
     let file = folder.path().join("a.csv");
     let simulate =
         |out: &str| program::run(&["simulate", &spec("pendulum"), "--until", "1", "--out", out]);
-    assert_eq!(simulate(&shown(&file)).status.code(), Some(0));
+    assert_eq!(simulate(&path_text(&file)).status.code(), Some(0));
     let streamed = simulate("-");
     assert_eq!(
         streamed.status.code(),
@@ -153,13 +153,13 @@ fn unwritable_folder_is_rejected() {
         );
         return;
     }
-    let out = shown(&closed.join("a.csv"));
+    let out = path_text(&closed.join("a.csv"));
     let message = refused(&["simulate", &spec("pendulum"), "--until", "1", "--out", &out]);
     assert!(message.contains("cannot write"), "{message}");
 }
 
 /// Starts a simulation of the pendulum with a table of `rows` rows and a header.
-fn start(out: &Path, rows: usize, parameter: &str) -> Child {
+fn start_simulation(out: &Path, rows: usize, parameter: &str) -> Child {
     let until = (rows - 1) as f64 * 1e-3;
     Command::new(program::path())
         .args([
@@ -188,7 +188,7 @@ fn killed_run_leaves_a_complete_file_or_none() {
     program::path();
     let begun = std::time::Instant::now();
     assert!(
-        start(&whole, ROWS, "g=9.81")
+        start_simulation(&whole, ROWS, "g=9.81")
             .wait()
             .expect("an end")
             .success()
@@ -199,7 +199,7 @@ fn killed_run_leaves_a_complete_file_or_none() {
     let out = folder.path().join("killed.csv");
     let mut absent = 0;
     for part in [0.1, 0.5, 0.8, 0.9, 0.95, 1.0] {
-        let mut child = start(&out, ROWS, "g=9.81");
+        let mut child = start_simulation(&out, ROWS, "g=9.81");
         std::thread::sleep(taken.mul_f64(part).max(Duration::from_millis(5)));
         child.kill().expect("the program can be killed");
         child.wait().expect("an end");
@@ -218,7 +218,7 @@ fn concurrent_runs_leave_one_complete_file() {
     let alone = |parameter: &str| {
         let out = folder.path().join("alone.csv");
         assert!(
-            start(&out, ROWS, parameter)
+            start_simulation(&out, ROWS, parameter)
                 .wait()
                 .expect("an end")
                 .success()
@@ -229,7 +229,7 @@ fn concurrent_runs_leave_one_complete_file() {
     assert!(possible[0] != possible[1]);
     for _ in 0..5 {
         let out = folder.path().join("shared.csv");
-        let runs = ["g=9.81", "g=1.62"].map(|parameter| start(&out, ROWS, parameter));
+        let runs = ["g=9.81", "g=1.62"].map(|parameter| start_simulation(&out, ROWS, parameter));
         for mut run in runs {
             assert!(run.wait().expect("an end").success());
         }

@@ -31,7 +31,7 @@ const REDUCED: [(&str, &str); 2] = [
 ];
 
 /// Commands that another test runs, with its file.
-const ELSEWHERE: [(&str, &str); 15] = [
+const TESTED_ELSEWHERE: [(&str, &str); 15] = [
     (
         "cargo install --path cli",
         "tests/tests/project/installed.rs",
@@ -109,7 +109,7 @@ const SHOWN_ELSEWHERE: [(&str, &str); 1] = [(
 const FIGURES: [(&str, &str); 1] = [("tour/trajectory.svg", "docs/tour.svg")];
 
 /// Placeholders in commands, and their replacements.
-const PLACES: [(&str, &str); 3] = [
+const PLACEHOLDERS: [(&str, &str); 3] = [
     ("SPEC ", "model-spec/models/emps.toml "),
     ("DATASET.toml", "dataset.toml"),
     ("NAME.toml", "pendulum.toml"),
@@ -224,7 +224,7 @@ fn run_compilers(line: &str, folder: &Path) -> String {
 }
 
 /// Returns true if Python has SciPy; otherwise reports the skip.
-fn scipy() -> bool {
+fn has_scipy() -> bool {
     let found = Command::new("python3")
         .args(["-c", "import numpy, scipy"])
         .output();
@@ -297,7 +297,7 @@ enum Form<'a> {
 
 fn form(command: &str) -> Form<'_> {
     let words: Vec<&str> = command.split(' ').collect();
-    if let Some((_, file)) = ELSEWHERE
+    if let Some((_, file)) = TESTED_ELSEWHERE
         .iter()
         .find(|(start, _)| command.starts_with(start))
     {
@@ -345,7 +345,7 @@ fn form(command: &str) -> Form<'_> {
 /// Returns the command with placeholders replaced and reduced arguments.
 fn runnable_command(command: &str) -> String {
     let replaced = |command: String, (from, to): &(&str, &str)| command.replace(from, to);
-    let command = PLACES.iter().fold(command.to_owned(), replaced);
+    let command = PLACEHOLDERS.iter().fold(command.to_owned(), replaced);
     REDUCED.iter().fold(command, replaced)
 }
 
@@ -379,7 +379,7 @@ fn printed_commands_give_the_printed_output() {
     let (in_blocks, _) = in_blocks();
     assert!(in_blocks.len() > 20, "{in_blocks:#?}");
     let mut outputs: BTreeMap<String, String> = BTreeMap::new();
-    let scipy = scipy();
+    let scipy = has_scipy();
     for Printed {
         page,
         command,
@@ -468,7 +468,7 @@ fn listed_commands_occur_in_the_pages() {
     let printed = |text: &str| all.iter().any(|printed| printed.command.contains(text));
     for text in REDUCED
         .iter()
-        .chain(&ELSEWHERE)
+        .chain(&TESTED_ELSEWHERE)
         .map(|(text, _)| text.trim())
     {
         assert!(printed(text), "no page prints {text}");

@@ -50,7 +50,7 @@ impl Dataset {
     }
 
     /// Returns the message of the rejected record; asserts that no table is written.
-    fn refused(&self, more: &[&str]) -> String {
+    fn rejection(&self, more: &[&str]) -> String {
         std::fs::remove_file(self.file("a.csv")).ok();
         let arguments = self.arguments(more);
         let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
@@ -60,7 +60,7 @@ impl Dataset {
     }
 
     /// Simulates and returns rows of t, q and q'.
-    fn simulated(&self, more: &[&str]) -> Vec<[f64; 3]> {
+    fn simulate(&self, more: &[&str]) -> Vec<[f64; 3]> {
         let arguments = self.arguments(more);
         let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
         accepted(&arguments);
@@ -79,7 +79,7 @@ fn rows(path: &Path) -> Vec<[f64; 3]> {
     text.lines().skip(1).map(row).collect()
 }
 
-/// M q'' = F - F_v q' with constant F: the speed tends to F/F_v.
+/// Advances M q'' = F - F_v q' with constant F: the speed tends to F/F_v.
 fn coast([q, v]: [f64; 2], force: f64, time: f64) -> [f64; 2] {
     let (mass, friction) = (95.0, 210.0);
     let (lasting, rate) = (force / friction, friction / mass);
@@ -127,13 +127,13 @@ const TOLERANCE: f64 = 1e-11;
 fn axis_under_held_force_matches_closed_form() {
     let dataset = Dataset::new(DESCRIPTION, &record());
     let options = ["--tolerance", "1e-12"];
-    let at_the_record = dataset.simulated(&options);
+    let at_the_record = dataset.simulate(&options);
     assert_eq!(
         at_the_record.iter().map(|row| row[0]).collect::<Vec<_>>(),
         STEPS.map(|s| s.0)
     );
     let sampled =
-        dataset.simulated(&[&options[..], &["--interval", "0.01", "--until", "2"]].concat());
+        dataset.simulate(&[&options[..], &["--interval", "0.01", "--until", "2"]].concat());
     assert_eq!(sampled.len(), 201);
     for [t, q, v] in at_the_record.iter().chain(&sampled) {
         let expected = closed_form(*t);
@@ -154,7 +154,7 @@ fn axis_under_held_force_matches_closed_form() {
 fn record_can_be_truncated_and_start_late() {
     let late = "time,f\n2000,0.1\n2500,0.2\n3000,0\n";
     let dataset = Dataset::new(DESCRIPTION, late);
-    let rows = dataset.simulated(&["--until", "2.75"]);
+    let rows = dataset.simulate(&["--until", "2.75"]);
     assert_eq!(
         rows.iter().map(|row| row[0]).collect::<Vec<_>>(),
         [2.0, 2.5]
@@ -162,11 +162,15 @@ fn record_can_be_truncated_and_start_late() {
     assert!((rows[1][2] - coast([0.0; 2], 100.0, 0.5)[1]).abs() < 1e-9);
     assert!(
         dataset
-            .refused(&["--until", "2.25"])
+            .rejection(&["--until", "2.25"])
             .contains("second sample")
     );
-    assert!(dataset.refused(&["--until", "4"]).contains("ends at 3.0 s"));
-    assert!(dataset.refused(&["--until", "1"]).contains("after 2.0"));
+    assert!(
+        dataset
+            .rejection(&["--until", "4"])
+            .contains("ends at 3.0 s")
+    );
+    assert!(dataset.rejection(&["--until", "1"]).contains("after 2.0"));
 }
 
 #[test]
@@ -201,7 +205,7 @@ fn invalid_records_are_rejected() {
         ),
         ("time,f\n0,1\n0,2\n", "line 3: the time does not increase"),
     ] {
-        let message = Dataset::new(DESCRIPTION, record).refused(&[]);
+        let message = Dataset::new(DESCRIPTION, record).rejection(&[]);
         assert!(
             message.contains("train.csv") && message.contains(part),
             "{record:?}: {message}"
@@ -219,7 +223,7 @@ fn link_out_of_the_datasets_folder_is_rejected() {
     let dataset = Dataset::new(&description, &record());
     let link = dataset.folder.path().join("link.csv");
     std::os::unix::fs::symlink(&secret, link).expect("a link");
-    let message = dataset.refused(&[]);
+    let message = dataset.rejection(&[]);
     assert!(
         message.contains("outside the dataset's folder"),
         "{message}"
@@ -257,7 +261,7 @@ fn invalid_datasets_are_rejected() {
     ] {
         let description = DESCRIPTION.replacen(from, to, 1);
         assert_ne!(description, DESCRIPTION);
-        let message = Dataset::new(&description, &record()).refused(&[]);
+        let message = Dataset::new(&description, &record()).rejection(&[]);
         assert!(message.contains(part), "{to}: {message}");
     }
     for dataset in ["/nowhere/dataset.toml", "/"] {
@@ -287,7 +291,7 @@ fn invalid_record_names_are_rejected() {
         "",
         "train[99999999999999999999]",
     ] {
-        let message = dataset.refused(&[&format!("--record-name={name}")]);
+        let message = dataset.rejection(&[&format!("--record-name={name}")]);
         assert!(
             message.contains("1 as train[..] and 0 as test[..]"),
             "{name}: {message}"
@@ -334,7 +338,7 @@ rate = "s_dot"
 
 /// Returns r, r', s and s' at 2 s for s = 0.01 sin(7 t), in closed form: r'' + 100 r = 0.49 sin(7
 /// t).
-fn moved_foot() -> [f64; 4] {
+fn moved_foot_state() -> [f64; 4] {
     let (amplitude, w, natural, t) = (0.01, 7.0_f64, 10.0_f64, 2.0);
     let forced = amplitude * w * w / (natural * natural - w * w);
     [
@@ -371,7 +375,7 @@ fn prescribed_motion_by_expression_and_by_record_match_closed_form() {
         row.map(|field| field.parse().expect("a number")).collect()
     };
     let off = |found: &[f64]| {
-        let pairs = found.iter().zip(moved_foot());
+        let pairs = found.iter().zip(moved_foot_state());
         pairs
             .map(|(found, right)| (found - right).abs())
             .fold(0.0, f64::max)

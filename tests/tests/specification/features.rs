@@ -122,7 +122,7 @@ fn certify(name: &str, orders: &[usize]) {
             &model,
             order,
             &[],
-            emitted(&model, order),
+            emit_source(&model, order),
             &ReferenceEquations::default(),
         )
         .unwrap();
@@ -196,6 +196,6 @@ fn point_of(sample: &Sample) -> Point<'_> {
     }
 }
 
-fn emitted(model: &Model, order: usize) -> String {
+fn emit_source(model: &Model, order: usize) -> String {
     emit(variant(model, order).evaluator.program(), Packaging::Crate).unwrap()
 }

@@ -214,11 +214,12 @@ impl Arm {
         energy += across * (lever * sine + bent * cosine) - along * (lever * cosine - bent * sine);
         let sun = state[0] / r_s;
         for (mesh, deflection) in self.meshes.iter().zip(self.deflections(state, r_c)) {
-            let dead = dead(
-                deflection - mesh.middle - mesh.at(mesh.error, sun).0,
+            let dead = deadzone(
+                deflection - mesh.middle - mesh.periodic(mesh.error, sun).0,
                 mesh.play,
             );
-            energy += 1.5 * mesh.stiffness * (1.0 + mesh.at(mesh.variation, sun).0) * dead * dead;
+            energy +=
+                1.5 * mesh.stiffness * (1.0 + mesh.periodic(mesh.variation, sun).0) * dead * dead;
         }
         energy
     }
@@ -292,7 +293,7 @@ fn area_value(mode: usize) -> f64 {
     2.0 * sigma * given::LENGTH / z
 }
 
-fn dead(deflection: f64, play: f64) -> f64 {
+fn deadzone(deflection: f64, play: f64) -> f64 {
     if deflection > play {
         deflection - play
     } else if deflection < -play {
@@ -304,7 +305,7 @@ fn dead(deflection: f64, play: f64) -> f64 {
 
 impl Mesh {
     /// Returns an effect periodic in the sun's angle, and its derivative.
-    fn at(&self, part: (f64, f64, f64), angle: f64) -> (f64, f64) {
+    fn periodic(&self, part: (f64, f64, f64), angle: f64) -> (f64, f64) {
         let (order, cosine, sine) = part;
         if cosine == 0.0 && sine == 0.0 {
             return (0.0, 0.0);
@@ -316,10 +317,10 @@ impl Mesh {
     /// Returns the force along the line of action, N, and the reaction torque on the sun, N m, of
     /// periodic effects, both for one of three planets.
     fn forces(&self, deflection: f64, speed: f64, angle: f64, turning: f64) -> (f64, f64) {
-        let (error, error_slope) = self.at(self.error, angle);
-        let (variation, variation_slope) = self.at(self.variation, angle);
+        let (error, error_slope) = self.periodic(self.error, angle);
+        let (variation, variation_slope) = self.periodic(self.variation, angle);
         let deflection = deflection - self.middle - error;
-        let dead = dead(deflection, self.play);
+        let dead = deadzone(deflection, self.play);
         if dead == 0.0 {
             return (0.0, 0.0);
         }

@@ -66,13 +66,13 @@ impl Pendulum {
         }
     }
 
-    fn turned(&self) -> f64 {
+    fn inertia_about_pivot(&self) -> f64 {
         self.mass * self.distance * self.distance + self.inertia
     }
 
     /// Returns the kinetic and potential energy, J, without hidden effects.
     pub fn energy(&self, state: &[f64]) -> f64 {
-        0.5 * self.turned() * state[1] * state[1]
+        0.5 * self.inertia_about_pivot() * state[1] * state[1]
             + self.mass * self.gravity * self.distance * state[0].cos()
     }
 }
@@ -82,7 +82,7 @@ impl Motion for Pendulum {
         let (force, bending) = self.hidden.force(t, state[0], state[1], state[2], input);
         let weight = self.mass * self.gravity * self.distance * state[0].sin();
         rates[0] = state[1];
-        rates[1] = (weight - self.viscous * state[1] + force) / self.turned();
+        rates[1] = (weight - self.viscous * state[1] + force) / self.inertia_about_pivot();
         rates[2] = bending;
     }
 }

@@ -19,7 +19,7 @@ pub struct Spring {
 }
 
 /// Width of the smooth transition to contact, relative to the backlash or the distance of the stop.
-const ROUNDED: f64 = 1.0 / 30.0;
+const TRANSITION_FRACTION: f64 = 1.0 / 30.0;
 
 /// Damping of a stop divided by its stiffness, s.
 const STOP_LOSS: f64 = 2e-3;
@@ -41,8 +41,8 @@ impl Spring {
     pub fn force(&self, p: f64, v: f64) -> f64 {
         let (p_held, v_held) = match self.play > 0.0 {
             true => {
-                let (above, meets_above) = beyond(p, self.play);
-                let (below, meets_below) = beyond(-p, self.play);
+                let (above, meets_above) = smooth_excess(p, self.play);
+                let (below, meets_below) = smooth_excess(-p, self.play);
                 (above - below, v * (meets_above + meets_below))
             }
             false => (p, v),
@@ -53,23 +53,24 @@ impl Spring {
         } else {
             self.stiffness * p_held
         };
-        elastic + self.damping * v_held + stop(self.upper, p, v) - stop(self.lower, -p, -v)
+        elastic + self.damping * v_held + stop_force(self.upper, p, v)
+            - stop_force(self.lower, -p, -v)
     }
 }
 
 /// Returns the force of a stop on a deflection towards it; never attractive.
-fn stop((stiffness, at): (f64, f64), p: f64, v: f64) -> f64 {
+fn stop_force((stiffness, at): (f64, f64), p: f64, v: f64) -> f64 {
     if stiffness == 0.0 {
         return 0.0;
     }
-    let (depth, meets) = beyond(p, at);
+    let (depth, meets) = smooth_excess(p, at);
     (stiffness * (depth + STOP_LOSS * meets * v)).max(0.0)
 }
 
 /// Returns the smoothed excess of a deflection over a limit, and its derivative.
-fn beyond(p: f64, limit: f64) -> (f64, f64) {
+fn smooth_excess(p: f64, limit: f64) -> (f64, f64) {
     let excess = p - limit;
-    let root = excess.hypot(ROUNDED * limit);
+    let root = excess.hypot(TRANSITION_FRACTION * limit);
     (0.5 * (excess + root), 0.5 * (1.0 + excess / root))
 }
 

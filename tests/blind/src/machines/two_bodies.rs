@@ -48,7 +48,7 @@ pub struct TwoBodies {
 }
 
 /// Rounds to four digits, as in the specification.
-fn rounded(value: f64) -> f64 {
+fn round_to_four_digits(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
 }
 
@@ -57,7 +57,7 @@ impl TwoBodies {
     pub fn drawn(form: Form, seed: u64) -> Self {
         // Cases use the streams 1, 2, ...; machines count from the other end.
         let mut draw = Draw::new(seed, u64::MAX - form as u64);
-        let mut between = |low: f64, high: f64| rounded(draw.between(low, high));
+        let mut between = |low: f64, high: f64| round_to_four_digits(draw.between(low, high));
         let friction = |speed: f64| AxisForces::none(Dry::Steep { speed });
         let plain = |inertia, viscous, spring, speeds: [f64; 2]| Self {
             form,
@@ -72,24 +72,24 @@ impl TwoBodies {
         match form {
             Form::TwoMass => {
                 let motor = between(5e-4, 2e-3);
-                let load = rounded(motor * between(1.5, 6.0));
+                let load = round_to_four_digits(motor * between(1.5, 6.0));
                 let natural = 2.0 * std::f64::consts::PI * between(6.0, 14.0);
-                let stiffness = rounded(load * natural * natural);
-                let damping = rounded(2.0 * between(0.01, 0.03) * stiffness / natural);
+                let stiffness = round_to_four_digits(load * natural * natural);
+                let damping = round_to_four_digits(2.0 * between(0.01, 0.03) * stiffness / natural);
                 let viscous = [
-                    rounded(motor * between(0.3, 1.0)),
-                    rounded(load * between(0.1, 0.3)),
+                    round_to_four_digits(motor * between(0.3, 1.0)),
+                    round_to_four_digits(load * between(0.1, 0.3)),
                 ];
                 let spring = Spring::declared(stiffness, damping);
                 plain([motor, load], viscous, spring, [0.02, 0.02])
             }
             Form::Crane => {
                 let trolley = between(2.0, 6.0);
-                let load = rounded(trolley * between(0.2, 0.8));
+                let load = round_to_four_digits(trolley * between(0.2, 0.8));
                 let length = between(0.4, 0.9);
                 let viscous = [
-                    rounded(trolley * between(0.5, 2.0)),
-                    rounded(load * length * length * between(0.02, 0.05)),
+                    round_to_four_digits(trolley * between(0.5, 2.0)),
+                    round_to_four_digits(load * length * length * between(0.02, 0.05)),
                 ];
                 let spring = Spring::declared(0.0, 0.0);
                 Self {
@@ -99,13 +99,13 @@ impl TwoBodies {
             }
             Form::QuarterCar => {
                 let body = between(2.0, 5.0);
-                let wheel = rounded(body * between(0.15, 0.35));
+                let wheel = round_to_four_digits(body * between(0.15, 0.35));
                 let natural = 2.0 * std::f64::consts::PI * between(1.5, 3.0);
-                let stiffness = rounded(body * natural * natural);
-                let damping = rounded(2.0 * between(0.1, 0.25) * stiffness / natural);
+                let stiffness = round_to_four_digits(body * natural * natural);
+                let damping = round_to_four_digits(2.0 * between(0.1, 0.25) * stiffness / natural);
                 let spring = Spring::declared(stiffness, damping);
                 Self {
-                    tyre: rounded(stiffness * between(4.0, 8.0)),
+                    tyre: round_to_four_digits(stiffness * between(4.0, 8.0)),
                     ..plain([body, wheel], [0.0; 2], spring, [1e-3, 1e-3])
                 }
             }

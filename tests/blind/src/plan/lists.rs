@@ -32,7 +32,7 @@ fn case(group: Group, machine: Kind, manner: Manner, hidden: Vec<Planned>) -> Ca
     }
 }
 
-fn planned(effect: Effect, on: &str, level: f64, draw: &mut Draw) -> Planned {
+fn plan_effect(effect: Effect, on: &str, level: f64, draw: &mut Draw) -> Planned {
     use Effect::{
         AsymmetricBacklash, AsymmetricFriction, EndStop, ForceOffset, ForeignHum, InputGain,
         ParameterShift, SensorBias, SensorGain, StiffnessNonlinearity, StiffnessVariation,
@@ -76,12 +76,12 @@ fn planned(effect: Effect, on: &str, level: f64, draw: &mut Draw) -> Planned {
     Planned {
         hidden,
         level,
-        alike: alike(effect, on, order),
+        alike: indistinguishable(effect, on, order),
     }
 }
 
 /// Returns the effects that its records cannot distinguish from it.
-fn alike(effect: Effect, on: &str, order: f64) -> Vec<(String, String)> {
+fn indistinguishable(effect: Effect, on: &str, order: f64) -> Vec<(String, String)> {
     if effect == Effect::TorqueRipple && order == 1.0 {
         // An unbalanced weight, on any rotating body.
         return vec![("gravity".to_owned(), on.to_owned())];
@@ -192,7 +192,7 @@ pub fn singles(seed: u64, draw: &mut Draw) -> Vec<Case> {
         wanted.push((effect, machine, on, LEVELS[(2 * index + 1) % LEVELS.len()]));
     }
     let single = |(number, (effect, machine, on, level)): (usize, (Effect, Kind, &str, f64))| {
-        let mut hidden = planned(effect, on, level, draw);
+        let mut hidden = plan_effect(effect, on, level, draw);
         // A larger value would be equivalent to viscous friction.
         if on == "F_v" {
             hidden.hidden.sign = -1.0;
@@ -289,8 +289,8 @@ pub fn pairs(seed: u64, draw: &mut Draw) -> Vec<Case> {
         let mut level = || draw.one_of(&[6.0, 10.0, 15.0]);
         let (one, other) = (level(), level());
         let hidden = vec![
-            planned(first.0, first.1, one, draw),
-            planned(second.0, second.1, other, draw),
+            plan_effect(first.0, first.1, one, draw),
+            plan_effect(second.0, second.1, other, draw),
         ];
         let mut made = case(Group::Pair, machine, Manner::Usual, hidden);
         if number % 2 == 1 {
@@ -317,7 +317,7 @@ pub fn outside(seed: u64, draw: &mut Draw) -> Vec<Case> {
         (car, WornFriction, "travel"),
     ];
     let strange = |(machine, effect, on): (Kind, Effect, &str)| {
-        let hidden = vec![planned(effect, on, 10.0, draw)];
+        let hidden = vec![plan_effect(effect, on, 10.0, draw)];
         case(Group::Outside, machine, Manner::Usual, hidden)
     };
     list.map(strange).into()
@@ -380,7 +380,7 @@ pub fn untellable(draw: &mut Draw) -> Vec<Case> {
     ];
     let unclear =
         |(machine, manner, effect, on, other): (Kind, Manner, Effect, &str, (&str, &str))| {
-            let mut hidden = planned(effect, on, 10.0, draw);
+            let mut hidden = plan_effect(effect, on, 10.0, draw);
             // Dry friction can only represent the part of an offset that opposes the motion.
             if effect == ForceOffset {
                 hidden.hidden.sign = -1.0;

@@ -25,7 +25,7 @@ pub fn judge(label: &Label, outcome: &Outcome) -> Judged {
             .collect(),
         found: effects
             .iter()
-            .map(|e| (word(e, "effect"), word(e, "on"), word(e, "status")))
+            .map(|e| (text_of(e, "effect"), text_of(e, "on"), text_of(e, "status")))
             .collect(),
         judgement: judgement(label, outcome, effects),
         full_priors: label.full_priors,
@@ -56,7 +56,7 @@ pub fn judge(label: &Label, outcome: &Outcome) -> Judged {
         }
     }
     if let Some(discovery) = discovery {
-        judged.refitted = refitted(label, discovery);
+        judged.refitted = count_refitted(label, discovery);
     }
     judged
 }
@@ -79,7 +79,7 @@ fn judgement(label: &Label, outcome: &Outcome, effects: &[Value]) -> Judgement {
     match (label.group, effects) {
         (Group::Nothing, []) => return Judgement::Right,
         (Group::Outside, found) if found.iter().all(is_empirical) => {
-            let verdict = outcome.discovery.as_ref().map(|d| word(d, "verdict"));
+            let verdict = outcome.discovery.as_ref().map(|d| text_of(d, "verdict"));
             return match verdict.as_deref() {
                 Some("no_significant_gap") => Judgement::Missed,
                 _ => Judgement::Right,
@@ -87,7 +87,7 @@ fn judgement(label: &Label, outcome: &Outcome, effects: &[Value]) -> Judgement {
         }
         (Group::Outside | Group::Nothing, _) => return Judgement::Wrong,
         (_, []) => {
-            let verdict = outcome.discovery.as_ref().map(|d| word(d, "verdict"));
+            let verdict = outcome.discovery.as_ref().map(|d| text_of(d, "verdict"));
             return match verdict.as_deref() {
                 Some("no_significant_gap") => Judgement::Missed,
                 _ => Judgement::Unexplained,
@@ -139,10 +139,10 @@ enum Match {
 
 fn match_effect(found: &Value, truth: &Truth) -> Match {
     let same = |entry: &Value| {
-        word(entry, "effect") == truth.effect && word(entry, "on") == truth.hidden.on
+        text_of(entry, "effect") == truth.effect && text_of(entry, "on") == truth.hidden.on
     };
     let equivalent = found["equivalent"].as_array().into_iter().flatten();
-    let class = word(found, "status") == "class";
+    let class = text_of(found, "status") == "class";
     if class && (same(found) || equivalent.into_iter().any(same)) {
         Match::Class
     } else if !class && same(found) {
@@ -153,13 +153,13 @@ fn match_effect(found: &Value, truth: &Truth) -> Match {
 }
 
 fn is_empirical(found: &Value) -> bool {
-    word(found, "status") == "empirical"
+    text_of(found, "status") == "empirical"
 }
 
 /// Returns the number of effects in a class; `None` for a named effect.
 fn class_size(found: &Value) -> Option<usize> {
     let others = found["equivalent"].as_array()?.len();
-    (word(found, "status") == "class").then_some(1 + others)
+    (text_of(found, "status") == "class").then_some(1 + others)
 }
 
 /// Returns the ordinary error of a faulty sensor in addition to its fault.
@@ -198,7 +198,7 @@ fn check_parameters(truth: &Truth, usual: f64, found: &Value, judged: &mut Judge
 
 /// Counts the intervals of the declared parameters that contain the true value, if all hidden
 /// effects were found.
-fn refitted(label: &Label, discovery: &Value) -> (usize, usize) {
+fn count_refitted(label: &Label, discovery: &Value) -> (usize, usize) {
     let mut counts = (0, 0);
     let shifted = |name: &str| {
         let of = |t: &Truth| t.hidden.effect == Effect::ParameterShift && t.hidden.on == name;
@@ -206,7 +206,7 @@ fn refitted(label: &Label, discovery: &Value) -> (usize, usize) {
     };
     for (name, factor) in &label.declared {
         let entry = &discovery["refitted"][name];
-        let nominal = nominal(label, name);
+        let nominal = nominal_value(label, name);
         let (Some(value), Some(sd), Some(nominal)) =
             (entry["value"].as_f64(), entry["sd"].as_f64(), nominal)
         else {
@@ -221,7 +221,7 @@ fn refitted(label: &Label, discovery: &Value) -> (usize, usize) {
 }
 
 /// Returns the declared value of a parameter, in its unit.
-fn nominal(label: &Label, name: &str) -> Option<f64> {
+fn nominal_value(label: &Label, name: &str) -> Option<f64> {
     use crate::machines::Machine;
     match (label.machine.nominal(), name) {
         (Machine::Arm(arm), "b_m") => Some(arm.b_m),
@@ -234,6 +234,6 @@ fn nominal(label: &Label, name: &str) -> Option<f64> {
     }
 }
 
-fn word(value: &Value, key: &str) -> String {
+fn text_of(value: &Value, key: &str) -> String {
     value[key].as_str().unwrap_or_default().to_owned()
 }

@@ -9,7 +9,7 @@ use crate::plan::Group;
 pub fn table(score: &Score) -> String {
     let mut rows: BTreeMap<String, BTreeMap<String, usize>> = BTreeMap::new();
     for judged in &score.cases {
-        let (row, column) = place(judged);
+        let (row, column) = row_and_column(judged);
         *rows.entry(row).or_default().entry(column).or_default() += 1;
     }
     let mut text = "hidden                                    found\n".to_owned();
@@ -43,7 +43,7 @@ pub fn table(score: &Score) -> String {
         ("answers with nothing false", part(score.nothing_false)),
         (
             "classes, their mean size, the largest",
-            sizes(score.class_sizes),
+            format_sizes(score.class_sizes),
         ),
         ("false alarms", part(score.false_alarms)),
         ("wrong signs", score.wrong_signs.to_string()),
@@ -69,7 +69,7 @@ pub fn table(score: &Score) -> String {
 }
 
 /// Formats the number of classes, their mean size and the largest.
-fn sizes((count, sum, largest): (usize, usize, usize)) -> String {
+fn format_sizes((count, sum, largest): (usize, usize, usize)) -> String {
     match count {
         0 => "0".to_owned(),
         _ => format!("{count}, {:.1}, {largest}", sum as f64 / count as f64),
@@ -77,7 +77,7 @@ fn sizes((count, sum, largest): (usize, usize, usize)) -> String {
 }
 
 /// Returns the row and column of a case in the table.
-fn place(judged: &Judged) -> (String, String) {
+fn row_and_column(judged: &Judged) -> (String, String) {
     let group = format!("{:?}", judged.group).to_lowercase();
     let row = match (&judged.hidden[..], judged.group) {
         ([(effect, _, floors)], Group::Single) => {

@@ -12,19 +12,19 @@ use crate::inputs::Drive;
 use crate::machines::{Machine, Setup};
 
 /// Fractions of the windows that are fitted in sequence.
-const GROWING: [f64; 3] = [0.1, 0.3, 1.0];
+const SEGMENT_FRACTIONS: [f64; 3] = [0.1, 0.3, 1.0];
 
 /// Maximum number of steps for each of them.
-const MOST_STEPS: usize = 6;
+const MAX_STEPS: usize = 6;
 
 /// Relative decrease of the cost at which the steps end.
-const ENOUGH: f64 = 0.05;
+const MIN_COST_DECREASE: f64 = 0.05;
 
 /// Step fractions that are tried until one decreases the cost.
-const PARTS: [f64; 4] = [1.0, 0.5, 0.25, 0.125];
+const STEP_FRACTIONS: [f64; 4] = [1.0, 0.5, 0.25, 0.125];
 
 /// Further reductions for a window that improves with less.
-const LESS: [f64; 3] = [0.5, 0.2, 0.0];
+const WINDOW_FRACTIONS: [f64; 3] = [0.5, 0.2, 0.0];
 
 /// Fit of the machine without the effect.
 pub struct Fit<'a> {
@@ -66,7 +66,7 @@ pub struct Fitted {
 }
 
 impl Window {
-    fn beginning(&self, part: f64) -> Self {
+    fn initial_segment(&self, part: f64) -> Self {
         let count = (self.span.count as f64 * part).ceil() as usize;
         let channels = self.seen.len() / self.span.count;
         Self {
@@ -78,8 +78,8 @@ impl Window {
 }
 
 impl Records {
-    fn beginnings(&self, part: f64) -> Self {
-        let beginning = |window: &Window| window.beginning(part);
+    fn initial_segments(&self, part: f64) -> Self {
+        let beginning = |window: &Window| window.initial_segment(part);
         Self {
             windows: self.windows.iter().map(beginning).collect(),
             ranges: self.ranges.clone(),
@@ -136,20 +136,29 @@ impl<'a> Fit<'a> {
     /// segments, for motion with impacts.
     pub fn floors(&self, hidden: &Hidden) -> f64 {
         let records = self.records(hidden);
-        let begin = self.begin(&records);
+        let begin = self.initial_estimate(&records);
         if !begin.floors().is_finite() {
             return f64::NAN;
         }
-        let whole = self.fitted(&records, begin.clone(), SLOPES);
-        let grown = self.grown(&records, begin, SECANTS);
+        let whole = self.fit_estimate(&records, begin.clone(), SLOPES);
+        let grown = self.fit_growing_segments(&records, begin, SECANTS);
         whole.floors().min(grown.floors())
     }
 
     /// Fits longer and longer initial segments of the windows.
-    fn grown(&self, records: &Records, mut estimate: Estimate, nudges: Nudges) -> Estimate {
-        for part in GROWING {
-            let beginnings = records.beginnings(part);
-            estimate = self.fitted(&beginnings, self.continued(&beginnings, estimate), nudges);
+    fn fit_growing_segments(
+        &self,
+        records: &Records,
+        mut estimate: Estimate,
+        nudges: Nudges,
+    ) -> Estimate {
+        for part in SEGMENT_FRACTIONS {
+            let beginnings = records.initial_segments(part);
+            estimate = self.fit_estimate(
+                &beginnings,
+                self.with_residuals(&beginnings, estimate),
+                nudges,
+            );
         }
         estimate
     }
@@ -197,7 +206,7 @@ impl<'a> Fit<'a> {
     }
 
     /// Returns the estimate with the true parameters and initial states.
-    fn begin(&self, records: &Records) -> Estimate {
+    fn initial_estimate(&self, records: &Records) -> Estimate {
         let unknowns = self.truth.len() + 3 * self.setup.channels.len();
         let begin = |window: &Window| Fitted {
             start: window.start.clone(),
@@ -207,11 +216,11 @@ impl<'a> Fit<'a> {
             windows: records.windows.iter().map(begin).collect(),
             shared: self.truth.clone().resize_vertically(unknowns, 0.0),
         };
-        self.continued(records, estimate)
+        self.with_residuals(records, estimate)
     }
 
     /// Returns the estimate with its residuals in other segments of the windows.
-    fn continued(&self, records: &Records, mut estimate: Estimate) -> Estimate {
+    fn with_residuals(&self, records: &Records, mut estimate: Estimate) -> Estimate {
         let (machine, sensors) = self.with(&estimate.shared);
         for (window, fitted) in records.windows.iter().zip(&mut estimate.windows) {
             fitted.residual = self.residual(&machine, &sensors, window, &fitted.start);
@@ -220,15 +229,15 @@ impl<'a> Fit<'a> {
     }
 
     /// Takes steps until the cost no longer decreases.
-    fn fitted(&self, records: &Records, mut estimate: Estimate, nudges: Nudges) -> Estimate {
-        for _ in 0..MOST_STEPS {
+    fn fit_estimate(&self, records: &Records, mut estimate: Estimate, nudges: Nudges) -> Estimate {
+        for _ in 0..MAX_STEPS {
             let before = estimate.cost();
             let mut step = step(self, records, &estimate, nudges);
             let better = |step: &Step, part: f64| {
-                let moved = self.moved(records, &estimate, step, part);
+                let moved = self.after_step(records, &estimate, step, part);
                 (moved.cost() < before).then_some(moved)
             };
-            let moved = PARTS.iter().find_map(|part| better(&step, *part));
+            let moved = STEP_FRACTIONS.iter().find_map(|part| better(&step, *part));
             let moved = moved.or_else(|| {
                 step.shared.fill(0.0);
                 better(&step, 1.0)
@@ -237,7 +246,7 @@ impl<'a> Fit<'a> {
                 break;
             };
             estimate = moved;
-            if estimate.cost() > (1.0 - ENOUGH) * before {
+            if estimate.cost() > (1.0 - MIN_COST_DECREASE) * before {
                 break;
             }
         }
@@ -274,7 +283,7 @@ impl<'a> Fit<'a> {
 
     /// Returns the estimate after a fraction of a step. Windows that improve with a smaller
     /// fraction get one.
-    fn moved(&self, records: &Records, from: &Estimate, step: &Step, part: f64) -> Estimate {
+    fn after_step(&self, records: &Records, from: &Estimate, step: &Step, part: f64) -> Estimate {
         let shared = &from.shared + part * &step.shared;
         let (machine, sensors) = self.with(&shared);
         let directions = self.plain.directions();
@@ -291,7 +300,7 @@ impl<'a> Fit<'a> {
                 }
             };
             let mut best = trial(part);
-            for less in LESS {
+            for less in WINDOW_FRACTIONS {
                 if best.squares() < old.squares() {
                     break;
                 }

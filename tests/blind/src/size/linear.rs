@@ -9,10 +9,10 @@ use crate::hidden::Sensors;
 use crate::machines::Machine;
 
 /// Bound of unknowns with priors, in standard deviations; beyond it they are effects.
-const REACH: f64 = 3.0;
+const MAX_DEVIATION_SD: f64 = 3.0;
 
 /// Step of an initial state that the window does not determine, in ranges of its motion.
-const UNSEEN: f64 = 0.02;
+const UNDETERMINED_STEP: f64 = 0.02;
 
 /// Perturbations of the unknowns for finite differences.
 #[derive(Clone, Copy)]
@@ -55,7 +55,7 @@ struct Linear {
 /// Returns the step from an estimate to the minimum of the linearised cost.
 pub fn step(fit: &Fit<'_>, records: &Records, at: &Estimate, nudges: Nudges) -> Step {
     let unknowns = at.shared.len();
-    let around = Around::new(fit, records, &at.shared, nudges);
+    let around = PerturbedMachines::new(fit, records, &at.shared, nudges);
     // The identity is the prior of the unknowns.
     let mut normal = DMatrix::identity(unknowns, unknowns);
     let mut right = -&at.shared;
@@ -75,7 +75,7 @@ pub fn step(fit: &Fit<'_>, records: &Records, at: &Estimate, nudges: Nudges) -> 
 }
 
 /// Perturbed machines and sensors, common to all windows.
-struct Around<'a> {
+struct PerturbedMachines<'a> {
     fit: &'a Fit<'a>,
     ranges: &'a [f64],
     nudges: Nudges,
@@ -84,7 +84,7 @@ struct Around<'a> {
     nudged: Vec<(Machine, Sensors)>,
 }
 
-impl<'a> Around<'a> {
+impl<'a> PerturbedMachines<'a> {
     fn new(fit: &'a Fit<'a>, records: &'a Records, shared: &DVector<f64>, nudges: Nudges) -> Self {
         let nudged = (0..shared.len()).map(|unknown| {
             let mut other = shared.clone();
@@ -105,9 +105,9 @@ impl<'a> Around<'a> {
         let longer = |seen: DVector<f64>| seen.resize_vertically(samples + size, 0.0);
         let residual = longer(at.residual.clone());
         let columns: Vec<DVector<f64>> =
-            (self.of_shared(window, at).into_iter().map(longer)).collect();
+            (self.shared_directions(window, at).into_iter().map(longer)).collect();
         let directions = DMatrix::from_columns(&columns);
-        let factors = self.of_start(window, at).qr();
+        let factors = self.start_directions(window, at).qr();
         let (q, r) = (factors.q(), factors.r());
         let taken = (q.transpose() * &residual, q.transpose() * &directions);
         let residual = residual - &q * &taken.0;
@@ -116,7 +116,7 @@ impl<'a> Around<'a> {
         let inverse = r
             .try_inverse()
             .unwrap_or_else(|| DMatrix::zeros(size, size));
-        let scale = DVector::from_column_slice(self.ranges) * UNSEEN;
+        let scale = DVector::from_column_slice(self.ranges) * UNDETERMINED_STEP;
         let inverse = DMatrix::from_diagonal(&scale) * inverse;
         Linear {
             residual,
@@ -127,7 +127,7 @@ impl<'a> Around<'a> {
 
     /// Returns the effect of the initial state on a residual, followed by one row per direction
     /// that bounds it if the window does not determine it.
-    fn of_start(&self, window: &Window, at: &Fitted) -> DMatrix<f64> {
+    fn start_directions(&self, window: &Window, at: &Fitted) -> DMatrix<f64> {
         let (machine, sensors) = &self.here;
         let directions = machine.directions();
         let samples = at.residual.len();
@@ -136,7 +136,7 @@ impl<'a> Around<'a> {
             let nudge = self.nudges.start * self.ranges[column];
             let moved = along(&at.start, direction, nudge);
             let residual = self.fit.residual(machine, sensors, window, &moved);
-            let change = (&at.residual - residual) * (UNSEEN / self.nudges.start);
+            let change = (&at.residual - residual) * (UNDETERMINED_STEP / self.nudges.start);
             starts
                 .view_mut((0, column), (samples, 1))
                 .copy_from(&change);
@@ -146,7 +146,7 @@ impl<'a> Around<'a> {
     }
 
     /// Returns the effect of one standard deviation of each shared unknown on a residual.
-    fn of_shared(&self, window: &Window, at: &Fitted) -> Vec<DVector<f64>> {
+    fn shared_directions(&self, window: &Window, at: &Fitted) -> Vec<DVector<f64>> {
         let fit = self.fit;
         let base = run(&self.here.0, fit.setup, fit.drives, &at.start, window.span);
         let column = |(unknown, (machine, sensors)): (usize, &(Machine, Sensors))| {
@@ -173,9 +173,9 @@ fn solve_bounded(normal: &DMatrix<f64>, right: &DVector<f64>, at: &DVector<f64>)
         };
         let solved = factor.solve(&rest);
         let outside: Vec<usize> = (free.iter().zip(solved.iter()))
-            .filter(|(place, by)| (at[**place] + **by).abs() > REACH)
+            .filter(|(place, by)| (at[**place] + **by).abs() > MAX_DEVIATION_SD)
             .map(|(place, by)| {
-                step[*place] = REACH.copysign(at[*place] + by) - at[*place];
+                step[*place] = MAX_DEVIATION_SD.copysign(at[*place] + by) - at[*place];
                 *place
             })
             .collect();

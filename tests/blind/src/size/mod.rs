@@ -22,19 +22,19 @@ pub use projection::floors_of_missing_modes;
 pub use windows::window;
 
 /// Relative accuracy of sizes by projection.
-const RIGHT: f64 = 0.02;
+const PROJECTION_ACCURACY: f64 = 0.02;
 
 /// Maximum number of projections for a size.
-const MOST_LOOKS: usize = 13;
+const MAX_PROJECTIONS: usize = 13;
 
 /// Relative accuracy of sizes by fits.
-const NEAR: f64 = 0.05;
+const FIT_ACCURACY: f64 = 0.05;
 
 /// Maximum number of fits for a size.
-const MOST_FITS: usize = 3;
+const MAX_FITS: usize = 3;
 
 /// Fractions of the integration steps for fits; later ones if such long steps are unstable.
-const COARSENESS: [usize; 3] = [8, 4, 2];
+const STEP_DIVISORS: [usize; 3] = [8, 4, 2];
 
 /// Effect with its size.
 pub struct Sized {
@@ -57,7 +57,7 @@ pub fn sized(
     level: f64,
 ) -> Sized {
     if matches!(hidden.effect, Effect::EndStop | Effect::EndStops) {
-        hidden.order = 0.5 * furthest(machine, setup, drives, hidden.sign);
+        hidden.order = 0.5 * largest_deflection(machine, setup, drives, hidden.sign);
     }
     let coarse = |part: usize| Setup {
         steps: setup.steps / part,
@@ -66,7 +66,7 @@ pub fn sized(
     // Records and fit have the same step size, so that its errors cancel.
     let left = |hidden: &Hidden| {
         let of = |part: &usize| Fit::new(machine, &coarse(*part), drives, declared).floors(hidden);
-        let mut all = COARSENESS.iter().map(of);
+        let mut all = STEP_DIVISORS.iter().map(of);
         all.find(|floors| floors.is_finite()).unwrap_or(f64::NAN)
     };
     let halved = coarse(2);
@@ -75,21 +75,21 @@ pub fn sized(
         let floors = left(&hidden);
         return Sized { hidden, floors };
     }
-    let (begin, largest) = range(&hidden, machine, drives);
+    let (begin, largest) = size_range(&hidden, machine, drives);
     hidden.amount = begin;
     let training = &drives[..setup.records.0];
     let basis = Basis::new(machine, &halved, training, &hidden);
     let projected = |hidden: &Hidden| basis.floors(machine, &halved, training, hidden);
-    let search = Search::new(level, RIGHT);
-    (hidden.amount, _) = search.run(hidden.clone(), largest, MOST_LOOKS, projected);
-    let search = Search::new(level, NEAR);
-    let (amount, floors) = search.run(hidden.clone(), largest, MOST_FITS, left);
+    let search = Search::new(level, PROJECTION_ACCURACY);
+    (hidden.amount, _) = search.run(hidden.clone(), largest, MAX_PROJECTIONS, projected);
+    let search = Search::new(level, FIT_ACCURACY);
+    let (amount, floors) = search.run(hidden.clone(), largest, MAX_FITS, left);
     hidden.amount = amount;
     Sized { hidden, floors }
 }
 
 /// Returns the largest deflection of the spring between two bodies to one side.
-fn furthest(machine: &Machine, setup: &Setup, drives: &[Drive], side: f64) -> f64 {
+fn largest_deflection(machine: &Machine, setup: &Setup, drives: &[Drive], side: f64) -> f64 {
     let motions = drives
         .iter()
         .flat_map(|drive| windows::states(machine, setup, drive));
@@ -99,7 +99,7 @@ fn furthest(machine: &Machine, setup: &Setup, drives: &[Drive], side: f64) -> f6
 }
 
 /// Returns an initial and a maximum size, SI.
-fn range(hidden: &Hidden, machine: &Machine, drives: &[Drive]) -> (f64, f64) {
+fn size_range(hidden: &Hidden, machine: &Machine, drives: &[Drive]) -> (f64, f64) {
     let free = f64::INFINITY;
     let inputs = drives.iter().flat_map(|drive| &drive.input);
     let strongest = inputs.fold(0.0f64, |most, input| most.max(input.abs()));
@@ -215,7 +215,7 @@ mod tests {
         let floors = fit.floors(&found.hidden);
         println!("{} {floors}", found.floors);
         assert!(
-            (found.floors / 6.0).ln().abs() < super::NEAR,
+            (found.floors / 6.0).ln().abs() < super::FIT_ACCURACY,
             "{}",
             found.floors
         );

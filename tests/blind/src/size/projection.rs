@@ -32,7 +32,7 @@ impl Basis {
             .collect();
         let part = |span: Span| {
             let start = &all[span.record][span.first];
-            part(machine, setup, drives, start, span, hidden)
+            window_part(machine, setup, drives, start, span, hidden)
         };
         let windows = spans(setup, drives).into_iter().map(part).collect();
         Self { windows }
@@ -83,7 +83,7 @@ impl Basis {
     }
 }
 
-fn part(
+fn window_part(
     machine: &Machine,
     setup: &Setup,
     drives: &[Drive],

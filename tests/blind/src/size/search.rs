@@ -34,14 +34,14 @@ impl Search {
         most_looks: usize,
         floors: impl Fn(&Hidden) -> f64,
     ) -> (f64, f64) {
-        self.look(hidden.amount, floors(&hidden));
+        self.record_size(hidden.amount, floors(&hidden));
         for _ in 1..most_looks {
-            let next = self.next().min(largest);
+            let next = self.next_size().min(largest);
             if self.is_found() || self.best.0 == next {
                 break;
             }
             hidden.amount = next;
-            self.look(next, floors(&hidden));
+            self.record_size(next, floors(&hidden));
         }
         self.best
     }
@@ -55,7 +55,7 @@ impl Search {
     }
 
     /// Records the result of a size; NaN if the simulation failed.
-    fn look(&mut self, amount: f64, floors: f64) {
+    fn record_size(&mut self, amount: f64, floors: f64) {
         let nearer = self.distance(floors) < self.distance(self.best.1);
         if floors.is_finite() && (nearer || self.best.1.is_infinite()) {
             self.best = (amount, floors);
@@ -69,7 +69,7 @@ impl Search {
         }
     }
 
-    fn next(&self) -> f64 {
+    fn next_size(&self) -> f64 {
         match (self.below, self.above) {
             (Some(below), Some(above)) => {
                 let part = (self.level / below.1).ln() / (above.1 / below.1).ln();
@@ -111,11 +111,11 @@ mod tests {
             let mut search = Search::new(6.0, 0.02);
             let mut amount = 0.3;
             for _ in 0..12 {
-                search.look(amount, floors(amount));
+                search.record_size(amount, floors(amount));
                 if search.is_found() {
                     break;
                 }
-                amount = search.next();
+                amount = search.next_size();
             }
             assert!(search.is_found(), "{:?}", search.best);
         }

@@ -77,5 +77,5 @@ macro_rules! bits {
     };
 }
 
-bits!(functions, all_functions, 1.0);
-bits!(arm, an_arm_with_contacts, 1e-3);
+bits!(functions, functions_in_lanes_match_scalars, 1.0);
+bits!(arm, arm_in_lanes_matches_scalars, 1e-3);

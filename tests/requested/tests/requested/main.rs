@@ -19,12 +19,12 @@ use proptest::prelude::*;
 use tracked::Tracked;
 
 /// Source of numbers with magnitudes between 1e-5 and 1.
-struct Drawn<'a> {
+struct NumberSource<'a> {
     numbers: &'a [f64],
     next: usize,
 }
 
-impl Drawn<'_> {
+impl NumberSource<'_> {
     /// Returns the next number from -1 to 1.
     fn even(&mut self) -> f64 {
         self.next += 1;
@@ -48,9 +48,9 @@ fn numbers() -> impl Strategy<Value = Vec<f64>> {
 }
 
 /// Dual number with bounds of its rounding error.
-type Moving = Dual<Tracked>;
+type TrackedDual = Dual<Tracked>;
 
-fn dual_number(value: f64, slope: f64) -> Moving {
+fn dual_number(value: f64, slope: f64) -> TrackedDual {
     Dual {
         value: Tracked::exact(value),
         slope: Tracked::exact(slope),
@@ -58,7 +58,7 @@ fn dual_number(value: f64, slope: f64) -> Moving {
 }
 
 /// Returns dual numbers that move along a direction.
-fn dual_numbers<const N: usize>(numbers: &[f64; N], direction: &[f64; N]) -> [Moving; N] {
+fn dual_numbers<const N: usize>(numbers: &[f64; N], direction: &[f64; N]) -> [TrackedDual; N] {
     std::array::from_fn(|i| dual_number(numbers[i], direction[i]))
 }
 
@@ -66,24 +66,26 @@ fn unit<const N: usize>(index: usize) -> [f64; N] {
     std::array::from_fn(|i| f64::from(u8::from(i == index)))
 }
 
-fn slopes<const N: usize>(duals: &[Moving; N]) -> [Tracked; N] {
+fn slopes<const N: usize>(duals: &[TrackedDual; N]) -> [Tracked; N] {
     duals.map(|dual| dual.slope)
 }
 
 /// Maximum relative difference.
-const RELATIVE: f64 = 1e-12;
+const MAX_RELATIVE_DIFFERENCE: f64 = 1e-12;
 
 /// Factor of the bound of the expected number's rounding error, plus one. If terms cancel, rounding
 /// dominates; the other number, from other operations on the same quantities, may have eight times
 /// as much.
-const ROUNDING: f64 = 9.0;
+const MAX_ROUNDING_RATIO: f64 = 9.0;
 
 fn assert_agree(what: &str, found: &[f64], expected: &[Tracked]) -> Result<(), TestCaseError> {
     prop_assert_eq!(found.len(), expected.len());
     for (i, (found, expected)) in found.iter().zip(expected).enumerate() {
         let error = (found - expected.number).abs();
         prop_assert!(
-            error <= RELATIVE * expected.number.abs() + ROUNDING * expected.error,
+            error
+                <= MAX_RELATIVE_DIFFERENCE * expected.number.abs()
+                    + MAX_ROUNDING_RATIO * expected.error,
             "{what}, {i}: {found:e} and {expected:?}"
         );
     }
@@ -121,7 +123,7 @@ macro_rules! checks {
             }
 
             /// Returns a point with a positive definite mass matrix.
-            fn point(drawn: &mut Drawn<'_>) -> Result<Point, TestCaseError> {
+            fn point(drawn: &mut NumberSource<'_>) -> Result<Point, TestCaseError> {
                 let defaults = defaults();
                 let parameters: [f64; PARAMETERS] =
                     std::array::from_fn(|i| defaults[i] * (1.0 + 0.1 * drawn.even()));
@@ -169,7 +171,7 @@ macro_rules! checks {
 
                 #[test]
                 fn jacobians_match_dual_numbers(numbers in numbers()) {
-                    let p = point(&mut Drawn { numbers: &numbers, next: 0 })?;
+                    let p = point(&mut NumberSource { numbers: &numbers, next: 0 })?;
                     let (t, x, u, c) = (p.t, &p.state, &p.inputs.into(), &p.coefficients);
                     let (still, held, fixed) = ([0.0; STATES], [0.0; INPUTS], [0.0; PARAMETERS]);
                     let rates: [[f64; STATES]; STATES] =
@@ -204,7 +206,7 @@ macro_rules! checks {
 
                 #[test]
                 fn products_match_the_jacobian(numbers in numbers()) {
-                    let mut drawn = Drawn { numbers: &numbers, next: 0 };
+                    let mut drawn = NumberSource { numbers: &numbers, next: 0 };
                     let p = point(&mut drawn)?;
                     let (t, x, u, c) = (p.t, &p.state, &p.inputs.into(), &p.coefficients);
                     let (dx, du): ([f64; STATES], [f64; INPUTS]) = (drawn.array(), drawn.array());
@@ -235,7 +237,7 @@ macro_rules! checks {
 
                 #[test]
                 fn inverse_dynamics_inverts_forward_dynamics(numbers in numbers()) {
-                    let mut drawn = Drawn { numbers: &numbers, next: 0 };
+                    let mut drawn = NumberSource { numbers: &numbers, next: 0 };
                     let p = point(&mut drawn)?;
                     let (t, x, u, c) = (p.t, &p.state, &p.inputs.into(), &p.coefficients);
                     let rates = p.rates();
@@ -267,7 +269,7 @@ macro_rules! checks {
 
                 #[test]
                 fn mass_matrix_is_the_hessian_of_the_energy(numbers in numbers()) {
-                    let p = point(&mut Drawn { numbers: &numbers, next: 0 })?;
+                    let p = point(&mut NumberSource { numbers: &numbers, next: 0 })?;
                     let mass = model::mass_matrix(p.t, &p.state, &p.inputs.into(), &p.coefficients);
                     let number = |x: f64| Dual { value: dual_number(x, 0.0), slope: dual_number(0.0, 0.0) };
                     let parameters = p.parameters.map(number).into();
@@ -287,7 +289,7 @@ macro_rules! checks {
 
                 #[test]
                 fn guard_rates_match_derivative_along_the_motion(numbers in numbers()) {
-                    let p = point(&mut Drawn { numbers: &numbers, next: 0 })?;
+                    let p = point(&mut NumberSource { numbers: &numbers, next: 0 })?;
                     let found = model::guard_rates(p.t, &p.state, &p.inputs.into(), &p.coefficients);
                     let t = dual_number(p.t, 1.0);
                     let state = dual_numbers(&p.state, &p.rates());
@@ -300,7 +302,7 @@ macro_rules! checks {
                 /// Interpreter, machine code and emitted Rust, number by number.
                 #[test]
                 fn all_evaluations_give_same_bits(numbers in numbers()) {
-                    let mut drawn = Drawn { numbers: &numbers, next: 0 };
+                    let mut drawn = NumberSource { numbers: &numbers, next: 0 };
                     let p = point(&mut drawn)?;
                     let (t, x, u, c) = (p.t, &p.state, &p.inputs.into(), &p.coefficients);
                     let (dx, du): ([f64; STATES], [f64; INPUTS]) = (drawn.array(), drawn.array());
@@ -346,7 +348,7 @@ macro_rules! checks {
 
                 #[test]
                 fn linearisation_predicts_small_changes(numbers in numbers()) {
-                    let mut drawn = Drawn { numbers: &numbers, next: 0 };
+                    let mut drawn = NumberSource { numbers: &numbers, next: 0 };
                     let p = point(&mut drawn)?;
                     let found = model::linearise(p.t, &p.state, &p.inputs.into(), &p.coefficients);
                     prop_assert_eq!(found.rates, p.rates());

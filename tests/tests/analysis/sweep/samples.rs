@@ -154,7 +154,7 @@ fn samples_depend_on_seed_but_not_on_threads_shards_or_kills() {
     ));
     assert!(
         result_files(&place.at("two")) == whole,
-        "two threads, the seed said"
+        "two threads with an explicit seed"
     );
     for shard in ["2/2", "1/2"] {
         accept(&arguments(

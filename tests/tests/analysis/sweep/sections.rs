@@ -21,7 +21,7 @@ both = "1/2*m*(dot(x)^2 + dot(y)^2)"
 both = "1/2*k*x^2 + 1/2*c*y^2"
 "#;
 
-fn of_two(place: &Place, more: &[&str]) -> Vec<String> {
+fn sweep_two(place: &Place, more: &[&str]) -> Vec<String> {
     std::fs::write(place.at("two.toml"), TWO).expect("a specification");
     let (spec, out) = (place.at("two.toml"), place.at("two"));
     let (spec, out) = (spec.display().to_string(), out.display().to_string());
@@ -33,7 +33,7 @@ fn of_two(place: &Place, more: &[&str]) -> Vec<String> {
         .collect()
 }
 
-fn borrowed(arguments: &[String]) -> Vec<&str> {
+fn as_strs(arguments: &[String]) -> Vec<&str> {
     arguments.iter().map(String::as_str).collect()
 }
 
@@ -49,7 +49,7 @@ fn section_at_a_coordinate_value_samples_autonomous_model() {
         "200",
     ];
     let span = ["--transient", "3", "--periods", "12"];
-    accept(&of_two(&place, &[&section[..], &span].concat()));
+    accept(&sweep_two(&place, &[&section[..], &span].concat()));
     let found = table(&place.at("two"));
     let one = |name: &str| column(&found, name)[0];
     // x falls through 0 at t = pi (2 k + 1), when y = cos(1.5 pi (2 k + 1)) = 0.
@@ -75,7 +75,7 @@ fn upward_section_samples_rising_crossings() {
         "200",
     ];
     let span = ["--transient", "2", "--periods", "8"];
-    accept(&of_two(&place, &[&section[..], &span].concat()));
+    accept(&sweep_two(&place, &[&section[..], &span].concat()));
     let found = table(&place.at("two"));
     for point in 1..=8_u32 {
         // Rising sin(t) = 1/2: t = pi/6 + 2 pi k.
@@ -157,8 +157,8 @@ fn invalid_sections_are_rejected() {
         ),
         (&["--measure", "poincare"], "--section NAME=VALUE"),
     ] {
-        let arguments = of_two(&place, more);
-        let message = refused(&borrowed(&arguments));
+        let arguments = sweep_two(&place, more);
+        let message = refused(&as_strs(&arguments));
         assert!(message.contains(what), "{more:?}: {message}");
         assert!(!place.at("two").exists());
     }
@@ -276,7 +276,7 @@ v = "V"
 "#;
 
 /// Sweeps `a` with a section; returns a column of the measure at the first value of `a`.
-fn on_section(
+fn sweep_with_section(
     place: &Place,
     text: &str,
     measure: &str,
@@ -303,7 +303,7 @@ fn section_at_an_angle_is_crossed_once_per_turn() {
     // The energy is 18 + 0.1 cos(0.1) in every turn.
     let rate = |p: f64| (36.0 + 0.2 * (0.1f64.cos() - p.cos())).sqrt();
     for section in ["p=1", "p=1 + 4*pi", "p=-1:up"] {
-        let one = on_section(&place, &rotor, "poincare:p_dot", section);
+        let one = sweep_with_section(&place, &rotor, "poincare:p_dot", section);
         let at = if section.starts_with("p=-") {
             -1.0
         } else {
@@ -322,14 +322,14 @@ fn section_at_an_angle_is_crossed_once_per_turn() {
         let right = std::f64::consts::TAU * turn / 1000.0;
         assert!((one("time") - right).abs() < 1e-7, "{section}");
     }
-    let angle = on_section(&place, &rotor, "poincare:p", "p=1");
+    let angle = sweep_with_section(&place, &rotor, "poincare:p", "p=1");
     assert_eq!(angle("period"), 1.0);
     assert!((angle("min") - angle("max")).abs() < 1e-7);
     // Backwards, without a potential: one solver step covers many turns.
     let back = ROTOR
         .replace("\"V\"", "\"0*a\"")
         .replace("rate = 6", "rate = -6");
-    let one = on_section(&place, &back, "poincare:p_dot", "p=1:down");
+    let one = sweep_with_section(&place, &back, "poincare:p_dot", "p=1:down");
     assert_eq!(one("period"), 1.0);
     assert!((one("time") - std::f64::consts::TAU / 6.0).abs() < 1e-9);
 }
@@ -341,7 +341,7 @@ fn section_at_an_angle_with_spring_is_crossed_at_its_value_only() {
     let spring = ROTOR
         .replace("\"V\"", "\"1/2*40*a*p^2\"")
         .replace("initial_rate = 6", "initial_rate = 24");
-    let one = on_section(&place, &spring, "poincare:p_dot", "p=1");
+    let one = sweep_with_section(&place, &spring, "poincare:p_dot", "p=1");
     assert_eq!(one("period"), 1.0);
     let time = one("time");
     assert!((time - std::f64::consts::PI).abs() < 1e-6, "{time}");

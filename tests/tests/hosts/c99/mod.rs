@@ -219,11 +219,11 @@ fn has_requested(program: &Program) -> [bool; 2] {
 
 /// Compares C and Rust in both precisions.
 fn compare(program: &Program) {
-    compare_in(program, &["double", "float"], Compiled::Trapping);
+    compare_precisions(program, &["double", "float"], Compiled::Trapping);
 }
 
 /// Compares C and Rust in these precisions.
-fn compare_in(program: &Program, precisions: &[&str], compiled: Compiled) {
+fn compare_precisions(program: &Program, precisions: &[&str], compiled: Compiled) {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
     compile_as_cpp(program, precisions, folder);
@@ -274,10 +274,10 @@ fn compare_file(
     ];
     let variant = derived(&supported_outputs()).or_else(|_| derived(&forces));
     let variant = variant.expect("the model can be derived");
-    compare_in(&variant.program, precisions, compiled);
+    compare_precisions(&variant.program, precisions, compiled);
     for order in without {
         if !rigid {
-            compare_in(
+            compare_precisions(
                 &program(&text, *order, &[]),
                 &["double"],
                 Compiled::Trapping,

@@ -45,7 +45,7 @@ fn drawings_match_the_schema() {
 }
 
 /// Returns all emitted code without the hash of the specification.
-fn emitted(model: &Model) -> (String, c::Files, Vec<u8>) {
+fn emit_all(model: &Model) -> (String, c::Files, Vec<u8>) {
     let orders = model.orders(None).expect("orders");
     let mut program = Variant::derive(model, &orders).expect("derived").program;
     program.spec_hash.clear();
@@ -60,6 +60,6 @@ fn drawing_does_not_change_emitted_code() {
         let (without, _) = text.split_once("[drawing.points]").expect("a drawing");
         let (with, without) = (model(&text), model(without));
         assert!(with.drawing.is_some() && without.drawing.is_none());
-        assert_eq!(emitted(&with), emitted(&without));
+        assert_eq!(emit_all(&with), emit_all(&without));
     }
 }

@@ -17,7 +17,12 @@ fn arm(order: usize, values: &[(&str, f64)]) -> Subject {
 }
 
 /// Returns the arm in motion: mesh deflections `x` in m, approach speeds `v` in m/s.
-fn moving(order: usize, values: &[(&str, f64)], [x_sp, x_pr]: [f64; 2], v: [f64; 2]) -> Subject {
+fn moving_arm(
+    order: usize,
+    values: &[(&str, f64)],
+    [x_sp, x_pr]: [f64; 2],
+    v: [f64; 2],
+) -> Subject {
     let subject = arm(order, values);
     let mut initial = subject.initial.clone();
     let half = initial.len() / 2;
@@ -89,7 +94,7 @@ fn arm_with_little_play_and_strong_excitation_matches_general_solver() {
             ("c_sp", 0.0),
             ("c_pr", 0.0),
         ];
-        let subject = moving(0, &values, [0.0, 0.0], [1e-3, -2e-3]);
+        let subject = moving_arm(0, &values, [0.0, 0.0], [1e-3, -2e-3]);
         let switches =
             assert_matches_general_solver(&format!("b = {b:e}, no damping"), &subject, 0.005);
         assert!(switches > 20);
@@ -128,7 +133,7 @@ fn arm_with_any_number_of_modes_matches_general_solver() {
         (64, 0.001),
     ] {
         assert_matches_general_solver(&format!("S = {order}"), &arm(order, &[]), until);
-        let hit = moving(order, &[], [26e-6, -24e-6], [-1.0, 0.5]);
+        let hit = moving_arm(order, &[], [26e-6, -24e-6], [-1.0, 0.5]);
         assert_matches_general_solver(&format!("S = {order}, hit"), &hit, until.min(0.004));
     }
 }
@@ -139,10 +144,10 @@ fn simultaneous_switches_of_both_meshes_match_general_solver() {
     for delay in [0.0, 1e-16, 1e-14, 1e-12, 1e-11, 1e-9] {
         for speed in [-1.0, -1e-3] {
             let x = [25e-6 + 1e-9, 25e-6 + 1e-9 - delay * speed];
-            let subject = moving(4, &[], x, [speed, speed]);
+            let subject = moving_arm(4, &[], x, [speed, speed]);
             let name = format!("delay {delay:e}, {speed} m/s");
             assert!(assert_matches_general_solver(&name, &subject, 0.002) >= 2);
-            let opposite = moving(4, &[], [x[0], -x[1]], [speed, -speed]);
+            let opposite = moving_arm(4, &[], [x[0], -x[1]], [speed, -speed]);
             assert!(
                 assert_matches_general_solver(&format!("{name}, opposite"), &opposite, 0.002) >= 2
             );
@@ -156,13 +161,13 @@ fn start_on_a_surface_matches_general_solver() {
     for order in [0, 4] {
         for x in [b, -b] {
             for speed in [1e-2, -1e-2, 1e-9, -1e-9, 0.0] {
-                let both = moving(order, &[], [x, x], [speed, -speed]);
+                let both = moving_arm(order, &[], [x, x], [speed, -speed]);
                 assert_matches_general_solver(
                     &format!("S = {order}, x = {x:e}, {speed:e} m/s"),
                     &both,
                     0.004,
                 );
-                let one = moving(order, &[], [x, 0.0], [speed, 0.0]);
+                let one = moving_arm(order, &[], [x, 0.0], [speed, 0.0]);
                 assert_matches_general_solver(
                     &format!("S = {order}, one x = {x:e}, {speed:e} m/s"),
                     &one,
@@ -184,7 +189,7 @@ fn grazing_initial_rates_match_general_solver() {
         ("b_m", 0.0),
     ];
     let (until, times) = (0.004, grid(0.004, 64));
-    let from = |rate: f64| moving(2, &values, [0.0, 26e-6], [rate, 0.0]);
+    let from = |rate: f64| moving_arm(2, &values, [0.0, 26e-6], [rate, 0.0]);
     let first = |rate: f64| {
         let switches = from(rate).exact((0.0, until), &times).switches;
         switches.iter().filter(|s| s.guard == 0).count()
@@ -333,7 +338,7 @@ fn lossless_arm_conserves_energy() {
     ];
     for (order, b) in [(0, 25e-6), (4, 25e-6), (4, 1e-6), (4, 0.0), (16, 25e-6)] {
         let values = [&lossless[..], &[("b_sp", b), ("b_pr", b)]].concat();
-        let subject = moving(order, &values, [1e-4, -3e-5], [0.0, 0.0]);
+        let subject = moving_arm(order, &values, [1e-4, -3e-5], [0.0, 0.0]);
         let motion = subject.exact((0.0, 1.0), &grid(1.0, 100));
         let before = subject.energies(&[0.0], std::slice::from_ref(&subject.initial))[0];
         let energies = subject.energies(&motion.times, &motion.states);

@@ -10,7 +10,7 @@ fn arm(order: usize, b: f64) -> Subject {
     Subject::new(model.expect("values"), order)
 }
 
-fn rough() -> Subject {
+fn rough_system() -> Subject {
     let spec = Spec::default()
         .parameter("m", 1.0, "kg")
         .parameter("T_c", 0.7, "N")
@@ -33,7 +33,7 @@ fn continued_motion_equals_whole_motion() {
         ("S = 0", arm(0, 25e-6), 0.02, 1e-9),
         ("S = 4", arm(4, 25e-6), 0.02, 1e-9),
         ("S = 4, b = 0", arm(4, 0.0), 0.02, 1e-9),
-        ("rough", rough(), 3.0, 1e-12),
+        ("rough", rough_system(), 3.0, 1e-12),
     ] {
         let times = grid(until, 60);
         let mut propagator = subject.propagator().expect("a propagator");
@@ -69,7 +69,7 @@ fn continued_motion_equals_whole_motion() {
 
 #[test]
 fn sampling_does_not_change_the_motion() {
-    for subject in [arm(4, 25e-6), rough()] {
+    for subject in [arm(4, 25e-6), rough_system()] {
         let none = subject.exact((0.0, 0.1), &[]);
         let many = subject.exact((0.0, 0.1), &grid(0.1, 1000));
         assert_eq!(none.switches, many.switches);
@@ -79,7 +79,7 @@ fn sampling_does_not_change_the_motion() {
 
 #[test]
 fn repeated_requests_give_the_same_bits() {
-    for subject in [arm(4, 25e-6), arm(0, 1e-9), rough()] {
+    for subject in [arm(4, 25e-6), arm(0, 1e-9), rough_system()] {
         let times = grid(0.1, 50);
         let first = subject.exact((0.0, 0.1), &times);
         assert_eq!(first, subject.exact((0.0, 0.1), &times));
@@ -103,7 +103,12 @@ fn repeated_requests_give_the_same_bits() {
 
 /// Returns the growth up to `until` of the difference of two motions that start `step` apart along
 /// the first tangent vector, and the growth of that vector.
-fn growths(subject: &Subject, until: f64, step: f64, felt: &[usize]) -> (f64, f64) {
+fn growth_of_difference_and_tangent(
+    subject: &Subject,
+    until: f64,
+    step: f64,
+    felt: &[usize],
+) -> (f64, f64) {
     let mut propagator = subject.propagator().expect("a propagator");
     let request = Lyapunov {
         transient: 0.0,
@@ -162,7 +167,8 @@ fn tangent_vectors_match_difference_quotients() {
         (initial[0], initial[1], initial[half], initial[half + 1]) = (2e-5, -1.7e-5, 0.01, -0.02);
         let subject = subject.from(&initial);
         let count = subject.exact((0.0, until), &[]).switches.len();
-        let (vector, apart) = growths(&subject, until, step, &arm_felt(order));
+        let (vector, apart) =
+            growth_of_difference_and_tangent(&subject, until, step, &arm_felt(order));
         println!("S = {order}, b = {b:e}, {until} s: {vector} and {apart}, {count} switches");
         // Central differences of motions with different switching times.
         assert!(
@@ -172,10 +178,11 @@ fn tangent_vectors_match_difference_quotients() {
         assert!(count > 0 || b == 0.0);
     }
     // Sticking removes a direction, permanently.
-    let subject = rough();
+    let subject = rough_system();
     for until in [0.05, 0.2, 0.5, 1.0, 2.0] {
         let count = subject.exact((0.0, until), &[]).switches.len();
-        let (vector, apart) = growths(&subject, until, 1e-7, &[0, 1, 2, 3]);
+        let (vector, apart) =
+            growth_of_difference_and_tangent(&subject, until, 1e-7, &[0, 1, 2, 3]);
         println!("rough, {until} s: {vector} and {apart}, {count} switches");
         assert!(
             (vector - apart).abs() < 1e-4,

@@ -6,7 +6,7 @@ use eomgen_tests::models::project;
 use eomgen_tests::motions::{Spec, Subject, difference, grid};
 
 /// Returns a block with dry friction T, pushed by F sin(omega t).
-fn pushed(force: f64, start: [f64; 2]) -> Subject {
+fn pushed_block(force: f64, start: [f64; 2]) -> Subject {
     let spec = Spec::default()
         .parameter("m", 2.0, "kg")
         .parameter("T_c", 3.0, "N")
@@ -21,13 +21,13 @@ fn pushed(force: f64, start: [f64; 2]) -> Subject {
 #[test]
 fn sticking_block_stays_at_rest() {
     for force in [0.0, 1.0, 2.999, 3.0 * (1.0 - 1e-15), 3.0, -3.0, -1.0] {
-        let motion = pushed(force, [0.25, 0.0]).exact((0.0, 1e3), &grid(1e3, 10));
+        let motion = pushed_block(force, [0.25, 0.0]).exact((0.0, 1e3), &grid(1e3, 10));
         for state in &motion.states {
             assert_eq!(state, &[0.25, 0.0], "F = {force}");
         }
     }
     // The block comes to rest at the finite time v0 m/T_c.
-    let motion = pushed(0.0, [0.0, 1.5]).exact((0.0, 1e3), &[0.5, 1.0, 2.0, 1e3]);
+    let motion = pushed_block(0.0, [0.0, 1.5]).exact((0.0, 1e3), &[0.5, 1.0, 2.0, 1e3]);
     assert!((motion.states[0][1] - 0.75).abs() < 1e-14);
     for state in &motion.states[1..] {
         assert!(
@@ -75,7 +75,7 @@ fn pushed_block_slides_and_sticks_as_closed_form() {
             "it sticks at {force}"
         );
         let times = grid(8.0 * turn, 333);
-        let motion = pushed(force, [0.0, 0.0]).exact((0.0, 8.0 * turn), &times);
+        let motion = pushed_block(force, [0.0, 0.0]).exact((0.0, 8.0 * turn), &times);
         // Leaving and sticking again within rounding is not a motion.
         let mut switches = motion.switches.clone();
         switches.dedup_by(|a, b| (a.t - b.t).abs() < 1e-9);
@@ -166,7 +166,7 @@ fn block_on_belt_matches_closed_form() {
 }
 
 /// Returns two stacked blocks: T_1 against the ground, T_2 between them, the upper one pushed.
-fn stacked(dry: [f64; 2], force: f64, sign: impl Fn(&str) -> String) -> Subject {
+fn stacked_blocks(dry: [f64; 2], force: f64, sign: impl Fn(&str) -> String) -> Subject {
     let spec = Spec::default()
         .parameter("m_1", 2.0, "kg")
         .parameter("m_2", 1.0, "kg")
@@ -194,7 +194,7 @@ fn stacked(dry: [f64; 2], force: f64, sign: impl Fn(&str) -> String) -> Subject 
 #[test]
 fn two_joints_can_stick_at_once() {
     let dry = |v: &str| format!("sign({v})");
-    let at_rest = stacked([3.0, 3.0], 2.9, dry).exact((0.0, 100.0), &grid(100.0, 7));
+    let at_rest = stacked_blocks([3.0, 3.0], 2.9, dry).exact((0.0, 100.0), &grid(100.0, 7));
     assert!(
         at_rest
             .states
@@ -213,8 +213,8 @@ fn two_joints_can_stick_at_once() {
         ([0.5, 0.25], 9.0),
     ] {
         let times = grid(2.0, 50);
-        let exact = stacked(levels, force, dry).exact((0.0, 2.0), &times);
-        let general = stacked(levels, force, steep).exact((0.0, 2.0), &times);
+        let exact = stacked_blocks(levels, force, dry).exact((0.0, 2.0), &times);
+        let general = stacked_blocks(levels, force, steep).exact((0.0, 2.0), &times);
         let found = difference(&exact.states, &general.states, 0.1);
         println!(
             "{levels:?} {force}: {found:.1e}, {} switches",
@@ -264,7 +264,7 @@ fn chain_of_blocks_comes_to_rest_block_by_block() {
 }
 
 /// Returns the shipped hub with a beam, with another force on its angle and other parameters.
-fn hub(force: &str, values: &[(&str, f64)], order: usize) -> Subject {
+fn hub_with_force(force: &str, values: &[(&str, f64)], order: usize) -> Subject {
     let path = project().join("model-spec/models/hub_beam_tip_mass.toml");
     let text = std::fs::read_to_string(path).expect("the shipped specification");
     let text = text.replace("value = \"u\"", &format!("value = \"u + {force}\""));
@@ -284,8 +284,9 @@ fn friction_in_hub_of_beam_matches_steep_friction() {
     let times = grid(0.5, 50);
     for order in [1, 3, 6] {
         // A sticking hub moves like one with a very large inertia.
-        let held = hub("(-T_c*sign(dot(theta)))", &[("T_c", 1e3)], order).exact((0.0, 0.5), &times);
-        let heavy = hub("0*T_c", &[("J_h", 1e14)], order).exact((0.0, 0.5), &times);
+        let held = hub_with_force("(-T_c*sign(dot(theta)))", &[("T_c", 1e3)], order)
+            .exact((0.0, 0.5), &times);
+        let heavy = hub_with_force("0*T_c", &[("J_h", 1e14)], order).exact((0.0, 0.5), &times);
         let found = difference(&held.states, &heavy.states, 1e-3);
         println!("held, order {order}: {found:.1e}");
         assert!(
@@ -296,11 +297,12 @@ fn friction_in_hub_of_beam_matches_steep_friction() {
         assert!(held.switches.is_empty());
         // A hub that slides and sticks, compared with steep friction.
         for level in [0.05, 0.5, 2.0] {
-            let dry = hub("(-T_c*sign(dot(theta)))", &[("T_c", level)], order)
+            let dry = hub_with_force("(-T_c*sign(dot(theta)))", &[("T_c", level)], order)
                 .exact((0.0, 0.2), &times[..20]);
             let steep = "(-T_c*(dot(theta) - deadzone(dot(theta), 1e-5*dot_1))/(1e-5*dot_1))"
                 .replace("dot_1", "c/J_h");
-            let steep = hub(&steep, &[("T_c", level)], order).exact((0.0, 0.2), &times[..20]);
+            let steep =
+                hub_with_force(&steep, &[("T_c", level)], order).exact((0.0, 0.2), &times[..20]);
             let found = difference(&dry.states, &steep.states, 1e-3);
             println!(
                 "order {order}, {level} N m: {found:.1e}, {} switches",

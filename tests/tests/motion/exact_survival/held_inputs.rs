@@ -7,7 +7,7 @@ use eomgen_tests::models::load;
 use eomgen_tests::motions::{Spec, Subject, difference, grid};
 
 /// Returns an input held from each of the given times on.
-fn held(model: &Model, name: &str, unit: &str, steps: &[(f64, f64)]) -> HeldInputs {
+fn held_input(model: &Model, name: &str, unit: &str, steps: &[(f64, f64)]) -> HeldInputs {
     let folder = tempfile::tempdir().expect("a folder");
     let rows: String = steps
         .iter()
@@ -40,7 +40,7 @@ fn rig_driven_by_record_matches_general_solver() {
         let model = model
             .with_parameters(&[("b_sp", b), ("b_pr", b)])
             .expect("values");
-        let inputs = held(&model, "u", "N m", &steps);
+        let inputs = held_input(&model, "u", "N m", &steps);
         let subject = Subject {
             inputs,
             ..Subject::new(model, order)
@@ -79,7 +79,7 @@ fn input_jump_releases_sticking_block() {
         (3.5, -2.0),
         (6.0, 3.0),
     ];
-    let inputs = held(&model, "u", "N", &steps);
+    let inputs = held_input(&model, "u", "N", &steps);
     let subject = Subject {
         inputs,
         ..Subject::new(model, 0)
@@ -135,7 +135,7 @@ fn input_jump_moves_a_stop() {
         let steps: Vec<(f64, f64)> = (0..60)
             .map(|k| (f64::from(k) * 0.05, 0.03 * f64::from(k * k).sin()))
             .collect();
-        let inputs = held(&model, "u", "m", &steps);
+        let inputs = held_input(&model, "u", "m", &steps);
         let subject = Subject {
             inputs,
             ..Subject::new(model, 0)
@@ -170,7 +170,7 @@ fn input_jump_at_a_switch_matches_closed_form() {
             .potential("1/2*k*deadzone(x, b)^2")
             .force("x", "u");
         let model = spec.model();
-        let inputs = held(&model, "u", "N", &[(0.0, 0.0), (at, 50.0)]);
+        let inputs = held_input(&model, "u", "N", &[(0.0, 0.0), (at, 50.0)]);
         let subject = Subject {
             inputs,
             ..Subject::new(model, 0)

@@ -39,7 +39,7 @@ fn assert_matches_closed_form(
 
 /// Returns the undamped response from rest to F sin((w - gap) t), in a closed form that loses no
 /// digits for small gaps.
-fn resonant(w: f64, gap: f64, force: f64, t: f64) -> Vec<f64> {
+fn resonant_response(w: f64, gap: f64, force: f64, t: f64) -> Vec<f64> {
     let omega = w - gap;
     let middle = w - 0.5 * gap;
     let half = 0.5 * gap;
@@ -69,7 +69,7 @@ fn forcing_at_and_near_undamped_resonance_matches_closed_form() {
             // part loses at most three digits by cancellation.
             let phase = 200.0 * 4.0 * f64::EPSILON;
             assert_matches_closed_form(&name, &spec, 200.0 / w, phase + 1e3 * f64::EPSILON, |t| {
-                resonant(w, w - omega, 3.0, t)
+                resonant_response(w, w - omega, 3.0, t)
             });
         }
     }
@@ -105,7 +105,7 @@ fn forcing_at_zero_and_negative_frequency_matches_closed_form() {
             &spec(omega, "-F*sin(omega*t) + 0*phi*F"),
             20.0,
             1e-12,
-            |t| resonant(5.0, 5.0 + omega, 3.0 / m, t),
+            |t| resonant_response(5.0, 5.0 + omega, 3.0 / m, t),
         );
     }
 }
@@ -133,7 +133,7 @@ fn slow_forcing_of_free_mass_matches_closed_form() {
 }
 
 /// Returns the free motion of a damped mass from x0 at rest; zeta may be close to 1.
-fn damped(w: f64, zeta: f64, x0: f64, t: f64) -> Vec<f64> {
+fn damped_response(w: f64, zeta: f64, x0: f64, t: f64) -> Vec<f64> {
     let s = (zeta * zeta - 1.0) * (w * t) * (w * t);
     // sinh(sqrt(s))/sqrt(s) and cosh(sqrt(s)) are entire functions of s.
     let (sine, cosine) = if s.abs() < 1e-4 {
@@ -164,7 +164,7 @@ fn damping_at_and_near_critical_matches_closed_form() {
             &spec,
             3.0,
             1e-12,
-            |t| damped(w, zeta, 0.3, t),
+            |t| damped_response(w, zeta, 0.3, t),
         );
     }
 }

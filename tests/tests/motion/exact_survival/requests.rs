@@ -88,7 +88,7 @@ fn diverging_motions_are_rejected() {
 }
 
 #[test]
-fn masses_not_positive_are_rejected() {
+fn nonpositive_masses_are_rejected() {
     for m in [0.0, -0.0] {
         let message = rejection(&mass(m), (0.0, 1.0), &[1.0]);
         assert!(message.contains("mass"), "{message}");

@@ -128,7 +128,7 @@ fn start_on_a_stop_matches_closed_form() {
 }
 
 /// Returns a mass on a spring between stops at b, which it reaches with the amplitude b (1 + more).
-fn nearly_touching(more: f64, c: f64) -> Spec {
+fn oscillator_between_stops(more: f64, c: f64) -> Spec {
     let (w, b) = (50.0, 1e-3);
     Spec::default()
         .parameter("m", 1.0, "kg")
@@ -146,8 +146,8 @@ fn nearly_touching(more: f64, c: f64) -> Spec {
 fn grazing_a_stop_conserves_energy() {
     let times = grid(1.0, 200);
     for more in [-1e-3, -1e-9, -1e-14, -1e-15] {
-        let motion =
-            Subject::new(nearly_touching(more, 100.0).model(), 0).exact((0.0, 1.0), &times);
+        let motion = Subject::new(oscillator_between_stops(more, 100.0).model(), 0)
+            .exact((0.0, 1.0), &times);
         let a = 1e-3 * (1.0 + more);
         let wanted: Vec<Vec<f64>> = times
             .iter()
@@ -163,7 +163,8 @@ fn grazing_a_stop_conserves_energy() {
     }
     for more in [0.0, 3e-16, 1e-14, 1e-12, 1e-9, 1e-6, 1e-3] {
         // Without damping the energy is conserved.
-        let motion = Subject::new(nearly_touching(more, 0.0).model(), 0).exact((0.0, 1.0), &times);
+        let motion =
+            Subject::new(oscillator_between_stops(more, 0.0).model(), 0).exact((0.0, 1.0), &times);
         let energy = |y: &Vec<f64>| {
             let over = (y[0].abs() - 1e-3).max(0.0);
             0.5 * (y[1] * y[1] + 2500.0 * y[0] * y[0] + 1e6 * over * over)
@@ -185,8 +186,8 @@ fn grazing_a_stop_conserves_energy() {
             "{more:e}"
         );
         // The contacts are so short that damping has this small an effect.
-        let damped =
-            Subject::new(nearly_touching(more, 100.0).model(), 0).exact((0.0, 1.0), &times);
+        let damped = Subject::new(oscillator_between_stops(more, 100.0).model(), 0)
+            .exact((0.0, 1.0), &times);
         let lost = difference(&damped.states, &motion.states, 0.0);
         println!("{more:e} beyond: damping makes {lost:.1e}");
         assert!(
