@@ -133,7 +133,7 @@ impl Drawn<'_> {
         Shape {
             name: self.field.name.clone(),
             unit: self.field.unit.to_string(),
-            along: self.field.along.clone(),
+            position_name: self.field.along.clone(),
             positions: self.positions.clone(),
             amplitudes: self.functions.iter().map(amplitude).collect(),
         }

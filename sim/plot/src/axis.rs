@@ -1,6 +1,6 @@
 //! Axis of a frame: positions of values in pixels, and ticks.
 
-use super::quantity::superscript;
+use super::quantity::format_superscript;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Scale {
@@ -41,7 +41,7 @@ impl Scale {
 
 impl Range {
     /// Returns the range of the finite places; `None` without any.
-    pub fn of(places: impl Iterator<Item = f64>) -> Option<Self> {
+    pub fn from_places(places: impl Iterator<Item = f64>) -> Option<Self> {
         places
             .filter(|place| place.is_finite())
             .fold(None, |range: Option<Self>, place| {
@@ -57,7 +57,7 @@ impl Range {
     }
 
     /// Widens a range that is a point, so that rounding noise of a constant is not magnified.
-    pub fn opened(self) -> Self {
+    pub fn widen_point(self) -> Self {
         let magnitude = self.low.abs().max(self.high.abs());
         let least = if magnitude < 1e-100 {
             1.0
@@ -79,7 +79,7 @@ impl Range {
         }
     }
 
-    pub fn padded(self, share: f64) -> Self {
+    pub fn pad(self, share: f64) -> Self {
         let margin = share * (self.high - self.low);
         Self {
             low: self.low - margin,
@@ -88,7 +88,7 @@ impl Range {
     }
 
     /// Adds space at the top, as a fraction of the new span.
-    pub fn raised(self, share: f64) -> Self {
+    pub fn pad_top(self, share: f64) -> Self {
         Self {
             low: self.low,
             high: self.high + share / (1.0 - share) * (self.high - self.low),
@@ -115,7 +115,7 @@ pub(super) fn ticks(scale: Scale, range: Range, count: usize) -> Vec<Tick> {
 fn linear_ticks(range: Range, count: usize) -> Vec<Tick> {
     let step = round_step((range.high - range.low) / count.max(1) as f64);
     let decimals = (-(step.log10() + 1e-9).floor()).clamp(0.0, 12.0) as usize;
-    multiples(range, step)
+    step_multiples(range, step)
         .map(|place| Tick {
             place,
             label: with_minus_sign(&format!("{place:.decimals$}")),
@@ -124,7 +124,7 @@ fn linear_ticks(range: Range, count: usize) -> Vec<Tick> {
 }
 
 /// Returns the multiples of `step` in a range, those at its ends included in spite of rounding.
-fn multiples(range: Range, step: f64) -> impl Iterator<Item = f64> {
+fn step_multiples(range: Range, step: f64) -> impl Iterator<Item = f64> {
     let first = (range.low / step - 1e-6).ceil();
     let last = (range.high / step + 1e-6).floor();
     // Cannot overflow: a range is at least 1e-9 of its magnitude, and a step is a fraction of it.
@@ -150,10 +150,10 @@ fn decade_ticks(range: Range, count: usize) -> Vec<Tick> {
         return fine_ticks(range);
     }
     let stride = (decades / count.max(1) as f64).ceil().max(1.0);
-    multiples(range, stride)
+    step_multiples(range, stride)
         .map(|place| Tick {
             place,
-            label: format!("10{}", superscript(place as i32)),
+            label: format!("10{}", format_superscript(place as i32)),
         })
         .collect()
 }
@@ -173,8 +173,8 @@ fn fine_ticks(range: Range) -> Vec<Tick> {
 fn fine_label(mantissa: i32, decade: i32) -> String {
     match (mantissa, decade) {
         (_, 0..=3) => format!("{}", f64::from(mantissa) * 10f64.powi(decade)),
-        (1, _) => format!("10{}", superscript(decade)),
-        _ => format!("{mantissa}·10{}", superscript(decade)),
+        (1, _) => format!("10{}", format_superscript(decade)),
+        _ => format!("{mantissa}·10{}", format_superscript(decade)),
     }
 }
 
@@ -229,7 +229,7 @@ mod tests {
                 low: value,
                 high: value,
             }
-            .opened()
+            .widen_point()
         };
         assert_eq!(
             point(0.0),
@@ -249,13 +249,16 @@ mod tests {
             low: 1.0,
             high: 1.0 + 1e-12,
         }
-        .opened();
+        .widen_point();
         assert!(noisy.high - noisy.low > 0.19);
     }
 
     #[test]
     fn value_without_logarithm_has_no_place() {
         assert!(Scale::Logarithmic.place(0.0).is_nan() && Scale::Logarithmic.place(-1.0).is_nan());
-        assert_eq!(Range::of([f64::NAN, f64::INFINITY].into_iter()), None);
+        assert_eq!(
+            Range::from_places([f64::NAN, f64::INFINITY].into_iter()),
+            None
+        );
     }
 }

@@ -5,7 +5,7 @@ use super::axis::{Axis, Range, Scale, Tick, ticks};
 use super::canvas::{Anchor, Canvas, Stroke, Text};
 use super::figure::Reference;
 use super::layout::{LABEL_SIZE, TICK_SIZE, TITLE_SIZE};
-use super::lettering::width;
+use super::lettering::text_width;
 
 /// Histogram of numbers from 0 on.
 #[derive(Clone, Debug, Default)]
@@ -13,9 +13,9 @@ pub struct Histogram<'a> {
     /// Title above the frame.
     pub title: String,
     /// Label of the horizontal axis.
-    pub number: String,
+    pub horizontal_label: String,
     /// Label of the vertical axis.
-    pub count: String,
+    pub vertical_label: String,
     /// Counts of 0, 1, 2, ...
     pub counts: &'a [usize],
     /// Named numbers in ascending order, drawn as dashed vertical lines.
@@ -38,16 +38,16 @@ const HEIGHT: f64 = 330.0;
 /// Margins left and right, above and below the frame, in px.
 const MARGINS: ((f64, f64), (f64, f64)) = ((78.0, 24.0), (54.0, 62.0));
 /// Height of a row of shares and of its bar, in px.
-const ROW: (f64, f64) = (20.0, 14.0);
-pub(super) const COLUMN: &str = "#56a0d3";
+const ROW_HEIGHTS: (f64, f64) = (20.0, 14.0);
+pub(super) const COLUMN_COLOUR: &str = "#56a0d3";
 /// Two strong colours for the parts of interest, grey and a pale one; all differ in lightness.
-const PARTS: [&str; 4] = ["#0b4f86", "#56a0d3", "#c4c4c4", "#f2cfae"];
+const PART_COLOURS: [&str; 4] = ["#0b4f86", "#56a0d3", "#c4c4c4", "#f2cfae"];
 
-const GRID: Stroke = line("#e6e6e6", "");
-const FRAME: Stroke = line("#444444", "");
-const MARK: Stroke = line("#555555", "5 4");
+const GRID_STROKE: Stroke = thin_stroke("#e6e6e6", "");
+const FRAME_STROKE: Stroke = thin_stroke("#444444", "");
+const MARK_STROKE: Stroke = thin_stroke("#555555", "5 4");
 
-const fn line(colour: &'static str, dashes: &'static str) -> Stroke {
+const fn thin_stroke(colour: &'static str, dashes: &'static str) -> Stroke {
     Stroke {
         colour,
         width: 1.0,
@@ -63,7 +63,7 @@ const fn line(colour: &'static str, dashes: &'static str) -> Stroke {
 pub fn histogram(of: &Histogram<'_>) -> Result<String, PlotError> {
     let most = of.counts.iter().copied().max().unwrap_or(0);
     if most == 0 {
-        return Err(empty(&of.count));
+        return Err(empty_error(&of.vertical_label));
     }
     let ((left, right), (above, below)) = MARGINS;
     let linear = |low, high, pixels| Axis {
@@ -82,19 +82,24 @@ pub fn histogram(of: &Histogram<'_>) -> Result<String, PlotError> {
         let middle = number as f64;
         let (from, to) = (along.pixel(middle - 0.42), along.pixel(middle + 0.42));
         let top = up.pixel(*count as f64);
-        canvas.rectangle((from, top), (to - from, up.pixels.0 - top), COLUMN);
+        canvas.rectangle((from, top), (to - from, up.pixels.0 - top), COLUMN_COLOUR);
     }
     for tick in ticks(along.scale, along.range, 12) {
         let at = (along.pixel(tick.place), up.pixels.0 + 19.0);
-        write(&mut canvas, &tick.label, at, Anchor::Middle);
+        write_text(&mut canvas, &tick.label, at, Anchor::Middle);
     }
     draw_marks(&mut canvas, &of.marks, &along, &up);
-    outline(&mut canvas, along.pixels, up.pixels);
+    draw_outline(&mut canvas, along.pixels, up.pixels);
     let middle = (along.pixels.0 + along.pixels.1) / 2.0;
-    label(&mut canvas, &of.number, (middle, up.pixels.0 + 44.0), 0.0);
+    draw_label(
+        &mut canvas,
+        &of.horizontal_label,
+        (middle, up.pixels.0 + 44.0),
+        0.0,
+    );
     let middle = (up.pixels.0 + up.pixels.1) / 2.0;
-    label(&mut canvas, &of.count, (19.0, middle), -90.0);
-    title(&mut canvas, &of.title, (left, 22.0));
+    draw_label(&mut canvas, &of.vertical_label, (19.0, middle), -90.0);
+    draw_title(&mut canvas, &of.title, (left, 22.0));
     Ok(canvas.document(&of.title, WIDTH, HEIGHT))
 }
 
@@ -104,12 +109,12 @@ pub fn histogram(of: &Histogram<'_>) -> Result<String, PlotError> {
 ///
 /// [`PlotError`] without rows.
 pub fn shares(of: &Shares) -> Result<String, PlotError> {
-    let names = of.rows.iter().map(|(name, _)| width(name, TICK_SIZE));
+    let names = of.rows.iter().map(|(name, _)| text_width(name, TICK_SIZE));
     let widest = names.fold(0.0, f64::max);
     if of.rows.is_empty() {
-        return Err(empty(&of.title));
+        return Err(empty_error(&of.title));
     }
-    let (top, (row, bar)) = (62.0, ROW);
+    let (top, (row, bar)) = (62.0, ROW_HEIGHTS);
     let bottom = top + row * of.rows.len() as f64 + 6.0;
     let along = Axis {
         scale: Scale::Linear,
@@ -122,15 +127,15 @@ pub fn shares(of: &Shares) -> Result<String, PlotError> {
     let mut canvas = Canvas::default();
     for tick in ticks(along.scale, along.range, 6) {
         let x = along.pixel(tick.place);
-        canvas.segments(&[((x, bottom), (x, top))], GRID);
-        write(&mut canvas, &tick.label, (x, bottom + 19.0), Anchor::Middle);
+        canvas.segments(&[((x, bottom), (x, top))], GRID_STROKE);
+        write_text(&mut canvas, &tick.label, (x, bottom + 19.0), Anchor::Middle);
     }
     for (place, (name, parts)) in of.rows.iter().enumerate() {
         let y = top + 6.0 + row * place as f64;
         let base = y + 0.5 * bar + 0.36 * TICK_SIZE;
-        write(&mut canvas, name, (along.pixels.0 - 8.0, base), Anchor::End);
+        write_text(&mut canvas, name, (along.pixels.0 - 8.0, base), Anchor::End);
         let mut from = 0.0;
-        for (part, colour) in parts.iter().zip(PARTS) {
+        for (part, colour) in parts.iter().zip(PART_COLOURS) {
             let to = from + 100.0 * part;
             let (start, end) = (along.pixel(from), along.pixel(to));
             canvas.rectangle((start, y), (end - start, bar), colour);
@@ -139,21 +144,21 @@ pub fn shares(of: &Shares) -> Result<String, PlotError> {
         let together = 100.0 * parts.iter().take(2).sum::<f64>();
         let text = format!("{together:.0} %");
         let at = (WIDTH - 12.0, base);
-        write(&mut canvas, &text, at, Anchor::End);
+        write_text(&mut canvas, &text, at, Anchor::End);
     }
-    outline(&mut canvas, along.pixels, (bottom, top));
+    draw_outline(&mut canvas, along.pixels, (bottom, top));
     let middle = (along.pixels.0 + along.pixels.1) / 2.0;
-    label(&mut canvas, "share [%]", (middle, bottom + 42.0), 0.0);
-    title(&mut canvas, &of.title, (16.0, 22.0));
+    draw_label(&mut canvas, "share [%]", (middle, bottom + 42.0), 0.0);
+    draw_title(&mut canvas, &of.title, (16.0, 22.0));
     draw_legend(&mut canvas, &of.parts, (along.pixels.0, 48.0));
     Ok(canvas.document(&of.title, WIDTH, bottom + 56.0))
 }
 
 pub(super) fn draw_level(canvas: &mut Canvas, tick: &Tick, up: &Axis, (left, right): (f64, f64)) {
     let y = up.pixel(tick.place);
-    canvas.segments(&[((left, y), (right, y))], GRID);
+    canvas.segments(&[((left, y), (right, y))], GRID_STROKE);
     let at = (left - 7.0, y + 0.35 * TICK_SIZE);
-    write(canvas, &tick.label, at, Anchor::End);
+    write_text(canvas, &tick.label, at, Anchor::End);
 }
 
 /// Draws vertical lines with their names above the frame, without overlap.
@@ -161,61 +166,65 @@ pub(super) fn draw_marks(canvas: &mut Canvas, marks: &[Reference], along: &Axis,
     let mut free_from = along.pixels.0;
     for mark in marks {
         let x = along.pixel(mark.value);
-        canvas.segments(&[((x, up.pixels.0), (x, up.pixels.1))], MARK);
-        let long = width(&mark.label, TICK_SIZE);
+        canvas.segments(&[((x, up.pixels.0), (x, up.pixels.1))], MARK_STROKE);
+        let long = text_width(&mark.label, TICK_SIZE);
         let start = (x - long / 2.0).min(along.pixels.1 - long).max(free_from);
         free_from = start + long + 10.0;
         let at = (start, up.pixels.1 - 8.0);
-        write(canvas, &mark.label, at, Anchor::Start);
+        write_text(canvas, &mark.label, at, Anchor::Start);
     }
 }
 
 fn draw_legend(canvas: &mut Canvas, parts: &[String], (mut x, y): (f64, f64)) {
-    for (name, colour) in parts.iter().zip(PARTS) {
-        canvas.rectangle((x, y - 11.0), (ROW.1, 12.0), colour);
-        write(canvas, name, (x + ROW.1 + 6.0, y), Anchor::Start);
-        x += ROW.1 + 22.0 + width(name, TICK_SIZE);
+    for (name, colour) in parts.iter().zip(PART_COLOURS) {
+        canvas.rectangle((x, y - 11.0), (ROW_HEIGHTS.1, 12.0), colour);
+        write_text(canvas, name, (x + ROW_HEIGHTS.1 + 6.0, y), Anchor::Start);
+        x += ROW_HEIGHTS.1 + 22.0 + text_width(name, TICK_SIZE);
     }
 }
 
-pub(super) fn outline(canvas: &mut Canvas, (left, right): (f64, f64), (bottom, top): (f64, f64)) {
+pub(super) fn draw_outline(
+    canvas: &mut Canvas,
+    (left, right): (f64, f64),
+    (bottom, top): (f64, f64),
+) {
     let corners = [(left, top), (right, top), (right, bottom), (left, bottom)];
     let around = corners.into_iter().chain([(left, top)]);
-    canvas.lines(&[around.collect()], FRAME);
+    canvas.lines(&[around.collect()], FRAME_STROKE);
 }
 
-pub(super) fn write(canvas: &mut Canvas, text: &str, at: (f64, f64), anchor: Anchor) {
+pub(super) fn write_text(canvas: &mut Canvas, text: &str, at: (f64, f64), anchor: Anchor) {
     canvas.text(Text {
         text,
-        at,
+        position: at,
         size: TICK_SIZE,
         anchor,
-        bold: false,
+        is_bold: false,
     });
 }
 
-pub(super) fn label(canvas: &mut Canvas, text: &str, at: (f64, f64), angle: f64) {
+pub(super) fn draw_label(canvas: &mut Canvas, text: &str, at: (f64, f64), angle: f64) {
     let text = Text {
         text,
-        at,
+        position: at,
         size: LABEL_SIZE,
         anchor: Anchor::Middle,
-        bold: false,
+        is_bold: false,
     };
-    canvas.turned_text(text, angle);
+    canvas.rotated_text(text, angle);
 }
 
-pub(super) fn title(canvas: &mut Canvas, text: &str, at: (f64, f64)) {
+pub(super) fn draw_title(canvas: &mut Canvas, text: &str, at: (f64, f64)) {
     canvas.text(Text {
         text,
-        at,
+        position: at,
         size: TITLE_SIZE,
         anchor: Anchor::Start,
-        bold: true,
+        is_bold: true,
     });
 }
 
-fn empty(name: &str) -> PlotError {
+fn empty_error(name: &str) -> PlotError {
     PlotError::Empty {
         panel: 0,
         series: name.to_owned(),
@@ -253,7 +262,7 @@ mod tests {
             ..Histogram::default()
         })
         .unwrap();
-        let found = rectangles(&svg, COLUMN, ["y", "height"]);
+        let found = rectangles(&svg, COLUMN_COLOUR, ["y", "height"]);
         // No column for a count of 0, one base line for all. Pixels have two decimals.
         let [two, eight, four] = found[..] else {
             panic!("{found:?}")
@@ -272,11 +281,11 @@ mod tests {
         })
         .unwrap();
         let of = |colour| rectangles(&svg, colour, ["x", "width"]);
-        let [first, whole] = of(PARTS[0])[..] else {
+        let [first, whole] = of(PART_COLOURS[0])[..] else {
             panic!("{svg}")
         };
-        let (second, last) = (of(PARTS[1])[0], of(PARTS[3])[0]);
-        assert!(of(PARTS[2]).is_empty());
+        let (second, last) = (of(PART_COLOURS[1])[0], of(PART_COLOURS[3])[0]);
+        assert!(of(PART_COLOURS[2]).is_empty());
         assert!((first.1 - 0.25 * whole.1).abs() < 0.02 && (last.1 - 0.5 * whole.1).abs() < 0.02);
         assert!((second.0 - first.0 - first.1).abs() < 0.02);
         assert!((last.0 - second.0 - second.1).abs() < 0.02);

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::decimate::Point;
-use super::lettering::{escaped, spans};
+use super::lettering::{escape_xml, svg_spans};
 
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Anchor {
@@ -23,10 +23,10 @@ pub(super) struct Stroke {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Text<'a> {
     pub text: &'a str,
-    pub at: Point,
+    pub position: Point,
     pub size: f64,
     pub anchor: Anchor,
-    pub bold: bool,
+    pub is_bold: bool,
 }
 
 #[derive(Debug, Default)]
@@ -38,7 +38,7 @@ impl Canvas {
     pub fn segments(&mut self, segments: &[(Point, Point)], stroke: Stroke) {
         let data: String = segments
             .iter()
-            .map(|(from, to)| format!("M{} {}", pair(*from), pair(*to)))
+            .map(|(from, to)| format!("M{} {}", format_pair(*from), format_pair(*to)))
             .collect();
         self.path(&data, stroke);
     }
@@ -49,7 +49,7 @@ impl Canvas {
         for line in lines {
             for (place, point) in line.iter().enumerate() {
                 data.push(if place == 0 { 'M' } else { ' ' });
-                data.push_str(&pair(*point));
+                data.push_str(&format_pair(*point));
             }
             if line.len() == 1 {
                 data.push_str("h0");
@@ -63,10 +63,10 @@ impl Canvas {
         if width > 0.0 && height > 0.0 {
             self.element(format_args!(
                 "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{colour}\"/>",
-                hundredths(x),
-                hundredths(y),
-                hundredths(width),
-                hundredths(height)
+                format_pixel(x),
+                format_pixel(y),
+                format_pixel(width),
+                format_pixel(height)
             ));
         }
     }
@@ -86,7 +86,7 @@ impl Canvas {
         ));
     }
 
-    pub fn place(&mut self, drawing: Self, (x, y): Point) {
+    pub fn insert(&mut self, drawing: Self, (x, y): Point) {
         self.element(format_args!(
             "<g transform=\"translate({x} {y})\">\n{}</g>",
             drawing.body
@@ -94,17 +94,17 @@ impl Canvas {
     }
 
     pub fn text(&mut self, text: Text<'_>) {
-        self.turned_text(text, 0.0);
+        self.rotated_text(text, 0.0);
     }
 
-    pub fn turned_text(&mut self, text: Text<'_>, angle: f64) {
-        let (x, y) = text.at;
+    pub fn rotated_text(&mut self, text: Text<'_>, angle: f64) {
+        let (x, y) = text.position;
         let anchor = match text.anchor {
             Anchor::Start => "start",
             Anchor::Middle => "middle",
             Anchor::End => "end",
         };
-        let weight = if text.bold {
+        let weight = if text.is_bold {
             " font-weight=\"600\""
         } else {
             ""
@@ -117,7 +117,7 @@ impl Canvas {
             "<text x=\"{x:.2}\" y=\"{y:.2}\" font-size=\"{}\" \
              text-anchor=\"{anchor}\"{weight}{turn} xml:space=\"preserve\">{}</text>",
             text.size,
-            spans(text.text, text.size)
+            svg_spans(text.text, text.size)
         ));
     }
 
@@ -132,17 +132,17 @@ impl Canvas {
              font-family=\"Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif\" \
              fill=\"#222222\">\n<title>{}</title>\n\
              <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n{}</svg>\n",
-            escaped(title),
+            escape_xml(title),
             self.body
         )
     }
 }
 
-fn pair((x, y): Point) -> String {
-    format!("{},{}", hundredths(x), hundredths(y))
+fn format_pair((x, y): Point) -> String {
+    format!("{},{}", format_pixel(x), format_pixel(y))
 }
 
-fn hundredths(pixel: f64) -> String {
+fn format_pixel(pixel: f64) -> String {
     let text = format!("{pixel:.2}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }

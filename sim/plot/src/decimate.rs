@@ -7,19 +7,19 @@ pub(super) type Point = (f64, f64);
 struct Column {
     index: i64,
     /// First, lowest, highest and last sample, each with its index in the series.
-    kept: [(usize, Point); 4],
+    extremes: [(usize, Point); 4],
 }
 
 impl Column {
     fn new(index: i64, sample: (usize, Point)) -> Self {
         Self {
             index,
-            kept: [sample; 4],
+            extremes: [sample; 4],
         }
     }
 
     fn include(&mut self, sample: (usize, Point)) {
-        let [_, lowest, highest, last] = &mut self.kept;
+        let [_, lowest, highest, last] = &mut self.extremes;
         let (_, (_, y)) = sample;
         if y < lowest.1.1 {
             *lowest = sample;
@@ -31,11 +31,13 @@ impl Column {
     }
 
     fn points(mut self) -> impl Iterator<Item = Point> {
-        self.kept.sort_by_key(|(number, _)| *number);
+        self.extremes.sort_by_key(|(number, _)| *number);
         let mut previous = None;
-        self.kept.into_iter().filter_map(move |(number, point)| {
-            (previous.replace(number) != Some(number)).then_some(point)
-        })
+        self.extremes
+            .into_iter()
+            .filter_map(move |(number, point)| {
+                (previous.replace(number) != Some(number)).then_some(point)
+            })
     }
 }
 
@@ -75,12 +77,12 @@ pub(super) fn polylines(samples: impl Iterator<Item = Point>, width: f64) -> Vec
 }
 
 /// Minimum distance between points of an orbit, in px.
-const STEP: f64 = 1.0;
+const MIN_ORBIT_STEP_PX: f64 = 1.0;
 /// Distance below which points are indistinguishable, in px.
-const APART: f64 = 0.5;
+const MIN_POINT_DISTANCE_PX: f64 = 0.5;
 
 /// Returns lines without samples near the last one kept, interrupted where one is not finite.
-pub(super) fn thinned(samples: impl Iterator<Item = Point>) -> Vec<Vec<Point>> {
+pub(super) fn thin_orbit(samples: impl Iterator<Item = Point>) -> Vec<Vec<Point>> {
     let mut lines: Vec<Vec<Point>> = Vec::new();
     let mut line: Vec<Point> = Vec::new();
     for (x, y) in samples {
@@ -88,7 +90,7 @@ pub(super) fn thinned(samples: impl Iterator<Item = Point>) -> Vec<Vec<Point>> {
             lines.push(std::mem::take(&mut line));
             continue;
         }
-        let is_near = |last: &Point| (last.0 - x).hypot(last.1 - y) < STEP;
+        let is_near = |last: &Point| (last.0 - x).hypot(last.1 - y) < MIN_ORBIT_STEP_PX;
         if !line.last().is_some_and(is_near) {
             line.push((x, y));
         }
@@ -99,10 +101,10 @@ pub(super) fn thinned(samples: impl Iterator<Item = Point>) -> Vec<Vec<Point>> {
 }
 
 /// Returns separate samples, one of each group of indistinguishable ones.
-pub(super) fn apart(samples: impl Iterator<Item = Point>) -> Vec<Vec<Point>> {
+pub(super) fn separate_points(samples: impl Iterator<Item = Point>) -> Vec<Vec<Point>> {
     let mut taken = BTreeSet::new();
     // Pixels are small, so the cast cannot overflow.
-    let cell = |at: f64| (at / APART).round() as i64;
+    let cell = |at: f64| (at / MIN_POINT_DISTANCE_PX).round() as i64;
     samples
         .filter(|(x, y)| x.is_finite() && y.is_finite())
         .filter(|(x, y)| taken.insert((cell(*x), cell(*y))))
@@ -145,7 +147,7 @@ mod tests {
             (0.0, 0.0),
             (0.0, 5.0),
         ];
-        let lines = thinned(samples.into_iter());
+        let lines = thin_orbit(samples.into_iter());
         assert_eq!(
             lines,
             [vec![(0.0, 0.0), (2.0, 0.0)], vec![(0.0, 0.0), (0.0, 5.0)]]
@@ -162,7 +164,7 @@ mod tests {
             (1.0, 1.02),
         ];
         assert_eq!(
-            apart(samples.into_iter()),
+            separate_points(samples.into_iter()),
             [vec![(1.0, 1.0)], vec![(4.0, 1.0)]]
         );
     }

@@ -2,7 +2,9 @@
 
 use super::PlotError;
 use super::axis::{Axis, Range, Scale, ticks};
-use super::bars::{COLUMN, draw_level, draw_marks, label, outline, title, write};
+use super::bars::{
+    COLUMN_COLOUR, draw_label, draw_level, draw_marks, draw_outline, draw_title, write_text,
+};
 use super::canvas::{Anchor, Canvas, Stroke};
 use super::error::is_drawable;
 use super::figure::Reference;
@@ -27,9 +29,9 @@ const WIDTH: f64 = 720.0;
 const HEIGHT: f64 = 360.0;
 /// Margins left and right, above and below the frame, in px.
 const MARGINS: ((f64, f64), (f64, f64)) = ((78.0, 70.0), (58.0, 62.0));
-const COLUMNS: (usize, usize) = (5, 60);
+const COLUMN_COUNT_RANGE: (usize, usize) = (5, 60);
 /// Points of the curve; more would be indistinguishable.
-const POINTS: usize = 400;
+const MAX_CURVE_POINTS: usize = 400;
 
 const CURVE: Stroke = Stroke {
     colour: "#d55e00",
@@ -53,37 +55,37 @@ pub fn distribution(of: &Distribution<'_>) -> Result<String, PlotError> {
         .sorted
         .iter()
         .fold(0.0, |most: f64, value| most.max(value.abs()));
-    let quantity = Quantity::scaled(&of.quantity, &of.unit, largest);
+    let quantity = Quantity::with_prefix(&of.quantity, &of.unit, largest);
     let values: Vec<f64> = of
         .sorted
         .iter()
         .map(|value| value / quantity.scale)
         .collect();
-    let whole = Range::of(values.iter().copied()).unwrap_or(Range {
+    let whole = Range::from_places(values.iter().copied()).unwrap_or(Range {
         low: 0.0,
         high: 1.0,
     });
-    let counts = counts(&values, whole.opened());
+    let counts = count_columns(&values, whole.widen_point());
     let most = counts.iter().copied().max().unwrap_or(1);
-    let axes = Axes::new(whole.opened(), most);
+    let axes = Axes::new(whole.widen_point(), most);
     let mut canvas = Canvas::default();
-    for tick in ticks(axes.up.scale, axes.up.range, 6) {
-        draw_level(&mut canvas, &tick, &axes.up, axes.along.pixels);
+    for tick in ticks(axes.vertical.scale, axes.vertical.range, 6) {
+        draw_level(&mut canvas, &tick, &axes.vertical, axes.horizontal.pixels);
     }
-    draw_columns(&mut canvas, &counts, whole.opened(), &axes);
-    canvas.lines(&[curve(&values, &axes)], CURVE);
-    let marks = of.marks.iter().map(|mark| scaled(mark, quantity.scale));
+    draw_columns(&mut canvas, &counts, whole.widen_point(), &axes);
+    canvas.lines(&[cumulative_curve(&values, &axes)], CURVE);
+    let marks = of.marks.iter().map(|mark| scale_mark(mark, quantity.scale));
     let marks: Vec<Reference> = marks.collect();
-    draw_marks(&mut canvas, &marks, &axes.along, &axes.up);
+    draw_marks(&mut canvas, &marks, &axes.horizontal, &axes.vertical);
     draw_names(&mut canvas, &axes, &quantity.label);
-    title(&mut canvas, &of.title, (16.0, 22.0));
+    draw_title(&mut canvas, &of.title, (16.0, 22.0));
     Ok(canvas.document(&of.title, WIDTH, HEIGHT))
 }
 
 struct Axes {
-    along: Axis,
-    up: Axis,
-    share: Axis,
+    horizontal: Axis,
+    vertical: Axis,
+    cumulative: Axis,
 }
 
 impl Axes {
@@ -97,32 +99,40 @@ impl Axes {
         let upright = (HEIGHT - below, above);
         let to = |high| Range { low: 0.0, high };
         Self {
-            along: axis(whole.padded(0.03), (left, WIDTH - right)),
-            up: axis(to(1.08 * most as f64), upright),
-            share: axis(to(108.0), upright),
+            horizontal: axis(whole.pad(0.03), (left, WIDTH - right)),
+            vertical: axis(to(1.08 * most as f64), upright),
+            cumulative: axis(to(108.0), upright),
         }
     }
 }
 
-fn draw_names(canvas: &mut Canvas, Axes { along, up, share }: &Axes, quantity: &str) {
+fn draw_names(
+    canvas: &mut Canvas,
+    Axes {
+        horizontal: along,
+        vertical: up,
+        cumulative: share,
+    }: &Axes,
+    quantity: &str,
+) {
     for tick in ticks(along.scale, along.range, 8) {
         let at = (along.pixel(tick.place), up.pixels.0 + 19.0);
-        write(canvas, &tick.label, at, Anchor::Middle);
+        write_text(canvas, &tick.label, at, Anchor::Middle);
     }
     for part in [0.0, 25.0, 50.0, 75.0, 100.0_f64] {
         let at = (along.pixels.1 + 7.0, share.pixel(part) + 5.0);
-        write(canvas, &format!("{part:.0}"), at, Anchor::Start);
+        write_text(canvas, &format!("{part:.0}"), at, Anchor::Start);
     }
-    outline(canvas, along.pixels, up.pixels);
+    draw_outline(canvas, along.pixels, up.pixels);
     let middle = (along.pixels.0 + along.pixels.1) / 2.0;
-    label(canvas, quantity, (middle, up.pixels.0 + 44.0), 0.0);
+    draw_label(canvas, quantity, (middle, up.pixels.0 + 44.0), 0.0);
     let middle = (up.pixels.0 + up.pixels.1) / 2.0;
-    label(canvas, "samples", (19.0, middle), -90.0);
+    draw_label(canvas, "samples", (19.0, middle), -90.0);
     let share = "cumulative share [%], orange";
-    label(canvas, share, (WIDTH - 14.0, middle), -90.0);
+    draw_label(canvas, share, (WIDTH - 14.0, middle), -90.0);
 }
 
-fn scaled(mark: &Reference, scale: f64) -> Reference {
+fn scale_mark(mark: &Reference, scale: f64) -> Reference {
     Reference {
         label: mark.label.clone(),
         value: mark.value / scale,
@@ -131,11 +141,11 @@ fn scaled(mark: &Reference, scale: f64) -> Reference {
 
 /// Returns the number of values in each column. The width of the columns follows D. Freedman and P.
 /// Diaconis (1981): twice the interquartile range divided by the cube root of the number of values.
-fn counts(sorted: &[f64], range: Range) -> Vec<usize> {
+fn count_columns(sorted: &[f64], range: Range) -> Vec<usize> {
     let at = |part: f64| sorted[(part * (sorted.len() - 1) as f64).round() as usize];
     let width = 2.0 * (at(0.75) - at(0.25)) / (sorted.len() as f64).cbrt();
     let span = range.high - range.low;
-    let (least, most) = COLUMNS;
+    let (least, most) = COLUMN_COUNT_RANGE;
     let columns = ((span / width).ceil().min(most as f64) as usize).clamp(least, most);
     let mut counts = vec![0; columns];
     for value in sorted {
@@ -146,7 +156,7 @@ fn counts(sorted: &[f64], range: Range) -> Vec<usize> {
 }
 
 fn draw_columns(canvas: &mut Canvas, counts: &[usize], range: Range, axes: &Axes) {
-    let (along, up) = (&axes.along, &axes.up);
+    let (along, up) = (&axes.horizontal, &axes.vertical);
     let edge = |place: usize| {
         let part = place as f64 / counts.len() as f64;
         along.pixel(range.low + part * (range.high - range.low))
@@ -156,16 +166,23 @@ fn draw_columns(canvas: &mut Canvas, counts: &[usize], range: Range, axes: &Axes
         canvas.rectangle(
             (from + 0.5, top),
             (to - from - 1.0, up.pixels.0 - top),
-            COLUMN,
+            COLUMN_COLOUR,
         );
     }
 }
 
 /// Returns the cumulative share as a staircase with few steps.
-fn curve(sorted: &[f64], Axes { along, share, .. }: &Axes) -> Vec<(f64, f64)> {
+fn cumulative_curve(
+    sorted: &[f64],
+    Axes {
+        horizontal: along,
+        cumulative: share,
+        ..
+    }: &Axes,
+) -> Vec<(f64, f64)> {
     let count = sorted.len();
     let part = |number: usize| share.pixel(100.0 * number as f64 / count as f64);
-    let step = count.div_ceil(POINTS);
+    let step = count.div_ceil(MAX_CURVE_POINTS);
     let kept = (0..count).filter(|place| place % step == 0 || *place + 1 == count);
     let mut points = vec![(along.pixels.0, part(0))];
     for place in kept {
@@ -189,10 +206,12 @@ mod tests {
             (0..1000).map(f64::from).collect(),
             vec![-1.0, 5.0],
         ] {
-            let range = Range::of(values.iter().copied()).expect("a range").opened();
-            let counts = counts(&values, range);
+            let range = Range::from_places(values.iter().copied())
+                .expect("a range")
+                .widen_point();
+            let counts = count_columns(&values, range);
             assert_eq!(counts.iter().sum::<usize>(), values.len());
-            assert!((COLUMNS.0..=COLUMNS.1).contains(&counts.len()));
+            assert!((COLUMN_COUNT_RANGE.0..=COLUMN_COUNT_RANGE.1).contains(&counts.len()));
         }
         // Even spacing: columns are at most 2 * 499/10 wide, so there are eleven.
         let even: Vec<f64> = (0..1000).map(f64::from).collect();
@@ -200,7 +219,7 @@ mod tests {
             low: 0.0,
             high: 1000.0,
         };
-        let counts = counts(&even, whole);
+        let counts = count_columns(&even, whole);
         assert_eq!(counts.len(), 11);
         assert!(counts.iter().all(|count| (90..=91).contains(count)));
     }

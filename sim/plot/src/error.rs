@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::figure::{Drawn, Panel, Series};
+use super::figure::{Panel, Series, SeriesStyle};
 
 /// Error of a figure. Panels and samples are counted from 0.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -118,7 +118,10 @@ pub(super) fn is_drawable(value: f64) -> bool {
 }
 
 /// Checks panels before the axes are known; `drawn` returns the kind of each panel.
-pub(super) fn check(panels: &[Panel<'_>], drawn: impl Fn(usize) -> Drawn) -> Result<(), PlotError> {
+pub(super) fn check_panels(
+    panels: &[Panel<'_>],
+    drawn: impl Fn(usize) -> SeriesStyle,
+) -> Result<(), PlotError> {
     if panels.is_empty() {
         return Err(PlotError::NoPanels);
     }
@@ -133,7 +136,7 @@ pub(super) fn check(panels: &[Panel<'_>], drawn: impl Fn(usize) -> Drawn) -> Res
     Ok(())
 }
 
-fn check_series(panel: usize, series: &Series<'_>, drawn: Drawn) -> Result<(), PlotError> {
+fn check_series(panel: usize, series: &Series<'_>, drawn: SeriesStyle) -> Result<(), PlotError> {
     let (abscissae, values) = (series.abscissa.len(), series.values.len());
     if abscissae != values {
         return Err(PlotError::Lengths {
@@ -145,7 +148,7 @@ fn check_series(panel: usize, series: &Series<'_>, drawn: Drawn) -> Result<(), P
     }
     let mut previous = f64::NEG_INFINITY;
     for (sample, &abscissa) in series.abscissa.iter().enumerate() {
-        let goes_back = drawn == Drawn::Curve && abscissa < previous;
+        let goes_back = drawn == SeriesStyle::Curve && abscissa < previous;
         if !is_drawable(abscissa) || goes_back {
             return Err(PlotError::Abscissa {
                 panel,

@@ -34,7 +34,7 @@ pub enum FrequencyAxis {
 
 /// Style of a series.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Drawn {
+pub enum SeriesStyle {
     /// Curve with abscissae that never decrease.
     #[default]
     Curve,

@@ -2,8 +2,8 @@
 
 use super::axis::{Axis, Range, Scale, Tick, ticks};
 use super::error::{PlotError, is_drawable};
-use super::figure::{Drawn, Panel, Series};
-use super::lettering::{fitted, width};
+use super::figure::{Panel, Series, SeriesStyle};
+use super::lettering::{text_width, truncate_to_width};
 use super::quantity::Quantity;
 
 pub(super) const WIDTH: f64 = 900.0;
@@ -15,7 +15,7 @@ pub(super) const LEGEND_LINE: f64 = 22.0;
 pub(super) const LEGEND_ROW: f64 = 20.0;
 
 const TITLE_ROW: f64 = 24.0;
-const LEFT_OF_TICKS: f64 = 36.0;
+const TICK_MARGIN_PX: f64 = 36.0;
 const LARGEST_REFERENCE_LABEL: f64 = 110.0;
 const LARGEST_LEGEND_LABEL: f64 = 260.0;
 /// Maximum characters for the curves of a figure, and for the four points of a pixel column.
@@ -39,10 +39,10 @@ pub(super) struct Format {
     /// Minimum margins to the left and right of the frame, in px.
     pub margins: (f64, f64),
     /// Fraction of a frame's height that is reserved at the top for names of marks.
-    pub headroom: f64,
+    pub headroom_fraction: f64,
     /// True if later curves are dashed, so that covered curves are visible.
-    pub overlaid: bool,
-    pub drawn: Drawn,
+    pub is_overlaid: bool,
+    pub style: SeriesStyle,
 }
 
 impl Format {
@@ -57,9 +57,9 @@ impl Format {
             frame,
             ticks: (8, up),
             margins: (0.0, 22.0),
-            headroom: 0.0,
-            overlaid: false,
-            drawn: Drawn::Curve,
+            headroom_fraction: 0.0,
+            is_overlaid: false,
+            style: SeriesStyle::Curve,
         }
     }
 }
@@ -73,8 +73,8 @@ pub(super) struct Layout {
     pub height: f64,
     /// Width of the columns for the decimation of curves.
     pub column: f64,
-    pub overlaid: bool,
-    pub drawn: Drawn,
+    pub is_overlaid: bool,
+    pub style: SeriesStyle,
 }
 
 #[derive(Debug)]
@@ -100,16 +100,16 @@ impl Layout {
         scale: Scale,
         format: Format,
     ) -> Result<Self, PlotError> {
-        let (along, up) = (format.ticks.0, (format.ticks.1, format.headroom));
+        let (along, up) = (format.ticks.0, (format.ticks.1, format.headroom_fraction));
         let ordinates = panels
             .iter()
             .enumerate()
             .map(|(index, panel)| Ordinate::new(index, panel, (abscissa.scale, scale), up))
             .collect::<Result<Vec<_>, _>>()?;
         let (range, quantity) = shared_range(panels, abscissa);
-        let range = match format.drawn {
-            Drawn::Curve => range,
-            Drawn::Orbit | Drawn::Points => range.padded(0.04),
+        let range = match format.style {
+            SeriesStyle::Curve => range,
+            SeriesStyle::Orbit | SeriesStyle::Points => range.pad(0.04),
         };
         let edges = (
             left_edge(&ordinates, format.margins.0),
@@ -136,8 +136,8 @@ impl Layout {
             places,
             height: (top + 40.0).ceil(),
             column: (span * COLUMN_CHARACTERS * curves as f64 / CURVE_CHARACTERS).max(1.0),
-            overlaid: format.overlaid,
-            drawn: format.drawn,
+            is_overlaid: format.is_overlaid,
+            style: format.style,
         })
     }
 }
@@ -169,17 +169,17 @@ impl Ordinate {
         let quantity = match scale {
             Scale::Linear => {
                 let largest = values().fold(0.0, |largest: f64, value| largest.max(value.abs()));
-                Quantity::scaled(&panel.quantity, &panel.unit, largest)
+                Quantity::with_prefix(&panel.quantity, &panel.unit, largest)
             }
-            Scale::Logarithmic => Quantity::plain(&panel.quantity, &panel.unit),
+            Scale::Logarithmic => Quantity::without_prefix(&panel.quantity, &panel.unit),
         };
         let places = values().map(|value| scale.place(value / quantity.scale));
-        let range = Range::of(places).map_or(
+        let range = Range::from_places(places).map_or(
             Range {
                 low: 0.0,
                 high: 1.0,
             },
-            |range| range.opened().padded(0.05).raised(headroom),
+            |range| range.widen_point().pad(0.05).pad_top(headroom),
         );
         Ok(Self {
             range,
@@ -243,36 +243,36 @@ fn shared_range(panels: &[Panel<'_>], abscissa: &Abscissa) -> (Range, Quantity) 
     let quantity = match abscissa.scale {
         Scale::Linear => {
             let largest = all().fold(0.0, |largest: f64, value| largest.max(value.abs()));
-            Quantity::scaled(abscissa.symbol, abscissa.unit, largest)
+            Quantity::with_prefix(abscissa.symbol, abscissa.unit, largest)
         }
-        Scale::Logarithmic => Quantity::plain(abscissa.symbol, abscissa.unit),
+        Scale::Logarithmic => Quantity::without_prefix(abscissa.symbol, abscissa.unit),
     };
     let places = all().map(|value| abscissa.scale.place(value / quantity.scale));
-    let range = Range::of(places).unwrap_or(Range {
+    let range = Range::from_places(places).unwrap_or(Range {
         low: 0.0,
         high: 1.0,
     });
-    (range.opened(), quantity)
+    (range.widen_point(), quantity)
 }
 
 fn left_edge(ordinates: &[Ordinate], least: f64) -> f64 {
     let labels = ordinates.iter().flat_map(|ordinate| &ordinate.ticks);
     let widest = labels
-        .map(|tick| width(&tick.label, TICK_SIZE))
+        .map(|tick| text_width(&tick.label, TICK_SIZE))
         .fold(0.0, f64::max);
-    (LEFT_OF_TICKS + widest).max(least)
+    (TICK_MARGIN_PX + widest).max(least)
 }
 
 fn right_edge(panels: &[Panel<'_>], format: Format) -> f64 {
     let references = panels.iter().flat_map(|panel| &panel.references);
     let widest = references
-        .map(|reference| width(&reference_label(&reference.label), TICK_SIZE))
+        .map(|reference| text_width(&reference_label(&reference.label), TICK_SIZE))
         .fold(0.0, f64::max);
     format.width - (widest + 10.0).max(format.margins.1)
 }
 
 pub(super) fn reference_label(label: &str) -> String {
-    fitted(label, TICK_SIZE, LARGEST_REFERENCE_LABEL)
+    truncate_to_width(label, TICK_SIZE, LARGEST_REFERENCE_LABEL)
 }
 
 fn legend(panel: &Panel<'_>, top: f64, edges: (f64, f64)) -> Vec<((f64, f64), String)> {
@@ -282,8 +282,8 @@ fn legend(panel: &Panel<'_>, top: f64, edges: (f64, f64)) -> Vec<((f64, f64), St
     let mut at = (edges.0, top + 11.0);
     let mut entries = Vec::with_capacity(panel.series.len());
     for series in &panel.series {
-        let label = fitted(&series.label, TICK_SIZE, LARGEST_LEGEND_LABEL);
-        let entry = LEGEND_LINE + 6.0 + width(&label, TICK_SIZE);
+        let label = truncate_to_width(&series.label, TICK_SIZE, LARGEST_LEGEND_LABEL);
+        let entry = LEGEND_LINE + 6.0 + text_width(&label, TICK_SIZE);
         if at.0 > edges.0 && at.0 + entry > edges.1 {
             at = (edges.0, at.1 + LEGEND_ROW);
         }

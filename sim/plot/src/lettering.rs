@@ -6,44 +6,55 @@ use maud::html;
 use super::symbol::Symbol;
 
 /// Width of a character relative to the font size: a digit in a wide sans serif font.
-const CHARACTER: f64 = 0.62;
+const CHARACTER_WIDTH: f64 = 0.62;
 /// Font size of subscripts, relative to the text.
-pub(super) const SUBSCRIPT: f64 = 0.8;
+pub(super) const SUBSCRIPT_SIZE: f64 = 0.8;
 
-pub(super) fn width(text: &str, size: f64) -> f64 {
-    runs(text)
-        .map(|run| run.text.chars().count() as f64 * if run.lowered { SUBSCRIPT } else { 1.0 })
+pub(super) fn text_width(text: &str, size: f64) -> f64 {
+    split_runs(text)
+        .map(|run| {
+            run.text.chars().count() as f64
+                * if run.is_subscript {
+                    SUBSCRIPT_SIZE
+                } else {
+                    1.0
+                }
+        })
         .sum::<f64>()
         * size
-        * CHARACTER
+        * CHARACTER_WIDTH
 }
 
-pub(super) fn fitted(text: &str, size: f64, available: f64) -> String {
-    let room = (available / (size * CHARACTER)).max(1.0) as usize;
-    if text.chars().count() <= room || width(text, size) <= available {
+pub(super) fn truncate_to_width(text: &str, size: f64, available: f64) -> String {
+    let room = (available / (size * CHARACTER_WIDTH)).max(1.0) as usize;
+    if text.chars().count() <= room || text_width(text, size) <= available {
         return text.to_owned();
     }
     let kept: String = text.chars().take(room.saturating_sub(1)).collect();
     format!("{}…", kept.trim_end())
 }
 
-pub(super) fn spans(text: &str, size: f64) -> String {
+pub(super) fn svg_spans(text: &str, size: f64) -> String {
     let mut svg = String::new();
     let mut lowered = false;
-    for run in runs(text) {
-        let shift = match (lowered, run.lowered) {
+    for run in split_runs(text) {
+        let shift = match (lowered, run.is_subscript) {
             (false, true) => 0.22 * size,
             (true, false) => -0.22 * size,
             _ => 0.0,
         };
-        lowered = run.lowered;
-        let smaller = if run.lowered { SUBSCRIPT * size } else { size };
+        lowered = run.is_subscript;
+        let smaller = if run.is_subscript {
+            SUBSCRIPT_SIZE * size
+        } else {
+            size
+        };
         if shift == 0.0 {
-            svg.push_str(&escaped(&run.text));
+            svg.push_str(&escape_xml(&run.text));
         } else {
             svg.push_str(&format!(
                 "<tspan dy=\"{shift:.1}\" font-size=\"{smaller:.1}\">{}</tspan>",
-                escaped(&run.text)
+                escape_xml(&run.text)
             ));
         }
     }
@@ -51,7 +62,7 @@ pub(super) fn spans(text: &str, size: f64) -> String {
 }
 
 /// Returns text as XML character data on one line, with visible escapes of hidden characters.
-pub(super) fn escaped(text: &str) -> String {
+pub(super) fn escape_xml(text: &str) -> String {
     let shown: String = visible(text)
         .chars()
         .map(|c| match c {
@@ -66,11 +77,11 @@ pub(super) fn escaped(text: &str) -> String {
 
 pub(super) struct Run {
     pub text: String,
-    pub lowered: bool,
+    pub is_subscript: bool,
 }
 
 /// Splits text into words and separators. Names are split into head and subscript.
-pub(super) fn runs(text: &str) -> impl Iterator<Item = Run> {
+pub(super) fn split_runs(text: &str) -> impl Iterator<Item = Run> {
     let in_word = |c: char| c.is_alphanumeric() || c == '_';
     let mut rest = text;
     let mut pieces = Vec::new();
@@ -93,7 +104,10 @@ pub(super) fn runs(text: &str) -> impl Iterator<Item = Run> {
     pieces
         .into_iter()
         .filter(|(text, _)| !text.is_empty())
-        .map(|(text, lowered)| Run { text, lowered })
+        .map(|(text, lowered)| Run {
+            text,
+            is_subscript: lowered,
+        })
 }
 
 #[cfg(test)]
@@ -103,27 +117,27 @@ mod tests {
     #[test]
     fn subscripts_become_spans_and_base_line_returns() {
         assert_eq!(
-            spans("x_sp [µm]", 10.0),
+            svg_spans("x_sp [µm]", 10.0),
             "x<tspan dy=\"2.2\" font-size=\"8.0\">sp</tspan>\
              <tspan dy=\"-2.2\" font-size=\"10.0\"> [</tspan>µm]"
         );
-        assert_eq!(spans("a < b & c", 10.0), "a &lt; b &amp; c");
+        assert_eq!(svg_spans("a < b & c", 10.0), "a &lt; b &amp; c");
     }
 
     #[test]
     fn long_text_is_truncated() {
         let long = "word ".repeat(1000);
-        let cut = fitted(&long, 14.0, 200.0);
-        assert!(cut.ends_with('…') && width(&cut, 14.0) <= 200.0);
-        assert_eq!(fitted("short", 14.0, 200.0), "short");
+        let cut = truncate_to_width(&long, 14.0, 200.0);
+        assert!(cut.ends_with('…') && text_width(&cut, 14.0) <= 200.0);
+        assert_eq!(truncate_to_width("short", 14.0, 200.0), "short");
     }
 
     #[test]
     fn hidden_characters_are_escaped_and_forbidden_ones_replaced() {
         assert_eq!(
-            escaped("a\0b\u{1b}c\nd\u{ffff}"),
+            escape_xml("a\0b\u{1b}c\nd\u{ffff}"),
             "a\\u{0}b\\u{1b}c d\u{fffd}"
         );
-        assert_eq!(spans("x\u{202e}y", 10.0), "x\\u{202e}y");
+        assert_eq!(svg_spans("x\u{202e}y", 10.0), "x\\u{202e}y");
     }
 }

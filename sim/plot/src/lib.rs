@@ -55,7 +55,7 @@ mod symbol;
 mod tests;
 
 pub use error::PlotError;
-pub use figure::{Drawn, FrequencyAxis, Panel, Reference, Series, Spectrum, TimeHistory};
+pub use figure::{FrequencyAxis, Panel, Reference, Series, SeriesStyle, Spectrum, TimeHistory};
 pub use map::{map_png, scatter_png};
 pub use plate::{Axes, Frame, Plate, plate};
 pub use quantity::scaled_unit;
@@ -103,11 +103,11 @@ fn draw(
     abscissa: &Abscissa,
     ordinate: Scale,
 ) -> Result<String, PlotError> {
-    error::check(panels, |_| Drawn::Curve)?;
+    error::check_panels(panels, |_| SeriesStyle::Curve)?;
     let layout = Layout::new(panels, abscissa, ordinate, Format::stacked(panels.len()))?;
     let mut canvas = canvas::Canvas::default();
     for (panel, place) in panels.iter().zip(&layout.places) {
-        panel::draw(&mut canvas, panel, place, &layout);
+        panel::draw_panel(&mut canvas, panel, place, &layout);
     }
     panel::draw_abscissa(&mut canvas, &layout);
     Ok(canvas.document(title, layout::WIDTH, layout.height))

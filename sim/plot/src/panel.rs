@@ -2,13 +2,13 @@
 
 use super::axis::{Axis, Scale, Tick};
 use super::canvas::{Anchor, Canvas, Stroke, Text};
-use super::decimate::{Point, apart, polylines, thinned};
+use super::decimate::{Point, polylines, separate_points, thin_orbit};
 use super::error::is_drawable;
-use super::figure::{Drawn, Panel, Reference, Series};
+use super::figure::{Panel, Reference, Series, SeriesStyle};
 use super::layout::{
     LABEL_SIZE, LEGEND_LINE, LEGEND_ROW, Layout, Place, TICK_SIZE, TITLE_SIZE, reference_label,
 };
-use super::lettering::{fitted, width};
+use super::lettering::{text_width, truncate_to_width};
 
 /// Okabe and Ito's colours for colour-blind readers, without the pale yellow.
 const COLOURS: [&str; 7] = [
@@ -17,20 +17,20 @@ const COLOURS: [&str; 7] = [
 /// Dashes distinguish curves after all colours are used, and overlapping curves.
 const DASHES: [&str; 3] = ["", "7 3", "2 3"];
 
-const GRID: Stroke = full("#e6e6e6", 0.8);
-const FRAME: Stroke = full("#444444", 1.0);
-const REFERENCE: Stroke = Stroke {
+const GRID_STROKE: Stroke = full_stroke("#e6e6e6", 0.8);
+const FRAME_STROKE: Stroke = full_stroke("#444444", 1.0);
+const REFERENCE_STROKE: Stroke = Stroke {
     colour: "#6a6a6a",
     width: 1.1,
     dashes: "6 4",
 };
-const MARK: Stroke = Stroke {
+const MARK_STROKE: Stroke = Stroke {
     colour: "#8a8a8a",
     width: 0.9,
     dashes: "2 3",
 };
 
-const fn full(colour: &'static str, width: f64) -> Stroke {
+const fn full_stroke(colour: &'static str, width: f64) -> Stroke {
     Stroke {
         colour,
         width,
@@ -38,17 +38,17 @@ const fn full(colour: &'static str, width: f64) -> Stroke {
     }
 }
 
-pub(super) fn draw(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, layout: &Layout) {
+pub(super) fn draw_panel(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, layout: &Layout) {
     draw_grid(canvas, place, layout);
     draw_references(canvas, panel, place, layout);
     for (index, series) in panel.series.iter().enumerate() {
         let samples = samples(series, place, layout);
-        let lines = match layout.drawn {
-            Drawn::Curve => polylines(samples, layout.column),
-            Drawn::Orbit => thinned(samples),
-            Drawn::Points => apart(samples),
+        let lines = match layout.style {
+            SeriesStyle::Curve => polylines(samples, layout.column),
+            SeriesStyle::Orbit => thin_orbit(samples),
+            SeriesStyle::Points => separate_points(samples),
         };
-        canvas.lines(&lines, curve(index, layout));
+        canvas.lines(&lines, curve_stroke(index, layout));
     }
     draw_frame(canvas, place, layout);
     draw_text(canvas, panel, place, layout);
@@ -56,8 +56,8 @@ pub(super) fn draw(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, layout
 
 pub(super) fn draw_marks(canvas: &mut Canvas, marks: &[Reference], place: &Place, layout: &Layout) {
     let (bottom, top) = place.ordinate.pixels;
-    for (x, _) in marked(marks, layout) {
-        canvas.segments(&[((x, bottom), (x, top))], MARK);
+    for (x, _) in visible_marks(marks, layout) {
+        canvas.segments(&[((x, bottom), (x, top))], MARK_STROKE);
     }
 }
 
@@ -65,22 +65,25 @@ pub(super) fn draw_marks(canvas: &mut Canvas, marks: &[Reference], place: &Place
 pub(super) fn name_marks(canvas: &mut Canvas, marks: &[Reference], place: &Place, layout: &Layout) {
     let (_, top) = place.ordinate.pixels;
     let mut free_from = f64::NEG_INFINITY;
-    for (x, name) in marked(marks, layout) {
+    for (x, name) in visible_marks(marks, layout) {
         if x < free_from {
             continue;
         }
-        free_from = x + width(name, TICK_SIZE) + 6.0;
+        free_from = x + text_width(name, TICK_SIZE) + 6.0;
         canvas.text(Text {
             text: name,
-            at: (x + 3.0, top + TICK_SIZE),
+            position: (x + 3.0, top + TICK_SIZE),
             size: TICK_SIZE,
             anchor: Anchor::Start,
-            bold: false,
+            is_bold: false,
         });
     }
 }
 
-fn marked<'a>(marks: &'a [Reference], layout: &'a Layout) -> impl Iterator<Item = (f64, &'a str)> {
+fn visible_marks<'a>(
+    marks: &'a [Reference],
+    layout: &'a Layout,
+) -> impl Iterator<Item = (f64, &'a str)> {
     let (axis, unit) = (&layout.abscissa, layout.abscissa_quantity.scale);
     let places = marks
         .iter()
@@ -98,34 +101,34 @@ pub(super) fn draw_abscissa(canvas: &mut Canvas, layout: &Layout) {
     for tick in &layout.abscissa_ticks {
         canvas.text(Text {
             text: &tick.label,
-            at: (layout.abscissa.pixel(tick.place), bottom + 19.0),
+            position: (layout.abscissa.pixel(tick.place), bottom + 19.0),
             size: TICK_SIZE,
             anchor: Anchor::Middle,
-            bold: false,
+            is_bold: false,
         });
     }
     let (left, right) = layout.abscissa.pixels;
     canvas.text(Text {
         text: &layout.abscissa_quantity.label,
-        at: ((left + right) / 2.0, bottom + 42.0),
+        position: ((left + right) / 2.0, bottom + 42.0),
         size: LABEL_SIZE,
         anchor: Anchor::Middle,
-        bold: false,
+        is_bold: false,
     });
 }
 
-fn curve(index: usize, layout: &Layout) -> Stroke {
-    let dashes = if layout.overlaid {
+fn curve_stroke(index: usize, layout: &Layout) -> Stroke {
+    let dashes = if layout.is_overlaid {
         index
     } else {
         index / COLOURS.len()
     };
     Stroke {
         colour: COLOURS[index % COLOURS.len()],
-        width: match layout.drawn {
-            Drawn::Curve => 1.2,
-            Drawn::Orbit => 0.7,
-            Drawn::Points => 1.8,
+        width: match layout.style {
+            SeriesStyle::Curve => 1.2,
+            SeriesStyle::Orbit => 0.7,
+            SeriesStyle::Points => 1.8,
         },
         dashes: DASHES[dashes % DASHES.len()],
     }
@@ -141,15 +144,15 @@ fn samples(series: &Series<'_>, place: &Place, layout: &Layout) -> impl Iterator
         .zip(series.values)
         .map(move |(at, value)| {
             let height = if is_drawable(*value) {
-                pixel(&y, value / up)
+                clamped_pixel(&y, value / up)
             } else {
                 f64::NAN
             };
-            (pixel(&x, at / along), height)
+            (clamped_pixel(&x, at / along), height)
         })
 }
 
-fn pixel(axis: &Axis, value: f64) -> f64 {
+fn clamped_pixel(axis: &Axis, value: f64) -> f64 {
     axis.pixel(axis.scale.place(value))
 }
 
@@ -168,7 +171,7 @@ fn draw_grid(canvas: &mut Canvas, place: &Place, layout: &Layout) {
     let lines: Vec<_> = lines
         .chain(layout.abscissa_ticks.iter().map(upright))
         .collect();
-    canvas.segments(&lines, GRID);
+    canvas.segments(&lines, GRID_STROKE);
 }
 
 fn draw_references(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, layout: &Layout) {
@@ -179,7 +182,7 @@ fn draw_references(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, layout
         .filter(|reference| is_drawable(reference.value))
         .map(|reference| {
             (
-                pixel(&place.ordinate, reference.value / place.quantity.scale),
+                clamped_pixel(&place.ordinate, reference.value / place.quantity.scale),
                 &*reference.label,
             )
         })
@@ -188,16 +191,16 @@ fn draw_references(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, layout
     lines.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut free_from = f64::NEG_INFINITY;
     for (y, label) in lines {
-        canvas.segments(&[((left, y), (right, y))], REFERENCE);
+        canvas.segments(&[((left, y), (right, y))], REFERENCE_STROKE);
         // Move the labels of close lines down, so that they do not overlap.
         let base = (y + 0.35 * TICK_SIZE).max(free_from);
         free_from = base + TICK_SIZE + 2.0;
         canvas.text(Text {
             text: &reference_label(label),
-            at: (right + 6.0, base),
+            position: (right + 6.0, base),
             size: TICK_SIZE,
             anchor: Anchor::Start,
-            bold: false,
+            is_bold: false,
         });
     }
 }
@@ -212,7 +215,7 @@ fn draw_frame(canvas: &mut Canvas, place: &Place, layout: &Layout) {
         (left, bottom),
         (left, top),
     ];
-    canvas.lines(&[corners], FRAME);
+    canvas.lines(&[corners], FRAME_STROKE);
     let length = 5.0;
     let across = place.ticks.iter().map(|tick| {
         let y = place.ordinate.pixel(tick.place);
@@ -225,7 +228,7 @@ fn draw_frame(canvas: &mut Canvas, place: &Place, layout: &Layout) {
     let mut marks: Vec<_> = across.chain(up).collect();
     marks.extend(minor_marks(&place.ordinate).map(|y| ((left, y), (left + 3.0, y))));
     marks.extend(minor_marks(&layout.abscissa).map(|x| ((x, bottom), (x, bottom - 3.0))));
-    canvas.segments(&marks, FRAME);
+    canvas.segments(&marks, FRAME_STROKE);
 }
 
 /// Returns the pixels of 2 to 9 times each power of ten, if there is space.
@@ -250,30 +253,30 @@ fn draw_text(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, layout: &Lay
     for tick in &place.ticks {
         canvas.text(Text {
             text: &tick.label,
-            at: (
+            position: (
                 left - 7.0,
                 place.ordinate.pixel(tick.place) + 0.35 * TICK_SIZE,
             ),
             size: TICK_SIZE,
             anchor: Anchor::End,
-            bold: false,
+            is_bold: false,
         });
     }
     let label = Text {
-        text: &fitted(&place.quantity.label, LABEL_SIZE, bottom - top),
-        at: (19.0, (top + bottom) / 2.0),
+        text: &truncate_to_width(&place.quantity.label, LABEL_SIZE, bottom - top),
+        position: (19.0, (top + bottom) / 2.0),
         size: LABEL_SIZE,
         anchor: Anchor::Middle,
-        bold: false,
+        is_bold: false,
     };
-    canvas.turned_text(label, -90.0);
+    canvas.rotated_text(label, -90.0);
     if !panel.title.is_empty() {
         canvas.text(Text {
-            text: &fitted(&panel.title, TITLE_SIZE, right - left),
-            at: (left, place.title),
+            text: &truncate_to_width(&panel.title, TITLE_SIZE, right - left),
+            position: (left, place.title),
             size: TITLE_SIZE,
             anchor: Anchor::Start,
-            bold: true,
+            is_bold: true,
         });
     }
     draw_legend(canvas, place, layout);
@@ -284,15 +287,15 @@ fn draw_legend(canvas: &mut Canvas, place: &Place, layout: &Layout) {
         let middle = y - 0.25 * LEGEND_ROW;
         let stroke = Stroke {
             width: 2.0,
-            ..curve(index, layout)
+            ..curve_stroke(index, layout)
         };
         canvas.segments(&[((*x, middle), (x + LEGEND_LINE, middle))], stroke);
         canvas.text(Text {
             text: label,
-            at: (x + LEGEND_LINE + 6.0, *y),
+            position: (x + LEGEND_LINE + 6.0, *y),
             size: TICK_SIZE,
             anchor: Anchor::Start,
-            bold: false,
+            is_bold: false,
         });
     }
 }

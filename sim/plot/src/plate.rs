@@ -2,8 +2,8 @@
 
 use super::axis::Scale;
 use super::canvas::Canvas;
-use super::error::{PlotError, check};
-use super::figure::{Drawn, Panel, Reference};
+use super::error::{PlotError, check_panels};
+use super::figure::{Panel, Reference, SeriesStyle};
 use super::layout::{Abscissa, Format, Layout};
 use super::panel;
 
@@ -13,9 +13,9 @@ const FORMAT: Format = Format {
     frame: 210.0,
     ticks: (6, 6),
     margins: (82.0, 36.0),
-    headroom: 0.0,
-    overlaid: false,
-    drawn: Drawn::Curve,
+    headroom_fraction: 0.0,
+    is_overlaid: false,
+    style: SeriesStyle::Curve,
 };
 /// Fraction of a frame's height for the names of marks.
 const NAMES_OF_MARKS: f64 = 0.09;
@@ -41,9 +41,9 @@ pub struct Frame<'a> {
     /// Vertical lines with names, for example natural frequencies; abscissae in SI, ascending.
     pub marks: Vec<Reference>,
     /// True if curves can overlap: later ones are then dashed.
-    pub overlaid: bool,
+    pub is_overlaid: bool,
     /// Style of the series.
-    pub drawn: Drawn,
+    pub style: SeriesStyle,
 }
 
 /// Axes of a frame.
@@ -92,8 +92,11 @@ impl Axes {
 /// Same as [`super::time_history`], with panels counted row by row.
 pub fn plate(plate: &Plate<'_>) -> Result<String, PlotError> {
     let panels: Vec<Panel<'_>> = plate.frames.iter().map(|f| f.panel.clone()).collect();
-    check(&panels, |place| {
-        plate.frames.get(place).map_or(Drawn::Curve, |f| f.drawn)
+    check_panels(&panels, |place| {
+        plate
+            .frames
+            .get(place)
+            .map_or(SeriesStyle::Curve, |f| f.style)
     })?;
     let columns = plate.columns.max(1);
     let mut canvas = Canvas::default();
@@ -101,8 +104,8 @@ pub fn plate(plate: &Plate<'_>) -> Result<String, PlotError> {
     for row in plate.frames.chunks(columns) {
         let mut height = 0.0_f64;
         for (column, frame) in row.iter().enumerate() {
-            let (drawing, tall) = draw(frame)?;
-            canvas.place(drawing, (column as f64 * FORMAT.width, top));
+            let (drawing, tall) = draw_frame(frame)?;
+            canvas.insert(drawing, (column as f64 * FORMAT.width, top));
             height = height.max(tall);
         }
         top += height;
@@ -111,23 +114,23 @@ pub fn plate(plate: &Plate<'_>) -> Result<String, PlotError> {
     Ok(canvas.document(&plate.title, width, top))
 }
 
-fn draw(frame: &Frame<'_>) -> Result<(Canvas, f64), PlotError> {
+fn draw_frame(frame: &Frame<'_>) -> Result<(Canvas, f64), PlotError> {
     let (abscissa, scale) = frame.axes.scales();
     let panels = std::slice::from_ref(&frame.panel);
     let format = Format {
-        headroom: match frame.marks.as_slice() {
+        headroom_fraction: match frame.marks.as_slice() {
             [] => 0.0,
             _ => NAMES_OF_MARKS,
         },
-        overlaid: frame.overlaid,
-        drawn: frame.drawn,
+        is_overlaid: frame.is_overlaid,
+        style: frame.style,
         ..FORMAT
     };
     let layout = Layout::new(panels, &abscissa, scale, format)?;
     let mut canvas = Canvas::default();
     for place in &layout.places {
         panel::draw_marks(&mut canvas, &frame.marks, place, &layout);
-        panel::draw(&mut canvas, &frame.panel, place, &layout);
+        panel::draw_panel(&mut canvas, &frame.panel, place, &layout);
         panel::name_marks(&mut canvas, &frame.marks, place, &layout);
     }
     panel::draw_abscissa(&mut canvas, &layout);

@@ -21,7 +21,7 @@ const PREFIXES: [(i32, &str); 10] = [
 ];
 
 /// Units with prefixes; true if prefixes above 1 are usual (not for ks or krad).
-const PREFIXED: [(&str, bool); 10] = [
+const PREFIXABLE_UNITS: [(&str, bool); 10] = [
     ("m", true),
     ("N", true),
     ("J", true),
@@ -36,19 +36,19 @@ const PREFIXED: [(&str, bool); 10] = [
 
 impl Quantity {
     /// Creates a label without a prefix, for logarithmic axes.
-    pub fn plain(name: &str, unit: &str) -> Self {
+    pub fn without_prefix(name: &str, unit: &str) -> Self {
         Self {
             scale: 1.0,
-            label: label(name, &pretty_unit(unit)),
+            label: format_label(name, &format_unit(unit)),
         }
     }
 
     /// Creates a label with a prefix, so that ticks up to `largest` in SI are between 1 and 1000.
-    pub fn scaled(name: &str, unit: &str, largest: f64) -> Self {
+    pub fn with_prefix(name: &str, unit: &str, largest: f64) -> Self {
         let (scale, unit) = scaled_unit(unit, largest);
         Self {
             scale,
-            label: label(name, unit.trim_end()),
+            label: format_label(name, unit.trim_end()),
         }
     }
 }
@@ -59,15 +59,15 @@ impl Quantity {
 pub fn scaled_unit(unit: &str, largest: f64) -> (f64, String) {
     let exponent = engineering_exponent(largest);
     let unit = unit.trim();
-    let pretty = pretty_unit(unit);
-    let text = match prefix(unit, exponent) {
+    let pretty = format_unit(unit);
+    let text = match find_prefix(unit, exponent) {
         Some(prefix) => format!("{prefix}{pretty}"),
-        None => format!("10{} {pretty}", superscript(exponent)),
+        None => format!("10{} {pretty}", format_superscript(exponent)),
     };
     (10f64.powi(exponent), text.trim_end().to_owned())
 }
 
-fn label(name: &str, unit: &str) -> String {
+fn format_label(name: &str, unit: &str) -> String {
     if unit.is_empty() {
         name.to_owned()
     } else {
@@ -85,7 +85,7 @@ fn engineering_exponent(largest: f64) -> i32 {
     exponent as i32 * 3
 }
 
-fn prefix(unit: &str, exponent: i32) -> Option<&'static str> {
+fn find_prefix(unit: &str, exponent: i32) -> Option<&'static str> {
     if exponent == 0 {
         return Some("");
     }
@@ -93,7 +93,7 @@ fn prefix(unit: &str, exponent: i32) -> Option<&'static str> {
         .find(|c: char| !c.is_alphabetic())
         .unwrap_or(unit.len());
     let (symbol, rest) = unit.split_at(end);
-    let (_, above_one) = PREFIXED.iter().find(|(name, _)| *name == symbol)?;
+    let (_, above_one) = PREFIXABLE_UNITS.iter().find(|(name, _)| *name == symbol)?;
     if rest.starts_with('^') || (exponent > 0 && !above_one) {
         return None;
     }
@@ -104,7 +104,7 @@ fn prefix(unit: &str, exponent: i32) -> Option<&'static str> {
 }
 
 /// Formats a unit, for example `N m/s^2` as `N·m/s²`.
-fn pretty_unit(unit: &str) -> String {
+fn format_unit(unit: &str) -> String {
     let mut pretty = String::new();
     let mut raised = false;
     for c in unit.trim().chars() {
@@ -112,7 +112,7 @@ fn pretty_unit(unit: &str) -> String {
         match c {
             '^' => {}
             ' ' | '*' => pretty.push('·'),
-            c if raised => pretty.push(raise(c)),
+            c if raised => pretty.push(superscript_character(c)),
             c => pretty.push(c),
         }
     }
@@ -120,11 +120,15 @@ fn pretty_unit(unit: &str) -> String {
 }
 
 /// Formats an exponent as superscript digits; empty for 1.
-pub(super) fn superscript(exponent: i32) -> String {
-    exponent.to_string().chars().map(raise).collect()
+pub(super) fn format_superscript(exponent: i32) -> String {
+    exponent
+        .to_string()
+        .chars()
+        .map(superscript_character)
+        .collect()
 }
 
-fn raise(c: char) -> char {
+fn superscript_character(c: char) -> char {
     match c {
         '-' => '⁻',
         '0' => '⁰',
@@ -163,7 +167,7 @@ mod tests {
             ("W", 1e-40, 1e-42, "x_sp [10⁻⁴² W]"),
             ("m", 0.0, 1.0, "x_sp [m]"),
         ] {
-            let quantity = Quantity::scaled("x_sp", unit, largest);
+            let quantity = Quantity::with_prefix("x_sp", unit, largest);
             assert_eq!(quantity.label, label, "{largest} {unit}");
             // One rounding in 10^n and one in the literal.
             assert!(
@@ -175,7 +179,7 @@ mod tests {
 
     #[test]
     fn plain_quantity_keeps_its_unit() {
-        assert_eq!(Quantity::plain("S", "m^2/Hz").label, "S [m²/Hz]");
-        assert_eq!(Quantity::plain("S", "s^-1").label, "S [s⁻¹]");
+        assert_eq!(Quantity::without_prefix("S", "m^2/Hz").label, "S [m²/Hz]");
+        assert_eq!(Quantity::without_prefix("S", "s^-1").label, "S [s⁻¹]");
     }
 }

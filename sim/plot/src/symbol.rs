@@ -41,28 +41,28 @@ impl Symbol {
     /// Splits an identifier at its first underscore; further ones become commas of the subscript.
     pub fn parse(name: &str) -> Self {
         if let Some(stem) = name.strip_suffix("_ddot").filter(|stem| !stem.is_empty()) {
-            return Self::parse(stem).marked(TWO_DOTS_ABOVE);
+            return Self::parse(stem).with_mark(TWO_DOTS_ABOVE);
         }
         if let Some(stem) = name.strip_suffix("_dot").filter(|stem| !stem.is_empty()) {
-            return Self::parse(stem).marked(DOT_ABOVE);
+            return Self::parse(stem).with_mark(DOT_ABOVE);
         }
         let (head, subscript) = match name.split_once('_') {
             Some((head, rest)) if !head.is_empty() && !rest.is_empty() => (head, rest),
             _ => (name, ""),
         };
         Self {
-            head: letter(head).to_owned(),
+            head: greek_letter(head).to_owned(),
             subscript: subscript.replace('_', ","),
         }
     }
 
-    fn marked(mut self, mark: char) -> Self {
+    fn with_mark(mut self, mark: char) -> Self {
         self.head.push(mark);
         self
     }
 }
 
-fn letter(head: &str) -> &str {
+fn greek_letter(head: &str) -> &str {
     GREEK
         .iter()
         .find(|(name, _)| *name == head)

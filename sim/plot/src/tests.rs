@@ -278,7 +278,7 @@ fn overlaid_curves_are_dashed() -> Result<(), Box<dyn std::error::Error>> {
                 label: "f_1".to_owned(),
                 value: 10.0,
             }],
-            overlaid,
+            is_overlaid: overlaid,
             ..Frame::default()
         };
         let svg = plate(&Plate {

@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use eomgen_plot::{Axes, Drawn, Frame, Panel, Series};
+use eomgen_plot::{Axes, Frame, Panel, Series, SeriesStyle};
 use rayon::prelude::*;
 
 use super::arm::{Arm, Case, Undisclosed};
@@ -118,7 +118,7 @@ fn frame<'a>(title: String, quantity: &str, b: &'a [f64], values: &'a [f64]) -> 
             symbol: "b",
             unit: "m",
         },
-        drawn: Drawn::Points,
+        style: SeriesStyle::Points,
         ..Frame::default()
     }
 }

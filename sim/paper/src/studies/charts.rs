@@ -41,8 +41,8 @@ fn together(found: &Found, assumed: &[Judgement]) -> Result<Figure, PlotError> {
     );
     let svg = histogram(&Histogram {
         title: caption.clone(),
-        number: "claims that hold".to_owned(),
-        count: "parameter sets".to_owned(),
+        horizontal_label: "claims that hold".to_owned(),
+        vertical_label: "parameter sets".to_owned(),
         counts: &tally::histogram(&found.screened),
         marks,
     })?;

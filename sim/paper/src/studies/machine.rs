@@ -1,7 +1,7 @@
 //! Drawing of the machine with the positive direction of every angle, deflection and error. Radii
 //! and the length of the arm are to scale (Table I); deflections are exaggerated.
 
-use eomgen_plot::drawing::{Drawing, Look, Part, arc, drawing, on_circle};
+use eomgen_plot::drawing::{Drawing, LineStyle, Part, arc_points, draw_sketch, point_on_circle};
 
 use super::report::Figure;
 
@@ -33,7 +33,7 @@ pub(super) fn machine() -> Figure {
         paper: String::new(),
         caption: caption.to_owned(),
         cases: Vec::new(),
-        svg: drawing(&Drawing {
+        svg: draw_sketch(&Drawing {
             title: caption.to_owned(),
             size: (980.0, 640.0),
             parts: parts.concat(),
@@ -42,11 +42,11 @@ pub(super) fn machine() -> Figure {
 }
 
 fn words(at: (f64, f64), side: i8, text: &str) -> Part {
-    Part::Words(at, side, text.to_owned())
+    Part::Text(at, side, text.to_owned())
 }
 
 fn circle(centre: (f64, f64), radius: f64) -> Part {
-    Part::Line(Look::Body, arc(centre, radius, (0.0, 360.0)))
+    Part::Line(LineStyle::Body, arc_points(centre, radius, (0.0, 360.0)))
 }
 
 /// Draws sun, planets, ring and carrier with their angles.
@@ -57,15 +57,21 @@ fn gears() -> Vec<Part> {
         circle(CENTRE, RING + 10.0),
     ];
     for angle in PLANETS {
-        let centre = on_circle(CENTRE, SUN + PLANET, angle);
+        let centre = point_on_circle(CENTRE, SUN + PLANET, angle);
         parts.extend([circle(centre, PLANET), circle(centre, 4.0)]);
-        parts.push(Part::Line(Look::Body, vec![CENTRE, centre]));
+        parts.push(Part::Line(LineStyle::Body, vec![CENTRE, centre]));
     }
-    let planet = on_circle(CENTRE, SUN + PLANET, PLANETS[1]);
+    let planet = point_on_circle(CENTRE, SUN + PLANET, PLANETS[1]);
     parts.extend([
-        Part::Arrow(Look::Measure, arc(CENTRE, 0.62 * SUN, (150.0, 400.0))),
+        Part::Arrow(
+            LineStyle::Dimension,
+            arc_points(CENTRE, 0.62 * SUN, (150.0, 400.0)),
+        ),
         words((CENTRE.0 - 13.0, CENTRE.1 + SUN + 15.0), -1, "theta_s"),
-        Part::Arrow(Look::Measure, arc(planet, 0.62 * PLANET, (240.0, -20.0))),
+        Part::Arrow(
+            LineStyle::Dimension,
+            arc_points(planet, 0.62 * PLANET, (240.0, -20.0)),
+        ),
         words((planet.0 - 6.0, planet.1 + 20.0), 0, "theta_p"),
         words((CENTRE.0, CENTRE.1 - RING - 22.0), 0, "ring, fixed"),
         words(
@@ -80,19 +86,22 @@ fn gears() -> Vec<Part> {
 /// Draws the lines of action at both meshes of the upper planet, with the leading side of a
 /// positive deflection.
 fn meshes() -> Vec<Part> {
-    let (sun, ring) = (on_circle(CENTRE, SUN, 90.0), on_circle(CENTRE, RING, 90.0));
+    let (sun, ring) = (
+        point_on_circle(CENTRE, SUN, 90.0),
+        point_on_circle(CENTRE, RING, 90.0),
+    );
     let along = |from: (f64, f64), angle: f64| {
         vec![
-            on_circle(from, 6.0, angle + 180.0),
-            on_circle(from, 42.0, angle),
+            point_on_circle(from, 6.0, angle + 180.0),
+            point_on_circle(from, 42.0, angle),
         ]
     };
     vec![
         // The teeth of the sun move to the left there and push the planet.
-        Part::Arrow(Look::Measure, along(sun, 180.0 - PRESSURE)),
+        Part::Arrow(LineStyle::Dimension, along(sun, 180.0 - PRESSURE)),
         words((sun.0 - 48.0, sun.1 - 22.0), 1, "x_sp"),
         // The teeth of the planet move to the right there and push the ring.
-        Part::Arrow(Look::Measure, along(ring, -PRESSURE)),
+        Part::Arrow(LineStyle::Dimension, along(ring, -PRESSURE)),
         words((ring.0 + 48.0, ring.1 + 26.0), -1, "x_pr"),
     ]
 }
@@ -103,28 +112,31 @@ fn arm() -> Vec<Part> {
         let s = f64::from(step) / 40.0;
         // Deflection by a load at the end, which is close to the first mode.
         let w = TIP * s * s * (3.0 - s) / 2.0;
-        let along = on_circle(CENTRE, LENGTH * s, CARRIER);
-        on_circle(along, w, CARRIER + 90.0)
+        let along = point_on_circle(CENTRE, LENGTH * s, CARRIER);
+        point_on_circle(along, w, CARRIER + 90.0)
     });
-    let end = on_circle(CENTRE, LENGTH, CARRIER);
-    let middle = on_circle(CENTRE, 0.6 * LENGTH, CARRIER);
+    let end = point_on_circle(CENTRE, LENGTH, CARRIER);
+    let middle = point_on_circle(CENTRE, 0.6 * LENGTH, CARRIER);
     let bow = TIP * 0.36 * 1.2;
     vec![
         Part::Line(
-            Look::Thought,
+            LineStyle::Imaginary,
             vec![CENTRE, (CENTRE.0 + LENGTH + 20.0, CENTRE.1)],
         ),
-        Part::Line(Look::Thought, vec![CENTRE, end]),
-        Part::Line(Look::Moved, bent.collect()),
-        Part::Arrow(Look::Measure, arc(CENTRE, RING + 34.0, (0.0, CARRIER))),
+        Part::Line(LineStyle::Imaginary, vec![CENTRE, end]),
+        Part::Line(LineStyle::Displaced, bent.collect()),
+        Part::Arrow(
+            LineStyle::Dimension,
+            arc_points(CENTRE, RING + 34.0, (0.0, CARRIER)),
+        ),
         words((CENTRE.0 + RING + 40.0, CENTRE.1 - 10.0), -1, "theta_c"),
         Part::Arrow(
-            Look::Measure,
-            vec![middle, on_circle(middle, bow, CARRIER + 90.0)],
+            LineStyle::Dimension,
+            vec![middle, point_on_circle(middle, bow, CARRIER + 90.0)],
         ),
         words((middle.0 + 10.0, middle.1 + 16.0), -1, "w(x, t)"),
         words(
-            on_circle((CENTRE.0, CENTRE.1 + 20.0), 0.9 * LENGTH, CARRIER),
+            point_on_circle((CENTRE.0, CENTRE.1 + 20.0), 0.9 * LENGTH, CARRIER),
             0,
             "x",
         ),
@@ -133,26 +145,29 @@ fn arm() -> Vec<Part> {
 
 /// Draws lead and lag at the end of the arm.
 fn errors() -> Vec<Part> {
-    let end = on_circle(CENTRE, LENGTH, CARRIER);
-    let ideal = on_circle(CENTRE, LENGTH + 36.0, AHEAD);
+    let end = point_on_circle(CENTRE, LENGTH, CARRIER);
+    let ideal = point_on_circle(CENTRE, LENGTH + 36.0, AHEAD);
     let outside = LENGTH + 20.0;
     vec![
-        Part::Line(Look::Thought, vec![CENTRE, ideal]),
+        Part::Line(LineStyle::Imaginary, vec![CENTRE, ideal]),
         words(
             (ideal.0 + 6.0, ideal.1 - 6.0),
             -1,
             "theta_s/i_sH: the arm without backlash",
         ),
         Part::Arrow(
-            Look::Measure,
-            vec![end, on_circle(end, TIP, CARRIER + 90.0)],
+            LineStyle::Dimension,
+            vec![end, point_on_circle(end, TIP, CARRIER + 90.0)],
         ),
         words((end.0 - 12.0, end.1 - 17.0), 1, "tip"),
-        Part::Arrow(Look::Measure, arc(CENTRE, outside, (CARRIER, AHEAD))),
+        Part::Arrow(
+            LineStyle::Dimension,
+            arc_points(CENTRE, outside, (CARRIER, AHEAD)),
+        ),
         words(
             (
-                on_circle(CENTRE, outside + 10.0, 16.5).0,
-                on_circle(CENTRE, outside, 16.5).1,
+                point_on_circle(CENTRE, outside + 10.0, 16.5).0,
+                point_on_circle(CENTRE, outside, 16.5).1,
             ),
             -1,
             "l dtheta: the carrier lags",
@@ -167,13 +182,16 @@ fn law() -> Vec<Part> {
     let (half, b, rise) = (130.0, 38.0, 56.0);
     vec![
         Part::Heading((24.0, 432.0), "a mesh".to_owned()),
-        Part::Arrow(Look::Thought, vec![(x - half, y), (x + half + 16.0, y)]),
         Part::Arrow(
-            Look::Thought,
+            LineStyle::Imaginary,
+            vec![(x - half, y), (x + half + 16.0, y)],
+        ),
+        Part::Arrow(
+            LineStyle::Imaginary,
             vec![(x, y + rise + 8.0), (x, y - rise - 14.0)],
         ),
         Part::Line(
-            Look::Moved,
+            LineStyle::Displaced,
             vec![
                 (x - half, y + rise),
                 (x - b, y),

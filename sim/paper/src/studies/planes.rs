@@ -1,6 +1,6 @@
 //! Phase plane and stroboscopic section of the sun-planet mesh.
 
-use eomgen_plot::{Axes, Drawn, Frame, Panel, Reference, Series};
+use eomgen_plot::{Axes, Frame, Panel, Reference, Series, SeriesStyle};
 
 use super::display::Display;
 
@@ -19,13 +19,13 @@ pub(super) fn orbit<'a>(letter: &str, display: &'a Display) -> Frame<'a> {
         first(&display.history.x_sp),
         first(&display.x_sp_dot),
     );
-    frame(panel, Drawn::Orbit, display)
+    frame(panel, SeriesStyle::Orbit, display)
 }
 
 /// Draws the stroboscopic section, given as columns.
 pub(super) fn section<'a>(display: &Display, [x_sp, x_sp_dot]: &'a [Vec<f64>; 2]) -> Frame<'a> {
     let title = format!("Poincaré section, {} forcing periods", x_sp.len());
-    frame(panel(title, x_sp, x_sp_dot), Drawn::Points, display)
+    frame(panel(title, x_sp, x_sp_dot), SeriesStyle::Points, display)
 }
 
 fn panel<'a>(title: String, x_sp: &'a [f64], x_sp_dot: &'a [f64]) -> Panel<'a> {
@@ -42,7 +42,7 @@ fn panel<'a>(title: String, x_sp: &'a [f64], x_sp_dot: &'a [f64]) -> Panel<'a> {
     }
 }
 
-fn frame<'a>(panel: Panel<'a>, drawn: Drawn, display: &Display) -> Frame<'a> {
+fn frame<'a>(panel: Panel<'a>, drawn: SeriesStyle, display: &Display) -> Frame<'a> {
     let b = display.case.backlash;
     let flanks = [("−b", -b), ("+b", b)].map(|(label, value)| Reference {
         label: label.to_owned(),
@@ -52,7 +52,7 @@ fn frame<'a>(panel: Panel<'a>, drawn: Drawn, display: &Display) -> Frame<'a> {
         panel,
         axes: PLANE,
         marks: if b > 0.0 { flanks.into() } else { Vec::new() },
-        overlaid: false,
-        drawn,
+        is_overlaid: false,
+        style: drawn,
     }
 }

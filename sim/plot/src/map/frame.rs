@@ -34,23 +34,23 @@ pub struct Units {
 /// Two axes around an area of pixels.
 #[derive(Debug)]
 pub struct Frame {
-    horizontal: Edge,
-    vertical: Edge,
+    horizontal: FrameEdge,
+    vertical: FrameEdge,
 }
 
 #[derive(Debug)]
-struct Edge {
+struct FrameEdge {
     axis: Axis,
     label: String,
     ticks: Vec<Tick>,
 }
 
-pub fn units(coordinate: &Coordinate<'_>) -> Units {
+pub fn coordinate_units(coordinate: &Coordinate<'_>) -> Units {
     let scale = coordinate.spacing.scale();
     let (name, unit) = (&coordinate.name, &coordinate.unit);
     let quantity = match scale {
-        Scale::Linear => Quantity::scaled(name, unit, largest(coordinate.values)),
-        Scale::Logarithmic => Quantity::plain(name, unit),
+        Scale::Linear => Quantity::with_prefix(name, unit, largest(coordinate.values)),
+        Scale::Logarithmic => Quantity::without_prefix(name, unit),
     };
     Units { quantity, scale }
 }
@@ -68,7 +68,7 @@ impl Units {
 
 /// Returns the edges of a coordinate's cells, one more than values, as positions on the axis.
 pub fn cell_edges(coordinate: &Coordinate<'_>) -> Result<Vec<f64>, PlotError> {
-    let units = units(coordinate);
+    let units = coordinate_units(coordinate);
     let values = coordinate.values.iter();
     let places: Vec<f64> = values.map(|value| units.place(*value)).collect();
     let mut before = f64::NEG_INFINITY;
@@ -88,12 +88,12 @@ pub fn cell_edges(coordinate: &Coordinate<'_>) -> Result<Vec<f64>, PlotError> {
             _ => None,
         })
         .collect();
-    let Some(around) = Range::of(places.into_iter()) else {
+    let Some(around) = Range::from_places(places.into_iter()) else {
         return Ok(Vec::new());
     };
     // The outer cells are symmetric; a single cell has an arbitrary width.
     let (first, last) = match middles.as_slice() {
-        [] => (around.opened().low, around.opened().high),
+        [] => (around.widen_point().low, around.widen_point().high),
         [first, .., last] => (2.0 * around.low - first, 2.0 * around.high - last),
         [only] => (2.0 * around.low - only, 2.0 * around.high - only),
     };
@@ -110,13 +110,13 @@ impl Frame {
         beside: f64,
         typeface: &Typeface,
     ) -> Self {
-        let vertical = Edge::new(vertical, ranges.1, (BOTTOM, TOP), 8);
+        let vertical = FrameEdge::new(vertical, ranges.1, (BOTTOM, TOP), 8);
         let widest = typeface.widest(&vertical.ticks);
         let left = (LABEL_ROOM + widest + TICK_LENGTH + 6.0).ceil().min(300.0);
         let right = WIDTH as f64 - beside.min(400.0) - RIGHT_MARGIN;
         let pixels = (left, right.floor());
         Self {
-            horizontal: Edge::new(horizontal, ranges.0, pixels, 8),
+            horizontal: FrameEdge::new(horizontal, ranges.0, pixels, 8),
             vertical,
         }
     }
@@ -227,9 +227,9 @@ impl Frame {
     }
 }
 
-impl Edge {
+impl FrameEdge {
     fn new(coordinate: &Coordinate<'_>, range: Range, pixels: (f64, f64), count: usize) -> Self {
-        let Units { quantity, scale } = units(coordinate);
+        let Units { quantity, scale } = coordinate_units(coordinate);
         Self {
             axis: Axis {
                 scale,

@@ -21,7 +21,7 @@ use raster::Raster;
 use shades::Bar;
 use typeface::Typeface;
 pub use types::{Coordinate, Map, Scatter, Shades, Spacing};
-use types::{GREY, INK, OPACITY, WHITE, empty};
+use types::{GREY, INK, OPACITY, WHITE, empty_error};
 
 /// Draws a quantity over two parameters as a PNG of 1000 by 760 px. Each cell extends halfway to
 /// its neighbours on the axis.
@@ -44,13 +44,13 @@ pub fn map_png(map: &Map<'_>) -> Result<Vec<u8>, PlotError> {
         frame::cell_edges(&map.horizontal)?,
         frame::cell_edges(&map.vertical)?,
     );
-    let ranges = (ends(&cells.0, map)?, ends(&cells.1, map)?);
+    let ranges = (edge_range(&cells.0, map)?, edge_range(&cells.1, map)?);
     let typeface = Typeface::new()?;
     let mut raster = Raster::new(WHITE);
     let beside = bar.width(&typeface);
     let frame = Frame::new(&map.horizontal, &map.vertical, ranges, beside, &typeface);
     let colour_at = |x: f64, y: f64| {
-        let (column, row) = (cell_of(&cells.0, x)?, cell_of(&cells.1, y)?);
+        let (column, row) = (find_cell(&cells.0, x)?, find_cell(&cells.1, y)?);
         let value = map.values.get(row * columns + column)?;
         Some(bar.colour(*value).unwrap_or(GREY))
     };
@@ -80,21 +80,24 @@ pub fn scatter_png(scatter: &Scatter<'_>) -> Result<Vec<u8>, PlotError> {
             values: vertical.values.len(),
         });
     }
-    let scales = (frame::units(horizontal), frame::units(vertical));
+    let scales = (
+        frame::coordinate_units(horizontal),
+        frame::coordinate_units(vertical),
+    );
     let pairs = horizontal.values.iter().zip(vertical.values);
     let points: Vec<(f64, f64)> = pairs
         .map(|(x, y)| (scales.0.place(*x), scales.1.place(*y)))
         .filter(|(x, y)| x.is_finite() && y.is_finite())
         .collect();
-    let range = |values: Vec<f64>| Range::of(values.into_iter());
+    let range = |values: Vec<f64>| Range::from_places(values.into_iter());
     let spans = (
         range(points.iter().map(|point| point.0).collect()),
         range(points.iter().map(|point| point.1).collect()),
     );
     let (Some(along), Some(up)) = spans else {
-        return Err(empty(&vertical.name));
+        return Err(empty_error(&vertical.name));
     };
-    let ranges = (along.opened().padded(0.01), up.opened().padded(0.03));
+    let ranges = (along.widen_point().pad(0.01), up.widen_point().pad(0.03));
     let typeface = Typeface::new()?;
     let mut raster = Raster::new(WHITE);
     let frame = Frame::new(horizontal, vertical, ranges, 0.0, &typeface);
@@ -126,18 +129,18 @@ fn draw_points(raster: &mut Raster, frame: &Frame, points: &[(f64, f64)]) {
     }
 }
 
-fn ends(edges: &[f64], map: &Map<'_>) -> Result<Range, PlotError> {
+fn edge_range(edges: &[f64], map: &Map<'_>) -> Result<Range, PlotError> {
     match edges {
         [low, .., high] => Ok(Range {
             low: *low,
             high: *high,
         }
-        .opened()),
-        _ => Err(empty(&map.quantity)),
+        .widen_point()),
+        _ => Err(empty_error(&map.quantity)),
     }
 }
 
-fn cell_of(edges: &[f64], place: f64) -> Option<usize> {
+fn find_cell(edges: &[f64], place: f64) -> Option<usize> {
     let cell = edges
         .partition_point(|edge| *edge <= place)
         .checked_sub(1)?;

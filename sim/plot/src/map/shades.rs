@@ -6,7 +6,7 @@ use super::super::quantity::Quantity;
 use super::frame::{FRAME, Frame, LABEL_SIZE, TICK_LENGTH, outline};
 use super::raster::{Colour, Raster, mixed};
 use super::typeface::{Align, Direction, Line, TICK_SIZE, Typeface};
-use super::types::{GREY, Map, Shades, WHITE, empty};
+use super::types::{GREY, Map, Shades, WHITE, empty_error};
 
 /// Viridis by S. van der Walt and N. Smith, at every tenth.
 const VIRIDIS: [Colour; 11] = [
@@ -37,9 +37,9 @@ const BLUE_TO_RED: [Colour; 11] = [
     [0x67, 0x00, 0x1f],
 ];
 /// Ratio of the two sides of zero below which the smaller side is rounding noise.
-const NOISE: f64 = 1e-6;
+const MAX_NOISE_RATIO: f64 = 1e-6;
 /// Ratio of the two sides of zero above which each side has separate shades.
-const LOPSIDED: f64 = 3.0;
+const MIN_LOPSIDED_RATIO: f64 = 3.0;
 
 /// Distances from the frame to the bar and from the bar to its labels, in px.
 const GAP: f64 = 28.0;
@@ -64,17 +64,18 @@ impl Bar {
     /// Creates the colours for the values of a map; an error without a drawable value.
     pub fn new(map: &Map<'_>) -> Result<Self, PlotError> {
         let drawable = map.values.iter().filter(|value| is_drawable(**value));
-        let found = Range::of(drawable.copied()).ok_or_else(|| empty(&map.quantity))?;
+        let found =
+            Range::from_places(drawable.copied()).ok_or_else(|| empty_error(&map.quantity))?;
         let range = match map.shades {
-            Shades::Sequential => found.opened(),
-            Shades::Signed => around_zero(found),
+            Shades::Sequential => found.widen_point(),
+            Shades::Signed => widen_around_zero(found),
         };
         // Both sides of zero must be readable in one unit, even if they differ in size.
         let magnitude = match map.shades {
             Shades::Sequential => found.high.abs().max(found.low.abs()),
             Shades::Signed => (-range.low).sqrt() * range.high.sqrt(),
         };
-        let quantity = Quantity::scaled(&map.quantity, &map.unit, magnitude);
+        let quantity = Quantity::with_prefix(&map.quantity, &map.unit, magnitude);
         let range = Range {
             low: range.low / quantity.scale,
             high: range.high / quantity.scale,
@@ -94,7 +95,7 @@ impl Bar {
 
     /// Returns the colour of a value in SI units; `None` if it cannot be drawn.
     pub fn colour(&self, value: f64) -> Option<Colour> {
-        let share = self.share(value / self.quantity.scale);
+        let share = self.position_on_bar(value / self.quantity.scale);
         is_drawable(value).then(|| self.colour_at(share))
     }
 
@@ -104,7 +105,7 @@ impl Bar {
     }
 
     /// Returns the position of a value on the bar, from 0 at its lower end to 1.
-    fn share(&self, value: f64) -> f64 {
+    fn position_on_bar(&self, value: f64) -> f64 {
         let Range { low, high } = self.range;
         match self.shades {
             Shades::Sequential => (value - low) / (high - low),
@@ -115,8 +116,8 @@ impl Bar {
 
     fn colour_at(&self, share: f64) -> Colour {
         match self.shades {
-            Shades::Sequential => interpolated(&VIRIDIS, share),
-            Shades::Signed => interpolated(&BLUE_TO_RED, share),
+            Shades::Sequential => interpolate_colour(&VIRIDIS, share),
+            Shades::Signed => interpolate_colour(&BLUE_TO_RED, share),
         }
     }
 
@@ -130,7 +131,7 @@ impl Bar {
         let edge = left + BAR as f64;
         outline(raster, (left, edge), (bottom, top));
         for tick in &self.ticks {
-            let y = bottom - self.share(tick.place) * (bottom - top);
+            let y = bottom - self.position_on_bar(tick.place) * (bottom - top);
             let mark = (edge as usize + 1, y.round() as usize);
             raster.fill(mark, (TICK_LENGTH as usize, 1), FRAME);
             let at = (edge + LABEL_GAP, y + 0.36 * TICK_SIZE);
@@ -160,7 +161,7 @@ fn draw_gap_key(raster: &mut Raster, typeface: &Typeface, (left, top): (f64, f64
 }
 
 /// Returns a range around zero: symmetric, unless one side is much larger.
-fn around_zero(found: Range) -> Range {
+fn widen_around_zero(found: Range) -> Range {
     let (below, above) = (-found.low.min(0.0), found.high.max(0.0));
     let (less, more) = (below.min(above), below.max(above));
     if more < 1e-100 {
@@ -170,7 +171,7 @@ fn around_zero(found: Range) -> Range {
         };
     }
     // A side without values gets the range of the other, so half of the bar is unused.
-    if less < NOISE * more || more <= LOPSIDED * less {
+    if less < MAX_NOISE_RATIO * more || more <= MIN_LOPSIDED_RATIO * less {
         return Range {
             low: -more,
             high: more,
@@ -192,7 +193,7 @@ fn signed_ticks(range: Range) -> Vec<Tick> {
         .collect()
 }
 
-fn interpolated(colours: &[Colour; 11], share: f64) -> Colour {
+fn interpolate_colour(colours: &[Colour; 11], share: f64) -> Colour {
     let along = 10.0 * share.clamp(0.0, 1.0);
     let below = (along.floor() as usize).min(9);
     match colours.get(below..) {

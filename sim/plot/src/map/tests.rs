@@ -25,13 +25,13 @@ impl Picture {
         }
     }
 
-    fn at(&self, column: usize, row: usize) -> Colour {
+    fn colour_at(&self, column: usize, row: usize) -> Colour {
         let first = 3 * (row * self.width + column);
         self.bytes[first..first + 3].try_into().unwrap()
     }
 
-    fn along(&self, row: usize) -> Vec<Colour> {
-        let mut colours: Vec<Colour> = (0..self.width).map(|x| self.at(x, row)).collect();
+    fn row_colours(&self, row: usize) -> Vec<Colour> {
+        let mut colours: Vec<Colour> = (0..self.width).map(|x| self.colour_at(x, row)).collect();
         colours.dedup();
         colours
     }
@@ -72,10 +72,10 @@ fn cells_have_their_colours() -> Result<(), PlotError> {
     assert_eq!((picture.width, picture.height), (1000, 760));
     // Middles of the four quarters of the frame, which is from 85 px to 845 px wide.
     let (left, right, low, high) = (280, 650, 530, 210);
-    assert_eq!(picture.at(left, low), [0x05, 0x30, 0x61]);
-    assert_eq!(picture.at(right, low), [0xff, 0xff, 0xff]);
-    assert_eq!(picture.at(left, high), [0x67, 0x00, 0x1f]);
-    assert_eq!(picture.at(right, high), [158; 3]);
+    assert_eq!(picture.colour_at(left, low), [0x05, 0x30, 0x61]);
+    assert_eq!(picture.colour_at(right, low), [0xff, 0xff, 0xff]);
+    assert_eq!(picture.colour_at(left, high), [0x67, 0x00, 0x1f]);
+    assert_eq!(picture.colour_at(right, high), [158; 3]);
     Ok(())
 }
 
@@ -85,14 +85,14 @@ fn map_with_unequal_sides_shows_both_signs() -> Result<(), PlotError> {
     let strong = exponents(&columns, &rows, &[-2.0, 5.0, 100.0]);
     let picture = Picture::decode(&map_png(&strong)?);
     // Row 600 is within the only row of cells; the bar has one colour along it.
-    let colours = picture.along(600);
+    let colours = picture.row_colours(600);
     for end in [[0x05, 0x30, 0x61], [0x67, 0x00, 0x1f]] {
         assert!(colours.contains(&end), "{end:?} in {colours:?}");
     }
     // Within a factor of three, equal magnitudes have equal shades: -4 of 8 is half way.
     let even = exponents(&columns, &rows, &[-4.0, 4.0, 8.0]);
     let picture = Picture::decode(&map_png(&even)?);
-    let colours = picture.along(600);
+    let colours = picture.row_colours(600);
     // Half way between the middle and an end of eleven colours, between two of them.
     let (blue, red) = ([0x6b, 0xac, 0xd1], [0xe5, 0x83, 0x68]);
     assert!(
@@ -109,12 +109,16 @@ fn sequential_shades_go_from_least_to_greatest() -> Result<(), PlotError> {
     map.shades = Shades::Sequential;
     map.horizontal.spacing = Spacing::Logarithmic;
     let picture = Picture::decode(&map_png(&map)?);
-    let colours = picture.along(400);
+    let colours = picture.row_colours(400);
     for shade in [[0x44, 0x01, 0x54], [0x21, 0x91, 0x8c], [0xfd, 0xe7, 0x25]] {
         assert!(colours.contains(&shade), "{shade:02x?} in {colours:02x?}");
     }
     // Equal ratios have equal widths: a third of the frame each.
-    let width = |shade| (0..1000).filter(|x| picture.at(*x, 400) == shade).count();
+    let width = |shade| {
+        (0..1000)
+            .filter(|x| picture.colour_at(*x, 400) == shade)
+            .count()
+    };
     let (first, last) = (width([0x44, 0x01, 0x54]), width([0xfd, 0xe7, 0x25]));
     assert!(first > 200 && first.abs_diff(last) <= 1, "{first} {last}");
     Ok(())
@@ -133,7 +137,7 @@ fn points_are_at_their_coordinates() -> Result<(), PlotError> {
     // Three discs of radius 3 px: 28 px each, less at their edges.
     let ink = picture.count(is_ink);
     assert!((60..120).contains(&ink), "{ink}");
-    let middle = (0..760).filter(|row| (450..600).any(|x| is_ink(picture.at(x, *row))));
+    let middle = (0..760).filter(|row| (450..600).any(|x| is_ink(picture.colour_at(x, *row))));
     let rows: Vec<usize> = middle.collect();
     // The middle abscissa has the greatest value: near the top (52 px), below the margin.
     assert!(rows.iter().all(|row| (60..90).contains(row)), "{rows:?}");
@@ -195,7 +199,7 @@ fn invalid_pictures_are_an_error() {
             values: 1
         })
     );
-    let nothing = Err(empty("lambda_1"));
+    let nothing = Err(empty_error("lambda_1"));
     assert_eq!(attempt(&[], &[]), nothing);
     assert_eq!(attempt(&[1.0, 2.0], &[NAN, NAN]), nothing);
     for columns in [[2.0, 2.0], [2.0, 1.0], [2.0, NAN]] {
@@ -219,6 +223,6 @@ fn invalid_pictures_are_an_error() {
         scatter(&[1.0], &[]),
         Err(PlotError::Lengths { .. })
     ));
-    assert_eq!(scatter(&[], &[]), Err(empty("x")));
-    assert_eq!(scatter(&[1.0], &[NAN]), Err(empty("x")));
+    assert_eq!(scatter(&[], &[]), Err(empty_error("x")));
+    assert_eq!(scatter(&[1.0], &[NAN]), Err(empty_error("x")));
 }

@@ -4,7 +4,7 @@ use ab_glyph::{Font, FontRef, Glyph, GlyphId, PxScale, ScaleFont, point};
 
 use super::super::axis::Tick;
 use super::super::error::PlotError;
-use super::super::lettering::{SUBSCRIPT, runs};
+use super::super::lettering::{SUBSCRIPT_SIZE, split_runs};
 use super::super::symbol::{DOT_ABOVE, TWO_DOTS_ABOVE};
 use super::raster::{Colour, Raster};
 
@@ -135,9 +135,9 @@ impl Typeface {
         if line.heading {
             placed.append(font, line.text, line.size, 0.0);
         } else {
-            for run in runs(line.text) {
-                let (share, down) = if run.lowered {
-                    (SUBSCRIPT, 0.2)
+            for run in split_runs(line.text) {
+                let (share, down) = if run.is_subscript {
+                    (SUBSCRIPT_SIZE, 0.2)
                 } else {
                     (1.0, 0.0)
                 };

@@ -73,7 +73,7 @@ pub(super) const GREY: Colour = [158; 3];
 pub(super) const INK: Colour = [0, 60, 110];
 pub(super) const OPACITY: f64 = 0.6;
 
-pub(super) fn empty(name: &str) -> PlotError {
+pub(super) fn empty_error(name: &str) -> PlotError {
     PlotError::Empty {
         panel: 0,
         series: name.to_owned(),

@@ -1,12 +1,12 @@
 //! Bars of amplitudes with names and numbers.
 
-use super::look::{FRAME, GRID, IN_STEP, LATER};
+use super::styles::{FRAME_STROKE, GRID_STROKE, IN_PHASE_COLOUR, OUT_OF_PHASE_COLOUR};
 use super::types::Bar;
 use crate::axis::{Axis, Range, Scale};
-use crate::bars::{outline, write};
+use crate::bars::{draw_outline, write_text};
 use crate::canvas::{Anchor, Canvas};
 use crate::layout::TICK_SIZE;
-use crate::lettering::{fitted, width};
+use crate::lettering::{text_width, truncate_to_width};
 use crate::quantity::scaled_unit;
 
 /// Width of the bars with their names and numbers, in px.
@@ -14,10 +14,15 @@ pub(super) const BARS: f64 = 420.0;
 /// Distance between rows and height of a bar, in px.
 pub(super) const ROW: (f64, f64) = (21.0, 13.0);
 /// Amplitude below which the number is 0.
-const SHOWN: f64 = 5e-5;
+const MIN_SHOWN_AMPLITUDE: f64 = 5e-5;
 
-pub(super) fn draw(canvas: &mut Canvas, bars: &[Bar], later: bool, (left, top): (f64, f64)) {
-    let names = bars.iter().map(|bar| width(&bar.name, TICK_SIZE));
+pub(super) fn draw_amplitudes(
+    canvas: &mut Canvas,
+    bars: &[Bar],
+    later: bool,
+    (left, top): (f64, f64),
+) {
+    let names = bars.iter().map(|bar| text_width(&bar.name, TICK_SIZE));
     let widest = names.fold(0.0, f64::max).min(130.0);
     let edges = (left + widest + 24.0, left + BARS - 130.0);
     let x = Axis {
@@ -31,42 +36,53 @@ pub(super) fn draw(canvas: &mut Canvas, bars: &[Bar], later: bool, (left, top): 
     let bottom = top + ROW.0 * bars.len() as f64 + 4.0;
     for place in [-1.0, 0.0, 1.0] {
         let at = x.pixel(place);
-        let line = if place == 0.0 { FRAME } else { GRID };
+        let line = if place == 0.0 {
+            FRAME_STROKE
+        } else {
+            GRID_STROKE
+        };
         canvas.segments(&[((at, bottom), (at, top))], line);
     }
     for (place, bar) in bars.iter().enumerate() {
         let y = top + 5.0 + ROW.0 * place as f64;
         let base = y + 0.5 * ROW.1 + 0.36 * TICK_SIZE;
-        let name = fitted(&bar.name, TICK_SIZE, 130.0);
-        write(canvas, &name, (edges.0 - 8.0, base), Anchor::End);
-        let [re, im] = bar.amplitude.map(|part| part / full(bars, &bar.unit));
+        let name = truncate_to_width(&bar.name, TICK_SIZE, 130.0);
+        write_text(canvas, &name, (edges.0 - 8.0, base), Anchor::End);
+        let [re, im] = bar
+            .amplitude
+            .map(|part| part / full_bar_amplitude(bars, &bar.unit));
         let mut fill = |value: f64, (from, tall): (f64, f64), colour| {
             let (zero, end) = (x.pixel(0.0), x.pixel(value));
             canvas.rectangle((zero.min(end), from), ((end - zero).abs(), tall), colour);
         };
         if later {
-            fill(re, (y, 0.55 * ROW.1), IN_STEP);
-            fill(-im, (y + 0.6 * ROW.1, 0.4 * ROW.1), LATER);
+            fill(re, (y, 0.55 * ROW.1), IN_PHASE_COLOUR);
+            fill(-im, (y + 0.6 * ROW.1, 0.4 * ROW.1), OUT_OF_PHASE_COLOUR);
         } else {
-            fill(re, (y, ROW.1), IN_STEP);
+            fill(re, (y, ROW.1), IN_PHASE_COLOUR);
         }
-        write(canvas, &number(bar), (edges.1 + 8.0, base), Anchor::Start);
+        write_text(
+            canvas,
+            &format_amplitude(bar),
+            (edges.1 + 8.0, base),
+            Anchor::Start,
+        );
     }
-    outline(canvas, edges, (bottom, top));
+    draw_outline(canvas, edges, (bottom, top));
 }
 
 /// Returns the amplitude of a full bar with this unit.
-fn full(bars: &[Bar], unit: &str) -> f64 {
+fn full_bar_amplitude(bars: &[Bar], unit: &str) -> f64 {
     let alike = bars.iter().filter(|bar| bar.unit == unit);
     let sizes = alike.map(|bar| bar.amplitude[0].hypot(bar.amplitude[1]));
     sizes.fold(1.0, f64::max)
 }
 
 /// Returns a bar's size, with its phase unless that is 0 or 180 degrees.
-fn number(bar: &Bar) -> String {
+fn format_amplitude(bar: &Bar) -> String {
     let [re, im] = bar.amplitude;
     let size = re.hypot(im);
-    if size < SHOWN {
+    if size < MIN_SHOWN_AMPLITUDE {
         return "0".to_owned();
     }
     let (scale, unit) = scaled_unit(&bar.unit, size);

@@ -1,9 +1,9 @@
 //! Shape of a field over its length.
 
-use super::look::{FRAME, GRID, IN_STEP, LATER, stroke};
+use super::styles::{FRAME_STROKE, GRID_STROKE, IN_PHASE_COLOUR, OUT_OF_PHASE_COLOUR, stroke};
 use super::types::Shape;
 use crate::axis::{Axis, Range, Scale, ticks};
-use crate::bars::{label, outline, write};
+use crate::bars::{draw_label, draw_outline, write_text};
 use crate::canvas::{Anchor, Canvas};
 use crate::decimate::Point;
 use crate::layout::TICK_SIZE;
@@ -19,43 +19,49 @@ const ROUNDING: f64 = 1e-12;
 struct Axes {
     x: Axis,
     y: Axis,
-    along: Quantity,
-    up: Quantity,
+    horizontal_quantity: Quantity,
+    vertical_quantity: Quantity,
 }
 
-pub(super) fn draw(canvas: &mut Canvas, shape: &Shape, later: bool, place: (f64, f64, f64)) {
-    let axes = axes(shape, place);
+pub(super) fn draw_field(canvas: &mut Canvas, shape: &Shape, later: bool, place: (f64, f64, f64)) {
+    let axes = field_axes(shape, place);
     draw_frame(canvas, &axes, place.0);
     let curve = |of: fn(&[f64; 2]) -> f64| -> Vec<Point> {
         let samples = shape.positions.iter().zip(&shape.amplitudes);
         let pixel = |(at, value): (&f64, &[f64; 2])| {
-            let (x, y) = (at / axes.along.scale, of(value) / axes.up.scale);
+            let (x, y) = (
+                at / axes.horizontal_quantity.scale,
+                of(value) / axes.vertical_quantity.scale,
+            );
             (axes.x.pixel(x), axes.y.pixel(y))
         };
         samples.map(pixel).collect()
     };
     // After a quarter of a period the motion is the real part of i times the amplitude.
     if later {
-        canvas.lines(&[curve(|[_, im]| -im)], stroke(LATER, 1.6, "6 4"));
+        canvas.lines(
+            &[curve(|[_, im]| -im)],
+            stroke(OUT_OF_PHASE_COLOUR, 1.6, "6 4"),
+        );
     }
-    canvas.lines(&[curve(|[re, _]| *re)], stroke(IN_STEP, 2.0, ""));
+    canvas.lines(&[curve(|[re, _]| *re)], stroke(IN_PHASE_COLOUR, 2.0, ""));
 }
 
-fn axes(shape: &Shape, (left, top, height): (f64, f64, f64)) -> Axes {
+fn field_axes(shape: &Shape, (left, top, height): (f64, f64, f64)) -> Axes {
     let size =
         |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |most, v| v.abs().max(most));
     let largest = size(&mut shape.amplitudes.iter().flatten().copied());
     let moves = largest > ROUNDING;
-    let up = Quantity::scaled(&shape.name, &shape.unit, if moves { largest } else { 1.0 });
+    let up = Quantity::with_prefix(&shape.name, &shape.unit, if moves { largest } else { 1.0 });
     let reach = if moves {
         1.08 * largest / up.scale
     } else {
         1.0
     };
     let furthest = size(&mut shape.positions.iter().copied());
-    let along = Quantity::scaled(&shape.along, "m", furthest);
+    let along = Quantity::with_prefix(&shape.position_name, "m", furthest);
     let places = shape.positions.iter().map(|x| x / along.scale);
-    let range = Range::of(places).unwrap_or(Range {
+    let range = Range::from_places(places).unwrap_or(Range {
         low: 0.0,
         high: 1.0,
     });
@@ -69,32 +75,44 @@ fn axes(shape: &Shape, (left, top, height): (f64, f64, f64)) -> Axes {
         high: reach,
     };
     Axes {
-        x: axis(range.opened(), (left + MARGINS.0, left + FIELD - MARGINS.1)),
+        x: axis(
+            range.widen_point(),
+            (left + MARGINS.0, left + FIELD - MARGINS.1),
+        ),
         y: axis(both, (top + height, top)),
-        along,
-        up,
+        horizontal_quantity: along,
+        vertical_quantity: up,
     }
 }
 
-fn draw_frame(canvas: &mut Canvas, Axes { x, y, along, up }: &Axes, left: f64) {
+fn draw_frame(
+    canvas: &mut Canvas,
+    Axes {
+        x,
+        y,
+        horizontal_quantity: along,
+        vertical_quantity: up,
+    }: &Axes,
+    left: f64,
+) {
     let (edges, (bottom, top)) = (x.pixels, y.pixels);
     for tick in ticks(x.scale, x.range, 5) {
         let at = x.pixel(tick.place);
-        canvas.segments(&[((at, bottom), (at, top))], GRID);
-        write(canvas, &tick.label, (at, bottom + 18.0), Anchor::Middle);
+        canvas.segments(&[((at, bottom), (at, top))], GRID_STROKE);
+        write_text(canvas, &tick.label, (at, bottom + 18.0), Anchor::Middle);
     }
     for tick in ticks(y.scale, y.range, 4) {
         let at = y.pixel(tick.place);
-        canvas.segments(&[((edges.0, at), (edges.1, at))], GRID);
+        canvas.segments(&[((edges.0, at), (edges.1, at))], GRID_STROKE);
         let base = (edges.0 - 7.0, at + 0.35 * TICK_SIZE);
-        write(canvas, &tick.label, base, Anchor::End);
+        write_text(canvas, &tick.label, base, Anchor::End);
     }
     let middle = y.pixel(0.0);
-    canvas.segments(&[((edges.0, middle), (edges.1, middle))], FRAME);
-    outline(canvas, edges, y.pixels);
+    canvas.segments(&[((edges.0, middle), (edges.1, middle))], FRAME_STROKE);
+    draw_outline(canvas, edges, y.pixels);
     let below = ((edges.0 + edges.1) / 2.0, bottom + 38.0);
-    label(canvas, &along.label, below, 0.0);
-    label(
+    draw_label(canvas, &along.label, below, 0.0);
+    draw_label(
         canvas,
         &up.label,
         (left + 20.0, (top + bottom) / 2.0),

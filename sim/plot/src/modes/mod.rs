@@ -2,7 +2,7 @@
 
 mod amplitudes;
 mod field;
-mod look;
+mod styles;
 mod types;
 
 pub use types::{Bar, Mode, Modes, Shape};
@@ -10,18 +10,18 @@ pub use types::{Bar, Mode, Modes, Shape};
 use self::amplitudes::{BARS, ROW};
 use self::field::FIELD;
 use super::PlotError;
-use super::bars::{title, write};
+use super::bars::{draw_title, write_text};
 use super::canvas::{Anchor, Canvas};
 use super::error::is_drawable;
 use super::layout::TICK_SIZE;
-use super::lettering::fitted;
+use super::lettering::truncate_to_width;
 
 /// Minimum height of a frame in px, and space above (title) and below it (ticks and a label).
 const FRAME_HEIGHT: f64 = 110.0;
-const ABOVE: f64 = 32.0;
-const BELOW: f64 = 50.0;
+const SPACE_ABOVE_PX: f64 = 32.0;
+const SPACE_BELOW_PX: f64 = 50.0;
 /// Relative imaginary part above which it is drawn.
-const OUT_OF_STEP: f64 = 0.02;
+const MIN_OUT_OF_PHASE_FRACTION: f64 = 0.02;
 
 /// Draws modes as an SVG document.
 ///
@@ -33,26 +33,26 @@ pub fn modes(of: &Modes) -> Result<String, PlotError> {
         return Err(PlotError::NoPanels);
     };
     for (panel, mode) in of.modes.iter().enumerate() {
-        check(panel, mode)?;
+        check_mode(panel, mode)?;
     }
     let bars = if first.bars.is_empty() { 0.0 } else { BARS };
     let whole = (FIELD * first.fields.len() as f64 + bars).max(560.0);
     let mut canvas = Canvas::default();
     let mut y = 24.0;
-    title(&mut canvas, &of.title, (16.0, y));
+    draw_title(&mut canvas, &of.title, (16.0, y));
     for note in notes(of) {
         y += 20.0;
-        let note = fitted(&note, TICK_SIZE, whole - 32.0);
-        write(&mut canvas, &note, (16.0, y), Anchor::Start);
+        let note = truncate_to_width(&note, TICK_SIZE, whole - 32.0);
+        write_text(&mut canvas, &note, (16.0, y), Anchor::Start);
     }
     y += 8.0;
     for mode in &of.modes {
-        y = draw(&mut canvas, mode, y);
+        y = draw_mode(&mut canvas, mode, y);
     }
     Ok(canvas.document(&of.title, whole, y.ceil() + 4.0))
 }
 
-fn check(panel: usize, mode: &Mode) -> Result<(), PlotError> {
+fn check_mode(panel: usize, mode: &Mode) -> Result<(), PlotError> {
     let empty = |series: &str| PlotError::Empty {
         panel,
         series: series.to_owned(),
@@ -83,7 +83,7 @@ fn check(panel: usize, mode: &Mode) -> Result<(), PlotError> {
 }
 
 fn notes(of: &Modes) -> impl Iterator<Item = String> {
-    let later = of.modes.iter().any(has_later);
+    let later = of.modes.iter().any(has_out_of_phase_part);
     let said =
         "blue: in phase with the largest amplitude; orange, dashed: a quarter of a period later";
     let said = later.then(|| said.to_owned());
@@ -91,7 +91,7 @@ fn notes(of: &Modes) -> impl Iterator<Item = String> {
 }
 
 /// Returns true if a part of a mode is out of phase with its largest amplitude.
-fn has_later(mode: &Mode) -> bool {
+fn has_out_of_phase_part(mode: &Mode) -> bool {
     let shapes = mode.fields.iter().flat_map(|shape| &shape.amplitudes);
     let all = || {
         shapes
@@ -99,27 +99,27 @@ fn has_later(mode: &Mode) -> bool {
             .chain(mode.bars.iter().map(|bar| &bar.amplitude))
     };
     let largest = all().fold(0.0, |most: f64, [re, im]| most.max(re.hypot(*im)));
-    all().any(|[_, im]| im.abs() > OUT_OF_STEP * largest)
+    all().any(|[_, im]| im.abs() > MIN_OUT_OF_PHASE_FRACTION * largest)
 }
 
-fn draw(canvas: &mut Canvas, mode: &Mode, top: f64) -> f64 {
-    let later = has_later(mode);
+fn draw_mode(canvas: &mut Canvas, mode: &Mode, top: f64) -> f64 {
+    let later = has_out_of_phase_part(mode);
     let bars = ROW.0 * mode.bars.len() as f64 + 8.0;
-    let (upper, height) = (top + ABOVE, bars.max(FRAME_HEIGHT));
-    title(canvas, &mode.title, (16.0, top + 22.0));
+    let (upper, height) = (top + SPACE_ABOVE_PX, bars.max(FRAME_HEIGHT));
+    draw_title(canvas, &mode.title, (16.0, top + 22.0));
     let mut left = 0.0;
     for shape in &mode.fields {
-        field::draw(canvas, shape, later, (left, upper, height));
+        field::draw_field(canvas, shape, later, (left, upper, height));
         left += FIELD;
     }
     if !mode.bars.is_empty() {
-        amplitudes::draw(canvas, &mode.bars, later, (left, upper));
+        amplitudes::draw_amplitudes(canvas, &mode.bars, later, (left, upper));
     }
     upper
         + if mode.fields.is_empty() {
             bars
         } else {
-            height + BELOW
+            height + SPACE_BELOW_PX
         }
 }
 
@@ -133,7 +133,7 @@ mod tests {
             fields: vec![Shape {
                 name: "w".to_owned(),
                 unit: "m".to_owned(),
-                along: "x".to_owned(),
+                position_name: "x".to_owned(),
                 positions: vec![0.0, 0.5],
                 amplitudes: vec![[0.0, 0.0], [2.0, 0.0]],
             }],
@@ -145,7 +145,7 @@ mod tests {
         }
     }
 
-    fn drawn(mode: Mode) -> Result<String, PlotError> {
+    fn draw_single_mode(mode: Mode) -> Result<String, PlotError> {
         modes(&Modes {
             modes: vec![mode],
             ..Modes::default()
@@ -162,7 +162,7 @@ mod tests {
             ([0.0, -0.012], ">12.0 mrad, −90°<"),
             ([1e-9, 0.0], ">0<"),
         ] {
-            let svg = drawn(mode(amplitude)).expect("a figure");
+            let svg = draw_single_mode(mode(amplitude)).expect("a figure");
             assert!(svg.contains(number), "{number}: {svg}");
             let out_of_step = amplitude[1].abs() > 0.1;
             assert_eq!(svg.contains("orange"), out_of_step, "{amplitude:?}");
@@ -172,10 +172,10 @@ mod tests {
     #[test]
     fn empty_modes_are_an_error() {
         assert!(modes(&Modes::default()).is_err());
-        assert!(drawn(Mode::default()).is_err());
-        assert!(drawn(mode([f64::NAN, 0.0])).is_err());
+        assert!(draw_single_mode(Mode::default()).is_err());
+        assert!(draw_single_mode(mode([f64::NAN, 0.0])).is_err());
         let mut short = mode([1.0, 0.0]);
         short.fields[0].positions.pop();
-        assert!(drawn(short).is_err());
+        assert!(draw_single_mode(short).is_err());
     }
 }

@@ -30,7 +30,7 @@ pub struct Shape {
     /// SI unit.
     pub unit: String,
     /// Name of the position.
-    pub along: String,
+    pub position_name: String,
     /// Positions in m, ascending.
     pub positions: Vec<f64>,
     /// Amplitudes in the unit, one per position.

@@ -28,7 +28,7 @@ pub(super) fn fig_4(
         .collect();
     let frames = vec![
         Frame {
-            overlaid: true,
+            is_overlaid: true,
             ..history(
                 "(a) dr, b = 0, ω = 10π rad/s",
                 "dr",
@@ -37,7 +37,7 @@ pub(super) fn fig_4(
             )
         },
         Frame {
-            overlaid: true,
+            is_overlaid: true,
             ..spectra("(b)", displays, &drawn, "dr")
         },
         history(
@@ -164,7 +164,7 @@ fn over_order<'a>(title: &str, unit: &str, quantity: &str, of: &'a Convergence) 
             ..panel(title, quantity, curves.collect())
         },
         axes: Axes::Count("S"),
-        overlaid: true,
+        is_overlaid: true,
         ..Frame::default()
     }
 }
