@@ -9,10 +9,11 @@ use eomgen_validate::of_model::unchecked;
 use serde_json::{Value, json};
 
 use crate::certification::document;
+use crate::document::SCHEMA;
 use crate::emission::source;
 use crate::error::{Error, Result, say, say_json, warn};
 use crate::model::{derive, load};
-use crate::output::{SCHEMA, write_file};
+use crate::output::write_file;
 use crate::progress::Note;
 
 const SPECIFICATION: &str = "model-spec/models/planetary_arm.toml";

@@ -12,7 +12,7 @@ use eomgen_model_spec::visible::{visible, visible_in_strings};
 use eomgen_records::Refusal;
 use serde_json::{Value, json};
 
-use crate::output::SCHEMA;
+use crate::document::SCHEMA;
 
 pub type Result<T = (), E = Error> = std::result::Result<T, E>;
 

@@ -11,6 +11,7 @@ mod certification;
 mod checked_in;
 mod commands;
 mod discovery;
+mod document;
 mod emission;
 mod engines;
 mod error;

@@ -12,10 +12,10 @@ use eomgen_model_spec::unit::Unit;
 use eomgen_sim::inputs::HeldInputs;
 use serde_json::{Map, Value, json};
 
+use crate::document::SCHEMA;
 use crate::error::{Error, Result, warn};
 use crate::model::{derive, load, orders};
 use crate::motion::note_moved;
-use crate::output::SCHEMA;
 use crate::settings::{borrowed, split, with_settings};
 
 /// Loads a specification with parameters set and derives it.

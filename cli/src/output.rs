@@ -8,9 +8,6 @@ use tempfile::NamedTempFile;
 
 use crate::error::{Error, Result, say, say_bytes, warn};
 
-/// Version of the JSON documents that the commands print and write.
-pub const SCHEMA: u32 = 2;
-
 /// Destination of a command's output file.
 pub enum Destination {
     /// Stdout, for the name `-`.

@@ -6,9 +6,9 @@ use eomgen_plot::distribution::{Distribution, distribution};
 use eomgen_sweep::{Column, Job, Samples, Table};
 use serde_json::{Map, Value, json};
 
+use crate::document::SCHEMA;
 use crate::error::warn;
 use crate::figures::Shown;
-use crate::output::SCHEMA;
 
 /// Probabilities of the quantiles.
 const PROBABILITIES: [f64; 7] = [0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99];

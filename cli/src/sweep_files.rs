@@ -5,9 +5,10 @@ use std::path::PathBuf;
 use eomgen_sweep::{Folder, Job, Table, merge};
 use serde_json::{Value, json};
 
+use crate::document::SCHEMA;
 use crate::error::{Error, Result, warn};
 use crate::figures::draw;
-use crate::output::{SCHEMA, write_file};
+use crate::output::write_file;
 use crate::parquet_file::encode;
 use crate::sample_statistics::{Statistics, statistics};
 

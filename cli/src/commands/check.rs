@@ -6,9 +6,9 @@ use eomgen_model_spec::model::Model;
 use serde_json::{Value, json};
 
 use crate::arguments::Check;
+use crate::document::SCHEMA;
 use crate::error::{Error, Result, say, say_json, warn_of};
 use crate::model::orders;
-use crate::output::SCHEMA;
 
 /// Model without errors, orders of its fields, and warnings.
 struct Examined {

@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 use serde_json::json;
 
 use crate::arguments::Dataset;
+use crate::document::SCHEMA;
 use crate::error::{Error, Result, say, say_bytes, say_json, warn};
 use crate::model::load;
-use crate::output::{SCHEMA, write_file};
+use crate::output::write_file;
 
 pub fn run(options: &Dataset) -> Result {
     let model = load(&options.spec)?.model;

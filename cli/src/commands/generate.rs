@@ -12,10 +12,11 @@ use crate::arguments::{Extra, Generate};
 use crate::bench_files;
 use crate::certification::document;
 use crate::checked_in;
+use crate::document::SCHEMA;
 use crate::emission;
 use crate::error::{Error, Result, say, say_json, warn};
 use crate::model::{load, orders};
-use crate::output::{SCHEMA, write_file};
+use crate::output::write_file;
 
 const CHECK_WITHOUT_ALL: &str = "`--check` compares the checked-in variants only, as `generate --all \
      --check`; nothing was written\n\nTo compare the files of one model, generate them into another \

@@ -3,10 +3,11 @@
 use serde_json::json;
 
 use crate::arguments::Page;
+use crate::document::SCHEMA;
 use crate::emission::without_impacts;
 use crate::error::{Result, say_json};
 use crate::model::{derive, load, orders};
-use crate::output::{Destination, SCHEMA};
+use crate::output::Destination;
 use crate::page::playable;
 use crate::settings::stabilised;
 

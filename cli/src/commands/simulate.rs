@@ -5,12 +5,13 @@ use serde_json::json;
 
 use crate::arguments::{Simulate, Solver};
 use crate::audit::AuditResult;
+use crate::document::SCHEMA;
 use crate::error::{Error, Result, warn};
 use crate::history;
 use crate::model::{derive, load, orders};
 use crate::motion::{columns, follow, in_words, table};
 use crate::operating_point::initial_state;
-use crate::output::{Destination, SCHEMA};
+use crate::output::Destination;
 use crate::ranges::warn_of_ranges;
 use crate::samples::{check_size, inputs, times};
 use crate::settings::{with_inputs, with_settings};

@@ -4,10 +4,10 @@ use eomgen_sweep::{Folder, Shard};
 use serde_json::{Value, json};
 
 use crate::arguments::Sweep;
+use crate::document::SCHEMA;
 use crate::engines::{self, Submitted};
 use crate::error::{Result, say, say_json};
 use crate::model::load;
-use crate::output::SCHEMA;
 use crate::progress::Bar;
 use crate::settings::{borrowed, settings};
 use crate::sweep_files::finish;

@@ -3,8 +3,8 @@
 use serde_json::json;
 
 use crate::arguments::Tour;
+use crate::document::SCHEMA;
 use crate::error::{Error, Result, say, say_bytes};
-use crate::output::SCHEMA;
 use crate::tour::{self, TourResult};
 
 pub fn run(options: &Tour) -> Result {

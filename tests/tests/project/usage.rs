@@ -50,7 +50,12 @@ fn rejection(arguments: &[String]) -> String {
     let shown = arguments.join(" ");
     assert_eq!(output.status.code(), Some(2), "{shown}: {message}");
     assert!(message.starts_with("error: "), "{shown}: {message}");
-    assert!(output.stdout.is_empty(), "{shown}");
+    if arguments.iter().any(|argument| argument == "--json") {
+        let document: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        assert!(document["error"]["message"].is_string(), "{shown}");
+    } else {
+        assert!(output.stdout.is_empty(), "{shown}");
+    }
     let left = std::fs::read_dir(folder.path())
         .expect("the folder")
         .count();

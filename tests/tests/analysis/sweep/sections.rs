@@ -153,7 +153,7 @@ fn invalid_sections_are_rejected() {
         ),
         (
             &["--measure", "poincare", "--section", "x=0", "--until", "-1"],
-            "above 0",
+            "greater than 0",
         ),
         (&["--measure", "poincare"], "--section NAME=VALUE"),
     ] {
