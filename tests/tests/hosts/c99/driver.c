@@ -1,17 +1,17 @@
-/* Calls every function of a model at states that both drivers make in the same way, and prints
- * the bits of what they give, a line each. */
+/* Calls every function of a model at the same states as the Rust driver and prints the bits of
+ * each result on a line. */
 #include "NAME.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define POINTS 36
-/* From here on, something is extreme or no number at all. */
+/* First point with extreme or non-finite numbers. */
 #define EXTREME 24
 
 static uint64_t seed = 0x9e3779b97f4a7c15;
 
-/* From -1 to 1, times a scale that changes from point to point. */
+/* Returns a uniform number from -scale to scale. */
 static double uniform(double scale) {
     seed = seed * 6364136223846793005u + 1442695040888963407u;
     return ((double)(seed >> 11) / 4503599627370496.0 - 1.0) * scale;
@@ -121,7 +121,7 @@ int main(void) {
             t, state, &inputs, &coefficients, weights, product, &input_product
         );
         show("vector_jacobian_product", product, NAME_STATES);
-        /* A structure of numbers alone lies as an array of them. */
+        /* A structure of numbers only has the layout of an array. */
         show("of_inputs", (const NAME_real *)(const void *)&input_product, NAME_INPUTS);
         NAME_vector_jacobian_product_by_parameters(
             t, state, &inputs, &coefficients, weights, by_parameters

@@ -1,5 +1,5 @@
-/* Two models in one program, one of them in a shared library loaded twice, all of it called
- * from several threads: every call has the bits of the first. */
+/* Calls two models, one of them in a shared library loaded twice, from several threads. Every call
+ * must have the bits of the first. */
 #define _POSIX_C_SOURCE 200809L
 #include "first.h"
 #include "second.h"
@@ -16,7 +16,7 @@ enum { THREADS = 4, CALLS = 20000 };
 
 static rates_of_second *loaded[2];
 
-/* Bits of the rates of both models at a place, the second's by itself and as loaded. */
+/* Computes the rates of both models at a point, those of the second also by the loaded libraries. */
 static int calls(int place, double *rates) {
     first_parameters p;
     first_coefficients c;

@@ -30,7 +30,7 @@ point = [numpy.array([t]), x, u, p]
 found = numpy.array(rates(t, x, u, p)).ravel()
 assert (found == expected).all(), (found, expected)
 
-# By a graph of CasADi's own, which asks for `jac_rates`.
+# Jacobian from a CasADi graph, which calls `jac_rates`.
 symbols = [casadi.MX.sym(name, rates.size1_in(i)) for i, name in enumerate("txup")]
 value = rates(*symbols)
 for argument, symbol in enumerate(symbols):
@@ -47,7 +47,7 @@ for argument, symbol in enumerate(symbols):
             moved[argument][column] += sign * step
             ends.append(numpy.array(rates(*moved)).ravel())
         differences[:, column] = (ends[0] - ends[1]) / (2 * step)
-        # What rounding leaves of a difference of rates of this size.
+        # Rounding error of a difference of rates of this magnitude.
         rest = 1e-14 * numpy.abs(found).max() / step + 1e-6 * numpy.abs(exact[:, column]).max()
         worst = numpy.abs(differences[:, column] - exact[:, column]).max()
         assert worst <= rest, (argument, column, worst, rest)
@@ -79,7 +79,7 @@ if hasattr(ctypes.CDLL(library), "adj1_rates"):
             moved[column] += sign * step
             ends.append(numpy.array(gradient(moved)).ravel())
         difference = (ends[0] - ends[1]) / (2 * step)
-        # Each row on the scale of its gradient: entries are in units of their own.
+        # Each row is scaled by its gradient, because entries have different units.
         rest = 1e-10 * numpy.abs(first) / step + 1e-6 * numpy.abs(exact[:, column]) + 1e-12
         assert (numpy.abs(difference - exact[:, column]) <= rest).all(), (
             column,

@@ -37,6 +37,6 @@ for value in function(*symbols):
                 ends.append(numpy.array(whole(*moved)).ravel())
             difference = (ends[0] - ends[1]) / (2 * step)
             worst = numpy.abs(difference - exact[:, column]).max()
-            # What rounding leaves of a difference of numbers of this size.
+            # Rounding error of a difference of numbers of this magnitude.
             rest = 1e-15 * size / step * 10 + 1e-5 * numpy.abs(exact[:, column]).max()
             assert worst <= rest, (argument, column, worst, rest)

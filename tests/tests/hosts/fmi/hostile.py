@@ -1,4 +1,4 @@
-"""Calls a unit as nobody should: every call has to give back a status, and none may crash.
+"""Calls a unit in invalid ways: every call must return a status, and none may crash.
 
 Arguments: the unit, and `fmu2` or `fmu3`.
 """
@@ -117,7 +117,7 @@ assert get(None, [1])[0] == ERROR and step(None, 0.0, 1.0) == ERROR
 assert call("Reset", None) == ERROR and call("GetFMUstate" if is_two else "GetFMUState", None, None) == ERROR
 
 one = instantiate(False)
-# In the wrong state, backwards, from elsewhere, without end.
+# Wrong state, backward step, wrong start time, infinite time.
 assert step(one, 0.0, 0.1) == ERROR
 assert call("ExitInitializationMode", one) == ERROR
 assert call("EnterContinuousTimeMode", one) == ERROR
@@ -126,7 +126,7 @@ assert initialise(one, start=float("inf")) == ERROR
 assert initialise(one) == OK
 for t, h in [(0.0, -0.1), (0.0, 0.0), (0.0, float("nan")), (0.0, float("inf")), (5.0, 0.1), (float("nan"), 0.1)]:
     assert step(one, t, h) == ERROR, (t, h)
-# Variables that are not there, numbers that are none, null pointers.
+# Unknown variables, non-finite numbers, null pointers.
 assert get(one, [variables])[0] == ERROR and get(one, [2**32 - 1])[0] == ERROR
 assert get(one, list(range(variables)))[0] == OK
 assert call("GetReal", one, None, c_size_t(0), None) == OK if is_two else True
@@ -140,19 +140,19 @@ for number in (float("nan"), float("inf")):
         assert put(one, [which], [number]) == ERROR
 assert put(one, references["local"][:1], [0.0]) == ERROR
 assert put(one, references["output"][:1], [0.0]) == ERROR
-# All are set or none.
+# An invalid variable in a list leaves all unchanged.
 first = references["parameter"][0]
 _, (value,) = get(one, [first])
 assert put(one, [first, variables], [value * 2, 0.0]) == ERROR and get(one, [first]) == (OK, [value])
-# What is not admissible, by the description.
+# Values outside the bounds of the description.
 for reference, bound in re.findall(r'valueReference="(\d+)"[^<]*(?:<Real )?[^<>]*min="([^"]*)"', description):
     messages.clear()
     assert put(one, [int(reference)], [float(bound) - 1.0]) == ERROR and b"admissible" in messages[0], messages
-# Of other types there are none.
+# There are no variables of other types.
 assert call("GetBoolean", one, vr(1), n, None, *([] if is_two else [n])) == ERROR
 assert call("SetString", one, vr(1), n, None, *([] if is_two else [n])) == ERROR
 
-# Saved states: the same motion twice, also as bytes; cut or altered bytes are refused.
+# Saved states give the same motion, also as bytes; truncated or altered bytes are rejected.
 state = "state" if is_two else "State"
 deserialise = "DeSerializeFMUstate" if is_two else "DeserializeFMUState"
 saved, again = c_void_p(), c_void_p()
@@ -180,7 +180,7 @@ for copy in (saved, again, saved):
     assert call("FreeFMU" + state, one, byref(copy)) == OK and not copy.value
 assert call("SetFMU" + state, one, None) == ERROR
 
-# Model exchange: steps only in co-simulation, states as many as there are.
+# Model exchange: steps exist in co-simulation only, and the number of states must match.
 assert step(exchange, 0.0, 0.1) == ERROR
 assert call("SetContinuousStates", exchange, doubles(*[0.0] * states), c_size_t(states)) == ERROR
 assert initialise(exchange) == OK
@@ -194,7 +194,7 @@ huge = doubles(*[1e300] * states)
 assert call("SetContinuousStates", exchange, huge, c_size_t(states)) == OK
 assert call(rates, exchange, doubles(*[0.0] * states), c_size_t(states)) in (OK, DISCARD)
 
-# Derivatives of what has none.
+# Derivatives of variables without derivatives.
 unknown, known, seed, result = vr(states + 1), vr(variables + 5), doubles(1.0), doubles(0.0)
 counts = [] if is_two else [n]
 for pair in ((unknown, known), (known, unknown), (unknown, vr(0)), (None, None)):
@@ -202,7 +202,7 @@ for pair in ((unknown, known), (known, unknown), (unknown, vr(0)), (None, None))
     assert call("GetDirectionalDerivative", *arguments) == ERROR, pair
 assert call("NewDiscreteStates" if is_two else "EnterStepMode", one, None) == ERROR
 
-# Reset gives the beginning back; instances in threads do not know of each other.
+# Reset restores the initial state; instances in threads are independent.
 assert call("Terminate", one) == OK and step(one, 0.01, 0.01) == ERROR
 assert call("Reset", one) == OK and initialise(one) == OK and step(one, 0.0, 0.01) == OK
 assert get(one, references["output"]) == (OK, there)

@@ -1,5 +1,5 @@
 // Runs a module at points: reads module.wasm and points.bin, writes results.bin, all numbers f64.
-// A point is parameters, t, state, inputs; its results are whether the coefficients may be used,
+// A point is parameters, t, state, inputs; its results are the validity of the coefficients,
 // rates, observables, guards.
 import { readFileSync, writeFileSync } from "node:fs";
 

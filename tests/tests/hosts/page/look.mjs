@@ -1,6 +1,6 @@
-// Opens a page in a browser without a window and with its network off, runs a probe in it and prints
-// what the probe returns, with every error that the page or the browser reported. Spoken is the
-// DevTools protocol, over pipes.
+// Opens a page in an offline headless browser, runs a probe in it and prints the result of the probe
+// and all errors of the page and the browser. Controls the browser by the DevTools protocol over
+// pipes.
 import { spawn } from "node:child_process";
 import { readFileSync } from "node:fs";
 

@@ -1,5 +1,5 @@
-// The motion of a page without the page: its own script and data, integrated in turns as frames would be.
-// Prints the state at the end and how many switches there were.
+// Integrates the motion of a page with its script and data, frame by frame, without a browser.
+// Prints the final state and the number of switches.
 import { readFileSync } from "node:fs";
 
 const [page, script, end] = process.argv.slice(2);

@@ -1,5 +1,5 @@
-// What the report of a discovery computes, without a browser: what is left of each channel with the first
-// parameter of its sliders as it was found, or at a value.
+// Computes the residuals of the report of `discover` without a browser: one per channel, with the
+// parameter of the first slider at its found value or at a given value.
 import { readFileSync } from "node:fs";
 
 const [page, motion, playback, value] = process.argv.slice(2);

@@ -1,4 +1,4 @@
-// Runs in a page under test: plays with it; what it saw.
+// Runs in a page under test: operates its controls and returns the observations.
 (async () => {
   const wait = (time) => new Promise((done) => setTimeout(done, time));
   const find = (id) => document.getElementById(id);
@@ -8,7 +8,7 @@
     control.dispatchEvent(new Event("input", { bubbles: true }));
   };
   const clock = () => find("clock").textContent;
-  /** Waits until something holds, though not for ever. */
+  /** Waits until a condition is true, with a timeout. */
   const until = async (holds, turns = 20) => {
     for (let turn = 0; turn < turns && !holds(); turn += 1) await wait(50);
     return holds();

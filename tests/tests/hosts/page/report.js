@@ -1,4 +1,4 @@
-// Runs in the report of a discovery: moves what was found; what it saw.
+// Runs in the report of `discover`: moves the sliders and returns the observations.
 (async () => {
   const wait = (time) => new Promise((done) => setTimeout(done, time));
   const until = async (holds) => {
