@@ -13,7 +13,7 @@ use eomgen_model_spec::model::Model;
 pub fn project() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
         .parent()
-        .expect("the package lies in the project")
+        .expect("the package is in the project")
 }
 
 /// Returns the paths of all shipped specifications, sorted by name.

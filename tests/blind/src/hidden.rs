@@ -142,7 +142,7 @@ impl Hidden {
             Effect::AsymmetricBacklash => machine.mesh(&self.on).expect("a mesh").middle = amount,
             Effect::InputGain | Effect::InputBias => {
                 let Machine::TwoBodies(bodies) = machine else {
-                    panic!("only two bodies have a drive that is not as recorded");
+                    panic!("only two bodies have drive faults");
                 };
                 match self.effect {
                     Effect::InputGain => bodies.actuator.0 = amount,
@@ -164,13 +164,13 @@ impl Hidden {
             Effect::EndStop if self.sign > 0.0 => spring.upper = stop,
             Effect::EndStop => spring.lower = stop,
             Effect::EndStops => (spring.upper, spring.lower) = (stop, stop),
-            other => panic!("{other:?} does not sit in a spring"),
+            other => panic!("{other:?} is not an effect of a spring"),
         }
     }
 
     fn hide_in_arm(&self, machine: &mut Machine, amount: f64, repeating: (f64, f64, f64)) {
         let Machine::Arm(arm) = machine else {
-            panic!("only the arm bends");
+            panic!("only the arm is flexible");
         };
         match self.effect {
             Effect::StructuralDamping => arm.loss = amount,
@@ -178,7 +178,7 @@ impl Hidden {
             Effect::StiffnessNonlinearity => arm.cubic = amount,
             Effect::JointCompliance => arm.compliance = amount,
             Effect::Gravity => arm.weight = (repeating.1, repeating.2),
-            other => panic!("{other:?} does not sit in an arm"),
+            other => panic!("{other:?} is not an effect of the arm"),
         }
         arm.prepare();
     }
@@ -199,7 +199,7 @@ impl Hidden {
             Effect::WornFriction => axis.strange = Strange::Worn(amount),
             Effect::ForeignHum => axis.strange = Strange::Hum(amount, self.order),
             Effect::WeakeningDrive => axis.strange = Strange::Weakening(amount),
-            other => panic!("{other:?} does not sit on an axis"),
+            other => panic!("{other:?} is not an effect on an axis"),
         }
     }
 

@@ -57,7 +57,7 @@ fn lossless_arm_conserves_energy() {
         let start = state_in_motion(compliance > 0.0);
         let deviation = |steps: usize| {
             let end = advance_state(&arm, &start, 0.05, steps);
-            assert!((end[0] - start[0]).abs() > 1e-3, "it hardly moves");
+            assert!((end[0] - start[0]).abs() > 1e-3, "the motion is too small");
             (arm.energy(&end) / arm.energy(&start) - 1.0).abs()
         };
         let (coarse, fine) = (deviation(20_000), deviation(80_000));
@@ -117,7 +117,7 @@ fn two_bodies_conserve_energy_without_losses_only() {
         let start = [0.02, 0.3, -0.5, 1.0, 0.0, 0.0];
         let energy = bodies.energy(&start);
         let end = advance_state(&bodies, &start, 1.0, 20_000);
-        assert!((end[0] - start[0]).abs() > 1e-3, "it hardly moves");
+        assert!((end[0] - start[0]).abs() > 1e-3, "the motion is too small");
         let scale = bodies.energy(&[0.0, 0.3, 0.0, 1.0, 0.0, 0.0]).abs();
         assert!(
             (bodies.energy(&end) - energy).abs() < 1e-9 * scale,

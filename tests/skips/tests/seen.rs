@@ -27,7 +27,7 @@ fn skip_of_passing_test_is_printed_and_listed() {
         let line = format!("SKIPPED: {name}: nothing was tested: everything is missing\n");
         assert!(seen.contains(&line), "{seen}");
         let listed = std::fs::read_to_string(&list).expect("a list");
-        assert_eq!(listed, line.repeat(lines), "run after run is added");
+        assert_eq!(listed, line.repeat(lines), "each run appends a line");
     }
 }
 

@@ -24,7 +24,7 @@ const LIMIT: Duration = Duration::from_secs(280);
 fn arm_with_friction() -> Machine {
     let mut machine = Kind::Arm.nominal();
     let Machine::Arm(arm) = &mut machine else {
-        panic!("the arm is one");
+        panic!("expected the arm");
     };
     arm.modes = 2;
     arm.on_carrier = AxisForces {
@@ -123,7 +123,7 @@ fn dry_friction_of_the_joint_is_found_with_place_and_sign() {
     for (name, noise) in [("theta_s", 6e-5), ("theta_c", 3e-5), ("tip", 1.5e-5)] {
         for set in ["train", "test"] {
             let left = compared["gap"][name][set].as_f64().expect("a gap");
-            assert!(left < 1.2 * noise, "{name}, {set}: {left} for {noise}");
+            assert!(left < 1.2 * noise, "{name}, {set}: {left}, noise {noise}");
         }
     }
 }

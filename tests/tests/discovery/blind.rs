@@ -59,7 +59,7 @@ fn finished_case_is_not_run_again() {
     let result = folder.path().join("results/007.json");
     records::write_whole(&result, "kept").expect("a file");
     let nowhere = Path::new("/nowhere/at/all");
-    run(nowhere, folder.path(), 7, Duration::from_secs(1)).expect("nothing is run");
+    run(nowhere, folder.path(), 7, Duration::from_secs(1)).expect("the case is skipped");
     assert_eq!(std::fs::read_to_string(&result).expect("a file"), "kept");
     assert!(run(nowhere, folder.path(), 8, Duration::from_secs(1)).is_err());
 }

@@ -452,7 +452,7 @@ impl Machine {
             let found = found.unwrap_or_else(|| panic!("no {name}: {shown}"));
             assert!(
                 (found - value).abs() <= 0.2 * value.abs(),
-                "{name} = {found} for {value}: {shown}"
+                "{name} = {found}, expected {value}: {shown}"
             );
         }
     }

@@ -60,7 +60,7 @@ fn catalogue_effects_keep_shipped_specifications_valid() {
         let homes = homes.get(&place).map_or(0, BTreeSet::len);
         assert!(
             homes > 0,
-            "`{}` ({}) has no place anywhere",
+            "`{}` ({}) has no site in any shipped specification",
             effect.name,
             effect.says
         );

@@ -20,7 +20,7 @@ fn parameter(text: &str, name: &str) -> f64 {
     let mut own = lines.filter(|line| line.starts_with(&format!("{name} = {{")));
     let line = own.next().expect("the parameter");
     let (_, rest) = line.split_once("value = ").expect("a value");
-    let (value, _) = rest.split_once(',').expect("more after it");
+    let (value, _) = rest.split_once(',').expect("text after the value");
     value.parse().expect("a number")
 }
 

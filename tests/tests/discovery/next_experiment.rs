@@ -256,7 +256,7 @@ fn experiment_separates_asymmetric_from_symmetric_friction() {
     let left = compared["gap"]["x"]["test"].as_f64().expect("a number") / wrong.noise;
     assert!(
         (0.8..1.3).contains(&(left / predicted)),
-        "{left} for {predicted}"
+        "{left}, expected {predicted}"
     );
 }
 

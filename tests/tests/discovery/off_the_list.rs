@@ -131,7 +131,7 @@ fn assert_near(effect: &Value, name: &str, hidden: f64, part: f64) {
     let value = value.unwrap_or_else(|| panic!("no {name}: {effect:#}"));
     assert!(
         (value - hidden).abs() <= part * hidden.abs(),
-        "{value} for {hidden}"
+        "{value}, expected {hidden}"
     );
 }
 

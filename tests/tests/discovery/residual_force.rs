@@ -133,8 +133,8 @@ fn residual_force_with(hidden: &dyn Fn(f64, f64) -> f64, specification: &str) ->
 
 fn residual_force_in(folder: &Path, specification: &str) -> ResidualForce {
     let model = eomgen_model_spec::check(Source::new("two_carriages.toml", specification));
-    let model = model.expect("a sound specification").model;
-    let dataset = read_dataset(&folder.join("dataset.toml"), &model).expect("a sound dataset");
+    let model = model.expect("a valid specification").model;
+    let dataset = read_dataset(&folder.join("dataset.toml"), &model).expect("a valid dataset");
     let problem = EstimationProblem::new(&dataset, None, "two_carriages.toml", specification);
     let fit = null_fit(&problem, specification).expect("a fit");
     residual_force(&problem, &fit, None).expect("neighbouring motions")

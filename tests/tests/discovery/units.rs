@@ -127,7 +127,7 @@ fn assert_same_results(truth: &str, machine: &Machine, channel: &Channel, others
 fn write_in_units(folder: &Path, machine: &Machine, channel: &Channel, units: Units) {
     let specification = in_units(&machine.specification, units);
     fs::write(folder.join("model.toml"), specification).expect("a file");
-    let above = folder.parent().expect("a folder above");
+    let above = folder.parent().expect("a parent folder");
     for name in ["train.csv", "test.csv"] {
         let table = Table::read(&above.join(name));
         let columns = [("t", "s"), ("u", machine.input.0), (channel.1, channel.2)];

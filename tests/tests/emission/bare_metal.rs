@@ -87,7 +87,7 @@ fn assert_no_count_has_risen(kept_at: &str, printed: &str, with_c: bool) {
     if with_c && std::env::var_os("EOMGEN_REFRESH").is_some() {
         std::fs::write(&path, printed.as_bytes()).expect("written");
     }
-    let kept = std::fs::read_to_string(path).expect("the counts as kept");
+    let kept = std::fs::read_to_string(path).expect("the recorded counts");
     let (mut kept, now) = (parse_counts(&kept), parse_counts(printed));
     if !with_c {
         kept.retain(|(name, _)| !name.ends_with(" in C"));

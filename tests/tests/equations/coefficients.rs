@@ -109,7 +109,10 @@ fn named_coefficients_match_equation_22() {
             assert_eq!(found.len(), expected.len(), "{name} at order {order}");
             for (found, expected) in found.iter().zip(&expected) {
                 let deviation = (found - expected).abs() / expected.abs();
-                assert!(deviation <= TOLERANCE, "{name}: {found:e} for {expected:e}");
+                assert!(
+                    deviation <= TOLERANCE,
+                    "{name}: {found:e}, expected {expected:e}"
+                );
             }
         }
         assert_eq!(named.names.len(), 28, "{:?}", named.names);
@@ -234,7 +237,7 @@ fn named_coefficients_assemble_the_equations() {
                 let deviation = (sum - acceleration).abs() / largest;
                 assert!(
                     deviation <= TOLERANCE,
-                    "order {order}: {sum} for {acceleration}"
+                    "order {order}: {sum}, expected {acceleration}"
                 );
             }
         }

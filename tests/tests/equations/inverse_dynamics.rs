@@ -180,7 +180,7 @@ fn compare_with_oracle(model: &Model) -> (usize, usize) {
         assert!(evaluator.inverse_dynamics(point, &accelerations, &mut found));
         let equations = oracle
             .equations(sample.time, &sample.state, &sample.inputs)
-            .expect("the state fits");
+            .expect("a state of this model");
         for (found, expected) in found.iter().zip(equations.missing_forces(&accelerations)) {
             let off = (found - expected.value).abs();
             assert!(

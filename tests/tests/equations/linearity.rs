@@ -10,11 +10,11 @@ use eomgen_tests::models::{load, shipped};
 
 fn kind_of(text: &str) -> String {
     let source = Source::new("test.toml", text);
-    kind(&check(source).expect("the specification is right").model)
+    kind(&check(source).expect("a valid specification").model)
 }
 
 fn kind(model: &Model) -> String {
-    let orders = model.orders(None).expect("the orders are right");
+    let orders = model.orders(None).expect("valid orders");
     let equations = derive(model, &orders).expect("the model can be derived");
     match linearity(&equations) {
         Linearity::Linear => "linear".to_owned(),

@@ -63,7 +63,7 @@ fn certificates_of_correct_models_pass() {
         }
     }
     println!(
-        "{} false alarms of {count} right models, seed {seed}",
+        "{} false alarms for {count} correct models, seed {seed}",
         alarms.len()
     );
     assert!(
@@ -108,7 +108,7 @@ fn requested_outputs_of_correct_models_pass() {
         }
     }
     println!(
-        "{} false alarms of {count} models, seed {seed}",
+        "{} false alarms for {count} models, seed {seed}",
         alarms.len()
     );
     assert!(
@@ -155,7 +155,7 @@ fn relative_error_of_1e_7_in_a_term_is_detected() {
     }
     let not_seen = unseen.len();
     println!(
-        "of {faults} faults {within_rounding} are within rounding, {not_seen} not seen, seed {seed}"
+        "{faults} faults: {within_rounding} within rounding, {not_seen} not detected, seed {seed}"
     );
     assert!(unseen.is_empty(), "{}", unseen.join("\n\n"));
     assert!(within_rounding * 100 <= faults);

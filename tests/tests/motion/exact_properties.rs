@@ -57,7 +57,7 @@ fn compare_solvers(subject: &Subject, until: f64, smallest: f64) -> Result<(), T
     let found = difference(&exact.states, &fine.states, smallest);
     prop_assert!(
         found <= 2.0 * doubt + MAX_ROUNDING,
-        "{:e} where {:e}, {} switches",
+        "difference {:e}, uncertainty {:e}, {} switches",
         found,
         doubt,
         exact.switches.len()

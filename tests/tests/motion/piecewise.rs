@@ -31,7 +31,7 @@ fn compare_and_simulate(subject: &Subject, until: f64) -> Trajectory {
     let times = grid(until, 40);
     let exact = subject.exact((0.0, until), &times);
     let general = subject.general((0.0, until), &times, 1e-12);
-    let general = general.expect("a motion that is not held on a surface");
+    let general = general.expect("a motion without sticking");
     let found = difference(&exact.states, &general.states, 1e-3);
     assert!(found < MAX_DIFFERENCE, "{found:e}");
     exact
@@ -280,9 +280,7 @@ fn samples(subject: &Subject, random: &mut Random, tally: &mut Tally) -> Option<
 }
 
 fn compare_rates(subject: &Subject, samples: &[Sample], place: &str, tally: &mut Tally) {
-    let mut propagator = subject
-        .propagator()
-        .expect("a model that is linear by pieces");
+    let mut propagator = subject.propagator().expect("a piecewise linear model");
     for sample in samples {
         let found = propagator.rates(sample.t, &sample.state, &[sample.input]);
         let found = found.expect("rates").values;
@@ -323,7 +321,10 @@ fn compare_motions(subject: &Subject, place: &str, tally: &mut Tally) {
     let found = difference(&exact.states, &fine.states, 0.1);
     if doubt > 0.1 * MAX_DIFFERENCE {
         tally.uncertain += 1;
-        assert!(found < 10.0 * doubt, "{found:e} where {doubt:e}\n{place}");
+        assert!(
+            found < 10.0 * doubt,
+            "difference {found:e}, uncertainty {doubt:e}\n{place}"
+        );
         return;
     }
     assert!(found < MAX_DIFFERENCE, "{found:e}\n{place}");
@@ -374,9 +375,9 @@ fn compare_kernels(batch: &[Emitted], tally: &mut Tally) {
     );
     compiler::write(&file, &source).expect("a file");
     let built = compiler.compile(&file, &program, Optimization::None, &[]);
-    let built = built.expect("a compiler that ends");
+    let built = built.expect("the compiler ends");
     assert!(built.success, "{}", built.stderr);
-    let run = compiler::execute(&program, &lines).expect("a program that ends");
+    let run = compiler::execute(&program, &lines).expect("the program ends");
     assert!(run.success, "{}", run.stderr);
     let mut found = run.stdout.lines();
     for (_, samples, place) in batch {

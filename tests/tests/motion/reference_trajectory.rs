@@ -150,7 +150,7 @@ fn assert_matches_regression(found: &Columns) {
             let deviation = (value - expected).abs();
             assert!(
                 deviation <= GENERAL_TOLERANCE,
-                "{name} at {t} s: {value} for {expected}"
+                "{name} at {t} s: {value}, expected {expected}"
             );
         }
     }

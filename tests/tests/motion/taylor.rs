@@ -147,7 +147,10 @@ fn motion_is_independent_of_step_size() {
     let times = milliseconds(2000);
     let chosen = Run::<DoubleDouble>::of(case(4, 100e-6), &times, LONGEST);
     let finer = Run::<DoubleDouble>::of(case(4, 100e-6), &times, 1.0 / 32768.0);
-    assert!(finer.steps * 2 > chosen.steps * 3, "not finer");
+    assert!(
+        finer.steps * 2 > chosen.steps * 3,
+        "the smaller step needs too few steps"
+    );
     assert_eq!(chosen.counts(), finer.counts());
     let deviations =
         (0..times.len()).map(|sample| (chosen.tip(sample) - finer.tip(sample)).nearest());

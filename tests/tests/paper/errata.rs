@@ -19,7 +19,7 @@ fn with_parameters(model: &Model, parameters: &PlanetaryArmParameters) -> Model 
         let unit = &known.expect("a parameter of the specification").unit;
         changed = changed
             .with_parameter(name, unit.from_si(value))
-            .expect("a value that may be set");
+            .expect("a valid value");
     }
     changed
 }
@@ -58,7 +58,10 @@ fn derivation_matches_corrected_rows_and_differs_from_misprints() {
             row.agrees_with_corrected(),
             "differs from the correction: {row:?}"
         );
-        assert!(row.differs_from_printed(), "as misprinted: {row:?}");
+        assert!(
+            row.differs_from_printed(),
+            "agrees with the misprint: {row:?}"
+        );
     }
     let misprints = table
         .rows

@@ -98,7 +98,7 @@ fn check_frequencies(case: &Value) {
     // Mesh compliance and higher modes change the frequency by less than 1 part in 1000.
     assert!(
         (first / expected - 1.0).abs() < 1e-3,
-        "{first} Hz for {expected} Hz"
+        "{first} Hz, expected {expected} Hz"
     );
     assert!(
         (clamped - 32.5).abs() < 0.1 && (first - 37.3).abs() < 0.1,

@@ -137,7 +137,7 @@ fn assert_assumed_values_match_page(found: &Value) {
         for name in named {
             assert_eq!(
                 kept[name], found[name],
-                "{id}: run `paper claims` again, as docs/claims.md says"
+                "{id}: run the command of docs/claims.md again"
             );
         }
     }

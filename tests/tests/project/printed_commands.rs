@@ -430,7 +430,7 @@ fn output_without_command_is_compared_in_another_test() {
             .iter()
             .find(|(first, _)| block.lines[0] == *first);
         let (_, file) = known.unwrap_or_else(|| panic!("output without a command: {block:#?}"));
-        let kept = std::fs::read_to_string(project().join(file)).expect("the message as kept");
+        let kept = std::fs::read_to_string(project().join(file)).expect("the recorded message");
         // The location is that of another file.
         for line in block.lines.iter().take_while(|line| !line.contains("-->")) {
             assert!(kept.contains(line.trim()), "{line} is not in {file}");

@@ -139,11 +139,11 @@ fn axis_under_held_force_matches_closed_form() {
         let expected = closed_form(*t);
         assert!(
             (q - expected[0]).abs() <= TOLERANCE,
-            "q = {q} at {t} s for {expected:?}"
+            "q = {q} at {t} s, expected {expected:?}"
         );
         assert!(
             (v - expected[1]).abs() <= TOLERANCE,
-            "q' = {v} at {t} s for {expected:?}"
+            "q' = {v} at {t} s, expected {expected:?}"
         );
     }
     let fastest = sampled.iter().map(|row| row[2]).fold(0.0, f64::max);

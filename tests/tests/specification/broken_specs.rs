@@ -55,7 +55,7 @@ fn reject_without_files(spec: &Path) -> String {
     let left: Vec<_> = std::fs::read_dir(folder.path())
         .expect("the folder")
         .collect();
-    assert!(left.is_empty(), "{}: left {left:?}", spec.display());
+    assert!(left.is_empty(), "{}: wrote {left:?}", spec.display());
     reject(&["check"], spec)
 }
 
@@ -75,7 +75,11 @@ fn corpus_files_are_rejected_with_location() {
         .map(|entry| entry.expect("an entry").path())
         .collect();
     specs.retain(|spec| spec.extension().is_some_and(|ending| ending == "toml"));
-    assert!(specs.len() >= 20, "only {} files", specs.len());
+    assert!(
+        specs.len() >= 20,
+        "only {} files in the corpus",
+        specs.len()
+    );
     for spec in specs {
         let message = reject_without_files(&spec);
         let golden = std::fs::read_to_string(spec.with_extension("txt")).expect("its message");

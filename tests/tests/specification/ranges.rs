@@ -46,7 +46,7 @@ fn leaving_range_warns_with_name_and_time() {
     let warning = said
         .lines()
         .find(|line| line.contains("`x`"))
-        .expect("of x");
+        .expect("a warning about `x`");
     assert!(
         warning.starts_with("warning: `x` leaves its range -0.6 to 0.25 m"),
         "{said}"

@@ -35,7 +35,7 @@ pub fn with_both<R>(
 fn derive((path, order): Specification) -> [Evaluator; 2] {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
     let Ok(checked) = eomgen_model_spec::load(&path) else {
-        panic!("{} is no specification", path.display());
+        panic!("{} is not a specification", path.display());
     };
     let orders = checked.model.orders(Some(order)).expect("an order");
     let Ok(variant) = Variant::derive_with(&checked.model, &orders, &Output::ALL) else {

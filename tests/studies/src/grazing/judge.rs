@@ -107,7 +107,7 @@ pub fn judge(machine: &Machine) -> Result<Verdict, String> {
                     verdict.difference = verdict.difference.max(difference);
                     (rise > 1.0 || difference > 1.0).then(|| {
                         format!(
-                            "energy {rise:.1e} and difference {difference:.1e} of what is allowed"
+                            "energy {rise:.1e} and difference {difference:.1e} relative to the allowed values"
                         )
                     })
                 }

@@ -39,7 +39,7 @@ fn sweep_matches_closed_form() {
         // largest omega, times a resonance of a few m.
         assert!(
             (mean - expected).abs() < 1e-9,
-            "{point}: {mean} for {expected}"
+            "{point}: {mean}, expected {expected}"
         );
         for name in ["poincare_min", "poincare_max"] {
             assert!((column(&table, name)[point] - expected).abs() < 1e-9);
@@ -69,7 +69,10 @@ fn varied_expression_and_set_parameter_match_simulate() {
     let expected: f64 = last.expect("x").parse().expect("a number");
     let found = column(&swept, "poincare_2")[1];
     // Two runs of the exact solver with different samples; the table has all digits.
-    assert!((found - expected).abs() < 1e-13, "{found} for {expected}");
+    assert!(
+        (found - expected).abs() < 1e-13,
+        "{found}, expected {expected}"
+    );
 }
 
 #[test]
@@ -128,7 +131,7 @@ fn kill_after(mut child: Child, folder: &Path, some: usize) {
     while count_finished(folder) < some {
         assert!(Instant::now() < deadline, "no parts in a minute");
         let ended = child.try_wait().expect("a child");
-        assert!(ended.is_none(), "it ended before it was killed: {ended:?}");
+        assert!(ended.is_none(), "the run ended before the kill: {ended:?}");
         std::thread::sleep(Duration::from_millis(1));
     }
     child.kill().expect("SIGKILL");

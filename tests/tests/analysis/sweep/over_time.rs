@@ -34,7 +34,7 @@ fn forced_response_has_closed_form_amplitude() {
             let found = column(&table, name)[point];
             assert!(
                 (found / right - 1.0).abs() < within,
-                "{name}: {found} for {right}"
+                "{name}: {found}, expected {right}"
             );
         };
         // The maximum can fall between samples 1/667 of a period apart: (2 pi/667)^2/8.
@@ -85,7 +85,7 @@ fn measures_over_time_match_rows_of_simulate() {
     ]);
     let text = std::fs::read_to_string(rows).expect("rows");
     let mut lines = text.lines().map(|line| line.split(','));
-    let names: Vec<&str> = lines.next().expect("a head").collect();
+    let names: Vec<&str> = lines.next().expect("a header").collect();
     let numbers: Vec<Vec<f64>> = lines
         .map(|line| {
             line.map(|number| number.parse().expect("a number"))
@@ -106,7 +106,7 @@ fn measures_over_time_match_rows_of_simulate() {
         // The parameter differs in its last bit, and meshes open and close.
         assert!(
             (found / right - 1.0).abs() < 1e-9,
-            "{name}: {found} for {right}"
+            "{name}: {found}, expected {right}"
         );
         assert!(right.abs() > 1e-6, "{name}: nothing moves");
     };

@@ -201,7 +201,10 @@ fn set_changes_the_nominal_value_of_uncertain_parameter() {
     let mean = forces.iter().sum::<f64>() / 60.0;
     // 5 % of 30 N divided by sqrt(60).
     assert!((mean + 30.0).abs() < 4.0 * 1.5 / 60_f64.sqrt(), "{mean}");
-    assert!(forces.iter().all(|force| *force < 0.0), "the sign stays");
+    assert!(
+        forces.iter().all(|force| *force < 0.0),
+        "the sign of a force changed"
+    );
     for (set, part) in [("F=0", "0.05 of 0"), ("x_0=50", "10 to 40 mm")] {
         let message = refuse(&arguments(&place, "no", &["--samples", "5", "--set", set]));
         assert!(

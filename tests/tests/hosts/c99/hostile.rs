@@ -82,7 +82,7 @@ fn c_keywords_are_rejected_as_names() {
         "new", "class", "bool", "NULL", "template", "errno", "stdout",
     ] {
         let program = program(&pendulum("words", "t", "d", word, "u", "theta"), 0, &[]);
-        let error = c::emit(&program).expect_err("a word of C");
+        let error = c::emit(&program).expect_err("a C keyword");
         let EmitError::Name { name, language } = &error else {
             panic!("{error}")
         };
@@ -101,7 +101,7 @@ fn keywords_of_c_and_rust_are_rejected_with_line() {
         let text = pendulum("words", "t", "d", word, "u", "theta");
         let source = eomgen_model_spec::source::Source::new("model.toml", text.as_str());
         let Err(found) = eomgen_model_spec::check(source) else {
-            panic!("`{word}` was taken")
+            panic!("`{word}` was accepted")
         };
         let said = found.to_string();
         assert!(

@@ -129,7 +129,7 @@ fn run_example(name: &str) -> String {
     let project = eomgen_tests::models::project();
     let page = std::fs::read_to_string(project.join("examples/with_casadi").join(name));
     let page = page.expect("an example");
-    let head = page.split("\"\"\"").nth(1).expect("what it is");
+    let head = page.split("\"\"\"").nth(1).expect("a docstring");
     let commands: Vec<&str> = head
         .lines()
         .filter_map(|l| l.strip_prefix("    "))

@@ -63,7 +63,7 @@ fn assert_matches_general_solver(name: &str, subject: &Subject, until: f64) -> u
     // forces are differences of nearly equal numbers.
     assert!(
         found < 10.0 * doubt + 1e-9,
-        "{name}: {found:e} where {doubt:e}"
+        "{name}: difference {found:e}, uncertainty {doubt:e}"
     );
     exact.switches.len()
 }

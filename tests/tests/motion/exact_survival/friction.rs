@@ -85,7 +85,7 @@ fn pushed_block_slides_and_sticks_as_closed_form() {
             // The rate grows quadratically when the block breaks away or comes to rest.
             assert!(
                 (switch.t - wanted).abs() < 1e-11,
-                "F = {force}, {k}: {} for {wanted}",
+                "F = {force}, {k}: {}, expected {wanted}",
                 switch.t
             );
         }

@@ -101,7 +101,7 @@ fn input_jump_releases_sticking_block() {
         [0.325, -0.5],
     ];
     for ((t, state), wanted) in times.iter().zip(&motion.states).zip(wanted) {
-        println!("{t}: {state:?} for {wanted:?}");
+        println!("{t}: {state:?}, expected {wanted:?}");
         assert!(
             (state[0] - wanted[0]).abs() < 1e-14 && (state[1] - wanted[1]).abs() < 1e-14,
             "{t}: {state:?}"
@@ -178,7 +178,11 @@ fn input_jump_at_a_switch_matches_closed_form() {
         let motion = subject.exact((0.0, 1.2), &[1.0, 1.1, 1.2]);
         for (t, state) in [0.0, 0.1_f64, 0.2].iter().zip(&motion.states) {
             let x = 1.5 - 0.5 * (10.0 * t).cos() + 0.1 * (10.0 * t).sin();
-            assert!((state[0] - x).abs() < 1e-14, "{t}: {} for {x}", state[0]);
+            assert!(
+                (state[0] - x).abs() < 1e-14,
+                "{t}: {}, expected {x}",
+                state[0]
+            );
         }
     }
 }

@@ -34,10 +34,13 @@ fn bouncing_ball_matches_closed_form() {
         let deepest = -g / (w * w) - ((speed / w).powi(2) + (g / (w * w)).powi(2)).sqrt();
         for (k, state) in motion.states.iter().enumerate() {
             let wanted = if k % 2 == 0 { height } else { deepest };
-            println!("height {height:e}, {k}: {:e} for {wanted:e}", state[0]);
+            println!(
+                "height {height:e}, {k}: {:e}, expected {wanted:e}",
+                state[0]
+            );
             assert!(
                 (state[0] - wanted).abs() < 1e-11 * height.max(-deepest),
-                "{height:e} {k}: {} for {wanted}",
+                "{height:e} {k}: {}, expected {wanted}",
                 state[0]
             );
         }
@@ -189,7 +192,7 @@ fn grazing_a_stop_conserves_energy() {
         let damped = Subject::new(oscillator_between_stops(more, 100.0).model(), 0)
             .exact((0.0, 1.0), &times);
         let lost = difference(&damped.states, &motion.states, 0.0);
-        println!("{more:e} beyond: damping makes {lost:.1e}");
+        println!("{more:e} beyond: effect of damping {lost:.1e}");
         assert!(
             lost < 1e-12 + 1e4 * more.powf(1.0).max(0.0) + 100.0 * more.powf(1.5),
             "{more:e}: {lost:e}"
