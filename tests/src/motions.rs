@@ -22,7 +22,6 @@ pub struct Spec {
     count: usize,
 }
 
-/// Section names in their order.
 const SECTIONS: [&str; 7] = [
     "parameters",
     "coordinates",

@@ -61,7 +61,6 @@ pub fn in_blocks() -> (Vec<Printed>, Vec<Loose>) {
     (printed, loose)
 }
 
-/// Collects the commands of a block, each with the lines below it.
 fn commands(page: &str, lines: &[String], printed: &mut Vec<Printed>) {
     let mut goes_on = false;
     for line in lines {

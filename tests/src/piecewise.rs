@@ -7,7 +7,6 @@ use eomgen_validate::random::Random;
 
 use crate::motions::Subject;
 
-/// Half-widths, offsets and factors.
 const NUMBERS: [f64; 5] = [0.0, 0.125, 0.25, 0.5, 1.0];
 
 /// Arguments of functions. Rates are rare: a force that jumps with a rate can hold it at zero,

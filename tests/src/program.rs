@@ -9,7 +9,6 @@ use serde_json::Value;
 
 use crate::models::project;
 
-/// Default time limit of a run.
 const LIMIT: Duration = Duration::from_secs(60);
 
 /// Returns the path of the program, after building it.
@@ -36,7 +35,6 @@ pub fn cargo() -> std::process::Command {
     command
 }
 
-/// Builds into the target folder of the running test.
 fn build() -> PathBuf {
     let (target, profile) = target();
     let status = cargo()

@@ -36,7 +36,6 @@ impl Coordinate {
         }
     }
 
-    /// Returns the rate as a pure number.
     fn rate(&self) -> String {
         match self.is_length {
             true => format!("dot({})*tau/L", self.name),
@@ -133,7 +132,6 @@ impl SmoothModels {
         kinds.into_iter().enumerate().map(coordinate).collect()
     }
 
-    /// Returns all sections before the definitions.
     fn head(&mut self, coordinates: &[Coordinate], inputs: usize) -> String {
         let mut text = "[model]\nname = \"smooth\"\n\n[parameters]\n".to_owned();
         let (mass, length) = (self.between(200.0, 3000.0), self.between(300.0, 1500.0));

@@ -108,7 +108,6 @@ const GAIN_PRIOR: f64 = 0.01;
 const BIAS_PRIOR: f64 = 10.0;
 const DELAY_PRIOR: f64 = 0.5;
 
-/// Returns the Stribeck speed, as a fraction of the usual speed of the axis.
 fn stribeck_speed(machine: &Machine) -> f64 {
     match machine {
         Machine::Arm(_) => 1.0,

@@ -40,7 +40,6 @@ pub fn with(table: &str, run: &Run, score: &Score) -> Result<String, String> {
     Ok(table.to_owned() + &line)
 }
 
-/// Returns the columns, with values if there is a score.
 fn figures(score: &[&Score]) -> [(&'static str, String); 21] {
     let part = |of: fn(&Score) -> (usize, usize)| {
         let parts = score.iter().map(|score| of(score));

@@ -12,7 +12,6 @@ use eomgen_blind::plan::{Case, Group, plan};
 use eomgen_blind::score::{self, Score};
 use eomgen_blind::{records, run};
 
-/// Default time limit of a case, s.
 const LIMIT: f64 = 240.0;
 
 /// Hides effects in records, runs `eomgen discover` on them, and scores the results.
@@ -110,7 +109,6 @@ fn run_suite(options: &Options) -> Result<(), String> {
     }
 }
 
-/// Appends the success rates to the history in the repository.
 fn keep(options: &Options, score: &Score) -> Result<(), String> {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/history.csv"));
     let kept = match std::fs::read_to_string(path) {
@@ -127,7 +125,6 @@ fn keep(options: &Options, score: &Score) -> Result<(), String> {
     records::write_whole(path, &kept).map_err(|error| error.to_string())
 }
 
-/// Returns the command line that repeats the run.
 fn command(options: &Options) -> String {
     let mut command = format!("--seed {}", options.seed);
     if let Some(cases) = &options.cases {
@@ -142,7 +139,6 @@ fn command(options: &Options) -> String {
     command
 }
 
-/// Returns the stdout of git; empty without git.
 fn git(arguments: &[&str]) -> String {
     let output = std::process::Command::new("git").args(arguments).output();
     output.map_or_else(
@@ -151,7 +147,6 @@ fn git(arguments: &[&str]) -> String {
     )
 }
 
-/// Returns the folder of the shipped specifications.
 fn specifications() -> &'static Path {
     Path::new(concat!(
         env!("CARGO_MANIFEST_DIR"),
@@ -159,7 +154,6 @@ fn specifications() -> &'static Path {
     ))
 }
 
-/// Returns the path of the program in the folder of this one.
 fn program() -> Result<PathBuf, String> {
     let own = std::env::current_exe().map_err(|error| error.to_string())?;
     let program = own.with_file_name(format!("eomgen{}", std::env::consts::EXE_SUFFIX));
@@ -173,7 +167,6 @@ fn program() -> Result<PathBuf, String> {
     }
 }
 
-/// Checks that the folder contains cases of this seed only.
 fn check_seed(out: &Path, seed: u64) -> Result<(), String> {
     let path = out.join("seed.txt");
     match std::fs::read_to_string(&path) {

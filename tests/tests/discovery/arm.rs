@@ -17,10 +17,8 @@ use serde_json::Value;
 /// Dry friction of the carrier, N m.
 const FRICTION: f64 = 1.0;
 
-/// Maximum duration of a run on a busy machine.
 const LIMIT: Duration = Duration::from_secs(280);
 
-/// Returns the arm with the friction, with as many modes as its model.
 fn arm_with_friction() -> Machine {
     let mut machine = Kind::Arm.nominal();
     let Machine::Arm(arm) = &mut machine else {
@@ -35,7 +33,6 @@ fn arm_with_friction() -> Machine {
     machine
 }
 
-/// Writes the dataset file and two records of 0.6 s; the second has another input.
 fn write_records(folder: &Path) {
     let setup = Setup {
         duration: 0.6,
@@ -72,7 +69,6 @@ fn write_records(folder: &Path) {
     std::fs::write(folder.join("dataset.toml"), text).expect("a file");
 }
 
-/// Runs a command on a specification and the records; returns its document.
 fn run_command(command: &str, specification: &Path, folder: &Path, name: &str) -> Value {
     let out = folder.join(command);
     let mut run = program::eomgen();

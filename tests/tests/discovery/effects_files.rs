@@ -15,7 +15,6 @@ parameters = [{ name = "B_r", unit = "{force}/{unit}", sign = "+", doc = "bent r
 edits = [{ add = "force", name = "rail", on = "{on}", value = "-{B_r}*abs({on})*sign(dot({on}))" }]
 "#;
 
-/// Returns the arguments of `discover` with a file of effects.
 fn arguments(measured: &Measured, effects: &str, out: &str) -> Vec<String> {
     measured.write("effects.toml", effects.as_bytes());
     let mut arguments = measured.arguments("discover", out);
@@ -53,7 +52,6 @@ fn rejection(measured: &Measured, effects: &str) -> String {
     message
 }
 
-/// Returns the result of `discover` with a file of effects, and its messages.
 fn discover(measured: &Measured, effects: &str) -> (Value, String) {
     let arguments = arguments(measured, effects, "found");
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();

@@ -15,16 +15,12 @@ use eomgen_model_spec::source::Source;
 use eomgen_tests::program;
 use serde_json::Value;
 
-/// Maximum duration of a search on a busy machine.
 const LIMIT: Duration = Duration::from_secs(280);
 
-/// Machine with its measurements.
 struct Machine {
     name: &'static str,
     specification: &'static str,
-    /// Channels with their units and noise.
     channels: &'static [(&'static str, &'static str, f64)],
-    /// Declared uncertain parameters.
     uncertain: &'static str,
     /// Unit of the input `u`, and its value at a time in s for two records.
     unit: &'static str,
@@ -35,14 +31,12 @@ struct Machine {
     samples: usize,
 }
 
-/// Hidden effect and its place.
 struct Hidden {
     effect: &'static str,
     on: &'static str,
     by: Change,
 }
 
-/// Implementation of a hidden effect.
 enum Change {
     /// Entry of the catalogue: its index among entries of the same name, its order and its values.
     Entry(usize, Option<u32>, &'static [f64]),
@@ -58,7 +52,6 @@ const fn hidden(effect: &'static str, on: &'static str, values: &'static [f64]) 
     Hidden { effect, on, by }
 }
 
-/// Carriage driven by a force.
 const CARRIAGE: Machine = Machine {
     name: "carriage",
     specification: r#"
@@ -96,7 +89,6 @@ motor = { on = "x", value = "u" }
     samples: 400,
 };
 
-/// Rotor driven by a torque, oscillating and rotating.
 const ROTOR: Machine = Machine {
     name: "rotor",
     specification: r#"
@@ -134,7 +126,6 @@ motor = { on = "theta", value = "u" }
     samples: 600,
 };
 
-/// Hub with a flexible beam.
 const BEAM: Machine = Machine {
     name: "beam",
     specification: r#"
@@ -200,7 +191,7 @@ const BEAM_FOR_LONG: Machine = Machine {
 
 /// Two shafts connected by a pair of teeth with the mesh deflection `x`. The backlash is small:
 /// with a large one the teeth rattle, and the impacts hide a varying stiffness. The ratio is
-/// irrational enough that orders of the two shafts differ.
+/// not a simple fraction, so that the orders of the two shafts differ.
 const GEAR: Machine = Machine {
     name: "gear",
     specification: r#"
@@ -257,7 +248,6 @@ theta_2 = { value = "theta_2", unit = "rad" }
     samples: 700,
 };
 
-/// Mass on a spring driven by a force.
 const OSCILLATOR: Machine = Machine {
     name: "oscillator",
     specification: super::specifications::OSCILLATOR,
@@ -353,7 +343,6 @@ impl Machine {
         std::fs::write(folder.join(file), text).expect("a file");
     }
 
-    /// Returns an entry of the catalogue as a candidate.
     fn candidate(&self, hidden: &Hidden, entry: usize, order: Option<u32>) -> Candidate {
         let checked = eomgen_model_spec::check(Source::new(self.name, self.specification));
         let model = checked.unwrap_or_else(|found| panic!("{found}")).model;
@@ -400,7 +389,6 @@ impl Machine {
         }
     }
 
-    /// Returns the answer of `discover` to records with the hidden effect.
     fn answer(&self, hidden: &Hidden, truth: &str) -> Value {
         let folder = tempfile::tempdir().expect("a folder");
         let place = |name: &str| folder.path().join(name);

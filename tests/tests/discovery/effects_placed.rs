@@ -75,7 +75,6 @@ fn catalogue_effects_keep_shipped_specifications_valid() {
     assert_eq!(of_axis, shipped().len(), "{homes:?}");
 }
 
-/// User-defined effect on springs.
 const ON_SPRINGS: &str = r#"
 [[effect]]
 name = "hardening"
@@ -291,7 +290,6 @@ bearing = "1/2*R*dot(theta)^2"
 drive = { on = "theta", value = "T + 0.1*both" }
 "#;
 
-/// Returns the example of an effect on an input from the documentation.
 fn documented_effect() -> String {
     let text = include_str!("../../../docs/discovery.md");
     let examples = text.split("```toml\n").skip(1);

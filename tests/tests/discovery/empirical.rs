@@ -7,14 +7,12 @@ use eomgen_tests::measured::Measured;
 use eomgen_tests::program;
 use serde_json::Value;
 
-/// Message of the search for an expression.
 const SEARCH_MESSAGE: &str = "searching for an expression";
 
 fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or(f64::NAN)
 }
 
-/// Returns the value of a parameter in the text of a specification.
 fn parameter(text: &str, name: &str) -> f64 {
     let lines = text.lines().map(str::trim_start);
     let mut own = lines.filter(|line| line.starts_with(&format!("{name} = {{")));

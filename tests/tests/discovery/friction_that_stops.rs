@@ -112,7 +112,6 @@ fn record(angle: f64, torque: impl Fn(f64) -> f64, until: f64, seed: u64) -> (St
     (text, stood)
 }
 
-/// Returns the result of discovery on two records.
 fn discover(records: [(String, f64); 2]) -> Value {
     let folder = tempfile::tempdir().expect("a folder");
     let place = |name: &str| folder.path().join(name);

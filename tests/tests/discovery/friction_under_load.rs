@@ -99,7 +99,6 @@ fn record(per_load: f64, constant: f64, turn: f64) -> String {
     text
 }
 
-/// Returns the result of discovery on records of the drive.
 fn discover(per_load: f64, constant: f64) -> Value {
     let folder = tempfile::tempdir().expect("a folder");
     let file = |name: &str| folder.path().join(name);

@@ -58,7 +58,7 @@ state = "rest"
 length = 0.5
 "#;
 
-/// Drive torque gain * (u + bias), N m, with u delayed by `late` and low-pass filtered with the
+/// Drive torque gain * (u + bias), N m, with u delayed by `delay` and low-pass filtered with the
 /// time constant `lag`, s.
 #[derive(Clone, Copy)]
 struct Drive {
@@ -129,14 +129,11 @@ fn driven_record(drive: Drive, turn: f64) -> String {
     text
 }
 
-/// Returns the result of discovery on records with this gain and bias, and the extended
-/// specification.
 fn discover(dataset: &str, specification: &str, (gain, bias): (f64, f64)) -> (Value, String) {
     let records = [0.0, 1.0].map(|turn| record(gain, bias, turn));
     discover_in(dataset, specification, &records)
 }
 
-/// Returns the same for the given records.
 fn discover_in(dataset: &str, specification: &str, records: &[String; 2]) -> (Value, String) {
     let folder = tempfile::tempdir().expect("a folder");
     let file = |name: &str| folder.path().join(name);

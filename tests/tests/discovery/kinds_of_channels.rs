@@ -34,7 +34,6 @@ fn assert_no_gap(folder: &Path, description: &str, noise: f64, shown: &str) {
     }
 }
 
-/// Checks each channel of a machine separately.
 fn assert_no_gap_in_any_channel(machine: &Machine) {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
@@ -196,7 +195,6 @@ fn undefined_acceleration_is_rejected() {
     }
 }
 
-/// Torque of a pendulum and force on a mass along given motions.
 #[test]
 fn inputs_along_given_motion_show_no_gap() {
     let spring = mass("1/2*k*x^2", "k*x", "u", "");

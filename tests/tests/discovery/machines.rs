@@ -7,10 +7,8 @@ use std::path::Path;
 use eomgen_tests::program::accepted;
 use serde_json::Value;
 
-/// Model with one input, and its channels.
 #[derive(Clone)]
 pub struct Machine {
-    /// Text of the specification.
     pub specification: String,
     /// Unit and amplitude of the input `u`.
     pub input: (&'static str, f64),
@@ -68,7 +66,6 @@ pub fn mass(spring: &str, pull: &str, drive: &str, states: &str) -> Machine {
     }
 }
 
-/// Pendulum with a nonlinear observable.
 pub const PENDULUM: &str = r#"[model]
 name = "pendulum"
 [parameters]
@@ -122,7 +119,6 @@ place = "2*x"
 a_place = "2*(A*p - c*dot(x))/m"
 "#;
 
-/// Beam on a hub.
 pub const BEAM: &str = r#"[model]
 name = "beam"
 [parameters]
@@ -160,7 +156,6 @@ o = "at(w, l) + l*x"
 v_o = "at(dot(w), l) + l*dot(x)"
 "#;
 
-/// Number of samples of a record.
 pub const SAMPLES: usize = 160;
 /// Time between samples, s.
 pub const STEP: f64 = 0.01;
@@ -181,7 +176,6 @@ impl Machine {
         self.record(folder, "train", 0.0)
     }
 
-    /// Simulates and writes a record with the columns of `simulate`.
     fn record(&self, folder: &Path, name: &str, turn: f64) -> Table {
         let mut table = self.motion(folder, name, turn, STEP);
         table.add(
@@ -197,7 +191,6 @@ impl Machine {
         self.motion_by("auto", folder, name, turn, step)
     }
 
-    /// Simulates with the given solver.
     pub fn motion_by(
         &self,
         solver: &str,
@@ -245,7 +238,6 @@ impl Machine {
     }
 }
 
-/// Named columns.
 #[derive(Default)]
 pub struct Table {
     names: Vec<String>,
@@ -290,14 +282,12 @@ impl Table {
     }
 }
 
-/// Returns the standard deviation.
 pub fn spread(values: &[f64]) -> f64 {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
     (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / count).sqrt()
 }
 
-/// Runs a command on a dataset; returns its document.
 pub fn answered(folder: &Path, command: &str, description: &str) -> Value {
     let paths = ["model.toml", "dataset.toml", "answer"].map(|name| folder.join(name));
     fs::write(&paths[1], description).expect("a file");

@@ -1,4 +1,4 @@
-//! What `compare` and `discover` are given, and what they find.
+//! Inputs and results of `compare` and `discover`.
 
 mod arm;
 mod blind;

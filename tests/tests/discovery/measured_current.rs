@@ -101,7 +101,6 @@ fn record(resistance: f64, drag: f64, turn: f64) -> String {
     text
 }
 
-/// Returns the document of a command on records with this resistance, ohm, and drag, N m s^2.
 fn run_on_records(command: &str, (resistance, drag): (f64, f64), dataset: &str) -> Value {
     let texts = Texts {
         specification: MOTOR,

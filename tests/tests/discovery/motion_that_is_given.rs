@@ -144,7 +144,6 @@ fn record(friction: f64, encoders: f64, turn: f64) -> String {
     text
 }
 
-/// Writes a specification, a dataset file and two records to a temporary folder.
 fn write_files(specification: &str, dataset: &str, [train, test]: [String; 2]) -> TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     for (name, text) in [
@@ -158,13 +157,11 @@ fn write_files(specification: &str, dataset: &str, [train, test]: [String; 2]) -
     folder
 }
 
-/// Returns a folder with records of the arm.
 fn write_arm_records(friction: f64, encoders: f64, dataset: &str) -> TempDir {
     let records = [0.0, 1.0].map(|turn| record(friction, encoders, turn));
     write_files(ARM, dataset, records)
 }
 
-/// Runs a command in a folder; returns its document.
 fn run_on_folder(command: &str, folder: &TempDir) -> Value {
     let paths = ["spec.toml", "dataset.toml", "out"].map(|name| folder.path().join(name));
     let answer = program::answered(command, paths.each_ref());
@@ -177,7 +174,6 @@ fn run_on_folder(command: &str, folder: &TempDir) -> Value {
     answer
 }
 
-/// Returns the result of discovery on records of the arm.
 fn discover(friction: f64, encoders: f64, dataset: &str) -> Value {
     run_on_folder("discover", &write_arm_records(friction, encoders, dataset))
 }

@@ -22,7 +22,6 @@ struct Machine<'m> {
     mass: f64,
     /// Force without dry friction, as a function of position, rate and input.
     force: &'m dyn Fn(f64, f64, f64) -> f64,
-    /// Level of dry friction.
     friction: f64,
     /// Initial state of the first records, and their input as a function of time in s.
     begin: (f64, f64),
@@ -74,7 +73,6 @@ impl Machine<'_> {
         text
     }
 
-    /// Returns the dataset file with these records.
     fn dataset(&self, train: &str, test: &str) -> String {
         let [unit, input] = self.units;
         format!(
@@ -86,12 +84,10 @@ impl Machine<'_> {
         )
     }
 
-    /// Returns the document of `discover` on these records.
     fn answer(&self, folder: &Path, records: [&str; 2], out: &str) -> Value {
         self.document(folder, "discover", records, out)
     }
 
-    /// Returns the document of a command on these records.
     fn document(&self, folder: &Path, command: &str, [train, test]: [&str; 2], out: &str) -> Value {
         let place = |name: &str| folder.join(name);
         std::fs::write(place("dataset.toml"), self.dataset(train, test)).expect("a file");
@@ -174,7 +170,6 @@ fn folder() -> tempfile::TempDir {
     tempfile::tempdir().expect("a folder")
 }
 
-/// Returns the specification of the rotor in a bearing.
 fn rotor_in_bearing() -> String {
     let with = ROTOR.replace(
         "[coordinates]",
@@ -186,7 +181,6 @@ fn rotor_in_bearing() -> String {
     )
 }
 
-/// Returns a rotor in a bearing with torque in one direction only.
 fn one_way_rotor<'m>(
     specification: &'m str,
     force: &'m dyn Fn(f64, f64, f64) -> f64,

@@ -13,7 +13,6 @@ struct Machine<'m> {
     specification: &'m str,
     units: [&'m str; 2],
     noise: f64,
-    /// Sensor gain.
     gain: f64,
     uncertain: &'m str,
     /// Delay of the input, s.
@@ -74,7 +73,6 @@ impl Machine<'_> {
         text
     }
 
-    /// Returns the document of `discover`.
     fn answer(&self) -> Value {
         let [unit, input] = self.units;
         let dataset = format!(
@@ -109,7 +107,6 @@ impl Machine<'_> {
     }
 }
 
-/// Returns an oscillator with this acceleration.
 fn oscillator<'m>(acceleration: &'m dyn Fn(f64, f64, f64) -> f64) -> Machine<'m> {
     Machine {
         specification: OSCILLATOR,
@@ -135,7 +132,6 @@ fn assert_near(effect: &Value, name: &str, hidden: f64, part: f64) {
     );
 }
 
-/// Returns an estimate and its standard deviation.
 fn estimate(of: &Value) -> (f64, f64) {
     let number = |key: &str| {
         of[key]

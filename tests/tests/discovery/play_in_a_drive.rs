@@ -139,12 +139,10 @@ fn record(shaft: Shaft, turn: f64) -> String {
     text
 }
 
-/// Returns the document of `discover`, and the extended specification.
 fn answer(specification: &str, shaft: Shaft) -> (Value, String) {
     answer_of(specification, DATASET, shaft)
 }
 
-/// Returns the same for another dataset file.
 fn answer_of(specification: &str, dataset: &str, shaft: Shaft) -> (Value, String) {
     let folder = tempfile::tempdir().expect("a folder");
     let place = |name: &str| folder.path().join(name);
@@ -214,7 +212,6 @@ fn shaft_without_play_gives_no_effect() {
     assert_eq!(found["effects"].as_array().map(Vec::len), Some(0));
 }
 
-/// Returns the names of an effect and its equivalents.
 fn class_names(effect: &Value) -> Vec<String> {
     let name = |of: &Value| format!("{} {}", of["effect"], of["on"]).replace('"', "");
     let others = effect["equivalent"].as_array().into_iter().flatten();

@@ -1,6 +1,5 @@
 //! Specifications common to several tests.
 
-/// Mass on a spring and a damper, driven by a force.
 pub const OSCILLATOR: &str = r#"
 [model]
 name = "oscillator"

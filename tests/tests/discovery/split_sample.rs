@@ -107,7 +107,6 @@ fn record(normal: &mut Normal, turn: f64, force: f64) -> String {
     text
 }
 
-/// Effects of one coordinate.
 const NAMES: [&str; 4] = [
     "force_offset",
     "quadratic_drag",

@@ -10,7 +10,6 @@ use super::machines::{
     BEAM, CYLINDER, Channel, Machine, PENDULUM, STEP, Table, answered, description, mass, spread,
 };
 
-/// Maximum relative difference between results, due to rounding.
 const ROUNDING: f64 = 1e-6;
 
 /// Exponents of the powers of two that multiply length, mass and current.
@@ -27,7 +26,6 @@ fn factor(unit: &str, [length, mass, current]: Units) -> f64 {
     2f64.powi(kg * mass + m * length + a * current)
 }
 
-/// Converts the parameters of a specification to other units.
 fn in_units(specification: &str, units: Units) -> String {
     let line = |line: &str| {
         let parts = line.split_once("{ value = ").and_then(|(name, rest)| {

@@ -37,7 +37,6 @@ fn has_c_compilers() -> bool {
     there
 }
 
-/// Returns the missing tool, if any.
 fn missing_tool() -> Option<&'static str> {
     if !is_available("qemu-system-arm") {
         return Some("qemu-system-arm (Debian: apt-get install qemu-system-arm)");
@@ -58,7 +57,6 @@ fn missing_tool() -> Option<&'static str> {
     (!there).then_some("the target (rustup target add thumbv7em-none-eabihf)")
 }
 
-/// Parses lines of a name and a number.
 fn parse_counts(text: &str) -> Vec<(&str, u64)> {
     let parts = text.lines().filter_map(|line| line.rsplit_once(' '));
     parts

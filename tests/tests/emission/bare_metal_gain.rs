@@ -14,7 +14,6 @@ const STATE_SCALES: [f64; 14] = [
     1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0,
 ];
 
-/// Returns the rates at a state and a torque.
 fn rates(evaluator: &mut Evaluator, state: &[f64], torque: f64) -> DVector<f64> {
     let mut out = vec![0.0; state.len()];
     let point = Point {
@@ -77,7 +76,6 @@ fn compute_gain() -> Vec<f64> {
     (0..n).map(|i| gain[i] / STATE_SCALES[i]).collect()
 }
 
-/// Returns the numbers of `GAIN` in the controller's source.
 fn gain_in_source() -> Vec<f64> {
     let path = project().join("examples/bare_metal/controller.rs");
     let source = std::fs::read_to_string(path).expect("the controller");

@@ -7,7 +7,6 @@ use std::process::Command;
 use eomgen_tests::models::{path, project};
 use eomgen_tests::program::{accepted, text};
 
-/// Runs the benchmark in `folder` briefly; returns its stdout.
 fn run_bench(folder: &Path, options: &[&str]) -> String {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let short = [

@@ -7,7 +7,6 @@ use eomgen_codegen::rust::{Packaging, emit};
 use eomgen_tests::models::{load, project, samples, variant};
 use eomgen_tests::program::eomgen;
 
-/// Number of states in each of the nine mesh regimes.
 const STATES_PER_REGIME: usize = 25;
 
 const SEED: u64 = 0x5eed_0001;
@@ -32,7 +31,6 @@ fn evaluate(evaluator: &mut Evaluator, point: Point<'_>) -> Numbers {
     [rates, observables, energy_and_power, guards, mass].concat()
 }
 
-/// Declares a test that compares a module with the evaluator of its order.
 macro_rules! variants {
     ($($module:ident: $order:literal;)*) => {
         $(

@@ -18,7 +18,6 @@ use eomgen_sim::ode::{Settings, simulate};
 use eomgen_tests::models::{load, project, shipped};
 use eomgen_validate::random::Random;
 
-/// Number of points per program and set of parameters.
 const POINTS: usize = 40;
 
 /// Limit values of arithmetic and comparisons.
@@ -198,7 +197,6 @@ fn bits(number: f64) -> u64 {
     }
 }
 
-/// Returns all results of an evaluator at a point.
 fn compute_all(evaluator: &mut Evaluator, point: Point<'_>) -> [(&'static str, Vec<f64>); 6] {
     let program = evaluator.program();
     let (states, degrees) = (program.states(), program.degrees_of_freedom());

@@ -8,12 +8,10 @@ use std::process::{Command, Stdio};
 use eomgen_tests::models::{load, path, project, samples};
 use eomgen_tests::program::{eomgen, run};
 
-/// Order of the arm in the examples.
 const ORDER: usize = 4;
 
 const SEED: u64 = 0x5eed_0400;
 
-/// Number of states in each of the nine mesh regimes.
 const STATES_PER_REGIME: usize = 20;
 
 /// Bits of a time and a state, then of the results there.
@@ -28,7 +26,6 @@ fn points() -> Vec<(f64, [f64; 14])> {
     drawn.iter().map(point).collect()
 }
 
-/// Returns rates, observables and guards of a module at every point.
 macro_rules! bits {
     ($module:path) => {{
         use $module as module;
@@ -83,7 +80,6 @@ fn rustc(arguments: &[&str], folder: &Path) {
     assert!(status.success(), "{arguments:?}");
 }
 
-/// Generates the crate `arm4` and compiles it into `folder`.
 fn compile_arm4(folder: &Path) {
     let status = eomgen()
         .args(["generate", "--order", "4", "--out", "arm4"])
@@ -95,7 +91,6 @@ fn compile_arm4(folder: &Path) {
     rustc(&[&library[..], &["arm4/lib.rs"]].concat(), folder);
 }
 
-/// Returns the results of [`PROBE`] at the points.
 fn run_probe(folder: &Path) -> Vec<Bits> {
     compile_arm4(folder);
     std::fs::write(folder.join("probe.rs"), PROBE).expect("writable");
@@ -154,7 +149,6 @@ fn command_line_example_prints_documented_line() {
     );
 }
 
-/// Returns the Rust blocks of a page.
 fn rust_blocks(page: &str) -> Vec<String> {
     let text = std::fs::read_to_string(project().join(page)).expect("the page");
     let blocks = text.split("```rust\n").skip(1);
@@ -198,7 +192,6 @@ fn specification_inside_a_macro_can_be_certified() {
     assert_eq!(output.status.code(), Some(0), "{output:?}");
 }
 
-/// Returns the lines of `cargo tree`.
 fn cargo_tree(package: &str, edges: &str) -> Vec<String> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let output = Command::new(cargo)

@@ -27,7 +27,6 @@ fn certify_with_references(
         .expect("the parameters have values")
 }
 
-/// Certifies a shipped specification with every field at `order`.
 fn certify_shipped(name: &str, order: usize) -> Certificate {
     let model = load(name);
     let derived = variant(&model, order);

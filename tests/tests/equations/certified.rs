@@ -69,7 +69,6 @@ const CHECKS: [&str; 16] = [
     "f32",
 ];
 
-/// Writes the specification into `folder` and returns its path.
 fn write_lever(folder: &Path) -> String {
     let path = folder.join("lever.toml");
     std::fs::write(&path, LEVER).expect("a file can be written");

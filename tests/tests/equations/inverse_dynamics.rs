@@ -16,7 +16,6 @@ use eomgen_validate::random::Random;
 
 /// Maximum deviation relative to the terms of a row.
 const TOLERANCE: f64 = 1e-12;
-/// Number of states per tree.
 const STATES: usize = 5;
 const COORDINATES: usize = 5;
 const TREES: usize = 30;
@@ -66,7 +65,6 @@ fn rotation(random: &mut Random, i: usize, slides: bool) -> String {
     turns.join("*")
 }
 
-/// Returns the specification of a random tree.
 fn tree(random: &mut Random) -> String {
     let mut frames = String::from("[frames]\n");
     let mut bodies = String::from("[bodies]\n");

@@ -25,7 +25,6 @@ fn kind(model: &Model) -> String {
     }
 }
 
-/// Returns the specification of a mass on a spring with an additional force.
 fn with_force(force: &str) -> String {
     format!(
         "[model]\nname = \"mass\"\ntitle = \"A mass\"\n\

@@ -35,7 +35,6 @@ fn has_valid_initial_state(model: &Model) -> bool {
     evaluator.pivots_are_positive() && rates.iter().all(|rate| rate.is_finite())
 }
 
-/// Returns the next model with a valid initial state.
 fn next_valid_model(models: &mut SmoothModels) -> (SmoothModel, Model) {
     loop {
         let written = models.model();
@@ -74,7 +73,6 @@ fn certificates_of_correct_models_pass() {
     );
 }
 
-/// Outputs to check in addition to the equations.
 const OUTPUTS: [Output; 5] = [
     Output::BiasForces,
     Output::InverseDynamics,

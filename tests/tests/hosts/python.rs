@@ -25,7 +25,6 @@ fn run_shell(commands: &str) -> Output {
         .expect("bash")
 }
 
-/// Returns the missing tool, if any.
 fn missing_tool(folder: &Path) -> Option<&'static str> {
     let works = |commands: &str| run_shell(commands).status.success();
     if !works("python3 -c 'import ensurepip, venv'") {

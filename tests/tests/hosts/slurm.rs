@@ -33,7 +33,7 @@ damper = "1/2*c*dot(x)^2"
 drive = { on = "x", value = "F*sin(omega*t)" }
 "#;
 
-/// Takes some seconds, so that a kill falls between the first and the last point.
+/// Options of a sweep of some seconds, so that a kill falls between the first and the last point.
 const SWEEP: [&str; 10] = [
     "--vary",
     "c=0.4:1:10",
@@ -47,7 +47,6 @@ const SWEEP: [&str; 10] = [
     "8",
 ];
 
-/// Timeout of every wait.
 const LIMIT: Duration = Duration::from_secs(180);
 
 /// Two nodes, their controller and the authentication daemon; ended on drop.
@@ -123,7 +122,6 @@ impl Cluster {
         )
     }
 
-    /// Returns a command with this cluster's configuration.
     fn command(&self, program: &str) -> Command {
         let mut command = Command::new(program);
         command.env("SLURM_CONF", self.at("slurm.conf"));
@@ -137,7 +135,6 @@ impl Cluster {
         self.daemons.push(daemon.expect("a daemon of Slurm"));
     }
 
-    /// Returns the stdout of a Slurm command.
     fn ask(&self, program: &str, arguments: &[&str]) -> String {
         let output = self.command(program).args(arguments).output();
         text(&output.expect("a command of Slurm").stdout)
@@ -239,7 +236,6 @@ fn has_slurm() -> bool {
         .all(version)
 }
 
-/// Returns the number of finished parts of a sweep.
 fn parts(folder: &Path) -> usize {
     let Ok(entries) = fs::read_dir(folder.join("parts")) else {
         return 0;

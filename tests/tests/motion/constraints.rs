@@ -45,7 +45,6 @@ fn compile_feature(name: &str, orders: Orders<'_>) -> CompiledModel {
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Returns the rod's model with `line` replaced by `by`.
 fn compile_changed(line: &str, by: &str) -> CompiledModel {
     assert!(ROD.contains(line));
     compile(&ROD.replace(line, by))
@@ -166,7 +165,6 @@ fn initial_state_is_projected_onto_constraints_with_a_note() {
     assert!((start[1] / start[0] - 0.1 / 0.7).abs() < 1e-3);
 }
 
-/// Returns the error of deriving the rod with other constraints.
 fn derivation_error(constraints: &str) -> String {
     let text = ROD.replace("x^2 + y^2 - l^2", constraints);
     match CompiledModel::of_text("constrained.toml", &text, Orders::Declared) {
@@ -441,7 +439,6 @@ fn time_of_fold_is_independent_of_sampling_and_solver() {
     }
 }
 
-/// Returns a model with the linkage and a copy of it.
 fn duplicate_linkage(text: &str) -> String {
     let mut copied = String::new();
     for line in text.lines() {

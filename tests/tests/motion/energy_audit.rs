@@ -73,7 +73,6 @@ weight = "m*g*y"
 table = { when = "y", restitution = 0.7 }
 "#;
 
-/// Simulates the model and returns its audit.
 fn audit_of_text(text: &str, until: f64, solver: Solver, tolerance: f64) -> Audit {
     let model = CompiledModel::of_text("model.toml", text, Orders::Declared).expect("a model");
     audit(&model, until, solver, tolerance)

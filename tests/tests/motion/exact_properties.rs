@@ -14,7 +14,6 @@ use eomgen_tests::models::load;
 use eomgen_tests::motions::{Spec, Subject, difference, grid};
 use proptest::prelude::*;
 
-/// Maximum duration of an exact simulation.
 const MAX_SOLVE_TIME: Duration = Duration::from_secs(2);
 
 /// Deviation due to rounding, amplified by switches, relative to the largest magnitude of each
@@ -28,7 +27,6 @@ fn config() -> ProptestConfig {
     }
 }
 
-/// Simulates exactly, within [`MAX_SOLVE_TIME`].
 fn exact(subject: &Subject, until: f64, times: &[f64]) -> Result<Trajectory, ExactError> {
     let begun = Instant::now();
     let motion = subject.try_exact((0.0, until), times);
@@ -36,7 +34,6 @@ fn exact(subject: &Subject, until: f64, times: &[f64]) -> Result<Trajectory, Exa
     motion
 }
 
-/// Compares the exact solver with the general one.
 fn compare_solvers(subject: &Subject, until: f64, smallest: f64) -> Result<(), TestCaseError> {
     let times = grid(until, 16);
     let exact = match exact(subject, until, &times) {
@@ -133,7 +130,6 @@ fn exact_matches_general_solver_for_play_with_strong_damper() {
     compare_solvers(&subject, 5e-4, 1e-6).expect("the same motion");
 }
 
-/// Additional force of a machine.
 #[derive(Clone, Debug)]
 enum Term {
     Spring(f64),

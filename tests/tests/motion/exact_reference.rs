@@ -118,11 +118,8 @@ impl Reference {
     }
 }
 
-/// Deviations of one case in doubles and with the exact solver.
 struct Comparison {
-    /// Deviations of the series in doubles.
     rounding: Growth,
-    /// Deviations of the exact solver.
     exact: Growth,
     /// Numbers of switches of the sun-planet and planet-ring meshes.
     switches: [usize; 2],
@@ -147,7 +144,6 @@ fn compare(order: usize, b: f64, until: f64) -> Comparison {
     }
 }
 
-/// Simulates the derived model with the exact solver.
 fn simulate_exactly(reference: &Reference, until: f64) -> Trajectory {
     let model = model(reference.case);
     let orders = vec![reference.case.order; model.fields.len()];
@@ -169,7 +165,6 @@ const MAX_DEVIATION_M: f64 = 1e-10;
 /// exact solver counts its departure as a switch after some nanoseconds, the reference does not.
 const AFTER_START_S: f64 = 1e-6;
 
-/// Bounds for the exact solver.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Bounds {
     /// [`MAX_DEVIATION_M`] and [`MAX_ROUNDING_RATIO`].
@@ -243,14 +238,12 @@ fn exact_matches_reference_for_sixteen_modes_with_backlash() {
     assert_both_match_reference(16, 100e-6, [518, 720], Bounds::DeviationAndRatio);
 }
 
-/// Returns the shipped arm with the parameters of the case.
 fn model(case: Case) -> Model {
     let values = [("b_sp", case.b), ("b_pr", case.b), ("omega", case.omega)];
     let model = load("planetary_arm").with_parameters(&values);
     model.expect("the values are within their bounds")
 }
 
-/// Compares the general solver on the derived model with the reference.
 fn assert_general_solver_matches(order: usize, b: f64) {
     let reference = Reference::new(order, b, 0.02);
     let model = model(reference.case);

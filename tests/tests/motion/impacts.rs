@@ -25,7 +25,6 @@ fn compile_example(name: &str, orders: Orders<'_>) -> CompiledModel {
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Compiles a shipped model with additional `impacts`.
 fn compile_with_impacts(name: &str, impacts: &str, order: usize) -> CompiledModel {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../model-spec/models");
     let text = std::fs::read_to_string(folder.join(format!("{name}.toml"))).expect("a model");
@@ -80,7 +79,6 @@ fn bouncing_ball_matches_closed_form_and_comes_to_rest() {
     }
 }
 
-/// Returns the motions from `initial` by each solver that supports impacts.
 fn simulate_with_all_solvers(model: &CompiledModel, initial: &[f64], times: &[f64]) -> Vec<Motion> {
     let run = model.at_declared().unwrap();
     let solvers = [Solver::Rk, Solver::Radau].into_iter();
@@ -198,7 +196,6 @@ fn ball_leaves_table_that_falls_faster() {
             false => table,
         };
         flew += usize::from(expected > table);
-        // After landing, the ball rests on the table again.
         assert!(
             (state[0] - expected).abs() < 1e-9,
             "{t}: {} {expected}",

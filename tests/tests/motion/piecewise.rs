@@ -16,7 +16,6 @@ use eomgen_tests::piecewise::machine;
 use eomgen_validate::compiler::{self, Compiler, Optimization};
 use eomgen_validate::random::Random;
 
-/// Maximum difference between solvers and kernels.
 const MAX_DIFFERENCE: f64 = 1e-8;
 
 fn subject(text: &str) -> Subject {
@@ -178,7 +177,7 @@ push = { on = "y", value = "F*sign(u)" }
 #[derive(Debug, Default)]
 struct Tally {
     machines: usize,
-    /// Sides of a switching surface that are decided by rounding.
+    /// Machines for which rounding decides the side of a switching surface.
     ambiguous: usize,
     /// Motions that stick often or for long: only the exact solver handles them.
     held: usize,
@@ -333,7 +332,6 @@ fn compare_motions(subject: &Subject, place: &str, tally: &mut Tally) {
     tally.switches += exact.switches.len();
 }
 
-/// Returns the emitted source of a machine with kernels of regimes.
 fn emit_kernels(subject: &Subject) -> String {
     let derived = Variant::derive_with(&subject.model, &[], &[Output::Regimes]);
     let program = derived.expect("a model that can be derived").program;

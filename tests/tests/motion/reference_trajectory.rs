@@ -56,7 +56,6 @@ const REGRESSION: [[f64; 5]; 4] = [
     ],
 ];
 
-/// Columns by name.
 type Columns = HashMap<String, Vec<f64>>;
 
 fn columns(text: &str) -> Columns {

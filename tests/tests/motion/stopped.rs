@@ -161,7 +161,6 @@ fn write_spec(folder: &Path, specification: &str) -> String {
     path.display().to_string()
 }
 
-/// Runs a simulation that must stop.
 fn run_until_stop(specification: &str, until: &str, more: &[&str]) -> Stopped {
     let folder = tempfile::tempdir().expect("a folder");
     let (spec, out) = (
@@ -374,7 +373,6 @@ fn auto_solves_stiff_friction_with_radau() {
     assert!(begun.elapsed() < Duration::from_secs(20));
 }
 
-/// Returns the document of `simulate --json` on the orifice, and the messages.
 fn simulate_orifice(solver: &str) -> (serde_json::Value, String) {
     let folder = tempfile::tempdir().expect("a folder");
     let spec = write_spec(folder.path(), ORIFICE);

@@ -9,7 +9,6 @@ use eomgen_tests::taylor::run::{LONGEST, Run};
 use eomgen_tests::taylor::scalar::Scalar;
 use serde_json::Value;
 
-/// Mode shapes to 25 digits.
 const MODES: &str = include_str!("../../reference/clamped_free_modes.json");
 
 /// Trajectory from two codes in quadruple precision that agree in all digits.

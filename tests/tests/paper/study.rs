@@ -8,7 +8,6 @@ use eomgen_tests::models::project;
 use eomgen_tests::program::{accepted, eomgen, refused, text};
 use serde_json::Value;
 
-/// Runs a study into a folder; returns its document.
 fn run_study(name: &str, out: &Path) -> Value {
     let mut command = eomgen();
     command.timeout(Duration::from_secs(600));
@@ -106,7 +105,6 @@ fn check_frequencies(case: &Value) {
     );
 }
 
-/// Checks properties of every motion.
 fn check_numbers(case: &Value) {
     for name in ["x_sp", "f_la", "l_dtheta", "dr"] {
         let [rms, peak] = ["rms", "peak"].map(|of| number(&case[name][of]));

@@ -13,10 +13,8 @@ use serde_json::Value;
 /// One set of a well-damped machine, so that a search takes seconds.
 const SMALL_SEARCH: [&str; 4] = ["--sets", "1", "--seed", "166"];
 
-/// Maximum duration of a search.
 const LIMIT: Duration = Duration::from_secs(300);
 
-/// Runs a search to the end; returns the printed document.
 fn run_search(out: &Path) -> Value {
     let mut command = eomgen();
     command.timeout(LIMIT);
@@ -50,7 +48,6 @@ fn start_and_kill(out: &Path) {
     assert!(!out.join("search.json").exists(), "killed too late");
 }
 
-/// Returns the files of a folder with their contents, by name.
 fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
     let entries = fs::read_dir(folder).expect("the folder");
     let paths = entries.map(|entry| entry.expect("an entry").path());
@@ -128,7 +125,6 @@ fn assert_assumed_values_match_page(found: &Value) {
     assert_eq!(kept.len(), found.len());
     for ((id, kept), (same, found)) in kept.iter().zip(&found) {
         assert_eq!(id, same);
-        // Matrix products depend on the processor; other roundings give another chaotic motion.
         let named = if cfg!(target_arch = "x86_64") {
             &["verdict", "strict", "evidence"][..]
         } else {
@@ -143,7 +139,6 @@ fn assert_assumed_values_match_page(found: &Value) {
     }
 }
 
-/// Checks the counts of `search.json` against `search.csv`.
 fn assert_counts_match_table(found: &Value, rows: &[Vec<String>]) {
     let (names, rows) = rows.split_first().expect("a table");
     let screened: Vec<_> = rows.iter().filter(|row| row[0] == "screened").collect();

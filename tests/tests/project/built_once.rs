@@ -23,7 +23,6 @@ fn packages(chosen: &[&str]) -> BTreeSet<String> {
     text.lines().map(line).collect()
 }
 
-/// The program and the Python package.
 const PROGRAMS: [&str; 2] = ["eomgen-cli", "eomgen-python"];
 
 /// Asserts that each package, with the dependencies along these edges, has the same features as in

@@ -9,7 +9,6 @@ use std::path::{Path, PathBuf};
 use eomgen_tests::models::project;
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
-/// Maximum number of circles of files in all crates.
 const MAX_CIRCLES: usize = 8;
 
 type Names = Vec<String>;
@@ -27,7 +26,6 @@ struct Crate {
     imports: BTreeMap<Names, BTreeSet<Names>>,
 }
 
-/// Collects the folders `src` of all packages.
 fn collect_sources(folder: &Path, found: &mut Vec<PathBuf>) {
     if folder.join("Cargo.toml").is_file() && folder.join("src").is_dir() {
         found.push(folder.join("src"));
@@ -41,7 +39,6 @@ fn collect_sources(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// Collects the Rust files below a folder with their modules.
 fn collect_modules(folder: &Path, module: &Names, found: &mut BTreeMap<Names, PathBuf>) {
     for entry in std::fs::read_dir(folder).expect("a folder").flatten() {
         let path = entry.path();
@@ -97,7 +94,6 @@ fn resolve(path: &Names, module: &Names) -> Option<Names> {
     }
 }
 
-/// Returns true if the token at `place` is `wanted`.
 fn is_token(tokens: &[TokenTree], place: usize, wanted: &str) -> bool {
     tokens.get(place).is_some_and(|token| match token {
         TokenTree::Ident(name) => name == wanted,
@@ -247,7 +243,6 @@ impl Crate {
     }
 }
 
-/// Returns all nodes reachable from `from`.
 fn reachable<K: Ord + Clone>(arrows: &BTreeMap<K, BTreeSet<K>>, from: &K) -> BTreeSet<K> {
     let mut found = BTreeSet::new();
     let mut waiting = vec![from];

@@ -40,7 +40,6 @@ fn folder(package: &Value) -> &Path {
     manifest.parent().expect("a folder")
 }
 
-/// Returns all Rust files below a folder.
 fn sources(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).into_iter().flatten() {

@@ -15,7 +15,6 @@ use eomgen_tests::models::{path, project};
 use eomgen_tests::pages::{Printed, in_blocks, in_text, pages};
 use eomgen_tests::program::{self, text};
 
-/// Timeout of a command.
 const TIMEOUT: Duration = Duration::from_secs(300);
 
 /// Replacements that reduce long-running commands.
@@ -223,7 +222,6 @@ fn run_compilers(line: &str, folder: &Path) -> String {
     text(&output.stdout)
 }
 
-/// Returns true if Python has SciPy; otherwise reports the skip.
 fn has_scipy() -> bool {
     let found = Command::new("python3")
         .args(["-c", "import numpy, scipy"])
@@ -349,7 +347,6 @@ fn runnable_command(command: &str) -> String {
     REDUCED.iter().fold(command, replaced)
 }
 
-/// Asserts that a package has these tests.
 fn assert_are_tests(command: &str) {
     let words: Vec<&str> = command.split(' ').collect();
     let after = |flag: &str| {

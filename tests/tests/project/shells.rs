@@ -2,7 +2,6 @@
 
 use eomgen_tests::program::{accepted, refused, run, text};
 
-/// Returns the commands listed by the help.
 fn commands() -> Vec<String> {
     let help = accepted(&["--help"]);
     let (_, list) = help.split_once("Commands:\n").expect("a list of commands");

@@ -12,7 +12,6 @@ fn spec(name: &str) -> String {
     path(name).display().to_string()
 }
 
-/// Runs a command with `--json` in the project's folder; returns the printed document.
 fn document(arguments: &[&str], status: i32) -> Value {
     let mut command = eomgen();
     let output = command

@@ -63,7 +63,6 @@ fn rejection(arguments: &[String]) -> String {
     message
 }
 
-/// Asserts that `simulate` with these options is rejected with a message that contains `part`.
 fn assert_simulate_rejects(name: &str, options: &[&str], part: &str) {
     let found = rejection(&arguments("simulate", name, options));
     assert!(found.contains(part), "{options:?}: {found}");

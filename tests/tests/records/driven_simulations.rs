@@ -33,7 +33,6 @@ impl Dataset {
         Self { folder }
     }
 
-    /// Returns the arguments of a simulation of the axis with this dataset.
     fn arguments(&self, more: &[&str]) -> Vec<String> {
         let mut arguments = vec!["simulate".to_owned(), path("emps").display().to_string()];
         arguments.extend([

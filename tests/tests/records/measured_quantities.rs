@@ -113,7 +113,6 @@ fn record(friction: f64, turn: f64, idle: bool) -> String {
     text
 }
 
-/// Runs `command` on records of these channels; returns its document.
 fn run_on_records(
     command: &str,
     specification: &str,

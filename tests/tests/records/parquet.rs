@@ -4,7 +4,6 @@ use eomgen_tests::measured::{Measured, record};
 use eomgen_tests::models::path;
 use eomgen_tests::program;
 
-/// Simulates the pendulum from this angle into a CSV or Parquet file.
 fn swing(measured: &Measured, angle: &str, file: &str) {
     let text = std::fs::read_to_string(path("pendulum")).expect("a specification");
     let other = text.replace("3/4*pi", angle);

@@ -10,7 +10,6 @@ fn valid_records_are_compared() {
     assert_eq!(warned, "fitting the original model\n");
 }
 
-/// Returns the record with `change` applied to the cells of each line.
 fn change_cells(change: impl Fn(usize, &mut Vec<String>)) -> String {
     let text = record(0.0, 0.0);
     let line = |(place, line): (usize, &str)| {

@@ -4,7 +4,6 @@ use eomgen_tests::measured::{DESCRIPTION, Measured, Moment, record_of};
 use eomgen_tests::program;
 use serde_json::Value;
 
-/// Returns the notes of a document as one text.
 fn notes(document: &Value) -> String {
     document["notes"].to_string()
 }

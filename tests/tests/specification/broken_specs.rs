@@ -7,10 +7,8 @@ use std::time::{Duration, Instant};
 use eomgen_tests::models::{path, project};
 use eomgen_tests::program::{self, eomgen, text};
 
-/// Maximum duration of a rejection.
 const MAX_REJECTION_TIME: Duration = Duration::from_secs(1);
 
-/// Runs a command that must reject `spec`; returns its message.
 fn reject(command: &[&str], spec: &Path) -> String {
     program::path();
     let begun = Instant::now();
@@ -99,7 +97,6 @@ fn reject_text(name: &str, contents: &[u8]) -> String {
     reject_without_files(&spec)
 }
 
-/// Returns the pendulum's specification with one replacement.
 fn pendulum(from: &str, to: &str) -> String {
     let whole = std::fs::read_to_string(path("pendulum")).expect("the pendulum");
     let changed = whole.replacen(from, to, 1);

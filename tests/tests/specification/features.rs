@@ -95,7 +95,6 @@ features! {
     }
 }
 
-/// Folders of specifications with one feature, and of examples with constraints and impacts.
 fn folders() -> [PathBuf; 3] {
     let tests = Path::new(env!("CARGO_MANIFEST_DIR"));
     [
@@ -113,7 +112,6 @@ fn load(name: &str) -> Model {
         .model
 }
 
-/// Certifies a file at every order and reports all failed checks.
 fn certify(name: &str, orders: &[usize]) {
     let model = load(name);
     let mut failures = Vec::new();

@@ -7,7 +7,6 @@ use std::process::Command;
 use eomgen_tests::models::{project, shipped};
 use eomgen_tests::program::accepted;
 
-/// Returns the shipped specifications and those with one language feature.
 fn specifications() -> Vec<PathBuf> {
     let features = project().join("tests/features");
     let entries = std::fs::read_dir(features).expect("the folder of the features");

@@ -5,7 +5,6 @@
 use eomgen_tests::certified::{certificate, checked};
 use eomgen_validate::certificate::{Certificate, Check, Coverage, SkipKind, Verdict};
 
-/// Asserts that the model passes; returns its certificate.
 fn assert_passes(text: &str) -> Certificate {
     let model = checked(text);
     let certificate = certificate(&model, &model);
@@ -68,7 +67,6 @@ fn one_sided_springs_pass() {
     assert_change_fails(&text, "theta - 0.1", "theta - 0.1000001");
 }
 
-/// Returns a specification of two masses with the given potential of `x`.
 fn masses(potential: &str) -> String {
     format!(
         r#"

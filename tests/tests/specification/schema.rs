@@ -30,7 +30,6 @@ fn specifications(folder: &str) -> Vec<PathBuf> {
     paths
 }
 
-/// Returns the shipped specifications and those with one language feature.
 fn valid_specifications() -> Vec<PathBuf> {
     let mut paths = shipped();
     paths.extend(specifications("tests/features"));

@@ -85,7 +85,6 @@ pub struct Arm {
     bending: [f64; MODES],
 }
 
-/// Constants of all cases.
 mod given {
     pub const MODULE: f64 = 3e-3;
     pub const TEETH: (f64, f64) = (27.0, 36.0);

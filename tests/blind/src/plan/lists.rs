@@ -106,7 +106,6 @@ fn indistinguishable(effect: Effect, on: &str, order: f64) -> Vec<(String, Strin
     owned.collect()
 }
 
-/// Returns the machines of two bodies of a seed.
 fn two_bodies(seed: u64) -> [Kind; 3] {
     [Form::TwoMass, Form::Crane, Form::QuarterCar].map(|form| Kind::TwoBodies { form, seed })
 }
@@ -127,7 +126,6 @@ pub fn singles(seed: u64, draw: &mut Draw) -> Vec<Case> {
     let (stage, pendulum) = ((Stage, "q"), (Pendulum, "theta"));
     let arm = (Arm, "arm");
     let mesh = (Arm, "x_sp");
-    // Two places per effect, some twice.
     let either = |one, other, draw: &mut Draw| draw.one_of(&[one, other]);
     let list: [(Effect, [(Kind, &str); 2]); 20] = [
         (
@@ -158,7 +156,6 @@ pub fn singles(seed: u64, draw: &mut Draw) -> Vec<Case> {
         ),
     ];
     let [drive, crane, car] = two_bodies(seed);
-    // Undeclared parameters, gain of the drive, springs, other machines.
     let further: [(Effect, Kind, &str); 20] = [
         (CoulombFriction, drive, "theta_m"),
         (CoulombFriction, drive, "theta_l"),
@@ -236,7 +233,6 @@ pub fn nothings(seed: u64) -> Vec<Case> {
     cases
 }
 
-/// Effect and place.
 type Placed<'a> = (Effect, &'a str);
 
 /// Returns cases with two clear effects.

@@ -128,7 +128,6 @@ fn judgement(label: &Label, outcome: &Outcome, effects: &[Value]) -> Judgement {
     }
 }
 
-/// Agreement of an accepted effect with a hidden one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Match {
     None,
@@ -220,7 +219,6 @@ fn count_refitted(label: &Label, discovery: &Value) -> (usize, usize) {
     counts
 }
 
-/// Returns the declared value of a parameter, in its unit.
 fn nominal_value(label: &Label, name: &str) -> Option<f64> {
     use crate::machines::Machine;
     match (label.machine.nominal(), name) {

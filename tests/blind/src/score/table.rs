@@ -68,7 +68,6 @@ pub fn table(score: &Score) -> String {
     text
 }
 
-/// Formats the number of classes, their mean size and the largest.
 fn format_sizes((count, sum, largest): (usize, usize, usize)) -> String {
     match count {
         0 => "0".to_owned(),
@@ -76,7 +75,6 @@ fn format_sizes((count, sum, largest): (usize, usize, usize)) -> String {
     }
 }
 
-/// Returns the row and column of a case in the table.
 fn row_and_column(judged: &Judged) -> (String, String) {
     let group = format!("{:?}", judged.group).to_lowercase();
     let row = match (&judged.hidden[..], judged.group) {

@@ -14,7 +14,6 @@ use crate::machines::{Machine, Setup};
 /// Fractions of the windows that are fitted in sequence.
 const SEGMENT_FRACTIONS: [f64; 3] = [0.1, 0.3, 1.0];
 
-/// Maximum number of steps for each of them.
 const MAX_STEPS: usize = 6;
 
 /// Relative decrease of the cost at which the steps end.
@@ -145,7 +144,6 @@ impl<'a> Fit<'a> {
         whole.floors().min(grown.floors())
     }
 
-    /// Fits longer and longer initial segments of the windows.
     fn fit_growing_segments(
         &self,
         records: &Records,
@@ -163,7 +161,6 @@ impl<'a> Fit<'a> {
         estimate
     }
 
-    /// Returns the records of the machine with an effect.
     fn records(&self, hidden: &Hidden) -> Records {
         let mut machine = self.plain.clone();
         let mut sensors = Sensors::right(self.setup.channels.len());
@@ -228,7 +225,6 @@ impl<'a> Fit<'a> {
         estimate
     }
 
-    /// Takes steps until the cost no longer decreases.
     fn fit_estimate(&self, records: &Records, mut estimate: Estimate, nudges: Nudges) -> Estimate {
         for _ in 0..MAX_STEPS {
             let before = estimate.cost();
@@ -253,7 +249,6 @@ impl<'a> Fit<'a> {
         estimate
     }
 
-    /// Returns the machine and sensors at values of the shared unknowns.
     pub(super) fn with(&self, shared: &DVector<f64>) -> (Machine, Sensors) {
         let mut machine = self.plain.clone();
         for (place, (name, relative)) in self.setup.uncertain.iter().enumerate() {
@@ -264,12 +259,10 @@ impl<'a> Fit<'a> {
         (machine, Sensors::within_priors(self.setup, of_sensors))
     }
 
-    /// Returns the number of parameters among the shared unknowns.
     pub(super) fn parameters(&self) -> usize {
         self.truth.len()
     }
 
-    /// Returns the residual of a machine in a window, relative to the noise.
     pub(super) fn residual(
         &self,
         machine: &Machine,

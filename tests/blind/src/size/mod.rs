@@ -21,16 +21,12 @@ use search::Search;
 pub use projection::floors_of_missing_modes;
 pub use windows::window;
 
-/// Relative accuracy of sizes by projection.
 const PROJECTION_ACCURACY: f64 = 0.02;
 
-/// Maximum number of projections for a size.
 const MAX_PROJECTIONS: usize = 13;
 
-/// Relative accuracy of sizes by fits.
 const FIT_ACCURACY: f64 = 0.05;
 
-/// Maximum number of fits for a size.
 const MAX_FITS: usize = 3;
 
 /// Fractions of the integration steps for fits; later ones if such long steps are unstable.
@@ -88,7 +84,6 @@ pub fn sized(
     Sized { hidden, floors }
 }
 
-/// Returns the largest deflection of the spring between two bodies to one side.
 fn largest_deflection(machine: &Machine, setup: &Setup, drives: &[Drive], side: f64) -> f64 {
     let motions = drives
         .iter()
@@ -98,7 +93,6 @@ fn largest_deflection(machine: &Machine, setup: &Setup, drives: &[Drive], side: 
         .fold(0.0, f64::max)
 }
 
-/// Returns an initial and a maximum size, SI.
 fn size_range(hidden: &Hidden, machine: &Machine, drives: &[Drive]) -> (f64, f64) {
     let free = f64::INFINITY;
     let inputs = drives.iter().flat_map(|drive| &drive.input);
@@ -211,7 +205,6 @@ mod tests {
             6.0,
         );
         let fit = Fit::new(&machine, &setup, &drives, &[]);
-        // Halving the step size changes little.
         let floors = fit.floors(&found.hidden);
         println!("{} {floors}", found.floors);
         assert!(

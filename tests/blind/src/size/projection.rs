@@ -59,7 +59,6 @@ impl Basis {
         self.projected_rms(differences)
     }
 
-    /// Returns the RMS of the projected differences in all windows.
     fn projected_rms(&self, mut differences: Vec<DVector<f64>>) -> f64 {
         let unknowns = self.windows.first().map_or(0, |part| part.declared.ncols());
         // The identity is the prior of the unknowns, which are in standard deviations.

@@ -6,9 +6,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// Value and derivative.
 #[derive(Clone, Copy, Debug)]
 pub struct Dual<T> {
-    /// Value.
     pub value: T,
-    /// Derivative.
     pub slope: T,
 }
 
@@ -63,7 +61,6 @@ impl<T: Neg<Output = T>> Neg for Dual<T> {
     }
 }
 
-/// Implements the scalar of an emitted module for dual numbers.
 macro_rules! scalar_of {
     ($($module:ident),*) => {$(
         impl<T: $module::Scalar> $module::Scalar for $crate::dual::Dual<T> {

@@ -18,7 +18,6 @@ thread_local! {
     static KNOWN: RefCell<HashMap<Specification, Pair>> = RefCell::default();
 }
 
-/// Runs `run` with the interpreter and the machine code of a specification.
 pub fn with_both<R>(
     specification: Specification,
     work: impl FnOnce(&mut [Evaluator; 2]) -> R,

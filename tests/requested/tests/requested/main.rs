@@ -31,7 +31,6 @@ impl NumberSource<'_> {
         self.numbers[(self.next - 1) % self.numbers.len()]
     }
 
-    /// Returns the next number of random magnitude.
     fn number(&mut self) -> f64 {
         let exponent = 2.5 * (self.even() - 1.0);
         self.even() * 10_f64.powf(exponent)
@@ -47,7 +46,6 @@ fn numbers() -> impl Strategy<Value = Vec<f64>> {
     prop::collection::vec(-1.0..1.0_f64, 331)
 }
 
-/// Dual number with bounds of its rounding error.
 type TrackedDual = Dual<Tracked>;
 
 fn dual_number(value: f64, slope: f64) -> TrackedDual {
@@ -57,7 +55,6 @@ fn dual_number(value: f64, slope: f64) -> TrackedDual {
     }
 }
 
-/// Returns dual numbers that move along a direction.
 fn dual_numbers<const N: usize>(numbers: &[f64; N], direction: &[f64; N]) -> [TrackedDual; N] {
     std::array::from_fn(|i| dual_number(numbers[i], direction[i]))
 }
@@ -70,7 +67,6 @@ fn slopes<const N: usize>(duals: &[TrackedDual; N]) -> [Tracked; N] {
     duals.map(|dual| dual.slope)
 }
 
-/// Maximum relative difference.
 const MAX_RELATIVE_DIFFERENCE: f64 = 1e-12;
 
 /// Factor of the bound of the expected number's rounding error, plus one. If terms cancel, rounding
@@ -299,7 +295,6 @@ macro_rules! checks {
                     assert_agree("guards", &found, &slopes(&guards))?;
                 }
 
-                /// Interpreter, machine code and emitted Rust, number by number.
                 #[test]
                 fn all_evaluations_give_same_bits(numbers in numbers()) {
                     let mut drawn = NumberSource { numbers: &numbers, next: 0 };

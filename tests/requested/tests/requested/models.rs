@@ -17,7 +17,6 @@ macro_rules! models {
             }
         )*
         scalar_of!($($module),*);
-        /// Paths and orders under the same names.
         #[allow(non_upper_case_globals)]
         pub mod specifications {
             use crate::evaluators::Specification;

@@ -6,7 +6,6 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// Number with a bound of its error for arithmetic of `DIGITS` binary digits.
 #[derive(Clone, Copy, Debug)]
 pub struct Rounded<const DIGITS: u32> {
-    /// Number.
     pub number: f64,
     /// Bound of the accumulated rounding error.
     pub error: f64,
@@ -16,7 +15,6 @@ impl<const DIGITS: u32> Rounded<DIGITS> {
     /// Half a unit in the last place of 1.
     const UNIT: f64 = 1.0 / (1_u64 << DIGITS) as f64;
 
-    /// Returns a number without error.
     pub fn exact(number: impl Into<f64>) -> Self {
         Self {
             number: number.into(),

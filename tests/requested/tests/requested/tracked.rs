@@ -3,7 +3,6 @@
 
 use crate::rounded::Rounded;
 
-/// Double-precision number with an error bound.
 pub type Tracked = Rounded<53>;
 
 /// Implements the scalar of an emitted module. Elementary functions are accurate to two units in

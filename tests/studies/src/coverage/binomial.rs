@@ -10,7 +10,6 @@ pub fn at_least(held: usize, count: usize, p: f64) -> f64 {
     (held..=count).map(|k| probability(k, count, p)).sum()
 }
 
-/// Returns the probability of exactly `k` successes.
 fn probability(k: usize, count: usize, p: f64) -> f64 {
     let choices = (1..=k).map(|i| ((count - k + i) as f64 / i as f64).ln());
     let logarithm = choices.sum::<f64>() + k as f64 * p.ln() + (count - k) as f64 * (1.0 - p).ln();

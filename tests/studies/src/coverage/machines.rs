@@ -7,7 +7,6 @@ pub struct Machine {
     pub text: &'static str,
     /// Uncertain parameters with their relative standard deviations.
     pub uncertain: &'static [(&'static str, f64)],
-    /// Name and unit of the input.
     pub input: (&'static str, &'static str),
     /// Sines whose sum is the input: amplitude and frequency, Hz. The phases differ between
     /// records.
@@ -28,7 +27,6 @@ pub struct Channel {
     pub noise: f64,
 }
 
-/// The machines of the study.
 pub const MACHINES: [Machine; 4] = [
     Machine {
         name: "ball-screw axis with dry friction",

@@ -26,7 +26,6 @@ use machines::{MACHINES, Machine};
 /// Half-width of a 90 % interval, in standard deviations.
 const HALF_WIDTH: f64 = 1.645;
 
-/// Accepted range of the coverage.
 const ACCEPTED: [f64; 2] = [0.85, 0.95];
 
 /// Maximum accepted bias, in standard deviations.

@@ -132,7 +132,6 @@ fn quantity(
     Ok(late.map(at).collect())
 }
 
-/// Returns the text of the dataset file.
 fn dataset(machine: &Machine) -> String {
     let (input, unit) = machine.input;
     let mut text = format!(
@@ -155,7 +154,6 @@ fn dataset(machine: &Machine) -> String {
     text
 }
 
-/// Draws a number of mean 0 and standard deviation 1.
 fn normal(draw: &mut ChaCha8Rng) -> f64 {
     StandardNormal.sample(draw)
 }
@@ -171,7 +169,6 @@ fn truncated_normal(draw: &mut ChaCha8Rng) -> f64 {
     }
 }
 
-/// Draws a number between 0 and 1.
 fn uniform(draw: &mut ChaCha8Rng) -> f64 {
     (draw.next_u64() >> 11) as f64 / (1u64 << 53) as f64
 }

@@ -5,7 +5,6 @@ use eomgen_compiled_model::{CompiledModel, Instance, Orders, Request, Solver};
 use super::machine::Machine;
 use super::turning_point::place_of_stop;
 
-/// Number of samples of a motion.
 const SAMPLES: usize = 200;
 
 const TOLERANCES: [f64; 2] = [1e-9, 1e-11];
@@ -31,15 +30,11 @@ const DIVERGED_DISTANCE: f64 = 0.05;
 /// error of the deflection has this weight in the energy of the stop.
 const MAX_RISE: f64 = 10.0;
 
-/// Result for one machine.
 pub struct Verdict {
-    /// One line per failure.
     pub failures: Vec<String>,
-    /// Number of runs.
     pub runs: usize,
     /// Whether the exact solver accepted the machine.
     pub is_exact: bool,
-    /// Number of switches of the reference.
     pub switches: usize,
     /// Largest rise of the energy relative to the allowed one.
     pub rise: f64,
@@ -121,7 +116,6 @@ pub fn judge(machine: &Machine) -> Result<Verdict, String> {
     Ok(verdict)
 }
 
-/// Simulates from an initial state; returns the samples with their energies.
 fn sample(
     run: &Instance<'_>,
     (initial, times): (&[f64], &[f64]),
@@ -154,7 +148,6 @@ fn sample(
     })
 }
 
-/// Returns the largest magnitude of each state.
 fn sizes_of(states: &[Vec<f64>]) -> Vec<f64> {
     (0..states[0].len())
         .map(|index| {

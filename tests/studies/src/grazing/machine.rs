@@ -7,18 +7,15 @@ use std::fmt::Write as _;
 use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
-/// Law of a stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stop {
     /// Spring beyond a backlash on both sides.
     Play,
     /// Spring beyond a backlash with a damper that acts in contact.
     DampedPlay,
-    /// One-sided spring.
     OneSided,
     /// One-sided spring with the exponent of Hertz.
     Hertz,
-    /// Impact with restitution.
     Impact,
 }
 
@@ -31,7 +28,6 @@ pub struct Machine {
     springs: Vec<f64>,
     /// Cubic stiffness of the first spring, N/m^3.
     hardening: f64,
-    /// Law of the stop.
     pub stop: Stop,
     /// Stiffness of the stop relative to the first spring.
     pub stiffness_ratio: f64,
@@ -134,17 +130,14 @@ impl Machine {
         }
     }
 
-    /// Returns the number of masses.
     pub fn count(&self) -> usize {
         self.masses.len()
     }
 
-    /// Returns true if the machine conserves energy.
     pub fn is_conservative(&self) -> bool {
         self.friction == 0.0 && !matches!(self.stop, Stop::DampedPlay | Stop::Impact)
     }
 
-    /// Returns true if the stop is two-sided.
     pub fn is_two_sided(&self) -> bool {
         matches!(self.stop, Stop::Play | Stop::DampedPlay)
     }
@@ -220,7 +213,6 @@ impl Machine {
         }
     }
 
-    /// Returns the magnitude of the initial deflections, m.
     fn amplitude(&self) -> f64 {
         let count = self.count();
         let frequency = (self.springs[0] / self.masses.iter().sum::<f64>()).sqrt();

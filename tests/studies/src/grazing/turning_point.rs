@@ -4,7 +4,6 @@ use eomgen_compiled_model::{CompiledModel, Instance, Orders, Request, Solver};
 
 use super::machine::Machine;
 
-/// Tolerance of the motion without a stop.
 const TOLERANCE: f64 = 1e-13;
 
 /// Number of samples of that motion, and of each refinement of a turning point.

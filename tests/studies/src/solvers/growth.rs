@@ -7,10 +7,8 @@ use eomgen_validate::random::Random;
 /// Size of a disturbance relative to the magnitude of each state.
 const DISTURBANCE: f64 = 1e-6;
 
-/// Number of disturbances at each start time.
 const DIRECTIONS: usize = 2;
 
-/// Start times of disturbances as fractions of the samples.
 const STARTS: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
 
 /// Returns the largest magnitude of every state over a motion. States of one unit share their

@@ -6,7 +6,6 @@ use std::fmt::Write;
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_validate::random::Random;
 
-/// Feature of a machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Feature {
     /// Linear dampers between the masses.
@@ -57,14 +56,10 @@ impl Feature {
     }
 }
 
-/// Machine and its inputs.
 #[derive(Clone, Debug)]
 pub struct Machine {
-    /// Specification.
     pub text: String,
-    /// Features.
     pub features: Vec<Feature>,
-    /// Inputs over time.
     pub inputs: HeldInputs,
     /// Duration of the motion, s.
     pub until: f64,
@@ -88,7 +83,6 @@ const DURATION: f64 = 8.0;
 /// Times at which the input changes, relative to the duration.
 const INPUT_TIMES: [f64; 4] = [0.0, 0.21, 0.48, 0.77];
 
-/// Sections of a specification in their order.
 const SECTIONS: [&str; 10] = [
     "parameters",
     "coordinates",
@@ -141,7 +135,6 @@ impl Units {
     }
 }
 
-/// Specification under construction.
 struct Writer<'r> {
     random: &'r mut Random,
     units: Units,
@@ -345,7 +338,6 @@ impl Writer<'_> {
     }
 }
 
-/// Draws a machine.
 pub fn draw(random: &mut Random) -> Machine {
     let units = Units::draw(random);
     let count = 1 + (3.0 * random.unit()) as usize;

@@ -26,13 +26,11 @@ const ALLOWED_TOLERANCES: f64 = 10.0;
 /// contain up to the fourth power of a coordinate, and both samples have an error.
 const ENERGY_SENSITIVITY: f64 = 8.0;
 
-/// Number of samples of a motion.
 const SAMPLES: usize = 61;
 
 struct Outcome {
     /// Largest difference of two solvers relative to the allowed one.
     worst: f64,
-    /// Whether the exact solver accepted the machine.
     is_exact: bool,
     /// Whether the machine is passive, so that its energy was checked.
     is_passive: bool,

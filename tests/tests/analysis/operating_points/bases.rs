@@ -16,7 +16,6 @@ const B: f64 = 3.0;
 const MU: f64 = 2.0;
 const LENGTH: f64 = 0.7;
 
-/// Returns a uniform beam, rod or string with this basis.
 fn uniform(basis: &str, order: usize) -> String {
     let derivative = if is_rod(basis) { 1 } else { 2 };
     let unit = if is_rod(basis) { "N" } else { "N m^2" };

@@ -5,16 +5,13 @@ use std::process::Command;
 
 use eomgen_tests::program::path;
 
-/// Maximum ratio of instruction counts when a model doubles.
 const MAX_RATIO: f64 = 2.5;
 
-/// Returns a section with `count` lines.
 fn section(name: &str, count: usize, line: &dyn Fn(usize) -> String) -> String {
     let lines = (0..count).map(|place| line(place) + "\n");
     format!("[{name}]\n{}", lines.collect::<String>())
 }
 
-/// Returns independent masses with further sections.
 fn masses(count: usize, further: &str) -> String {
     "[model]\nname = \"grown\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\nk = { value = 3, unit = \"N/m\" }\n"
         .to_owned()
@@ -23,25 +20,21 @@ fn masses(count: usize, further: &str) -> String {
         + further
 }
 
-/// Returns masses on separate springs.
 fn masses_on_springs(count: usize) -> String {
     let spring = |k: usize| format!("V{k} = \"1/2*{}*k*q{k}^2\"", k + 1);
     masses(count, &section("potential", count, &spring))
 }
 
-/// Returns masses that fall on separate floors.
 fn masses_with_impacts(count: usize) -> String {
     let floor = |k: usize| format!("i{k} = {{ when = \"q{k}\", restitution = \"1/2\" }}");
     masses(count, &section("impacts", count, &floor))
 }
 
-/// Returns masses constrained in pairs.
 fn masses_with_constraints(count: usize) -> String {
     let pair = |k: usize| format!("c{k} = {{ zero = \"q{} - q{}\" }}", 2 * k, 2 * k + 1);
     masses(2 * count, &section("constraints", count, &pair))
 }
 
-/// Returns a chain of springs with a named coefficient per mass.
 fn chain_with_coefficients(count: usize) -> String {
     let spring = |k: usize| match k {
         0 => "V0 = \"1/2*k*q0^2\"".to_owned(),
@@ -55,7 +48,6 @@ fn chain_with_coefficients(count: usize) -> String {
     )
 }
 
-/// Returns strings that can each hit a floor.
 fn strings_with_impacts(count: usize) -> String {
     let field = |k: usize| {
         format!(
@@ -78,7 +70,6 @@ fn strings_with_impacts(count: usize) -> String {
         })
 }
 
-/// Counts the instructions of a command on a specification.
 fn instructions(command: &str, text: &str) -> f64 {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("model.toml");

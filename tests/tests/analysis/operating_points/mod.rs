@@ -216,7 +216,6 @@ fn equilibria_match_closed_form() {
     assert!(said.contains("no equilibrium was found"), "{said}");
 }
 
-/// Returns the rows of a CSV, restricted to the named columns.
 fn columns(file: &Path, names: &[&str]) -> Vec<Vec<f64>> {
     let text = std::fs::read_to_string(file).expect("a file");
     let mut lines = text.lines();

@@ -34,7 +34,6 @@ inertia = "1/2*integral(mu*dot(w)^2, w)"
 elastic = "1/2*integral(B*diff(w, x, 2)^2, w)"
 "#;
 
-/// All kinds of expressions of the field.
 const MORE: &str = r#"
 bed = "1/2*integral(B*exp(-x/l)*diff(w, x, 1)^2, w)/l^2 + 1/4*integral(B*w^4, w)/l^6"
 load = "-B*(2*integral(x*w, w)/l^4 + integral(w, w)/l^3)"

@@ -125,7 +125,6 @@ fn count_finished(folder: &Path) -> usize {
     parts.iter().filter(|name| name.ends_with(".part")).count()
 }
 
-/// Kills the program after it has written `some` parts.
 fn kill_after(mut child: Child, folder: &Path, some: usize) {
     let deadline = Instant::now() + Duration::from_secs(60);
     while count_finished(folder) < some {

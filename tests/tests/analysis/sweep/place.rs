@@ -30,7 +30,6 @@ damper = "zeta*sqrt(k*m)*dot(x)^2"
 drive = { on = "x", value = "F*sin(omega*t)" }
 "#;
 
-/// Temporary folder with the oscillator.
 pub struct Place {
     folder: tempfile::TempDir,
 }
@@ -46,7 +45,6 @@ impl Place {
         self.folder.path().join(name)
     }
 
-    /// Returns the arguments of a sweep of the oscillator into the folder `out`.
     pub fn sweep(&self, out: &str, more: &[&str]) -> Vec<String> {
         let spec = self.at("oscillator.toml").display().to_string();
         let out = self.at(out).display().to_string();
@@ -80,7 +78,6 @@ pub fn merge_command(folder: &Path) -> Vec<String> {
     vec!["merge".to_owned(), folder.display().to_string()]
 }
 
-/// Returns the names and bytes of all final files.
 pub fn results(folder: &Path) -> Vec<(String, Vec<u8>)> {
     let mut found = Vec::new();
     for entry in fs::read_dir(folder).expect("the folder") {

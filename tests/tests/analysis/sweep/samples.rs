@@ -36,7 +36,6 @@ fn place() -> Place {
     place
 }
 
-/// Returns the arguments of a sweep over samples into a folder.
 fn arguments(place: &Place, out: &str, more: &[&str]) -> Vec<String> {
     let [spec, out] = ["uncertain.toml", out].map(|name| place.at(name).display().to_string());
     let given = [
@@ -69,7 +68,6 @@ fn statistics(folder: &Path) -> Value {
     serde_json::from_slice(&text).expect("JSON")
 }
 
-/// Returns all result files except the parts.
 fn result_files(folder: &Path) -> Vec<(String, Vec<u8>)> {
     let entries = fs::read_dir(folder).expect("the folder").flatten();
     let files = entries.filter(|entry| entry.path().is_file());

@@ -4,7 +4,6 @@ use eomgen_codegen::c::{self, EmitError};
 
 use super::{compare, has_compilers, program, supported_outputs};
 
-/// Returns a pendulum with these names and texts.
 pub fn pendulum(
     model: &str,
     title: &str,

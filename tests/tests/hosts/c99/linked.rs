@@ -17,7 +17,6 @@ fn write_c(folder: &Path, name: &str) {
     std::fs::write(folder.join(format!("{name}.c")), files.source).expect("written");
 }
 
-/// Returns a C99 compiler command that runs in `folder`.
 fn compiler(folder: &Path) -> Command {
     let mut command = Command::new("cc");
     command.current_dir(folder).args(["-std=c99", "-O2"]);

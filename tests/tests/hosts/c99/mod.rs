@@ -22,7 +22,6 @@ mod reordered;
 /// Compiler warnings for all emitted C.
 const WARNINGS: [&str; 4] = ["-pedantic", "-Wall", "-Wextra", "-Werror"];
 
-/// Returns all outputs that C supports.
 fn supported_outputs() -> Vec<Output> {
     let mut all = Output::ALL.to_vec();
     all.retain(|output| *output != Output::Lanes);
@@ -39,7 +38,6 @@ fn has_compilers() -> bool {
     there
 }
 
-/// Runs a command; returns its stdout.
 fn run(command: &mut Command) -> String {
     let output = command.output().expect("the command starts");
     let said = String::from_utf8_lossy(&output.stderr);
@@ -78,7 +76,6 @@ fn compile_as_cpp(program: &Program, precisions: &[&str], folder: &Path) {
 
 #[derive(Clone, Copy)]
 enum Compiled {
-    /// Optimised, as in applications.
     Optimised,
     /// Undefined behaviour of C, such as converting NaN to an integer, ends the driver. Not
     /// optimised: optimisation would make compilation five times as long.
@@ -98,7 +95,6 @@ impl Compiled {
     }
 }
 
-/// Compiles and runs the driver in C; returns its stdout.
 fn run_c_driver(program: &Program, real: &str, compiled: Compiled, folder: &Path) -> String {
     let name = &program.name;
     let mut defaults: Vec<String> = program
@@ -217,12 +213,10 @@ fn has_requested(program: &Program) -> [bool; 2] {
     [Output::Regimes, Output::Products].map(|output| kinds.contains(&output))
 }
 
-/// Compares C and Rust in both precisions.
 fn compare(program: &Program) {
     compare_precisions(program, &["double", "float"], Compiled::Trapping);
 }
 
-/// Compares C and Rust in these precisions.
 fn compare_precisions(program: &Program, precisions: &[&str], compiled: Compiled) {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();

@@ -55,7 +55,6 @@ int main(void) {
 }
 ";
 
-/// Compiles with these flags and returns the printed numbers.
 fn print_values(flags: &[&str], folder: &Path) -> Vec<f64> {
     let executable = folder.join("each");
     run(Command::new("cc")

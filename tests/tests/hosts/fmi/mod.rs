@@ -10,7 +10,6 @@ use eomgen_tests::program::{accepted, eomgen, refused};
 
 const VERSIONS: [&str; 2] = ["fmu2", "fmu3"];
 
-/// Writes a unit and returns its path.
 fn write_unit(name: &str, order: Option<&str>, target: &str, folder: &Path) -> PathBuf {
     let out = folder.join(target);
     let mut command = eomgen();
@@ -45,7 +44,6 @@ fn is_available(packages: &str, what: &str) -> bool {
     python && compiler
 }
 
-/// Runs a Python script of this folder.
 fn run_python(script: &str, arguments: &[&str]) {
     let place = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/hosts/fmi")).join(script);
     let output = Command::new("python3")

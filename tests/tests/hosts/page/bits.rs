@@ -60,7 +60,6 @@ fn cases(model: &Model, program: &Program, order: usize) -> Vec<Case> {
     cases
 }
 
-/// Returns the interpreter's results in the order of the script.
 fn interpret(evaluator: &mut Evaluator, case: &Case) -> Vec<f64> {
     evaluator.prepare(&case.parameters);
     let usable = f64::from(u8::from(evaluator.pivots_are_positive()));

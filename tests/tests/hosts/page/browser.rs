@@ -42,7 +42,6 @@ pub fn probed(browser: &str, page: &Path, look: Look) -> Value {
     probed_by("probe.js", browser, page, look)
 }
 
-/// Returns the observations of the given probe script.
 pub fn probed_by(probe: &str, browser: &str, page: &Path, look: Look) -> Value {
     let script = |name: &str| project().join("tests/tests/hosts/page").join(name);
     let Look { width, dark, still } = look;

@@ -10,7 +10,6 @@ use serde_json::Value;
 
 use super::drawn;
 
-/// Returns the texts of the examples with a drawing.
 fn examples() -> Vec<String> {
     let names = ["double_pendulum", "crane", "flexible_arm"];
     let text = |name: &str| std::fs::read_to_string(drawn(name)).expect("a specification");

@@ -9,7 +9,6 @@ use serde_json::Value;
 use super::browser::{WIDE, browser, probed};
 use super::page;
 
-/// Writes a specification with these texts and this mass.
 fn pendulum(title: &str, doc: &str, mass: &str, folder: &Path) -> PathBuf {
     let text = format!(
         "[model]\nname = \"p\"\ntitle = '''{title}'''\n\

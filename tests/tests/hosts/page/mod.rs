@@ -14,7 +14,6 @@ use std::path::{Path, PathBuf};
 use eomgen_tests::models::project;
 use eomgen_tests::program::accepted;
 
-/// Writes the page of a specification to `folder` with further options; returns its path.
 fn page(spec: &Path, options: &[&str], folder: &Path) -> PathBuf {
     let out = folder.join("page.html");
     let (spec, place) = (spec.display().to_string(), out.display().to_string());
@@ -23,7 +22,6 @@ fn page(spec: &Path, options: &[&str], folder: &Path) -> PathBuf {
     out
 }
 
-/// Returns the path of an example with a drawing.
 fn drawn(name: &str) -> PathBuf {
     project()
         .join("examples/drawn")

@@ -11,7 +11,6 @@ use serde_json::Value;
 use super::bits::node;
 use super::{drawn, page};
 
-/// Returns the state shown by the page at time `end`.
 fn simulate_page(spec: &Path, end: f64) -> Value {
     let folder = tempfile::tempdir().expect("a folder");
     let output = Command::new("node")

@@ -26,7 +26,6 @@ fn run_report(friction: f64, command: &str) -> (Measured, Value) {
     (measured, document)
 }
 
-/// Returns the residual computed by the page at these parameter values.
 fn residual_on_page(measured: &Measured, parameter: &str) -> f64 {
     let file = |name: &str| project().join(name);
     let output = Command::new("node")

@@ -140,7 +140,7 @@ fn arm_with_any_number_of_modes_matches_general_solver() {
 
 #[test]
 fn simultaneous_switches_of_both_meshes_match_general_solver() {
-    // The meshes are 1 nm outside and open at 1 m/s: both unload within the delay.
+    // The meshes are 1 nm outside the backlash and open: they unload within `delay` of each other.
     for delay in [0.0, 1e-16, 1e-14, 1e-12, 1e-11, 1e-9] {
         for speed in [-1.0, -1e-3] {
             let x = [25e-6 + 1e-9, 25e-6 + 1e-9 - delay * speed];

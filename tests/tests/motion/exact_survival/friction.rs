@@ -38,7 +38,6 @@ fn sticking_block_stays_at_rest() {
     assert!((motion.switches[0].t - 1.0).abs() < 1e-14);
 }
 
-/// Returns the root of a continuous function by bisection.
 fn root(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     assert!(f(low) * f(high) < 0.0);
     for _ in 0..200 {
@@ -352,7 +351,6 @@ fn friction_at_tip_of_beam_matches_steep_friction() {
             "order {order}, {level} N: {found:.1e}, {} switches",
             dry.switches.len()
         );
-        // Steep friction creeps: the bound is its slope over the level, relative to the motion.
         assert!(found < 2e-3, "order {order}, {level}: {found:e}");
     }
 }

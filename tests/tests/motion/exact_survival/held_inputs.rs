@@ -6,7 +6,6 @@ use eomgen_sim::inputs::HeldInputs;
 use eomgen_tests::models::load;
 use eomgen_tests::motions::{Spec, Subject, difference, grid};
 
-/// Returns an input held from each of the given times on.
 fn held_input(model: &Model, name: &str, unit: &str, steps: &[(f64, f64)]) -> HeldInputs {
     let folder = tempfile::tempdir().expect("a folder");
     let rows: String = steps

@@ -93,7 +93,6 @@ fn nonpositive_masses_are_rejected() {
         let message = rejection(&mass(m), (0.0, 1.0), &[1.0]);
         assert!(message.contains("mass"), "{message}");
     }
-    // The general solver rejects these, too.
     let message = rejection(&mass(-1.0), (0.0, 1.0), &[1.0]);
     assert!(message.contains("mass"), "{message}");
     let model = load("planetary_arm");

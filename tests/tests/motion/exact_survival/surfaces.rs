@@ -345,7 +345,6 @@ fn samples_at_a_switch_match_closed_form() {
             }
         }
     }
-    // Samples at every switch of a longer motion.
     let all = subject.exact((0.0, 30.0), &[]);
     let times: Vec<f64> = all.switches.iter().map(|s| s.t).collect();
     assert!(times.len() > 20);
