@@ -12,16 +12,15 @@ const TOLERANCES: [f64; 2] = [1e-9, 1e-11];
 /// Tolerance of the reference and of its neighbouring motions.
 const REFERENCE: f64 = 1e-12;
 
-/// Initial distance of neighbouring motions from the reference, in tolerances relative to the
-/// magnitudes of the states.
-const NEIGHBOUR_DISTANCE: f64 = 100.0;
+/// Smallest sum of the errors of a motion, in tolerances relative to the sizes of the states. Every located
+/// switch may add one.
+const LEAST_ERRORS: f64 = 100.0;
 
-/// Number of pairs of neighbouring motions, on either side of the reference.
+/// Pairs of motions on either side of the reference, from its start.
 const PAIRS: usize = 2;
 
-/// Maximum difference of a motion from the reference, in tolerances beyond that of neighbouring
-/// motions.
-const MAX_DIFFERENCE: f64 = 100.0;
+/// Contacts in which motions beside the reference start, as parts of the switches of the reference.
+const CONTACTS: [f64; 3] = [0.25, 0.5, 0.75];
 
 /// Relative distance at which neighbouring motions have diverged and are no longer compared.
 const DIVERGED_DISTANCE: f64 = 0.05;
@@ -59,8 +58,22 @@ impl Verdict {
 struct Sampled {
     states: Vec<Vec<f64>>,
     energies: Vec<f64>,
-    switches: usize,
+    /// Times of the switches, s.
+    switches: Vec<f64>,
 }
+
+/// Motion that others are compared with.
+struct Reference {
+    times: Vec<f64>,
+    motion: Sampled,
+    /// Largest magnitude of each state.
+    sizes: Vec<f64>,
+    /// Sum of the errors that a motion may make, in tolerances.
+    errors: f64,
+}
+
+/// Computes the states and energies of a motion from a state at the first of the times.
+type Sampling<'a> = dyn Fn(&[f64], &[f64], Solver, f64) -> Result<Sampled, String> + 'a;
 
 /// Judges the motions of a machine.
 ///
@@ -75,29 +88,34 @@ pub fn judge(machine: &Machine) -> Result<Verdict, String> {
     let times: Vec<f64> = (0..=SAMPLES)
         .map(|place| machine.duration * place as f64 / SAMPLES as f64)
         .collect();
-    let sampled =
-        |initial: &[f64], solver, tolerance| sample(&run, (initial, &times), solver, tolerance);
-    let reference = sampled(&machine.initial, Solver::Rk, REFERENCE)
+    let sampled = |initial: &[f64], times: &[f64], solver, tolerance| {
+        sample(&run, (initial, times), solver, tolerance)
+    };
+    let motion = sampled(&machine.initial, &times, Solver::Rk, REFERENCE)
         .map_err(|error| format!("reference: {error}"))?;
-    let sizes = sizes_of(&reference.states);
+    let reference = Reference {
+        sizes: sizes_of(&motion.states),
+        errors: LEAST_ERRORS.max(motion.switches.len() as f64),
+        times,
+        motion,
+    };
     let mut verdict = Verdict::failed(String::new());
     verdict.failures.clear();
-    verdict.switches = reference.switches;
+    verdict.switches = reference.motion.switches.len();
     verdict.is_exact = model.piecewise_linear().is_ok();
     for tolerance in TOLERANCES {
-        let parting = parting(machine, &reference, &sizes, tolerance, &sampled)?;
+        let parting = parting(machine, &reference, tolerance, &sampled)?;
         let mut solvers = vec![Solver::Rk, Solver::Radau];
         if verdict.is_exact && tolerance == TOLERANCES[0] {
             solvers.push(Solver::Exact);
         }
         for solver in solvers {
             verdict.runs += 1;
-            let failure = match sampled(&machine.initial, solver, tolerance) {
+            let failure = match sampled(&machine.initial, &reference.times, solver, tolerance) {
                 Err(error) => Some(error),
                 Ok(motion) => {
                     let rise = rise_of(machine, &motion.energies, tolerance);
-                    let difference =
-                        difference_of(&motion, (&reference, &sizes), &parting, tolerance);
+                    let difference = difference_of(&motion, &reference, &parting, tolerance);
                     verdict.rise = verdict.rise.max(rise);
                     verdict.difference = verdict.difference.max(difference);
                     (rise > 1.0 || difference > 1.0).then(|| {
@@ -142,7 +160,7 @@ fn sample(
         .observables(&motion)
         .map_err(|error| error.to_string())?;
     Ok(Sampled {
-        switches: motion.trajectory.switches.len(),
+        switches: motion.trajectory.switches.iter().map(|s| s.t).collect(),
         energies: rows.iter().map(|row| row[place]).collect(),
         states: motion.trajectory.states,
     })
@@ -159,18 +177,15 @@ fn sizes_of(states: &[Vec<f64>]) -> Vec<f64> {
         .collect()
 }
 
-/// Returns the largest rise of the energy above its previous minimum, relative to the allowed one.
-/// For a conservative machine, returns the largest deviation from the initial energy instead.
+/// Returns the largest rise of the energy above its lowest value before, relative to the allowed rise. Losses by
+/// numerical damping are judged by the states.
 fn rise_of(machine: &Machine, energies: &[f64], tolerance: f64) -> f64 {
     let first = energies[0];
     let mut lowest = first;
     let mut rise = 0.0_f64;
     for energy in energies {
         lowest = lowest.min(*energy);
-        rise = rise.max(match machine.is_conservative() {
-            true => (energy - first).abs(),
-            false => energy - lowest,
-        });
+        rise = rise.max(energy - lowest);
         if energy.is_nan() {
             return f64::INFINITY;
         }
@@ -178,50 +193,88 @@ fn rise_of(machine: &Machine, energies: &[f64], tolerance: f64) -> f64 {
     rise / (MAX_RISE * tolerance * machine.stiffness_ratio.sqrt() * first)
 }
 
-/// Returns the largest distance of the neighbouring motions from the reference up to each sample.
+/// Returns the largest distance of neighbouring motions from the reference up to each sample. They start beside
+/// its initial state, and inside several of its contacts.
 fn parting(
     machine: &Machine,
-    reference: &Sampled,
-    sizes: &[f64],
+    reference: &Reference,
     tolerance: f64,
-    sampled: &impl Fn(&[f64], Solver, f64) -> Result<Sampled, String>,
+    sampled: &Sampling<'_>,
 ) -> Result<Vec<f64>, String> {
-    let mut parted = vec![0.0_f64; reference.states.len()];
-    for pair in 0..PAIRS {
-        for sign in [1.0, -1.0] {
-            let beside = machine.initial.iter().zip(sizes).enumerate();
-            // Directions that are not parallel to an axis or to each other.
-            let beside: Vec<f64> = beside
+    let mut starts = vec![(0, 0.0, machine.initial.clone(), PAIRS)];
+    for t in contacts(&reference.motion.switches) {
+        let before = reference.times.partition_point(|time| *time < t) - 1;
+        let times = [reference.times[before], t];
+        let way = sampled(
+            &reference.motion.states[before],
+            &times,
+            Solver::Rk,
+            REFERENCE,
+        )?;
+        starts.push((before + 1, t, way.states[1].clone(), 1));
+    }
+    let mut parted = vec![0.0_f64; reference.times.len()];
+    for (first, t, state, pairs) in starts {
+        let times: Vec<f64> = std::iter::once(t)
+            .chain(
+                reference.times[first..]
+                    .iter()
+                    .copied()
+                    .filter(|time| *time > t),
+            )
+            .collect();
+        let skipped = reference.times.len() + 1 - times.len();
+        for pair in 0..2 * pairs {
+            let sign = if pair % 2 == 0 { 1.0 } else { -1.0 };
+            let entries = state.iter().zip(&reference.sizes).enumerate();
+            // Directions along no axis, and no multiple of each other.
+            let beside: Vec<f64> = entries
                 .map(|(index, (y, size))| {
-                    let direction = (1.0 + 2.0 * index as f64 + 1.7 * pair as f64).sin();
-                    y + sign * direction * NEIGHBOUR_DISTANCE * tolerance * size
+                    let direction = (1.0 + 2.0 * index as f64 + 1.7 * (pair / 2) as f64).sin();
+                    y + sign * direction * reference.errors * tolerance * size
                 })
                 .collect();
-            let motion = sampled(&beside, Solver::Rk, REFERENCE)
-                .map_err(|error| format!("neighbouring motion: {error}"))?;
+            let motion = sampled(&beside, &times, Solver::Rk, REFERENCE)
+                .map_err(|error| format!("beside the reference: {error}"))?;
             let mut so_far = 0.0_f64;
-            for (place, parted) in parted.iter_mut().enumerate() {
-                let states = (&motion.states[place], &reference.states[place]);
-                so_far = so_far.max(distance(states, sizes));
-                *parted = parted.max(so_far);
+            for (place, state) in motion.states.iter().enumerate().skip(1) {
+                let place = place + skipped - 1;
+                let states = (state, &reference.motion.states[place]);
+                so_far = so_far.max(distance(states, &reference.sizes));
+                parted[place] = parted[place].max(so_far);
             }
         }
     }
     Ok(parted)
 }
 
-/// Returns the largest difference from the reference relative to the allowed one, until the
-/// neighbouring motions have diverged.
-fn difference_of(
-    motion: &Sampled,
-    (reference, sizes): (&Sampled, &[f64]),
-    parting: &[f64],
-    tolerance: f64,
-) -> f64 {
-    let pairs = motion.states.iter().zip(&reference.states).zip(parting);
+/// Times (s) inside contacts: in the middle of the shortest of the intervals between switches near each of
+/// [`CONTACTS`].
+fn contacts(switches: &[f64]) -> Vec<f64> {
+    let intervals: Vec<(f64, f64)> = switches
+        .windows(2)
+        .map(|pair| (pair[1] - pair[0], 0.5 * (pair[0] + pair[1])))
+        .filter(|(length, _)| *length > 0.0)
+        .collect();
+    let shortest = |part: f64| {
+        let place = (part * intervals.len() as f64) as usize;
+        let near = intervals.iter().skip(place).take(2);
+        near.min_by(|a, b| a.0.total_cmp(&b.0)).map(|near| near.1)
+    };
+    CONTACTS.into_iter().filter_map(shortest).collect()
+}
+
+/// The largest difference from the reference, as a part of what is allowed, as long as motions beside
+/// it have not parted.
+fn difference_of(motion: &Sampled, reference: &Reference, parting: &[f64], tolerance: f64) -> f64 {
+    let pairs = motion.states.iter().zip(&reference.motion.states);
     pairs
+        .zip(parting)
         .take_while(|(_, parted)| **parted < DIVERGED_DISTANCE)
-        .map(|(states, parted)| distance(states, sizes) / (MAX_DIFFERENCE * tolerance + parted))
+        .map(|(states, parted)| {
+            let allowed = reference.errors * tolerance + parted;
+            distance(states, &reference.sizes) / allowed
+        })
         .fold(0.0, f64::max)
 }
 

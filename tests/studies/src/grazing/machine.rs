@@ -134,10 +134,6 @@ impl Machine {
         self.masses.len()
     }
 
-    pub fn is_conservative(&self) -> bool {
-        self.friction == 0.0 && !matches!(self.stop, Stop::DampedPlay | Stop::Impact)
-    }
-
     pub fn is_two_sided(&self) -> bool {
         matches!(self.stop, Stop::Play | Stop::DampedPlay)
     }
