@@ -459,3 +459,83 @@ fn commands_on_a_specification_print_one_json_document() {
         assert!(document.is_object(), "{command}");
     }
 }
+
+/// Errors with `--json` are one document on stdout, with the message of stderr and the places.
+#[test]
+fn errors_with_json_are_documents() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let wrong = folder.path().join("wrong.toml");
+    let text = std::fs::read_to_string(path("pendulum")).expect("the model");
+    std::fs::write(&wrong, text.replace("dot(theta)", "dot(thetta)")).expect("a folder");
+    let wrong = wrong.display().to_string();
+    let place = |document: &serde_json::Value| document["error"]["diagnostics"][0]["line"].as_u64();
+    for command in COMMANDS {
+        let mut given = arguments(command, "pendulum", &["--json"]);
+        given[1].clone_from(&wrong);
+        let document = error_document(&given);
+        assert!(place(&document).is_some(), "{command}: {document}");
+    }
+    for more in [
+        &["modes", "no-file.toml", "--json"][..],
+        &[
+            "modes",
+            &spec("pendulum"),
+            "--state",
+            "theta=1e300",
+            "--json",
+        ],
+        &["modes", &spec("pendulum"), "--no-option", "--json"],
+        &[
+            "linearise",
+            &spec("pendulum"),
+            "--state",
+            "nothing=1",
+            "--json",
+        ],
+    ] {
+        let given: Vec<String> = more.iter().map(|argument| (*argument).to_owned()).collect();
+        error_document(&given);
+    }
+}
+
+fn error_document(arguments: &[String]) -> serde_json::Value {
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = eomgen().args(arguments).current_dir(folder.path()).output();
+    let output = output.expect("the program can be run");
+    let shown = arguments.join(" ");
+    assert_eq!(output.status.code(), Some(2), "{shown}");
+    let document: serde_json::Value =
+        serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{shown}: {error}"));
+    let message = document["error"]["message"].as_str().expect("a message");
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    let first = message.lines().next().expect("a line");
+    assert!(
+        document["schema"].is_u64() && stderr.contains(first),
+        "{shown}: {stderr}"
+    );
+    document
+}
+
+/// Inputs whose powers overflow are rejected with their time and value.
+#[test]
+fn comparison_rejects_inputs_out_of_range() {
+    for (value, is_rejected) in [("1e300", true), ("-2e80", true), ("1e2", false)] {
+        let measured = Measured::stage(0.0);
+        let text = measured.read("train.csv");
+        let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+        let column = lines[0]
+            .split(',')
+            .position(|name| name == "force")
+            .expect("the input");
+        let mut cells: Vec<&str> = lines[9].split(',').collect();
+        cells[column] = value;
+        lines[9] = cells.join(",");
+        measured.write("train.csv", (lines.join("\n") + "\n").as_bytes());
+        if is_rejected {
+            let message = measured.refused();
+            assert!(message.contains("(SI) at t = "), "{message}");
+        } else {
+            measured.answered("compare", "out");
+        }
+    }
+}

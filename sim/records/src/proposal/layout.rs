@@ -308,4 +308,18 @@ mod tests {
         assert_eq!(found("nothing\nof numbers\n"), None);
         assert_eq!(found(""), None);
     }
+
+    #[test]
+    fn carriage_returns_end_lines() {
+        for (head, row) in [
+            ("t,u,theta\n", "0.1,2,-3e-4\n"),
+            ("Bench\nt;u\ns;N m\n", "0,01;2,5\n"),
+            ("# t u\n", "  0.1  2.0\n"),
+        ] {
+            let usual = text(head, row);
+            for end in ["\r", "\r\n"] {
+                assert_eq!(found(&usual.replace('\n', end)), found(&usual), "{end:?}");
+            }
+        }
+    }
 }
