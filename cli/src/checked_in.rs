@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use crate::certification::document;
 use crate::document::SCHEMA;
 use crate::emission::source;
-use crate::error::{Error, Result, say, say_json, warn};
+use crate::error::{Error, Result, print_json, print_text, warn};
 use crate::model::{derive, load};
 use crate::output::write_file;
 use crate::progress::Note;
@@ -23,7 +23,7 @@ const CERTIFICATES: &str = "generated/certificates";
 
 const HIGHEST_ORDER: usize = 8;
 
-struct CheckedIn {
+struct CheckedInVariant {
     name: String,
     order: usize,
     text: String,
@@ -63,7 +63,11 @@ pub fn run(check: bool, json: bool) -> Result {
 }
 
 /// Returns the names of sources that differ from the emitted ones, and writes these unless `check` is set.
-fn different_sources(root: &Path, variants: &[CheckedIn], check: bool) -> Result<Vec<String>> {
+fn different_sources(
+    root: &Path,
+    variants: &[CheckedInVariant],
+    check: bool,
+) -> Result<Vec<String>> {
     let mut different = Vec::new();
     let root_module = [("lib.rs".to_owned(), root_module(variants))];
     let files = variants
@@ -85,19 +89,19 @@ fn print_differences(files: usize, different: &[String], check: bool, json: bool
     if json {
         let document =
             json!({"schema": SCHEMA, "files": files, "different": different, "written": !check});
-        return say_json(&document);
+        return print_json(&document);
     }
     let verb = if check { "differ" } else { "written" };
-    say(&format!("{files} files, {} {verb}\n", different.len()))
+    print_text(&format!("{files} files, {} {verb}\n", different.len()))
 }
 
-fn certificate_file(variant: &CheckedIn) -> String {
+fn certificate_file(variant: &CheckedInVariant) -> String {
     format!("{CERTIFICATES}/{}.json", variant.name)
 }
 
 /// Returns whether a file is a passed certificate of a variant. Its hashes identify specification and source; no
 /// check runs.
-fn is_certificate_of(path: &Path, model: &Model, variant: &CheckedIn) -> Result<bool> {
+fn is_certificate_of(path: &Path, model: &Model, variant: &CheckedInVariant) -> Result<bool> {
     let text = std::fs::read_to_string(path).unwrap_or_default();
     let found: Value = serde_json::from_str(&text).unwrap_or_default();
     let expected = unchecked(model, variant.order, &[], variant.text.clone())
@@ -113,7 +117,7 @@ fn is_certificate_of(path: &Path, model: &Model, variant: &CheckedIn) -> Result<
     Ok(all && found["passed"] == true)
 }
 
-fn variants(model: &Model) -> Result<Vec<CheckedIn>> {
+fn variants(model: &Model) -> Result<Vec<CheckedInVariant>> {
     let variant = |order: usize| {
         let name = match order {
             0 => format!("{}_rigid", model.name),
@@ -121,17 +125,18 @@ fn variants(model: &Model) -> Result<Vec<CheckedIn>> {
         };
         let derived = derive(model.clone(), &vec![order; model.fields.len()])?;
         let text = source(derived.program(), Packaging::Module)?;
-        Ok(CheckedIn { name, order, text })
+        Ok(CheckedInVariant { name, order, text })
     };
     (0..=HIGHEST_ORDER).map(variant).collect()
 }
 
 /// Returns the root module of the crate `generated`.
-fn root_module(variants: &[CheckedIn]) -> String {
+fn root_module(variants: &[CheckedInVariant]) -> String {
     let header = "//! Equations of motion of the planetary arm, rigid and with one to eight modes, as\n\
                   //! emitted by `eomgen generate --all`. Do not edit: regenerate.\n\n\
                   #![no_std]\n\n";
-    let module = |variant: &CheckedIn| format!("#[rustfmt::skip]\npub mod {};\n", variant.name);
+    let module =
+        |variant: &CheckedInVariant| format!("#[rustfmt::skip]\npub mod {};\n", variant.name);
     header.to_owned() + &variants.iter().map(module).collect::<String>()
 }
 

@@ -12,12 +12,12 @@ use crate::error::{Error, Result};
 use crate::fmu::{self, Version};
 
 pub fn source(program: &Program, packaging: Packaging) -> Result<String> {
-    rust::emit(program, packaging).map_err(refused)
+    rust::emit(program, packaging).map_err(input_error)
 }
 
 /// Emits a program as a WebAssembly module.
 pub fn module(program: &Program) -> Result<Vec<u8>> {
-    wasm::emit(program).map_err(refused)
+    wasm::emit(program).map_err(input_error)
 }
 
 /// Returns names and contents of the emitted files. The file with the equations is first.
@@ -35,14 +35,14 @@ pub fn files(
             Ok(vec![text("lib.rs".to_owned(), source)])
         }
         Target::C99 => {
-            let c::Files { source, header } = c::emit(program).map_err(refused)?;
+            let c::Files { source, header } = c::emit(program).map_err(input_error)?;
             Ok(vec![
                 text(format!("{name}.c"), source),
                 text(format!("{name}.h"), header),
             ])
         }
         Target::Casadi => {
-            let source = c::emit_casadi(program).map_err(refused)?;
+            let source = c::emit_casadi(program).map_err(input_error)?;
             Ok(vec![text(format!("{name}_casadi.c"), source)])
         }
         Target::Fmu2 | Target::Fmu3 => {
@@ -112,6 +112,6 @@ pub fn size(target: Target, contents: &[u8]) -> String {
     }
 }
 
-fn refused(error: EmitError) -> Error {
+fn input_error(error: EmitError) -> Error {
     Error::input(error.to_string())
 }

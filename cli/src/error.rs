@@ -96,7 +96,7 @@ impl Error {
                 let message = message.strip_prefix("error: ").unwrap_or(message);
                 warn(&format!("error: {message}"));
             }
-            Self::Specification(diagnostics) => warn_of(diagnostics),
+            Self::Specification(diagnostics) => print_diagnostics(diagnostics),
             Self::Stopped(message) => {
                 warn(&format!("error: {message}"));
                 return ExitCode::from(1);
@@ -113,25 +113,25 @@ pub fn warn(text: &str) {
 }
 
 /// Prints diagnostics to stderr, with colours on a terminal.
-pub fn warn_of(findings: &Diagnostics) {
+pub fn print_diagnostics(findings: &Diagnostics) {
     let mut stderr = std::io::stderr();
     let text = findings.render(stderr.is_terminal());
     let _ = writeln!(stderr, "{text}");
 }
 
 /// Prints text to stdout, with control characters escaped. A closed pipe is no error.
-pub fn say(text: &str) -> Result {
-    say_bytes(visible(text).as_bytes())
+pub fn print_text(text: &str) -> Result {
+    print_bytes(visible(text).as_bytes())
 }
 
 /// Prints a JSON document to stdout, with control characters escaped.
-pub fn say_json(document: &serde_json::Value) -> Result {
+pub fn print_json(document: &serde_json::Value) -> Result {
     let text = format!("{document:#}\n");
-    say_bytes(visible_in_strings(&text).as_bytes())
+    print_bytes(visible_in_strings(&text).as_bytes())
 }
 
 /// Prints bytes to stdout. A closed pipe is no error.
-pub fn say_bytes(bytes: &[u8]) -> Result {
+pub fn print_bytes(bytes: &[u8]) -> Result {
     let mut out = std::io::stdout().lock();
     match out.write_all(bytes).and_then(|()| out.flush()) {
         Ok(()) => Ok(()),

@@ -34,8 +34,8 @@ fn map(
         .columns
         .iter()
         .find(|column| column.name == *drawn)?;
-    let (along, up) = (Line::of(job, along)?, Line::of(job, up)?);
-    let shown = Shown::new(column);
+    let (along, up) = (Line::new(job, along)?, Line::new(job, up)?);
+    let shown = DisplayUnit::new(column);
     // The last axis of the grid varies fastest; the first axis of a map.
     let numbers = table.column(drawn)?;
     let rows = up.order.len();
@@ -67,11 +67,11 @@ fn diagram(
     axis: usize,
     measure: &Description,
 ) -> Option<Result<Vec<u8>, PlotError>> {
-    let line = Line::of(job, axis)?;
+    let line = Line::new(job, axis)?;
     let drawn = |column: &&Column| measure.drawn.contains(&column.name);
     let columns: Vec<&Column> = measure.columns.iter().filter(drawn).collect();
     let first = columns.first()?;
-    let shown = Shown::new(first);
+    let shown = DisplayUnit::new(first);
     let (mut abscissae, mut ordinates) = (Vec::new(), Vec::new());
     for column in &columns {
         let numbers = table.column(&column.name)?;
@@ -108,19 +108,19 @@ fn title(job: &Job, about: &str) -> String {
 /// Axis with ascending values in SI.
 struct Line {
     name: String,
-    shown: Shown,
+    shown: DisplayUnit,
     values: Vec<f64>,
     /// Indices of these values on the axis of the grid.
     order: Vec<usize>,
 }
 
 impl Line {
-    fn of(job: &Job, axis: usize) -> Option<Self> {
+    fn new(job: &Job, axis: usize) -> Option<Self> {
         let axis = job.points().axes().get(axis)?;
         let parameters = &job.plan().parameters;
         let of = |name: &String| parameters.iter().find(|column| column.name == *name);
         let first = of(axis.names.first()?)?;
-        let shown = Shown::new(first);
+        let shown = DisplayUnit::new(first);
         // Parameters with equal numbers but different units have different values.
         let columns = axis.names.iter().filter_map(of);
         let columns = columns.filter(|column| column.unit == first.unit);
@@ -151,13 +151,13 @@ impl Line {
 }
 
 /// SI unit of a column; figures add prefixes.
-pub struct Shown {
+pub struct DisplayUnit {
     declared: Option<Unit>,
     /// Unit; empty for a dimensionless number.
     pub unit: String,
 }
 
-impl Shown {
+impl DisplayUnit {
     pub fn new(column: &Column) -> Self {
         let declared = Unit::parse(&column.unit).ok();
         let unit = match &declared {

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use crate::error::{Error, Result};
 use crate::npz::{Array, archive};
-use crate::operating_point::{head, inputs, named};
+use crate::operating_point::{head, inputs, values_by_name};
 
 /// Returns the operating point, names, units and matrices.
 pub fn document(
@@ -25,7 +25,7 @@ pub fn document(
     let (n, m, l) = (states.len(), inputs.len(), outputs.len());
     let mut document = head(compiled);
     document.extend([
-        ("at".to_owned(), named(compiled, at)),
+        ("at".to_owned(), values_by_name(compiled, at)),
         ("equilibrium".to_owned(), json!(is_equilibrium)),
         ("states".to_owned(), json!(states)),
         ("inputs".to_owned(), json!(inputs)),
@@ -57,7 +57,7 @@ pub fn document(
 }
 
 /// Matrices of the motions x = N y that the constraints allow.
-struct Minimal {
+struct AllowedMatrices {
     count: usize,
     n: Vec<f64>,
     a: Vec<f64>,
@@ -66,7 +66,7 @@ struct Minimal {
 }
 
 /// Returns the matrices, or none for a model without constraints.
-fn minimal(compiled: &CompiledModel, found: &Linearisation) -> Result<Option<Minimal>> {
+fn minimal(compiled: &CompiledModel, found: &Linearisation) -> Result<Option<AllowedMatrices>> {
     let held = found.held(compiled);
     if held.is_empty() {
         return Ok(None);
@@ -74,7 +74,7 @@ fn minimal(compiled: &CompiledModel, found: &Linearisation) -> Result<Option<Min
     let allowed = AllowedMotions::new(&held, found.rates.len())
         .map_err(|error| Error::input(error.to_string()))?;
     let (inputs, _) = inputs(compiled);
-    Ok(Some(Minimal {
+    Ok(Some(AllowedMatrices {
         count: allowed.count(),
         n: row_by_row(allowed.basis()),
         a: allowed.of_states(&found.a),

@@ -41,7 +41,7 @@ mod tour;
 use std::process::ExitCode;
 
 use arguments::{Arguments, Command, Paper};
-use error::{Error, Result, say_json};
+use error::{Error, Result, print_json};
 
 fn main() -> ExitCode {
     // A command line with an error has no parsed options.
@@ -93,6 +93,6 @@ fn main() -> ExitCode {
 /// Prints an error as a JSON document on stdout. Errors of writing are ignored: stderr has the message.
 fn print_error(error: &Error) {
     if let Some(document) = error.to_json() {
-        let _ = say_json(&document);
+        let _ = print_json(&document);
     }
 }

@@ -31,9 +31,9 @@ pub fn figure(run: &Instance<'_>, regime: &[Side], found: &[NaturalMode]) -> Res
     let bars = bars(compiled, found);
     let shown = found.iter().take(MAX_MODES).enumerate();
     let of_mode = |(place, mode): (usize, &NaturalMode)| Mode {
-        title: format!("mode {}: {}", place + 1, in_words(mode)),
+        title: format!("mode {}: {}", place + 1, describe_mode(mode)),
         fields: fields.iter().map(|field| field.shape(mode)).collect(),
-        bars: bars.iter().map(|bar| bar.of(mode)).collect(),
+        bars: bars.iter().map(|bar| bar.bar(mode)).collect(),
     };
     let model = compiled.model();
     let title = if model.title.is_empty() {
@@ -49,7 +49,7 @@ pub fn figure(run: &Instance<'_>, regime: &[Side], found: &[NaturalMode]) -> Res
         title: format!("Natural modes of {title}{count}"),
         notes: summary(regime)
             .chunks(SIDES_PER_LINE)
-            .map(in_regime)
+            .map(regime_line)
             .take(MAX_LINES)
             .collect(),
         modes: shown.map(of_mode).collect(),
@@ -57,12 +57,12 @@ pub fn figure(run: &Instance<'_>, regime: &[Side], found: &[NaturalMode]) -> Res
     modes(&figure).map_err(|error| Error::input(format!("--plot: {error}")))
 }
 
-fn in_regime(sides: &[String]) -> String {
+fn regime_line(sides: &[String]) -> String {
     format!("where {}", sides.join(", "))
 }
 
 /// Describes a mode by frequency and damping, or by its growth rate.
-fn in_words(mode: &NaturalMode) -> String {
+fn describe_mode(mode: &NaturalMode) -> String {
     let rate = mode.eigenvalue.re;
     if mode.eigenvalue.norm() == 0.0 {
         return "rigid motion, 0 Hz".to_owned();
@@ -78,7 +78,7 @@ fn in_words(mode: &NaturalMode) -> String {
 }
 
 /// Field with its shape functions at the drawn positions.
-struct Drawn<'m> {
+struct DrawnField<'m> {
     field: &'m Field,
     positions: Vec<f64>,
     /// A row per position, a number per mode of the field.
@@ -87,7 +87,7 @@ struct Drawn<'m> {
     first: usize,
 }
 
-fn fields<'m>(run: &Instance<'m>) -> Result<Vec<Drawn<'m>>> {
+fn fields<'m>(run: &Instance<'m>) -> Result<Vec<DrawnField<'m>>> {
     let compiled = run.model();
     let model = compiled.model();
     let values = model.parameter_values();
@@ -108,7 +108,7 @@ fn fields<'m>(run: &Instance<'m>) -> Result<Vec<Drawn<'m>>> {
             )
         };
         if *order > 0 {
-            drawn.push(Drawn {
+            drawn.push(DrawnField {
                 field,
                 positions: shares.iter().map(|s| from + s * (to - from)).collect(),
                 functions: shares.iter().map(functions).collect(),
@@ -120,7 +120,7 @@ fn fields<'m>(run: &Instance<'m>) -> Result<Vec<Drawn<'m>>> {
     Ok(drawn)
 }
 
-impl Drawn<'_> {
+impl DrawnField<'_> {
     /// Returns the field in a mode: the sum of shape functions times modal coordinates.
     fn shape(&self, mode: &NaturalMode) -> Shape {
         let coordinates = mode.shape.get(self.first..).unwrap_or_default();
@@ -141,14 +141,14 @@ impl Drawn<'_> {
 }
 
 /// Quantity with a bar: index in a mode shape, name and unit.
-struct Named {
+struct BarQuantity {
     place: usize,
     name: String,
     unit: String,
 }
 
-impl Named {
-    fn of(&self, mode: &NaturalMode) -> Bar {
+impl BarQuantity {
+    fn bar(&self, mode: &NaturalMode) -> Bar {
         let amplitude = mode
             .shape
             .get(self.place)
@@ -162,7 +162,7 @@ impl Named {
 }
 
 /// Returns coordinates and first-order states; if there are too many, those with the largest amplitudes.
-fn bars(compiled: &CompiledModel, found: &[NaturalMode]) -> Vec<Named> {
+fn bars(compiled: &CompiledModel, found: &[NaturalMode]) -> Vec<BarQuantity> {
     let degrees = compiled.program().degrees_of_freedom();
     let coordinates = compiled.model().coordinates.len();
     let all = compiled
@@ -176,11 +176,11 @@ fn bars(compiled: &CompiledModel, found: &[NaturalMode]) -> Vec<Named> {
                 .checked_sub(degrees)
                 .filter(|place| *place >= degrees)?,
         };
-        Some(Named { place, name, unit })
+        Some(BarQuantity { place, name, unit })
     });
-    let mut all: Vec<Named> = all.collect();
+    let mut all: Vec<BarQuantity> = all.collect();
     if all.len() > MAX_BARS {
-        let most = |named: &Named| {
+        let most = |named: &BarQuantity| {
             let modes = found.iter().take(MAX_MODES);
             let sizes = modes.filter_map(|mode| mode.shape.get(named.place));
             sizes.fold(0.0, |most: f64, value| most.max(value.norm()))

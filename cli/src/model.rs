@@ -6,13 +6,13 @@ use eomgen_compiled_model::{CompiledModel, Orders};
 use eomgen_model_spec::Checked;
 use eomgen_model_spec::model::Model;
 
-use crate::error::{Error, Result, warn_of};
+use crate::error::{Error, Result, print_diagnostics};
 
 /// Reads and checks a specification and prints its warnings.
 pub fn load(path: &Path) -> Result<Checked> {
     let checked = eomgen_model_spec::load(path).map_err(Error::Specification)?;
     if !checked.warnings.is_empty() {
-        warn_of(&checked.warnings);
+        print_diagnostics(&checked.warnings);
     }
     Ok(checked)
 }

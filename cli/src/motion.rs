@@ -39,7 +39,7 @@ pub fn note_moved(what: &str, all: &[Moved]) {
     }
     let moved = all.iter().take(MAX_LISTED);
     let moved = moved.map(|moved| {
-        let (from, to) = (Short(moved.from), Short(moved.to));
+        let (from, to) = (Rounded(moved.from), Rounded(moved.to));
         format!("{} from {from} to {to} {}", moved.name, moved.unit)
     });
     let mut moved: Vec<String> = moved.collect();
@@ -53,9 +53,9 @@ pub fn note_moved(what: &str, all: &[Moved]) {
 }
 
 /// Number with six significant digits.
-struct Short(f64);
+struct Rounded(f64);
 
-impl std::fmt::Display for Short {
+impl std::fmt::Display for Rounded {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let rounded: f64 = format!("{:.5e}", self.0).parse().unwrap_or(self.0);
         write!(f, "{rounded}")
@@ -63,7 +63,7 @@ impl std::fmt::Display for Short {
 }
 
 /// Returns the work of the solver in words.
-pub fn in_words(motion: &Motion) -> String {
+pub fn describe_work(motion: &Motion) -> String {
     let work = motion.trajectory.work;
     match motion.solver {
         Solver::Exact => format!("{} exact steps", work.steps),

@@ -40,7 +40,11 @@ impl Array<'_> {
                 // NumPy has no text type of width 0.
                 let width = longest.max().unwrap_or(0).max(1);
                 let kind = format!("<U{width}");
-                (kind, format!("({},)", names.len()), padded(names, width))
+                (
+                    kind,
+                    format!("({},)", names.len()),
+                    encode_texts(names, width),
+                )
             }
         };
         let header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}");
@@ -62,8 +66,8 @@ fn bytes(values: &[f64]) -> Vec<u8> {
         .collect()
 }
 
-/// Returns texts in UTF-32, padded to `width` characters.
-fn padded(names: &[String], width: usize) -> Vec<u8> {
+/// Returns texts in UTF-32, encode_texts to `width` characters.
+fn encode_texts(names: &[String], width: usize) -> Vec<u8> {
     let characters = names.iter().flat_map(|name| {
         let letters = name.chars().map(u32::from);
         letters.chain(std::iter::repeat(0)).take(width)

@@ -16,7 +16,7 @@ use crate::document::SCHEMA;
 use crate::error::{Error, Result, warn};
 use crate::model::{derive, load, orders};
 use crate::motion::note_moved;
-use crate::settings::{borrowed, split, with_settings};
+use crate::settings::{as_borrowed, split, with_settings};
 
 /// Loads a specification with parameters set and derives it.
 pub fn model(spec: &Path, order: Option<&str>, set: &[String]) -> Result<CompiledModel> {
@@ -60,7 +60,7 @@ fn assignments(run: &Instance<'_>, state: &[String]) -> Result<(Vec<(String, f64
 /// the nearest equilibrium.
 pub fn point(run: &Instance<'_>, state: &[String]) -> Result<OperatingPoint> {
     let (given, is_trimmed) = assignments(run, state)?;
-    let given = borrowed(&given);
+    let given = as_borrowed(&given);
     match is_trimmed {
         false => consistent(run, run.operating_point(&given)?),
         true => Ok(equilibrium_near(run, &given)?.at),
@@ -135,7 +135,7 @@ pub fn initial_state(run: &Instance<'_>, state: &[String]) -> Result<Vec<f64>> {
             )));
         }
     }
-    let given = borrowed(&given);
+    let given = as_borrowed(&given);
     match is_trimmed {
         false => Ok(run.operating_point(&given)?.state),
         true => Ok(equilibrium_near(run, &given)?.at.state),
@@ -166,7 +166,7 @@ pub fn head(compiled: &CompiledModel) -> Map<String, Value> {
 }
 
 /// Returns time, state and inputs by name, in SI.
-pub fn named(compiled: &CompiledModel, at: &OperatingPoint) -> Value {
+pub fn values_by_name(compiled: &CompiledModel, at: &OperatingPoint) -> Value {
     let mut values = Map::new();
     values.insert("t".to_owned(), json!(at.t));
     for (name, value) in compiled.state_names().into_iter().zip(&at.state) {

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
-use crate::error::{Error, Result, say, say_bytes, warn};
+use crate::error::{Error, Result, print_bytes, print_text, warn};
 
 /// Destination of a command's output file.
 pub enum Destination {
@@ -23,15 +23,15 @@ impl Destination {
     ///
     /// # Errors
     /// A folder, a pipe or an impossible path; stdout if `json` is set.
-    pub fn of(path: &Path, json: bool) -> Result<Self> {
-        Self::named("--out", path, json)
+    pub fn for_output(path: &Path, json: bool) -> Result<Self> {
+        Self::resolve("--out", path, json)
     }
 
     /// Returns the destination of `--plot`. `beside` is the path of `--out`.
     ///
     /// # Errors
-    /// Those of [`Destination::of`], the path of `--out`, and another format than SVG.
-    pub fn of_figure(figure: &Path, beside: Option<&Path>, json: bool) -> Result<Self> {
+    /// Those of [`Destination::for_output`], the path of `--out`, and another format than SVG.
+    pub fn for_figure(figure: &Path, beside: Option<&Path>, json: bool) -> Result<Self> {
         let place = |path: &Path| std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         if beside.is_some_and(|other| place(other) == place(figure)) && !is_device(figure) {
             let shown = figure.display();
@@ -46,10 +46,10 @@ impl Destination {
                 figure.display()
             )));
         }
-        Self::named("--plot", figure, json)
+        Self::resolve("--plot", figure, json)
     }
 
-    fn named(option: &str, path: &Path, json: bool) -> Result<Self> {
+    fn resolve(option: &str, path: &Path, json: bool) -> Result<Self> {
         if path == Path::new("-") {
             return if json {
                 Err(Error::input(format!(
@@ -68,7 +68,7 @@ impl Destination {
 
     pub fn write(&self, contents: &[u8]) -> Result {
         match self {
-            Self::Stdout => say_bytes(contents),
+            Self::Stdout => print_bytes(contents),
             Self::Device(path) => std::fs::OpenOptions::new()
                 .write(true)
                 .open(path)
@@ -85,7 +85,7 @@ impl Destination {
                 warn(summary.trim_end());
                 Ok(())
             }
-            _ => say(summary),
+            _ => print_text(summary),
         }
     }
 }

@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 
 use crate::document::SCHEMA;
 use crate::error::warn;
-use crate::figures::Shown;
+use crate::figures::DisplayUnit;
 
 /// Probabilities of the quantiles.
 const PROBABILITIES: [f64; 7] = [0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99];
@@ -17,11 +17,11 @@ const PROBABILITIES: [f64; 7] = [0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99];
 pub struct Statistics {
     model: String,
     samples: Samples,
-    measured: Vec<Measured>,
+    measured: Vec<ColumnStatistics>,
 }
 
 /// Statistics of a column.
-struct Measured {
+struct ColumnStatistics {
     column: Column,
     /// Title of its figure, if it has one.
     drawn: Option<String>,
@@ -42,7 +42,7 @@ pub fn statistics(job: &Job, table: &Table) -> Option<Statistics> {
                 .names()
                 .map(|name| table.column(name).unwrap_or_default());
             let is_drawn = measure.drawn.first() == Some(&column.name);
-            measured.push(Measured {
+            measured.push(ColumnStatistics {
                 column: column.clone(),
                 drawn: is_drawn.then(|| measure.quantity.clone()),
                 summary: Summary::of(values),
@@ -59,7 +59,7 @@ pub fn statistics(job: &Job, table: &Table) -> Option<Statistics> {
 
 impl Statistics {
     pub fn json(&self) -> Value {
-        let of = |measured: &Measured| {
+        let of = |measured: &ColumnStatistics| {
             let mut entry = json!({
                 "unit": measured.column.unit,
                 "description": measured.column.about,
@@ -100,7 +100,7 @@ impl Statistics {
         drawn.map(|measured| self.line(measured)).collect()
     }
 
-    fn line(&self, measured: &Measured) -> String {
+    fn line(&self, measured: &ColumnStatistics) -> String {
         let Column { name, unit, .. } = &measured.column;
         let Some(summary) = &measured.summary else {
             return format!("{name}: no sample has a number\n");
@@ -146,10 +146,10 @@ impl Statistics {
 
     fn figure(
         &self,
-        measured: &Measured,
+        measured: &ColumnStatistics,
     ) -> Option<Result<(String, String), eomgen_plot::PlotError>> {
         let (quantity, summary) = (measured.drawn.as_ref()?, measured.summary.as_ref()?);
-        let shown = Shown::new(&measured.column);
+        let shown = DisplayUnit::new(&measured.column);
         let sorted: Vec<f64> = summary
             .sorted
             .iter()

@@ -12,7 +12,7 @@ use crate::error::{Error, Result, warn};
 /// Returns the model with every `NAME=EXPR` of `--set`.
 pub fn with_settings(model: Model, assignments: &[String]) -> Result<Model> {
     let settings = settings(&model, assignments)?;
-    let settings: Vec<(&str, f64)> = borrowed(&settings);
+    let settings: Vec<(&str, f64)> = as_borrowed(&settings);
     model
         .with_parameters(&settings)
         .map_err(|error| Error::model(&model.source, error))
@@ -33,7 +33,7 @@ pub fn split(option: &str, assignments: &[String]) -> Result<Vec<Assignment>> {
     split.map_err(Error::Specification)
 }
 
-pub fn borrowed(values: &[(String, f64)]) -> Vec<(&str, f64)> {
+pub fn as_borrowed(values: &[(String, f64)]) -> Vec<(&str, f64)> {
     values
         .iter()
         .map(|(name, value)| (name.as_str(), *value))
@@ -44,7 +44,7 @@ pub fn borrowed(values: &[(String, f64)]) -> Vec<(&str, f64)> {
 const DEFAULT_STABILISATION_RATE: f64 = 10.0;
 
 /// Returns the model with decaying constraint residuals, for solvers that integrate its rates directly.
-pub fn stabilised(model: Model) -> Result<Model> {
+pub fn with_stabilisation(model: Model) -> Result<Model> {
     let declared = model
         .parameters
         .iter()

@@ -12,7 +12,7 @@ use crate::output::write_file;
 use crate::parquet_file::encode;
 use crate::sample_statistics::{Statistics, statistics};
 
-pub struct Finished {
+pub struct FinalFiles {
     files: Vec<PathBuf>,
     points: usize,
     /// Number of points without a result, by measure.
@@ -24,10 +24,10 @@ pub struct Finished {
 ///
 /// # Errors
 /// Missing parts, or files that cannot be written.
-pub fn finish(folder: &Folder) -> Result<Finished> {
+pub fn finish(folder: &Folder) -> Result<FinalFiles> {
     let job = folder.job();
     let table = merge(folder).map_err(|error| Error::input(error.to_string()))?;
-    let mut finished = Finished {
+    let mut finished = FinalFiles {
         files: Vec::new(),
         points: job.points().count(),
         failed: failures(job, &table),
@@ -75,7 +75,7 @@ fn failures(job: &Job, table: &Table) -> Vec<(String, usize)> {
         .collect()
 }
 
-impl Finished {
+impl FinalFiles {
     pub fn json(&self) -> Value {
         let files = self.files.iter().map(|file| file.display().to_string());
         let failed = self.failed.iter().cloned();

@@ -18,11 +18,11 @@ use crate::settings::warn_of_inputs;
 /// Measures other than statistics over time.
 const MEASURES: [&str; 3] = ["lyapunov", "poincare", "poincare:NAME"];
 
-pub fn refused(error: SweepError) -> Error {
+pub fn input_error(error: SweepError) -> Error {
     Error::input(error.to_string())
 }
 
-fn unknown(name: &str) -> Error {
+fn unknown_measure(name: &str) -> Error {
     let known = MEASURES.map(str::to_owned).into_iter().chain(forms());
     let known: Vec<String> = known.collect();
     Error::input(format!(
@@ -35,12 +35,12 @@ fn unknown(name: &str) -> Error {
 pub fn points(options: &Sweep, declared: &Model, set: &[(&str, f64)]) -> Result<Points> {
     if let Some(count) = options.samples {
         let model = with_parameters(declared, set)?;
-        let samples = Samples::new(&model, count, options.seed).map_err(refused)?;
+        let samples = Samples::new(&model, count, options.seed).map_err(input_error)?;
         return Ok(Points::Samples(samples));
     }
     let axes = options.vary.iter().map(|text| Axis::parse(text));
-    let axes = axes.collect::<Result<Vec<_>, _>>().map_err(refused)?;
-    let grid = Grid::new(axes).map_err(refused)?;
+    let axes = axes.collect::<Result<Vec<_>, _>>().map_err(input_error)?;
+    let grid = Grid::new(axes).map_err(input_error)?;
     if let Some((name, _)) = set
         .iter()
         .find(|(name, _)| grid.names().any(|varied| varied == *name))
@@ -110,13 +110,15 @@ pub fn measures<'a>(
     };
     let measure = |name: &String| -> Result<Box<dyn Measure + 'a>> {
         if name == "lyapunov" {
-            return Ok(Box::new(Lyapunov::new(model, &window).map_err(refused)?));
+            return Ok(Box::new(
+                Lyapunov::new(model, &window).map_err(input_error)?,
+            ));
         }
         if let Some(measure) = Poincare::new(model, name, &section, span, lines == 1) {
-            return Ok(Box::new(measure.map_err(refused)?));
+            return Ok(Box::new(measure.map_err(input_error)?));
         }
-        let measure = OverTime::new(model, name, &window).ok_or_else(|| unknown(name))?;
-        Ok(Box::new(measure.map_err(refused)?))
+        let measure = OverTime::new(model, name, &window).ok_or_else(|| unknown_measure(name))?;
+        Ok(Box::new(measure.map_err(input_error)?))
     };
     options.measure.iter().map(measure).collect()
 }
@@ -133,9 +135,9 @@ pub fn job(
         &model.name,
         orders,
         set,
-        columns(model, points).map_err(refused)?,
+        columns(model, points).map_err(input_error)?,
         points,
         measures.iter().map(|measure| measure.describe()).collect(),
     );
-    Job::new(plan).map_err(refused)
+    Job::new(plan).map_err(input_error)
 }

@@ -22,7 +22,7 @@ impl Table {
     }
 
     /// Creates a table of columns of equal length.
-    pub fn of(columns: &[(String, Vec<f64>)]) -> Self {
+    pub fn from_columns(columns: &[(String, Vec<f64>)]) -> Self {
         let (names, columns) = columns.iter().cloned().unzip();
         Self { names, columns }
     }

@@ -17,7 +17,7 @@ use crate::interruption::{Connection, interruptible};
 use crate::model::Model;
 
 /// Document `discovery.json`, extended specification, report page, names and texts of proposed experiments.
-type Found = (String, String, String, Vec<(String, String)>);
+type DiscoveryTuple = (String, String, String, Vec<(String, String)>);
 
 /// Searches for effects that the model lacks. `progress` is called with each progress message.
 #[pyfunction]
@@ -27,7 +27,7 @@ pub fn discover(
     dataset: &str,
     seed: u64,
     progress: Py<PyAny>,
-) -> PyResult<Found> {
+) -> PyResult<DiscoveryTuple> {
     let text = model.specification()?;
     let hear = |py: Python<'_>, line: String| progress.call1(py, (line,)).map(drop);
     let found = interruptible(py, hear, |line| {

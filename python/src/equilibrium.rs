@@ -11,7 +11,7 @@ type Values = Vec<(String, f64)>;
 
 /// Time, state, inputs and residual of an equilibrium, names of its steady rates and of the unknowns, stability,
 /// and whether forces depend on time.
-type Found = (
+type EquilibriumTuple = (
     f64,
     Vec<f64>,
     Vec<f64>,
@@ -24,7 +24,12 @@ type Found = (
 
 /// Searches for the equilibrium nearest to a start, with some values fixed.
 #[pyfunction]
-pub fn trim(py: Python<'_>, model: &Model, start: Values, fixed: Values) -> PyResult<Found> {
+pub fn trim(
+    py: Python<'_>,
+    model: &Model,
+    start: Values,
+    fixed: Values,
+) -> PyResult<EquilibriumTuple> {
     let (start, fixed) = (borrowed(&start), borrowed(&fixed));
     let request = EquilibriumRequest {
         start: &start,
@@ -34,7 +39,7 @@ pub fn trim(py: Python<'_>, model: &Model, start: Values, fixed: Values) -> PyRe
         .map_err(error::model)
 }
 
-fn search(run: &Instance<'_>, request: EquilibriumRequest<'_>) -> Result<Found, Error> {
+fn search(run: &Instance<'_>, request: EquilibriumRequest<'_>) -> Result<EquilibriumTuple, Error> {
     let found = run.equilibrium(request)?;
     let stability = run.stability(&found.at)?.to_string();
     Ok((

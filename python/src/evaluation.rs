@@ -21,7 +21,7 @@ struct Rows<'a> {
 
 impl<'a> Rows<'a> {
     /// Creates rows from contiguous arrays. Returns an error if a shape does not fit the model.
-    fn of(
+    fn new(
         model: &Model,
         t: &'a PyReadonlyArray1<'_, f64>,
         x: &'a PyReadonlyArray2<'_, f64>,
@@ -54,7 +54,12 @@ impl<'a> Rows<'a> {
 
     /// Calls `compute` with every point and its row of `width` numbers in `out`.
     #[inline]
-    fn each(&self, out: &mut [f64], width: usize, mut compute: impl FnMut(Point<'_>, &mut [f64])) {
+    fn for_each(
+        &self,
+        out: &mut [f64],
+        width: usize,
+        mut compute: impl FnMut(Point<'_>, &mut [f64]),
+    ) {
         let rows = self
             .x
             .chunks_exact(self.states)
@@ -104,12 +109,12 @@ pub fn rates(
     u: PyReadonlyArray2<'_, f64>,
     mut out: PyReadwriteArray2<'_, f64>,
 ) -> PyResult<()> {
-    let rows = Rows::of(model, &t, &x, &u)?;
+    let rows = Rows::new(model, &t, &x, &u)?;
     let width = rows.states;
     let out = output(&mut out, &rows, width)?;
     let compute = || {
         model.evaluate(|evaluator| {
-            rows.each(out, width, |point, out| evaluator.rates(point, out));
+            rows.for_each(out, width, |point, out| evaluator.rates(point, out));
         })
     };
     py.detach(compute).map_err(error::model)
@@ -125,12 +130,12 @@ pub fn observables(
     u: PyReadonlyArray2<'_, f64>,
     mut out: PyReadwriteArray2<'_, f64>,
 ) -> PyResult<()> {
-    let rows = Rows::of(model, &t, &x, &u)?;
+    let rows = Rows::new(model, &t, &x, &u)?;
     let width = model.compiled().program().observables.len();
     let out = output(&mut out, &rows, width)?;
     let compute = || {
         model.evaluate(|evaluator| {
-            rows.each(out, width, |point, out| evaluator.observables(point, out));
+            rows.for_each(out, width, |point, out| evaluator.observables(point, out));
         })
     };
     py.detach(compute).map_err(error::model)
@@ -149,7 +154,7 @@ pub fn jacobian(
 ) -> PyResult<()> {
     let known = Jacobian::ALL.into_iter().find(|of| of.name() == name);
     let of = known.ok_or_else(|| PyValueError::new_err(format!("no Jacobian `{name}`")))?;
-    let rows = Rows::of(model, &t, &x, &u)?;
+    let rows = Rows::new(model, &t, &x, &u)?;
     let shape = py.detach(|| model.differentiate(|jacobians| jacobians.shape(of)));
     let (height, columns) = shape.map_err(error::model)?;
     let out = output(&mut out, &rows, height * columns)?;
@@ -158,7 +163,7 @@ pub fn jacobian(
     }
     let compute = || {
         model.differentiate(|jacobians| {
-            rows.each(out, height * columns, |point, out| {
+            rows.for_each(out, height * columns, |point, out| {
                 jacobians.evaluate(of, point, out);
             });
         })

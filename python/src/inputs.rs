@@ -15,7 +15,7 @@ use crate::error::SimulationError;
 const MAX_VALUES: usize = 3;
 
 /// Name, index and Python function of an input.
-pub type Given = (String, usize, Py<PyAny>);
+pub type InputEntry = (String, usize, Py<PyAny>);
 
 /// Number of points of the spline through prescribed motion whose function returns no rates.
 const SPLINE_POINTS: usize = 16_385;
@@ -101,7 +101,7 @@ impl InputFunction for PythonFunction {
         if self.failures.lock().is_some() {
             return;
         }
-        match Python::attach(|py| self.called(py, t, out)) {
+        match Python::attach(|py| self.call(py, t, out)) {
             Ok(()) => {
                 let mut values = [0.0; MAX_VALUES];
                 values[..out.len()].copy_from_slice(out);
@@ -123,7 +123,7 @@ impl PythonFunction {
         found.is_ok_and(|found| found.extract::<f64>().is_err())
     }
 
-    fn called(&self, py: Python<'_>, t: f64, out: &mut [f64]) -> PyResult<()> {
+    fn call(&self, py: Python<'_>, t: f64, out: &mut [f64]) -> PyResult<()> {
         let found = self.function.bind(py).call1((t,))?;
         match &mut *out {
             [only] => *only = number(&found)?,
@@ -172,7 +172,7 @@ fn not_rates(count: usize) -> PyErr {
 pub fn with_functions(
     py: Python<'_>,
     (mut inputs, known): (HeldInputs, &[Input]),
-    (functions, breaks): (Vec<Given>, Vec<f64>),
+    (functions, breaks): (Vec<InputEntry>, Vec<f64>),
     (begin, end): (f64, f64),
 ) -> PyResult<(HeldInputs, Failures)> {
     let failures = Failures::default();

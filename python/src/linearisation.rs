@@ -10,7 +10,7 @@ use crate::error;
 use crate::model::Model;
 
 /// A, B, C, D, each row by row, then rates and observables at the operating point.
-type Found = (Vec<f64>, Vec<f64>, Vec<f64>, Vec<f64>, Vec<f64>, Vec<f64>);
+type LinearisationTuple = (Vec<f64>, Vec<f64>, Vec<f64>, Vec<f64>, Vec<f64>, Vec<f64>);
 
 /// Linearises a model at a time, state and inputs.
 #[pyfunction]
@@ -20,7 +20,7 @@ pub fn linearise(
     t: f64,
     x: PyReadonlyArray1<'_, f64>,
     u: PyReadonlyArray1<'_, f64>,
-) -> PyResult<Found> {
+) -> PyResult<LinearisationTuple> {
     let point = Point {
         t,
         state: x.as_slice()?,

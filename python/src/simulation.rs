@@ -10,7 +10,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::error;
-use crate::inputs::{Given, with_functions};
+use crate::inputs::{InputEntry, with_functions};
 use crate::interruption::{Connection, interruptible};
 use crate::model::Model;
 
@@ -19,7 +19,7 @@ const REPORT_INTERVAL: Duration = Duration::from_millis(100);
 
 /// Solver and the reason for its selection; time and reason of a stop before the end; times, states and
 /// observables, a row for each sample; number of switches; warnings.
-type Found<'py> = (
+type SimulationTuple<'py> = (
     &'static str,
     Option<String>,
     Option<(Option<f64>, String)>,
@@ -45,13 +45,13 @@ pub fn simulate<'py>(
     times: PyReadonlyArray1<'py, f64>,
     input_times: PyReadonlyArray1<'py, f64>,
     input_values: PyReadonlyArray2<'py, f64>,
-    functions: Vec<Given>,
+    functions: Vec<InputEntry>,
     breaks: Vec<f64>,
     solver: &str,
     tolerance: f64,
     max_step: f64,
     progress: Option<Py<PyAny>>,
-) -> PyResult<Found<'py>> {
+) -> PyResult<SimulationTuple<'py>> {
     let count = model.compiled().model().inputs.len();
     let inputs = (input_values.as_array().ncols() == count).then(|| {
         let values = input_values.as_slice().ok()?.to_vec();
@@ -59,7 +59,7 @@ pub fn simulate<'py>(
     });
     let inputs = inputs.flatten();
     let inputs = inputs.ok_or_else(|| PyValueError::new_err("inputs of another model"))?;
-    let inputs = prescribed(
+    let inputs = with_splines(
         model,
         inputs,
         input_times.as_slice()?,
@@ -76,7 +76,7 @@ pub fn simulate<'py>(
         initial: initial.as_slice()?,
         times: sample_times,
         inputs: &inputs,
-        solver: named(solver)?,
+        solver: parse_solver(solver)?,
         tolerance,
         max_step,
         audit: true,
@@ -97,7 +97,7 @@ pub fn simulate<'py>(
     let rows = trajectory.times.len();
     let states: Vec<f64> = trajectory.states.concat();
     let width = observables.len() / rows.max(1);
-    let choice = motion.choice.as_ref().map(in_words);
+    let choice = motion.choice.as_ref().map(describe_choice);
     let stopped = motion.stopped.map(|stopped| (stopped.t, stopped.reason));
     Ok((
         motion.solver.name(),
@@ -114,7 +114,7 @@ pub fn simulate<'py>(
 }
 
 /// Returns the solver of a name.
-fn named(name: &str) -> PyResult<Solver> {
+fn parse_solver(name: &str) -> PyResult<Solver> {
     let known = Solver::ALL.into_iter().find(|known| known.name() == name);
     known.ok_or_else(|| {
         let names = Solver::ALL.map(|known| format!("\"{}\"", known.name()));
@@ -151,7 +151,7 @@ fn follow(
 }
 
 /// Returns the reason for the selection of a solver.
-fn in_words(choice: &Choice) -> String {
+fn describe_choice(choice: &Choice) -> String {
     match choice {
         Choice::PiecewiseLinear => "the model is piecewise linear".to_owned(),
         Choice::NotLinear(term) => format!("the model is not piecewise linear: {term}"),
@@ -163,7 +163,12 @@ fn in_words(choice: &Choice) -> String {
 }
 
 /// Replaces prescribed motion without rates by a spline through its samples, which has rates.
-fn prescribed(model: &Model, mut inputs: HeldInputs, times: &[f64], values: &[f64]) -> HeldInputs {
+fn with_splines(
+    model: &Model,
+    mut inputs: HeldInputs,
+    times: &[f64],
+    values: &[f64],
+) -> HeldInputs {
     let known = &model.compiled().model().inputs;
     for (place, input) in known.iter().enumerate() {
         if input.rate.is_none() || input.rate_of.is_some() {

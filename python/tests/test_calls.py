@@ -10,7 +10,7 @@ import eomgen
 from conftest import SPECIFICATIONS
 
 
-def test_one_state_and_many_have_the_same_bits(arm, states):
+def test_single_states_and_arrays_give_the_same_bits(arm, states):
     x = states(arm, 50)
     t, u = np.linspace(0, 1, 50), np.linspace(-1, 1, 50).reshape(-1, 1)
     for call in (arm.rates, arm.observables, arm.energy, arm.jacobian):
@@ -19,13 +19,13 @@ def test_one_state_and_many_have_the_same_bits(arm, states):
             assert np.array_equal(call(t[row], x[row], u[row]), many[row])
 
 
-def test_the_rates_of_the_coordinates_are_the_second_half_of_the_state(arm, states):
+def test_rates_of_coordinates_are_the_second_half_of_the_state(arm, states):
     x = states(arm, 20)
     half = len(arm.states) // 2
     assert np.array_equal(arm.rates(0.0, x)[:, :half], x[:, half:])
 
 
-def test_a_pendulum_obeys_its_closed_form(pendulum):
+def test_pendulum_matches_closed_form(pendulum):
     p = pendulum.parameters
     x = np.array([[0.3, -2.0], [3.0, 1.0]])
     inertia = p["m"] * p["a"] ** 2 + p["I"]
@@ -36,7 +36,7 @@ def test_a_pendulum_obeys_its_closed_form(pendulum):
 
 
 @pytest.mark.parametrize("by", ["state", "inputs", "parameters"])
-def test_jacobians_are_those_of_central_differences(cart, states, by):
+def test_jacobians_match_central_differences(cart, states, by):
     x = cart.initial + states(cart, 5, 0.1)
     u = np.full((1, len(cart.inputs)), 0.7)
     found = cart.jacobian(0.0, x, u, by=by)
@@ -61,7 +61,7 @@ def test_jacobians_are_those_of_central_differences(cart, states, by):
         assert np.allclose(found[:, :, column], difference, rtol=1e-5, atol=1e-5), (by, column)
 
 
-def test_arrays_of_any_layout_and_kind_give_the_same(arm, states):
+def test_array_layout_and_type_do_not_change_results(arm, states):
     x = states(arm, 30)
     right = arm.rates(0.0, x)
     assert np.array_equal(arm.rates(0.0, np.asfortranarray(x)), right)
@@ -76,11 +76,11 @@ def test_arrays_of_any_layout_and_kind_give_the_same(arm, states):
     assert np.array_equal(arm.rates(0.0, whole), arm.rates(0.0, np.ones_like(x)))
 
 
-def test_no_state_at_all_has_no_rates(arm):
+def test_empty_arrays_give_empty_rates(arm):
     assert arm.rates(0.0, np.zeros((0, len(arm.states)))).shape == (0, len(arm.states))
 
 
-def test_inputs_have_names(cart):
+def test_inputs_are_accepted_by_name(cart):
     x = cart.initial
     named = cart.rates(0.0, x, {cart.inputs[0]: 2.0})
     assert np.array_equal(named, cart.rates(0.0, x, [2.0]))
@@ -89,7 +89,7 @@ def test_inputs_have_names(cart):
     assert np.array_equal(rows[0], named)
 
 
-def test_not_a_number_goes_in_and_comes_out(arm):
+def test_nan_propagates(arm):
     x = np.zeros((3, len(arm.states)))
     x[1] = np.nan
     found = arm.rates(0.0, x)
@@ -108,14 +108,14 @@ def test_not_a_number_goes_in_and_comes_out(arm):
         (0.0, "x has the shape ()"),
     ],
 )
-def test_a_wrong_shape_is_refused_with_the_right_one(arm, x, said):
+def test_wrong_shapes_are_rejected_with_the_expected_one(arm, x, said):
     for call in (arm.rates, arm.observables, arm.energy, arm.jacobian):
         with pytest.raises(ValueError) as raised:
             call(0.0, x)
         assert said in str(raised.value)
 
 
-def test_wrong_times_and_inputs_are_refused(arm):
+def test_wrong_times_and_inputs_are_rejected(arm):
     x = np.zeros((4, len(arm.states)))
     with pytest.raises(ValueError, match="one for each of 4 states"):
         arm.rates(np.zeros(3), x)
@@ -139,7 +139,7 @@ def test_wrong_times_and_inputs_are_refused(arm):
         object(),
     ],
 )
-def test_what_is_not_real_numbers_is_refused(arm, x):
+def test_values_that_are_not_real_are_rejected(arm, x):
     with pytest.raises(TypeError):
         arm.rates(0.0, x)
 
@@ -164,7 +164,7 @@ def test_threads_share_a_model(arm, states):
     assert not wrong
 
 
-def test_a_model_stays_what_it_is_when_others_are_made(pendulum):
+def test_derived_models_leave_the_original_unchanged(pendulum):
     x = [0.5, 1.0]
     before = pendulum.rates(0.0, x)
     longer = pendulum.with_parameters(a=2 * pendulum.parameters["a"])

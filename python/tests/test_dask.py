@@ -73,7 +73,7 @@ def finished(folder):
     return [part for part in folder.glob("parts/*.part")]
 
 
-def test_a_lost_worker_takes_nothing_with_it(cluster, program, tmp_path):
+def test_lost_worker_does_not_change_the_sweep(cluster, program, tmp_path):
     client, workers = cluster
     (tmp_path / "oscillator.toml").write_text(SPECIFICATION)
     spec = str(tmp_path / "oscillator.toml")
@@ -104,7 +104,7 @@ def test_a_lost_worker_takes_nothing_with_it(cluster, program, tmp_path):
     assert (alone / "sweep.parquet").read_bytes() == (spread / "sweep.parquet").read_bytes()
 
 
-def test_what_is_refused_says_why(cluster, program, tmp_path):
+def test_failed_sweeps_report_the_reason(cluster, program, tmp_path):
     client, _ = cluster
     (tmp_path / "oscillator.toml").write_text(SPECIFICATION)
     wrong = [str(tmp_path / "oscillator.toml"), "--vary", "d=1:2:3", "--measure", "poincare"]

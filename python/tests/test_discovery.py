@@ -62,7 +62,7 @@ def found(stage, dataset, tmp_path_factory, told):
     return eomgen.discover(stage, dataset, out=out, progress=told.append), out
 
 
-def test_the_hidden_friction_is_found(found, told):
+def test_hidden_friction_is_discovered(found, told):
     d, _ = found
     assert d.verdict == "effects_found"
     first = d.effects[0]
@@ -75,7 +75,7 @@ def test_the_hidden_friction_is_found(found, told):
     assert "q" in d.where and any("fitting" in line for line in told)
 
 
-def test_hidden_characters_of_names_do_not_reach_the_progress(stage, dataset, tmp_path):
+def test_control_characters_of_names_are_escaped_in_progress(stage, dataset, tmp_path):
     class Heard(Exception):
         pass
 
@@ -94,7 +94,7 @@ def test_hidden_characters_of_names_do_not_reach_the_progress(stage, dataset, tm
     assert lines[0].startswith("note: the model has no input `a\\u{202e}\\u{1b}`"), lines
 
 
-def test_the_files_are_those_of_the_result(found):
+def test_written_files_match_the_result(found):
     d, out = found
     assert json.loads((out / "discovery.json").read_text(encoding="utf-8")) == d.document
     assert (out / "extended.toml").read_text(encoding="utf-8") == d.extended
@@ -108,19 +108,19 @@ def test_the_files_are_those_of_the_result(found):
     assert "srcdoc" in d._repr_html_() and "</iframe>" in d._repr_html_()
 
 
-def test_the_extended_model_brakes(stage, found):
+def test_extended_model_has_the_friction(stage, found):
     d, _ = found
     rates = [m.rates(0.0, [0.0, 0.1], [0.0])[1] for m in (d.model, stage)]
     mass = stage.parameters["M"]
     assert mass * (rates[1] - rates[0]) == pytest.approx(12.0, abs=0.2)
 
 
-def test_a_model_that_lacks_nothing_is_told_so(found, dataset):
+def test_complete_model_has_no_significant_gap(found, dataset):
     d, _ = found
     assert eomgen.discover(d.model, dataset).verdict == "no_significant_gap"
 
 
-def test_ctrl_c_stops_a_search_soon(arm, tmp_path, interrupt):
+def test_ctrl_c_interrupts_a_discovery(arm, tmp_path, interrupt):
     t = np.arange(2000) * 5e-4
     text = arm.text
     for section, hidden in HIDDEN.items():
@@ -141,7 +141,7 @@ def test_ctrl_c_stops_a_search_soon(arm, tmp_path, interrupt):
             eomgen.discover(arm, tmp_path / "dataset.toml")
 
 
-def test_what_hears_of_progress_may_raise(stage, dataset):
+def test_progress_callback_may_raise(stage, dataset):
     def refuse(line):
         raise RuntimeError("enough")
 
@@ -149,7 +149,7 @@ def test_what_hears_of_progress_may_raise(stage, dataset):
         eomgen.discover(stage, dataset, progress=refuse)
 
 
-def test_wrong_datasets_are_refused(stage, dataset, tmp_path):
+def test_invalid_datasets_are_rejected(stage, dataset, tmp_path):
     with pytest.raises(eomgen.SpecificationError, match="dataset.toml"):
         eomgen.discover(stage, tmp_path / "dataset.toml")
     wrong = dataset.read_text(encoding="utf-8").replace("[channels.q]", "[channels.p]")

@@ -43,7 +43,7 @@ def test_every_shipped_specification_loads(path):
     assert "<math>" in m._repr_html_()
 
 
-def test_a_text_and_its_file_are_one_model(tmp_path):
+def test_text_and_file_give_the_same_model(tmp_path):
     path = tmp_path / "oscillator.toml"
     path.write_text(OSCILLATOR, encoding="utf-8")
     for m in (eomgen.load(OSCILLATOR), eomgen.load(path), eomgen.load(str(path))):
@@ -51,7 +51,7 @@ def test_a_text_and_its_file_are_one_model(tmp_path):
         assert np.allclose(m.rates(0.0, [0.1, 0.0], [3.0]), [0.0, (3 - 1.6) / 0.2])
 
 
-def test_parameters_are_in_declared_units_and_cannot_be_written():
+def test_parameters_are_read_only_in_declared_units():
     m = eomgen.load(OSCILLATOR)
     assert dict(m.parameters) == {"m": 200.0, "k": 8.0, "lambda": 16.0}
     assert m.units["m"] == "g"
@@ -59,7 +59,7 @@ def test_parameters_are_in_declared_units_and_cannot_be_written():
         m.parameters["m"] = 3.0
 
 
-def test_what_depends_on_a_parameter_follows_and_expressions_can_be_replaced():
+def test_dependent_parameters_follow_and_expressions_can_be_replaced():
     m = eomgen.load(OSCILLATOR)
     softer = m.with_parameters(k=4)
     assert softer.parameters["lambda"] == 8.0
@@ -79,27 +79,27 @@ def test_what_depends_on_a_parameter_follows_and_expressions_can_be_replaced():
         ({"k": float("inf")}, "give a finite number"),
     ],
 )
-def test_wrong_parameters_are_refused(values, said):
+def test_invalid_parameters_are_rejected(values, said):
     with pytest.raises(eomgen.SpecificationError) as raised:
         eomgen.load(OSCILLATOR).with_parameters(**values)
     assert said in str(raised.value)
 
 
-def test_values_that_are_no_numbers_are_refused():
+def test_values_that_are_no_numbers_are_rejected():
     m = eomgen.load(OSCILLATOR)
     for value in ("1", None, [1.0, 2.0], 1j):
         with pytest.raises(TypeError):
             m.with_parameters(m=value)
 
 
-def test_the_largest_numbers_do_not_break_anything():
+def test_largest_numbers_are_accepted():
     m = eomgen.load(OSCILLATOR).with_parameters(k=1e308 / 4)
     assert np.isfinite(m.rates(0.0, [0.0, 1.0])).all()
     with pytest.raises(eomgen.SpecificationError):
         eomgen.load(OSCILLATOR).with_parameters(k=1e308)
 
 
-def test_a_wrong_specification_says_what_the_command_line_says(tmp_path, program):
+def test_specification_errors_match_the_command_line(tmp_path, program):
     wrong = OSCILLATOR.replace("1/2*lambda*x^2", "1/2*lambda*x").replace('"g"', '"gg"')
     path = tmp_path / "wrong.toml"
     path.write_text(wrong, encoding="utf-8")
@@ -123,13 +123,13 @@ def test_a_wrong_specification_says_what_the_command_line_says(tmp_path, program
         (SPECIFICATIONS, "is not a file"),
     ],
 )
-def test_what_is_no_specification_is_refused(given, said):
+def test_input_that_is_no_specification_is_rejected(given, said):
     with pytest.raises(eomgen.SpecificationError) as raised:
         eomgen.load(given)
     assert said in str(raised.value)
 
 
-def test_wrong_kinds_of_arguments_are_refused():
+def test_wrong_argument_types_are_rejected():
     for given in (None, 3, b"bytes\n", ["a"]):
         with pytest.raises(TypeError):
             eomgen.load(given)
@@ -147,12 +147,12 @@ def test_wrong_kinds_of_arguments_are_refused():
         eomgen.load(OSCILLATOR, 3)
 
 
-def test_warnings_are_warnings():
+def test_specification_warnings_are_python_warnings():
     with pytest.warns(eomgen.SpecificationWarning, match="spare"):
         eomgen.load(OSCILLATOR.replace("[coordinates]", "spare = { value = 1 }\n[coordinates]"))
 
 
-def test_a_linearisation_holds_the_jacobians(cart, states):
+def test_linearisation_matches_the_jacobians(cart, states):
     x, u = cart.initial + states(cart, 1, 0.1)[0], [0.5]
     found = cart.linearise(0.0, x, u)
     a, b, c, d = found
@@ -166,7 +166,7 @@ def test_a_linearisation_holds_the_jacobians(cart, states):
         assert np.allclose(c[:, column], difference, rtol=1e-5, atol=1e-5)
 
 
-def test_the_command_s_arrays_are_those_of_the_package(tmp_path, program, cart):
+def test_arrays_of_the_command_line_match_the_package(tmp_path, program, cart):
     out, spec = tmp_path / "matrices.npz", tmp_path / "cart.toml"
     spec.write_text(cart.text, encoding="utf-8")
     point = ["--state", f"{cart.states[1]}=0.3", "--state", "t=0.5"]
@@ -181,7 +181,7 @@ def test_the_command_s_arrays_are_those_of_the_package(tmp_path, program, cart):
     assert written["state_units"].tolist()[0] == "m" and len(written["output_units"]) == len(found.y)
 
 
-def test_the_point_of_a_linearisation_has_names(cart):
+def test_linearisation_accepts_names(cart):
     name = cart.states[1]
     at = cart.linearise(x={name: 0.3})
     assert at.x[1] == 0.3 and np.array_equal(np.delete(at.x, 1), np.delete(cart.initial, 1))
@@ -189,7 +189,7 @@ def test_the_point_of_a_linearisation_has_names(cart):
         cart.linearise(x={name + "x": 0.3})
 
 
-def test_an_equilibrium_is_that_of_the_command(program, pendulum, tmp_path):
+def test_equilibrium_matches_the_command_line(program, pendulum, tmp_path):
     spec = tmp_path / "pendulum.toml"
     spec.write_text(pendulum.text, encoding="utf-8")
     (angle,) = pendulum.states[:1]
@@ -201,14 +201,14 @@ def test_an_equilibrium_is_that_of_the_command(program, pendulum, tmp_path):
     assert np.allclose(pendulum.rates(0.0, found.x, found.u), 0.0, atol=1e-9)
 
 
-def test_fixed_coordinates_are_held_by_inputs(cart):
+def test_inputs_balance_fixed_coordinates(cart):
     held = cart.states[1]
     found = cart.trim(fixed={held: 0.0}, u=[0.3])
     assert found[held] == 0.0 and held not in found.free and "at rest" in repr(found)
     assert np.allclose(cart.rates(0.0, found.x, found.u), 0.0, atol=1e-9)
 
 
-def test_a_wrong_start_of_an_equilibrium_is_refused(cart):
+def test_invalid_starts_of_trim_are_rejected(cart):
     name = cart.states[1]
     for start, error in [
         ({name + "x": 0.3}, f"did you mean `{name}`"),
@@ -221,7 +221,7 @@ def test_a_wrong_start_of_an_equilibrium_is_refused(cart):
             cart.trim(fixed=start)
 
 
-def test_a_model_goes_to_other_processes():
+def test_models_can_be_pickled():
     m = eomgen.load(SPECIFICATIONS / "planetary_arm_rig.toml", 2).with_parameters(b_sp=30e-6)
     again = pickle.loads(pickle.dumps(m))
     x = np.full(len(m.states), 1e-4)
@@ -229,6 +229,6 @@ def test_a_model_goes_to_other_processes():
     assert dict(again.parameters) == dict(m.parameters) and again.orders == (2,)
 
 
-def test_names_become_no_markup():
+def test_names_are_escaped_in_html():
     shown = eomgen.load(OSCILLATOR)._repr_html_()
     assert "<math>" in shown and "<hostile>" not in shown

@@ -16,7 +16,7 @@ def written(section, **names):
     return names
 
 
-def test_the_lines_of_the_project_s_first_page_run(monkeypatch, capsys):
+def test_readme_examples_run(monkeypatch, capsys):
     page = (PROJECT / "README.md").read_text(encoding="utf-8")
     text = page.split("## From Python\n", 1)[1].split("```python\n", 1)[1].split("```", 1)[0]
     monkeypatch.chdir(PROJECT)
@@ -25,20 +25,20 @@ def test_the_lines_of_the_project_s_first_page_run(monkeypatch, capsys):
     assert abs(float(tip)) < 1 and shape == ["(14, 14)\n"]
 
 
-def test_the_page_s_lines_on_scipy_run(pendulum):
+def test_scipy_examples_run(pendulum):
     pytest.importorskip("scipy")
     found = written("SciPy", m=pendulum)["found"]
     assert found.success and np.allclose(found.t[-1], 2)
 
 
-def test_the_page_s_lines_on_casadi_run(cart):
+def test_casadi_examples_run(cart):
     pytest.importorskip("casadi")
     names = written("CasADi", m=cart)
     x = cart.initial
     assert np.allclose(np.array(names["step"](x, 0.3)).ravel(), x + 0.01 * cart.rates(0, x, [0.3]))
 
 
-def test_solve_ivp_takes_rates_and_jacobian(pendulum):
+def test_solve_ivp_accepts_rates_and_jacobian(pendulum):
     scipy = pytest.importorskip("scipy.integrate")
     r = pendulum.simulate(until=2, interval=0.01)
     for method in ("Radau", "LSODA"):
@@ -49,7 +49,7 @@ def test_solve_ivp_takes_rates_and_jacobian(pendulum):
         assert np.allclose(found.y.T, r.states, atol=1e-6), method
 
 
-def test_casadi_has_values_and_jacobians(cart, states):
+def test_casadi_values_and_jacobians_match(cart, states):
     casadi = pytest.importorskip("casadi")
     f = cart.to_casadi()
     x, u = cart.initial + states(cart, 1, 0.1)[0], [0.7]
@@ -63,7 +63,7 @@ def test_casadi_has_values_and_jacobians(cart, states):
     assert np.array_equal(np.array(by_u), cart.jacobian(0.0, x, u, by="inputs"))
 
 
-def test_casadi_has_the_derivative_by_the_time(states):
+def test_casadi_derivative_by_time_matches(states):
     casadi = pytest.importorskip("casadi")
     m = eomgen.load(SPECIFICATIONS / "planetary_arm.toml")
     f, x = m.to_casadi(), states(m, 1)[0]
@@ -74,7 +74,7 @@ def test_casadi_has_the_derivative_by_the_time(states):
     assert np.allclose(np.array(by_t).ravel(), difference, rtol=1e-6, atol=1e-6)
 
 
-def test_jax_differentiates(cart, states):
+def test_jax_derivatives_match(cart, states):
     jax = pytest.importorskip("jax")
     rates = written("JAX")["jax_rates"](cart)
     t, x, u = 0.0, cart.initial + states(cart, 1, 0.1)[0], np.array([0.7])

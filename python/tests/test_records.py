@@ -18,7 +18,7 @@ def columns(path):
     return rows[0], np.array([[float(cell) if cell else np.nan for cell in row] for row in rows[1:]])
 
 
-def test_arrays_of_numpy_keep_all_digits(tmp_path):
+def test_numpy_arrays_keep_all_digits(tmp_path):
     np.savez(tmp_path / "run.npz", **ARRAYS)
     names = eomgen.record_to_csv(tmp_path / "run.npz", tmp_path / "run.csv")
     assert names == ["t", "u", "enc_1", "enc_2"]
@@ -28,7 +28,7 @@ def test_arrays_of_numpy_keep_all_digits(tmp_path):
     assert eomgen.record_to_csv(tmp_path / "run.npz", tmp_path / "run.csv", ["u", "t"]) == ["u", "t"]
 
 
-def test_files_of_matlab_are_read_by_scipy(tmp_path):
+def test_matlab_files_are_converted(tmp_path):
     io = pytest.importorskip("scipy.io")
     io.savemat(tmp_path / "run.mat", {**ARRAYS, "note": "by hand", "short": T[:7]})
     with pytest.warns(UserWarning, match="skipped.*short"):
@@ -38,7 +38,7 @@ def test_files_of_matlab_are_read_by_scipy(tmp_path):
     assert (numbers[:, 1] == ARRAYS["u"]).all()
 
 
-def test_what_is_no_record_is_refused_and_nothing_written(tmp_path):
+def test_invalid_records_are_rejected_without_output(tmp_path):
     np.savez(tmp_path / "run.npz", t=T, short=T[:7], words=np.array(["a", "b"]))
     np.savez(tmp_path / "none.npz", rate=np.array(100.0))
     (tmp_path / "new.mat").write_bytes(b"MATLAB 7.3 MAT-file, and so on")

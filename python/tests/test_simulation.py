@@ -15,7 +15,7 @@ from conftest import SPECIFICATIONS
 @pytest.mark.parametrize(
     "name, solver", [("planetary_arm", "auto"), ("double_pendulum", "rk"), ("pendulum", "adams")]
 )
-def test_a_motion_is_that_of_the_command_line(tmp_path, program, name, solver):
+def test_trajectory_matches_the_command_line(tmp_path, program, name, solver):
     path, out = SPECIFICATIONS / f"{name}.toml", tmp_path / "motion.csv"
     command = [program, "simulate", path, "--until", "0.7", "--interval", "1e-3"]
     subprocess.run([*command, "--solver", solver, "--out", out], check=True, capture_output=True)
@@ -27,7 +27,7 @@ def test_a_motion_is_that_of_the_command_line(tmp_path, program, name, solver):
     assert np.array_equal(np.column_stack([r.t, r.states, r.observables]), table)
 
 
-def test_the_paper_s_arm_with_other_play_runs_as_documented(arm):
+def test_arm_with_other_play_matches_the_documentation(arm):
     m = eomgen.load(SPECIFICATIONS / "planetary_arm.toml").with_parameters(b_sp=50e-6)
     r = m.simulate(until=2, interval=1e-3)
     assert (r.solver, len(r)) == ("exact", 2001)
@@ -35,13 +35,13 @@ def test_the_paper_s_arm_with_other_play_runs_as_documented(arm):
     assert "piecewise linear" in r.reason
 
 
-def test_samples_are_as_many_as_asked_for(pendulum):
+def test_number_of_samples_follows_the_interval(pendulum):
     assert len(pendulum.simulate(until=1)) == 1001
     assert pendulum.simulate(until=1, interval=0.3).t.tolist() == pytest.approx([0, 0.3, 0.6, 0.9])
     assert pendulum.simulate(until=0.3, interval=0.1).t[-1] == pytest.approx(0.3)
 
 
-def test_an_initial_state_is_given_by_names_or_whole(pendulum):
+def test_initial_state_is_accepted_by_name_or_as_array(pendulum):
     named = pendulum.simulate(until=1, state={"theta_dot": 2.0})
     whole = pendulum.simulate(until=1, state=[pendulum.initial[0], 2.0])
     assert np.array_equal(named.states, whole.states)
@@ -64,7 +64,7 @@ def test_inputs_are_numbers_samples_or_functions(cart):
     assert np.allclose(step.states[-1], held.states[51], rtol=1e-7, atol=1e-9)
 
 
-def test_an_input_that_nothing_gives_is_said_to_be_0(cart):
+def test_missing_inputs_are_0_with_a_warning(cart):
     with pytest.warns(UserWarning, match=f"not driven and taken as 0: {cart.inputs[0]}"):
         r = cart.simulate(until=0.01)
     assert np.array_equal(r.states, cart.simulate(until=0.01, inputs={cart.inputs[0]: 0}).states)
@@ -117,13 +117,13 @@ def test_earlier_names_of_arguments_work(pendulum):
         ({"until": 1, "solver": "exact"}, ValueError, "sin"),
     ],
 )
-def test_what_makes_no_sense_is_refused(pendulum, arguments, error, said):
+def test_invalid_arguments_are_rejected(pendulum, arguments, error, said):
     with pytest.raises(error) as raised:
         pendulum.simulate(**arguments)
     assert said in str(raised.value)
 
 
-def test_wrong_inputs_are_refused(cart):
+def test_invalid_inputs_are_rejected(cart):
     name = cart.inputs[0]
     for force, said in [
         (np.zeros(7), "expected a number, or 101 numbers"),
@@ -137,7 +137,7 @@ def test_wrong_inputs_are_refused(cart):
         cart.simulate(until=1, inputs={name: lambda t: "1"})
 
 
-def test_an_exception_of_an_input_names_it_and_is_the_cause(cart):
+def test_input_exceptions_are_chained(cart):
     name = cart.inputs[0]
     with pytest.raises(eomgen.SimulationError, match=f"the input {name} at t = 0.3") as raised:
         cart.simulate(until=1, inputs={name: lambda t: 1 / 0 if t > 0.3 else 0.0})
@@ -178,7 +178,7 @@ motor = { on = "phi", value = "M" }
 
 
 @pytest.mark.parametrize("torque", [lambda t: 0.3 * np.sin(50 * t), "0.3*sin(50*t)"])
-def test_the_output_interval_does_not_change_the_motion(torque):
+def test_output_interval_does_not_change_the_motion(torque):
     axis = eomgen.load(AXIS)
     ends = [axis.simulate(1, interval=h, inputs={"M": torque})["x"][-1] for h in (0.1, 0.05, 0.001)]
     # Reference: SciPy's Radau method at 1e-12 with the rates of the model.
@@ -202,7 +202,7 @@ def test_steps_end_where_a_function_jumps(cart):
     assert jump in calls and np.nextafter(jump, 0) in calls
 
 
-def test_a_motion_starts_at_a_given_time(cart):
+def test_simulation_starts_at_a_given_time(cart):
     name = cart.inputs[0]
     whole = cart.simulate(until=1, interval=0.1, inputs={name: lambda t: np.sin(9 * t)})
     rest = cart.simulate(
@@ -214,7 +214,7 @@ def test_a_motion_starts_at_a_given_time(cart):
         cart.simulate(until=1, start=2)
 
 
-def test_the_longest_step_finds_a_short_pulse(cart):
+def test_max_step_resolves_a_short_pulse(cart):
     name = cart.inputs[0]
     pulse = lambda t: 100.0 * np.exp(-(((t - 31.4) / 0.005) ** 2))
     of = lambda **more: cart.simulate(
@@ -228,7 +228,7 @@ def test_the_longest_step_finds_a_short_pulse(cart):
             of(max_step=wrong)
 
 
-def test_energy_from_nothing_is_a_warning():
+def test_unexplained_energy_is_a_warning():
     base = """
 [model]
 name = "base"
@@ -249,12 +249,12 @@ step = "U*above(x)"
     assert kept != any("J without work" in str(one.message) for one in caught)
 
 
-def test_an_unknown_column_is_refused(pendulum):
+def test_unknown_columns_are_rejected(pendulum):
     with pytest.raises(KeyError, match="did you mean `theta`"):
         pendulum.simulate(until=0.1)["thetha"]
 
 
-def test_a_motion_that_cannot_go_on_leaves_what_there_is():
+def test_stopped_simulation_keeps_its_samples():
     runaway = """
 [model]
 name = "runaway"
@@ -282,7 +282,7 @@ def endless():
     return lambda **options: m.simulate(until=1e7, interval=1e4, solver="rk", **options)
 
 
-def test_progress_is_told_and_may_raise(endless):
+def test_progress_is_reported_and_may_raise(endless):
     told = []
 
     def enough(part):
@@ -295,13 +295,13 @@ def test_progress_is_told_and_may_raise(endless):
     assert told == sorted(told) and all(0 < part < 1 for part in told)
 
 
-def test_ctrl_c_stops_a_simulation_soon(endless, interrupt):
+def test_ctrl_c_interrupts_a_simulation(endless, interrupt):
     with pytest.raises(KeyboardInterrupt):
         with interrupt(after=0.7):
             endless()
 
 
-def test_other_threads_run_while_one_simulates(endless):
+def test_other_threads_run_during_a_simulation(endless):
     worked, turns = [], 0
 
     def enough(part):
@@ -320,7 +320,7 @@ def test_other_threads_run_while_one_simulates(endless):
     assert worked[0] > 1000
 
 
-def test_prescribed_motion_moves_with_the_rates_of_its_samples():
+def test_prescribed_motion_has_spline_rates():
     crane = eomgen.load(SPECIFICATIONS / "crane.toml")
     assert crane.inputs == ("s", "s_dot", "s_ddot", "l", "l_dot", "l_ddot")
     drive, sample = (lambda t: 0.3 * t**2 - 0.05 * t**3), 0.01

@@ -5,7 +5,7 @@ import pytest
 from conftest import PROJECT
 
 
-def test_the_notebook_runs(tmp_path):
+def test_notebook_runs(tmp_path):
     nbformat = pytest.importorskip("nbformat")
     nbclient = pytest.importorskip("nbclient")
     pytest.importorskip("ipykernel")

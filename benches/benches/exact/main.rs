@@ -46,7 +46,7 @@ impl Exact {
     }
 
     /// Simulates one second from rest, with cached regimes.
-    fn second(&mut self, samples: &[f64]) -> Trajectory {
+    fn simulate_cached(&mut self, samples: &[f64]) -> Trajectory {
         let none = HeldInputs::zero(0);
         self.propagator
             .simulate(&self.initial, (0.0, 1.0), samples, &none, &mut |_| {})
@@ -54,12 +54,12 @@ impl Exact {
     }
 
     /// Simulates one second from rest at new parameters, without cached regimes.
-    fn anew(&mut self) -> Trajectory {
+    fn simulate_uncached(&mut self) -> Trajectory {
         self.propagator = self
             .derived
             .propagator(&self.model)
             .expect("finite matrices");
-        self.second(&[])
+        self.simulate_cached(&[])
     }
 }
 
@@ -76,7 +76,7 @@ fn exact(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("one_second_exact");
     for arm in &mut orders {
         group.bench_function(format!("order_{}", arm.order), |bencher| {
-            bencher.iter(|| arm.second(black_box(&[])).last);
+            bencher.iter(|| arm.simulate_cached(black_box(&[])).last);
         });
     }
     group.finish();

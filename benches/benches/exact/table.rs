@@ -36,7 +36,7 @@ pub fn print(orders: &mut [Exact]) -> Tuned {
     let times: Vec<f64> = (0..=1000).map(|i| f64::from(i) / 1000.0).collect();
     let arm = orders.iter_mut().find(|arm| arm.order == 4);
     let arm = arm.expect("order 4 is among the orders");
-    let trajectory = arm.second(&times);
+    let trajectory = arm.simulate_cached(&times);
     let reference: Vec<f64> = trajectory.states.iter().map(|state| state[0]).collect();
     let problem = Problem::new(magnitudes(&trajectory.states));
     let error = |peer: Peer, tolerance: f64| -> f64 {
@@ -46,7 +46,7 @@ pub fn print(orders: &mut [Exact]) -> Tuned {
     let found: Vec<(Peer, f64, f64)> = ALL
         .into_iter()
         .filter_map(|peer| {
-            let (tolerance, error) = loosest(|tolerance| error(peer, tolerance))?;
+            let (tolerance, error) = find_loosest_tolerance(|tolerance| error(peer, tolerance))?;
             Some((peer, tolerance, error))
         })
         .collect();
@@ -63,8 +63,8 @@ fn print_peers(arm: &mut Exact, problem: &Problem, found: &[(Peer, f64, f64)]) {
     let mut anew = f64::INFINITY;
     let mut best = vec![f64::INFINITY; found.len()];
     for _ in 0..ROUNDS {
-        anew = anew.min(seconds(|| arm.anew()));
-        exact = exact.min(seconds(|| arm.second(&[])));
+        anew = anew.min(seconds(|| arm.simulate_uncached()));
+        exact = exact.min(seconds(|| arm.simulate_cached(&[])));
         for ((peer, tolerance, _), best) in found.iter().zip(&mut best) {
             *best = best.min(seconds(|| peer.end(problem, *tolerance)));
         }
@@ -93,8 +93,8 @@ fn print_peers(arm: &mut Exact, problem: &Problem, found: &[(Peer, f64, f64)]) {
 fn print_switches(orders: &mut [Exact]) {
     println!("{:<26}{:>10}{:>12}", "exact", "switches", "us/switch");
     for arm in orders {
-        let switches = arm.second(&[]).switches.len();
-        let times = (0..ROUNDS).map(|_| seconds(|| arm.second(&[])));
+        let switches = arm.simulate_cached(&[]).switches.len();
+        let times = (0..ROUNDS).map(|_| seconds(|| arm.simulate_cached(&[])));
         let each = 1e6 * times.fold(f64::INFINITY, f64::min) / switches as f64;
         println!(
             "{:<26}{switches:>10}{each:>12.2}",
@@ -121,7 +121,7 @@ fn seconds<T>(mut work: impl FnMut() -> T) -> f64 {
 /// Returns the loosest tolerance with an error of at most [`ERROR`], and the error. The search goes by decades until the
 /// error is met, then by tenths of the previous decade. The first tolerance that meets the error counts, even if a
 /// tighter one does not: errors jump at switches that are not located.
-fn loosest(error: impl Fn(f64) -> f64) -> Option<(f64, f64)> {
+fn find_loosest_tolerance(error: impl Fn(f64) -> f64) -> Option<(f64, f64)> {
     let step = |from: f64, tenths: i32| from * 10.0_f64.powf(-f64::from(tenths) / 10.0);
     let decades = (0..).map(|decade| step(LOOSEST, 10 * decade));
     let kept = decades

@@ -36,13 +36,13 @@ fn fastest(contenders: &mut [&mut dyn FnMut(); 4]) -> [f64; 4] {
 
 /// Returns the time t of an independent call.
 #[inline(always)]
-fn known(_: f64) -> f64 {
+fn independent_time(_: f64) -> f64 {
     black_box(0.3)
 }
 
 /// Returns the time t of a call that depends on the previous result, the rate with the sine.
 #[inline(always)]
-fn with(result: f64) -> f64 {
+fn dependent_time(result: f64) -> f64 {
     0.3 + 0.0 * result
 }
 
@@ -111,8 +111,8 @@ macro_rules! times {
             let equation = Equation22::<$order>::new(&parameters, 1.0, 1.0);
             Times {
                 order: $order,
-                overlapping: calls!(known, arm, state, inputs, coefficients, eliminated, equation),
-                waiting: calls!(with, arm, state, inputs, coefficients, eliminated, equation),
+                overlapping: calls!(independent_time, arm, state, inputs, coefficients, eliminated, equation),
+                waiting: calls!(dependent_time, arm, state, inputs, coefficients, eliminated, equation),
             }
         }),*]
     };

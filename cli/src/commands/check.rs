@@ -7,11 +7,11 @@ use serde_json::{Value, json};
 
 use crate::arguments::Check;
 use crate::document::SCHEMA;
-use crate::error::{Error, Result, say, say_json, warn_of};
+use crate::error::{Error, Result, print_diagnostics, print_json, print_text};
 use crate::model::orders;
 
 /// Model without errors, orders of its fields, and warnings.
-struct Examined {
+struct CheckedModel {
     model: Model,
     orders: Vec<usize>,
     warnings: Diagnostics,
@@ -24,32 +24,32 @@ pub fn run(options: &Check) -> Result {
             if let (true, Some(mut document)) = (options.output.json, error.to_json()) {
                 document["passed"] = json!(false);
                 document["diagnostics"] = document["error"]["diagnostics"].clone();
-                say_json(&document)?;
+                print_json(&document)?;
             }
             return Err(error);
         }
     };
     if options.output.json {
-        return say_json(&record(&examined));
+        return print_json(&record(&examined));
     }
     if !examined.warnings.is_empty() {
-        warn_of(&examined.warnings);
+        print_diagnostics(&examined.warnings);
     }
-    say(&summary(&examined))
+    print_text(&summary(&examined))
 }
 
-fn examine_specification(options: &Check) -> Result<Examined> {
+fn examine_specification(options: &Check) -> Result<CheckedModel> {
     let checked = eomgen_model_spec::load(&options.model.spec).map_err(Error::Specification)?;
     let orders = orders(&checked.model, options.model.order.text())?;
     examine(&checked.model, &orders).map_err(Error::Specification)?;
-    Ok(Examined {
+    Ok(CheckedModel {
         model: checked.model,
         orders,
         warnings: checked.warnings,
     })
 }
 
-fn record(examined: &Examined) -> Value {
+fn record(examined: &CheckedModel) -> Value {
     json!({
         "schema": SCHEMA,
         "passed": true,
@@ -60,7 +60,7 @@ fn record(examined: &Examined) -> Value {
     })
 }
 
-fn summary(examined: &Examined) -> String {
+fn summary(examined: &CheckedModel) -> String {
     let model = &examined.model;
     let fields = match examined.orders.as_slice() {
         [] => "no field".to_owned(),

@@ -10,7 +10,7 @@ use eomgen_paper::studies::search_report;
 use eomgen_paper::studies::tally::shares;
 
 use crate::arguments::{Claims, ModeShapes};
-use crate::error::{Error, Result, say, say_json};
+use crate::error::{Error, Result, print_json, print_text};
 use crate::output::{file_place, write_file};
 use crate::progress::Bar;
 
@@ -36,7 +36,7 @@ pub fn run(options: &Claims) -> Result {
         ModeShapes::Corrected => Shapes::Corrected,
         ModeShapes::Printed => Shapes::Printed,
     };
-    let arm = Arm::with(shapes, &orders()).map_err(refused)?;
+    let arm = Arm::with(shapes, &orders()).map_err(input_error)?;
     let request = Request {
         sets,
         seed: options.seed,
@@ -53,27 +53,27 @@ pub fn run(options: &Claims) -> Result {
     let found = search(&arm, &request, &out.join("parts"), &mut |done| {
         bar.set(done as f64);
     })
-    .map_err(refused)?;
+    .map_err(input_error)?;
     drop(bar);
     let (_, assumed) = judge_all(&arm, Undisclosed::ASSUMED, &Length::FULL);
     write_file(&table, search_report::csv(&found).as_bytes())?;
     let claims = markdown(&assumed, &shares(&found.screened));
     write_file(&out.join("claims.md"), claims.as_bytes())?;
-    for figure in charts(&found, &assumed).map_err(refused)? {
+    for figure in charts(&found, &assumed).map_err(input_error)? {
         write_file(&out.join(&figure.file), figure.svg.as_bytes())?;
     }
     let report = search_report::document(&request, &assumed, &found);
     write_file(&document, format!("{report:#}\n").as_bytes())?;
     if options.output.json {
-        return say_json(&report);
+        return print_json(&report);
     }
-    say(&format!(
+    print_text(&format!(
         "{}{}\n",
         search_report::summary(&assumed, &found),
         document.display()
     ))
 }
 
-fn refused(error: StudyError) -> Error {
+fn input_error(error: StudyError) -> Error {
     Error::input(error.to_string())
 }

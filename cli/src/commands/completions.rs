@@ -3,11 +3,11 @@
 use clap::CommandFactory;
 
 use crate::arguments::{Arguments, Completions};
-use crate::error::{Result, say_bytes};
+use crate::error::{Result, print_bytes};
 
 pub fn run(options: &Completions) -> Result {
     let mut script = Vec::new();
     let mut program = Arguments::command();
     clap_complete::generate(options.shell, &mut program, "eomgen", &mut script);
-    say_bytes(&script)
+    print_bytes(&script)
 }

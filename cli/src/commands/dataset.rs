@@ -6,7 +6,7 @@ use serde_json::json;
 
 use crate::arguments::Dataset;
 use crate::document::SCHEMA;
-use crate::error::{Error, Result, say, say_bytes, say_json, warn};
+use crate::error::{Error, Result, print_bytes, print_json, print_text, warn};
 use crate::model::load;
 use crate::output::write_file;
 
@@ -26,12 +26,12 @@ pub fn run(options: &Dataset) -> Result {
         }
     }
     match (&options.out, options.output.json) {
-        (out, true) => say_json(&json!({ "schema": SCHEMA, "out": out, "dataset": text })),
-        (Some(out), false) => say(&format!(
+        (out, true) => print_json(&json!({ "schema": SCHEMA, "out": out, "dataset": text })),
+        (Some(out), false) => print_text(&format!(
             "{}: check the lines that are marked as guessed\n",
             out.display()
         )),
-        (None, false) => say_bytes(text.as_bytes()),
+        (None, false) => print_bytes(text.as_bytes()),
     }
 }
 

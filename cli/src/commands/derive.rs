@@ -4,7 +4,7 @@ use eomgen_codegen::program::evaluator::Evaluator;
 use eomgen_codegen::report::Report;
 
 use crate::arguments::{Derive, Format};
-use crate::error::{Error, Result, say, say_bytes};
+use crate::error::{Error, Result, print_bytes, print_text};
 use crate::model::load_to_read;
 
 pub fn run(options: &Derive) -> Result {
@@ -17,12 +17,12 @@ pub fn run(options: &Derive) -> Result {
     let evaluator = Evaluator::new(compiled.program().clone());
     let report = Report::new(compiled.model(), compiled.equations(), &evaluator);
     match format {
-        Format::Text => say(&report.text()),
-        Format::Latex => say_bytes(report.latex().as_bytes()),
+        Format::Text => print_text(&report.text()),
+        Format::Latex => print_bytes(report.latex().as_bytes()),
         Format::Json => {
             let text = serde_json::to_string_pretty(&report)
                 .map_err(|error| Error::input(error.to_string()))?;
-            say_bytes(format!("{text}\n").as_bytes())
+            print_bytes(format!("{text}\n").as_bytes())
         }
     }
 }

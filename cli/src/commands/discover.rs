@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use crate::arguments;
 use crate::discovery::{self, Task};
-use crate::error::{Result, say, say_json};
+use crate::error::{Result, print_json, print_text};
 
 pub fn compare(options: &arguments::Compare) -> Result {
     let task = Task {
@@ -38,7 +38,7 @@ pub fn discover(options: &arguments::Discover) -> Result {
 /// Prints the verdict, the effects and the residual of each channel.
 fn print(as_json: bool, result: &Value, out: &Path) -> Result {
     if as_json {
-        return say_json(result);
+        return print_json(result);
     }
     let mut text = format!(
         "{}: {}\n",
@@ -84,5 +84,5 @@ fn print(as_json: bool, result: &Value, out: &Path) -> Result {
             number(&gap["floor"])
         );
     }
-    say(&text)
+    print_text(&text)
 }

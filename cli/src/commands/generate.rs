@@ -14,7 +14,7 @@ use crate::certification::document;
 use crate::checked_in;
 use crate::document::SCHEMA;
 use crate::emission;
-use crate::error::{Error, Result, say, say_json, warn};
+use crate::error::{Error, Result, print_json, print_text, warn};
 use crate::model::{load, orders};
 use crate::output::write_file;
 
@@ -72,12 +72,12 @@ fn generate(options: &Generate, spec: &Path, out: &Path) -> Result {
             "bytes": first.len(),
             "certified": certificate.as_ref().map(|certificate| certificate.passed),
         });
-        say_json(&document)?;
+        print_json(&document)?;
     } else {
         let size = emission::size(options.target, first);
-        say(&format!("{}: {size}\n", files[0]))?;
+        print_text(&format!("{}: {size}\n", files[0]))?;
         for file in &files[1..] {
-            say(&format!("{file}\n"))?;
+            print_text(&format!("{file}\n"))?;
         }
     }
     certificate.as_ref().map_or(Ok(()), judge)

@@ -3,7 +3,7 @@
 use eomgen_compiled_model::CompiledModel;
 
 use crate::arguments::Linearise;
-use crate::error::{Result, say_bytes};
+use crate::error::{Result, print_bytes};
 use crate::linearisation::{arrays, document};
 use crate::operating_point::{is_equilibrium, model, point};
 use crate::output::Destination;
@@ -12,7 +12,7 @@ pub fn run(options: &Linearise) -> Result {
     let destination = options
         .out
         .as_deref()
-        .map(|out| Destination::of(out, false));
+        .map(|out| Destination::for_output(out, false));
     let destination = destination.transpose()?;
     let compiled = model(
         &options.model.spec,
@@ -27,7 +27,7 @@ pub fn run(options: &Linearise) -> Result {
         document(&compiled, (&at, is_equilibrium), &found).map(|document| format!("{document:#}\n"))
     };
     let Some(destination) = destination else {
-        return say_bytes(text()?.as_bytes());
+        return print_bytes(text()?.as_bytes());
     };
     let extension = options.out.as_deref().and_then(|out| out.extension());
     let contents = match extension.is_some_and(|extension| extension == "npz") {

@@ -4,7 +4,7 @@ use clap::CommandFactory;
 use clap_mangen::Man as Page;
 
 use crate::arguments::{Arguments, Man};
-use crate::error::{Error, Result, say};
+use crate::error::{Error, Result, print_text};
 use crate::output::write_file;
 
 pub fn run(options: &Man) -> Result {
@@ -22,5 +22,5 @@ pub fn run(options: &Man) -> Result {
         write_file(&path, &text)?;
         written += 1;
     }
-    say(&format!("{}: {written} pages\n", options.out.display()))
+    print_text(&format!("{}: {written} pages\n", options.out.display()))
 }

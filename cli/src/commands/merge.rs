@@ -3,14 +3,14 @@
 use eomgen_sweep::Folder;
 
 use crate::arguments::Merge;
-use crate::error::{Error, Result, say, say_json};
+use crate::error::{Error, Result, print_json, print_text};
 use crate::sweep_files::finish;
 
 pub fn run(options: &Merge) -> Result {
     let folder = Folder::existing(&options.dir).map_err(|error| Error::input(error.to_string()))?;
     let finished = finish(&folder)?;
     if options.output.json {
-        return say_json(&finished.json());
+        return print_json(&finished.json());
     }
-    say(&finished.text())
+    print_text(&finished.text())
 }

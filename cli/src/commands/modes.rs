@@ -6,15 +6,15 @@ use eomgen_compiled_model::CompiledModel;
 use serde_json::{Value, json};
 
 use crate::arguments::Modes;
-use crate::error::{Error, Result, say, say_json};
+use crate::error::{Error, Result, print_json, print_text};
 use crate::mode_figure::figure;
-use crate::operating_point::{head, is_equilibrium, model, named, point, shape_names};
+use crate::operating_point::{head, is_equilibrium, model, point, shape_names, values_by_name};
 use crate::output::Destination;
 use crate::regime::{Side, regime, summary};
 
 pub fn run(options: &Modes) -> Result {
     let drawing = options.plot.as_deref();
-    let drawing = drawing.map(|plot| Destination::of_figure(plot, None, options.output.json));
+    let drawing = drawing.map(|plot| Destination::for_figure(plot, None, options.output.json));
     let drawing = drawing.transpose()?;
     let compiled = model(
         &options.model.spec,
@@ -34,16 +34,16 @@ pub fn run(options: &Modes) -> Result {
     }
     if !options.output.json {
         let text = table(&compiled, &modes) + &sides(&regime);
-        return drawing.map_or_else(|| say(&text), |drawing| drawing.summarise(&text));
+        return drawing.map_or_else(|| print_text(&text), |drawing| drawing.summarise(&text));
     }
     let mut document = head(&compiled);
-    document.insert("at".to_owned(), named(&compiled, &at));
+    document.insert("at".to_owned(), values_by_name(&compiled, &at));
     document.insert("equilibrium".to_owned(), json!(is_equilibrium));
     document.insert("coordinates".to_owned(), json!(shape_names(&compiled)));
     let regime = regime.iter().map(Side::json);
     document.insert("regime".to_owned(), regime.collect());
     document.insert("modes".to_owned(), modes.iter().map(record).collect());
-    say_json(&Value::Object(document))
+    print_json(&Value::Object(document))
 }
 
 fn record(mode: &NaturalMode) -> Value {

@@ -5,20 +5,20 @@ use serde_json::json;
 use crate::arguments::Page;
 use crate::document::SCHEMA;
 use crate::emission::without_impacts;
-use crate::error::{Result, say_json};
+use crate::error::{Result, print_json};
 use crate::model::{derive, load, orders};
 use crate::output::Destination;
-use crate::page::playable;
-use crate::settings::stabilised;
+use crate::page::interactive_page;
+use crate::settings::with_stabilisation;
 
 pub fn run(options: &Page) -> Result {
-    let destination = Destination::of(&options.out, options.output.json)?;
+    let destination = Destination::for_output(&options.out, options.output.json)?;
     let model = load(&options.model.spec)?.model;
     without_impacts(&model, "a page")?;
-    let model = stabilised(model)?;
+    let model = with_stabilisation(model)?;
     let orders = orders(&model, options.model.order.text())?;
     let compiled = derive(model, &orders)?;
-    let page = playable(&compiled)?;
+    let page = interactive_page(&compiled)?;
     destination.write(page.as_bytes())?;
     if options.output.json {
         let document = json!({
@@ -28,7 +28,7 @@ pub fn run(options: &Page) -> Result {
             "file": options.out.display().to_string(),
             "bytes": page.len(),
         });
-        return say_json(&document);
+        return print_json(&document);
     }
     destination.summarise(&format!("open {}\n", options.out.display()))
 }

@@ -2,8 +2,8 @@
 
 use eomgen_model_spec::schema::SCHEMA;
 
-use crate::error::{Result, say_bytes};
+use crate::error::{Result, print_bytes};
 
 pub fn run() -> Result {
-    say_bytes(SCHEMA.as_bytes())
+    print_bytes(SCHEMA.as_bytes())
 }

@@ -9,7 +9,7 @@ use crate::document::SCHEMA;
 use crate::error::{Error, Result, warn};
 use crate::history;
 use crate::model::{derive, load, orders};
-use crate::motion::{columns, follow, in_words, table};
+use crate::motion::{columns, describe_work, follow, table};
 use crate::operating_point::initial_state;
 use crate::output::Destination;
 use crate::ranges::warn_of_ranges;
@@ -18,11 +18,11 @@ use crate::settings::{with_inputs, with_settings};
 use crate::table::Table;
 
 pub fn run(options: &Simulate) -> Result {
-    let destination = Destination::of(&options.out, options.output.json)?;
+    let destination = Destination::for_output(&options.out, options.output.json)?;
     let figure = options
         .plot
         .as_deref()
-        .map(|plot| Destination::of_figure(plot, Some(&options.out), options.output.json));
+        .map(|plot| Destination::for_figure(plot, Some(&options.out), options.output.json));
     let figure = figure.transpose()?;
     let model = with_inputs(load(&options.model.spec)?.model, &options.input)?;
     let model = with_settings(model, &options.parameters.set)?;
@@ -117,6 +117,6 @@ fn summary(
         });
         return format!("{document:#}\n");
     }
-    let how = in_words(motion);
+    let how = describe_work(motion);
     format!("{file}: {rows} rows, {switches} switches, {how}\n")
 }

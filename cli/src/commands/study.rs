@@ -7,7 +7,7 @@ use eomgen_paper::studies::{StudyError, order, report, responses};
 use serde_json::Value;
 
 use crate::arguments::{Study, StudyName};
-use crate::error::{Error, Result, say, say_bytes};
+use crate::error::{Error, Result, print_bytes, print_text};
 use crate::output::{file_place, write_file};
 use crate::progress::Bar;
 use crate::table::Table;
@@ -36,15 +36,15 @@ pub fn run(options: &Study) -> Result {
     let text = format!("{document:#}\n");
     write_file(&document_path, text.as_bytes())?;
     match options.output.json {
-        true => say_bytes(text.as_bytes()),
-        false => say(&summary(&study, &options.out)),
+        true => print_bytes(text.as_bytes()),
+        false => print_text(&summary(&study, &options.out)),
     }
 }
 
 fn write(study: &report::Study, out: &Path) -> Result {
     for table in &study.tables {
         let path = out.join(&table.file);
-        write_file(&path, &Table::of(&table.columns).encode(&path)?)?;
+        write_file(&path, &Table::from_columns(&table.columns).encode(&path)?)?;
     }
     for figure in &study.figures {
         write_file(&out.join(&figure.file), figure.svg.as_bytes())?;

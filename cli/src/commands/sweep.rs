@@ -5,13 +5,13 @@ use serde_json::{Value, json};
 
 use crate::arguments::Sweep;
 use crate::document::SCHEMA;
-use crate::engines::{self, Submitted};
-use crate::error::{Result, say, say_json};
+use crate::engines::{self, Submission};
+use crate::error::{Result, print_json, print_text};
 use crate::model::load;
 use crate::progress::Bar;
-use crate::settings::{borrowed, settings};
+use crate::settings::{as_borrowed, settings};
 use crate::sweep_files::finish;
-use crate::sweep_job::{job, measures, model, points, refused};
+use crate::sweep_job::{input_error, job, measures, model, points};
 
 pub fn run(options: &Sweep) -> Result {
     engines::check(options)?;
@@ -19,17 +19,17 @@ pub fn run(options: &Sweep) -> Result {
         .shard
         .as_deref()
         .map_or(Ok(Shard::WHOLE), Shard::parse);
-    let shard = shard.map_err(refused)?;
+    let shard = shard.map_err(input_error)?;
     let declared = load(&options.model.spec)?.model;
     let set = settings(&declared, &options.parameters.set)?;
-    let set = borrowed(&set);
+    let set = as_borrowed(&set);
     let points = points(options, &declared, &set)?;
     let model = model(options, &declared, &points, &set)?;
     let measures = measures(options, &model, &points)?;
     let job = job(&model, &points, &set, &measures)?;
-    let folder = Folder::open(&options.out, job).map_err(refused)?;
+    let folder = Folder::open(&options.out, job).map_err(input_error)?;
     if let Some(engine) = options.engine {
-        let Submitted { document, text } = engines::submit(engine, options)?;
+        let Submission { document, text } = engines::submit(engine, options)?;
         return end(options, json!({ "schema": SCHEMA }), document, &text);
     }
     let mut bar = None;
@@ -38,8 +38,8 @@ pub fn run(options: &Sweep) -> Result {
         bar.set(computed as f64);
     };
     let threads = options.threads.map_or(0, usize::from);
-    let done =
-        eomgen_sweep::run(&folder, &measures, shard, threads, &mut progress).map_err(refused)?;
+    let done = eomgen_sweep::run(&folder, &measures, shard, threads, &mut progress)
+        .map_err(input_error)?;
     drop(bar);
     let counts = json!({ "schema": SCHEMA, "computed": done.computed, "resumed": done.found });
     let summary = format!(
@@ -66,10 +66,10 @@ pub fn run(options: &Sweep) -> Result {
 /// Prints the result.
 fn end(options: &Sweep, mut counts: Value, document: Value, text: &str) -> Result {
     if !options.output.json {
-        return say(text);
+        return print_text(text);
     }
     if let (Value::Object(all), Value::Object(more)) = (&mut counts, document) {
         all.extend(more);
     }
-    say_json(&counts)
+    print_json(&counts)
 }

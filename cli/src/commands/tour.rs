@@ -4,15 +4,15 @@ use serde_json::json;
 
 use crate::arguments::Tour;
 use crate::document::SCHEMA;
-use crate::error::{Error, Result, say, say_bytes};
+use crate::error::{Error, Result, print_bytes, print_text};
 use crate::tour::{self, TourResult};
 
 pub fn run(options: &Tour) -> Result {
     let result = tour::run(&options.out)?;
     let summary = summary(options.output.json, &result);
     match options.output.json {
-        true => say_bytes(summary.as_bytes())?,
-        false => say(&summary)?,
+        true => print_bytes(summary.as_bytes())?,
+        false => print_text(&summary)?,
     }
     if result.certificate.passed {
         Ok(())

@@ -4,9 +4,9 @@ use eomgen_compiled_model::{CompiledModel, Equilibrium, EquilibriumRequest, Stab
 use serde_json::{Value, json};
 
 use crate::arguments::Trim;
-use crate::error::{Result, say_json};
-use crate::operating_point::{equilibrium, head, inputs, model, named, values};
-use crate::settings::borrowed;
+use crate::error::{Result, print_json};
+use crate::operating_point::{equilibrium, head, inputs, model, values, values_by_name};
+use crate::settings::as_borrowed;
 
 pub fn run(options: &Trim) -> Result {
     let compiled = model(
@@ -18,12 +18,12 @@ pub fn run(options: &Trim) -> Result {
     let start = values(&run, "--state", &options.start.state)?;
     let fixed = values(&run, "--fix", &options.fix)?;
     let request = EquilibriumRequest {
-        start: &borrowed(&start),
-        fixed: &borrowed(&fixed),
+        start: &as_borrowed(&start),
+        fixed: &as_borrowed(&fixed),
     };
     let found = equilibrium(&run, request)?;
     let stability = run.stability(&found.at)?;
-    say_json(&document(&compiled, &found, stability))
+    print_json(&document(&compiled, &found, stability))
 }
 
 fn document(compiled: &CompiledModel, found: &Equilibrium, stability: Stability) -> Value {
@@ -34,7 +34,7 @@ fn document(compiled: &CompiledModel, found: &Equilibrium, stability: Stability)
     let units = &compiled.state_units()[..coordinates.len()];
     let mut document = head(compiled);
     document.extend([
-        ("at".to_owned(), named(compiled, &found.at)),
+        ("at".to_owned(), values_by_name(compiled, &found.at)),
         ("coordinates".to_owned(), json!(coordinates)),
         ("inputs".to_owned(), json!(inputs)),
         (

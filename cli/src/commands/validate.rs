@@ -4,7 +4,7 @@ use eomgen_paper::certification::certify;
 
 use crate::arguments::{Extra, Validate};
 use crate::certification::{document, summary};
-use crate::error::{Error, Result, say, say_bytes};
+use crate::error::{Error, Result, print_bytes, print_text};
 use crate::model::{load, orders};
 use crate::output::Destination;
 use crate::progress::Note;
@@ -12,7 +12,7 @@ use crate::progress::Note;
 pub fn run(options: &Validate) -> Result {
     let out = options.out.as_deref();
     let destination = out
-        .map(|path| Destination::of(path, options.output.json))
+        .map(|path| Destination::for_output(path, options.output.json))
         .transpose()?;
     let model = load(&options.model.spec)?.model;
     let orders = orders(&model, options.model.order.text())?;
@@ -25,9 +25,9 @@ pub fn run(options: &Validate) -> Result {
         destination.write(text.as_bytes())?;
     }
     match destination {
-        _ if options.output.json => say_bytes(text.as_bytes())?,
+        _ if options.output.json => print_bytes(text.as_bytes())?,
         Some(destination) => destination.summarise(&summary(&certificate))?,
-        None => say(&summary(&certificate))?,
+        None => print_text(&summary(&certificate))?,
     }
     if certificate.passed {
         Ok(())

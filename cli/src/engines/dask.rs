@@ -4,14 +4,14 @@ use std::process::{Command, Stdio};
 
 use serde_json::json;
 
-use super::Submitted;
+use super::Submission;
 use super::shards::Commands;
 use crate::arguments::Sweep;
 use crate::error::{Error, Result};
 
 /// Runs the sweep and waits for its end.
-pub fn run(options: &Sweep) -> Result<Submitted> {
-    let commands = Commands::of(options)?;
+pub fn run(options: &Sweep) -> Result<Submission> {
+    let commands = Commands::new(options)?;
     let scheduler = options
         .scheduler
         .clone()
@@ -41,7 +41,7 @@ pub fn run(options: &Sweep) -> Result<Submitted> {
         .status()
         .map_err(|error| Error::input(format!("--engine dask: cannot run python3 ({error})")))?;
     if status.success() {
-        return Ok(Submitted {
+        return Ok(Submission {
             document: json!({ "engine": "dask", "shards": commands.count, "folder": options.out.display().to_string() }),
             text: format!("{}: {count} shards, merged\n", options.out.display()),
         });

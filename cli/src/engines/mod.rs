@@ -11,13 +11,13 @@ use crate::arguments::{Engine, Sweep};
 use crate::error::{Error, Result};
 
 /// Report on a submitted sweep, as JSON and as text.
-pub struct Submitted {
+pub struct Submission {
     pub document: Value,
     pub text: String,
 }
 
 /// Submits a sweep, whose folder exists, to an engine.
-pub fn submit(engine: Engine, options: &Sweep) -> Result<Submitted> {
+pub fn submit(engine: Engine, options: &Sweep) -> Result<Submission> {
     match engine {
         Engine::Slurm => slurm::submit(options),
         Engine::Dask => dask::run(options),

@@ -26,7 +26,7 @@ pub struct Commands {
 
 impl Commands {
     /// Creates the commands of a sweep whose folder exists.
-    pub fn of(options: &Sweep) -> Result<Self> {
+    pub fn new(options: &Sweep) -> Result<Self> {
         let folder = absolute(&options.out)?;
         let program = std::env::current_exe().map_err(|error| {
             Error::input(format!("cannot find the path of this program: {error}"))

@@ -8,7 +8,7 @@ use std::process::Command;
 
 use serde_json::json;
 
-use super::Submitted;
+use super::Submission;
 use super::shards::Commands;
 use crate::arguments::Sweep;
 use crate::error::{Error, Result};
@@ -18,8 +18,8 @@ use crate::output::write_file;
 const ATTEMPTS: u8 = 5;
 
 /// Writes the scripts to the output folder and submits them.
-pub fn submit(options: &Sweep) -> Result<Submitted> {
-    let commands = Commands::of(options)?;
+pub fn submit(options: &Sweep) -> Result<Submission> {
+    let commands = Commands::new(options)?;
     let folder = commands.folder.join("slurm");
     let (shards, merge) = (folder.join("shards.sh"), folder.join("merge.sh"));
     write_file(&shards, shards_script(&commands).as_bytes())?;
@@ -42,7 +42,7 @@ pub fn submit(options: &Sweep) -> Result<Submitted> {
         &merge,
     )?;
     let count = commands.count;
-    Ok(Submitted {
+    Ok(Submission {
         document: json!({ "engine": "slurm", "shards": count, "array_job": array, "merge_job": merge }),
         text: format!(
             "array job {array} with {count} shards, then job {merge}, which merges them\n\
@@ -81,7 +81,7 @@ fn sbatch(folder: &Path, options: &[&str], script: &Path) -> Result<String> {
 
 fn shards_script(commands: &Commands) -> String {
     let words = std::iter::once(&commands.program).chain(&commands.sweep);
-    let command: Vec<String> = words.map(|word| quoted(word)).collect();
+    let command: Vec<String> = words.map(|word| quote(word)).collect();
     let threads = match commands.threads {
         Some(threads) => threads.to_string(),
         None => "\"${SLURM_CPUS_PER_TASK:-1}\"".to_owned(),
@@ -103,13 +103,13 @@ fn shards_script(commands: &Commands) -> String {
 fn merge_script(commands: &Commands) -> String {
     format!(
         "#!/bin/sh\n# Merges the shards of a sweep.\nexec {} merge {}\n",
-        quoted(&commands.program),
-        quoted(&commands.out)
+        quote(&commands.program),
+        quote(&commands.out)
     )
 }
 
 /// Quotes a word for a shell.
-fn quoted(word: &str) -> String {
+fn quote(word: &str) -> String {
     format!("'{}'", word.replace('\'', r"'\''"))
 }
 
@@ -117,12 +117,12 @@ fn quoted(word: &str) -> String {
 mod tests {
     use std::process::Command;
 
-    use super::quoted;
+    use super::quote;
 
     #[test]
     fn quoted_words_pass_through_a_shell_unchanged() {
         for word in ["a b", "it's", "$HOME `ls` \"x\" \\", "", "''", "*;&|<>"] {
-            let script = format!("printf %s {}", quoted(word));
+            let script = format!("printf %s {}", quote(word));
             let output = Command::new("sh").args(["-c", &script]).output();
             let output = output.expect("a shell");
             assert_eq!(String::from_utf8_lossy(&output.stdout), word);

@@ -32,7 +32,7 @@ pub const OUTPUTS: [Output; 3] = [Output::GuardRates, Output::Jacobians, Output:
 /// Names that C does not allow, or an invalid initial state.
 pub fn file(model: &Model, variant: &Variant, version: Version) -> Result<(String, Vec<u8>)> {
     let program = &variant.program;
-    let unit = variables::Unit::of(model, variant)?;
+    let unit = variables::Unit::new(model, variant)?;
     let sources = sources::files(program, &unit, version)?;
     let mut files = vec![(
         "modelDescription.xml".to_owned(),

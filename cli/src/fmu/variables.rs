@@ -67,7 +67,7 @@ pub struct Unit {
 
 impl Unit {
     /// Creates the description of a variant.
-    pub fn of(model: &Model, variant: &Variant) -> Result<Self> {
+    pub fn new(model: &Model, variant: &Variant) -> Result<Self> {
         let program = &variant.program;
         let orders: Vec<usize> = program.fields.iter().map(|field| field.order).collect();
         let state = model

@@ -10,7 +10,7 @@ mod steps;
 #[cfg(test)]
 mod tests;
 
-pub use play::playable;
+pub use play::interactive_page;
 
 use eomgen_codegen::report::Report;
 use eomgen_page::{Figure, document, equations};

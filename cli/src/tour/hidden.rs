@@ -139,7 +139,7 @@ fn record(truth: &str, turn: f64) -> Result<Table> {
         NOISE * 12f64.sqrt() * (turns.fract() - 0.5)
     };
     let seen = positions.iter().enumerate().map(|(i, q)| q + noise(i));
-    Ok(Table::of(&[
+    Ok(Table::from_columns(&[
         ("t".to_owned(), times),
         ("force".to_owned(), forces),
         ("q".to_owned(), seen.collect()),

@@ -20,7 +20,7 @@ use eomgen_validate::certificate::Certificate;
 use crate::emission::source;
 use crate::error::{Error, Result};
 use crate::model::derive;
-use crate::motion::{in_words, simulate, table};
+use crate::motion::{describe_work, simulate, table};
 use crate::output::{file_place, write_file};
 use crate::page;
 use crate::progress::Note;
@@ -203,7 +203,7 @@ fn page_text(
         "From rest over {UNTIL} s at order {ORDER}, with the paper's values and assumed values for undisclosed ones: \
          {} switches between contact and separation of the teeth, {}.",
         motion.trajectory.switches.len(),
-        in_words(motion)
+        describe_work(motion)
     );
     let checks = certificate
         .checks

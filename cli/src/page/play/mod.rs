@@ -31,10 +31,10 @@ const SCRIPT: [&str; 3] = [
 ///
 /// # Errors
 /// Declared parameters without a motion, or a module that cannot be emitted.
-pub fn playable(compiled: &CompiledModel) -> Result<String> {
+pub fn interactive_page(compiled: &CompiledModel) -> Result<String> {
     let instance = compiled.at_declared()?;
     let module = module(compiled.program())?;
-    let quantities = Quantities::of(compiled, instance.initial())?;
+    let quantities = Quantities::new(compiled, instance.initial())?;
     let evaluator = instance.evaluator()?;
     let report = Report::new(compiled.model(), compiled.equations(), &evaluator);
     let data = data::json(compiled, &quantities, instance.initial(), &module)?;

@@ -15,7 +15,7 @@ const MAX_INITIAL_CURVES: usize = 4;
 
 /// Quantity that can be shown as a curve; `place` is its index among states and observables.
 #[derive(Debug)]
-pub(super) struct Shown {
+pub(super) struct CurveQuantity {
     pub(super) name: String,
     pub(super) unit: String,
     pub(super) place: usize,
@@ -28,14 +28,14 @@ pub(super) struct Quantities<'m> {
     pub(super) parameters: Vec<Slider<'m>>,
     pub(super) initial: Vec<Slider<'m>>,
     pub(super) inputs: Vec<Slider<'m>>,
-    pub(super) shown: Vec<Shown>,
+    pub(super) shown: Vec<CurveQuantity>,
     /// Units of the state, in its order.
     pub(super) units: Vec<String>,
 }
 
 impl<'m> Quantities<'m> {
     /// Selects the quantities of a model with an initial state.
-    pub(super) fn of(compiled: &'m CompiledModel, initial: &[f64]) -> Result<Self> {
+    pub(super) fn new(compiled: &'m CompiledModel, initial: &[f64]) -> Result<Self> {
         let model = compiled.model();
         let units = state_units(compiled);
         let refused = |error| Error::model(&model.source, error);
@@ -166,13 +166,13 @@ fn reach(unit: &str, size: f64) -> f64 {
 }
 
 /// Returns states and observables as curves; coordinates and energy are shown initially.
-fn shown(compiled: &CompiledModel, units: &[String]) -> Vec<Shown> {
+fn shown(compiled: &CompiledModel, units: &[String]) -> Vec<CurveQuantity> {
     let states = compiled.state_names().into_iter().zip(units.to_vec());
     let observables = &compiled.program().observables;
     let observables = observables.iter().map(|o| (o.name.clone(), o.unit.clone()));
     let degrees = compiled.program().degrees_of_freedom();
     let all = states.chain(observables).enumerate();
-    all.map(|(place, (name, unit))| Shown {
+    all.map(|(place, (name, unit))| CurveQuantity {
         at_first: place < degrees.min(MAX_INITIAL_CURVES - 1) || name == "energy",
         name,
         unit: printed(&unit),
