@@ -27,13 +27,13 @@ impl Destination {
         Self::resolve("--out", path, json)
     }
 
-    /// Returns the destination of `--plot`. `beside` is the path of `--out`.
+    /// Returns the destination of `--plot`. `output` is the path of `--out`.
     ///
     /// # Errors
     /// Those of [`Destination::for_output`], the path of `--out`, and another format than SVG.
-    pub fn for_figure(figure: &Path, beside: Option<&Path>, json: bool) -> Result<Self> {
+    pub fn for_figure(figure: &Path, output: Option<&Path>, json: bool) -> Result<Self> {
         let place = |path: &Path| std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-        if beside.is_some_and(|other| place(other) == place(figure)) && !is_device(figure) {
+        if output.is_some_and(|other| place(other) == place(figure)) && !is_device(figure) {
             let shown = figure.display();
             return Err(Error::input(format!(
                 "--out {shown} and --plot {shown} are the same file: give --plot another name"

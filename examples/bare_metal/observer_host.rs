@@ -12,7 +12,7 @@ fn main() {
     let coefficients = prepared();
     let mut rig = Rig::new(&coefficients);
     let off = |rig: &Rig, i: usize| 1e6 * (rig.observer.state[i] - rig.arm[i]);
-    eprintln!("after    carrier, um: arm   estimation error   first mode, um: arm   error");
+    eprintln!("after    carrier, um: arm    estimation error   first mode, um: arm   error");
     for count in 1..=MEASUREMENTS {
         rig.measure(&coefficients);
         let (arm, estimate) = (&rig.arm, &rig.observer.state);

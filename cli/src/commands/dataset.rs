@@ -38,13 +38,13 @@ pub fn run(options: &Dataset) -> Result {
 /// Returns the record's path relative to the folder of the dataset file, which is the record's folder without `--out`.
 fn name(options: &Dataset) -> Result<String> {
     let record = &options.record;
-    let beside = record
+    let file_name = record
         .file_name()
         .map(|name| name.to_string_lossy().into_owned());
-    let beside =
-        beside.ok_or_else(|| Error::input("the record is not a file: give the path of a file"))?;
+    let file_name = file_name
+        .ok_or_else(|| Error::input("the record is not a file: give the path of a file"))?;
     let Some(out) = &options.out else {
-        return Ok(beside);
+        return Ok(file_name);
     };
     let folder = match out.parent() {
         Some(folder) if folder != Path::new("") => folder,

@@ -65,7 +65,7 @@ fn main(unit: &Unit, runtime: &[(&str, &str)]) -> String {
     };
     let start = |variable: &super::variables::Variable| variable.start.unwrap_or(0.0);
     let mut text = format!(
-        "/* A functional mock-up unit of {name}: compile this file alone. */\n\
+        "/* A functional mock-up unit of {name}: compile this file only. */\n\
          /* Numbers of a unit are in double precision. */\n\
          #undef {name}_REAL\n#define {name}_REAL double\n#include \"{name}.c\"\n\
          #define MODEL(name) {name}_##name\n\

@@ -46,9 +46,9 @@ fn lanes_within_one_regime_match_scalars() {
         assert_eq!(regime, REGIME);
         for k in 0..LANES {
             let state = states.map(|numbers| numbers[k]);
-            let alone = arm::rates(0.3, &state, &arm::Inputs::default(), &coefficients);
+            let scalar = arm::rates(0.3, &state, &arm::Inputs::default(), &coefficients);
             let lane = found.map(|numbers| numbers[k].to_bits());
-            assert_eq!(lane, alone.map(f64::to_bits), "{registers:?}, lane {k}");
+            assert_eq!(lane, scalar.map(f64::to_bits), "{registers:?}, lane {k}");
         }
     }
 }

@@ -81,7 +81,7 @@ impl Task for Motion<'_> {
     }
 }
 
-fn alone(state: &mut State<f64>, coefficients: &arm::Coefficients) {
+fn scalar(state: &mut State<f64>, coefficients: &arm::Coefficients) {
     let (half, sixth, third) = (STEP / 2.0, STEP / 6.0, STEP / 3.0);
     for _ in 0..STEPS {
         step!(
@@ -128,7 +128,7 @@ fn eight_wide_steps_are_faster_than_scalar_steps() {
             rounds += 1;
             let (mut state, mut states) = (begin, begin.map(|number| [number; LANES]));
             let coefficients = black_box(&coefficients);
-            one = one.min(seconds(|| alone(black_box(&mut state), coefficients)));
+            one = one.min(seconds(|| scalar(black_box(&mut state), coefficients)));
             let states_here = black_box(&mut states);
             let task = Motion {
                 states: states_here,

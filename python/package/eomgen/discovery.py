@@ -85,12 +85,12 @@ class Discovery:
         document = json.dumps(self.document, indent=2, ensure_ascii=False, sort_keys=True) + "\n"
         texts = [(EXTENDED, self.extended), (PAGE, self.report), *self.experiments.items()]
         for name, text in [*texts, (DOCUMENT, document)]:
-            beside = folder / f".{name}.part"
+            temporary = folder / f".{name}.part"
             try:
-                beside.write_bytes(text.encode("utf-8"))
-                os.replace(beside, folder / name)
+                temporary.write_bytes(text.encode("utf-8"))
+                os.replace(temporary, folder / name)
             finally:
-                beside.unlink(missing_ok=True)
+                temporary.unlink(missing_ok=True)
 
     def __repr__(self) -> str:
         found = ", ".join(f"{effect['effect']} on {effect['on']}" for effect in self.effects)

@@ -98,12 +98,12 @@ def _write(out: pathlib.Path, names: List[str], table: NDArray[np.float64]) -> N
     lines = [",".join(quoted)]
     lines += [",".join("" if x != x else repr(x) for x in row) for row in table.tolist()]
     out.parent.mkdir(parents=True, exist_ok=True)
-    handle, beside = tempfile.mkstemp(dir=out.parent, suffix=".csv")
+    handle, temporary = tempfile.mkstemp(dir=out.parent, suffix=".csv")
     try:
         with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as file:
             file.write("\n".join(lines) + "\n")
-        os.chmod(beside, 0o644)
-        os.replace(beside, out)
+        os.chmod(temporary, 0o644)
+        os.replace(temporary, out)
     except BaseException:
-        os.unlink(beside)
+        os.unlink(temporary)
         raise
