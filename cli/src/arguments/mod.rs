@@ -98,7 +98,7 @@ pub enum Command {
     Modes(Modes),
     /// Find the equilibrium nearest to a state, at rest or in steady motion.
     #[command(
-        after_help = "Examples:\n  eomgen trim model-spec/models/pendulum.toml\n  eomgen trim model-spec/models/furuta_pendulum.toml --fix u=0 --fix phi=0.5\n  eomgen trim model-spec/models/pendulum.toml --state theta=\"20 deg\"\nThe search varies the coordinates and keeps inputs at 0. If coordinates are fixed, it also varies the inputs that are not.\nA coordinate that appears in no equation may move at a constant speed: the initial one, or one that the search finds."
+        after_help = "Examples:\n  eomgen trim model-spec/models/pendulum.toml\n  eomgen trim model-spec/models/furuta_pendulum.toml --fix u=0 --fix phi=0.5\n  eomgen trim model-spec/models/pendulum.toml --state theta=\"20 deg\"\nThe search varies the coordinates and keeps inputs at 0. If coordinates are fixed, it also varies the inputs that are not.\nA cyclic coordinate, whose value appears in no equation, may move at a constant speed: the initial one, or one that the search finds."
     )]
     Trim(Trim),
     /// Propose a dataset file for a record: number format, columns and noise, with guesses marked.

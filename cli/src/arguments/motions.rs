@@ -96,8 +96,8 @@ pub struct Trim {
     pub parameters: ParameterValues,
     #[command(flatten)]
     pub start: StateValues,
-    /// Value that the search keeps, of a coordinate, an input, or the speed (NAME_dot) of a coordinate that
-    /// appears in no equation; written as for --state. Repeatable.
+    /// Fixed value of a coordinate, an input, or the speed (NAME_dot) of a cyclic coordinate; written as for --state.
+    /// Repeatable.
     #[arg(long, value_name = "NAME=VALUE")]
     pub fix: Vec<String>,
     #[command(flatten)]

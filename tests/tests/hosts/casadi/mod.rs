@@ -111,7 +111,7 @@ fn with_is_rejected_for_casadi() {
     let spec = spec.to_string_lossy();
     for (with, reason) in [
         ("jacobians", "its functions are rates and jac_rates"),
-        ("hessians,jacobians", "but for hessians"),
+        ("hessians,jacobians", "accepts --with hessians only"),
         ("lanes", "needs --target rust"),
         ("bench", "needs --target rust"),
     ] {
