@@ -4,7 +4,7 @@
 //! Do not edit: change the specification and generate again.
 //!
 //! State: x_sp, x_pr, x_c, q_1, q_2, x_sp_dot, x_pr_dot, x_c_dot, q_1_dot, q_2_dot.
-//! All quantities are in SI units. Nothing here allocates, panics or needs the standard library.
+//! All quantities are in SI units. The code does not allocate, panic or use the standard library.
 #![allow(non_snake_case)]
 #![allow(clippy::all)]
 #![forbid(unsafe_code)]
@@ -12,13 +12,13 @@
 /// Modal truncation order of each field.
 pub const ORDERS: [usize; 1] = [2];
 
-/// Degrees of freedom: coordinates and modes.
+/// Number of degrees of freedom: coordinates and modes.
 pub const DEGREES_OF_FREEDOM: usize = 5;
 
-/// Numbers in the state: coordinates, modes, and the rates of both.
+/// Number of states: coordinates, modes, and the rates of both.
 pub const STATES: usize = 10;
 
-/// Names of the state, in its order.
+/// Names of the states, in their order.
 pub const STATE_NAMES: [&'static str; STATES] = [
     "x_sp",
     "x_pr",
@@ -32,7 +32,7 @@ pub const STATE_NAMES: [&'static str; STATES] = [
     "q_2_dot",
 ];
 
-/// Numbers that [`observables`] returns.
+/// Number of observables.
 pub const OBSERVABLES: usize = 11;
 
 /// Names of the observables, in their order.
@@ -50,7 +50,7 @@ pub const OBSERVABLE_NAMES: [&'static str; OBSERVABLES] = [
     "power",
 ];
 
-/// Switching surfaces.
+/// Number of switching surfaces.
 pub const GUARDS: usize = 4;
 
 /// SHA-256 of the specification.
@@ -59,13 +59,13 @@ pub const SPECIFICATION_SHA256: &'static str = "f6f74b40cfbe4f1a78359fb6b00716cb
 /// Version of the generator.
 pub const GENERATOR_VERSION: &'static str = "0.2.0";
 
-/// Inputs.
+/// Number of inputs.
 pub const INPUTS: usize = 0;
 
 /// Names of the inputs, in their order.
 pub const INPUT_NAMES: [&'static str; INPUTS] = [];
 
-/// Parameters.
+/// Number of parameters.
 pub const PARAMETERS: usize = 24;
 
 /// Names of the parameters, in their order.
@@ -96,7 +96,7 @@ pub const PARAMETER_NAMES: [&'static str; PARAMETERS] = [
     "omega",
 ];
 
-/// Parameters of the model. `Default` gives the specification's values.
+/// Parameters of the model. `Default` has the values of the specification.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameters<T = f64> {
     /// teeth of the sun \[1] (Table I)
@@ -179,7 +179,7 @@ impl Default for Parameters {
     }
 }
 impl Parameters {
-    /// The numbers of these parameters in another type, without derivatives.
+    /// Converts these parameters to another number type, without derivatives.
     #[inline(always)]
     pub fn cast<T: Scalar>(&self) -> Parameters<T> {
         Parameters {
@@ -241,7 +241,7 @@ impl<T: Copy> From<[T; PARAMETERS]> for Parameters<T> {
     }
 }
 
-/// Signals supplied at run time. `Default` gives zeros.
+/// Inputs at run time. `Default` is zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Inputs {}
 impl<T: Copy> From<[T; INPUTS]> for Inputs {
@@ -250,7 +250,7 @@ impl<T: Copy> From<[T; INPUTS]> for Inputs {
     }
 }
 
-/// What depends on the parameters alone: prepare once, use in every call.
+/// Values that depend only on the parameters: prepare once, use in every call.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coefficients<T = f64> {
     /// `a_m`
@@ -349,11 +349,11 @@ pub struct Coefficients<T = f64> {
     pub c_32: T,
     /// `0.5*E*I/(l*l*l)`
     pub c_33: T,
-    /// Whether all prepared pivots of the mass matrix are positive and finite. If not, the mass matrix is not positive definite and the rates are not to be used.
+    /// True if all prepared pivots of the mass matrix are positive and finite. If false, the mass matrix is not positive definite and the rates are invalid.
     pub positive_definite: bool,
 }
 impl<T: Scalar> Coefficients<T> {
-    /// The coefficients of these parameters.
+    /// Prepares the coefficients of these parameters.
     pub fn prepare(parameters: &Parameters<T>) -> Self {
         let m = parameters.m;
         let s_1 = T::number(0.5) * m;
@@ -511,7 +511,7 @@ impl<T: Scalar> Coefficients<T> {
     }
 }
 impl Coefficients {
-    /// The numbers of these coefficients in another type, without derivatives.
+    /// Converts these coefficients to another number type, without derivatives.
     #[inline(always)]
     pub fn cast<T: Scalar>(&self) -> Coefficients<T> {
         Coefficients {
@@ -620,7 +620,7 @@ pub fn rates_into<T: Scalar>(
     }
 }
 
-/// Rates of the state, returned.
+/// Returns the rates of the state.
 ///
 /// `t` in s; `state` and the rates in the order of [`STATE_NAMES`].
 pub fn rates<T: Scalar>(
@@ -634,7 +634,7 @@ pub fn rates<T: Scalar>(
     rates
 }
 
-/// The observables, in the order of [`OBSERVABLE_NAMES`]:
+/// Observables in the order of [`OBSERVABLE_NAMES`]:
 ///
 /// - `theta_s`: angle of the sun \[rad]
 /// - `theta_p`: angle of the planets \[rad]
@@ -802,7 +802,7 @@ pub fn power<T: Scalar>(
     s_2 + coefficients.c_21 * (x_c_dot * motor)
 }
 
-/// Switching surfaces: the equations change where one of these changes sign.
+/// Switching surfaces: the equations change when one of these changes sign.
 ///
 /// - `x_sp - b_sp`
 /// - `x_sp + b_sp`
@@ -825,7 +825,7 @@ pub fn guards<T: Scalar>(
     values
 }
 
-/// The mass matrix, in the order of the first half of [`STATE_NAMES`].
+/// Mass matrix in the order of the first half of [`STATE_NAMES`].
 #[allow(unused_variables, unused_mut)]
 pub fn mass_matrix<T: Scalar>(
     t: T,
@@ -853,20 +853,20 @@ pub fn mass_matrix<T: Scalar>(
     values
 }
 
-/// int\[s phi_i], with s = x/l from 0 to 1 and primes for derivatives by s
+/// int\[s phi_i], with s = x/l from 0 to 1; primes are derivatives by s
 static INTEGRAL_S1_PHI: [f64; 2] = [0.774866121708409, 0.08912096167893394];
 
-/// int\[phi_i^2], with s = x/l from 0 to 1 and primes for derivatives by s
+/// int\[phi_i^2], with s = x/l from 0 to 1; primes are derivatives by s
 static INTEGRAL_PHI_SQUARED: [f64; 2] = [1.8556448472351015, 0.9640638644850398];
 
-/// int\[phi_i''^2], with s = x/l from 0 to 1 and primes for derivatives by s
+/// int\[phi_i''^2], with s = x/l from 0 to 1; primes are derivatives by s
 static INTEGRAL_PHI_D2_SQUARED: [f64; 2] = [22.940155884082465, 468.07114845621095];
 
-/// phi_i(1), with s = x/l from 0 to 1 and primes for derivatives by s
+/// phi_i(1), with s = x/l from 0 to 1; primes are derivatives by s
 static PHI_AT_END: [f64; 2] = [2.7244411149702623, -1.9637350783494598];
 
-/// What the equations are computed with: `f64`, `f32`, lanes of them, or numbers that carry
-/// derivatives. Nothing branches on a value, so that lanes may differ in every condition.
+/// Number type of the equations: `f64`, `f32`, SIMD lanes of them, or dual numbers. The code
+/// does not branch on a value, so that lanes can differ in every condition.
 pub trait Scalar: Copy
 where
     Self: core::ops::Add<Output = Self>,
@@ -875,55 +875,54 @@ where
     Self: core::ops::Div<Output = Self>,
     Self: core::ops::Neg<Output = Self>,
 {
-    /// A number, in every lane and without derivative.
+    /// Returns a constant, equal in every lane and without derivative.
     fn number(value: f64) -> Self;
-    /// `then` where a > b, `otherwise` elsewhere, also where either is NaN. Whatever is not
-    /// chosen leaves no trace.
+    /// Returns `then` if a > b, else `otherwise`, also if either is NaN. The other value has no
+    /// effect.
     fn select_greater(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
-    /// Whether a > b in every lane.
+    /// Returns true if a > b in every lane.
     fn all_greater(a: Self, b: Self) -> bool;
-    /// An elementary function of this.
+    /// Applies an elementary function.
     fn function<F: Function>(self) -> Self;
-    /// An elementary function of this and another.
+    /// Applies an elementary function of two arguments.
     fn function_of_two<F: FunctionOfTwo>(self, other: Self) -> Self;
-    /// A long loop. Single numbers keep it out of the code around; lanes must not, because code
-    /// of its own would not be compiled for their registers.
+    /// Runs a long loop. For single numbers it is not inlined; for lanes it must be, because a
+    /// separate function would not be compiled for their registers.
     #[inline(always)]
     fn long_loop<F: FnOnce() -> Self>(lines: F) -> Self {
         lines()
     }
 }
 
-/// Numbers in IEEE 754 double precision, or lanes of them: what the elementary functions are
-/// written for.
+/// Number type of the elementary functions: IEEE 754 double precision, or SIMD lanes of it.
 pub trait Real: Scalar {
-    /// `then` where a = b, `otherwise` elsewhere, also where either is NaN.
+    /// Returns `then` if a = b, else `otherwise`, also if either is NaN.
     fn select_equal(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
-    /// The sign bit cleared.
+    /// Clears the sign bit.
     fn magnitude(self) -> Self;
-    /// The magnitude with the sign bit of another number.
+    /// Returns the magnitude with the sign bit of another number.
     fn copy_sign(self, sign: Self) -> Self;
-    /// 2^k for an integral k: 2^52 + 1023 brings it to the place of the exponent.
+    /// Returns 2^k for an integral k: the addition of 2^52 + 1023 moves k to the exponent bits.
     fn power_of_two(self) -> Self;
-    /// The unbiased exponent field.
+    /// Returns the unbiased exponent field.
     fn exponent(self) -> Self;
-    /// The mantissa under the exponent of 1.
+    /// Returns the mantissa with the exponent of 1.
     fn significand(self) -> Self;
 }
 
-/// An elementary function: plain operations in a fixed order, the same bits on every machine.
+/// Elementary function: plain operations in a fixed order, with the same bits on every machine.
 pub trait Function {
-    /// Its value.
+    /// Computes the value.
     fn value<T: Real>(x: T) -> T;
-    /// Its derivative at x, where it is `value`.
+    /// Computes the derivative at x; `value` is the value there.
     fn slope<T: Scalar>(x: T, value: T) -> T;
 }
 
-/// An elementary function of two arguments.
+/// Elementary function of two arguments.
 pub trait FunctionOfTwo {
-    /// Its value.
+    /// Computes the value.
     fn value<T: Real>(x: T, y: T) -> T;
-    /// Its derivatives by x and y, where it is `value`.
+    /// Computes the derivatives by x and y; `value` is the value there.
     fn slopes<T: Scalar>(x: T, y: T, value: T) -> [T; 2];
 }
 impl Scalar for f64 {
@@ -979,8 +978,8 @@ impl Real for f64 {
     }
 }
 
-/// Elementary functions in double precision, then rounded: within 0.5001 units in the last
-/// place.
+/// Elementary functions are computed in double precision and rounded: within 0.5001 units in the
+/// last place.
 impl Scalar for f32 {
     #[inline(always)]
     fn number(value: f64) -> f32 {
@@ -1015,21 +1014,21 @@ fn deadzone<T: Scalar>(p: T, b: T) -> T {
     p - T::select_greater(-b, held, -b, held)
 }
 
-/// 1 where |p| > b and 0 elsewhere: the contact of Eq. (8).
+/// Returns 1 if |p| > b, else 0: the contact of Eq. (8).
 #[inline(always)]
 fn contact<T: Scalar>(p: T, b: T) -> T {
     let beyond = T::select_greater(-b, p, T::number(1.0), T::number(0.0));
     T::select_greater(p, b, T::number(1.0), beyond)
 }
 
-/// 1/pivot of a positive pivot; NaN where the mass matrix is not positive definite.
+/// Returns 1/pivot for a positive pivot, else NaN: the mass matrix is not positive definite.
 #[inline(always)]
 fn pivot_reciprocal<T: Scalar>(pivot: T) -> T {
     let reciprocal = T::number(1.0) / pivot;
     T::select_greater(pivot, T::number(0.0), reciprocal, T::number(f64::NAN))
 }
 
-/// These numbers in another type.
+/// Converts numbers to another type.
 #[inline(always)]
 fn converted<T: Scalar, const N: usize>(numbers: &[f64; N]) -> [T; N] {
     let mut converted = [T::number(0.0); N];
@@ -1039,7 +1038,7 @@ fn converted<T: Scalar, const N: usize>(numbers: &[f64; N]) -> [T; N] {
     converted
 }
 
-/// The sum of the first `N` of eight numbers, neighbours added in pairs.
+/// Adds the first `N` of eight numbers, neighbours in pairs.
 #[inline(always)]
 fn paired<const N: usize, T: Scalar>(s: &[T; 8]) -> T {
     let a = if N > 1 { s[0] + s[1] } else { s[0] };
@@ -1051,7 +1050,7 @@ fn paired<const N: usize, T: Scalar>(s: &[T; 8]) -> T {
     if N > 4 { left + right } else { left }
 }
 
-/// The sum of up to eight elements.
+/// Adds up to eight elements.
 #[inline(always)]
 fn sum_of_few<const N: usize, T: Scalar, F: Fn(usize) -> T>(
     _: [(); N],

@@ -1,3 +1,5 @@
+//! Switching surface: a node and the function that switches at its zero.
+
 use eomgen_model_spec::model::Function;
 
 use crate::symbolic::graph::NodeId;

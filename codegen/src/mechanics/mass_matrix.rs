@@ -1,3 +1,5 @@
+//! Entries of the mass matrix as nodes of the graph.
+
 use crate::symbolic::graph::{Graph, NodeId};
 use crate::symbolic::matrix::StructuredMatrix;
 use eomgen_model_spec::ids::FieldId;

@@ -1,3 +1,5 @@
+//! Rows of equations as nodes of the graph.
+
 use crate::symbolic::graph::NodeId;
 
 /// Vector over all degrees of freedom.

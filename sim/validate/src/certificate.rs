@@ -238,6 +238,7 @@ impl Worst {
         }
     }
 
+    /// Keeps the larger of two values, with its detail.
     pub fn include(&mut self, other: Self) {
         let untouched = *self == Self::default();
         if untouched || other.value > self.value {

@@ -1,3 +1,5 @@
+//! Domain of a field, as nodes of the graph.
+
 use eomgen_model_spec::ids::FieldId;
 use eomgen_model_spec::model::Basis;
 

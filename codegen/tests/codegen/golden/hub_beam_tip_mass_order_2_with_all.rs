@@ -4,7 +4,7 @@
 //! Do not edit: change the specification and generate again.
 //!
 //! State: theta, q_1, q_2, theta_dot, q_1_dot, q_2_dot.
-//! All quantities are in SI units. Nothing here allocates, panics or needs the standard library.
+//! All quantities are in SI units. The code does not allocate, panic or use the standard library.
 #![no_std]
 #![allow(non_snake_case)]
 #![allow(clippy::all)]
@@ -13,13 +13,13 @@
 /// Modal truncation order of each field.
 pub const ORDERS: [usize; 1] = [2];
 
-/// Degrees of freedom: coordinates and modes.
+/// Number of degrees of freedom: coordinates and modes.
 pub const DEGREES_OF_FREEDOM: usize = 3;
 
-/// Numbers in the state: coordinates, modes, and the rates of both.
+/// Number of states: coordinates, modes, and the rates of both.
 pub const STATES: usize = 6;
 
-/// Names of the state, in its order.
+/// Names of the states, in their order.
 pub const STATE_NAMES: [&'static str; STATES] = [
     "theta",
     "q_1",
@@ -29,7 +29,7 @@ pub const STATE_NAMES: [&'static str; STATES] = [
     "q_2_dot",
 ];
 
-/// Numbers that [`observables`] returns.
+/// Number of observables.
 pub const OBSERVABLES: usize = 4;
 
 /// Names of the observables, in their order.
@@ -40,7 +40,7 @@ pub const OBSERVABLE_NAMES: [&'static str; OBSERVABLES] = [
     "power",
 ];
 
-/// Switching surfaces.
+/// Number of switching surfaces.
 pub const GUARDS: usize = 0;
 
 /// SHA-256 of the specification.
@@ -49,13 +49,13 @@ pub const SPECIFICATION_SHA256: &'static str = "5a673f0b14db7a31d38ef2c487e53a8e
 /// Version of the generator.
 pub const GENERATOR_VERSION: &'static str = "0.2.0";
 
-/// Inputs.
+/// Number of inputs.
 pub const INPUTS: usize = 1;
 
 /// Names of the inputs, in their order.
 pub const INPUT_NAMES: [&'static str; INPUTS] = ["u"];
 
-/// Parameters.
+/// Number of parameters.
 pub const PARAMETERS: usize = 9;
 
 /// Names of the parameters, in their order.
@@ -71,7 +71,7 @@ pub const PARAMETER_NAMES: [&'static str; PARAMETERS] = [
     "c",
 ];
 
-/// Parameters of the model. `Default` gives the specification's values.
+/// Parameters of the model. `Default` has the values of the specification.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameters<T = f64> {
     /// inertia of the hub \[kg m^2]
@@ -109,7 +109,7 @@ impl Default for Parameters {
     }
 }
 impl Parameters {
-    /// The numbers of these parameters in another type, without derivatives.
+    /// Converts these parameters to another number type, without derivatives.
     #[inline(always)]
     pub fn cast<T: Scalar>(&self) -> Parameters<T> {
         Parameters {
@@ -141,7 +141,7 @@ impl<T: Copy> From<[T; PARAMETERS]> for Parameters<T> {
     }
 }
 
-/// Signals supplied at run time. `Default` gives zeros.
+/// Inputs at run time. `Default` is zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inputs<T = f64> {
     /// torque on the hub \[N m]
@@ -158,7 +158,7 @@ impl<T: Copy> From<[T; INPUTS]> for Inputs<T> {
     }
 }
 
-/// What depends on the parameters alone: prepare once, use in every call.
+/// Values that depend only on the parameters: prepare once, use in every call.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coefficients<T = f64> {
     /// `J_h`
@@ -769,11 +769,11 @@ pub struct Coefficients<T = f64> {
     pub c_296: T,
     /// `sum_i(PHI_D1_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + J_t*sum_i(...)/(rho*A*l*...) - (M_t*J_t*...*...*1/(... + ...)/(rho*rho*A*A*l*l*l*l)))*1/(1.0 + ...`
     pub c_297: T,
-    /// Whether all prepared pivots of the mass matrix are positive and finite. If not, the mass matrix is not positive definite and the rates are not to be used.
+    /// True if all prepared pivots of the mass matrix are positive and finite. If false, the mass matrix is not positive definite and the rates are invalid.
     pub positive_definite: bool,
 }
 impl<T: Scalar> Coefficients<T> {
-    /// The coefficients of these parameters.
+    /// Prepares the coefficients of these parameters.
     pub fn prepare(parameters: &Parameters<T>) -> Self {
         let J_h = parameters.J_h;
         let J_t = parameters.J_t;
@@ -1830,7 +1830,7 @@ impl<T: Scalar> Coefficients<T> {
     }
 }
 impl Coefficients {
-    /// The numbers of these coefficients in another type, without derivatives.
+    /// Converts these coefficients to another number type, without derivatives.
     #[inline(always)]
     pub fn cast<T: Scalar>(&self) -> Coefficients<T> {
         Coefficients {
@@ -2157,7 +2157,7 @@ pub fn rates_into<T: Scalar>(
     inlined_rates_into(t, state, inputs, coefficients, rates)
 }
 
-/// [`rates_into`], inlined where it is called, to be compiled for the registers there.
+/// [`rates_into`], inlined into the calling function and compiled for its registers.
 #[allow(unused_variables)]
 #[inline(always)]
 pub fn inlined_rates_into<T: Scalar, C: Coefficient<T>>(
@@ -2194,7 +2194,7 @@ pub fn inlined_rates_into<T: Scalar, C: Coefficient<T>>(
     }
 }
 
-/// Rates of the state, returned.
+/// Returns the rates of the state.
 ///
 /// `t` in s; `state` and the rates in the order of [`STATE_NAMES`].
 pub fn rates<T: Scalar>(
@@ -2206,7 +2206,7 @@ pub fn rates<T: Scalar>(
     inlined_rates(t, state, inputs, coefficients)
 }
 
-/// [`rates`], inlined where it is called, to be compiled for the registers there.
+/// [`rates`], inlined into the calling function and compiled for its registers.
 #[inline(always)]
 pub fn inlined_rates<T: Scalar, C: Coefficient<T>>(
     t: T,
@@ -2219,7 +2219,7 @@ pub fn inlined_rates<T: Scalar, C: Coefficient<T>>(
     rates
 }
 
-/// The observables, in the order of [`OBSERVABLE_NAMES`]:
+/// Observables in the order of [`OBSERVABLE_NAMES`]:
 ///
 /// - `tip`: deflection of the beam's end \[m]
 /// - `tip_slope`: slope of the beam's end \[rad]
@@ -2235,7 +2235,7 @@ pub fn observables<T: Scalar>(
     inlined_observables(t, state, inputs, coefficients)
 }
 
-/// [`observables`], inlined where it is called, to be compiled for the registers there.
+/// [`observables`], inlined into the calling function and compiled for its registers.
 #[allow(unused_variables)]
 #[inline(always)]
 pub fn inlined_observables<T: Scalar, C: Coefficient<T>>(
@@ -2288,7 +2288,7 @@ pub fn energy<T: Scalar>(
     inlined_energy(t, state, inputs, coefficients)
 }
 
-/// [`energy`], inlined where it is called, to be compiled for the registers there.
+/// [`energy`], inlined into the calling function and compiled for its registers.
 #[allow(unused_variables)]
 #[inline(always)]
 pub fn inlined_energy<T: Scalar, C: Coefficient<T>>(
@@ -2332,7 +2332,7 @@ pub fn power<T: Scalar>(
     inlined_power(t, state, inputs, coefficients)
 }
 
-/// [`power`], inlined where it is called, to be compiled for the registers there.
+/// [`power`], inlined into the calling function and compiled for its registers.
 #[allow(unused_variables)]
 #[inline(always)]
 pub fn inlined_power<T: Scalar, C: Coefficient<T>>(
@@ -2346,7 +2346,7 @@ pub fn inlined_power<T: Scalar, C: Coefficient<T>>(
     theta_dot * (u - C::read(coefficients.c) * theta_dot)
 }
 
-/// Switching surfaces: the equations change where one of these changes sign.
+/// Switching surfaces: the equations change when one of these changes sign.
 ///
 #[allow(unused_variables, unused_mut)]
 pub fn guards<T: Scalar>(
@@ -2358,7 +2358,7 @@ pub fn guards<T: Scalar>(
     inlined_guards(t, state, inputs, coefficients)
 }
 
-/// [`guards`], inlined where it is called, to be compiled for the registers there.
+/// [`guards`], inlined into the calling function and compiled for its registers.
 #[allow(unused_variables, unused_mut)]
 #[inline(always)]
 pub fn inlined_guards<T: Scalar, C: Coefficient<T>>(
@@ -2371,7 +2371,7 @@ pub fn inlined_guards<T: Scalar, C: Coefficient<T>>(
     values
 }
 
-/// The mass matrix, in the order of the first half of [`STATE_NAMES`].
+/// Mass matrix in the order of the first half of [`STATE_NAMES`].
 #[allow(unused_variables, unused_mut)]
 pub fn mass_matrix<T: Scalar>(
     t: T,
@@ -2382,7 +2382,7 @@ pub fn mass_matrix<T: Scalar>(
     inlined_mass_matrix(t, state, inputs, coefficients)
 }
 
-/// [`mass_matrix`], inlined where it is called, to be compiled for the registers there.
+/// [`mass_matrix`], inlined into the calling function and compiled for its registers.
 #[allow(unused_variables, unused_mut)]
 #[inline(always)]
 pub fn inlined_mass_matrix<T: Scalar, C: Coefficient<T>>(
@@ -2409,9 +2409,9 @@ pub fn inlined_mass_matrix<T: Scalar, C: Coefficient<T>>(
     values
 }
 
-/// The regime that a state is in: bit k is set where number k of [`guards`] is positive,
-/// for up to 32 of them. Crossing one flips its bit. Of lanes, which have to be in
-/// one regime, a bit is set where it is in all.
+/// Regime of a state: bit k is set if number k of [`guards`] is positive, for up to 32 of
+/// them. Crossing a surface flips its bit. SIMD lanes must be in one regime: a bit is set
+/// if it is set in all of them.
 #[allow(unused_variables)]
 pub fn regime<T: Scalar>(
     t: T,
@@ -2422,7 +2422,7 @@ pub fn regime<T: Scalar>(
     inlined_regime(t, state, inputs, coefficients)
 }
 
-/// [`regime`], inlined where it is called, to be compiled for the registers there.
+/// [`regime`], inlined into the calling function and compiled for its registers.
 #[allow(unused_variables)]
 #[inline(always)]
 pub fn inlined_regime<T: Scalar, C: Coefficient<T>>(
@@ -2434,9 +2434,9 @@ pub fn inlined_regime<T: Scalar, C: Coefficient<T>>(
     0
 }
 
-/// Rates of the state within a regime, written to `rates`: those of [`rates_into`] where
-/// [`regime`] is `REGIME`, for half-widths that are not negative. Beyond the regime they go
-/// on as they are within, and on its surfaces they are those of its side.
+/// Rates of the state in a regime, written to `rates`. They equal those of [`rates_into`] if
+/// [`regime`] is `REGIME` and half-widths are not negative. Outside the regime its equations
+/// are continued; on a surface they are those of the regime's side.
 ///
 /// `t` in s; `state` and the rates in the order of [`STATE_NAMES`].
 #[allow(unused_variables)]
@@ -2450,7 +2450,7 @@ pub fn rates_in_regime_into<const REGIME: u32, T: Scalar>(
     inlined_rates_in_regime_into::<REGIME, _, _>(t, state, inputs, coefficients, rates)
 }
 
-/// [`rates_in_regime_into`], inlined where it is called, to be compiled for the registers there.
+/// [`rates_in_regime_into`], inlined into the calling function and compiled for its registers.
 #[allow(unused_variables)]
 #[inline(always)]
 pub fn inlined_rates_in_regime_into<const REGIME: u32, T: Scalar, C: Coefficient<T>>(
@@ -2488,7 +2488,7 @@ pub fn inlined_rates_in_regime_into<const REGIME: u32, T: Scalar, C: Coefficient
 }
 
 /// Bias forces c - f of M q'' + c = f, in the order of the first half of
-/// [`STATE_NAMES`]: the forces missing for no acceleration.
+/// [`STATE_NAMES`]: the additional forces for zero accelerations.
 #[allow(unused_variables, unused_mut)]
 pub fn bias_forces<T: Scalar>(
     t: T,
@@ -2499,7 +2499,7 @@ pub fn bias_forces<T: Scalar>(
     inlined_bias_forces(t, state, inputs, coefficients)
 }
 
-/// [`bias_forces`], inlined where it is called, to be compiled for the registers there.
+/// [`bias_forces`], inlined into the calling function and compiled for its registers.
 #[allow(unused_variables, unused_mut)]
 #[inline(always)]
 pub fn inlined_bias_forces<T: Scalar, C: Coefficient<T>>(
@@ -2518,7 +2518,7 @@ pub fn inlined_bias_forces<T: Scalar, C: Coefficient<T>>(
     values
 }
 
-/// Inverse dynamics M a + c - f: the generalised forces that have to act besides
+/// Inverse dynamics M a + c - f: the generalised forces needed in addition to
 /// those of the model for the accelerations a, in the order of the first half of
 /// [`STATE_NAMES`].
 #[allow(unused_variables, unused_mut)]
@@ -2532,7 +2532,7 @@ pub fn inverse_dynamics<T: Scalar>(
     inlined_inverse_dynamics(t, state, inputs, coefficients, accelerations)
 }
 
-/// [`inverse_dynamics`], inlined where it is called, to be compiled for the registers there.
+/// [`inverse_dynamics`], inlined into the calling function and compiled for its registers.
 #[allow(unused_variables, unused_mut)]
 #[inline(always)]
 pub fn inlined_inverse_dynamics<T: Scalar, C: Coefficient<T>>(
@@ -2570,7 +2570,7 @@ pub fn inlined_inverse_dynamics<T: Scalar, C: Coefficient<T>>(
     values
 }
 
-/// Rates of the switching surfaces along the motion, the inputs held.
+/// Rates of the switching surfaces along the motion, with constant inputs.
 ///
 #[allow(unused_variables, unused_mut)]
 pub fn guard_rates<T: Scalar>(
@@ -2582,7 +2582,7 @@ pub fn guard_rates<T: Scalar>(
     inlined_guard_rates(t, state, inputs, coefficients)
 }
 
-/// [`guard_rates`], inlined where it is called, to be compiled for the registers there.
+/// [`guard_rates`], inlined into the calling function and compiled for its registers.
 #[allow(unused_variables, unused_mut)]
 #[inline(always)]
 pub fn inlined_guard_rates<T: Scalar, C: Coefficient<T>>(
@@ -2595,8 +2595,8 @@ pub fn inlined_guard_rates<T: Scalar, C: Coefficient<T>>(
     values
 }
 
-/// Product of the Jacobian of the rates by state and inputs with a direction: how the
-/// rates change along it.
+/// Product of the Jacobian of the rates by state and inputs with a direction: the derivative
+/// of the rates along it.
 #[allow(unused_variables)]
 pub fn jacobian_vector_product<T: Scalar>(
     t: T,
@@ -2616,7 +2616,7 @@ pub fn jacobian_vector_product<T: Scalar>(
     )
 }
 
-/// [`jacobian_vector_product`], inlined where it is called, to be compiled for the registers there.
+/// [`jacobian_vector_product`], inlined into the calling function and compiled for its registers.
 #[allow(unused_variables)]
 #[inline(always)]
 pub fn inlined_jacobian_vector_product<T: Scalar, C: Coefficient<T>>(
@@ -2669,7 +2669,7 @@ pub fn vector_jacobian_product<T: Scalar>(
     inlined_vector_jacobian_product(t, state, inputs, coefficients, weights)
 }
 
-/// [`vector_jacobian_product`], inlined where it is called, to be compiled for the registers there.
+/// [`vector_jacobian_product`], inlined into the calling function and compiled for its registers.
 #[allow(unused_variables)]
 #[inline(always)]
 pub fn inlined_vector_jacobian_product<T: Scalar, C: Coefficient<T>>(
@@ -2726,7 +2726,7 @@ pub fn vector_jacobian_product_by_parameters<T: Scalar>(
     )
 }
 
-/// [`vector_jacobian_product_by_parameters`], inlined where it is called, to be compiled for the registers there.
+/// [`vector_jacobian_product_by_parameters`], inlined into the calling function and compiled for its registers.
 #[allow(unused_variables, unused_mut)]
 #[inline(always)]
 pub fn inlined_vector_jacobian_product_by_parameters<T: Scalar, C: Coefficient<T>>(
@@ -2879,10 +2879,10 @@ pub fn inlined_vector_jacobian_product_by_parameters<T: Scalar, C: Coefficient<T
     product
 }
 
-/// Structural nonzeros of [`rates_by_state`].
+/// Number of structural nonzeros of [`rates_by_state`].
 pub const RATES_BY_STATE_NONZEROS: usize = 12;
 
-/// Where they stand in the matrix of 6 x 6.
+/// Positions of the nonzeros in the matrix of 6 x 6.
 pub static RATES_BY_STATE: Pattern<12> = pattern(
     &[
         [0, 3, 3, 3, 1],
@@ -2893,8 +2893,8 @@ pub static RATES_BY_STATE: Pattern<12> = pattern(
     ],
 );
 
-/// The Jacobian of the rates by the state: its structural nonzeros, row by row, at the
-/// places of [`RATES_BY_STATE`].
+/// Jacobian of the rates by the state: structural nonzeros, row by row, at the positions
+/// given by [`RATES_BY_STATE`].
 #[allow(unused_variables, unused_mut)]
 pub fn rates_by_state<T: Scalar>(
     t: T,
@@ -2905,7 +2905,7 @@ pub fn rates_by_state<T: Scalar>(
     inlined_rates_by_state(t, state, inputs, coefficients)
 }
 
-/// [`rates_by_state`], inlined where it is called, to be compiled for the registers there.
+/// [`rates_by_state`], inlined into the calling function and compiled for its registers.
 #[allow(unused_variables, unused_mut)]
 #[inline(always)]
 pub fn inlined_rates_by_state<T: Scalar, C: Coefficient<T>>(
@@ -2939,14 +2939,14 @@ pub fn inlined_rates_by_state<T: Scalar, C: Coefficient<T>>(
     values
 }
 
-/// Structural nonzeros of [`rates_by_inputs`].
+/// Number of structural nonzeros of [`rates_by_inputs`].
 pub const RATES_BY_INPUTS_NONZEROS: usize = 3;
 
-/// Where they stand in the matrix of 6 x 1.
+/// Positions of the nonzeros in the matrix of 6 x 1.
 pub static RATES_BY_INPUTS: Pattern<3> = pattern(&[[3, 1, 0, 1, 0], [4, 2, 0, 1, 0]]);
 
-/// The Jacobian of the rates by the inputs: its structural nonzeros, row by row, at the
-/// places of [`RATES_BY_INPUTS`].
+/// Jacobian of the rates by the inputs: structural nonzeros, row by row, at the positions
+/// given by [`RATES_BY_INPUTS`].
 #[allow(unused_variables, unused_mut)]
 pub fn rates_by_inputs<T: Scalar>(
     t: T,
@@ -2957,7 +2957,7 @@ pub fn rates_by_inputs<T: Scalar>(
     inlined_rates_by_inputs(t, state, inputs, coefficients)
 }
 
-/// [`rates_by_inputs`], inlined where it is called, to be compiled for the registers there.
+/// [`rates_by_inputs`], inlined into the calling function and compiled for its registers.
 #[allow(unused_variables, unused_mut)]
 #[inline(always)]
 pub fn inlined_rates_by_inputs<T: Scalar, C: Coefficient<T>>(
@@ -2974,10 +2974,10 @@ pub fn inlined_rates_by_inputs<T: Scalar, C: Coefficient<T>>(
     values
 }
 
-/// Structural nonzeros of [`rates_by_parameters`].
+/// Number of structural nonzeros of [`rates_by_parameters`].
 pub const RATES_BY_PARAMETERS_NONZEROS: usize = 27;
 
-/// Where they stand in the matrix of 6 x 9.
+/// Positions of the nonzeros in the matrix of 6 x 9.
 pub static RATES_BY_PARAMETERS: Pattern<27> = pattern(
     &[
         [3, 1, 0, 1, 0],
@@ -3001,8 +3001,8 @@ pub static RATES_BY_PARAMETERS: Pattern<27> = pattern(
     ],
 );
 
-/// The Jacobian of the rates by the parameters: its structural nonzeros, row by row, at the
-/// places of [`RATES_BY_PARAMETERS`].
+/// Jacobian of the rates by the parameters: structural nonzeros, row by row, at the positions
+/// given by [`RATES_BY_PARAMETERS`].
 #[allow(unused_variables, unused_mut)]
 pub fn rates_by_parameters<T: Scalar>(
     t: T,
@@ -3013,7 +3013,7 @@ pub fn rates_by_parameters<T: Scalar>(
     inlined_rates_by_parameters(t, state, inputs, coefficients)
 }
 
-/// [`rates_by_parameters`], inlined where it is called, to be compiled for the registers there.
+/// [`rates_by_parameters`], inlined into the calling function and compiled for its registers.
 #[allow(unused_variables, unused_mut)]
 #[inline(always)]
 pub fn inlined_rates_by_parameters<T: Scalar, C: Coefficient<T>>(
@@ -3271,10 +3271,10 @@ pub fn inlined_rates_by_parameters<T: Scalar, C: Coefficient<T>>(
     values
 }
 
-/// Structural nonzeros of [`observables_by_state`].
+/// Number of structural nonzeros of [`observables_by_state`].
 pub const OBSERVABLES_BY_STATE_NONZEROS: usize = 10;
 
-/// Where they stand in the matrix of 4 x 6.
+/// Positions of the nonzeros in the matrix of 4 x 6.
 pub static OBSERVABLES_BY_STATE: Pattern<10> = pattern(
     &[
         [0, 1, 1, 2, 0],
@@ -3286,8 +3286,8 @@ pub static OBSERVABLES_BY_STATE: Pattern<10> = pattern(
     ],
 );
 
-/// The Jacobian of the observables by the state: its structural nonzeros, row by row, at the
-/// places of [`OBSERVABLES_BY_STATE`].
+/// Jacobian of the observables by the state: structural nonzeros, row by row, at the positions
+/// given by [`OBSERVABLES_BY_STATE`].
 #[allow(unused_variables, unused_mut)]
 pub fn observables_by_state<T: Scalar>(
     t: T,
@@ -3298,7 +3298,7 @@ pub fn observables_by_state<T: Scalar>(
     inlined_observables_by_state(t, state, inputs, coefficients)
 }
 
-/// [`observables_by_state`], inlined where it is called, to be compiled for the registers there.
+/// [`observables_by_state`], inlined into the calling function and compiled for its registers.
 #[allow(unused_variables, unused_mut)]
 #[inline(always)]
 pub fn inlined_observables_by_state<T: Scalar, C: Coefficient<T>>(
@@ -3345,14 +3345,14 @@ pub fn inlined_observables_by_state<T: Scalar, C: Coefficient<T>>(
     values
 }
 
-/// Structural nonzeros of [`observables_by_inputs`].
+/// Number of structural nonzeros of [`observables_by_inputs`].
 pub const OBSERVABLES_BY_INPUTS_NONZEROS: usize = 1;
 
-/// Where they stand in the matrix of 4 x 1.
+/// Positions of the nonzeros in the matrix of 4 x 1.
 pub static OBSERVABLES_BY_INPUTS: Pattern<1> = pattern(&[[3, 1, 0, 1, 0]]);
 
-/// The Jacobian of the observables by the inputs: its structural nonzeros, row by row, at the
-/// places of [`OBSERVABLES_BY_INPUTS`].
+/// Jacobian of the observables by the inputs: structural nonzeros, row by row, at the positions
+/// given by [`OBSERVABLES_BY_INPUTS`].
 #[allow(unused_variables, unused_mut)]
 pub fn observables_by_inputs<T: Scalar>(
     t: T,
@@ -3363,7 +3363,7 @@ pub fn observables_by_inputs<T: Scalar>(
     inlined_observables_by_inputs(t, state, inputs, coefficients)
 }
 
-/// [`observables_by_inputs`], inlined where it is called, to be compiled for the registers there.
+/// [`observables_by_inputs`], inlined into the calling function and compiled for its registers.
 #[allow(unused_variables, unused_mut)]
 #[inline(always)]
 pub fn inlined_observables_by_inputs<T: Scalar, C: Coefficient<T>>(
@@ -3378,10 +3378,10 @@ pub fn inlined_observables_by_inputs<T: Scalar, C: Coefficient<T>>(
     values
 }
 
-/// Structural nonzeros of [`observables_by_parameters`].
+/// Number of structural nonzeros of [`observables_by_parameters`].
 pub const OBSERVABLES_BY_PARAMETERS_NONZEROS: usize = 10;
 
-/// Where they stand in the matrix of 4 x 9.
+/// Positions of the nonzeros in the matrix of 4 x 9.
 pub static OBSERVABLES_BY_PARAMETERS: Pattern<10> = pattern(
     &[
         [1, 1, 3, 1, 0],
@@ -3397,8 +3397,8 @@ pub static OBSERVABLES_BY_PARAMETERS: Pattern<10> = pattern(
     ],
 );
 
-/// The Jacobian of the observables by the parameters: its structural nonzeros, row by row, at the
-/// places of [`OBSERVABLES_BY_PARAMETERS`].
+/// Jacobian of the observables by the parameters: structural nonzeros, row by row, at the positions
+/// given by [`OBSERVABLES_BY_PARAMETERS`].
 #[allow(unused_variables, unused_mut)]
 pub fn observables_by_parameters<T: Scalar>(
     t: T,
@@ -3409,7 +3409,7 @@ pub fn observables_by_parameters<T: Scalar>(
     inlined_observables_by_parameters(t, state, inputs, coefficients)
 }
 
-/// [`observables_by_parameters`], inlined where it is called, to be compiled for the registers there.
+/// [`observables_by_parameters`], inlined into the calling function and compiled for its registers.
 #[allow(unused_variables, unused_mut)]
 #[inline(always)]
 pub fn inlined_observables_by_parameters<T: Scalar, C: Coefficient<T>>(
@@ -3462,24 +3462,24 @@ pub fn inlined_observables_by_parameters<T: Scalar, C: Coefficient<T>>(
     values
 }
 
-/// The linearisation about a point: rates + A dx + B du, observables + C dx + D du.
+/// Linearisation about a point: rates + A dx + B du, observables + C dx + D du.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Linearisation<T = f64> {
-    /// The rates at the point.
+    /// Rates at the point.
     pub rates: [T; STATES],
-    /// The observables at the point.
+    /// Observables at the point.
     pub observables: [T; OBSERVABLES],
-    /// The rates by the state.
+    /// Derivatives of the rates by the state.
     pub A: [[T; STATES]; STATES],
-    /// The rates by the inputs.
+    /// Derivatives of the rates by the inputs.
     pub B: [[T; INPUTS]; STATES],
-    /// The observables by the state.
+    /// Derivatives of the observables by the state.
     pub C: [[T; STATES]; OBSERVABLES],
-    /// The observables by the inputs.
+    /// Derivatives of the observables by the inputs.
     pub D: [[T; INPUTS]; OBSERVABLES],
 }
 
-/// The linearisation about a point.
+/// Linearisation about a point.
 pub fn linearise<T: Scalar>(
     t: T,
     state: &[T; STATES],
@@ -3489,7 +3489,7 @@ pub fn linearise<T: Scalar>(
     inlined_linearise(t, state, inputs, coefficients)
 }
 
-/// [`linearise`], inlined where it is called, to be compiled for the registers there.
+/// [`linearise`], inlined into the calling function and compiled for its registers.
 #[inline(always)]
 pub fn inlined_linearise<T: Scalar, C: Coefficient<T>>(
     t: T,
@@ -3523,16 +3523,16 @@ pub fn inlined_linearise<T: Scalar, C: Coefficient<T>>(
     }
 }
 
-/// Where the structural nonzeros of a matrix stand, row by row.
+/// Positions of the structural nonzeros of a matrix, row by row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pattern<const N: usize> {
-    /// The row of each.
+    /// Row of each.
     pub rows: [usize; N],
-    /// The column of each.
+    /// Column of each.
     pub columns: [usize; N],
 }
 impl<const N: usize> Pattern<N> {
-    /// The matrix of `R` rows and `C` columns with these nonzeros.
+    /// Returns the matrix of `R` rows and `C` columns with these nonzeros.
     pub fn dense<T: Scalar, const R: usize, const C: usize>(
         &self,
         nonzeros: &[T; N],
@@ -3549,8 +3549,8 @@ impl<const N: usize> Pattern<N> {
     }
 }
 
-/// The places of blocks: first row, rows, first column, columns, and whether only the diagonal
-/// is filled. Blocks of the same rows stand together.
+/// Expands blocks to positions. A block has first row, rows, first column, columns, and 1 if only
+/// its diagonal is filled, else 0. Blocks of the same rows are adjacent.
 const fn pattern<const B: usize, const N: usize>(
     blocks: &[[usize; 5]; B],
 ) -> Pattern<N> {
@@ -3591,23 +3591,23 @@ const fn pattern<const B: usize, const N: usize>(
     pattern
 }
 
-/// int\[s phi_i], with s = x/l from 0 to 1 and primes for derivatives by s
+/// int\[s phi_i], with s = x/l from 0 to 1; primes are derivatives by s
 static INTEGRAL_S1_PHI: [f64; 2] = [0.774866121708409, 0.08912096167893394];
 
-/// int\[phi_i^2], with s = x/l from 0 to 1 and primes for derivatives by s
+/// int\[phi_i^2], with s = x/l from 0 to 1; primes are derivatives by s
 static INTEGRAL_PHI_SQUARED: [f64; 2] = [1.8556448472351015, 0.9640638644850398];
 
-/// phi_i(1), with s = x/l from 0 to 1 and primes for derivatives by s
+/// phi_i(1), with s = x/l from 0 to 1; primes are derivatives by s
 static PHI_AT_END: [f64; 2] = [2.7244411149702623, -1.9637350783494598];
 
-/// phi_i'(1), with s = x/l from 0 to 1 and primes for derivatives by s
+/// phi_i'(1), with s = x/l from 0 to 1; primes are derivatives by s
 static PHI_D1_AT_END: [f64; 2] = [3.7502081374239222, -9.38818226594835];
 
-/// int\[phi_i''^2], with s = x/l from 0 to 1 and primes for derivatives by s
+/// int\[phi_i''^2], with s = x/l from 0 to 1; primes are derivatives by s
 static INTEGRAL_PHI_D2_SQUARED: [f64; 2] = [22.940155884082465, 468.07114845621095];
 
-/// What the equations are computed with: `f64`, `f32`, lanes of them, or numbers that carry
-/// derivatives. Nothing branches on a value, so that lanes may differ in every condition.
+/// Number type of the equations: `f64`, `f32`, SIMD lanes of them, or dual numbers. The code
+/// does not branch on a value, so that lanes can differ in every condition.
 pub trait Scalar: Copy
 where
     Self: core::ops::Add<Output = Self>,
@@ -3616,55 +3616,54 @@ where
     Self: core::ops::Div<Output = Self>,
     Self: core::ops::Neg<Output = Self>,
 {
-    /// A number, in every lane and without derivative.
+    /// Returns a constant, equal in every lane and without derivative.
     fn number(value: f64) -> Self;
-    /// `then` where a > b, `otherwise` elsewhere, also where either is NaN. Whatever is not
-    /// chosen leaves no trace.
+    /// Returns `then` if a > b, else `otherwise`, also if either is NaN. The other value has no
+    /// effect.
     fn select_greater(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
-    /// Whether a > b in every lane.
+    /// Returns true if a > b in every lane.
     fn all_greater(a: Self, b: Self) -> bool;
-    /// An elementary function of this.
+    /// Applies an elementary function.
     fn function<F: Function>(self) -> Self;
-    /// An elementary function of this and another.
+    /// Applies an elementary function of two arguments.
     fn function_of_two<F: FunctionOfTwo>(self, other: Self) -> Self;
-    /// A long loop. Single numbers keep it out of the code around; lanes must not, because code
-    /// of its own would not be compiled for their registers.
+    /// Runs a long loop. For single numbers it is not inlined; for lanes it must be, because a
+    /// separate function would not be compiled for their registers.
     #[inline(always)]
     fn long_loop<F: FnOnce() -> Self>(lines: F) -> Self {
         lines()
     }
 }
 
-/// Numbers in IEEE 754 double precision, or lanes of them: what the elementary functions are
-/// written for.
+/// Number type of the elementary functions: IEEE 754 double precision, or SIMD lanes of it.
 pub trait Real: Scalar {
-    /// `then` where a = b, `otherwise` elsewhere, also where either is NaN.
+    /// Returns `then` if a = b, else `otherwise`, also if either is NaN.
     fn select_equal(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
-    /// The sign bit cleared.
+    /// Clears the sign bit.
     fn magnitude(self) -> Self;
-    /// The magnitude with the sign bit of another number.
+    /// Returns the magnitude with the sign bit of another number.
     fn copy_sign(self, sign: Self) -> Self;
-    /// 2^k for an integral k: 2^52 + 1023 brings it to the place of the exponent.
+    /// Returns 2^k for an integral k: the addition of 2^52 + 1023 moves k to the exponent bits.
     fn power_of_two(self) -> Self;
-    /// The unbiased exponent field.
+    /// Returns the unbiased exponent field.
     fn exponent(self) -> Self;
-    /// The mantissa under the exponent of 1.
+    /// Returns the mantissa with the exponent of 1.
     fn significand(self) -> Self;
 }
 
-/// An elementary function: plain operations in a fixed order, the same bits on every machine.
+/// Elementary function: plain operations in a fixed order, with the same bits on every machine.
 pub trait Function {
-    /// Its value.
+    /// Computes the value.
     fn value<T: Real>(x: T) -> T;
-    /// Its derivative at x, where it is `value`.
+    /// Computes the derivative at x; `value` is the value there.
     fn slope<T: Scalar>(x: T, value: T) -> T;
 }
 
-/// An elementary function of two arguments.
+/// Elementary function of two arguments.
 pub trait FunctionOfTwo {
-    /// Its value.
+    /// Computes the value.
     fn value<T: Real>(x: T, y: T) -> T;
-    /// Its derivatives by x and y, where it is `value`.
+    /// Computes the derivatives by x and y; `value` is the value there.
     fn slopes<T: Scalar>(x: T, y: T, value: T) -> [T; 2];
 }
 impl Scalar for f64 {
@@ -3720,8 +3719,8 @@ impl Real for f64 {
     }
 }
 
-/// Elementary functions in double precision, then rounded: within 0.5001 units in the last
-/// place.
+/// Elementary functions are computed in double precision and rounded: within 0.5001 units in the
+/// last place.
 impl Scalar for f32 {
     #[inline(always)]
     fn number(value: f64) -> f32 {
@@ -3749,10 +3748,10 @@ impl Scalar for f32 {
     }
 }
 
-/// A coefficient as the functions for lanes read it: a number of the type that they compute
-/// with, or an `f64` that all lanes share, which takes an eighth of the memory.
+/// Coefficient of functions for SIMD lanes: a number of their type, or an `f64` that all lanes
+/// share, which takes an eighth of the memory.
 pub trait Coefficient<T>: Copy {
-    /// The number, in every lane.
+    /// Returns the number in every lane.
     fn read(self) -> T;
 }
 impl<T: Scalar> Coefficient<T> for T {
@@ -3762,14 +3761,14 @@ impl<T: Scalar> Coefficient<T> for T {
     }
 }
 
-/// 1/pivot of a positive pivot; NaN where the mass matrix is not positive definite.
+/// Returns 1/pivot for a positive pivot, else NaN: the mass matrix is not positive definite.
 #[inline(always)]
 fn pivot_reciprocal<T: Scalar>(pivot: T) -> T {
     let reciprocal = T::number(1.0) / pivot;
     T::select_greater(pivot, T::number(0.0), reciprocal, T::number(f64::NAN))
 }
 
-/// These numbers in another type.
+/// Converts numbers to another type.
 #[inline(always)]
 fn converted<T: Scalar, const N: usize>(numbers: &[f64; N]) -> [T; N] {
     let mut converted = [T::number(0.0); N];
@@ -3779,7 +3778,7 @@ fn converted<T: Scalar, const N: usize>(numbers: &[f64; N]) -> [T; N] {
     converted
 }
 
-/// The sum of the first `N` of eight numbers, neighbours added in pairs.
+/// Adds the first `N` of eight numbers, neighbours in pairs.
 #[inline(always)]
 fn paired<const N: usize, T: Scalar>(s: &[T; 8]) -> T {
     let a = if N > 1 { s[0] + s[1] } else { s[0] };
@@ -3791,7 +3790,7 @@ fn paired<const N: usize, T: Scalar>(s: &[T; 8]) -> T {
     if N > 4 { left + right } else { left }
 }
 
-/// The sum of up to eight elements.
+/// Adds up to eight elements.
 #[inline(always)]
 fn sum_of_few<const N: usize, T: Scalar, F: Fn(usize) -> T>(
     _: [(); N],

@@ -1,6 +1,6 @@
-/// The regime that a state is in: bit k is set where number k of [`guards`] is positive,
-/// for up to 32 of them. Crossing one flips its bit. Of lanes, which have to be in
-/// one regime, a bit is set where it is in all.
+/// Regime of a state: bit k is set if number k of [`guards`] is positive, for up to 32 of
+/// them. Crossing a surface flips its bit. SIMD lanes must be in one regime: a bit is set
+/// if it is set in all of them.
 #[allow(unused_variables)]
 pub fn regime<T: Scalar>(
     t: T,
@@ -18,9 +18,9 @@ pub fn regime<T: Scalar>(
     regime
 }
 
-/// Rates of the state within a regime, written to `rates`: those of [`rates_into`] where
-/// [`regime`] is `REGIME`, for half-widths that are not negative. Beyond the regime they go
-/// on as they are within, and on its surfaces they are those of its side.
+/// Rates of the state in a regime, written to `rates`. They equal those of [`rates_into`] if
+/// [`regime`] is `REGIME` and half-widths are not negative. Outside the regime its equations
+/// are continued; on a surface they are those of the regime's side.
 ///
 /// `t` in s; `state` and the rates in the order of [`STATE_NAMES`].
 #[allow(unused_variables)]
